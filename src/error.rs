@@ -1,0 +1,59 @@
+//! The one error type. An error is always the user's: it says where, what was found and what to write instead.
+
+use std::path::{Path, PathBuf};
+
+/// What may be wrong with the user's input or the file system.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A value, key, triangle or line that cannot be used.
+    #[error("{file}: {place}: {found}; {remedy}", file = .file.display())]
+    Input {
+        /// The file that holds it.
+        file: PathBuf,
+        /// Key, line or triangle.
+        place: String,
+        /// What was found there.
+        found: String,
+        /// What to write instead.
+        remedy: String,
+    },
+    /// A file that cannot be read or written.
+    #[error("{file}: cannot {action}: {source}", file = .file.display())]
+    File {
+        /// The file.
+        file: PathBuf,
+        /// "read", "create", "write" …
+        action: &'static str,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+    /// A request that does not fit together (command line, result folder).
+    #[error("{0}")]
+    Request(String),
+}
+
+impl Error {
+    /// A value that cannot be used, with the place and the remedy.
+    pub fn input(
+        file: &Path,
+        place: impl Into<String>,
+        found: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self::Input {
+            file: file.to_owned(),
+            place: place.into(),
+            found: found.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// Turns a system error into one that names the file: `.map_err(Error::file("read", path))`.
+    pub fn file(action: &'static str, file: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let file = file.to_owned();
+        move |source| Self::File { file, action, source }
+    }
+}
+
+/// Shorthand for results of this crate.
+pub type Result<T> = std::result::Result<T, Error>;

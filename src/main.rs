@@ -1,0 +1,3 @@
+//! The `rockfall` command.
+
+fn main() {}

@@ -1,0 +1,30 @@
+//! One implicit step of a rock in contact.
+
+/// How a step is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scheme {
+    /// The paper's displacement-based step at a fixed time step.
+    Dda,
+    /// TR-BDF2 with error control; the default.
+    Adaptive,
+    /// The same law with the fourth-order tableau and a tight tolerance.
+    Reference,
+    /// Rigid limit: impact map and velocity stepping.
+    Rigid,
+}
+
+/// Settings of the step, all in force (defaults already filled in by the plan).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Scheme in force.
+    pub scheme: Scheme,
+    /// Local error allowed per step (m/s); `adaptive` and `reference`.
+    pub tolerance_m_s: f64,
+    /// Fixed step of `dda`, largest step of `rigid` (s).
+    pub step_s: f64,
+    /// `dda`: whether the shear spring remembers its stretch (false = as printed in the paper).
+    pub shear_memory: bool,
+    /// Impacts slower than this do not rebound (m/s).
+    pub capture_speed_m_s: f64,
+}
