@@ -1,5 +1,9 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
+pub mod edges;
+pub mod stl;
+pub mod weld;
+
 use crate::rock::Vec3;
 use std::path::PathBuf;
 
