@@ -4,7 +4,7 @@
 //! flat is kept, and the contact's own test (`contact::near`) decides from where the rock stands. Flat edges, and
 //! vertices with flat edges only, never touch: the face does.
 
-use super::weld::Edges;
+use super::edges::Edges;
 use crate::rock::Vec3;
 
 /// Sine of the angle between faces below which an edge is flat (–): rounding of `f64` coordinates, no more.

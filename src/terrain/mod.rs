@@ -1,7 +1,11 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
+pub mod edges;
 pub mod features;
 pub mod index;
+mod merge;
+pub mod stl;
+pub mod weld;
 
 use crate::rock::Vec3;
 use features::Features;
