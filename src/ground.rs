@@ -77,6 +77,23 @@ pub struct Capture {
 }
 
 impl Law {
+    /// A ground that does nothing.
+    pub const NONE: Self = Self {
+        p_n: 0.0,
+        p_s: 0.0,
+        k_r: 0.0,
+        c_n: 0.0,
+        c_n_captured: 0.0,
+        c_s: 0.0,
+        c_r: 0.0,
+        friction: 0.0,
+        rolling_m: 0.0,
+        capture_m_s: 0.0,
+        restitution: 0.0,
+        roughness_rad: 0.0,
+        omega: 0.0,
+    };
+
     /// The law of `ground` for `rock`.
     pub fn new(ground: &Ground, rock: &Rock, capture: &Capture) -> Self {
         let (m, radius) = (rock.mass_kg(), rock.radius_m);

@@ -1,1 +1,81 @@
-//! c
+//! Where a sphere touches the mesh, what it remembers of it, and the paper's 6×6 submatrices.
+
+pub mod hold;
+pub mod near;
+
+use crate::rock::Vec3;
+use crate::trajectory::FeatureKind;
+
+/// Most contacts one rock keeps at a time, the deepest first.
+pub const MOST: usize = 8;
+
+/// What of the mesh a contact belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Feature {
+    /// Face, edge or vertex.
+    pub kind: FeatureKind,
+    /// Its number in the terrain's triangles, edges or vertices.
+    pub id: u32,
+}
+
+/// A strict local minimum of the distance from the centre to the mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Where on the mesh.
+    pub feature: Feature,
+    /// Triangle whose sheet and ground it answers with.
+    pub triangle: u32,
+    /// Unit normal from the mesh to the centre; the paper's `V` is its opposite.
+    pub normal: Vec3,
+    /// Distance from the centre to the mesh (m); pressed in when smaller than the radius.
+    pub distance_m: f64,
+}
+
+/// The touches of one rock, without allocation.
+#[derive(Debug, Clone, Copy)]
+pub struct Touches {
+    list: [Touch; MOST],
+    len: usize,
+}
+
+impl Default for Touches {
+    fn default() -> Self {
+        let none = Touch {
+            feature: Feature { kind: FeatureKind::Face, id: u32::MAX },
+            triangle: 0,
+            normal: Vec3::zeros(),
+            distance_m: f64::INFINITY,
+        };
+        Self { list: [none; MOST], len: 0 }
+    }
+}
+
+impl Touches {
+    /// Forgets all.
+    #[inline]
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Adds one; when full, it takes the place of the shallowest if it is deeper.
+    #[inline]
+    pub fn add(&mut self, touch: Touch) {
+        if self.len < MOST {
+            self.list[self.len] = touch;
+            self.len += 1;
+            return;
+        }
+        let shallowest = self.list.iter_mut().max_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        if let Some(place) = shallowest.filter(|place| place.distance_m > touch.distance_m) {
+            *place = touch;
+        }
+    }
+}
+
+impl std::ops::Deref for Touches {
+    type Target = [Touch];
+    #[inline]
+    fn deref(&self) -> &[Touch] {
+        &self.list[..self.len]
+    }
+}

@@ -1,5 +1,11 @@
 //! One implicit step of a rock in contact.
 
+pub mod adaptive;
+pub mod grip;
+pub mod law;
+pub mod stage;
+pub mod tableau;
+
 /// How a step is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -1,0 +1,130 @@
+//! What a rock remembers of its contacts: the stretch of their shear and rolling springs.
+
+use super::{Feature, MOST, Touch};
+use crate::rock::Vec3;
+
+/// Most memories: the contacts of a step's start and those that come up during the step.
+pub const HOLDS: usize = 2 * MOST;
+
+/// Cosine of the turn of the normal up to which a new contact takes over an old one's springs (–): a rock rolling
+/// from face to edge to face keeps its grip.
+const SAME_GRIP: f64 = 0.7;
+
+/// The memory of one contact.
+#[derive(Debug, Clone, Copy)]
+pub struct Hold {
+    /// What it touches.
+    pub feature: Feature,
+    /// Triangle whose ground answers.
+    pub triangle: u32,
+    /// Normal to which `shear` is tangent.
+    pub n: Vec3,
+    /// Stretch of the shear spring ξ (m).
+    pub shear: Vec3,
+    /// Stretch of the rolling spring (rad).
+    pub roll: Vec3,
+    /// Came in too slowly to rebound: damped for good.
+    pub captured: bool,
+    /// Normal force at the end of the last step (N).
+    pub push: f64,
+    /// Whether it slid at the end of the last step.
+    pub slides: bool,
+    /// Whether it was there at the last accepted step.
+    pub closed: bool,
+}
+
+impl Hold {
+    /// A new memory without stretch.
+    pub fn new(touch: &Touch, captured: bool) -> Self {
+        Self {
+            feature: touch.feature,
+            triangle: touch.triangle,
+            n: touch.normal,
+            shear: Vec3::zeros(),
+            roll: Vec3::zeros(),
+            captured,
+            push: 0.0,
+            slides: false,
+            closed: false,
+        }
+    }
+}
+
+/// Turns a vector tangent at `from` into one tangent at `to` by the shortest rotation; its length stays.
+#[inline]
+pub fn carry(x: Vec3, from: &Vec3, to: &Vec3) -> Vec3 {
+    if from == to { x } else { x - (from + to) * (to.dot(&x) / (1.0 + from.dot(to))) }
+}
+
+/// The memories of one rock, without allocation.
+#[derive(Debug, Clone)]
+pub struct Holds {
+    list: [Hold; HOLDS],
+    len: usize,
+}
+
+impl Default for Holds {
+    fn default() -> Self {
+        let touch = super::Touches::default().list[0];
+        Self { list: [Hold::new(&touch, false); HOLDS], len: 0 }
+    }
+}
+
+impl Holds {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Forgets all after the first `len`.
+    pub fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
+    }
+
+    /// The memory of a touch: its own, else that of a like one which has lost its feature, else a new one.
+    ///
+    /// `taken` marks memories that belong to other touches of the same instant.
+    #[inline]
+    pub fn find(&mut self, touch: &Touch, touches: &[Touch], taken: u32, captured: impl FnOnce() -> bool) -> usize {
+        let free = |k: usize| taken & (1 << k) == 0;
+        if let Some(k) = (0..self.len).find(|&k| free(k) && self.list[k].feature == touch.feature) {
+            return k;
+        }
+        let orphan = |hold: &Hold| touches.iter().all(|other| other.feature != hold.feature);
+        let like = (0..self.len)
+            .find(|&k| free(k) && self.list[k].n.dot(&touch.normal) > SAME_GRIP && orphan(&self.list[k]));
+        like.unwrap_or_else(|| {
+            let place = self.len.min(HOLDS - 1);
+            self.list[place] = Hold::new(touch, captured());
+            self.len = place + 1;
+            place
+        })
+    }
+
+    /// Keeps only the memories that `keep` wants, in order.
+    pub fn retain(&mut self, mut keep: impl FnMut(&Hold) -> bool) {
+        let mut kept = 0;
+        for k in 0..self.len {
+            if keep(&self.list[k]) {
+                self.list[kept] = self.list[k];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+}
+
+impl std::ops::Deref for Holds {
+    type Target = [Hold];
+    #[inline]
+    fn deref(&self) -> &[Hold] {
+        &self.list[..self.len]
+    }
+}
+
+impl std::ops::DerefMut for Holds {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [Hold] {
+        &mut self.list[..self.len]
+    }
+}

@@ -1,0 +1,328 @@
+//! Finding contacts: the strict local minima of the distance from a rock's centre to the mesh.
+//!
+//! Around a place, the features that could touch anywhere within a margin are collected once and asked many times.
+//! A face touches where the centre's foot lies inside it; an edge where the centre stands outside of every face on
+//! it; a vertex where the centre stands behind every edge at it. Flat and hollow edges fail by themselves, from
+//! either side of a sheet, and every contact belongs to one feature.
+
+use super::{Feature, Touch, Touches};
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+use crate::trajectory::FeatureKind;
+
+/// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
+const SLACK: f64 = 1e-9;
+/// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
+/// rounding of map coordinates, which bends flat edges by 1e-9.
+const SAME: f64 = 1e-6;
+
+#[derive(Debug, Clone, Copy)]
+struct NearFace {
+    id: u32,
+    a: Vec3,
+    n: Vec3,
+    out: [Vec3; 3],
+    /// `out[k] · x ≤ rim[k]` inside.
+    rim: [f64; 3],
+}
+
+#[derive(Debug, Clone, Copy)]
+struct NearEdge {
+    id: u32,
+    triangle: u32,
+    a: Vec3,
+    along: Vec3,
+    length: f64,
+    /// Range of outward face normals in `rays`.
+    rays: (u32, u32),
+    at_border: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct NearCorner {
+    id: u32,
+    triangle: u32,
+    p: Vec3,
+    /// Range of edge directions in `rays`.
+    rays: (u32, u32),
+}
+
+/// The features a rock can touch while its centre stays within a margin of a place.
+#[derive(Debug)]
+pub struct Near {
+    centre: Vec3,
+    margin: f64,
+    radius: f64,
+    reach: f64,
+    faces: Vec<NearFace>,
+    edges: Vec<NearEdge>,
+    corners: Vec<NearCorner>,
+    rays: Vec<Vec3>,
+    /// All triangles within reach; only looked at when a border is near.
+    sheets: Vec<u32>,
+    /// Triangles tested so far.
+    pub tested: u64,
+}
+
+impl Default for Near {
+    fn default() -> Self {
+        Self {
+            centre: Vec3::repeat(f64::INFINITY),
+            margin: 0.0,
+            radius: 0.0,
+            reach: 0.0,
+            faces: Vec::with_capacity(64),
+            edges: Vec::with_capacity(64),
+            corners: Vec::with_capacity(64),
+            rays: Vec::with_capacity(512),
+            sheets: Vec::with_capacity(256),
+            tested: 0,
+        }
+    }
+}
+
+impl Near {
+    /// Forgets the place (before the next rock).
+    pub fn forget(&mut self) {
+        self.centre = Vec3::repeat(f64::INFINITY);
+    }
+
+    /// Collects around `centre`, for a rock of `radius`, all that touches within `slack` of it while the centre
+    /// moves up to `margin` (all m).
+    pub fn collect(&mut self, terrain: &Terrain, centre: &Vec3, radius: f64, margin: f64, slack: f64) {
+        (self.centre, self.margin, self.radius) = (*centre, margin, radius);
+        self.reach = radius + slack + margin;
+        self.faces.clear();
+        self.edges.clear();
+        self.corners.clear();
+        self.rays.clear();
+        self.sheets.clear();
+        terrain.index.near(centre, self.reach, |start, count| {
+            for t in start..start + count {
+                self.tested += 1;
+                let face = &terrain.features.faces[t as usize];
+                if face.n.dot(&(centre - face.a)).abs() <= self.reach {
+                    self.take(terrain, t);
+                }
+            }
+        });
+    }
+
+    /// Takes of one triangle what may touch.
+    fn take(&mut self, terrain: &Terrain, t: u32) {
+        let features = &terrain.features;
+        let face = &features.faces[t as usize];
+        let corners = [face.a, face.a + face.e1, face.a + face.e2];
+        let mut near = NearFace { id: t, a: face.a, n: face.n, out: [Vec3::zeros(); 3], rim: [0.0; 3] };
+        let mut furthest = f64::NEG_INFINITY;
+        for k in 0..3 {
+            let along = corners[(k + 1) % 3] - corners[k];
+            near.out[k] = along.cross(&face.n).normalize();
+            near.rim[k] = near.out[k].dot(&corners[k]);
+            furthest = furthest.max(near.out[k].dot(&self.centre) - near.rim[k]);
+        }
+        if furthest > self.reach {
+            return;
+        }
+        self.sheets.push(t);
+        if furthest <= self.margin + SLACK * self.radius {
+            self.faces.push(near);
+        }
+        let owned = features.owned[t as usize];
+        for k in 0..3 {
+            if owned & (1 << k) != 0 {
+                self.take_edge(terrain, features.edges.of_triangle[t as usize][k], t);
+            }
+            if owned & (8 << k) != 0 {
+                self.take_corner(terrain, terrain.triangles[t as usize][k], t);
+            }
+        }
+    }
+
+    fn take_edge(&mut self, terrain: &Terrain, id: u32, owner: u32) {
+        let [a, b] = terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
+        let length = (b - a).norm();
+        let along = (b - a) / length;
+        let to = self.centre - a;
+        let s = along.dot(&to);
+        if s < -self.margin || s > length + self.margin || (to - along * s).norm() > self.reach {
+            return;
+        }
+        let first = self.rays.len();
+        let faces = terrain.features.edges.triangles_on(id);
+        for &t in faces {
+            let outward = terrain.features.outward(id, t, &terrain.vertices_m);
+            if outward.dot(&to) < -self.margin - SLACK * self.radius {
+                self.rays.truncate(first);
+                return;
+            }
+            self.rays.push(outward);
+        }
+        let rays = (first as u32, self.rays.len() as u32);
+        let at_border = faces.len() == 1;
+        self.edges.push(NearEdge { id, triangle: owner, a, along, length, rays, at_border });
+    }
+
+    fn take_corner(&mut self, terrain: &Terrain, id: u32, owner: u32) {
+        let p = terrain.vertices_m[id as usize];
+        let to = self.centre - p;
+        if to.norm() > self.reach {
+            return;
+        }
+        let first = self.rays.len();
+        for &v in terrain.features.neighbours(id) {
+            let along = (terrain.vertices_m[v as usize] - p).normalize();
+            if along.dot(&to) > self.margin + SLACK * self.radius {
+                self.rays.truncate(first);
+                return;
+            }
+            self.rays.push(along);
+        }
+        let rays = (first as u32, self.rays.len() as u32);
+        self.corners.push(NearCorner { id, triangle: owner, p, rays });
+    }
+
+    /// Whether what was collected holds for a rock at `centre`.
+    #[inline]
+    pub fn covers(&self, centre: &Vec3) -> bool {
+        (centre - self.centre).norm_squared() <= self.margin * self.margin
+    }
+
+    /// How far the centre may still go before it must be collected anew (m).
+    #[inline]
+    pub fn room_m(&self, centre: &Vec3) -> f64 {
+        self.margin - (centre - self.centre).norm()
+    }
+
+    /// Whether nothing but one face can touch within the margin: a certificate that geometry is a plane there.
+    #[inline]
+    pub fn is_plane(&self) -> bool {
+        self.faces.len() == 1 && self.edges.is_empty() && self.corners.is_empty()
+    }
+
+    /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners.
+    #[inline]
+    pub fn touches(&self, terrain: &Terrain, centre: &Vec3, reach: f64, touches: &mut Touches) {
+        touches.clear();
+        for face in &self.faces {
+            self.ask_face(face, centre, reach, touches);
+        }
+        for edge in &self.edges {
+            self.ask_edge(terrain, edge, centre, reach, touches);
+        }
+        for corner in &self.corners {
+            self.ask_corner(terrain, corner, centre, reach, touches);
+        }
+    }
+
+    #[inline]
+    fn ask_face(&self, face: &NearFace, centre: &Vec3, reach: f64, touches: &mut Touches) {
+        let height = face.n.dot(&(centre - face.a));
+        let slack = SLACK * self.radius;
+        if height.abs() >= reach || (0..3).any(|k| face.out[k].dot(centre) > face.rim[k] + slack) {
+            return;
+        }
+        let feature = Feature { kind: FeatureKind::Face, id: face.id };
+        let normal = if height < 0.0 { -face.n } else { face.n };
+        self.merge(Touch { feature, triangle: face.id, normal, distance_m: height.abs() }, centre, touches);
+    }
+
+    fn ask_edge(&self, terrain: &Terrain, edge: &NearEdge, centre: &Vec3, reach: f64, touches: &mut Touches) {
+        let to = centre - edge.a;
+        let s = edge.along.dot(&to);
+        let slack = SLACK * self.radius;
+        if s < -slack || s > edge.length + slack {
+            return;
+        }
+        let off = to - edge.along * s.clamp(0.0, edge.length);
+        let distance = off.norm();
+        if distance >= reach || distance <= slack {
+            return;
+        }
+        let rays = &self.rays[edge.rays.0 as usize..edge.rays.1 as usize];
+        if rays.iter().any(|out| out.dot(&off) < -SLACK * distance) {
+            return;
+        }
+        let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
+        let normal = off / distance;
+        if edge.at_border && self.is_covered(terrain, &(centre - off), centre, distance) {
+            return;
+        }
+        self.merge(Touch { feature, triangle: edge.triangle, normal, distance_m: distance }, centre, touches);
+    }
+
+    fn ask_corner(&self, terrain: &Terrain, corner: &NearCorner, centre: &Vec3, reach: f64, touches: &mut Touches) {
+        let off = centre - corner.p;
+        let distance = off.norm();
+        if distance >= reach || distance <= SLACK * self.radius {
+            return;
+        }
+        let rays = &self.rays[corner.rays.0 as usize..corner.rays.1 as usize];
+        if rays.iter().any(|along| along.dot(&off) > SLACK * distance) {
+            return;
+        }
+        if self.is_covered(terrain, &corner.p, centre, distance) {
+            return;
+        }
+        let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
+        let normal = off / distance;
+        self.merge(Touch { feature, triangle: corner.triangle, normal, distance_m: distance }, centre, touches);
+    }
+
+    /// Whether another triangle runs through `foot` and comes nearer to the centre: then the border or corner at
+    /// `foot` lies on the inside of a sheet (a T-junction, a seam) and touches nothing by itself.
+    fn is_covered(&self, terrain: &Terrain, foot: &Vec3, centre: &Vec3, distance: f64) -> bool {
+        let near = SAME * self.radius;
+        self.sheets.iter().any(|&t| {
+            let corners = terrain.corners_m(t);
+            let gap = |p: &Vec3| (p - closest_on(&corners, p)).norm();
+            gap(foot) <= near && gap(centre) < distance * (1.0 - 1e-12)
+        })
+    }
+
+    /// Adds a touch unless the same point was found on a lower feature before.
+    #[inline]
+    fn merge(&self, touch: Touch, centre: &Vec3, touches: &mut Touches) {
+        let near2 = (SAME * self.radius).powi(2);
+        let foot = centre - touch.normal * touch.distance_m;
+        let known = touches.iter().any(|other| {
+            (other.normal - touch.normal).norm_squared() <= SAME * SAME
+                && (centre - other.normal * other.distance_m - foot).norm_squared() <= near2
+        });
+        if !known {
+            touches.add(touch);
+        }
+    }
+}
+
+/// The point of a triangle closest to `p` (Ericson, Real-Time Collision Detection, 5.1.5: by Voronoi regions).
+pub fn closest_on(&[a, b, c]: &[Vec3; 3], p: &Vec3) -> Vec3 {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    a + (ab * vb + ac * vc) / (va + vb + vc)
+}

@@ -1,0 +1,160 @@
+//! Times at which a polynomial of degree two or four first falls through zero.
+
+/// The two roots of `a t² + b t + c`, ascending, without cancellation; `None` if there are none.
+///
+/// A linear polynomial has its one root twice.
+#[inline]
+pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
+    if a == 0.0 {
+        return (b != 0.0).then(|| (-c / b, -c / b));
+    }
+    let inside = b * b - 4.0 * a * c;
+    if inside < 0.0 {
+        return None;
+    }
+    let q = -0.5 * (b + inside.sqrt().copysign(b));
+    let (one, other) = (q / a, if q == 0.0 { 0.0 } else { c / q });
+    Some((one.min(other), one.max(other)))
+}
+
+/// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero.
+///
+/// The Bernstein coefficients over the window tell most cases at once: no change of sign, no crossing. Otherwise the
+/// window is halved until there is one change, which is then refined by safeguarded Newton steps.
+pub(super) fn first_fall(p: &[f64; 5], t0: f64, t1: f64) -> Option<f64> {
+    fall_between(&bernstein(p, t0, t1), t0, t1, 0).map(|t| polish(p, t, t0, t1))
+}
+
+/// Bernstein coefficients of a quartic on `t0..t1`.
+fn bernstein(p: &[f64; 5], t0: f64, t1: f64) -> [f64; 5] {
+    // Taylor shift to t0 (Horner), then scale to 0..1.
+    let mut s = *p;
+    for last in 0..4 {
+        for k in (last..4).rev() {
+            s[k] += s[k + 1] * t0;
+        }
+    }
+    let h = t1 - t0;
+    let c = [s[0], s[1] * h, s[2] * h * h, s[3] * h * h * h, s[4] * h * h * h * h];
+    [
+        c[0],
+        c[0] + c[1] / 4.0,
+        c[0] + c[1] / 2.0 + c[2] / 6.0,
+        c[0] + c[1] * 0.75 + c[2] / 2.0 + c[3] / 4.0,
+        c[0] + c[1] + c[2] + c[3] + c[4],
+    ]
+}
+
+/// Halvings after which a window is as narrow as rounding.
+const HALVINGS: u32 = 48;
+
+fn fall_between(b: &[f64; 5], t0: f64, t1: f64, depth: u32) -> Option<f64> {
+    if b.iter().all(|&c| c > 0.0) || b.iter().all(|&c| c <= 0.0) {
+        return None;
+    }
+    let changes = b.windows(2).filter(|w| (w[0] > 0.0) != (w[1] > 0.0)).count();
+    if changes == 1 {
+        return (b[0] > 0.0).then(|| bisect(b, t0, t1));
+    }
+    if depth == HALVINGS {
+        return (b[0] > 0.0 && b[4] <= 0.0).then_some(t0);
+    }
+    let (left, right) = halve(b);
+    let middle = 0.5 * (t0 + t1);
+    // A fall exactly at the middle shows as a last coefficient of 0 on the left.
+    fall_between(&left, t0, middle, depth + 1).or_else(|| fall_between(&right, middle, t1, depth + 1))
+}
+
+/// De Casteljau at the middle.
+fn halve(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
+    let mut row = *b;
+    let (mut left, mut right) = ([0.0; 5], [0.0; 5]);
+    for k in 0..5 {
+        left[k] = row[0];
+        right[4 - k] = row[4 - k];
+        for j in 0..4 - k {
+            row[j] = 0.5 * (row[j] + row[j + 1]);
+        }
+    }
+    (left, right)
+}
+
+fn value(b: &[f64; 5], s: f64) -> f64 {
+    let mut row = *b;
+    for k in 1..5 {
+        for j in 0..5 - k {
+            row[j] += s * (row[j + 1] - row[j]);
+        }
+    }
+    row[0]
+}
+
+/// The one crossing, by regula falsi (Illinois) on the Bernstein form.
+fn bisect(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
+    let (mut lo, mut hi, mut f_lo, mut f_hi) = (0.0, 1.0, b[0], b[4]);
+    for _ in 0..60 {
+        let cut = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
+        let s = if cut > lo && cut < hi { cut } else { 0.5 * (lo + hi) };
+        let f = value(b, s);
+        if f > 0.0 {
+            (lo, f_lo) = (s, f);
+            f_hi *= 0.5;
+        } else {
+            (hi, f_hi) = (s, f);
+            f_lo *= 0.5;
+        }
+        if hi - lo < 1e-15 || f == 0.0 {
+            break;
+        }
+        if f.abs() < 1e-14 * b[0].abs() {
+            return t0 + (t1 - t0) * s;
+        }
+    }
+    t0 + (t1 - t0) * hi
+}
+
+/// Two Newton steps on the polynomial itself: the window's rounding is removed.
+fn polish(p: &[f64; 5], t: f64, t0: f64, t1: f64) -> f64 {
+    let mut best = t;
+    for _ in 0..2 {
+        let f = p[0] + best * (p[1] + best * (p[2] + best * (p[3] + best * p[4])));
+        let slope = p[1] + best * (2.0 * p[2] + best * (3.0 * p[3] + best * 4.0 * p[4]));
+        if slope < 0.0 {
+            best = (best - f / slope).clamp(t0, t1);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_quadratic_keeps_its_small_root() {
+        let (one, other) = quadratic(1.0, -1e8, 1.0).unwrap();
+        assert!((one * 1e8 - 1.0).abs() < 1e-15 && (other / 1e8 - 1.0).abs() < 1e-15);
+    }
+
+    proptest! {
+        /// A quartic with known real roots falls first at the first root with a negative slope; 1e-9 because close
+        /// roots are ill-conditioned (they stay 1e-3 apart here).
+        #[test]
+        fn the_first_fall_is_found(mut r in prop::array::uniform4(0.01f64..3.0), sign in prop::bool::ANY) {
+            r.sort_by(f64::total_cmp);
+            prop_assume!(r.windows(2).all(|w| w[1] - w[0] > 1e-3));
+            let s = if sign { 1.0 } else { -1.0 };
+            let mut p = [s, 0.0, 0.0, 0.0, 0.0];
+            for root in r {
+                for k in (0..5).rev() {
+                    p[k] = if k == 0 { 0.0 } else { p[k - 1] } - root * p[k];
+                }
+            }
+            let expected = if sign { r[0] } else { r[1] };
+            let found = first_fall(&p, 0.0, 3.1).unwrap();
+            prop_assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+            prop_assert!(first_fall(&p, r[3] + 1e-3, 4.0).is_none());
+        }
+    }
+}

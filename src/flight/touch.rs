@@ -1,0 +1,138 @@
+//! When a ball on a parabola first touches one triangle, its own edges and its own corners.
+
+use super::Parabola;
+use super::roots::{first_fall, quadratic};
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+
+/// A start nearer to touching than this counts as touching (–, relative to R²): rounding of the contact before.
+const TOUCHING: f64 = 1e-12;
+/// A start beside a triangle but this little under its plane (–, relative to R) is on a neighbour in the same plane.
+const ROUNDING: f64 = 1e-6;
+
+/// First touch within a window of time, with the triangle and the edges and corners that it owns.
+#[inline]
+pub(super) fn of_triangle(terrain: &Terrain, t: u32, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
+    let (ta, tb) = (window.0.max(0.0), window.1);
+    let face = &terrain.features.faces[t as usize];
+    let height = Height {
+        h0: face.n.dot(&(flight.start - face.a)),
+        h1: face.n.dot(&flight.velocity),
+        h2: -0.5 * flight.gravity * face.n.z,
+    };
+    let slab = height.within(flight.radius, (ta, tb))?;
+    let mut best = tb;
+    let mut found = None;
+    // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
+    let on_it = ta <= 0.0 && height.h0.abs() < flight.radius && face.holds_foot_of(&flight.start);
+    for side in [1.0, -1.0] {
+        if let Some(t) = height.falls_to(side, flight.radius, on_it, (ta, best))
+            && face.holds_foot_of(&flight.centre(t))
+        {
+            best = t;
+            found = Some(t);
+        }
+    }
+    let owned = terrain.features.owned[t as usize];
+    if owned != 0 && slab.0 <= slab.1.min(best) {
+        for k in 0..3 {
+            let window = (slab.0, slab.1.min(best));
+            let time = [
+                (owned & (1 << k) != 0).then(|| edge(terrain, t, k, flight, window)).flatten(),
+                (owned & (8 << k) != 0).then(|| corner(terrain, t, k, flight, window)).flatten(),
+            ];
+            for time in time.into_iter().flatten() {
+                if time <= best {
+                    best = time;
+                    found = Some(time);
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Height of the centre over a plane, a quadratic in time.
+struct Height {
+    h0: f64,
+    h1: f64,
+    h2: f64,
+}
+
+impl Height {
+    fn speed(&self, t: f64) -> f64 {
+        self.h1 + 2.0 * self.h2 * t
+    }
+
+    /// The part of a window in which `|h| ≤ radius` may hold (its hull); `None` if nowhere.
+    #[inline]
+    fn within(&self, radius: f64, (ta, tb): (f64, f64)) -> Option<(f64, f64)> {
+        let at = |t: f64| self.h0 + t * (self.h1 + t * self.h2);
+        let (ha, hb) = (at(ta), at(tb));
+        let turn = -0.5 * self.h1 / self.h2;
+        let ht = if turn > ta && turn < tb { at(turn) } else { ha };
+        let (low, high) = (ha.min(hb).min(ht), ha.max(hb).max(ht));
+        let slack = 1e-9 * radius;
+        (low <= radius + slack && high >= -radius - slack).then_some((ta, tb))
+    }
+
+    /// First time in the window at which the ball comes down to the plane from one side (+1, −1).
+    ///
+    /// A ball that starts on the triangle (`on_it`), or at most a rounding under its plane, comes down when it is
+    /// back at its starting height: it can never fall through. One that starts beside the triangle may be anywhere
+    /// relative to the plane and must come down to the full radius.
+    #[inline]
+    fn falls_to(&self, side: f64, radius: f64, on_it: bool, (ta, tb): (f64, f64)) -> Option<f64> {
+        let (h0, h1, h2) = (side * self.h0, side * self.h1, side * self.h2);
+        let touching = h0 >= 0.0 && h0 < radius * (1.0 + TOUCHING) && (on_it || h0 > radius * (1.0 - ROUNDING));
+        if touching && ta <= 0.0 && (h1 < 0.0 || h1 == 0.0 && h2 < 0.0) {
+            return Some(0.0);
+        }
+        let level = if touching { h0.min(radius) } else { radius };
+        let (one, other) = quadratic(h2, h1, h0 - level)?;
+        // A start on the level has a root at 0 that is no fall.
+        [one, other].into_iter().find(|&t| t >= ta && t <= tb && side * self.speed(t) < 0.0 && (t > 0.0 || h1 < 0.0))
+    }
+}
+
+/// When the ball touches edge `k` of a triangle: the distance to its line falls to the radius, abreast of it.
+fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
+    let corners = terrain.triangles[t as usize];
+    let [a, b] = [corners[k], corners[(k + 1) % 3]].map(|v| terrain.vertices_m[v as usize]);
+    let length = (b - a).norm();
+    let along = (b - a) / length;
+    let off = |x: Vec3| x - along * along.dot(&x);
+    let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
+    let slack = 1e-11 * length;
+    let abreast = |x: Vec3| (-slack..=length + slack).contains(&along.dot(&(x - a)));
+    let path = [off(flight.start - a), off(flight.velocity), off(fall)];
+    let time = ball_meets(path, flight.radius, abreast(flight.start), window)?;
+    abreast(flight.centre(time)).then_some(time)
+}
+
+/// When the ball touches corner `k` of a triangle.
+fn corner(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
+    let p = terrain.vertices_m[terrain.triangles[t as usize][k] as usize];
+    let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
+    ball_meets([flight.start - p, flight.velocity, fall], flight.radius, true, window)
+}
+
+/// First time at which `|x0 + x1 t + x2 t²|` falls to the radius; `can_start` unless the start is not abreast.
+#[inline]
+fn ball_meets([x0, x1, x2]: [Vec3; 3], radius: f64, can_start: bool, (ta, tb): (f64, f64)) -> Option<f64> {
+    let r2 = radius * radius;
+    let gap = x0.norm_squared() - r2;
+    let slope = 2.0 * x0.dot(&x1);
+    let curve = x1.norm_squared() + 2.0 * x0.dot(&x2);
+    let starts_touching = can_start && ta <= 0.0 && gap < TOUCHING * r2;
+    if starts_touching && (slope < 0.0 || slope == 0.0 && curve < 0.0) {
+        return Some(0.0);
+    }
+    let cubic = 2.0 * x1.dot(&x2);
+    if starts_touching {
+        // Leaving from inside or from the rim: it touches again when it is back at its starting distance. The root at
+        // 0 is divided out, what is left is a cubic.
+        return first_fall(&[slope, curve, cubic, x2.norm_squared(), 0.0], 0.0, tb);
+    }
+    first_fall(&[gap, slope, curve, cubic, x2.norm_squared()], ta, tb)
+}

@@ -1,0 +1,165 @@
+//! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
+
+use super::grip::{Grip, Loss, World, spring_j};
+use super::stage::End;
+use super::tableau::Tableau;
+use crate::contact::hold::carry;
+
+/// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
+const ONSET: f64 = 0.3;
+/// Longest way in one step where more than one plane is near (–, relative to R).
+const TRAVEL: f64 = 0.15;
+/// The step controller's safety factor (–).
+const SAFETY: f64 = 0.9;
+/// Most that a step shrinks or grows at once (–).
+const RATIO: (f64, f64) = (0.2, 4.0);
+/// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
+const SHORTEST: f64 = 1e-9;
+
+/// Why a rock cannot go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stuck;
+
+/// What one advance did.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Advance {
+    /// Time gone (s).
+    pub dt: f64,
+    /// Energy lost by each kind of contact work (J).
+    pub loss: Loss,
+    /// Steps tried and thrown away.
+    pub rejected: u64,
+}
+
+/// How the step is controlled.
+#[derive(Debug, Clone, Copy)]
+pub struct Control {
+    /// The tableau.
+    pub tableau: &'static Tableau,
+    /// Local error allowed (m/s).
+    pub tolerance: f64,
+}
+
+/// First step after a touch (s).
+pub fn first_step(world: &World, grip: &Grip) -> f64 {
+    ONSET / stiffest(world, grip)
+}
+
+/// Largest `√(p_N/m)` among the contacts (rad/s).
+fn stiffest(world: &World, grip: &Grip) -> f64 {
+    let omega = grip.holds.iter().map(|hold| world.law(hold.triangle).omega).fold(0.0, f64::max);
+    if omega > 0.0 { omega } else { world.laws.iter().map(|law| law.omega).fold(0.0, f64::max) }
+}
+
+/// One accepted step of at most `h_max` (s); `h` is the step to try and becomes the one to try next.
+///
+/// # Errors
+/// [`Stuck`] if the step had to become too short to matter.
+pub fn advance(world: &World, control: &Control, grip: &mut Grip, h: &mut f64, h_max: f64) -> Result<Advance, Stuck> {
+    if !grip.fresh {
+        grip.rates_now(world);
+    }
+    let mut done = Advance::default();
+    let omega = stiffest(world, grip);
+    let known = grip.holds.len();
+    loop {
+        let wished = h.min(travel_limit(world, grip));
+        let dt = wished.min(h_max);
+        grip.holds.truncate(known);
+        let tried = attempt(world, control, grip, dt, omega);
+        let ratio = match tried {
+            Some((end, error)) if error <= 1.0 => {
+                *h = grown(control, dt, error).max(if dt < wished { wished } else { 0.0 });
+                done.dt = dt;
+                accept(world, control.tableau, grip, &end, dt, &mut done.loss);
+                return Ok(done);
+            }
+            Some((_, error)) if error.is_finite() => grown(control, 1.0, error),
+            _ => 0.25,
+        };
+        done.rejected += 1;
+        *h = dt * ratio;
+        if *h * omega < SHORTEST {
+            return Err(Stuck);
+        }
+    }
+}
+
+fn grown(control: &Control, dt: f64, error: f64) -> f64 {
+    dt * (SAFETY * error.powf(-control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
+}
+
+/// Longest step that cannot jump over a feature (s).
+fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
+    let (speed, r) = (grip.v.norm(), world.body.radius);
+    let c = grip.c;
+    grip.look_ahead(world, &c);
+    let room = if grip.near.is_plane() { grip.near.room_m(&c).max(TRAVEL * r) } else { TRAVEL * r };
+    // The weight may still speed it up on the way.
+    let fall = world.body.gravity.norm();
+    2.0 * room / (speed + (speed * speed + 2.0 * fall * room).sqrt())
+}
+
+/// One step: where it ends and its error relative to the tolerance; `None` if a stage does not settle.
+fn attempt(world: &World, control: &Control, grip: &mut Grip, dt: f64, omega: f64) -> Option<(End, f64)> {
+    let tableau = control.tableau;
+    let mut end = None;
+    for i in 1..tableau.stages {
+        end = Some(grip.stage(world, tableau, i, dt)?);
+    }
+    let mut off = [crate::rock::Vec3::zeros(); 3];
+    let mut stretch2 = 0.0f64;
+    for (rate, weight) in grip.rates[..tableau.stages].iter().zip(tableau.error) {
+        off[0] += rate.c * weight;
+        off[1] += rate.v * weight;
+        off[2] += rate.w * weight;
+    }
+    for k in 0..grip.holds.len() {
+        let stages = grip.rates[..tableau.stages].iter().zip(tableau.error);
+        let drift = stages.fold(crate::rock::Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * weight);
+        stretch2 = stretch2.max(drift.norm_squared());
+    }
+    let worst2 = (off[0].norm_squared().max(stretch2) * omega * omega)
+        .max(off[1].norm_squared())
+        .max(off[2].norm_squared() * world.body.radius.powi(2));
+    end.map(|end| (end, dt * worst2.sqrt() / control.tolerance))
+}
+
+/// Takes over the step's end: motion, memories, losses.
+fn accept(world: &World, tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
+    for k in 0..tableau.stages {
+        loss.add(&grip.rates[k].loss, dt * tableau.weight(k));
+    }
+    let last = tableau.stages - 1;
+    let hh = tableau.diagonal * dt;
+    let mut next = grip.rates[last];
+    for hold in grip.holds.iter_mut() {
+        hold.closed = false;
+    }
+    for (spot, touch) in grip.spots[..grip.spot_count].iter().zip(grip.touches.iter()) {
+        let hold = &mut grip.holds[spot.hold];
+        next.shear[spot.hold] = carry(next.shear[spot.hold], &hold.n, &spot.n);
+        (hold.feature, hold.triangle) = (touch.feature, touch.triangle);
+        (hold.shear, hold.roll) = spot.stretches(hh);
+        hold.n = spot.n;
+        hold.push = spot.push;
+        hold.slides = spot.drag.norm() >= spot.law.friction * spot.push * (1.0 - 1e-9);
+        hold.closed = spot.pen - hh * spot.n.dot(&end.v) > 0.0 || spot.push > 0.0;
+    }
+    // The springs of a contact that opens relax; what they held is lost to their dashpots.
+    let mut kept = 0;
+    for k in 0..grip.holds.len() {
+        let hold = grip.holds[k];
+        if hold.closed {
+            (next.shear[kept], next.roll[kept]) = (next.shear[k], next.roll[k]);
+            kept += 1;
+        } else if world.terrain.is_tree(hold.triangle) {
+            loss.trees += spring_j(world, &hold);
+        } else {
+            loss.damping += spring_j(world, &hold);
+        }
+    }
+    grip.holds.retain(|hold| hold.closed);
+    grip.rates[0] = next;
+    (grip.c, grip.v, grip.w) = (end.c, end.v, end.w);
+}
