@@ -1,5 +1,6 @@
 //! Rockfall hazard by spherical discontinuous deformation analysis (SDDA) on triangle meshes.
 
+pub mod chance;
 pub mod error;
 pub mod ground;
 pub mod plan;
