@@ -5,6 +5,7 @@ pub mod error;
 pub mod ground;
 pub mod plan;
 pub mod rock;
+pub mod scene;
 pub mod step;
 pub mod terrain;
 pub mod trajectory;

@@ -40,7 +40,10 @@ enum Shape {
 }
 
 impl Distribution {
-    /// Always this number; NaN and infinity are refused.
+    /// Always this number.
+    ///
+    /// # Errors
+    /// NaN and infinity are refused.
     pub fn fixed(value: f64) -> Result<Self, Flaw> {
         finite(&[value])?;
         Ok(Self { shape: Shape::Fixed(value) })
