@@ -1,5 +1,9 @@
 //! How a ground answers a rock: springs, friction, damping from restitution, rolling friction, roughness.
 
+use crate::rock::Rock;
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
 /// Ground values in force for one release (a scene may give distributions; these are drawn).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
@@ -15,4 +19,229 @@ pub struct Ground {
     pub rolling_friction: f64,
     /// Largest random tilt of the contact normal at an impact (rad), 0 = none.
     pub roughness_rad: f64,
+}
+
+/// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.
+const ROLLING_STIFFNESS: f64 = 0.1;
+/// Damping ratio of the shear spring: without it the spring returns the slip like a super ball.
+const SHEAR_DAMPING_RATIO: f64 = 1.0;
+/// Damping ratio of an impact too slow to rebound; it ends all flutter.
+const CAPTURE_DAMPING_RATIO: f64 = 2.0;
+/// Below this restitution an impact is plastic (–): the damping ratio of e → 0 grows without bound.
+const PLASTIC_RESTITUTION: f64 = 0.01;
+/// Damping ratio of a plastic impact; `e(5) = 0.01`.
+const PLASTIC_DAMPING_RATIO: f64 = 5.0;
+/// No impact slower than this rebounds (m/s), whatever the springs say.
+const SLOWEST_REBOUND_M_S: f64 = 0.02;
+
+/// The contact law of one ground for one rock: every coefficient of springs, dashpots and sliders.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Law {
+    /// Normal stiffness `p_N` (N/m).
+    pub p_n: f64,
+    /// Shear stiffness `p_s` (N/m).
+    pub p_s: f64,
+    /// Rolling stiffness `k_r` (N m/rad); 0 without rolling friction.
+    pub k_r: f64,
+    /// Normal damping `c_N` (N s/m).
+    pub c_n: f64,
+    /// Normal damping of a captured impact (N s/m).
+    pub c_n_captured: f64,
+    /// Shear damping (N s/m).
+    pub c_s: f64,
+    /// Rolling damping (N m s/rad); 0 without rolling friction.
+    pub c_r: f64,
+    /// Friction coefficient `tan φ` (–).
+    pub friction: f64,
+    /// Rolling friction times radius (m): the torque's limit over the normal force.
+    pub rolling_m: f64,
+    /// Impacts slower than this do not rebound (m/s).
+    pub capture_m_s: f64,
+    /// Normal restitution (–) of the impact map.
+    pub restitution: f64,
+    /// Largest random tilt of the normal (rad).
+    pub roughness_rad: f64,
+    /// `√(p_N/m)` (rad/s).
+    pub omega: f64,
+}
+
+/// What a law needs to know besides ground and rock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capture {
+    /// Capture speed the user wrote (m/s), if any.
+    pub own_m_s: Option<f64>,
+    /// Local error allowed (m/s): slower rebounds than half of it cannot be told from error.
+    pub tolerance_m_s: f64,
+    /// Gravity (m/s²), positive.
+    pub gravity_m_s2: f64,
+}
+
+impl Law {
+    /// The law of `ground` for `rock`.
+    pub fn new(ground: &Ground, rock: &Rock, capture: &Capture) -> Self {
+        let (m, radius) = (rock.mass_kg(), rock.radius_m);
+        let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
+        let omega = (p_n / m).sqrt();
+        let zeta = ground.restitution.map(damping_ratio);
+        let rolls = ground.rolling_friction > 0.0;
+        let k_r = if rolls { ROLLING_STIFFNESS * p_s * radius * radius } else { 0.0 };
+        let physical = zeta.map_or(0.0, capture_number) * capture.gravity_m_s2 / omega;
+        let least = (0.5 * capture.tolerance_m_s).max(SLOWEST_REBOUND_M_S);
+        Self {
+            p_n,
+            p_s,
+            k_r,
+            c_n: 2.0 * zeta.unwrap_or(0.0) * m * omega,
+            c_n_captured: 2.0 * CAPTURE_DAMPING_RATIO.max(zeta.unwrap_or(0.0)) * m * omega,
+            // The contact point's mass along the surface is 2/7 m.
+            c_s: zeta.map_or(0.0, |_| 2.0 * SHEAR_DAMPING_RATIO * (p_s * m * 2.0 / 7.0).sqrt()),
+            c_r: 2.0 * (k_r * 1.4 * m).sqrt() * radius,
+            friction: ground.friction_angle_rad.tan(),
+            rolling_m: ground.rolling_friction * radius,
+            capture_m_s: capture.own_m_s.unwrap_or_else(|| physical.max(least)),
+            restitution: ground.restitution.unwrap_or(1.0),
+            roughness_rad: ground.roughness_rad,
+            omega,
+        }
+    }
+}
+
+/// Restitution of a no-tension spring and dashpot without gravity.
+///
+/// `e(ζ) = exp(−2 ζ acos ζ / √(1−ζ²))`; the contact ends when the force falls to zero, not when the spring is
+/// back at its length (the textbook's `exp(−π ζ/√(1−ζ²))`), so nothing ever pulls.
+pub fn restitution(zeta: f64) -> f64 {
+    let off = 1.0 - zeta * zeta;
+    let angle_over_sine = if off.abs() < 1e-9 {
+        1.0 + off / 6.0
+    } else if off > 0.0 {
+        zeta.acos() / off.sqrt()
+    } else {
+        zeta.acosh() / (-off).sqrt()
+    };
+    (-2.0 * zeta * angle_over_sine).exp()
+}
+
+/// The damping ratio ζ that gives restitution `e` (0..1), the inverse of [`restitution`] by bisection.
+pub fn damping_ratio(e: f64) -> f64 {
+    if e < PLASTIC_RESTITUTION {
+        return PLASTIC_DAMPING_RATIO;
+    }
+    let (mut lo, mut hi) = (0.0, PLASTIC_DAMPING_RATIO);
+    for _ in 0..60 {
+        let middle = 0.5 * (lo + hi);
+        if restitution(middle) > e { lo = middle } else { hi = middle }
+    }
+    0.5 * (lo + hi)
+}
+
+/// Parts of a period in which the first zero of the force is looked for.
+const SWING_PARTS: u32 = 256;
+
+/// One impact on a plane with gravity, exact as far as the normal motion goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalImpact {
+    /// When the force falls to zero after the touch (s).
+    pub lift_s: f64,
+    /// Rebound speed at the surface (m/s); `None` when the rock does not come out again.
+    pub rebound_m_s: Option<f64>,
+}
+
+/// Closed form of the spring-dashpot impact at approach speed `v`, frequency `omega`, damping ratio `zeta < 1`.
+///
+/// `x'' = g_n − 2 ζω x' − ω² x` from `x = 0, x' = v` until the force vanishes, then free.
+pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
+    let al = zeta * omega;
+    let wd = omega * (1.0 - zeta * zeta).sqrt();
+    let (x0, b) = (g_n / (omega * omega), (v - al * g_n / (omega * omega)) / wd);
+    let state = |t: f64| {
+        let (s, c) = (wd * t).sin_cos();
+        let fade = (-al * t).exp();
+        let x = x0 + fade * (b * s - x0 * c);
+        let speed = fade * ((b * wd + al * x0) * c + (x0 * wd - al * b) * s);
+        (x, speed)
+    };
+    let force = |t: f64| {
+        let (x, speed) = state(t);
+        omega * omega * x + 2.0 * al * speed
+    };
+    // The force is a fading swing around the weight: it first vanishes within one period or never.
+    let period = 2.0 * PI / wd;
+    let part = |k: u32| period * f64::from(k) / f64::from(SWING_PARTS);
+    let Some(k) = (1..=SWING_PARTS).find(|&k| force(part(k)) <= 0.0) else {
+        return NormalImpact { lift_s: f64::INFINITY, rebound_m_s: None };
+    };
+    let (mut lo, mut hi) = (part(k - 1), part(k));
+    for _ in 0..60 {
+        let middle = 0.5 * (lo + hi);
+        if force(middle) > 0.0 { lo = middle } else { hi = middle }
+    }
+    let t = 0.5 * (lo + hi);
+    let (x, speed) = state(t);
+    let out = speed * speed - 2.0 * g_n * x;
+    let leaves = speed < 0.0 && out > 0.0;
+    NormalImpact { lift_s: t, rebound_m_s: leaves.then(|| out.sqrt()) }
+}
+
+/// `p* = v ω/g` below which gravity keeps the rock in contact (–), for damping ratio ζ: the physical capture speed.
+fn capture_number(zeta: f64) -> f64 {
+    const NODES: usize = 64;
+    static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
+    let table = TABLE.get_or_init(|| (0..=NODES).map(|k| capture_by_search(k as f64 / NODES as f64)).collect());
+    let place = zeta.clamp(0.0, 1.0) * NODES as f64;
+    let k = (place as usize).min(NODES - 1);
+    table[k] + (table[k + 1] - table[k]) * (place - k as f64)
+}
+
+fn capture_by_search(zeta: f64) -> f64 {
+    // Above ζ = 0.95 the closed form runs out of oscillation; a heavily damped impact hardly rebounds at all.
+    let zeta = zeta.min(0.95);
+    let (mut lo, mut hi) = (0.0, 200.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (lo + hi);
+        if normal_impact(middle, 1.0, zeta, 1.0).rebound_m_s.is_some() { hi = middle } else { lo = middle }
+    }
+    hi
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table of exact damping ratios (closed form, 12 digits).
+    #[test]
+    fn restitution_and_damping_ratio_are_inverse() {
+        for (e, zeta) in [
+            (0.9, 0.034_265_204_126),
+            (0.5, 0.255_275_637_649),
+            (0.3, 0.497_239_394_699),
+            (0.1, 1.243_187_851_014),
+        ] {
+            assert!((restitution(zeta) - e).abs() < 1e-11);
+            assert!((damping_ratio(e) - zeta).abs() < 1e-11);
+        }
+        assert!((restitution(1.0) - (-2.0f64).exp()).abs() < 1e-12);
+        assert!((restitution(1.0 + 1e-10) - restitution(1.0 - 1e-10)).abs() < 1e-8);
+    }
+
+    /// With gravity the rebound falls with speed; e = 0.5 from the closed form at p = v ω/g.
+    #[test]
+    fn gravity_lowers_the_restitution_of_slow_impacts() {
+        let zeta = damping_ratio(0.5);
+        for (p, e) in [(5.0, 0.283_85), (10.0, 0.411_35), (30.0, 0.473_29), (100.0, 0.492_24)] {
+            let out = normal_impact(p, 1.0, zeta, 1.0).rebound_m_s.unwrap();
+            assert!((out / p - e).abs() < 1e-5, "p = {p}: {}", out / p);
+        }
+    }
+
+    /// p* of the table: below it no rebound.
+    #[test]
+    fn slow_impacts_are_captured_at_the_physical_speed() {
+        for (e, p) in [(0.9, 0.722_657), (0.5, 3.492_462), (0.3, 8.714_621)] {
+            let found = capture_by_search(damping_ratio(e));
+            assert!((found - p).abs() < 1e-5, "e = {e}: {found}");
+            // linear interpolation over 64 nodes
+            assert!((capture_number(damping_ratio(e)) / p - 1.0).abs() < 0.01);
+        }
+    }
 }

@@ -1,7 +1,9 @@
 //! Rockfall hazard by spherical discontinuous deformation analysis (SDDA) on triangle meshes.
 
 pub mod chance;
+pub mod contact;
 pub mod error;
+pub mod flight;
 pub mod ground;
 pub mod plan;
 pub mod rock;

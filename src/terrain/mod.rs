@@ -1,7 +1,17 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
+pub mod edges;
+pub mod features;
+pub mod index;
+mod merge;
+pub mod stl;
+pub mod weld;
+
 use crate::rock::Vec3;
+use features::Features;
+use index::Index;
 use std::path::PathBuf;
+use weld::Welded;
 
 /// One mesh file of the scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,7 +24,7 @@ pub struct Sheet {
     pub is_tree: bool,
 }
 
-/// The terrain as it is computed with.
+/// The terrain as it is computed with. Triangles stand in the order of the index.
 #[derive(Debug)]
 pub struct Terrain {
     /// Map position of the local (0, 0, 0): `map = local + origin` (m).
@@ -25,6 +35,78 @@ pub struct Terrain {
     pub triangles: Vec<[u32; 3]>,
     /// Which [`Sheet`] each triangle came from.
     pub sheet_of: Vec<u16>,
+    /// Number of the facet in its file, from 0.
+    pub facet_of: Vec<u32>,
     /// The mesh files.
     pub sheets: Vec<Sheet>,
+    /// What a sphere can touch.
+    pub features: Features,
+    /// The spatial index.
+    pub index: Index,
+}
+
+impl Terrain {
+    /// Indexes a welded mesh.
+    pub fn new(welded: Welded, sheets: Vec<Sheet>) -> Self {
+        let corners = |t: usize| welded.corners_m(t);
+        let (index, order) = Index::build((0..welded.triangles.len()).map(corners));
+        let triangles: Vec<[u32; 3]> = order.iter().map(|&k| welded.triangles[k as usize]).collect();
+        let features = Features::of(&welded.vertices_m, &triangles);
+        Self {
+            origin_m: welded.origin_m,
+            sheet_of: order.iter().map(|&k| welded.sheet_of[k as usize]).collect(),
+            facet_of: order.iter().map(|&k| welded.facet_of[k as usize]).collect(),
+            vertices_m: welded.vertices_m,
+            triangles,
+            sheets,
+            features,
+            index,
+        }
+    }
+
+    /// Whether a triangle belongs to a tree.
+    #[inline]
+    pub fn is_tree(&self, triangle: u32) -> bool {
+        self.sheets[self.sheet_of[triangle as usize] as usize].is_tree
+    }
+
+    /// Corners of a triangle (m, local).
+    pub fn corners_m(&self, triangle: u32) -> [Vec3; 3] {
+        self.triangles[triangle as usize].map(|v| self.vertices_m[v as usize])
+    }
+
+    /// Height of the highest slope surface above or below the map-plane point (x, y), local coordinates (m); trees
+    /// are not ground. `None` outside the slope.
+    pub fn ground_below(&self, x_m: f64, y_m: f64) -> Option<f64> {
+        self.ground_under(x_m, y_m, f64::INFINITY)
+    }
+
+    /// The highest slope surface at (x, y) that is not above `under_m` (m, local).
+    pub fn ground_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<f64> {
+        let mut best = f64::NEG_INFINITY;
+        self.index.along_vertical(x_m, y_m, |start, count| {
+            for t in start..start + count {
+                let height = self.height_of(t, x_m, y_m);
+                if height > best && height <= under_m && !self.is_tree(t) {
+                    best = height;
+                }
+            }
+        });
+        best.is_finite().then_some(best)
+    }
+
+    /// Height at which the vertical through (x, y) meets a triangle, −∞ if it does not (m).
+    fn height_of(&self, triangle: u32, x: f64, y: f64) -> f64 {
+        let face = &self.features.faces[triangle as usize];
+        let (dx, dy) = (x - face.a.x, y - face.a.y);
+        let det = face.e1.x * face.e2.y - face.e1.y * face.e2.x;
+        let (u, v) = (dx * face.e2.y - dy * face.e2.x, face.e1.x * dy - face.e1.y * dx);
+        let slack = -1e-11 * det.abs();
+        let (u, v, whole) = if det < 0.0 { (-u, -v, -det) } else { (u, v, det) };
+        if whole > 0.0 && u >= slack && v >= slack && whole - u - v >= slack {
+            face.a.z + (u * face.e1.z + v * face.e2.z) / whole
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
 }

@@ -1,0 +1,143 @@
+//! What of a mesh a sphere can ever touch: faces from both sides, edges that are not flat, corners of such edges.
+//!
+//! A sheet has two sides, so an edge that is hollow from the front is sharp from the back: every edge that is not
+//! flat is kept, and the contact's own test (`contact::near`) decides from where the rock stands. Flat edges, and
+//! vertices with flat edges only, never touch: the face does.
+
+use super::edges::Edges;
+use crate::rock::Vec3;
+
+/// Sine of the angle between faces below which an edge is flat (–): rounding of `f64` coordinates, no more.
+const FLAT: f64 = 1e-12;
+
+/// A triangle ready for the hot loops.
+#[derive(Debug, Clone, Copy)]
+pub struct Face {
+    /// First corner (m).
+    pub a: Vec3,
+    /// From the first to the second corner (m).
+    pub e1: Vec3,
+    /// From the first to the third corner (m).
+    pub e2: Vec3,
+    /// Unit normal, right-handed over the corners.
+    pub n: Vec3,
+}
+
+/// Foot points this far outside a triangle still count as inside (–, barycentric): neighbours must not leave a gap.
+const INSIDE: f64 = 1e-11;
+
+impl Face {
+    fn new([a, b, c]: [Vec3; 3]) -> Self {
+        let (e1, e2) = (b - a, c - a);
+        Self { a, e1, e2, n: e1.cross(&e2).normalize() }
+    }
+
+    /// Whether the foot of `point` on the plane lies inside the triangle, border included.
+    #[inline]
+    pub fn holds_foot_of(&self, point: &Vec3) -> bool {
+        let to = point - self.a;
+        let (d11, d12, d22) = (self.e1.norm_squared(), self.e1.dot(&self.e2), self.e2.norm_squared());
+        let (t1, t2) = (to.dot(&self.e1), to.dot(&self.e2));
+        let det = d11 * d22 - d12 * d12;
+        let (u, v) = (d22 * t1 - d12 * t2, d11 * t2 - d12 * t1);
+        let slack = -INSIDE * det;
+        u >= slack && v >= slack && det - u - v >= slack
+    }
+}
+
+/// The touchable features of a mesh.
+#[derive(Debug, Default)]
+pub struct Features {
+    /// The triangles.
+    pub faces: Vec<Face>,
+    /// Edges and who shares them.
+    pub edges: Edges,
+    /// Bits 0–2: the triangle owns its edge `k`; bits 3–5: it owns its corner `k`. Every touchable edge and corner
+    /// has one owner.
+    pub owned: Vec<u8>,
+    /// Neighbours of vertex `v` along edges: `around[starts[v]..starts[v + 1]]`.
+    starts: Vec<u32>,
+    around: Vec<u32>,
+    /// Share of the edges that are flat (–, 0..1).
+    pub flat_share: f64,
+}
+
+impl Features {
+    /// Finds the touchable features.
+    pub fn of(vertices_m: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        let faces = triangles.iter().map(|t| Face::new(t.map(|v| vertices_m[v as usize]))).collect();
+        let mut features = Self { faces, edges: Edges::of(triangles), ..Self::default() };
+        features.link(vertices_m.len());
+        features.own(vertices_m, triangles);
+        features
+    }
+
+    /// Lists the neighbours of every vertex.
+    fn link(&mut self, vertices: usize) {
+        let mut starts = vec![0u32; vertices + 1];
+        for &[a, b] in &self.edges.ends {
+            starts[a as usize + 1] += 1;
+            starts[b as usize + 1] += 1;
+        }
+        for v in 0..vertices {
+            starts[v + 1] += starts[v];
+        }
+        let mut fill = starts.clone();
+        self.around = vec![0; 2 * self.edges.len()];
+        for &[a, b] in &self.edges.ends {
+            for (from, to) in [(a, b), (b, a)] {
+                let place = &mut fill[from as usize];
+                self.around[*place as usize] = to;
+                *place += 1;
+            }
+        }
+        self.starts = starts;
+    }
+
+    /// Gives every touchable edge and corner to the first triangle on it.
+    fn own(&mut self, vertices_m: &[Vec3], triangles: &[[u32; 3]]) {
+        let kept: Vec<bool> = (0..self.edges.len() as u32).map(|e| !self.is_flat(e, vertices_m)).collect();
+        let mut corner = vec![false; vertices_m.len()];
+        for (&[a, b], _) in self.edges.ends.iter().zip(&kept).filter(|(_, kept)| **kept) {
+            corner[a as usize] = true;
+            corner[b as usize] = true;
+        }
+        self.owned = vec![0; triangles.len()];
+        for (t, (sides, corners)) in self.edges.of_triangle.iter().zip(triangles).enumerate() {
+            for k in 0..3 {
+                if kept[sides[k] as usize] && self.edges.triangles_on(sides[k])[0] == t as u32 {
+                    self.owned[t] |= 1 << k;
+                }
+                // A corner is given away once: to the first triangle that asks.
+                if std::mem::take(&mut corner[corners[k] as usize]) {
+                    self.owned[t] |= 8 << k;
+                }
+            }
+        }
+        let flat = kept.iter().filter(|kept| !**kept).count();
+        self.flat_share = flat as f64 / kept.len().max(1) as f64;
+    }
+
+    fn is_flat(&self, edge: u32, vertices_m: &[Vec3]) -> bool {
+        let &[one, other] = self.edges.triangles_on(edge) else { return false };
+        let [m_one, m_other] = [one, other].map(|t| self.outward(edge, t, vertices_m));
+        let n = self.faces[one as usize].n;
+        // Flat: the other face goes on in the same plane, on the other side of the edge.
+        n.dot(&m_other).abs() <= FLAT && m_one.dot(&m_other) < 0.0
+    }
+
+    /// Unit vector in the plane of `triangle`, normal to `edge`, pointing out of the triangle.
+    pub fn outward(&self, edge: u32, triangle: u32, vertices_m: &[Vec3]) -> Vec3 {
+        let [a, b] = self.edges.ends[edge as usize].map(|v| vertices_m[v as usize]);
+        let face = &self.faces[triangle as usize];
+        let middle = face.a + (face.e1 + face.e2) / 3.0;
+        let m = face.n.cross(&(b - a)).normalize();
+        if m.dot(&(middle - a)) > 0.0 { -m } else { m }
+    }
+
+    /// The vertices joined to `vertex` by an edge.
+    pub fn neighbours(&self, vertex: u32) -> &[u32] {
+        let v = vertex as usize;
+        &self.around[self.starts[v] as usize..self.starts[v + 1] as usize]
+    }
+}

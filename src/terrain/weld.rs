@@ -1,0 +1,287 @@
+//! Several STL soups become one mesh with shared vertices and known neighbours.
+//!
+//! Order of work: turn and scale each file, subtract the whole-metre centre of the common box (before anything is
+//! rounded), merge vertices, drop triangles without area and exact duplicates, then list the edges. Everything follows
+//! the order of the input: the same files give the same mesh, bit for bit.
+
+use crate::error::{Error, Result};
+use crate::rock::Vec3;
+use crate::terrain::edges::Edges;
+use crate::terrain::merge::Merger;
+use crate::terrain::stl::Soup;
+use rayon::slice::ParallelSliceMut;
+use std::path::Path;
+
+/// Weld tolerance relative to the longest side of the box of the model (–).
+const TOLERANCE_OF_SIZE: f64 = 1e-6;
+
+/// A triangle with an area below this share of its longest edge squared (–) has no normal in `f64`.
+const ZERO_AREA: f64 = 1e-14;
+
+/// How many places a [`Tally`] names.
+const EXAMPLES: usize = 5;
+
+/// Which axis of a file points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Up {
+    /// z up: the file is taken as it is.
+    #[default]
+    Z,
+    /// y up: turned by +90° about x, `(x, y, z) → (x, −z, y)`.
+    Y,
+}
+
+/// One soup and how it enters the mesh.
+#[derive(Debug, Clone, Copy)]
+pub struct Piece<'a> {
+    /// The file it came from, for messages.
+    pub file: &'a Path,
+    /// Its facets.
+    pub soup: &'a Soup,
+    /// Its up axis.
+    pub up: Up,
+    /// Metres per unit of the file, positive.
+    pub scale: f64,
+    /// Number of the sheet its triangles belong to.
+    pub sheet: u16,
+}
+
+/// How often something was found, and where the first few are.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+pub struct Tally {
+    /// How often.
+    pub count: usize,
+    /// Up to five places in map coordinates (m), in input order.
+    pub examples_m: Vec<[f64; 3]>,
+}
+
+impl Tally {
+    /// Counts one more, at `place_m` (map coordinates).
+    pub fn add(&mut self, place_m: Vec3) {
+        self.count += 1;
+        if self.examples_m.len() < EXAMPLES {
+            self.examples_m.push(place_m.into());
+        }
+    }
+}
+
+/// The welded mesh. Every vertex is used, every triangle has an area and occurs once.
+#[derive(Debug, Clone)]
+pub struct Welded {
+    /// Map position of the local (0, 0, 0): `map = local + origin` (m). Whole metres plus the scene's origin.
+    pub origin_m: Vec3,
+    /// Vertices closer than this were merged (m).
+    pub tolerance_m: f64,
+    /// Vertices in local coordinates (m), more than the tolerance apart, in order of first use.
+    pub vertices_m: Vec<Vec3>,
+    /// Vertex indices of each triangle, wound as in the file.
+    pub triangles: Vec<[u32; 3]>,
+    /// [`Piece::sheet`] of each triangle.
+    pub sheet_of: Vec<u16>,
+    /// Number of the facet in its file, from 0.
+    pub facet_of: Vec<u32>,
+    /// Edges and who shares them.
+    pub edges: Edges,
+    /// Facets left out because they have repeated corners or no area.
+    pub zero_area: Tally,
+    /// Facets left out because a triangle with the same corners (wound either way) came before.
+    pub duplicates: Tally,
+    /// Corners that were moved onto a vertex up to the tolerance away.
+    pub moved_corners: usize,
+}
+
+/// Welds the pieces into one mesh around the whole-metre centre of their box.
+///
+/// `map_origin_m` is the map position of the files' (0, 0, 0). Vertices within `tolerance_m` (1e-6 of the longest side
+/// of the box if `None`, 0 merges exact copies only) of an earlier vertex become that vertex: no vertex moves further
+/// than the tolerance, and chains of close vertices do not collapse.
+///
+/// # Errors
+/// A scale or tolerance that is not usable, or no triangle with an area.
+pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> Result<Welded> {
+    let frame = Frame::around(pieces)?;
+    let tolerance_m = tolerance_m.unwrap_or(TOLERANCE_OF_SIZE * frame.size_m);
+    if !(tolerance_m >= 0.0 && tolerance_m.is_finite()) {
+        return Err(Error::Request(format!(
+            "weld tolerance = {tolerance_m} m is not a length; write 0 or a few millimetres (0.001)"
+        )));
+    }
+    let mut welded = Welded {
+        origin_m: map_origin_m + frame.centre_m,
+        tolerance_m,
+        vertices_m: Vec::new(),
+        triangles: Vec::with_capacity(frame.facets),
+        sheet_of: Vec::with_capacity(frame.facets),
+        facet_of: Vec::with_capacity(frame.facets),
+        edges: Edges::default(),
+        zero_area: Tally::default(),
+        duplicates: Tally::default(),
+        moved_corners: 0,
+    };
+    welded.take(pieces, &frame);
+    welded.drop_duplicates();
+    welded.drop_unused_vertices();
+    welded.edges = Edges::of(&welded.triangles);
+    if welded.triangles.is_empty() {
+        return Err(nothing_left(pieces, &welded));
+    }
+    Ok(welded)
+}
+
+impl Piece<'_> {
+    /// A point of the file in metres, z up, not yet recentred.
+    fn placed(&self, point: Vec3) -> Vec3 {
+        let turned = match self.up {
+            Up::Z => point,
+            Up::Y => Vec3::new(point.x, -point.z, point.y),
+        };
+        turned * self.scale
+    }
+}
+
+/// The common box of all pieces.
+struct Frame {
+    /// Centre, rounded to whole metres: coordinates read as `f32` subtract it without rounding.
+    centre_m: Vec3,
+    /// Longest side.
+    size_m: f64,
+    facets: usize,
+}
+
+impl Frame {
+    fn around(pieces: &[Piece]) -> Result<Self> {
+        let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        for piece in pieces {
+            piece.check_scale()?;
+            for &corner in piece.soup.facets.iter().flatten() {
+                let point = piece.placed(corner);
+                (low, high) = (low.inf(&point), high.sup(&point));
+            }
+        }
+        let facets = pieces.iter().map(|piece| piece.soup.facets.len()).sum();
+        if facets == 0 {
+            return Ok(Self { centre_m: Vec3::zeros(), size_m: 0.0, facets });
+        }
+        let size_m = (high - low).max();
+        if !size_m.is_finite() || facets > u32::MAX as usize / 3 {
+            return Err(Error::Request(format!(
+                "the terrain has {facets} facets in a box of {size_m:e} m; \
+                 a scene holds up to 1.4e9 facets and needs coordinates in metres"
+            )));
+        }
+        Ok(Self { centre_m: (low / 2.0 + high / 2.0).map(f64::round), size_m, facets })
+    }
+}
+
+impl Piece<'_> {
+    fn check_scale(&self) -> Result<()> {
+        if self.scale > 0.0 && self.scale.is_finite() {
+            return Ok(());
+        }
+        let found = format!("{} is not a positive number", self.scale);
+        Err(Error::input(self.file, "scale", found, "write 1.0 for metres, 0.001 for millimetres"))
+    }
+}
+
+impl Welded {
+    /// A local point in map coordinates.
+    pub fn on_map(&self, local_m: Vec3) -> Vec3 {
+        local_m + self.origin_m
+    }
+
+    /// The corners of a triangle, local (m).
+    pub fn corners_m(&self, triangle: usize) -> [Vec3; 3] {
+        self.triangles[triangle].map(|v| self.vertices_m[v as usize])
+    }
+
+    /// Merges vertices and keeps every facet that has an area.
+    fn take(&mut self, pieces: &[Piece], frame: &Frame) {
+        let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
+        for piece in pieces {
+            for (number, facet) in piece.soup.facets.iter().enumerate() {
+                // `+ 0.0` turns −0.0 into 0.0.
+                let corners =
+                    facet.map(|corner| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0));
+                let triangle = corners.map(|corner| merger.number_of(corner));
+                let merged = triangle.map(|v| merger.kept_m()[v as usize]);
+                self.moved_corners += (0..3).filter(|&k| merged[k] != corners[k]).count();
+                if has_area(&merged) {
+                    self.triangles.push(triangle);
+                    self.sheet_of.push(piece.sheet);
+                    self.facet_of.push(number as u32);
+                } else {
+                    self.zero_area.add(merged[0] + self.origin_m);
+                }
+            }
+        }
+        self.vertices_m = merger.into_kept_m();
+    }
+
+    /// Keeps the first of all triangles with the same three corners, wound either way.
+    fn drop_duplicates(&mut self) {
+        let mut order: Vec<([u32; 3], u32)> = (0u32..)
+            .zip(&self.triangles)
+            .map(|(t, &corners)| {
+                let mut sorted = corners;
+                sorted.sort_unstable();
+                (sorted, t)
+            })
+            .collect();
+        order.par_sort_unstable();
+        let mut again: Vec<u32> =
+            order.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1].1).collect();
+        again.sort_unstable();
+        for &t in &again {
+            self.duplicates.add(self.on_map(self.corners_m(t as usize)[0]));
+        }
+        drop_at(&mut self.triangles, &again);
+        drop_at(&mut self.sheet_of, &again);
+        drop_at(&mut self.facet_of, &again);
+    }
+
+    /// Vertices that only dropped triangles used go; the others keep their order.
+    fn drop_unused_vertices(&mut self) {
+        let mut renumbered = vec![0u32; self.vertices_m.len()];
+        for &v in self.triangles.iter().flatten() {
+            renumbered[v as usize] = 1;
+        }
+        let mut used = renumbered.iter();
+        self.vertices_m.retain(|_| used.next() == Some(&1));
+        let mut next = 0;
+        for number in &mut renumbered {
+            next += std::mem::replace(number, next);
+        }
+        for v in self.triangles.iter_mut().flatten() {
+            *v = renumbered[*v as usize];
+        }
+    }
+}
+
+/// Removes the elements at the given ascending positions.
+fn drop_at<T>(list: &mut Vec<T>, positions: &[u32]) {
+    let mut positions = positions.iter().peekable();
+    let mut at = 0;
+    list.retain(|_| {
+        let drop = positions.next_if(|&&position| position == at).is_some();
+        at += 1;
+        !drop
+    });
+}
+
+/// Whether the area exceeds [`ZERO_AREA`] of the longest edge squared (repeated corners have none).
+fn has_area([a, b, c]: &[Vec3; 3]) -> bool {
+    let longest2 = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
+    0.5 * (b - a).cross(&(c - a)).norm() >= ZERO_AREA * longest2 && longest2 > 0.0
+}
+
+fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
+    let Some(first) = pieces.first() else {
+        return Error::Request("no mesh file is given; name at least one STL file".into());
+    };
+    let found = format!(
+        "none of {} facets has an area after welding within {} m",
+        welded.zero_area.count, welded.tolerance_m
+    );
+    Error::input(first.file, "mesh", found, "check the file, its scale and the weld tolerance")
+}
