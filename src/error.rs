@@ -32,6 +32,23 @@ pub enum Error {
     Request(String),
 }
 
+/// What is wrong with a value and what to write instead: an [`Error::Input`] that does not yet know its place.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{found}; {remedy}")]
+pub struct Flaw {
+    /// What was found.
+    pub found: String,
+    /// What to write instead.
+    pub remedy: String,
+}
+
+impl Flaw {
+    /// Both halves.
+    pub fn new(found: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { found: found.into(), remedy: remedy.into() }
+    }
+}
+
 impl Error {
     /// A value that cannot be used, with the place and the remedy.
     pub fn input(

@@ -1,11 +1,13 @@
 //! Rockfall hazard by spherical discontinuous deformation analysis (SDDA) on triangle meshes.
 
+pub mod chance;
 pub mod contact;
 pub mod error;
 pub mod flight;
 pub mod ground;
 pub mod plan;
 pub mod rock;
+pub mod scene;
 pub mod step;
 pub mod terrain;
 pub mod trajectory;

@@ -20,6 +20,18 @@ pub enum Scheme {
     Rigid,
 }
 
+impl Scheme {
+    /// Its name in scene files and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dda => "dda",
+            Self::Adaptive => "adaptive",
+            Self::Reference => "reference",
+            Self::Rigid => "rigid",
+        }
+    }
+}
+
 /// Settings of the step, all in force (defaults already filled in by the plan).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -31,6 +43,6 @@ pub struct Settings {
     pub step_s: f64,
     /// `dda`: whether the shear spring remembers its stretch (false = as printed in the paper).
     pub shear_memory: bool,
-    /// Impacts slower than this do not rebound (m/s).
-    pub capture_speed_m_s: f64,
+    /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
+    pub capture_speed_m_s: Option<f64>,
 }

@@ -1,0 +1,144 @@
+//! What a number may be, and complaints about the one that was found.
+
+use crate::chance::Distribution;
+use crate::error::Flaw;
+
+/// One step from the top of a scene towards a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Step {
+    /// Into the key of a table.
+    Key(String),
+    /// Into the entry of a list, from 0.
+    Entry(usize),
+}
+
+/// What is wrong with the value at the end of a trail of keys. The table that complains names its own
+/// keys; every table around it adds its own step, so that none has to know where it stands.
+#[derive(Debug)]
+pub(super) struct Complaint {
+    /// From the top of the scene to the value.
+    pub(super) trail: Vec<Step>,
+    /// What was found; `None` = the text as written.
+    pub(super) found: Option<String>,
+    /// What to write instead.
+    pub(super) remedy: String,
+}
+
+impl Complaint {
+    /// About the value of a key, as written.
+    pub(super) fn about(key: &str, remedy: impl Into<String>) -> Self {
+        Self { trail: vec![Step::Key(key.to_owned())], found: None, remedy: remedy.into() }
+    }
+
+    /// About a key that is not there.
+    pub(super) fn missing(key: &str, remedy: impl Into<String>) -> Self {
+        Self::about(key, remedy).finding("found nothing")
+    }
+
+    /// Says what was found where the text as written does not.
+    pub(super) fn finding(self, found: impl Into<String>) -> Self {
+        Self { found: Some(found.into()), ..self }
+    }
+
+    /// The same complaint, seen from the table around.
+    pub(super) fn inside(self, key: &str) -> Self {
+        self.below(Step::Key(key.to_owned()))
+    }
+
+    /// The same complaint, seen from the list around; entries count from 0.
+    pub(super) fn in_entry(self, index: usize) -> Self {
+        self.below(Step::Entry(index))
+    }
+
+    fn below(mut self, step: Step) -> Self {
+        self.trail.insert(0, step);
+        self
+    }
+}
+
+/// What a check answers.
+pub(super) type Checked = Result<(), Complaint>;
+
+/// The numbers a key may take.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Allowed {
+    NotNegative,
+    Positive,
+    /// 0..1, both ends included.
+    Share,
+    /// 0..90 degrees without 90 itself.
+    Slope,
+}
+
+impl Allowed {
+    fn holds(self, low: f64, high: f64) -> bool {
+        let finite = low.is_finite() && high.is_finite();
+        finite
+            && match self {
+                Self::NotNegative => low >= 0.0,
+                Self::Positive => low > 0.0,
+                Self::Share => low >= 0.0 && high <= 1.0,
+                Self::Slope => low >= 0.0 && high < 90.0,
+            }
+    }
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::NotNegative => "write a number of 0 or more",
+            Self::Positive => "write a number above 0",
+            Self::Share => "write a value in 0..1",
+            Self::Slope => "write a value in 0..90",
+        }
+    }
+}
+
+/// Checks the number under a key; `hint` says what is usual, and may be empty.
+pub(super) fn number(key: &str, value: f64, allowed: Allowed, hint: &str) -> Checked {
+    within(key, (value, value), allowed, hint)
+}
+
+/// Checks that everything a distribution can give is allowed.
+pub(super) fn drawn(key: &str, value: &Distribution, allowed: Allowed, hint: &str) -> Checked {
+    within(key, value.support(), allowed, hint)
+}
+
+/// Checks a number that may be absent.
+pub(super) fn optional(key: &str, value: Option<f64>, allowed: Allowed, hint: &str) -> Checked {
+    value.map_or(Ok(()), |value| number(key, value, allowed, hint))
+}
+
+fn within(key: &str, (low, high): (f64, f64), allowed: Allowed, hint: &str) -> Checked {
+    if allowed.holds(low, high) {
+        return Ok(());
+    }
+    let bounds =
+        if low < high { "; give the distribution a min and a max in this range" } else { "" };
+    let hint = if hint.is_empty() { String::new() } else { format!(" ({hint})") };
+    Err(Complaint::about(key, format!("{}{hint}{bounds}", allowed.in_words())))
+}
+
+/// The known word that looks most like the one written, if any is near.
+pub(super) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    /// Similarity above which two words are worth comparing; the same as in `clap`.
+    const NEAR: f64 = 0.7;
+    known
+        .map(|candidate| (strsim::jaro_winkler(word, candidate), candidate))
+        .filter(|(similarity, _)| *similarity > NEAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+/// "did you mean `x`? known: a, b, c"
+pub(super) fn suggest<'a>(word: &str, known: &[&'a str]) -> String {
+    let list = known.join(", ");
+    match nearest(word, known.iter().copied()) {
+        Some(near) => format!("did you mean {near}? known here: {list}"),
+        None => format!("known here: {list}"),
+    }
+}
+
+impl From<Flaw> for Complaint {
+    fn from(flaw: Flaw) -> Self {
+        Self { trail: Vec::new(), found: Some(flaw.found), remedy: flaw.remedy }
+    }
+}

@@ -1,0 +1,209 @@
+//! The scene: what is asked, as written in its TOML file and checked key by key.
+//!
+//! Every table stands in a file of its own and checks its own keys. Physics has no default: what is absent
+//! here is either numerics, filled in and printed by the plan, or an error.
+
+mod check;
+mod grounds;
+mod meshes;
+mod places;
+mod record;
+mod release;
+mod rocks;
+mod solver;
+mod source;
+mod wording;
+
+pub use grounds::GroundTable;
+pub use meshes::{MeshFile, MeshTable, Up};
+pub use places::{Area, Corner, Point, Polyline};
+pub use record::{LineTable, MapsTable, RecordTable};
+pub use release::ReleaseTable;
+pub use rocks::{RockContact, Rocks};
+pub use solver::SolverTable;
+
+use crate::error::{Error, Result};
+use check::{Allowed, Checked, Complaint, number};
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use source::Source;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A scene file.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a scene")]
+pub struct Scene {
+    /// Heading of the report.
+    pub title: String,
+    /// Where chance starts.
+    pub seed: u64,
+    /// Gravity (m/s²), 0 or more, along −z.
+    #[serde(default = "standard_gravity_m_s2")]
+    pub gravity_m_s2: f64,
+    /// Map position of the meshes' (0, 0, 0) (m).
+    #[serde(default)]
+    pub origin_m: [f64; 3],
+    /// EPSG code of the map coordinates, written into rasters.
+    pub epsg: Option<u32>,
+    /// The slope; at least one file.
+    #[serde(default)]
+    pub terrain: Vec<MeshFile>,
+    /// Trees; may be none.
+    #[serde(default)]
+    pub trees: Vec<MeshFile>,
+    /// How the files become one mesh.
+    #[serde(default)]
+    pub mesh: MeshTable,
+    /// Grounds by name; their order is that of their names.
+    pub grounds: BTreeMap<String, GroundTable>,
+    /// The rocks.
+    pub rocks: Rocks,
+    /// Where and how they start.
+    pub release: ReleaseTable,
+    /// How they are computed.
+    #[serde(default)]
+    pub solver: SolverTable,
+    /// What is kept.
+    #[serde(default)]
+    pub record: RecordTable,
+    /// Evaluation lines.
+    #[serde(default)]
+    pub lines: Vec<LineTable>,
+    /// Rasters.
+    pub maps: Option<MapsTable>,
+    /// The scene file itself.
+    #[serde(skip)]
+    pub file: PathBuf,
+    /// SHA-256 (hexadecimal) of the scene's text and of every mesh file's bytes.
+    #[serde(skip)]
+    pub hash: String,
+}
+
+/// Gravity when a scene does not name it (m/s²); the interface's one default of the world.
+fn standard_gravity_m_s2() -> f64 {
+    9.81
+}
+
+impl Scene {
+    /// Reads and checks a scene file and takes the fingerprint of its meshes.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the scene, with file, table, key and line; a mesh file that is not there.
+    pub fn read(file: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(file).map_err(Error::file("read", file))?;
+        let mut scene = Self::parse(&text, file)?;
+        scene.hash =
+            scene.fingerprint(&text).map_err(|wrong| Source::of(file, &text).refuse(wrong))?;
+        Ok(scene)
+    }
+
+    /// Reads and checks a scene's text; its meshes are not looked at and the hash stays empty.
+    /// Relative paths in it are seen from the folder of `file`.
+    ///
+    /// # Errors
+    /// Whatever is wrong with the scene, with file, table, key and line.
+    pub fn parse(text: &str, file: &Path) -> Result<Self> {
+        let mut scene: Self =
+            toml::from_str(text).map_err(|error| Source::of(file, text).refuse_reading(&error))?;
+        scene.check().map_err(|wrong| Source::of(file, text).refuse(wrong))?;
+        let folder = file.parent().unwrap_or(Path::new(""));
+        for mesh in scene.terrain.iter_mut().chain(&mut scene.trees) {
+            mesh.mesh = folder.join(&mesh.mesh);
+        }
+        file.clone_into(&mut scene.file);
+        Ok(scene)
+    }
+
+    /// Position of a ground in the scene's list of grounds.
+    pub fn ground_index(&self, name: &str) -> Option<usize> {
+        self.grounds.keys().position(|known| known == name)
+    }
+
+    fn check(&self) -> Checked {
+        number("gravity_m_s2", self.gravity_m_s2, Allowed::NotNegative, "9.81 on Earth")?;
+        if self.origin_m.iter().any(|coordinate| !coordinate.is_finite()) {
+            return Err(Complaint::about("origin_m", "write three finite numbers"));
+        }
+        self.check_meshes()?;
+        let scheme = self.solver.scheme();
+        for (name, ground) in &self.grounds {
+            ground.check(scheme).map_err(|wrong| wrong.inside(name).inside("grounds"))?;
+        }
+        self.rocks.check().map_err(|wrong| wrong.inside("rocks"))?;
+        self.release.check().map_err(|wrong| wrong.inside("release"))?;
+        self.solver.check().map_err(|wrong| wrong.inside("solver"))?;
+        self.record.check().map_err(|wrong| wrong.inside("record"))?;
+        if let Some(maps) = &self.maps {
+            maps.check().map_err(|wrong| wrong.inside("maps"))?;
+        }
+        self.check_version()
+    }
+
+    fn check_meshes(&self) -> Checked {
+        if self.terrain.is_empty() {
+            let remedy =
+                "write [[terrain]] with mesh = \"slope.stl\" and ground = a name from [grounds]";
+            return Err(Complaint::missing("terrain", remedy));
+        }
+        self.mesh.check().map_err(|wrong| wrong.inside("mesh"))?;
+        let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
+        self.each_mesh(|mesh| mesh.check(&grounds))
+    }
+
+    /// Does the same for every mesh file and says which one fails.
+    fn each_mesh(&self, mut check: impl FnMut(&MeshFile) -> Checked) -> Checked {
+        for (table, meshes) in [("terrain", &self.terrain), ("trees", &self.trees)] {
+            for (index, mesh) in meshes.iter().enumerate() {
+                check(mesh).map_err(|wrong| wrong.in_entry(index).inside(table))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What the scene file can ask for but this version cannot do is refused, never ignored.
+    fn check_version(&self) -> Checked {
+        let later = "is not in this version";
+        if self.release.together {
+            if self.rocks.contact.is_none() {
+                let remedy =
+                    "write the table [rocks.contact]: rocks that share one world can touch";
+                return Err(Complaint::missing("contact", remedy).inside("rocks"));
+            }
+            let remedy = format!("write false: contact between rocks {later}");
+            return Err(Complaint::about("together", remedy).inside("release"));
+        }
+        if !self.lines.is_empty() {
+            let remedy = format!("remove [[lines]]: evaluation at lines {later}");
+            return Err(Complaint::about("lines", remedy).finding("found an evaluation line"));
+        }
+        if self.maps.is_some() {
+            let remedy = format!("remove [maps]: writing rasters {later}");
+            return Err(Complaint::about("maps", remedy).finding("found a raster"));
+        }
+        Ok(())
+    }
+
+    /// Hash over text and mesh files, each followed by its length so that no two scenes run together.
+    fn fingerprint(&self, text: &str) -> std::result::Result<String, Complaint> {
+        let mut hash = Sha256::new();
+        hash.update(text);
+        hash.update((text.len() as u64).to_le_bytes());
+        self.each_mesh(|mesh| {
+            let read = std::fs::File::open(&mesh.mesh)
+                .and_then(|mut file| std::io::copy(&mut file, &mut hash));
+            match read {
+                Ok(length) => hash.update(length.to_le_bytes()),
+                Err(error) => {
+                    let path = mesh.mesh.display();
+                    let remedy = format!(
+                        "write the path of an STL file as seen from the scene file; {path}: {error}"
+                    );
+                    return Err(Complaint::about("mesh", remedy));
+                }
+            }
+            Ok(())
+        })?;
+        Ok(format!("{:x}", hash.finalize()))
+    }
+}

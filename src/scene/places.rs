@@ -1,0 +1,301 @@
+//! Points, polylines and areas in plan view, in map coordinates; valid by construction.
+
+use crate::error::Flaw;
+use serde::Deserialize;
+
+/// A corner in plan view (m), map coordinates.
+pub type Corner = [f64; 2];
+
+/// A point of release.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(try_from = "Vec<f64>", expecting = "a point [x, y] or [x, y, z]")]
+pub struct Point {
+    /// Place in plan view (m), map coordinates.
+    pub at_m: Corner,
+    /// Height of the rock's centre (m), map coordinates; absent = reckoned from the ground below.
+    pub height_m: Option<f64>,
+}
+
+impl TryFrom<Vec<f64>> for Point {
+    type Error = Flaw;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, Flaw> {
+        let (at_m, height_m) = match numbers[..] {
+            [x, y] => ([x, y], None),
+            [x, y, z] => ([x, y], Some(z)),
+            _ => {
+                let found = format!("found a point with {} coordinates", numbers.len());
+                return Err(Flaw::new(found, "write [x, y] or [x, y, z]"));
+            }
+        };
+        finite(&numbers)?;
+        Ok(Self { at_m, height_m })
+    }
+}
+
+/// A line of straight pieces, longer than zero.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(try_from = "Vec<Corner>", expecting = "a list of corners [x, y]")]
+pub struct Polyline {
+    corners_m: Vec<Corner>,
+    /// Length from the start to each corner (m).
+    along_m: Vec<f64>,
+}
+
+impl Polyline {
+    /// Its corners (m), map coordinates.
+    pub fn corners_m(&self) -> &[Corner] {
+        &self.corners_m
+    }
+
+    /// Its length (m).
+    pub fn length_m(&self) -> f64 {
+        self.along_m[self.along_m.len() - 1]
+    }
+
+    /// The point at the share `p` (–, 0..1) of its length.
+    pub fn at(&self, p: f64) -> Corner {
+        let along = p * self.length_m();
+        let last = self.corners_m.len() - 2;
+        let piece = self.along_m[1..].partition_point(|end| *end <= along).min(last);
+        let (from, to) = (self.corners_m[piece], self.corners_m[piece + 1]);
+        let length = self.along_m[piece + 1] - self.along_m[piece];
+        let share = ((along - self.along_m[piece]) / length).clamp(0.0, 1.0);
+        [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])]
+    }
+}
+
+impl TryFrom<Vec<Corner>> for Polyline {
+    type Error = Flaw;
+
+    fn try_from(mut corners_m: Vec<Corner>) -> Result<Self, Flaw> {
+        finite(corners_m.as_flattened())?;
+        corners_m.dedup();
+        if corners_m.len() < 2 {
+            let found = format!("found a line with {} different corners", corners_m.len());
+            return Err(Flaw::new(found, "write at least two: [[x, y], [x, y]]"));
+        }
+        let mut along_m = vec![0.0];
+        for pair in corners_m.windows(2) {
+            let step = minus(pair[1], pair[0]);
+            along_m.push(along_m[along_m.len() - 1] + step[0].hypot(step[1]));
+        }
+        Ok(Self { corners_m, along_m })
+    }
+}
+
+/// The inside of a polygon whose sides neither cross nor touch each other, cut into triangles.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(try_from = "Vec<Corner>", expecting = "a list of corners [x, y]")]
+pub struct Area {
+    corners_m: Vec<Corner>,
+    /// Its triangles, each with the area up to and including it (m²).
+    triangles: Vec<([Corner; 3], f64)>,
+}
+
+impl Area {
+    /// Its corners (m), map coordinates.
+    pub fn corners_m(&self) -> &[Corner] {
+        &self.corners_m
+    }
+
+    /// Its area (m²).
+    pub fn area_m2(&self) -> f64 {
+        self.triangles[self.triangles.len() - 1].1
+    }
+
+    /// A point of the area; three independent even numbers in 0..1 give points uniform over it.
+    pub fn at(&self, [which, u, v]: [f64; 3]) -> Corner {
+        let target = which * self.area_m2();
+        let index = self.triangles.partition_point(|(_, sum)| *sum <= target);
+        let ([a, b, c], _) = self.triangles[index.min(self.triangles.len() - 1)];
+        // the half of the parallelogram beyond the triangle is folded back onto it
+        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+        [0, 1].map(|axis| a[axis] + u * (b[axis] - a[axis]) + v * (c[axis] - a[axis]))
+    }
+}
+
+impl TryFrom<Vec<Corner>> for Area {
+    type Error = Flaw;
+
+    fn try_from(mut corners_m: Vec<Corner>) -> Result<Self, Flaw> {
+        finite(corners_m.as_flattened())?;
+        corners_m.dedup();
+        // many programs repeat the first corner at the end
+        if corners_m.len() > 1 && corners_m.first() == corners_m.last() {
+            corners_m.pop();
+        }
+        if corners_m.len() < 3 {
+            let found = format!("found a polygon with {} different corners", corners_m.len());
+            return Err(Flaw::new(found, "write at least three: [[x, y], [x, y], [x, y]]"));
+        }
+        let triangles = triangulate(&corners_m)?;
+        Ok(Self { corners_m, triangles })
+    }
+}
+
+/// Cuts a simple polygon into triangles, ear by ear.
+fn triangulate(corners_m: &[Corner]) -> Result<Vec<([Corner; 3], f64)>, Flaw> {
+    const REMEDY: &str = "write the corners in order around the area";
+    if let Some((i, j)) = first_meeting(corners_m) {
+        let found = format!("found that the sides from corner {} and corner {} meet", i + 1, j + 1);
+        return Err(Flaw::new(found, REMEDY));
+    }
+    let mut left = corners_m.to_vec();
+    let turning: f64 =
+        (1..left.len() - 1).map(|i| twice_area([left[0], left[i], left[i + 1]])).sum();
+    if turning < 0.0 {
+        left.reverse();
+    }
+    let (mut triangles, mut sum) = (Vec::new(), 0.0);
+    while left.len() > 2 {
+        let Some((tip, ear)) =
+            (0..left.len()).map(|i| (i, ear(&left, i))).find(|(_, ear)| is_free(&left, ear))
+        else {
+            return Err(Flaw::new("found a polygon too thin to cut into triangles", REMEDY));
+        };
+        left.remove(tip);
+        let area = 0.5 * twice_area(ear);
+        if area > 0.0 {
+            sum += area;
+            triangles.push((ear, sum));
+        }
+    }
+    if triangles.is_empty() {
+        return Err(Flaw::new("found a polygon without area", REMEDY));
+    }
+    Ok(triangles)
+}
+
+/// A corner with its two neighbours.
+fn ear(corners_m: &[Corner], tip: usize) -> [Corner; 3] {
+    let n = corners_m.len();
+    [corners_m[(tip + n - 1) % n], corners_m[tip], corners_m[(tip + 1) % n]]
+}
+
+/// Whether an ear may be cut off: it does not turn outwards and holds no other corner. A corner on a
+/// straight side encloses nothing and may always go.
+fn is_free(corners_m: &[Corner], ear: &[Corner; 3]) -> bool {
+    let [a, b, c] = *ear;
+    let area = twice_area(*ear);
+    let holds = |p: &Corner| {
+        !ear.contains(p)
+            && [[a, b, *p], [b, c, *p], [c, a, *p]].into_iter().all(|side| twice_area(side) >= 0.0)
+    };
+    area >= 0.0 && (area <= 0.0 || !corners_m.iter().any(holds))
+}
+
+/// The first two sides that are not neighbours but cross or touch; a side is named by its first corner.
+fn first_meeting(corners_m: &[Corner]) -> Option<(usize, usize)> {
+    let n = corners_m.len();
+    let side = |i: usize| [corners_m[i], corners_m[(i + 1) % n]];
+    let pairs = (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j)));
+    pairs.filter(|&(i, j)| (j + 1) % n != i).find(|&(i, j)| meet(side(i), side(j)))
+}
+
+/// Whether two sides have a point in common.
+fn meet([a, b]: [Corner; 2], [c, d]: [Corner; 2]) -> bool {
+    let boxes_meet = (0..2).all(|axis| {
+        a[axis].min(b[axis]) <= c[axis].max(d[axis]) && c[axis].min(d[axis]) <= a[axis].max(b[axis])
+    });
+    let apart = |p, q, one, other| twice_area([p, q, one]) * twice_area([p, q, other]) > 0.0;
+    boxes_meet && !apart(a, b, c, d) && !apart(c, d, a, b)
+}
+
+/// Twice the area of a triangle (m²), positive when it turns anticlockwise.
+///
+/// Differences first: map coordinates are large and their products would lose the digits that matter.
+fn twice_area([a, b, c]: [Corner; 3]) -> f64 {
+    let (u, v) = (minus(b, a), minus(c, a));
+    u[0] * v[1] - u[1] * v[0]
+}
+
+fn minus(a: Corner, b: Corner) -> Corner {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn finite(numbers: &[f64]) -> Result<(), Flaw> {
+    match numbers.iter().find(|number| !number.is_finite()) {
+        Some(number) => Err(Flaw::new(format!("found {number}"), "write finite coordinates")),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(corners: &[Corner]) -> Area {
+        Area::try_from(corners.to_vec()).unwrap()
+    }
+
+    /// A bent polygon with a hollow, a collinear corner and a repeated first corner.
+    const HOLLOW: [Corner; 8] = [
+        [0.0, 0.0],
+        [2.0, 0.0],
+        [4.0, 0.0],
+        [4.0, 3.0],
+        [2.0, 1.0],
+        [1.0, 4.0],
+        [0.0, 3.0],
+        [0.0, 0.0],
+    ];
+
+    /// Shoelace formula.
+    fn shoelace(corners: &[Corner]) -> f64 {
+        let n = corners.len();
+        let sides = (0..n).map(|i| (corners[i], corners[(i + 1) % n]));
+        0.5 * sides.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>().abs()
+    }
+
+    /// The triangles cover the polygon exactly: same area either way round, also at map coordinates.
+    #[test]
+    fn triangles_cover_the_polygon() {
+        let exact = shoelace(&HOLLOW);
+        let backwards: Vec<Corner> = HOLLOW.iter().rev().copied().collect();
+        let far = HOLLOW.map(|[x, y]| [x + 2_600_000.0, y + 1_200_000.0]);
+        for corners in [&HOLLOW[..], &backwards, &far] {
+            // small whole numbers: every difference and product is exact
+            assert!((area(corners).area_m2() - exact).abs() < 1e-12);
+        }
+    }
+
+    /// A comb of 200 thin teeth: every ear is narrow, and no two triangles may overlap.
+    #[test]
+    fn thin_teeth_are_cut_without_overlap() {
+        let mut comb = vec![[200.0, -1.0], [0.0, -1.0]];
+        for tooth in 0..200 {
+            let x = f64::from(tooth);
+            comb.extend([[x, 0.0], [x + 0.5, 50.0]]);
+        }
+        comb.push([200.0, 0.0]);
+        let comb_area = area(&comb);
+        // sums of a thousand terms of up to 100
+        assert!((comb_area.area_m2() - shoelace(&comb)).abs() < 1e-9);
+        assert!(comb_area.triangles.iter().all(|(triangle, _)| twice_area(*triangle) > 0.0));
+    }
+
+    #[test]
+    fn polygons_that_enclose_nothing_or_cross_are_refused() {
+        let refused = |corners: &[Corner]| Area::try_from(corners.to_vec()).unwrap_err().found;
+        let bow_tie = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+        assert_eq!(refused(&bow_tie), "found that the sides from corner 1 and corner 3 meet");
+        assert!(refused(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]).contains("without area"));
+        assert!(refused(&[[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]]).contains("2 different corners"));
+        assert!(refused(&[[0.0, 0.0], [f64::NAN, 1.0], [0.0, 1.0]]).contains("NaN"));
+    }
+
+    /// Equal shares of the length are equally far apart along the line.
+    #[test]
+    fn a_line_is_walked_evenly() {
+        let line =
+            Polyline::try_from(vec![[0.0, 0.0], [3.0, 0.0], [3.0, 0.0], [3.0, 1.0]]).unwrap();
+        for (p, [x, y]) in
+            [(0.0, [0.0, 0.0]), (0.5, [2.0, 0.0]), (0.75, [3.0, 0.0]), (1.0, [3.0, 1.0])]
+        {
+            let found = line.at(p);
+            assert!((found[0] - x).abs() + (found[1] - y).abs() < 1e-15, "{p}: {found:?}");
+        }
+        assert!(Polyline::try_from(vec![[1.0, 1.0], [1.0, 1.0]]).is_err());
+    }
+}

@@ -1,0 +1,47 @@
+//! `[record]`, `[[lines]]` and `[maps]`.
+
+use super::check::{Allowed, Checked, number, optional};
+use super::places::Polyline;
+use serde::Deserialize;
+
+/// What is kept of every journey; optional as a whole.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [record]")]
+pub struct RecordTable {
+    /// How many releases keep their path, the first ones; 0 leaves paths out.
+    pub paths: Option<usize>,
+    /// Time between stored points of a path (s), positive.
+    pub path_step_s: Option<f64>,
+    /// Whether impacts are kept.
+    pub impacts: Option<bool>,
+}
+
+/// One evaluation line: a vertical curtain over a polyline of the map.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with name and points_m")]
+pub struct LineTable {
+    /// Name in the results.
+    pub name: String,
+    /// Its corners in map coordinates (m).
+    pub points_m: Polyline,
+}
+
+/// Rasters in plan view.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [maps]")]
+pub struct MapsTable {
+    /// Side of a cell (m), positive.
+    pub cell_m: f64,
+}
+
+impl RecordTable {
+    pub(super) fn check(&self) -> Checked {
+        optional("path_step_s", self.path_step_s, Allowed::Positive, "")
+    }
+}
+
+impl MapsTable {
+    pub(super) fn check(&self) -> Checked {
+        number("cell_m", self.cell_m, Allowed::Positive, "")
+    }
+}

@@ -1,0 +1,75 @@
+//! `[release]`.
+
+use super::check::{Allowed, Checked, Complaint, drawn};
+use super::places::{Area, Point, Polyline};
+use crate::chance::Distribution;
+use serde::Deserialize;
+
+/// How rocks are released.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [release]")]
+pub struct ReleaseTable {
+    /// Number of releases, at least 1.
+    pub count: usize,
+    /// Whether all rocks share one world and can touch each other.
+    #[serde(default)]
+    pub together: bool,
+    /// Vertical gap between the lowest point of the rock and the ground below (m), 0 or more.
+    pub height_m: Option<Distribution>,
+    /// Velocity of the centre (m/s).
+    pub velocity_m_s: [Distribution; 3],
+    /// Angular velocity (rad/s).
+    pub spin_rad_s: [Distribution; 3],
+    /// Where: points in map coordinates (m), cycled through.
+    pub points_m: Option<Vec<Point>>,
+    /// Where: uniform along a polyline in map coordinates (m).
+    pub line_m: Option<Polyline>,
+    /// Where: uniform over an area in map coordinates (m).
+    pub polygon_m: Option<Area>,
+}
+
+const WHERE: &str = "write exactly one of points_m, line_m and polygon_m";
+
+impl ReleaseTable {
+    pub(super) fn check(&self) -> Checked {
+        if self.count == 0 {
+            return Err(Complaint::about("count", "write 1 or more"));
+        }
+        let given = [
+            ("points_m", self.points_m.is_some()),
+            ("line_m", self.line_m.is_some()),
+            ("polygon_m", self.polygon_m.is_some()),
+        ];
+        let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
+        match (given.next(), given.next()) {
+            (None, _) => return Err(Complaint::missing("points_m", WHERE)),
+            (Some(one), Some(other)) => {
+                let found = format!("found {one} beside it");
+                return Err(Complaint::about(other, WHERE).finding(found));
+            }
+            _ => {}
+        }
+        self.check_height()
+    }
+
+    /// `height_m` and a third coordinate exclude each other, and one of them is needed.
+    fn check_height(&self) -> Checked {
+        let points = self.points_m.as_deref().unwrap_or_default();
+        if self.points_m.is_some() && points.is_empty() {
+            return Err(Complaint::about("points_m", "write at least one point"));
+        }
+        let placed = |point: &&Point| point.height_m.is_some();
+        match &self.height_m {
+            Some(_) if points.iter().any(|point| placed(&point)) => Err(Complaint::about(
+                "height_m",
+                "remove it, or write the points as [x, y]: their third coordinate already says how high",
+            )),
+            Some(height) => drawn("height_m", height, Allowed::NotNegative, ""),
+            None if !points.is_empty() && points.iter().all(|point| placed(&point)) => Ok(()),
+            None => Err(Complaint::missing(
+                "height_m",
+                "write height_m = 0.5 or another gap between rock and ground, or points [x, y, z]",
+            )),
+        }
+    }
+}

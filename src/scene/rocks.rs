@@ -1,0 +1,59 @@
+//! `[rocks]` and `[rocks.contact]`.
+
+use super::check::{Allowed, Checked, drawn, number};
+use crate::chance::Distribution;
+use serde::Deserialize;
+
+/// The rocks.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [rocks]")]
+pub struct Rocks {
+    /// Density (kg/m³), positive.
+    pub density_kg_m3: f64,
+    /// Radius (m), positive.
+    pub radius_m: Distribution,
+    /// Contact between rocks; needed only when they share one world.
+    pub contact: Option<RockContact>,
+}
+
+/// `[rocks.contact]`: contact between two rocks.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [rocks.contact]")]
+pub struct RockContact {
+    /// Normal contact spring (N/m), positive.
+    pub normal_stiffness_n_m: f64,
+    /// Shear contact spring (N/m), positive.
+    pub shear_stiffness_n_m: f64,
+    /// Friction angle (degrees), 0..90.
+    pub friction_angle_deg: f64,
+    /// Tensile strength of a bond between rocks that touch at the start (Pa), 0 or more.
+    pub tensile_strength_pa: f64,
+    /// Cohesion of such a bond (Pa), 0 or more.
+    pub cohesion_pa: f64,
+}
+
+impl Rocks {
+    pub(super) fn check(&self) -> Checked {
+        number("density_kg_m3", self.density_kg_m3, Allowed::Positive, "rock is near 2700")?;
+        drawn("radius_m", &self.radius_m, Allowed::Positive, "")?;
+        match &self.contact {
+            Some(contact) => contact.check().map_err(|wrong| wrong.inside("contact")),
+            None => Ok(()),
+        }
+    }
+}
+
+impl RockContact {
+    fn check(&self) -> Checked {
+        for (key, value, allowed) in [
+            ("normal_stiffness_n_m", self.normal_stiffness_n_m, Allowed::Positive),
+            ("shear_stiffness_n_m", self.shear_stiffness_n_m, Allowed::Positive),
+            ("friction_angle_deg", self.friction_angle_deg, Allowed::Slope),
+            ("tensile_strength_pa", self.tensile_strength_pa, Allowed::NotNegative),
+            ("cohesion_pa", self.cohesion_pa, Allowed::NotNegative),
+        ] {
+            number(key, value, allowed, "")?;
+        }
+        Ok(())
+    }
+}

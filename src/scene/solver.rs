@@ -1,0 +1,76 @@
+//! `[solver]`.
+
+use super::check::{Allowed, Checked, Complaint, optional};
+use crate::step::Scheme;
+use serde::Deserialize;
+
+/// How a rock is computed; optional as a whole. What is absent is filled in by the plan, which prints it.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [solver]")]
+pub struct SolverTable {
+    /// The scheme; absent = `adaptive`.
+    pub scheme: Option<Scheme>,
+    /// Local error allowed per step (m/s), positive; `adaptive` only.
+    pub tolerance_m_s: Option<f64>,
+    /// Fixed step of `dda`, largest step of `rigid` (s), positive.
+    pub step_s: Option<f64>,
+    /// Whether the shear spring remembers its stretch; `dda` only.
+    pub shear_memory: Option<bool>,
+    /// Impacts slower than this do not rebound (m/s), 0 or more.
+    pub capture_speed_m_s: Option<f64>,
+    /// Simulated time after which a rock is `time_up` (s), positive.
+    pub longest_s: Option<f64>,
+    /// Speed below which a rock may be at rest (m/s), positive.
+    pub rest_speed_m_s: Option<f64>,
+    /// How long it must stay below that speed (s), positive.
+    pub rest_time_s: Option<f64>,
+}
+
+impl SolverTable {
+    /// The scheme in force.
+    pub fn scheme(&self) -> Scheme {
+        self.scheme.unwrap_or(Scheme::Adaptive)
+    }
+
+    pub(super) fn check(&self) -> Checked {
+        self.check_numbers()?;
+        let scheme = self.scheme();
+        if scheme == Scheme::Dda && self.step_s.is_none() {
+            let remedy = "write step_s = 1e-5 or another time step: scheme \"dda\" must have one";
+            return Err(Complaint::missing("step_s", remedy));
+        }
+        let used = [
+            ("tolerance_m_s", self.tolerance_m_s.is_some(), &[Scheme::Adaptive][..]),
+            ("step_s", self.step_s.is_some(), &[Scheme::Dda, Scheme::Rigid]),
+            ("shear_memory", self.shear_memory.is_some(), &[Scheme::Dda]),
+        ];
+        for (key, given, schemes) in used {
+            if given && !schemes.contains(&scheme) {
+                let names = schemes.iter().map(|scheme| scheme.name()).collect::<Vec<_>>();
+                return Err(Complaint::about(
+                    key,
+                    format!(
+                        "remove it: scheme \"{}\" has no use for it, only {}",
+                        scheme.name(),
+                        names.join(" and ")
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_numbers(&self) -> Checked {
+        for (key, value, allowed) in [
+            ("tolerance_m_s", self.tolerance_m_s, Allowed::Positive),
+            ("step_s", self.step_s, Allowed::Positive),
+            ("capture_speed_m_s", self.capture_speed_m_s, Allowed::NotNegative),
+            ("longest_s", self.longest_s, Allowed::Positive),
+            ("rest_speed_m_s", self.rest_speed_m_s, Allowed::Positive),
+            ("rest_time_s", self.rest_time_s, Allowed::Positive),
+        ] {
+            optional(key, value, allowed, "")?;
+        }
+        Ok(())
+    }
+}

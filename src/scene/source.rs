@@ -1,0 +1,167 @@
+//! Where in the scene file a value stands: turns complaints and the reader's errors into messages that
+//! name file, table, key and line. Built only when there is something to complain about.
+
+use super::check::{Complaint, Step};
+use super::wording;
+use crate::error::Error;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A scene's text with the place of every key and value in it.
+pub(super) struct Source<'a> {
+    file: &'a Path,
+    text: &'a str,
+    nodes: Vec<Node>,
+}
+
+/// One value of the file.
+struct Node {
+    trail: Vec<Step>,
+    /// Bytes of its key; of a list entry the entry itself.
+    key: Range<usize>,
+    /// Bytes of the value; of a table with a header the header alone.
+    value: Range<usize>,
+    /// Whether it is a table with a header of its own, `[a.b]` or `[[a]]`.
+    headed: bool,
+}
+
+impl<'a> Source<'a> {
+    /// Finds every key; a text that is no TOML has none.
+    pub(super) fn of(file: &'a Path, text: &'a str) -> Self {
+        let mut nodes = Vec::new();
+        if let Ok(root) = DeTable::parse(text) {
+            collect_table(text, &[], root.get_ref(), &mut nodes);
+        }
+        Self { file, text, nodes }
+    }
+
+    /// The message for a complaint of the scene's own checks.
+    pub(super) fn refuse(&self, complaint: Complaint) -> Error {
+        let place = self.place(&complaint.trail);
+        let found = complaint.found.unwrap_or_else(|| self.as_written(&complaint.trail));
+        Error::input(self.file, place, found, complaint.remedy)
+    }
+
+    /// The message for what the TOML reader found.
+    pub(super) fn refuse_reading(&self, error: &toml::de::Error) -> Error {
+        let span = error.span().unwrap_or(0..0);
+        let mut trail = self.trail_at(&span);
+        let said = wording::of(error.message());
+        let place = match (said.missing, self.nodes.is_empty()) {
+            (_, true) => format!("line {}", self.line(span.start)),
+            (Some(key), _) => {
+                trail.push(Step::Key(key));
+                self.place(&trail)
+            }
+            (None, _) => self.place(&trail),
+        };
+        Error::input(self.file, place, said.found, said.remedy)
+    }
+
+    fn node(&self, trail: &[Step]) -> Option<&Node> {
+        self.nodes.iter().find(|node| node.trail == trail)
+    }
+
+    /// The trail to the smallest value whose key or text holds the span.
+    fn trail_at(&self, span: &Range<usize>) -> Vec<Step> {
+        let holds = |range: &Range<usize>| range.start <= span.start && span.end <= range.end;
+        let holding = self.nodes.iter().filter_map(|node| {
+            [&node.key, &node.value].into_iter().find(|range| holds(range)).map(|r| (r.len(), node))
+        });
+        // the longer trail wins a tie: [a.b] names both a and b in one header
+        let smallest = holding.min_by_key(|(len, node)| (*len, usize::MAX - node.trail.len()));
+        smallest.map_or_else(Vec::new, |(_, node)| node.trail.clone())
+    }
+
+    /// "[grounds.scree] `friction_angle_deg` (line 12)".
+    fn place(&self, trail: &[Step]) -> String {
+        let is_headed = |&n: &usize| self.node(&trail[..n]).is_some_and(|node| node.headed);
+        let headed = (1..=trail.len()).rev().find(is_headed).unwrap_or(0);
+        let mut parts = Vec::new();
+        if headed > 0 {
+            parts.push(header(&trail[..headed]));
+        }
+        if headed < trail.len() {
+            parts.push(keys(&trail[headed..]));
+        }
+        let near = (1..=trail.len()).rev().find_map(|n| self.node(&trail[..n]));
+        match near {
+            Some(node) => format!("{} (line {})", parts.join(" "), self.line(node.key.start)),
+            None => parts.join(" "),
+        }
+    }
+
+    /// Line number from 1.
+    fn line(&self, byte: usize) -> usize {
+        self.text.bytes().take(byte).filter(|b| *b == b'\n').count() + 1
+    }
+
+    /// "found 95", cut short when it is long.
+    fn as_written(&self, trail: &[Step]) -> String {
+        /// Characters of a value that a message repeats.
+        const SHOWN: usize = 60;
+        let Some(node) = self.node(trail).filter(|node| !node.headed) else {
+            return "found nothing".to_owned();
+        };
+        let written = &self.text[node.value.clone()];
+        let line = written.lines().next().unwrap_or_default();
+        let short: String = line.chars().take(SHOWN).collect();
+        let more = if short.len() < written.len() { " …" } else { "" };
+        format!("found {short}{more}")
+    }
+}
+
+/// `[a.b]`, or `[[a]] number 2` for an entry of an array of tables.
+fn header(trail: &[Step]) -> String {
+    match trail {
+        [before @ .., Step::Entry(index)] => format!("[[{}]] number {}", keys(before), index + 1),
+        _ => format!("[{}]", keys(trail)),
+    }
+}
+
+/// `a.b, entry 3`
+fn keys(trail: &[Step]) -> String {
+    let mut text = String::new();
+    for step in trail {
+        match step {
+            Step::Key(key) if text.is_empty() => text.push_str(key),
+            Step::Key(key) => text.push_str(&format!(".{key}")),
+            Step::Entry(index) => text.push_str(&format!(", entry {}", index + 1)),
+        }
+    }
+    text
+}
+
+fn collect_table(text: &str, trail: &[Step], table: &DeTable<'_>, nodes: &mut Vec<Node>) {
+    for (key, value) in table {
+        let mut trail = trail.to_vec();
+        trail.push(Step::Key(key.get_ref().to_string()));
+        collect(text, trail, key.span(), value, nodes);
+    }
+}
+
+fn collect(
+    text: &str,
+    trail: Vec<Step>,
+    key: Range<usize>,
+    value: &Spanned<DeValue<'_>>,
+    nodes: &mut Vec<Node>,
+) {
+    let headed = value.get_ref().is_table() && text[value.span()].starts_with('[');
+    match value.get_ref() {
+        DeValue::Table(table) => collect_table(text, &trail, table, nodes),
+        DeValue::Array(entries) => {
+            for (index, entry) in entries.iter().enumerate() {
+                let mut trail = trail.clone();
+                trail.push(Step::Entry(index));
+                collect(text, trail, entry.span(), entry, nodes);
+            }
+        }
+        _ => {}
+    }
+    // a header stands where its table begins, however its last key was reached
+    let key = if headed { value.span() } else { key };
+    nodes.push(Node { trail, key, value: value.span(), headed });
+}

@@ -1,0 +1,63 @@
+//! The TOML reader's messages in the words of a scene's author.
+
+use super::check::suggest;
+
+/// One message, taken apart.
+pub(super) struct Said {
+    /// The key that is missing, if that is the trouble.
+    pub(super) missing: Option<String>,
+    /// What was found.
+    pub(super) found: String,
+    /// What to write instead.
+    pub(super) remedy: String,
+}
+
+impl Said {
+    fn new(found: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { missing: None, found: found.into(), remedy: remedy.into() }
+    }
+}
+
+/// Takes a message of `serde` or of the TOML parser apart; what is not recognised is passed on as it is.
+pub(super) fn of(message: &str) -> Said {
+    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    if message.starts_with("missing field") {
+        let key = quoted.first().copied().unwrap_or_default();
+        let said = Said::new("found nothing", format!("write {key} = …; it has no default"));
+        return Said { missing: Some(key.to_owned()), ..said };
+    }
+    if message.starts_with("unknown field") || message.starts_with("unknown variant") {
+        let (word, known) = quoted.split_first().unwrap_or((&"", &[]));
+        return Said::new(format!("found the unknown word {word}"), suggest(word, known));
+    }
+    for kind in ["invalid type: ", "invalid value: ", "invalid length "] {
+        let parts = message.strip_prefix(kind).and_then(|rest| rest.rsplit_once(", expected "));
+        if let Some((found, expected)) = parts {
+            let entries = if kind == "invalid length " { " entries" } else { "" };
+            return Said::new(
+                format!("found {found}{entries}"),
+                format!("write {}", plain(expected)),
+            );
+        }
+    }
+    match message.split_once("; ") {
+        Some((found, remedy)) => Said::new(found, remedy),
+        None => Said::new(message, "write it as TOML asks (https://toml.io)"),
+    }
+}
+
+/// Names of types as a scene's author would say them.
+fn plain(expected: &str) -> String {
+    match expected {
+        "f64" => "a number".to_owned(),
+        "u64" | "usize" | "u32" => "a whole number of 0 or more".to_owned(),
+        "a boolean" => "true or false".to_owned(),
+        "a string" | "path string" => "a text in quotes".to_owned(),
+        "a sequence" => "a list in [ ]".to_owned(),
+        "a map" => "tables with names, such as [grounds.rock]".to_owned(),
+        other => match other.strip_prefix("an array of length ") {
+            Some(length) => format!("a list of {length} entries"),
+            None => other.to_owned(),
+        },
+    }
+}
