@@ -31,6 +31,8 @@ pub struct Hold {
     pub slides: bool,
     /// Whether it was there at the last accepted step.
     pub closed: bool,
+    /// Whether its beginning has been noted down.
+    pub announced: bool,
 }
 
 impl Hold {
@@ -46,6 +48,7 @@ impl Hold {
             push: 0.0,
             slides: false,
             closed: false,
+            announced: false,
         }
     }
 }

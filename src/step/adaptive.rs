@@ -29,6 +29,8 @@ pub struct Advance {
     pub loss: Loss,
     /// Steps tried and thrown away.
     pub rejected: u64,
+    /// Whether the contact states did not settle (`dda`).
+    pub unsettled: bool,
 }
 
 /// How the step is controlled.

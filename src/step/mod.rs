@@ -6,6 +6,10 @@ pub mod law;
 pub mod stage;
 pub mod tableau;
 
+use adaptive::{Advance, Control, Stuck};
+use grip::{Grip, World};
+use tableau::{ESDIRK4, TR_BDF2};
+
 /// How a step is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -45,4 +49,37 @@ pub struct Settings {
     pub shear_memory: bool,
     /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
     pub capture_speed_m_s: Option<f64>,
+}
+
+/// The stepping of one contact episode.
+#[derive(Debug)]
+pub enum Stepper {
+    /// `adaptive` and `reference`, with the step to try next (s).
+    Controlled(Control, f64),
+}
+
+impl Stepper {
+    /// Begins an episode.
+    pub fn new(settings: &Settings, world: &World, grip: &Grip) -> Self {
+        let tableau = if settings.scheme == Scheme::Reference { &ESDIRK4 } else { &TR_BDF2 };
+        let control = Control { tableau, tolerance: settings.tolerance_m_s };
+        Self::Controlled(control, adaptive::first_step(world, grip))
+    }
+}
+
+/// One step of at most `h_max` (s).
+///
+/// # Errors
+/// [`Stuck`] if no step, however short, settles.
+pub fn advance(
+    stepper: &mut Stepper,
+    settings: &Settings,
+    world: &World,
+    grip: &mut Grip,
+    h_max: f64,
+) -> Result<Advance, Stuck> {
+    let _ = settings;
+    match stepper {
+        Stepper::Controlled(control, h) => adaptive::advance(world, control, grip, h, h_max),
+    }
 }

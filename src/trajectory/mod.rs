@@ -1,6 +1,12 @@
 //! One rock from release to rest: leap, touch, step, stop.
 
+mod fall;
+mod journey;
+
 use crate::rock::{Motion, Rock, Vec3};
+
+pub use fall::{Course, Scratch, follow};
+pub use journey::Keep;
 
 /// Why a rock's journey ended.
 #[derive(Debug, Clone, PartialEq, Eq)]

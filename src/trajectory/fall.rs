@@ -1,0 +1,251 @@
+//! The fall itself: leap, touch, step, stop.
+
+use super::journey::{Journey, Keep};
+use super::{Stop, Trajectory};
+use crate::chance::{Chance, unit};
+use crate::contact::Touch;
+use crate::flight::{Landing, Parabola, leap};
+use crate::ground::{Capture, Law};
+use crate::plan::{Release, RestRule};
+use crate::rock::{Motion, Vec3};
+use crate::step::grip::{Grip, World};
+use crate::step::law::Body;
+use crate::step::{self, Settings, Stepper};
+use crate::terrain::Terrain;
+use nalgebra::{Rotation3, Unit};
+use std::f64::consts::{PI, TAU};
+
+/// What all rocks of a scene have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct Course<'a> {
+    /// The meshes.
+    pub terrain: &'a Terrain,
+    /// Gravity (m/s²).
+    pub gravity_m_s2: f64,
+    /// The step.
+    pub step: &'a Settings,
+    /// When a rock is at rest.
+    pub rest: RestRule,
+    /// Simulated time after which a rock is out of time (s).
+    pub longest_s: f64,
+}
+
+/// Work space of one thread; nothing of one rock is left for the next.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    grip: Grip,
+    laws: Vec<Law>,
+}
+
+/// Steps after which a rock is given up: it counts as failed.
+const MOST_STEPS: u64 = 100_000_000;
+/// An impact is over after so many contact times (–), whether the rock has left or not.
+const IMPACT_TIMES: f64 = 3.0;
+/// Tilts drawn until the rough surface faces the rock; after that the impact is smooth.
+const TILTS: u32 = 8;
+
+/// Follows one rock from its release to its stop.
+pub fn follow(course: &Course, release: &Release, keep: Keep, chance: &mut Chance, scratch: &mut Scratch) -> Trajectory {
+    let capture = Capture {
+        own_m_s: course.step.capture_speed_m_s,
+        tolerance_m_s: course.step.tolerance_m_s,
+        gravity_m_s2: course.gravity_m_s2,
+    };
+    scratch.laws.clear();
+    scratch.laws.extend(release.grounds.iter().map(|ground| Law::new(ground, &release.rock, &capture)));
+    scratch.grip.near.forget();
+    (scratch.grip.near.tested, scratch.grip.sweeps) = (0, 0);
+    let world = World {
+        terrain: course.terrain,
+        body: Body::new(&release.rock, course.gravity_m_s2),
+        laws: &scratch.laws,
+    };
+    let mut fall = Fall {
+        course,
+        world,
+        grip: &mut scratch.grip,
+        chance,
+        journey: Journey::new(course.terrain, release.rock, release.motion, keep),
+    };
+    let stop = loop {
+        if let Some(stop) = fall.fly().or_else(|| fall.touch()) {
+            break stop;
+        }
+    };
+    fall.end(release, stop)
+}
+
+struct Fall<'a> {
+    course: &'a Course<'a>,
+    world: World<'a>,
+    grip: &'a mut Grip,
+    chance: &'a mut Chance,
+    journey: Journey<'a>,
+}
+
+impl Fall<'_> {
+    /// Leaps to the next touch.
+    fn fly(&mut self) -> Option<Stop> {
+        let now = self.journey.now;
+        let flight = Parabola {
+            start: now.position_m,
+            velocity: now.velocity_m_s,
+            gravity: self.course.gravity_m_s2,
+            radius: self.world.body.radius,
+        };
+        let left = self.course.longest_s - now.time_s;
+        let (dt, stop) = match leap(self.course.terrain, &flight, left, &mut self.journey.effort.triangles) {
+            Landing::Touch(t) => (t, None),
+            Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
+            Landing::Flies => (left, Some(Stop::TimeUp)),
+        };
+        self.journey.effort.leaps += 1;
+        self.journey.fly(&flight, dt);
+        stop
+    }
+
+    /// Goes on in contact until the rock is free again or stops.
+    fn touch(&mut self) -> Option<Stop> {
+        let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.journey.now;
+        self.grip.begin(&self.world, c, v, w);
+        self.announce();
+        let tilt = self.tilt();
+        if let Some(tilt) = &tilt {
+            (self.grip.v, self.grip.w) = (tilt.inverse() * v, tilt.inverse() * w);
+        }
+        let began_s = self.journey.now.time_s;
+        let before_j = self.total_j();
+        let lost_before_j = self.lost_j();
+        let mut stepper = Stepper::new(self.course.step, &self.world, self.grip);
+        let stop = self.steps(&mut stepper);
+        let rise_j = self.total_j() - before_j;
+        self.journey.ledger.remainder_j -= rise_j + self.lost_j() - lost_before_j;
+        self.journey.ledger.rise_j = self.journey.ledger.rise_j.max(rise_j);
+        let lasted = self.journey.now.time_s - began_s;
+        if let Some(tilt) = tilt.filter(|_| stop.is_none() && lasted <= self.impact_time()) {
+            (self.grip.v, self.grip.w) = (tilt * self.grip.v, tilt * self.grip.w);
+            (self.journey.now.velocity_m_s, self.journey.now.spin_rad_s) = (self.grip.v, self.grip.w);
+        }
+        self.journey.end_impact();
+        stop
+    }
+
+    fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
+        let mut quiet_s = 0.0;
+        loop {
+            let left = self.course.longest_s - self.journey.now.time_s;
+            let Ok(done) = step::advance(stepper, self.course.step, &self.world, self.grip, left) else {
+                return Some(Stop::Failed("the contact step would not settle, however short".to_owned()));
+            };
+            let effort = &mut self.journey.effort;
+            effort.steps += 1;
+            effort.rejected += done.rejected;
+            effort.unsettled += u64::from(done.unsettled);
+            self.journey.pay(&done.loss);
+            let to = Motion {
+                time_s: self.journey.now.time_s + done.dt,
+                position_m: self.grip.c,
+                velocity_m_s: self.grip.v,
+                spin_rad_s: self.grip.w,
+            };
+            let slides = self.grip.holds.iter().any(|hold| hold.slides);
+            self.announce();
+            self.journey.step(to, slides);
+            self.journey.end_impact_in_time();
+            if self.grip.is_free() {
+                return None;
+            }
+            let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.world.body.radius);
+            quiet_s = if slow < self.course.rest.speed_m_s { quiet_s + done.dt } else { 0.0 };
+            if quiet_s >= self.course.rest.time_s {
+                return Some(Stop::AtRest);
+            }
+            if done.dt >= left {
+                return Some(Stop::TimeUp);
+            }
+            if self.journey.effort.steps > MOST_STEPS {
+                return Some(Stop::Failed(format!("no rest after {MOST_STEPS} steps")));
+            }
+        }
+    }
+
+    /// Notes down impacts that have just begun.
+    fn announce(&mut self) {
+        let radius = self.world.body.radius;
+        let until_s = self.journey.now.time_s + self.impact_time();
+        for hold in self.grip.holds.iter_mut().filter(|hold| !hold.announced) {
+            hold.announced = true;
+            if !hold.captured {
+                let point = self.grip.c - hold.n * radius;
+                self.journey.begin_impact(point, hold.feature.kind, hold.triangle, until_s);
+            }
+        }
+    }
+
+    /// The longest an impact is taken to last (s).
+    fn impact_time(&self) -> f64 {
+        let slowest = self.grip.holds.iter().map(|hold| self.world.law(hold.triangle).omega).fold(f64::INFINITY, f64::min);
+        IMPACT_TIMES * PI / slowest
+    }
+
+    /// A random tilt of the surface for an impact on rough ground.
+    ///
+    /// The rock is turned against it, hits the smooth surface and is turned back when it leaves: the same as a hit
+    /// on the tilted facet, and turning keeps every joule.
+    fn tilt(&mut self) -> Option<Rotation3<f64>> {
+        let v = self.grip.v;
+        let touch: Touch = *self
+            .grip
+            .touches
+            .iter()
+            .filter(|touch| self.world.law(touch.triangle).roughness_rad > 0.0 && !self.world.captures(touch, &v))
+            .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))?;
+        let most = self.world.law(touch.triangle).roughness_rad;
+        let beside = if touch.normal.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
+        let across = touch.normal.cross(&beside);
+        for _ in 0..TILTS {
+            let turn = Rotation3::from_axis_angle(&Unit::new_normalize(touch.normal), TAU * unit(self.chance));
+            let tilt = Rotation3::from_axis_angle(&Unit::new_normalize(turn * across), most * unit(self.chance));
+            if (tilt * touch.normal).dot(&v) < 0.0 {
+                return Some(tilt);
+            }
+        }
+        None
+    }
+
+    /// Mechanical energy of the rock in contact (J), weight included.
+    fn total_j(&mut self) -> f64 {
+        self.grip.energy_j(&self.world) - self.world.body.mass * self.world.body.gravity.dot(&self.grip.c)
+    }
+
+    fn lost_j(&self) -> f64 {
+        let ledger = &self.journey.ledger;
+        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
+    }
+
+    fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
+        self.journey.end_impact();
+        self.journey.end_path();
+        self.journey.effort.sweeps += self.grip.sweeps;
+        self.journey.effort.triangles += self.grip.near.tested;
+        let journey = self.journey;
+        let start = release.motion;
+        let fallen = start.position_m.z - journey.now.position_m.z;
+        let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
+        Trajectory {
+            index: 0,
+            rock: release.rock,
+            start,
+            end: journey.now,
+            stop,
+            extremes: journey.extremes,
+            impact_count: journey.impact_count,
+            tree_impact_count: journey.tree_impact_count,
+            impacts: journey.impacts,
+            path: journey.path,
+            ledger: journey.ledger,
+            released_j: self.world.body.mass * self.course.gravity_m_s2 * fallen + kinetic,
+            effort: journey.effort,
+        }
+    }
+}
