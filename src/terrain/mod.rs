@@ -1,6 +1,8 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
 pub mod edges;
+pub mod grid;
+pub mod make;
 mod merge;
 pub mod stl;
 pub mod weld;
