@@ -2,9 +2,12 @@
 
 pub mod edges;
 pub mod grid;
+mod groups;
+pub mod health;
 pub mod make;
 mod merge;
 pub mod stl;
+pub mod t_junctions;
 pub mod weld;
 
 use crate::rock::Vec3;

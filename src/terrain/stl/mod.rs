@@ -118,7 +118,7 @@ fn neither(bytes: &[u8], file: &Path) -> Error {
 }
 
 /// Twice the area, along the normal that the winding gives (right-hand rule).
-fn area_vector([a, b, c]: &Facet) -> Vec3 {
+pub(super) fn area_vector([a, b, c]: &Facet) -> Vec3 {
     (b - a).cross(&(c - a))
 }
 
