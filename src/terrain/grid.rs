@@ -265,3 +265,6 @@ fn cut(around: [Option<Vec3>; 4]) -> [Option<Facet>; 2] {
         _ => [None, None],
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -294,3 +294,6 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
     );
     Error::input(first.file, "mesh", found, "check the file, its scale and the weld tolerance")
 }
+
+#[cfg(test)]
+mod tests;

@@ -41,7 +41,11 @@ impl Health {
             self.tolerance_m,
             grouped(self.moved_corners)
         )?;
-        writeln!(f, "origin (m)   {:?}, subtracted while computing, added back in every result", self.origin_m)?;
+        writeln!(
+            f,
+            "origin (m)   {:?}, subtracted while computing, added back in every result",
+            self.origin_m
+        )?;
         writeln!(f, "extent (m)   x {x}; y {y}; z {z}")?;
         writeln!(f, "surface      {:.2} m²", self.area_m2)?;
         let [least, low, median, high, most] = self.edge_quantiles_m;
