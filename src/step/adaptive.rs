@@ -57,7 +57,13 @@ fn stiffest(world: &World, grip: &Grip) -> f64 {
 ///
 /// # Errors
 /// [`Stuck`] if the step had to become too short to matter.
-pub fn advance(world: &World, control: &Control, grip: &mut Grip, h: &mut f64, h_max: f64) -> Result<Advance, Stuck> {
+pub fn advance(
+    world: &World,
+    control: &Control,
+    grip: &mut Grip,
+    h: &mut f64,
+    h_max: f64,
+) -> Result<Advance, Stuck> {
     if !grip.fresh {
         grip.rates_now(world);
     }
@@ -103,7 +109,13 @@ fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
 }
 
 /// One step: where it ends and its error relative to the tolerance; `None` if a stage does not settle.
-fn attempt(world: &World, control: &Control, grip: &mut Grip, dt: f64, omega: f64) -> Option<(End, f64)> {
+fn attempt(
+    world: &World,
+    control: &Control,
+    grip: &mut Grip,
+    dt: f64,
+    omega: f64,
+) -> Option<(End, f64)> {
     let tableau = control.tableau;
     let mut end = None;
     for i in 1..tableau.stages {
@@ -118,7 +130,8 @@ fn attempt(world: &World, control: &Control, grip: &mut Grip, dt: f64, omega: f6
     }
     for k in 0..grip.holds.len() {
         let stages = grip.rates[..tableau.stages].iter().zip(tableau.error);
-        let drift = stages.fold(crate::rock::Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * weight);
+        let drift = stages
+            .fold(crate::rock::Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * weight);
         stretch2 = stretch2.max(drift.norm_squared());
     }
     let worst2 = (off[0].norm_squared().max(stretch2) * omega * omega)

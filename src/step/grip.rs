@@ -197,13 +197,16 @@ impl Grip {
     /// Energy in motion and springs (J), without weight: `m v²/2 + I w²/2 + Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
     pub fn energy_j(&mut self, world: &World) -> f64 {
         let body = &world.body;
-        let motion = 0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared());
+        let motion =
+            0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared());
         let c = self.c;
         self.look(world, &c, body.radius);
         let pressed: f64 = self
             .touches
             .iter()
-            .map(|touch| 0.5 * world.law(touch.triangle).p_n * (body.radius - touch.distance_m).powi(2))
+            .map(|touch| {
+                0.5 * world.law(touch.triangle).p_n * (body.radius - touch.distance_m).powi(2)
+            })
             .sum();
         motion + pressed + self.holds.iter().map(|hold| spring_j(world, hold)).sum::<f64>()
     }

@@ -32,10 +32,13 @@ impl Spot {
         let law = &self.law;
         self.push = (law.p_n * self.pen - self.c_n * self.n.dot(v)).max(0.0);
         let held = self.shear * law.p_s;
-        self.drag = within(held + world.body.slip(&self.n, v, w) * law.c_s, law.friction * self.push);
+        self.drag =
+            within(held + world.body.slip(&self.n, v, w) * law.c_s, law.friction * self.push);
         let wound = self.roll * law.k_r;
         self.moment = within(wound + w * law.c_r, law.rolling_m * self.push);
-        let rate = |change: Vec3, damping: f64| if damping > 0.0 { change / damping } else { Vec3::zeros() };
+        let rate = |change: Vec3, damping: f64| {
+            if damping > 0.0 { change / damping } else { Vec3::zeros() }
+        };
         Stretch {
             shear: self.shear,
             roll: self.roll,
@@ -104,7 +107,13 @@ impl Grip {
     }
 
     /// Makes the contacts of the last look into spots based at the stage's base.
-    fn place_spots(&mut self, world: &World, tableau: &Tableau, (i, h): (usize, f64), (base, at): (&End, &Vec3)) {
+    fn place_spots(
+        &mut self,
+        world: &World,
+        tableau: &Tableau,
+        (i, h): (usize, f64),
+        (base, at): (&End, &Vec3),
+    ) {
         self.spot_count = self.touches.len();
         let mut taken = 0;
         for k in 0..self.spot_count {

@@ -71,6 +71,8 @@ impl Tally {
 pub struct Welded {
     /// Map position of the local (0, 0, 0): `map = local + origin` (m). Whole metres plus the scene's origin.
     pub origin_m: Vec3,
+    /// Map position of the files' (0, 0, 0) (m), part of `origin_m`.
+    pub map_origin_m: Vec3,
     /// Vertices closer than this were merged (m).
     pub tolerance_m: f64,
     /// Vertices in local coordinates (m), more than the tolerance apart, in order of first use.
@@ -109,6 +111,7 @@ pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> R
     }
     let mut welded = Welded {
         origin_m: map_origin_m + frame.centre_m,
+        map_origin_m,
         tolerance_m,
         vertices_m: Vec::new(),
         triangles: Vec::with_capacity(frame.facets),
@@ -131,7 +134,7 @@ pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> R
 
 impl Piece<'_> {
     /// A point of the file in metres, z up, not yet recentred.
-    fn placed(&self, point: Vec3) -> Vec3 {
+    pub(super) fn placed(&self, point: Vec3) -> Vec3 {
         let turned = match self.up {
             Up::Z => point,
             Up::Y => Vec3::new(point.x, -point.z, point.y),
@@ -193,6 +196,12 @@ impl Welded {
     /// The corners of a triangle, local (m).
     pub fn corners_m(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|v| self.vertices_m[v as usize])
+    }
+
+    /// From the first to the second end of an edge (m).
+    pub fn edge_m(&self, edge: u32) -> Vec3 {
+        let [a, b] = self.edges.ends[edge as usize];
+        self.vertices_m[b as usize] - self.vertices_m[a as usize]
     }
 
     /// Merges vertices and keeps every facet that has an area.
@@ -285,3 +294,6 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
     );
     Error::input(first.file, "mesh", found, "check the file, its scale and the weld tolerance")
 }
+
+#[cfg(test)]
+mod tests;
