@@ -1,6 +1,6 @@
 //! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
 
-use super::grip::{Grip, Loss, World, spring_j};
+use super::grip::{Grip, Loss, World};
 use super::stage::End;
 use super::tableau::Tableau;
 use crate::contact::hold::carry;
@@ -161,17 +161,11 @@ fn accept(world: &World, tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64,
         hold.slides = spot.drag.norm() >= spot.law.friction * spot.push * (1.0 - 1e-9);
         hold.closed = spot.pen - hh * spot.n.dot(&end.v) > 0.0 || spot.push > 0.0;
     }
-    // The springs of a contact that opens relax; what they held is lost to their dashpots.
     let mut kept = 0;
     for k in 0..grip.holds.len() {
-        let hold = grip.holds[k];
-        if hold.closed {
+        if grip.holds[k].closed {
             (next.shear[kept], next.roll[kept]) = (next.shear[k], next.roll[k]);
             kept += 1;
-        } else if world.terrain.is_tree(hold.triangle) {
-            loss.trees += spring_j(world, &hold);
-        } else {
-            loss.damping += spring_j(world, &hold);
         }
     }
     grip.holds.retain(|hold| hold.closed);

@@ -124,12 +124,15 @@ impl Fall<'_> {
         }
         let began_s = self.journey.now.time_s;
         let before_j = self.total_j();
-        let lost_before_j = self.lost_j();
+        let lost_before_j = self.journey.lost_j();
         let mut stepper = Stepper::new(self.course.step, &self.world, self.grip);
         let stop = self.steps(&mut stepper);
         let rise_j = self.total_j() - before_j;
-        self.journey.ledger.remainder_j -= rise_j + self.lost_j() - lost_before_j;
-        self.journey.ledger.rise_j = self.journey.ledger.rise_j.max(rise_j);
+        self.journey.ledger.remainder_j -= rise_j + self.journey.lost_j() - lost_before_j;
+        // A rock that rests presses on its springs: what they hold is not lost.
+        let stored = self.grip.springs_j(&self.world);
+        self.journey.pay(&stored, -1.0);
+        self.journey.ledger.rise_j = self.journey.ledger.rise_j.max(rise_j + stored.sum());
         let lasted = self.journey.now.time_s - began_s;
         if let Some(tilt) = tilt.filter(|_| stop.is_none() && lasted <= self.impact_time()) {
             (self.grip.v, self.grip.w) = (tilt * self.grip.v, tilt * self.grip.w);
@@ -154,7 +157,7 @@ impl Fall<'_> {
             effort.steps += 1;
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
-            self.journey.pay(&done.loss);
+            self.journey.pay(&done.loss, 1.0);
             let to = Motion {
                 time_s: self.journey.now.time_s + done.dt,
                 position_m: self.grip.c,
@@ -242,13 +245,8 @@ impl Fall<'_> {
 
     /// Mechanical energy of the rock in contact (J), weight included.
     fn total_j(&mut self) -> f64 {
-        self.grip.energy_j(&self.world)
+        self.grip.motion_j(&self.world.body)
             - self.world.body.mass * self.world.body.gravity.dot(&self.grip.c)
-    }
-
-    fn lost_j(&self) -> f64 {
-        let ledger = &self.journey.ledger;
-        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
     }
 
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {

@@ -176,15 +176,16 @@ impl<'a> Journey<'a> {
         }
     }
 
-    /// Writes losses into the ledger.
-    pub fn pay(&mut self, loss: &Loss) {
-        self.ledger.friction_j += loss.friction;
-        self.ledger.damping_j += loss.damping;
-        self.ledger.rolling_j += loss.rolling;
-        self.ledger.trees_j += loss.trees;
+    /// Writes `times` the losses into the ledger.
+    pub fn pay(&mut self, loss: &Loss, times: f64) {
+        self.ledger.friction_j += times * loss.friction;
+        self.ledger.damping_j += times * loss.damping;
+        self.ledger.rolling_j += times * loss.rolling;
+        self.ledger.trees_j += times * loss.trees;
     }
 
-    fn lost_j(&self) -> f64 {
+    /// All losses so far (J).
+    pub fn lost_j(&self) -> f64 {
         let ledger = &self.ledger;
         ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
     }
