@@ -119,8 +119,8 @@ fn other_programs_read_our_files() {
     stl::write_binary(&binary, &facets).unwrap();
     let script = file("read.py");
     let answer = Command::new("python3").arg(script).args([&text, &binary]).output().unwrap();
-    let lowest_and_highest = format!("{}\n", 5.0 * 0.7_f64.tan() as f32);
-    let expected = format!("4 0.0 {lowest_and_highest}").repeat(6);
+    let rise_m = (5.0 * 0.7_f64.tan()) as f32;
+    let expected = format!("4 0.0 {rise_m}\n").repeat(6);
     assert_eq!(
         String::from_utf8_lossy(&answer.stdout),
         expected,
