@@ -26,7 +26,7 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
         normals_off.add(piece.placed(soup.facets[facet as usize][0]) + map_origin_m);
     }
     FileHealth {
-        file: piece.file.to_owned(),
+        file: piece.file.display().to_string(),
         format: soup.format,
         solids: soup.solids.len(),
         facets: soup.facets.len(),

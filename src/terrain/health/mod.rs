@@ -8,13 +8,13 @@ mod tests;
 use crate::error::{Error, Result};
 use crate::terrain::stl::{Format, Spacing};
 use crate::terrain::weld::{Piece, Tally, Welded};
-use std::path::PathBuf;
+use std::path::Path;
 
 /// One file as it was read.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct FileHealth {
-    /// The file.
-    pub file: PathBuf,
+    /// The file, as people write it.
+    pub file: String,
     /// Text or binary.
     pub format: Format,
     /// Solids in the file.
@@ -114,6 +114,6 @@ impl Health {
         let Some((file, spacing)) = spoiled else { return Ok(()) };
         let remedy =
             "export it as ASCII, or with a map origin subtracted and origin_m in the scene";
-        Err(Error::input(file, "coordinates", spacing.to_string(), remedy))
+        Err(Error::input(Path::new(file), "coordinates", spacing.to_string(), remedy))
     }
 }

@@ -102,7 +102,7 @@ impl fmt::Display for FileHealth {
         writeln!(
             f,
             "{}: {format} STL, {} solid(s), {} facets, {:.0} % face down",
-            self.file.display(),
+            self.file,
             grouped(self.solids),
             grouped(self.facets),
             100.0 * self.facing_down

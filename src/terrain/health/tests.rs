@@ -3,6 +3,7 @@ use crate::rock::Vec3;
 use crate::terrain::make::{jittered_plane, stem, tetrahedron};
 use crate::terrain::stl::{Facet, Soup, binary_bytes, parse};
 use crate::terrain::weld::{Up, weld};
+use proptest::prelude::*;
 use std::path::Path;
 
 fn health_of(soups: &[Soup], tolerance_m: Option<f64>) -> Health {
@@ -132,4 +133,24 @@ fn binary_files_at_map_coordinates_are_refused_and_text_is_not() {
     let refused = health_of(&[binary], None).check().unwrap_err().to_string();
     assert!(refused.contains("6.25e-2") && refused.contains("origin_m"), "{refused}");
     assert!(health_of(&[Soup::from(far)], None).check().is_ok());
+}
+
+proptest! {
+    /// Sums that hold for every soup, however broken: facets are kept or left out, every triangle has three sides and
+    /// belongs to one part.
+    #[test]
+    fn the_books_balance(corners in prop::collection::vec(prop::array::uniform3(-6i8..6), 3..150)) {
+        let points: Vec<Vec3> = corners.iter().map(|c| Vec3::from(c.map(f64::from))).collect();
+        let soup = Soup::from(points.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect::<Vec<Facet>>());
+        let pieces = [Piece { file: Path::new("t.stl"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 }];
+        let Ok(welded) = weld(&pieces, Vec3::zeros(), None) else { return Ok(()) };
+        let found = Health::of(&welded, &pieces);
+        prop_assert_eq!(found.triangles + found.zero_area.count + found.duplicates.count, soup.facets.len());
+        prop_assert_eq!(found.parts.iter().sum::<usize>(), found.triangles);
+        let sides: usize = (0..found.edges as u32).map(|edge| welded.edges.triangles_on(edge).len()).sum();
+        prop_assert_eq!(sides, 3 * found.triangles);
+        prop_assert!(found.edge_quantiles_m.is_sorted() && found.edge_quantiles_m[0] > found.tolerance_m);
+        prop_assert!(found.border_loops <= found.border_edges.count);
+        prop_assert!(serde_json::to_string(&found).is_ok());
+    }
 }

@@ -94,16 +94,18 @@ pub fn quick_slope() -> Slope {
 }
 
 fn quick_height_m(x_m: f64, y_m: f64) -> f64 {
-    let even = 30.0 - 0.05 * y_m - 0.95 * ramp(y_m - 4.0, 0.6)
-        + 0.375 * ramp(y_m - 20.0, 2.0)
-        + 0.6 * ramp(y_m - 40.0, 3.0);
-    let (rock, talus) = (1.0 - blend((y_m - 18.0) / 4.0), 1.0 - blend((y_m - 38.0) / 6.0));
-    let rough = 0.9 * gradient(6, 9.0, x_m, y_m)
-        + 0.6 * gradient(7, 4.5, x_m, y_m)
-        + 0.4 * gradient(8, 2.2, x_m, y_m);
-    let across = (x_m - 20.0) / 6.0;
-    let gully = 1.2 / (1.0 + across * across) * blend((y_m - 3.0) / 8.0) * talus;
-    even - gully + rough * (0.2 + 0.25 * talus + 0.55 * rock)
+    // Edge and foot of the rock face wander down and up the slope.
+    let down_m = y_m + 6.0 * gradient(5, 15.0, x_m, y_m);
+    let even = 30.0 - 0.05 * y_m - 0.95 * ramp(down_m - 4.0, 0.6)
+        + 0.375 * ramp(down_m - 20.0, 2.0)
+        + 0.6 * ramp(down_m - 40.0, 3.0);
+    let (rock, talus) = (1.0 - blend((down_m - 18.0) / 4.0), 1.0 - blend((down_m - 38.0) / 6.0));
+    let rough = 1.4 * gradient(6, 9.0, x_m, y_m)
+        + 0.8 * gradient(7, 4.5, x_m, y_m)
+        + 0.45 * gradient(8, 2.2, x_m, y_m);
+    let across = (x_m - 20.0) / 5.0;
+    let gully = 2.0 / (1.0 + across * across) * blend((down_m - 3.0) / 8.0) * talus;
+    even - gully + rough * (0.15 + 0.25 * talus + 0.6 * rock)
 }
 
 /// A dozen stems, 0.25 m to 0.6 m thick, on the talus and the meadow of [`quick_slope`].

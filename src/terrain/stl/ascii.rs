@@ -142,6 +142,8 @@ impl<'a> Words<'a> {
         if word.eq_ignore_ascii_case(keyword.as_bytes()) {
             return Ok(());
         }
+        // A wrong word with nothing behind it is most likely half a word.
+        let remedy = if self.at == self.text.len() { CUT_OFF } else { remedy };
         Err(self.error(format!("`{}` where `{keyword}` should be", quoted(word)), remedy))
     }
 

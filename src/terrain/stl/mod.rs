@@ -110,7 +110,7 @@ fn neither(bytes: &[u8], file: &Path) -> Error {
     };
     let expected = 84 + 50 * u64::from(triangles);
     let found = format!(
-        "no text STL (no `solid` at the start), and as binary STL it announces {triangles} triangles \
+        "no text STL, and as binary STL it announces {triangles} triangles \
          = {expected} bytes, but has {}",
         bytes.len()
     );

@@ -107,11 +107,22 @@ fn unusable_requests_are_refused_with_a_cure() {
         (weld_one(flat.clone(), Some(f64::NAN)), "weld tolerance = NaN m"),
         (scaled(0.0), "0 is not a positive number"),
         (scaled(f64::INFINITY), "inf is not a positive number"),
-        (scaled(1e308), "coordinates in metres"),
+        (scaled(1e308), "triangle 1: coordinates beyond 1e8 m"),
     ] {
         let message = refused.expect_err(part).to_string();
         assert!(message.contains(part), "{message}");
     }
+}
+
+/// Sorting runs on all threads; the rows are all different, so their order is unique.
+#[test]
+fn any_number_of_threads_welds_the_same_mesh() {
+    let soup = Soup::from(crate::terrain::make::natural_slope(60, 80).facets);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| weld(&[piece(&soup, 0)], Vec3::zeros(), Some(0.05)).unwrap())
+    };
+    assert_eq!(on(1), on(5));
 }
 
 fn corners() -> impl Strategy<Value = Vec<[u8; 3]>> {
