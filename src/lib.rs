@@ -1,7 +1,10 @@
 //! Rockfall hazard by spherical discontinuous deformation analysis (SDDA) on triangle meshes.
 
+pub mod ensemble;
 pub mod error;
 pub mod ground;
+pub mod hazard;
+pub mod output;
 pub mod plan;
 pub mod rock;
 pub mod step;
