@@ -18,6 +18,9 @@ const CHUNK_TIME: Duration = Duration::from_secs(2);
 const CHUNK_BYTES: usize = 64 << 20;
 /// Fewest rocks of a chunk for each thread: waiting for the last one then costs at most an eighth of the chunk.
 const FEWEST_PER_THREAD: usize = 8;
+/// Most times that a chunk may be longer than the one before: a few rocks tell little of those to come, but each
+/// chunk costs the disk a few milliseconds whatever its length.
+const GROWTH: usize = 8;
 /// Pieces a chunk is cut into for each thread, so that all end at nearly the same time.
 const PIECES_PER_THREAD: usize = 64;
 /// Most rocks that one worker takes at a time.
@@ -107,7 +110,14 @@ where
         let begun = Instant::now();
         let falls = self.compute(chunk);
         match &falls {
-            Ok(falls) => self.next = next_len(falls, begun.elapsed(), self.ensemble.threads()),
+            Ok(falls) => {
+                self.next = next_len(
+                    falls.len(),
+                    begun.elapsed(),
+                    bytes_of(falls),
+                    self.ensemble.threads(),
+                );
+            }
             Err(_) => self.releases.start = self.releases.end,
         }
         Some(falls)
@@ -134,23 +144,49 @@ where
     }
 }
 
-/// Length of the next chunk: towards [`CHUNK_TIME`], at most twice the last one, within [`CHUNK_BYTES`].
-fn next_len(last: &[Trajectory], took: Duration, threads: usize) -> usize {
-    let by_time = last.len() as f64 * CHUNK_TIME.as_secs_f64() / took.as_secs_f64().max(1e-9);
-    let by_memory = last.len() * CHUNK_BYTES / bytes_of(last);
+/// Length of the chunk after one of `last` rocks: towards [`CHUNK_TIME`], at most [`GROWTH`] times as long, never
+/// above [`CHUNK_BYTES`] unless one rock for each thread takes more.
+fn next_len(last: usize, took: Duration, bytes: usize, threads: usize) -> usize {
+    let by_time = last as f64 * CHUNK_TIME.as_secs_f64() / took.as_secs_f64().max(1e-9);
+    let by_memory = last * CHUNK_BYTES / bytes.max(1);
     (by_time as usize)
-        .min(2 * last.len())
+        .min(GROWTH * last)
         .max(FEWEST_PER_THREAD * threads)
         .min(by_memory)
         .max(threads)
 }
 
-/// Memory of the journeys (bytes), at least 1.
+/// Memory of the journeys (bytes).
 fn bytes_of(falls: &[Trajectory]) -> usize {
     let kept = |fall: &Trajectory| {
         size_of::<Trajectory>()
             + size_of_val::<[PathPoint]>(&fall.path)
             + size_of_val::<[Impact]>(&fall.impacts)
     };
-    falls.iter().map(kept).sum::<usize>().max(1)
+    falls.iter().map(kept).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CHUNK_BYTES, next_len};
+    use std::time::Duration;
+
+    /// Rocks of 1 ms and 1 kB on two threads: 16, 128, … up to two seconds' worth, and there it stays.
+    #[test]
+    fn chunks_grow_until_they_take_their_time() {
+        let mut lens = vec![16];
+        while lens.len() < 6 {
+            let last = lens[lens.len() - 1];
+            lens.push(next_len(last, Duration::from_millis(last as u64), 1000 * last, 2));
+        }
+        assert_eq!(lens, [16, 128, 1024, 2000, 2000, 2000]);
+    }
+
+    /// Slow rocks: not fewer than keep the threads busy. Heavy rocks: not more than fit, but one a thread.
+    #[test]
+    fn chunks_keep_threads_busy_and_fit_in_memory() {
+        assert_eq!(next_len(1000, Duration::from_secs(1000), 1000, 2), 16);
+        assert_eq!(next_len(100, Duration::from_secs(1), 2 * CHUNK_BYTES, 2), 50);
+        assert_eq!(next_len(2, Duration::from_secs(1), 8 * CHUNK_BYTES, 2), 2);
+    }
 }

@@ -34,6 +34,10 @@ fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
         (None, Some(summary)) => finished_run(dir, summary),
         (None, None) => return unclaimed(dir),
     };
+    if found.done == 0 {
+        // A run that ended before its first row, by a wrong scene for instance, has no claim on the folder.
+        return Ok(None);
+    }
     let (title, old) = (&found.title, &found.identity);
     if let Some(difference) = old.asks_otherwise(&info.identity) {
         return refuse(

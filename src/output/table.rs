@@ -108,13 +108,29 @@ fn in_file(path: &Path, columns: &[&str], why: csv::Error) -> Error {
     match why.into_kind() {
         csv::ErrorKind::Io(why) => Error::file("access", path)(why),
         csv::ErrorKind::Deserialize { err, .. } => {
-            let column =
-                err.field().and_then(|field| columns.get(field as usize)).unwrap_or(&"row");
-            Error::input(path, format!("{line}, {column}"), err.kind().to_string(), remedy)
+            // The reader does not tell the column of an unknown word; the word itself is then in the message.
+            let column = err.field().and_then(|field| columns.get(field as usize));
+            let place = column.map_or(line.clone(), |column| format!("{line}, {column}"));
+            Error::input(path, place, err.kind().to_string(), remedy)
         }
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             Error::input(path, line, format!("{len} values instead of {expected_len}"), remedy)
         }
         other => Error::input(path, line, format!("{other:?}"), remedy),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Table;
+
+    /// A full disk is met when the rows are put on it; the message names the file.
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_full_disk_is_an_error_that_names_the_file() {
+        let mut table = Table::create("/dev/full".into(), &["index"]).unwrap();
+        table.write(&1).unwrap();
+        let said = table.sync().unwrap_err().to_string();
+        assert!(said.starts_with("/dev/full: cannot write: No space left"), "{said}");
     }
 }
