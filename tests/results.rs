@@ -5,7 +5,7 @@ mod common;
 use common::{FAILS_EVERY, PATHS, fall, info};
 use proptest::prelude::*;
 use rockfall::ensemble::Ensemble;
-use rockfall::error::{Error, Result};
+use rockfall::error::Result;
 use rockfall::hazard::{Hazard, Quantity, Row, StopKind};
 use rockfall::output::{self, ImpactRow, Mode, Output, PathRow, RunInfo};
 use rockfall::rock::Vec3;
@@ -13,7 +13,6 @@ use rockfall::trajectory::{Stop, Trajectory};
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::Path;
-use std::sync::atomic::Ordering;
 use tempfile::TempDir;
 
 const RELEASES: usize = 60;
@@ -365,47 +364,6 @@ fn a_single_release_has_the_same_row() {
     let results = go_on(output, 1, 1).unwrap().finish().unwrap();
     let row = results.rows().unwrap().next().unwrap().unwrap();
     assert!(same(&row, &Row::of(&fall(42), info(1).origin_m)));
-}
-
-/// The error of the smallest release number, whichever thread met its own first; no chunk follows.
-#[test]
-fn an_error_ends_the_run() {
-    let ensemble = Ensemble::new(Some(2)).unwrap();
-    let refuse = |index: usize, (): &mut ()| match index {
-        11 | 12 => Err(Error::Request(format!("release {index} lies beside the terrain"))),
-        _ => Ok(fall(index)),
-    };
-    let mut chunks = ensemble.in_chunks(0..1000, || (), refuse);
-    assert_eq!(message(chunks.next().unwrap()), "release 11 lies beside the terrain");
-    assert!(chunks.next().is_none());
-    assert!(Ensemble::new(Some(0)).is_err());
-}
-
-#[test]
-fn a_stop_ends_the_run_behind_the_chunk_in_hand() {
-    let ensemble = Ensemble::new(Some(2)).unwrap();
-    let stop = ensemble.stop_flag();
-    let mut chunks = ensemble.in_chunks(
-        0..1000,
-        || (),
-        |index, ()| {
-            stop.store(true, Ordering::Relaxed);
-            Ok(fall(index))
-        },
-    );
-    assert!(!chunks.next().unwrap().unwrap().is_empty());
-    assert!(chunks.next().is_none());
-}
-
-#[test]
-#[should_panic(expected = "a bug")]
-fn a_panic_is_not_hidden() {
-    let ensemble = Ensemble::new(Some(2)).unwrap();
-    let broken = |index: usize, (): &mut ()| {
-        assert!(index != 5, "a bug");
-        Ok(fall(index))
-    };
-    ensemble.in_chunks(0..10, || (), broken).for_each(drop);
 }
 
 /// What `Hazard` counts is what the rows say, failed rocks beside the statistics.
