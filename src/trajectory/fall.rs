@@ -73,10 +73,7 @@ pub fn follow(
         tolerance_m_s: course.step.tolerance_m_s,
         gravity_m_s2: course.gravity_m_s2,
     };
-    scratch.laws.clear();
-    scratch
-        .laws
-        .extend(release.grounds.iter().map(|ground| Law::new(ground, &release.rock, &capture)));
+    scratch.make_laws(release, &capture);
     scratch.grip.near.forget();
     (scratch.grip.near.tested, scratch.grip.sweeps) = (0, 0);
     let world = World {
