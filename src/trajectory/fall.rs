@@ -160,8 +160,7 @@ impl Fall<'_> {
         let mut quiet_s = 0.0;
         loop {
             let left = self.course.longest_s - self.journey.now.time_s;
-            let Ok(done) = step::advance(stepper, self.course.step, &self.world, self.grip, left)
-            else {
+            let Ok(done) = step::advance(stepper, &self.world, self.grip, left) else {
                 return Some(Stop::Failed(
                     "the contact step would not settle, however short".to_owned(),
                 ));
