@@ -12,7 +12,7 @@ pub struct Keep {
     /// Time between stored path points (s); `None` keeps no path.
     pub path_step_s: Option<f64>,
     /// Whether the impacts are stored one by one.
-    pub(super) impacts: bool,
+    pub impacts: bool,
 }
 
 /// Notes along the way.
