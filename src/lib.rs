@@ -6,6 +6,7 @@ pub mod error;
 pub mod flight;
 pub mod ground;
 pub mod plan;
+pub mod release;
 pub mod rock;
 pub mod scene;
 pub mod step;

@@ -129,7 +129,7 @@ pub(super) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> O
 }
 
 /// "did you mean `x`? known: a, b, c"
-pub(super) fn suggest<'a>(word: &str, known: &[&'a str]) -> String {
+pub(super) fn suggest(word: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     match nearest(word, known.iter().copied()) {
         Some(near) => format!("did you mean {near}? known here: {list}"),

@@ -15,7 +15,7 @@ mod source;
 mod wording;
 
 pub use grounds::GroundTable;
-pub use meshes::{MeshFile, MeshTable, Up};
+pub use meshes::{MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
 pub use record::{LineTable, MapsTable, RecordTable};
 pub use release::ReleaseTable;

@@ -123,15 +123,12 @@ fn header(trail: &[Step]) -> String {
 
 /// `a.b, entry 3`
 fn keys(trail: &[Step]) -> String {
-    let mut text = String::new();
-    for step in trail {
-        match step {
-            Step::Key(key) if text.is_empty() => text.push_str(key),
-            Step::Key(key) => text.push_str(&format!(".{key}")),
-            Step::Entry(index) => text.push_str(&format!(", entry {}", index + 1)),
-        }
-    }
-    text
+    let in_words = trail.iter().map(|step| match step {
+        Step::Key(key) => format!(".{key}"),
+        Step::Entry(index) => format!(", entry {}", index + 1),
+    });
+    let text: String = in_words.collect();
+    text.trim_start_matches(['.', ',', ' ']).to_owned()
 }
 
 fn collect_table(text: &str, trail: &[Step], table: &DeTable<'_>, nodes: &mut Vec<Node>) {
