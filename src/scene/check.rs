@@ -111,8 +111,11 @@ fn within(key: &str, (low, high): (f64, f64), allowed: Allowed, hint: &str) -> C
     if allowed.holds(low, high) {
         return Ok(());
     }
-    let bounds =
-        if low < high { "; give the distribution a min and a max in this range" } else { "" };
+    let bounds = match (low < high, (high - low).is_finite()) {
+        (false, _) => "",
+        (true, true) => "; every value it can give must lie there",
+        (true, false) => "; give the distribution a min and a max",
+    };
     let hint = if hint.is_empty() { String::new() } else { format!(" ({hint})") };
     Err(Complaint::about(key, format!("{}{hint}{bounds}", allowed.in_words())))
 }

@@ -40,7 +40,8 @@ impl MeshFile {
         if grounds.contains(&self.ground.as_str()) {
             return Ok(());
         }
-        Err(Complaint::about("ground", format!("{} in [grounds]", suggest(&self.ground, grounds))))
+        let remedy = format!("write a name from [grounds]; {}", suggest(&self.ground, grounds));
+        Err(Complaint::about("ground", remedy))
     }
 }
 
