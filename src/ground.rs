@@ -204,7 +204,8 @@ pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
 fn capture_number(zeta: f64) -> f64 {
     const NODES: usize = 64;
     static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
-    let table = TABLE.get_or_init(|| (0..=NODES).map(|k| capture_by_search(k as f64 / NODES as f64)).collect());
+    let table = TABLE
+        .get_or_init(|| (0..=NODES).map(|k| capture_by_search(k as f64 / NODES as f64)).collect());
     let place = zeta.clamp(0.0, 1.0) * NODES as f64;
     let k = (place as usize).min(NODES - 1);
     table[k] + (table[k + 1] - table[k]) * (place - k as f64)
@@ -216,7 +217,11 @@ fn capture_by_search(zeta: f64) -> f64 {
     let (mut lo, mut hi) = (0.0, 200.0);
     for _ in 0..50 {
         let middle = 0.5 * (lo + hi);
-        if normal_impact(middle, 1.0, zeta, 1.0).rebound_m_s.is_some() { hi = middle } else { lo = middle }
+        if normal_impact(middle, 1.0, zeta, 1.0).rebound_m_s.is_some() {
+            hi = middle
+        } else {
+            lo = middle
+        }
     }
     hi
 }

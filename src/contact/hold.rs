@@ -88,14 +88,21 @@ impl Holds {
     ///
     /// `taken` marks memories that belong to other touches of the same instant.
     #[inline]
-    pub fn find(&mut self, touch: &Touch, touches: &[Touch], taken: u32, captured: impl FnOnce() -> bool) -> usize {
+    pub fn find(
+        &mut self,
+        touch: &Touch,
+        touches: &[Touch],
+        taken: u32,
+        captured: impl FnOnce() -> bool,
+    ) -> usize {
         let free = |k: usize| taken & (1 << k) == 0;
         if let Some(k) = (0..self.len).find(|&k| free(k) && self.list[k].feature == touch.feature) {
             return k;
         }
         let orphan = |hold: &Hold| touches.iter().all(|other| other.feature != hold.feature);
-        let like = (0..self.len)
-            .find(|&k| free(k) && self.list[k].n.dot(&touch.normal) > SAME_GRIP && orphan(&self.list[k]));
+        let like = (0..self.len).find(|&k| {
+            free(k) && self.list[k].n.dot(&touch.normal) > SAME_GRIP && orphan(&self.list[k])
+        });
         like.unwrap_or_else(|| {
             let place = self.len.min(HOLDS - 1);
             self.list[place] = Hold::new(touch, captured());

@@ -89,7 +89,14 @@ impl Near {
 
     /// Collects around `centre`, for a rock of `radius`, all that touches within `slack` of it while the centre
     /// moves up to `margin` (all m).
-    pub fn collect(&mut self, terrain: &Terrain, centre: &Vec3, radius: f64, margin: f64, slack: f64) {
+    pub fn collect(
+        &mut self,
+        terrain: &Terrain,
+        centre: &Vec3,
+        radius: f64,
+        margin: f64,
+        slack: f64,
+    ) {
         (self.centre, self.margin, self.radius) = (*centre, margin, radius);
         self.reach = radius + slack + margin;
         self.faces.clear();
@@ -113,7 +120,8 @@ impl Near {
         let features = &terrain.features;
         let face = &features.faces[t as usize];
         let corners = [face.a, face.a + face.e1, face.a + face.e2];
-        let mut near = NearFace { id: t, a: face.a, n: face.n, out: [Vec3::zeros(); 3], rim: [0.0; 3] };
+        let mut near =
+            NearFace { id: t, a: face.a, n: face.n, out: [Vec3::zeros(); 3], rim: [0.0; 3] };
         let mut furthest = f64::NEG_INFINITY;
         for k in 0..3 {
             let along = corners[(k + 1) % 3] - corners[k];
@@ -140,7 +148,8 @@ impl Near {
     }
 
     fn take_edge(&mut self, terrain: &Terrain, id: u32, owner: u32) {
-        let [a, b] = terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
+        let [a, b] =
+            terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
         let length = (b - a).norm();
         let along = (b - a) / length;
         let to = self.centre - a;
@@ -224,10 +233,21 @@ impl Near {
         }
         let feature = Feature { kind: FeatureKind::Face, id: face.id };
         let normal = if height < 0.0 { -face.n } else { face.n };
-        self.merge(Touch { feature, triangle: face.id, normal, distance_m: height.abs() }, centre, touches);
+        self.merge(
+            Touch { feature, triangle: face.id, normal, distance_m: height.abs() },
+            centre,
+            touches,
+        );
     }
 
-    fn ask_edge(&self, terrain: &Terrain, edge: &NearEdge, centre: &Vec3, reach: f64, touches: &mut Touches) {
+    fn ask_edge(
+        &self,
+        terrain: &Terrain,
+        edge: &NearEdge,
+        centre: &Vec3,
+        reach: f64,
+        touches: &mut Touches,
+    ) {
         let to = centre - edge.a;
         let s = edge.along.dot(&to);
         let slack = SLACK * self.radius;
@@ -248,10 +268,21 @@ impl Near {
         if edge.at_border && self.is_covered(terrain, &(centre - off), centre, distance) {
             return;
         }
-        self.merge(Touch { feature, triangle: edge.triangle, normal, distance_m: distance }, centre, touches);
+        self.merge(
+            Touch { feature, triangle: edge.triangle, normal, distance_m: distance },
+            centre,
+            touches,
+        );
     }
 
-    fn ask_corner(&self, terrain: &Terrain, corner: &NearCorner, centre: &Vec3, reach: f64, touches: &mut Touches) {
+    fn ask_corner(
+        &self,
+        terrain: &Terrain,
+        corner: &NearCorner,
+        centre: &Vec3,
+        reach: f64,
+        touches: &mut Touches,
+    ) {
         let off = centre - corner.p;
         let distance = off.norm();
         if distance >= reach || distance <= SLACK * self.radius {
@@ -266,7 +297,11 @@ impl Near {
         }
         let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
         let normal = off / distance;
-        self.merge(Touch { feature, triangle: corner.triangle, normal, distance_m: distance }, centre, touches);
+        self.merge(
+            Touch { feature, triangle: corner.triangle, normal, distance_m: distance },
+            centre,
+            touches,
+        );
     }
 
     /// Whether another triangle runs through `foot` and comes nearer to the centre: then the border or corner at

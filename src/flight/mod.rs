@@ -158,7 +158,10 @@ impl Slabs {
         let (lo, hi) = (&pair.lo[side], &pair.hi[side]);
         let (mut ta, mut tb) = (0.0f64, limit);
         for k in 0..2 {
-            let (near, far) = (f64::from(lo[k]) - self.radius - self.c[k], f64::from(hi[k]) + self.radius - self.c[k]);
+            let (near, far) = (
+                f64::from(lo[k]) - self.radius - self.c[k],
+                f64::from(hi[k]) + self.radius - self.c[k],
+            );
             if self.inv[k].is_finite() {
                 let (t1, t2) = (near * self.inv[k], far * self.inv[k]);
                 ta = ta.max(t1.min(t2));
@@ -178,7 +181,11 @@ impl Slabs {
     fn clip_height(&self, floor: f64, roof: f64, (mut ta, mut tb): (f64, f64)) -> (f64, f64) {
         const NEVER: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
         if self.g == 0.0 {
-            let times = quadratic(0.0, self.v_z, self.c.z - roof).zip(quadratic(0.0, self.v_z, self.c.z - floor));
+            let times = quadratic(0.0, self.v_z, self.c.z - roof).zip(quadratic(
+                0.0,
+                self.v_z,
+                self.c.z - floor,
+            ));
             return match times {
                 Some(((t1, _), (t2, _))) => (ta.max(t1.min(t2)), tb.min(t1.max(t2))),
                 None if self.c.z < floor || self.c.z > roof => NEVER,

@@ -62,7 +62,8 @@ fn fall_between(b: &[f64; 5], t0: f64, t1: f64, depth: u32) -> Option<f64> {
     let (left, right) = halve(b);
     let middle = 0.5 * (t0 + t1);
     // A fall exactly at the middle shows as a last coefficient of 0 on the left.
-    fall_between(&left, t0, middle, depth + 1).or_else(|| fall_between(&right, middle, t1, depth + 1))
+    fall_between(&left, t0, middle, depth + 1)
+        .or_else(|| fall_between(&right, middle, t1, depth + 1))
 }
 
 /// De Casteljau at the middle.

@@ -12,7 +12,12 @@ const ROUNDING: f64 = 1e-6;
 
 /// First touch within a window of time, with the triangle and the edges and corners that it owns.
 #[inline]
-pub(super) fn of_triangle(terrain: &Terrain, t: u32, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
+pub(super) fn of_triangle(
+    terrain: &Terrain,
+    t: u32,
+    flight: &Parabola,
+    window: (f64, f64),
+) -> Option<f64> {
     let (ta, tb) = (window.0.max(0.0), window.1);
     let face = &terrain.features.faces[t as usize];
     let height = Height {
@@ -84,14 +89,18 @@ impl Height {
     #[inline]
     fn falls_to(&self, side: f64, radius: f64, on_it: bool, (ta, tb): (f64, f64)) -> Option<f64> {
         let (h0, h1, h2) = (side * self.h0, side * self.h1, side * self.h2);
-        let touching = h0 >= 0.0 && h0 < radius * (1.0 + TOUCHING) && (on_it || h0 > radius * (1.0 - ROUNDING));
+        let touching = h0 >= 0.0
+            && h0 < radius * (1.0 + TOUCHING)
+            && (on_it || h0 > radius * (1.0 - ROUNDING));
         if touching && ta <= 0.0 && (h1 < 0.0 || h1 == 0.0 && h2 < 0.0) {
             return Some(0.0);
         }
         let level = if touching { h0.min(radius) } else { radius };
         let (one, other) = quadratic(h2, h1, h0 - level)?;
         // A start on the level has a root at 0 that is no fall.
-        [one, other].into_iter().find(|&t| t >= ta && t <= tb && side * self.speed(t) < 0.0 && (t > 0.0 || h1 < 0.0))
+        [one, other]
+            .into_iter()
+            .find(|&t| t >= ta && t <= tb && side * self.speed(t) < 0.0 && (t > 0.0 || h1 < 0.0))
     }
 }
 
@@ -111,7 +120,13 @@ fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f6
 }
 
 /// When the ball touches corner `k` of a triangle.
-fn corner(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
+fn corner(
+    terrain: &Terrain,
+    t: u32,
+    k: usize,
+    flight: &Parabola,
+    window: (f64, f64),
+) -> Option<f64> {
     let p = terrain.vertices_m[terrain.triangles[t as usize][k] as usize];
     let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
     ball_meets([flight.start - p, flight.velocity, fall], flight.radius, true, window)
@@ -119,7 +134,12 @@ fn corner(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, 
 
 /// First time at which `|x0 + x1 t + x2 t²|` falls to the radius; `can_start` unless the start is not abreast.
 #[inline]
-fn ball_meets([x0, x1, x2]: [Vec3; 3], radius: f64, can_start: bool, (ta, tb): (f64, f64)) -> Option<f64> {
+fn ball_meets(
+    [x0, x1, x2]: [Vec3; 3],
+    radius: f64,
+    can_start: bool,
+    (ta, tb): (f64, f64),
+) -> Option<f64> {
     let r2 = radius * radius;
     let gap = x0.norm_squared() - r2;
     let slope = 2.0 * x0.dot(&x1);

@@ -1,6 +1,6 @@
 //! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
 
-use super::grip::{Grip, Loss, World, spring_j};
+use super::grip::{Grip, Loss, World};
 use super::stage::End;
 use super::tableau::Tableau;
 use crate::contact::hold::carry;
@@ -57,7 +57,13 @@ fn stiffest(world: &World, grip: &Grip) -> f64 {
 ///
 /// # Errors
 /// [`Stuck`] if the step had to become too short to matter.
-pub fn advance(world: &World, control: &Control, grip: &mut Grip, h: &mut f64, h_max: f64) -> Result<Advance, Stuck> {
+pub fn advance(
+    world: &World,
+    control: &Control,
+    grip: &mut Grip,
+    h: &mut f64,
+    h_max: f64,
+) -> Result<Advance, Stuck> {
     if !grip.fresh {
         grip.rates_now(world);
     }
@@ -103,7 +109,13 @@ fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
 }
 
 /// One step: where it ends and its error relative to the tolerance; `None` if a stage does not settle.
-fn attempt(world: &World, control: &Control, grip: &mut Grip, dt: f64, omega: f64) -> Option<(End, f64)> {
+fn attempt(
+    world: &World,
+    control: &Control,
+    grip: &mut Grip,
+    dt: f64,
+    omega: f64,
+) -> Option<(End, f64)> {
     let tableau = control.tableau;
     let mut end = None;
     for i in 1..tableau.stages {
@@ -118,7 +130,8 @@ fn attempt(world: &World, control: &Control, grip: &mut Grip, dt: f64, omega: f6
     }
     for k in 0..grip.holds.len() {
         let stages = grip.rates[..tableau.stages].iter().zip(tableau.error);
-        let drift = stages.fold(crate::rock::Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * weight);
+        let drift = stages
+            .fold(crate::rock::Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * weight);
         stretch2 = stretch2.max(drift.norm_squared());
     }
     let worst2 = (off[0].norm_squared().max(stretch2) * omega * omega)
@@ -148,17 +161,11 @@ fn accept(world: &World, tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64,
         hold.slides = spot.drag.norm() >= spot.law.friction * spot.push * (1.0 - 1e-9);
         hold.closed = spot.pen - hh * spot.n.dot(&end.v) > 0.0 || spot.push > 0.0;
     }
-    // The springs of a contact that opens relax; what they held is lost to their dashpots.
     let mut kept = 0;
     for k in 0..grip.holds.len() {
-        let hold = grip.holds[k];
-        if hold.closed {
+        if grip.holds[k].closed {
             (next.shear[kept], next.roll[kept]) = (next.shear[k], next.roll[k]);
             kept += 1;
-        } else if world.terrain.is_tree(hold.triangle) {
-            loss.trees += spring_j(world, &hold);
-        } else {
-            loss.damping += spring_j(world, &hold);
         }
     }
     grip.holds.retain(|hold| hold.closed);

@@ -2,7 +2,7 @@
 
 use super::law::{Body, Spot};
 use super::tableau::STAGES;
-use crate::contact::hold::{HOLDS, Hold, Holds};
+use crate::contact::hold::{HOLDS, Holds};
 use crate::contact::near::Near;
 use crate::contact::{MOST, Touch, Touches};
 use crate::ground::Law;
@@ -35,7 +35,8 @@ impl World<'_> {
     }
 }
 
-/// Power lost to each kind of contact work (W), or energy (J) once summed over time.
+/// Power that goes into contacts (W) by kind, or energy (J) once summed over time. What springs store is counted
+/// in; it is nothing once the contact is over.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Loss {
     /// Sliding friction on the slope.
@@ -56,6 +57,16 @@ impl Loss {
         self.damping += factor * other.damping;
         self.rolling += factor * other.rolling;
         self.trees += factor * other.trees;
+    }
+
+    /// The same, booked under trees where the triangle is one's.
+    #[inline]
+    pub fn on(self, world: &World, triangle: u32) -> Self {
+        if world.terrain.is_tree(triangle) {
+            Self { trees: self.sum(), ..Self::default() }
+        } else {
+            self
+        }
     }
 
     /// All of it.
@@ -194,23 +205,30 @@ impl Grip {
         self.holds.iter().all(|hold| !hold.closed)
     }
 
-    /// Energy in motion and springs (J), without weight: `m v²/2 + I w²/2 + Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
-    pub fn energy_j(&mut self, world: &World) -> f64 {
-        let body = &world.body;
-        let motion = 0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared());
-        let c = self.c;
-        self.look(world, &c, body.radius);
-        let pressed: f64 = self
-            .touches
-            .iter()
-            .map(|touch| 0.5 * world.law(touch.triangle).p_n * (body.radius - touch.distance_m).powi(2))
-            .sum();
-        motion + pressed + self.holds.iter().map(|hold| spring_j(world, hold)).sum::<f64>()
+    /// Energy in motion (J): `m v²/2 + I w²/2`.
+    pub fn motion_j(&self, body: &Body) -> f64 {
+        0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
     }
-}
 
-/// Energy in a memory's shear and rolling springs (J).
-pub fn spring_j(world: &World, hold: &Hold) -> f64 {
-    let law = world.law(hold.triangle);
-    0.5 * (law.p_s * hold.shear.norm_squared() + law.k_r * hold.roll.norm_squared())
+    /// Energy in the springs of the contacts (J), by the kind it was counted under:
+    /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
+    pub fn springs_j(&mut self, world: &World) -> Loss {
+        let c = self.c;
+        self.look(world, &c, world.body.radius);
+        let mut stored = Loss::default();
+        for touch in self.touches.iter() {
+            let pressed = 0.5
+                * world.law(touch.triangle).p_n
+                * (world.body.radius - touch.distance_m).powi(2);
+            stored
+                .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
+        }
+        for hold in self.holds.iter() {
+            let law = world.law(hold.triangle);
+            let damping = 0.5 * law.p_s * hold.shear.norm_squared();
+            let rolling = 0.5 * law.k_r * hold.roll.norm_squared();
+            stored.add(&Loss { damping, rolling, ..Loss::default() }.on(world, hold.triangle), 1.0);
+        }
+        stored
+    }
 }

@@ -168,7 +168,8 @@ impl Spot {
         let law = &self.law;
         let shear = (self.drag * h + self.shear * law.c_s) / (h * law.p_s + law.c_s);
         let hr = h * law.k_r + law.c_r;
-        let roll = if hr > 0.0 { (self.moment * h + self.roll * law.c_r) / hr } else { Vec3::zeros() };
+        let roll =
+            if hr > 0.0 { (self.moment * h + self.roll * law.c_r) / hr } else { Vec3::zeros() };
         (shear, roll)
     }
 }
@@ -183,7 +184,14 @@ const SWEEPS: u32 = 60;
 /// Solves all contacts of one stage from `(v, w)`, velocity and spin without contact forces (gravity included).
 ///
 /// Returns velocity and spin at the stage's end, or `None` if the sweeps do not settle; `sweeps` counts.
-pub fn solve(body: &Body, spots: &mut [Spot], v: Vec3, w: Vec3, h: f64, sweeps: &mut u64) -> Option<(Vec3, Vec3)> {
+pub fn solve(
+    body: &Body,
+    spots: &mut [Spot],
+    v: Vec3,
+    w: Vec3,
+    h: f64,
+    sweeps: &mut u64,
+) -> Option<(Vec3, Vec3)> {
     if let [spot] = spots {
         *sweeps += 1;
         spot.solve(body, &v, &w, h);

@@ -12,14 +12,12 @@ const PASSES: u32 = 10;
 const AGREED: f64 = 1e-9;
 
 impl Spot {
-    /// Power lost (W) at velocity `v` and spin `w`, penetration `pen`, and stretches that change at `rates`.
-    fn loss(&self, world: &World, (v, w): (&Vec3, &Vec3), pen: f64, stretch: &Stretch) -> Loss {
-        let law = &self.law;
+    /// Power that goes into the contact (W) at velocity `v` and spin `w`: what its springs store is counted in.
+    fn loss(&self, world: &World, v: &Vec3, w: &Vec3, shear_rate: &Vec3) -> Loss {
         let slip = world.body.slip(&self.n, v, w);
-        let friction = self.drag.dot(&(slip - stretch.shear_rate));
-        let damping = (law.p_n * pen - self.push) * self.n.dot(v)
-            + (self.drag - stretch.shear * law.p_s).dot(&stretch.shear_rate);
-        let rolling = self.moment.dot(w) - law.k_r * stretch.roll.dot(&stretch.roll_rate);
+        let friction = self.drag.dot(&(slip - shear_rate));
+        let damping = self.drag.dot(shear_rate) - self.push * self.n.dot(v);
+        let rolling = self.moment.dot(w);
         if self.is_tree {
             Loss { trees: friction + damping + rolling, ..Loss::default() }
         } else {
@@ -27,30 +25,20 @@ impl Spot {
         }
     }
 
-    /// Forces at the present state and the rates of the springs, for the explicit first stage.
-    fn act_now(&mut self, world: &World, v: &Vec3, w: &Vec3) -> Stretch {
+    /// Forces at the present state, for the explicit first stage; returns the rates of shear and rolling springs.
+    fn act_now(&mut self, world: &World, v: &Vec3, w: &Vec3) -> (Vec3, Vec3) {
         let law = &self.law;
         self.push = (law.p_n * self.pen - self.c_n * self.n.dot(v)).max(0.0);
         let held = self.shear * law.p_s;
-        self.drag = within(held + world.body.slip(&self.n, v, w) * law.c_s, law.friction * self.push);
+        self.drag =
+            within(held + world.body.slip(&self.n, v, w) * law.c_s, law.friction * self.push);
         let wound = self.roll * law.k_r;
         self.moment = within(wound + w * law.c_r, law.rolling_m * self.push);
-        let rate = |change: Vec3, damping: f64| if damping > 0.0 { change / damping } else { Vec3::zeros() };
-        Stretch {
-            shear: self.shear,
-            roll: self.roll,
-            shear_rate: rate(self.drag - held, law.c_s),
-            roll_rate: rate(self.moment - wound, law.c_r),
-        }
+        let rate = |change: Vec3, damping: f64| {
+            if damping > 0.0 { change / damping } else { Vec3::zeros() }
+        };
+        (rate(self.drag - held, law.c_s), rate(self.moment - wound, law.c_r))
     }
-}
-
-/// Stretches of a contact's springs and how they change.
-struct Stretch {
-    shear: Vec3,
-    roll: Vec3,
-    shear_rate: Vec3,
-    roll_rate: Vec3,
 }
 
 /// Where a stage ends.
@@ -104,7 +92,13 @@ impl Grip {
     }
 
     /// Makes the contacts of the last look into spots based at the stage's base.
-    fn place_spots(&mut self, world: &World, tableau: &Tableau, (i, h): (usize, f64), (base, at): (&End, &Vec3)) {
+    fn place_spots(
+        &mut self,
+        world: &World,
+        tableau: &Tableau,
+        (i, h): (usize, f64),
+        (base, at): (&End, &Vec3),
+    ) {
         self.spot_count = self.touches.len();
         let mut taken = 0;
         for k in 0..self.spot_count {
@@ -156,11 +150,7 @@ impl Grip {
             let (shear_rate, roll_rate) = ((shear - spot.shear) / hh, (roll - spot.roll) / hh);
             rate.shear[spot.hold] = carry(shear_rate, &spot.n, &self.holds[spot.hold].n);
             rate.roll[spot.hold] = roll_rate;
-            if spot.push > 0.0 {
-                let pen = (spot.pen - hh * spot.n.dot(&end.v)).max(0.0);
-                let stretch = Stretch { shear, roll, shear_rate, roll_rate };
-                rate.loss.add(&spot.loss(world, (&end.v, &end.w), pen, &stretch), 1.0);
-            }
+            rate.loss.add(&spot.loss(world, &end.v, &end.w, &shear_rate), 1.0);
         }
     }
 
@@ -176,14 +166,14 @@ impl Grip {
             taken |= 1 << hold;
             let mut spot = self.spot_of(world, k, hold);
             spot.pen = (body.radius - self.touches[k].distance_m).max(0.0);
-            let stretch = spot.act_now(world, &v, &w);
+            let (shear_rate, roll_rate) = spot.act_now(world, &v, &w);
             let back = self.holds[hold].n;
             let rate = &mut self.rates[0];
             rate.v += (spot.n * spot.push - spot.drag) / body.mass;
             rate.w += (spot.n.cross(&spot.drag) * body.radius - spot.moment) / body.inertia;
-            rate.shear[hold] = carry(stretch.shear_rate, &spot.n, &back);
-            rate.roll[hold] = stretch.roll_rate;
-            rate.loss.add(&spot.loss(world, (&v, &w), spot.pen, &stretch), 1.0);
+            rate.shear[hold] = carry(shear_rate, &spot.n, &back);
+            rate.roll[hold] = roll_rate;
+            rate.loss.add(&spot.loss(world, &v, &w, &shear_rate), 1.0);
         }
         self.fresh = true;
     }

@@ -69,8 +69,13 @@ pub static ESDIRK4: Tableau = Tableau {
 };
 
 /// Backward Euler: never creates energy, however large the step; the last resort of a rock that cannot go on.
-pub static BACKWARD_EULER: Tableau =
-    Tableau { stages: 2, diagonal: 1.0, a: &[&[], &[0.0]], error: [-0.5, 0.5, 0.0, 0.0, 0.0, 0.0], exponent: 0.5 };
+pub static BACKWARD_EULER: Tableau = Tableau {
+    stages: 2,
+    diagonal: 1.0,
+    a: &[&[], &[0.0]],
+    error: [-0.5, 0.5, 0.0, 0.0, 0.0, 0.0],
+    exponent: 0.5,
+};
 
 #[cfg(test)]
 mod tests {
@@ -86,7 +91,10 @@ mod tests {
             for i in 1..n {
                 c[i] = tableau.a[i].iter().sum::<f64>() + tableau.diagonal;
                 let moment: f64 = tableau.a[i].iter().zip(&c).map(|(a, c)| a * c).sum();
-                assert!((moment + tableau.diagonal * c[i] - 0.5 * c[i] * c[i]).abs() < 2e-14, "stage {i}");
+                assert!(
+                    (moment + tableau.diagonal * c[i] - 0.5 * c[i] * c[i]).abs() < 2e-14,
+                    "stage {i}"
+                );
             }
             assert!((c[n - 1] - 1.0).abs() < 1e-14);
             assert!(tableau.error.iter().sum::<f64>().abs() < 1e-14);

@@ -67,4 +67,9 @@ impl Edges {
         let edge = edge as usize;
         &self.triangles[self.starts[edge] as usize..self.starts[edge + 1] as usize]
     }
+
+    /// The edges with one triangle only.
+    pub fn borders(&self) -> Vec<u32> {
+        (0..self.len() as u32).filter(|&edge| self.triangles_on(edge).len() == 1).collect()
+    }
 }

@@ -36,7 +36,8 @@ impl Face {
     #[inline]
     pub fn holds_foot_of(&self, point: &Vec3) -> bool {
         let to = point - self.a;
-        let (d11, d12, d22) = (self.e1.norm_squared(), self.e1.dot(&self.e2), self.e2.norm_squared());
+        let (d11, d12, d22) =
+            (self.e1.norm_squared(), self.e1.dot(&self.e2), self.e2.norm_squared());
         let (t1, t2) = (to.dot(&self.e1), to.dot(&self.e2));
         let det = d11 * d22 - d12 * d12;
         let (u, v) = (d22 * t1 - d12 * t2, d11 * t2 - d12 * t1);
@@ -65,7 +66,8 @@ pub struct Features {
 impl Features {
     /// Finds the touchable features.
     pub fn of(vertices_m: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let faces = triangles.iter().map(|t| Face::new(t.map(|v| vertices_m[v as usize]))).collect();
+        let faces =
+            triangles.iter().map(|t| Face::new(t.map(|v| vertices_m[v as usize]))).collect();
         let mut features = Self { faces, edges: Edges::of(triangles), ..Self::default() };
         features.link(vertices_m.len());
         features.own(vertices_m, triangles);
@@ -96,7 +98,8 @@ impl Features {
 
     /// Gives every touchable edge and corner to the first triangle on it.
     fn own(&mut self, vertices_m: &[Vec3], triangles: &[[u32; 3]]) {
-        let kept: Vec<bool> = (0..self.edges.len() as u32).map(|e| !self.is_flat(e, vertices_m)).collect();
+        let kept: Vec<bool> =
+            (0..self.edges.len() as u32).map(|e| !self.is_flat(e, vertices_m)).collect();
         let mut corner = vec![false; vertices_m.len()];
         for (&[a, b], _) in self.edges.ends.iter().zip(&kept).filter(|(_, kept)| **kept) {
             corner[a as usize] = true;

@@ -158,7 +158,10 @@ impl Index {
     pub fn along_vertical(&self, x: f64, y: f64, mut visit: impl FnMut(u32, u32)) {
         let inside = |pair: &Pair, side: usize| {
             let (lo, hi) = (&pair.lo[side], &pair.hi[side]);
-            f64::from(lo[0]) <= x && x <= f64::from(hi[0]) && f64::from(lo[1]) <= y && y <= f64::from(hi[1])
+            f64::from(lo[0]) <= x
+                && x <= f64::from(hi[0])
+                && f64::from(lo[1]) <= y
+                && y <= f64::from(hi[1])
         };
         self.walk(inside, &mut visit);
     }

@@ -2,9 +2,14 @@
 
 pub mod edges;
 pub mod features;
+pub mod grid;
+mod groups;
+pub mod health;
 pub mod index;
+pub mod make;
 mod merge;
 pub mod stl;
+pub mod t_junctions;
 pub mod weld;
 
 use crate::rock::Vec3;
@@ -50,7 +55,8 @@ impl Terrain {
     pub fn new(welded: Welded, sheets: Vec<Sheet>) -> Self {
         let corners = |t: usize| welded.corners_m(t);
         let (index, order) = Index::build((0..welded.triangles.len()).map(corners));
-        let triangles: Vec<[u32; 3]> = order.iter().map(|&k| welded.triangles[k as usize]).collect();
+        let triangles: Vec<[u32; 3]> =
+            order.iter().map(|&k| welded.triangles[k as usize]).collect();
         let features = Features::of(&welded.vertices_m, &triangles);
         Self {
             origin_m: welded.origin_m,

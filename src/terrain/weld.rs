@@ -18,6 +18,12 @@ const TOLERANCE_OF_SIZE: f64 = 1e-6;
 /// A triangle with an area below this share of its longest edge squared (–) has no normal in `f64`.
 const ZERO_AREA: f64 = 1e-14;
 
+/// Largest coordinate (m); the Earth is 4e7 m around.
+const LARGEST_M: f64 = 1e8;
+
+/// Three corners of this many facets can be numbered with 32 bits.
+const MOST_FACETS: usize = u32::MAX as usize / 3;
+
 /// How many places a [`Tally`] names.
 const EXAMPLES: usize = 5;
 
@@ -67,10 +73,12 @@ impl Tally {
 }
 
 /// The welded mesh. Every vertex is used, every triangle has an area and occurs once.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Welded {
     /// Map position of the local (0, 0, 0): `map = local + origin` (m). Whole metres plus the scene's origin.
     pub origin_m: Vec3,
+    /// Map position of the files' (0, 0, 0) (m), part of `origin_m`.
+    pub map_origin_m: Vec3,
     /// Vertices closer than this were merged (m).
     pub tolerance_m: f64,
     /// Vertices in local coordinates (m), more than the tolerance apart, in order of first use.
@@ -98,7 +106,7 @@ pub struct Welded {
 /// than the tolerance, and chains of close vertices do not collapse.
 ///
 /// # Errors
-/// A scale or tolerance that is not usable, or no triangle with an area.
+/// A scale or tolerance that is not usable, coordinates larger than the Earth, or no triangle with an area.
 pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> Result<Welded> {
     let frame = Frame::around(pieces)?;
     let tolerance_m = tolerance_m.unwrap_or(TOLERANCE_OF_SIZE * frame.size_m);
@@ -109,6 +117,7 @@ pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> R
     }
     let mut welded = Welded {
         origin_m: map_origin_m + frame.centre_m,
+        map_origin_m,
         tolerance_m,
         vertices_m: Vec::new(),
         triangles: Vec::with_capacity(frame.facets),
@@ -131,12 +140,27 @@ pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> R
 
 impl Piece<'_> {
     /// A point of the file in metres, z up, not yet recentred.
-    fn placed(&self, point: Vec3) -> Vec3 {
+    pub(super) fn placed(&self, point: Vec3) -> Vec3 {
         let turned = match self.up {
             Up::Z => point,
             Up::Y => Vec3::new(point.x, -point.z, point.y),
         };
         turned * self.scale
+    }
+
+    fn check(&self) -> Result<()> {
+        if !(self.scale > 0.0 && self.scale.is_finite()) {
+            let found = format!("{} is not a positive number", self.scale);
+            let remedy = "write 1.0 for metres, 0.001 for millimetres";
+            return Err(Error::input(self.file, "scale", found, remedy));
+        }
+        let far = |&corner: &Vec3| self.placed(corner).amax() > LARGEST_M;
+        let Some(number) = self.soup.facets.iter().position(|facet| facet.iter().any(far)) else {
+            return Ok(());
+        };
+        let found = format!("coordinates beyond {LARGEST_M:e} m, more than around the Earth");
+        let remedy = "check the unit and `scale`, or repair the mesh where it was made";
+        Err(Error::input(self.file, format!("triangle {}", number + 1), found, remedy))
     }
 }
 
@@ -151,36 +175,22 @@ struct Frame {
 
 impl Frame {
     fn around(pieces: &[Piece]) -> Result<Self> {
-        let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        let (mut low, mut high) = (Vec3::repeat(LARGEST_M), Vec3::repeat(-LARGEST_M));
         for piece in pieces {
-            piece.check_scale()?;
+            piece.check()?;
             for &corner in piece.soup.facets.iter().flatten() {
                 let point = piece.placed(corner);
                 (low, high) = (low.inf(&point), high.sup(&point));
             }
         }
         let facets = pieces.iter().map(|piece| piece.soup.facets.len()).sum();
-        if facets == 0 {
-            return Ok(Self { centre_m: Vec3::zeros(), size_m: 0.0, facets });
-        }
-        let size_m = (high - low).max();
-        if !size_m.is_finite() || facets > u32::MAX as usize / 3 {
+        if facets > MOST_FACETS {
             return Err(Error::Request(format!(
-                "the terrain has {facets} facets in a box of {size_m:e} m; \
-                 a scene holds up to 1.4e9 facets and needs coordinates in metres"
+                "the terrain has {facets} facets; thin it out to {MOST_FACETS} or fewer"
             )));
         }
+        let size_m = (high - low).max().max(0.0); // negative without any facet
         Ok(Self { centre_m: (low / 2.0 + high / 2.0).map(f64::round), size_m, facets })
-    }
-}
-
-impl Piece<'_> {
-    fn check_scale(&self) -> Result<()> {
-        if self.scale > 0.0 && self.scale.is_finite() {
-            return Ok(());
-        }
-        let found = format!("{} is not a positive number", self.scale);
-        Err(Error::input(self.file, "scale", found, "write 1.0 for metres, 0.001 for millimetres"))
     }
 }
 
@@ -193,6 +203,12 @@ impl Welded {
     /// The corners of a triangle, local (m).
     pub fn corners_m(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|v| self.vertices_m[v as usize])
+    }
+
+    /// From the first to the second end of an edge (m).
+    pub fn edge_m(&self, edge: u32) -> Vec3 {
+        let [a, b] = self.edges.ends[edge as usize];
+        self.vertices_m[b as usize] - self.vertices_m[a as usize]
     }
 
     /// Merges vertices and keeps every facet that has an area.
@@ -285,3 +301,6 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
     );
     Error::input(first.file, "mesh", found, "check the file, its scale and the weld tolerance")
 }
+
+#[cfg(test)]
+mod tests;

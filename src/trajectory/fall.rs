@@ -46,14 +46,22 @@ const IMPACT_TIMES: f64 = 3.0;
 const TILTS: u32 = 8;
 
 /// Follows one rock from its release to its stop.
-pub fn follow(course: &Course, release: &Release, keep: Keep, chance: &mut Chance, scratch: &mut Scratch) -> Trajectory {
+pub fn follow(
+    course: &Course,
+    release: &Release,
+    keep: Keep,
+    chance: &mut Chance,
+    scratch: &mut Scratch,
+) -> Trajectory {
     let capture = Capture {
         own_m_s: course.step.capture_speed_m_s,
         tolerance_m_s: course.step.tolerance_m_s,
         gravity_m_s2: course.gravity_m_s2,
     };
     scratch.laws.clear();
-    scratch.laws.extend(release.grounds.iter().map(|ground| Law::new(ground, &release.rock, &capture)));
+    scratch
+        .laws
+        .extend(release.grounds.iter().map(|ground| Law::new(ground, &release.rock, &capture)));
     scratch.grip.near.forget();
     (scratch.grip.near.tested, scratch.grip.sweeps) = (0, 0);
     let world = World {
@@ -95,11 +103,12 @@ impl Fall<'_> {
             radius: self.world.body.radius,
         };
         let left = self.course.longest_s - now.time_s;
-        let (dt, stop) = match leap(self.course.terrain, &flight, left, &mut self.journey.effort.triangles) {
-            Landing::Touch(t) => (t, None),
-            Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
-            Landing::Flies => (left, Some(Stop::TimeUp)),
-        };
+        let (dt, stop) =
+            match leap(self.course.terrain, &flight, left, &mut self.journey.effort.triangles) {
+                Landing::Touch(t) => (t, None),
+                Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
+                Landing::Flies => (left, Some(Stop::TimeUp)),
+            };
         self.journey.effort.leaps += 1;
         self.journey.fly(&flight, dt);
         stop
@@ -116,16 +125,20 @@ impl Fall<'_> {
         }
         let began_s = self.journey.now.time_s;
         let before_j = self.total_j();
-        let lost_before_j = self.lost_j();
+        let lost_before_j = self.journey.lost_j();
         let mut stepper = Stepper::new(self.course.step, &self.world, self.grip);
         let stop = self.steps(&mut stepper);
         let rise_j = self.total_j() - before_j;
-        self.journey.ledger.remainder_j -= rise_j + self.lost_j() - lost_before_j;
-        self.journey.ledger.rise_j = self.journey.ledger.rise_j.max(rise_j);
+        self.journey.ledger.remainder_j -= rise_j + self.journey.lost_j() - lost_before_j;
+        // A rock that rests presses on its springs: what they hold is not lost.
+        let stored = self.grip.springs_j(&self.world);
+        self.journey.pay(&stored, -1.0);
+        self.journey.ledger.rise_j = self.journey.ledger.rise_j.max(rise_j + stored.sum());
         let lasted = self.journey.now.time_s - began_s;
         if let Some(tilt) = tilt.filter(|_| stop.is_none() && lasted <= self.impact_time()) {
             (self.grip.v, self.grip.w) = (tilt * self.grip.v, tilt * self.grip.w);
-            (self.journey.now.velocity_m_s, self.journey.now.spin_rad_s) = (self.grip.v, self.grip.w);
+            (self.journey.now.velocity_m_s, self.journey.now.spin_rad_s) =
+                (self.grip.v, self.grip.w);
         }
         self.journey.end_impact();
         stop
@@ -135,14 +148,17 @@ impl Fall<'_> {
         let mut quiet_s = 0.0;
         loop {
             let left = self.course.longest_s - self.journey.now.time_s;
-            let Ok(done) = step::advance(stepper, self.course.step, &self.world, self.grip, left) else {
-                return Some(Stop::Failed("the contact step would not settle, however short".to_owned()));
+            let Ok(done) = step::advance(stepper, self.course.step, &self.world, self.grip, left)
+            else {
+                return Some(Stop::Failed(
+                    "the contact step would not settle, however short".to_owned(),
+                ));
             };
             let effort = &mut self.journey.effort;
             effort.steps += 1;
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
-            self.journey.pay(&done.loss);
+            self.journey.pay(&done.loss, 1.0);
             let to = Motion {
                 time_s: self.journey.now.time_s + done.dt,
                 position_m: self.grip.c,
@@ -185,7 +201,12 @@ impl Fall<'_> {
 
     /// The longest an impact is taken to last (s).
     fn impact_time(&self) -> f64 {
-        let slowest = self.grip.holds.iter().map(|hold| self.world.law(hold.triangle).omega).fold(f64::INFINITY, f64::min);
+        let slowest = self
+            .grip
+            .holds
+            .iter()
+            .map(|hold| self.world.law(hold.triangle).omega)
+            .fold(f64::INFINITY, f64::min);
         IMPACT_TIMES * PI / slowest
     }
 
@@ -199,14 +220,23 @@ impl Fall<'_> {
             .grip
             .touches
             .iter()
-            .filter(|touch| self.world.law(touch.triangle).roughness_rad > 0.0 && !self.world.captures(touch, &v))
+            .filter(|touch| {
+                self.world.law(touch.triangle).roughness_rad > 0.0
+                    && !self.world.captures(touch, &v)
+            })
             .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))?;
         let most = self.world.law(touch.triangle).roughness_rad;
         let beside = if touch.normal.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
         let across = touch.normal.cross(&beside);
         for _ in 0..TILTS {
-            let turn = Rotation3::from_axis_angle(&Unit::new_normalize(touch.normal), TAU * unit(self.chance));
-            let tilt = Rotation3::from_axis_angle(&Unit::new_normalize(turn * across), most * unit(self.chance));
+            let turn = Rotation3::from_axis_angle(
+                &Unit::new_normalize(touch.normal),
+                TAU * unit(self.chance),
+            );
+            let tilt = Rotation3::from_axis_angle(
+                &Unit::new_normalize(turn * across),
+                most * unit(self.chance),
+            );
             if (tilt * touch.normal).dot(&v) < 0.0 {
                 return Some(tilt);
             }
@@ -216,12 +246,8 @@ impl Fall<'_> {
 
     /// Mechanical energy of the rock in contact (J), weight included.
     fn total_j(&mut self) -> f64 {
-        self.grip.energy_j(&self.world) - self.world.body.mass * self.world.body.gravity.dot(&self.grip.c)
-    }
-
-    fn lost_j(&self) -> f64 {
-        let ledger = &self.journey.ledger;
-        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
+        self.grip.motion_j(&self.world.body)
+            - self.world.body.mass * self.world.body.gravity.dot(&self.grip.c)
     }
 
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {

@@ -71,7 +71,9 @@ impl<'a> Journey<'a> {
     }
 
     fn clearance_m(&self, centre: &Vec3) -> Option<f64> {
-        self.terrain.ground_under(centre.x, centre.y, centre.z).map(|ground| centre.z - self.rock.radius_m - ground)
+        self.terrain
+            .ground_under(centre.x, centre.y, centre.z)
+            .map(|ground| centre.z - self.rock.radius_m - ground)
     }
 
     fn note_height(&mut self, centre: &Vec3) {
@@ -123,7 +125,9 @@ impl<'a> Journey<'a> {
 
     /// Keeps the last point of the path.
     pub fn end_path(&mut self) {
-        if self.keep.path_step_s.is_some() && self.path.last().is_none_or(|last| last.motion.time_s < self.now.time_s) {
+        if self.keep.path_step_s.is_some()
+            && self.path.last().is_none_or(|last| last.motion.time_s < self.now.time_s)
+        {
             let state = self.path.last().map_or(PathState::Flight, |last| last.state);
             let now = self.now;
             self.point(now, state);
@@ -131,7 +135,13 @@ impl<'a> Journey<'a> {
     }
 
     /// Begins an impact at the present motion; it ends at `until_s` at the latest.
-    pub fn begin_impact(&mut self, point_m: Vec3, feature: FeatureKind, triangle: u32, until_s: f64) {
+    pub fn begin_impact(
+        &mut self,
+        point_m: Vec3,
+        feature: FeatureKind,
+        triangle: u32,
+        until_s: f64,
+    ) {
         self.end_impact();
         self.impact_count += 1;
         self.tree_impact_count += u32::from(self.terrain.is_tree(triangle));
@@ -166,15 +176,16 @@ impl<'a> Journey<'a> {
         }
     }
 
-    /// Writes losses into the ledger.
-    pub fn pay(&mut self, loss: &Loss) {
-        self.ledger.friction_j += loss.friction;
-        self.ledger.damping_j += loss.damping;
-        self.ledger.rolling_j += loss.rolling;
-        self.ledger.trees_j += loss.trees;
+    /// Writes `times` the losses into the ledger.
+    pub fn pay(&mut self, loss: &Loss, times: f64) {
+        self.ledger.friction_j += times * loss.friction;
+        self.ledger.damping_j += times * loss.damping;
+        self.ledger.rolling_j += times * loss.rolling;
+        self.ledger.trees_j += times * loss.trees;
     }
 
-    fn lost_j(&self) -> f64 {
+    /// All losses so far (J).
+    pub fn lost_j(&self) -> f64 {
         let ledger = &self.ledger;
         ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
     }

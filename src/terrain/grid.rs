@@ -1,0 +1,270 @@
+//! ESRI ASCII grids, and triangles from grids of heights.
+
+use crate::error::{Error, Result};
+use crate::rock::Vec3;
+use crate::terrain::stl::Facet;
+use std::fmt::Write;
+use std::path::Path;
+
+/// A grid of heights at the centres of square cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Number of columns, from west to east.
+    pub columns: usize,
+    /// Number of rows, from **north to south** as in the file.
+    pub rows: usize,
+    /// Map position (m) of the lower left (south-west) **corner** of the grid.
+    pub corner_m: [f64; 2],
+    /// Side of a cell (m), positive.
+    pub cell_m: f64,
+    /// Values row by row, the northern row first; `None` = no data.
+    pub values: Vec<Option<f64>>,
+}
+
+/// Number written for "no data".
+const NODATA: f64 = -9999.0;
+
+impl Grid {
+    /// The value in a column (from the west) and row (from the north).
+    pub fn value(&self, column: usize, row: usize) -> Option<f64> {
+        self.values[row * self.columns + column]
+    }
+
+    /// Map position of a cell's centre (m).
+    pub fn centre_m(&self, column: usize, row: usize) -> [f64; 2] {
+        let from_south = (self.rows - row) as f64 - 0.5;
+        [
+            self.corner_m[0] + (column as f64 + 0.5) * self.cell_m,
+            self.corner_m[1] + from_south * self.cell_m,
+        ]
+    }
+
+    /// The whole-metre map position near the middle of the grid (z at the lowest value): what to subtract before
+    /// writing STL.
+    pub fn map_origin_m(&self) -> Vec3 {
+        let half = |count: usize| 0.5 * count as f64 * self.cell_m;
+        let lowest = self.values.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+        let middle = Vec3::new(
+            self.corner_m[0] + half(self.columns),
+            self.corner_m[1] + half(self.rows),
+            lowest,
+        );
+        middle.map(|x| if x.is_finite() { x.floor() } else { 0.0 })
+    }
+
+    /// The surface through the cell centres as facets around `map_origin_m`, see [`triangulate`].
+    pub fn facets(&self, map_origin_m: Vec3) -> Vec<Facet> {
+        triangulate(self.columns, self.rows, |column, row_from_south| {
+            let row = self.rows - 1 - row_from_south;
+            let [x, y] = self.centre_m(column, row);
+            self.value(column, row).map(|z| Vec3::new(x, y, z) - map_origin_m)
+        })
+    }
+
+    /// Reads an ESRI ASCII grid: `xllcorner` or `xllcenter`, keywords in any case and order.
+    ///
+    /// # Errors
+    /// A missing or unknown keyword, or a number that is missing, superfluous or unreadable, with its line.
+    pub fn read(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
+        Self::parse(&String::from_utf8_lossy(&bytes), path)
+    }
+
+    /// Reads the text of an ESRI ASCII grid; `file` is for messages.
+    ///
+    /// # Errors
+    /// As [`Grid::read`].
+    pub fn parse(text: &str, file: &Path) -> Result<Self> {
+        let (header, data_line) = Header::parse(text, file)?;
+        let (columns, rows) = (header.columns, header.rows);
+        let mut values = Vec::new();
+        for (number, line) in text.lines().enumerate().skip(data_line) {
+            for word in line.split_ascii_whitespace() {
+                let value =
+                    word.parse().ok().filter(|x: &f64| x.is_finite() || header.is_nodata(*x));
+                let value = value.ok_or_else(|| {
+                    let found = format!("`{word}` is not a finite number");
+                    Error::input(file, line_name(number), found, "write heights like 1063.95")
+                })?;
+                values.push((!header.is_nodata(value)).then_some(value));
+            }
+            if values.len() > columns * rows {
+                let found = format!("more than ncols x nrows = {columns} x {rows} values");
+                return Err(Error::input(
+                    file,
+                    line_name(number),
+                    found,
+                    "correct ncols and nrows",
+                ));
+            }
+        }
+        if values.len() < columns * rows {
+            let found = format!("{} values for ncols x nrows = {columns} x {rows}", values.len());
+            let place = format!("line {} (the last)", text.lines().count());
+            return Err(Error::input(
+                file,
+                place,
+                found,
+                "the file is cut off, or correct ncols and nrows",
+            ));
+        }
+        Ok(Self { columns, rows, corner_m: header.corner_m, cell_m: header.cell_m, values })
+    }
+
+    /// The grid as ESRI ASCII text, `xllcorner` form, no data = −9999, shortest digits that read back the same.
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "ncols {}\nnrows {}\nxllcorner {:?}\nyllcorner {:?}\ncellsize {:?}\nNODATA_value {NODATA}\n",
+            self.columns, self.rows, self.corner_m[0], self.corner_m[1], self.cell_m
+        );
+        for row in self.values.chunks(self.columns.max(1)) {
+            for (column, value) in row.iter().enumerate() {
+                let blank = if column == 0 { "" } else { " " };
+                let _ = write!(text, "{blank}{}", value.unwrap_or(NODATA)); // a String takes everything
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    /// Writes an ESRI ASCII grid.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        std::fs::write(path, self.text()).map_err(Error::file("write", path))
+    }
+}
+
+fn line_name(index: usize) -> String {
+    format!("line {}", index + 1)
+}
+
+/// The keywords at the start of the file.
+struct Header {
+    columns: usize,
+    rows: usize,
+    corner_m: [f64; 2],
+    cell_m: f64,
+    nodata: Option<f64>,
+}
+
+/// Keywords and where their value goes.
+const KEYWORDS: [&str; 8] = [
+    "ncols",
+    "nrows",
+    "cellsize",
+    "nodata_value",
+    "xllcorner",
+    "yllcorner",
+    "xllcenter",
+    "yllcenter",
+];
+
+impl Header {
+    /// Reads keywords until the first line that begins with a number; returns that line's index too.
+    fn parse(text: &str, file: &Path) -> Result<(Self, usize)> {
+        let mut found: [Option<f64>; 8] = [None; 8];
+        let mut data_line = 0;
+        for (number, line) in text.lines().enumerate() {
+            let mut words = line.trim_start_matches('\u{feff}').split_ascii_whitespace();
+            let Some(keyword) = words.next() else { continue };
+            data_line = number;
+            if keyword.parse::<f64>().is_ok() {
+                break;
+            }
+            let place = KEYWORDS.iter().position(|known| known.eq_ignore_ascii_case(keyword));
+            let value = words.next().and_then(|word| word.parse().ok());
+            let (Some(place), Some(value), None) = (place, value, words.next()) else {
+                let remedy = format!("write one of {} and one number", KEYWORDS.join(", "));
+                return Err(Error::input(
+                    file,
+                    line_name(number),
+                    format!("`{}`", clipped(line)),
+                    remedy,
+                ));
+            };
+            found[place] = Some(value);
+        }
+        Ok((Self::from_values(found, file)?, data_line))
+    }
+
+    fn from_values(found: [Option<f64>; 8], file: &Path) -> Result<Self> {
+        let lacks = |keyword: &str| {
+            let remedy =
+                "an ESRI ASCII grid begins with ncols, nrows, xllcorner, yllcorner, cellsize";
+            Error::input(file, "header", format!("no usable `{keyword}`"), remedy)
+        };
+        let [columns, rows, cell, nodata, x_corner, y_corner, x_centre, y_centre] = found;
+        let count = |value: Option<f64>, keyword: &str| {
+            // 1e9 columns: beyond any grid, and columns x rows fits usize
+            let usable = value.filter(|n| (1.0..1e9).contains(n) && n.fract() == 0.0);
+            usable.map(|n| n as usize).ok_or_else(|| lacks(keyword))
+        };
+        let cell_m = cell.filter(|m| *m > 0.0 && m.is_finite()).ok_or_else(|| lacks("cellsize"))?;
+        let place = |corner: Option<f64>, centre: Option<f64>, keyword: &str| {
+            let place = corner.or(centre.map(|m| m - 0.5 * cell_m));
+            place.filter(|m| m.is_finite()).ok_or_else(|| lacks(keyword))
+        };
+        Ok(Self {
+            columns: count(columns, "ncols")?,
+            rows: count(rows, "nrows")?,
+            corner_m: [
+                place(x_corner, x_centre, "xllcorner")?,
+                place(y_corner, y_centre, "yllcorner")?,
+            ],
+            cell_m,
+            nodata,
+        })
+    }
+
+    fn is_nodata(&self, value: f64) -> bool {
+        // Bits, so that `nodata_value nan` works too; the same text gives the same bits.
+        self.nodata.is_some_and(|nodata| nodata.to_bits() == value.to_bits())
+    }
+}
+
+fn clipped(line: &str) -> String {
+    line.chars().take(40).collect()
+}
+
+/// Two facets for every cell of a lattice of points, wound to face up when columns run east and rows run north.
+///
+/// Each cell is cut along the diagonal whose ends differ less in height, from the south-west to the north-east corner
+/// when they are equal: ridges and valleys are followed, and a mirrored grid gives the mirrored mesh. A cell with one
+/// missing corner keeps the triangle of the other three, a cell with more is left out.
+pub fn triangulate(
+    columns: usize,
+    rows: usize,
+    point: impl Fn(usize, usize) -> Option<Vec3>,
+) -> Vec<Facet> {
+    let mut facets = Vec::new();
+    for row in 0..rows.saturating_sub(1) {
+        for column in 0..columns.saturating_sub(1) {
+            let around = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| point(column + i, row + j));
+            facets.extend(cut(around).into_iter().flatten());
+        }
+    }
+    facets
+}
+
+/// Cuts a cell with corners south-west, south-east, north-east, north-west.
+fn cut(around: [Option<Vec3>; 4]) -> [Option<Facet>; 2] {
+    match around {
+        [Some(sw), Some(se), Some(ne), Some(nw)] => {
+            if (sw.z - ne.z).abs() <= (se.z - nw.z).abs() {
+                [Some([sw, se, ne]), Some([sw, ne, nw])]
+            } else {
+                [Some([sw, se, nw]), Some([se, ne, nw])]
+            }
+        }
+        [None, Some(a), Some(b), Some(c)]
+        | [Some(c), None, Some(a), Some(b)]
+        | [Some(b), Some(c), None, Some(a)]
+        | [Some(a), Some(b), Some(c), None] => [Some([a, b, c]), None],
+        _ => [None, None],
+    }
+}
+
+#[cfg(test)]
+mod tests;

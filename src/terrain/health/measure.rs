@@ -1,0 +1,135 @@
+//! The measurements behind [`Health`](super::Health).
+
+use super::FileHealth;
+use crate::rock::Vec3;
+use crate::terrain::groups::Groups;
+use crate::terrain::stl::{Format, Spacing, area_vector};
+use crate::terrain::t_junctions;
+use crate::terrain::weld::{Piece, Tally, Welded};
+
+/// Longest edge over height (–) above which a triangle counts as a needle: a quarter of a millimetre on 2.5 m. Such a
+/// triangle is kept; its normal is known to about 1e-12.
+const NEEDLE: f64 = 1e4;
+
+/// Shares at which the edge lengths are given.
+const QUANTILES: [f64; 5] = [0.0, 0.05, 0.5, 0.95, 1.0];
+
+/// One file; `map_origin_m` is the map position of its (0, 0, 0).
+pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
+    let soup = piece.soup;
+    let down = soup
+        .facets
+        .iter()
+        .filter(|facet| area_vector(&facet.map(|corner| piece.placed(corner))).z < 0.0);
+    let mut normals_off = Tally::default();
+    for &facet in &soup.normals_off {
+        normals_off.add(piece.placed(soup.facets[facet as usize][0]) + map_origin_m);
+    }
+    FileHealth {
+        file: piece.file.display().to_string(),
+        format: soup.format,
+        solids: soup.solids.len(),
+        facets: soup.facets.len(),
+        facing_down: down.count() as f64 / soup.facets.len().max(1) as f64,
+        normals_off,
+        spacing: (soup.format == Format::Binary).then(|| Spacing::of(&soup.facets)),
+    }
+}
+
+/// Lowest and highest map coordinates (m).
+pub(super) fn box_m(welded: &Welded) -> [[f64; 3]; 2] {
+    let start = welded.vertices_m.first().copied().unwrap_or_default();
+    let (low, high) = welded
+        .vertices_m
+        .iter()
+        .fold((start, start), |(low, high), vertex| (low.inf(vertex), high.sup(vertex)));
+    [low, high].map(|corner| welded.on_map(corner).into())
+}
+
+/// The edges that fulfil a condition, located at their middle.
+pub(super) fn edges(welded: &Welded, condition: impl Fn(u32) -> bool) -> Tally {
+    let mut tally = Tally::default();
+    for edge in (0..welded.edges.len() as u32).filter(|&edge| condition(edge)) {
+        let [a, b] = welded.edges.ends[edge as usize].map(|v| welded.vertices_m[v as usize]);
+        tally.add(welded.on_map((a + b) / 2.0));
+    }
+    tally
+}
+
+/// Whether an edge has two triangles that both run along it the same way.
+pub(super) fn is_flipped(welded: &Welded, edge: u32) -> bool {
+    let [first, _] = welded.edges.ends[edge as usize];
+    let runs_up = |triangle: u32| {
+        let triangle = triangle as usize;
+        let sides = welded.edges.of_triangle[triangle];
+        (0..3).any(|k| sides[k] == edge && welded.triangles[triangle][k] == first)
+    };
+    match welded.edges.triangles_on(edge) {
+        &[a, b] => runs_up(a) == runs_up(b),
+        _ => false,
+    }
+}
+
+/// Triangles more than [`NEEDLE`] times as long as high.
+pub(super) fn needles(welded: &Welded) -> Tally {
+    let mut tally = Tally::default();
+    for triangle in 0..welded.triangles.len() {
+        let corners @ [a, b, c] = welded.corners_m(triangle);
+        let longest2 =
+            (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
+        // longest / height = longest² / (2 area)
+        if longest2 > NEEDLE * area_vector(&corners).norm() {
+            tally.add(welded.on_map(a));
+        }
+    }
+    tally
+}
+
+/// Connected runs of border edges.
+pub(super) fn border_loops(welded: &Welded) -> usize {
+    let borders = welded.edges.borders();
+    let mut groups = Groups::of(welded.vertices_m.len());
+    for &edge in &borders {
+        let [a, b] = welded.edges.ends[edge as usize];
+        groups.join(a, b);
+    }
+    groups.sizes().into_iter().filter(|&vertices| vertices > 1).count()
+}
+
+/// Border vertices on the inside of a border edge, each once.
+pub(super) fn t_junctions(welded: &Welded) -> Tally {
+    let mut junctions = t_junctions::t_junctions(welded);
+    junctions.dedup_by_key(|junction| junction.vertex);
+    let mut tally = Tally::default();
+    for junction in junctions {
+        tally.add(welded.on_map(welded.vertices_m[junction.vertex as usize]));
+    }
+    tally
+}
+
+/// Triangles of each edge-connected part, the largest first.
+pub(super) fn parts(welded: &Welded) -> Vec<usize> {
+    let mut groups = Groups::of(welded.triangles.len());
+    for edge in 0..welded.edges.len() as u32 {
+        for pair in welded.edges.triangles_on(edge).windows(2) {
+            groups.join(pair[0], pair[1]);
+        }
+    }
+    let mut sizes = groups.sizes();
+    sizes.sort_unstable_by(|a, b| b.cmp(a));
+    sizes
+}
+
+/// Surface of all triangles (m²).
+pub(super) fn area_m2(welded: &Welded) -> f64 {
+    (0..welded.triangles.len()).map(|t| 0.5 * area_vector(&welded.corners_m(t)).norm()).sum()
+}
+
+/// Edge lengths (m) at [`QUANTILES`], by the nearest rank.
+pub(super) fn edge_quantiles_m(welded: &Welded) -> [f64; 5] {
+    let mut lengths: Vec<f64> =
+        (0..welded.edges.len() as u32).map(|edge| welded.edge_m(edge).norm()).collect();
+    lengths.sort_unstable_by(f64::total_cmp);
+    let last = lengths.len().saturating_sub(1) as f64;
+    QUANTILES.map(|share| lengths.get((share * last).round() as usize).copied().unwrap_or(0.0))
+}

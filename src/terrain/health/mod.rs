@@ -1,0 +1,119 @@
+//! What is wrong with the meshes of a scene, counted and located, and what is done about it.
+
+mod measure;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Error, Result};
+use crate::terrain::stl::{Format, Spacing};
+use crate::terrain::weld::{Piece, Tally, Welded};
+use std::path::Path;
+
+/// One file as it was read.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct FileHealth {
+    /// The file, as people write it.
+    pub file: String,
+    /// Text or binary.
+    pub format: Format,
+    /// Solids in the file.
+    pub solids: usize,
+    /// Facets in the file.
+    pub facets: usize,
+    /// Share of facets whose winding faces down (–); about half for closed stems.
+    pub facing_down: f64,
+    /// Stored normals more than 30° off the winding; never used.
+    pub normals_off: Tally,
+    /// What 32-bit numbers do to the coordinates, in the unit of the file; `None` for text.
+    pub spacing: Option<Spacing>,
+}
+
+/// The state of a welded terrain. All places are map coordinates (m).
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Health {
+    /// The files, in the order of the scene.
+    pub files: Vec<FileHealth>,
+    /// Map position of the local (0, 0, 0) (m).
+    pub origin_m: [f64; 3],
+    /// Weld tolerance (m).
+    pub tolerance_m: f64,
+    /// Triangles after welding.
+    pub triangles: usize,
+    /// Vertices after welding.
+    pub vertices: usize,
+    /// Edges after welding.
+    pub edges: usize,
+    /// Corners that moved when welded.
+    pub moved_corners: usize,
+    /// Facets left out: repeated corners or no area.
+    pub zero_area: Tally,
+    /// Facets left out: same corners as an earlier one.
+    pub duplicates: Tally,
+    /// Triangles more than 10⁴ times as long as high.
+    pub needles: Tally,
+    /// Edges of three or more triangles.
+    pub non_manifold_edges: Tally,
+    /// Edges of one triangle.
+    pub border_edges: Tally,
+    /// Connected runs of border edges: the outline, holes, and the ends of open stems.
+    pub border_loops: usize,
+    /// Border vertices on the inside of a border edge.
+    pub t_junctions: Tally,
+    /// Edges whose two triangles are wound against each other.
+    pub flipped_edges: Tally,
+    /// Triangles of each part that shares no edge with another, the largest first.
+    pub parts: Vec<usize>,
+    /// Lowest x, y and z (m).
+    pub low_m: [f64; 3],
+    /// Highest x, y and z (m).
+    pub high_m: [f64; 3],
+    /// Surface (m²).
+    pub area_m2: f64,
+    /// Edge lengths (m): shortest, 5 %, median, 95 %, longest.
+    pub edge_quantiles_m: [f64; 5],
+}
+
+impl Health {
+    /// Examines a welded terrain; `pieces` are what it was welded from.
+    pub fn of(welded: &Welded, pieces: &[Piece]) -> Self {
+        let edges = &welded.edges;
+        let [low_m, high_m] = measure::box_m(welded);
+        Self {
+            files: pieces.iter().map(|piece| measure::file(piece, welded.map_origin_m)).collect(),
+            origin_m: welded.origin_m.into(),
+            tolerance_m: welded.tolerance_m,
+            triangles: welded.triangles.len(),
+            vertices: welded.vertices_m.len(),
+            edges: edges.len(),
+            moved_corners: welded.moved_corners,
+            zero_area: welded.zero_area.clone(),
+            duplicates: welded.duplicates.clone(),
+            needles: measure::needles(welded),
+            non_manifold_edges: measure::edges(welded, |edge| edges.triangles_on(edge).len() > 2),
+            border_edges: measure::edges(welded, |edge| edges.triangles_on(edge).len() == 1),
+            border_loops: measure::border_loops(welded),
+            t_junctions: measure::t_junctions(welded),
+            flipped_edges: measure::edges(welded, |edge| measure::is_flipped(welded, edge)),
+            parts: measure::parts(welded),
+            low_m,
+            high_m,
+            area_m2: measure::area_m2(welded),
+            edge_quantiles_m: measure::edge_quantiles_m(welded),
+        }
+    }
+
+    /// Refuses a terrain whose binary files hold coordinates too large for 32 bits.
+    ///
+    /// # Errors
+    /// Names the first such file and what to do.
+    pub fn check(&self) -> Result<()> {
+        let spoiled = self.files.iter().find_map(|file| {
+            file.spacing.filter(Spacing::spoils).map(|spacing| (&file.file, spacing))
+        });
+        let Some((file, spacing)) = spoiled else { return Ok(()) };
+        let remedy =
+            "export it as ASCII, or with a map origin subtracted and origin_m in the scene";
+        Err(Error::input(Path::new(file), "coordinates", spacing.to_string(), remedy))
+    }
+}

@@ -1,0 +1,147 @@
+//! The health of a mesh as a table for people.
+
+use super::{FileHealth, Health};
+use crate::terrain::stl::{Format, Spacing};
+use crate::terrain::weld::Tally;
+use std::fmt;
+
+impl fmt::Display for Health {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for file in &self.files {
+            write!(f, "{file}")?;
+        }
+        self.sizes(f)?;
+        writeln!(f, "\n{:<22}{:>12}  handled", "found", "count")?;
+        for (name, tally, handled) in self.rows() {
+            writeln!(f, "{name:<22}{:>12}  {handled}", grouped(tally.count))?;
+            if !tally.examples_m.is_empty() && tally.count > 0 {
+                writeln!(f, "{}", places(tally))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Health {
+    fn sizes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = [0, 1, 2].map(|k| {
+            format!(
+                "{:.2} to {:.2} ({:.2})",
+                self.low_m[k],
+                self.high_m[k],
+                self.high_m[k] - self.low_m[k]
+            )
+        });
+        writeln!(
+            f,
+            "welded       {} triangles, {} vertices, {} edges; tolerance {:.1e} m, {} corners moved",
+            grouped(self.triangles),
+            grouped(self.vertices),
+            grouped(self.edges),
+            self.tolerance_m,
+            grouped(self.moved_corners)
+        )?;
+        writeln!(
+            f,
+            "origin (m)   {:?}, subtracted while computing, added back in every result",
+            self.origin_m
+        )?;
+        writeln!(f, "extent (m)   x {x}; y {y}; z {z}")?;
+        writeln!(f, "surface      {:.2} m²", self.area_m2)?;
+        let [least, low, median, high, most] = self.edge_quantiles_m;
+        writeln!(
+            f,
+            "edges (m)    {least:.4} shortest, {low:.4} 5 %, {median:.4} median, {high:.4} 95 %, {most:.4} longest"
+        )?;
+        writeln!(f, "parts        {}", self.parts_text())
+    }
+
+    fn parts_text(&self) -> String {
+        let sizes: Vec<String> = self.parts.iter().take(5).map(|&size| grouped(size)).collect();
+        let more = if self.parts.len() > sizes.len() { ", …" } else { "" };
+        format!(
+            "{} with {}{more} triangles; none is left out",
+            grouped(self.parts.len()),
+            sizes.join(", ")
+        )
+    }
+
+    /// Name, tally and treatment of everything that can be wrong.
+    fn rows(&self) -> [(&'static str, &Tally, String); 7] {
+        let loops = format!("kept, can be hit; {} open border(s)", grouped(self.border_loops));
+        [
+            ("without area", &self.zero_area, "left out".into()),
+            ("duplicates", &self.duplicates, "left out, the first is kept".into()),
+            ("needles", &self.needles, "kept (more than 10 000 times as long as high)".into()),
+            (
+                "edges of 3+ triangles",
+                &self.non_manifold_edges,
+                "kept, every triangle can be hit".into(),
+            ),
+            ("border edges", &self.border_edges, loops),
+            (
+                "T-junctions",
+                &self.t_junctions,
+                "kept; the closer face wins, no false edge contact".into(),
+            ),
+            (
+                "flipped neighbours",
+                &self.flipped_edges,
+                "no matter: every triangle has two sides".into(),
+            ),
+        ]
+    }
+}
+
+impl fmt::Display for FileHealth {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let format = match self.format {
+            Format::Ascii => "ASCII",
+            Format::Binary => "binary",
+        };
+        writeln!(
+            f,
+            "{}: {format} STL, {} solid(s), {} facets, {:.0} % face down",
+            self.file,
+            grouped(self.solids),
+            grouped(self.facets),
+            100.0 * self.facing_down
+        )?;
+        if self.normals_off.count > 0 {
+            let count = grouped(self.normals_off.count);
+            writeln!(
+                f,
+                "  {count} stored normals contradict their winding; stored normals are never used"
+            )?;
+            writeln!(f, "{}", places(&self.normals_off))?;
+        }
+        match self.spacing.filter(Spacing::is_worth_a_warning) {
+            Some(spacing) => writeln!(
+                f,
+                "  warning: {spacing}: export with a map origin subtracted, or as ASCII"
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The example places of a tally.
+fn places(tally: &Tally) -> String {
+    let places: Vec<String> =
+        tally.examples_m.iter().map(|[x, y, z]| format!("({x:.3}, {y:.3}, {z:.3})")).collect();
+    let more = if tally.count > places.len() { " …" } else { "" };
+    format!("    at {}{more}", places.join(" "))
+}
+
+/// A count with thin groups of three digits: 48 210.
+fn grouped(count: usize) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}

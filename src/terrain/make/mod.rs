@@ -1,0 +1,42 @@
+//! Made terrain: the slopes that ship with the project and simple shapes with known answers.
+//!
+//! The slopes use integer hashes, `+ − × /` and square roots only, which every machine rounds the same way: the files
+//! in `terrain/` come out bit for bit.
+
+mod noise;
+mod shapes;
+mod slopes;
+mod stems;
+#[cfg(test)]
+mod tests;
+
+pub use shapes::{containers, jittered_plane, ridge, stairs, tetrahedron, v_groove};
+pub use slopes::{Slope, natural_slope, paper_slope, quick_slope};
+pub use stems::{Stem, square_stem, stem};
+
+use crate::error::{Error, Result};
+use crate::terrain::stl::{Facet, write_binary};
+use std::path::Path;
+
+/// The made files of `terrain/` by name.
+pub fn shipped() -> Vec<(&'static str, Vec<Facet>)> {
+    let (paper, quick) = (paper_slope(), quick_slope());
+    vec![
+        ("paper_trees.stl", slopes::paper_trees(&paper)),
+        ("paper_slope.stl", paper.facets),
+        ("quick_trees.stl", slopes::quick_trees(&quick)),
+        ("quick_slope.stl", quick.facets),
+    ]
+}
+
+/// Writes the made files of `terrain/` into a directory.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_shipped(dir: &Path) -> Result<()> {
+    std::fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    for (name, facets) in shipped() {
+        write_binary(&dir.join(name), &facets)?;
+    }
+    Ok(())
+}

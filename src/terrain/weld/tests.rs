@@ -1,0 +1,163 @@
+use super::*;
+use proptest::prelude::*;
+
+fn piece(soup: &Soup, sheet: u16) -> Piece<'_> {
+    Piece { file: Path::new("t.stl"), soup, up: Up::Z, scale: 1.0, sheet }
+}
+
+fn weld_one(facets: Vec<[Vec3; 3]>, tolerance_m: Option<f64>) -> Result<Welded> {
+    let soup = Soup::from(facets);
+    weld(&[piece(&soup, 0)], Vec3::zeros(), tolerance_m)
+}
+
+fn v(x: f64, y: f64, z: f64) -> Vec3 {
+    Vec3::new(x, y, z)
+}
+
+/// Euler: a square of n x n cells has (n + 1)² vertices, 2 n² triangles and 3 n² + 2 n edges.
+#[test]
+fn a_lattice_welds_to_the_counts_of_euler() {
+    let welded = weld_one(crate::terrain::make::jittered_plane(50.0, 20, 0.6), None).unwrap();
+    let counts = (welded.vertices_m.len(), welded.triangles.len(), welded.edges.len());
+    assert_eq!(counts, (21 * 21, 800, 3 * 400 + 40));
+    assert_eq!(welded.edges.borders().len(), 80);
+}
+
+#[test]
+fn edge_k_runs_from_vertex_k_to_the_next() {
+    let welded = weld_one(crate::terrain::make::tetrahedron(1.0), None).unwrap();
+    for (t, corners) in (0u32..).zip(&welded.triangles) {
+        for k in 0..3 {
+            let edge = welded.edges.of_triangle[t as usize][k];
+            let mut ends = [corners[k], corners[(k + 1) % 3]];
+            ends.sort_unstable();
+            assert_eq!(welded.edges.ends[edge as usize], ends);
+            assert_eq!(welded.edges.triangles_on(edge).len(), 2);
+            assert!(welded.edges.triangles_on(edge).contains(&t));
+        }
+    }
+}
+
+/// Coordinates of a 32-bit file minus whole metres are exact in f64, so nothing is lost on the way to the map.
+#[test]
+fn map_coordinates_come_back_bit_for_bit() {
+    let corner = v(f64::from(2_600_000.3_f32), f64::from(1_199_999.7_f32), f64::from(1523.17_f32));
+    let soup = Soup::from(vec![[corner, corner + v(4.0, 0.0, 0.0), corner + v(0.0, 4.0, 1.0)]]);
+    let welded = weld(&[piece(&soup, 0)], v(-0.5, 7.0, 0.0), None).unwrap();
+    assert_eq!(welded.origin_m.map(f64::fract), v(0.5, 0.0, 0.0));
+    let on_file = welded.on_map(welded.vertices_m[0]) - v(-0.5, 7.0, 0.0);
+    assert_eq!(on_file, corner);
+    assert!(welded.vertices_m.iter().all(|p| p.amax() <= 2.5));
+}
+
+#[test]
+fn sheets_and_facets_are_remembered_across_files_and_seams() {
+    let left = Soup::from(vec![[v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0)]]);
+    let right = Soup::from(vec![
+        [v(1.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(5.0, 5.0, 0.0)],
+        [v(1.0, -0.0, 0.0), v(1.0, 1.0, 0.0), v(1e-7, 1.0, -0.0)],
+    ]);
+    let welded = weld(&[piece(&left, 3), piece(&right, 8)], Vec3::zeros(), None).unwrap();
+    assert_eq!((welded.sheet_of, welded.facet_of), (vec![3, 8], vec![0, 1]));
+    assert_eq!((welded.vertices_m.len(), welded.edges.len(), welded.moved_corners), (4, 5, 1));
+    assert_eq!(
+        (welded.zero_area.count, welded.zero_area.examples_m.clone()),
+        (1, vec![[1.0, 0.0, 0.0]])
+    );
+}
+
+#[test]
+fn y_up_files_in_millimetres_stand_upright_in_metres() {
+    let soup = Soup::from(vec![[v(0.0, 0.0, 0.0), v(1000.0, 0.0, 0.0), v(0.0, 3000.0, -2000.0)]]);
+    let turned = Piece { up: Up::Y, scale: 0.001, ..piece(&soup, 0) };
+    let welded = weld(&[turned], Vec3::zeros(), None).unwrap();
+    let top = welded.on_map(welded.vertices_m[2]);
+    assert!((top - v(0.0, 2.0, 3.0)).norm() < 1e-15, "{top}"); // one rounding of the scale
+}
+
+#[test]
+fn the_first_of_equal_triangles_stays_whatever_the_winding() {
+    let [a, b, c, d] = [v(0.0, 0.0, 0.0), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0), v(1.0, 1.0, 0.0)];
+    let welded =
+        weld_one(vec![[a, b, c], [c, b, a], [b, d, c], [b, c, a], [d, b, c]], None).unwrap();
+    assert_eq!(welded.facet_of, [0, 2]);
+    assert_eq!(welded.duplicates.count, 3);
+    assert_eq!(welded.triangles[0], [0, 1, 2]);
+}
+
+/// A chain of points 0.8 tolerances apart must not fall together: 0 takes 1 (0.8), 2 stays (1.6), 2 takes 3.
+#[test]
+fn chains_of_close_points_do_not_collapse() {
+    let apex = [v(0.0, 1.0, 0.0), v(0.0, 0.0, 1.0)];
+    let at = |k: usize| v(0.008 * k as f64, 0.0, 0.0);
+    let facets = (0..4).map(|k| [at(k), apex[0], apex[1]]).collect();
+    let welded = weld_one(facets, Some(0.01)).unwrap();
+    assert_eq!((welded.facet_of, welded.duplicates.count), (vec![0, 2], 2));
+}
+
+#[test]
+fn unusable_requests_are_refused_with_a_cure() {
+    let flat = vec![[Vec3::zeros(), v(1.0, 0.0, 0.0), v(2.0, 0.0, 0.0)]];
+    let soup = Soup::from(flat.clone());
+    let scaled = |scale| weld(&[Piece { scale, ..piece(&soup, 0) }], Vec3::zeros(), None);
+    for (refused, part) in [
+        (weld_one(flat.clone(), None), "none of 1 facets has an area"),
+        (weld(&[], Vec3::zeros(), None), "no mesh file"),
+        (weld_one(flat.clone(), Some(-1.0)), "weld tolerance = -1 m"),
+        (weld_one(flat.clone(), Some(f64::NAN)), "weld tolerance = NaN m"),
+        (scaled(0.0), "0 is not a positive number"),
+        (scaled(f64::INFINITY), "inf is not a positive number"),
+        (scaled(1e308), "triangle 1: coordinates beyond 1e8 m"),
+    ] {
+        let message = refused.expect_err(part).to_string();
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+/// Sorting runs on all threads; the rows are all different, so their order is unique.
+#[test]
+fn any_number_of_threads_welds_the_same_mesh() {
+    let soup = Soup::from(crate::terrain::make::natural_slope(60, 80).facets);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| weld(&[piece(&soup, 0)], Vec3::zeros(), Some(0.05)).unwrap())
+    };
+    assert_eq!(on(1), on(5));
+}
+
+fn corners() -> impl Strategy<Value = Vec<[u8; 3]>> {
+    prop::collection::vec(prop::array::uniform3(0u8..12), 3..120)
+}
+
+proptest! {
+    /// What the welder promises: kept points lie more than the tolerance apart, every corner has one within it, and
+    /// the mesh is free of repeated corners, duplicates and unused vertices.
+    #[test]
+    fn welding_keeps_its_promises(corners in corners(), tolerance_m in 0.0..3.0) {
+        let points: Vec<Vec3> = corners.iter().map(|c| Vec3::from(c.map(f64::from)) * 0.7).collect();
+        let facets: Vec<[Vec3; 3]> = points.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+        let soup = Soup::from(facets.clone());
+        let Ok(welded) = weld(&[piece(&soup, 0)], Vec3::zeros(), Some(tolerance_m)) else { return Ok(()) };
+        let kept = &welded.vertices_m;
+        for (i, a) in kept.iter().enumerate() {
+            prop_assert!(kept[..i].iter().all(|b| (a - b).norm() > tolerance_m));
+        }
+        for (t, triangle) in welded.triangles.iter().enumerate() {
+            let source = facets[welded.facet_of[t] as usize];
+            for k in 0..3 {
+                let moved = welded.on_map(kept[triangle[k] as usize]) - source[k];
+                prop_assert!(moved.norm() <= tolerance_m + 1e-12); // rounding of the recentring
+            }
+        }
+        prop_assert!((0..kept.len() as u32).all(|v| welded.triangles.iter().flatten().any(|&u| u == v)));
+        let mut sets: Vec<[u32; 3]> = welded.triangles.clone();
+        for set in &mut sets {
+set.sort_unstable();
+}
+        sets.sort_unstable();
+        prop_assert!(sets.windows(2).all(|pair| pair[0] != pair[1]));
+        prop_assert!(sets.iter().all(|set| set[0] < set[1] && set[1] < set[2]));
+        let all = facets.len();
+        prop_assert_eq!(welded.zero_area.count + welded.duplicates.count + welded.triangles.len(), all);
+    }
+}

@@ -1,0 +1,96 @@
+//! One rock on a made mesh, computed through the library's own journey.
+#![allow(dead_code, reason = "every test file uses another part")]
+
+use rockfall::chance::{Purpose, stream};
+use rockfall::ground::Ground;
+use rockfall::plan::{Release, RestRule};
+use rockfall::rock::{Motion, Rock, Vec3};
+use rockfall::step::{Scheme, Settings};
+use rockfall::terrain::stl::{Facet, Soup};
+use rockfall::terrain::weld::{Piece, Up, weld};
+use rockfall::terrain::{Sheet, Terrain};
+use rockfall::trajectory::{Course, Keep, Scratch, Trajectory, follow};
+use std::path::Path;
+
+/// Gravity of the exact cases (m/s²), as in the paper's Table 1.
+pub const G: f64 = 9.8;
+
+/// A terrain of one sheet, without recentring noise: the facets' own coordinates are local when their box is
+/// centred on whole metres.
+pub fn terrain(facets: Vec<Facet>) -> Terrain {
+    let soup = Soup::from(facets);
+    let piece = Piece { file: Path::new("made"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
+    let welded = weld(&[piece], Vec3::zeros(), Some(1e-9)).unwrap();
+    Terrain::new(welded, vec![Sheet { path: "made".into(), ground: 0, is_tree: false }])
+}
+
+/// The rock of the exact cases: R = 0.5 m, 2700 kg/m³.
+pub const ROCK: Rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
+
+/// The ground of the exact cases: Table 1 with restitution 0.5.
+pub const GROUND: Ground = Ground {
+    normal_stiffness_n_m: 1e9,
+    shear_stiffness_n_m: 0.25e9,
+    friction_angle_rad: std::f64::consts::FRAC_PI_6,
+    restitution: Some(0.5),
+    rolling_friction: 0.0,
+    roughness_rad: 0.0,
+};
+
+/// A case: one rock on one ground.
+#[derive(Debug, Clone, Copy)]
+pub struct Case {
+    pub scheme: Scheme,
+    pub tolerance_m_s: f64,
+    pub step_s: f64,
+    pub ground: Ground,
+    pub rock: Rock,
+    pub capture_speed_m_s: Option<f64>,
+    pub rest_time_s: f64,
+    pub path_step_s: Option<f64>,
+}
+
+pub const CASE: Case = Case {
+    scheme: Scheme::Adaptive,
+    tolerance_m_s: 1e-3,
+    step_s: 1e-5,
+    ground: GROUND,
+    rock: ROCK,
+    capture_speed_m_s: None,
+    rest_time_s: 0.3,
+    path_step_s: None,
+};
+
+impl Case {
+    /// Follows the rock from map position `c` with velocity `v` and spin `w` for at most `longest_s`; ends in map
+    /// coordinates.
+    pub fn run(&self, terrain: &Terrain, [c, v, w]: [[f64; 3]; 3], longest_s: f64) -> Trajectory {
+        let step = Settings {
+            scheme: self.scheme,
+            tolerance_m_s: self.tolerance_m_s,
+            step_s: self.step_s,
+            shear_memory: true,
+            capture_speed_m_s: self.capture_speed_m_s,
+        };
+        let course = Course {
+            terrain,
+            gravity_m_s2: G,
+            step: &step,
+            rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
+            longest_s,
+        };
+        let motion = Motion {
+            time_s: 0.0,
+            position_m: Vec3::from(c) - terrain.origin_m,
+            velocity_m_s: v.into(),
+            spin_rad_s: w.into(),
+        };
+        let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
+        let mut chance = stream(1, Purpose::Impacts, 0);
+        let keep = Keep { path_step_s: self.path_step_s, impacts: true };
+        let mut fallen = follow(&course, &release, keep, &mut chance, &mut Scratch::default());
+        fallen.start.position_m += terrain.origin_m;
+        fallen.end.position_m += terrain.origin_m;
+        fallen
+    }
+}
