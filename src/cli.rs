@@ -121,14 +121,14 @@ pub(crate) fn main() -> ExitCode {
 
 fn plan(scene: &Path) -> Result<ExitCode> {
     let scene = Scene::read(scene)?;
-    let (terrain, health) = wiring::read_terrain(&scene)?;
+    let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
     Ok(say(format!("{health}\n{plan}")))
 }
 
 fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
-    let (terrain, _) = wiring::read_terrain(&scene)?;
+    let (terrain, _) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
     if !args.quiet {
         say(&plan);

@@ -85,8 +85,10 @@ impl Releases {
             density_kg_m3: scene.rocks.density_kg_m3,
             grounds: scene.grounds.values().cloned().collect(),
         };
-        for (number, corner) in releases.place.corners_m().into_iter().enumerate() {
-            releases.ground_m(terrain, corner, &format!("[release] corner {}", number + 1))?;
+        let (key, corners_m) = releases.place.corners_m();
+        for (number, corner) in corners_m.into_iter().enumerate() {
+            let who = format!("[release] {key}, entry {}", number + 1);
+            releases.ground_m(terrain, corner, &who)?;
         }
         Ok(releases)
     }
@@ -189,12 +191,12 @@ impl Releases {
 }
 
 impl Where {
-    /// Points or corners in plan view (m), map coordinates.
-    fn corners_m(&self) -> Vec<Corner> {
+    /// The scene's key and its points or corners in plan view (m), map coordinates.
+    fn corners_m(&self) -> (&'static str, Vec<Corner>) {
         match self {
-            Self::Points(points) => points.iter().map(|point| point.at_m).collect(),
-            Self::Line(line) => line.corners_m().to_vec(),
-            Self::Area(area) => area.corners_m().to_vec(),
+            Self::Points(points) => ("points_m", points.iter().map(|point| point.at_m).collect()),
+            Self::Line(line) => ("line_m", line.corners_m().to_vec()),
+            Self::Area(area) => ("polygon_m", area.corners_m().to_vec()),
         }
     }
 }

@@ -1,10 +1,14 @@
-//! Where the commands meet the floors that compute: reading meshes, running releases, drawing results.
+//! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
 use rockfall::error::{Error, Result};
 use rockfall::plan::Plan;
-use rockfall::scene::Scene;
-use rockfall::terrain::Terrain;
-use std::path::Path;
+use rockfall::rock::Vec3;
+use rockfall::terrain::grid::Grid;
+use rockfall::terrain::read::Source;
+use rockfall::terrain::stl::write_binary;
+use rockfall::terrain::weld::Up;
+use rockfall::terrain::{Sheet, Terrain, make};
+use std::path::{Path, PathBuf};
 
 /// What to do with results that the folder holds already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,29 +46,50 @@ impl Run {
     }
 }
 
-/// Reads and welds the meshes of a scene; says what was found in them.
-pub(crate) fn read_terrain(_scene: &Scene) -> Result<(Terrain, String)> {
-    Err(not_built("reading meshes"))
-}
-
 /// Draws figures and page again from the results in `dir`.
 pub(crate) fn draw(_dir: &Path) -> Result<()> {
     Err(not_built("drawing"))
 }
 
 /// Health of mesh files as they will be welded, in words.
-pub(crate) fn check_meshes(_files: &[std::path::PathBuf]) -> Result<String> {
-    Err(not_built("checking meshes"))
+pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
+    let source = |path: &PathBuf| Source {
+        sheet: Sheet { path: path.clone(), ground: 0, is_tree: false },
+        up: Up::default(),
+        scale: 1.0,
+    };
+    let sources: Vec<Source> = files.iter().map(source).collect();
+    let (_, health) = Terrain::read(&sources, Vec3::zeros(), None)?;
+    Ok(health.to_string())
 }
 
 /// Turns an ESRI ASCII grid into an STL file; says what was subtracted.
-pub(crate) fn mesh_from_grid(_grid: &Path, _out: &Path) -> Result<String> {
-    Err(not_built("turning grids into meshes"))
+pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
+    let grid = Grid::read(grid)?;
+    let origin_m = grid.map_origin_m();
+    let facets = grid.facets(origin_m);
+    write_binary(out, &facets)?;
+    Ok(format!(
+        "{} triangles written to {}\norigin_m = [{:?}, {:?}, {:?}]  # write this into the scene",
+        facets.len(),
+        out.display(),
+        origin_m.x,
+        origin_m.y,
+        origin_m.z
+    ))
 }
 
 /// Writes one of the made slopes and shapes.
-pub(crate) fn make_mesh(_kind: &str, _out: &Path) -> Result<String> {
-    Err(not_built("making meshes"))
+pub(crate) fn make_mesh(kind: &str, out: &Path) -> Result<String> {
+    let shipped = make::shipped();
+    let name = |file: &'static str| file.trim_end_matches(".stl");
+    let Some((_, facets)) = shipped.iter().find(|(file, _)| name(file) == kind) else {
+        let known: Vec<&str> = shipped.iter().map(|(file, _)| name(file)).collect();
+        let known = known.join(", ");
+        return Err(Error::Request(format!("mesh make: found {kind}; write one of {known}")));
+    };
+    write_binary(out, facets)?;
+    Ok(format!("{} triangles written to {}", facets.len(), out.display()))
 }
 
 fn not_built(what: &str) -> Error {

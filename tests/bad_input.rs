@@ -1,5 +1,7 @@
 //! Wrong scenes: each file in `tests/bad` carries in its first line the message that it must produce.
 
+use proptest::prelude::*;
+use rockfall::scene::Scene;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -74,5 +76,31 @@ fn wrong_requests_are_refused() {
         let stderr = String::from_utf8(said.stderr).unwrap();
         assert_eq!(said.status.code(), Some(2), "{request:?}: {stderr}");
         assert!(!stderr.is_empty() && !stderr.contains("panicked"), "{request:?}: {stderr}");
+    }
+}
+
+proptest! {
+    /// Whatever is typed into a scene, the answer is a scene or a message that names the file.
+    #[test]
+    fn no_text_makes_the_reader_panic(
+        which in 0_usize..80,
+        cut in 0.0_f64..1.0,
+        length in 0_usize..40,
+        typed in "[\\[\\]{}=\",.#'0-9a-zé\n -]{0,12}",
+    ) {
+        let scenes = bad_scenes();
+        let text = std::fs::read_to_string(&scenes[which % scenes.len()]).unwrap();
+        let letters: Vec<char> = text.chars().collect();
+        let start = (cut * letters.len() as f64) as usize;
+        let end = (start + length).min(letters.len());
+        let edited: String = letters[..start].iter().copied()
+            .chain(typed.chars())
+            .chain(letters[end..].iter().copied())
+            .collect();
+        if let Err(error) = Scene::parse(&edited, Path::new("edited.toml")) {
+            let said = error.to_string();
+            prop_assert!(said.starts_with("edited.toml: "), "{}", said);
+            prop_assert!(said.contains("; "), "{}", said);
+        }
     }
 }

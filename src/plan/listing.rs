@@ -93,8 +93,8 @@ impl Plan {
     fn dissipation(&self) -> impl Iterator<Item = String> {
         self.own_dissipation.iter().map(|own| {
             let kept = own.phases.map(|(radius_m, phase)| match dda_restitution(phase) {
-                Some(e) => format!("{e:.4} (R = {radius_m} m)"),
-                None => format!("anything in 0..1 (R = {radius_m} m)"),
+                Some(e) => format!("{e:.4} (R = {radius_m:.3} m)"),
+                None => format!("anything in 0..1 (R = {radius_m:.3} m)"),
             });
             let force = if own.is_in_force {
                 "restitution in force"

@@ -62,13 +62,13 @@ pub(super) fn own_dissipation(
         for ((radius_m, phase), stiffness) in phases.iter_mut().zip(stiffness) {
             *phase = step_s * (stiffness / rock(scene, *radius_m).mass_kg()).sqrt();
         }
-        warnings.extend(phase_warning(name, phases[0]));
+        warnings.extend(phase_warning(name, phases[0], step_s));
         OwnDissipation { ground: name.clone(), phases, is_in_force: ground.restitution.is_none() }
     };
     scene.grounds.iter().map(dissipation).collect()
 }
 
-fn phase_warning(ground: &str, (radius_m, phase): (f64, f64)) -> Option<String> {
+fn phase_warning(ground: &str, (radius_m, phase): (f64, f64), step_s: f64) -> Option<String> {
     let trouble = if phase >= LOTTERY_PHASE {
         "rebounds anyhow between 0 and its full speed"
     } else if phase >= RESOLVED_PHASE {
@@ -77,8 +77,8 @@ fn phase_warning(ground: &str, (radius_m, phase): (f64, f64)) -> Option<String> 
         return None;
     };
     Some(format!(
-        "[grounds.{ground}] omega * step_s = {phase:.3} for a rock of {radius_m} m, which {trouble}: write a step_s below {:.1e}",
-        RESOLVED_PHASE / phase
+        "[grounds.{ground}] omega * step_s = {phase:.3} for a rock of {radius_m:.3} m, which {trouble}: write a step_s below {:.1e}",
+        step_s * RESOLVED_PHASE / phase
     ))
 }
 
@@ -124,7 +124,7 @@ pub(super) fn check(scene: &Scene, terrain: &Terrain, warnings: &mut Vec<String>
             let usual = at_rest.max(least(fastest_m_s.min(SELDOM_PASSED_M_S), IMPACT_DEPTH));
             let place = format!("[grounds.{name}] normal_stiffness_n_m");
             let found = format!(
-                "found {softest:e}, too soft for a rock of {} m at up to {fastest_m_s:.0} m/s: it would sink in",
+                "found {softest:e}, too soft for a rock of {:.3} m at up to {fastest_m_s:.0} m/s: it would sink in",
                 largest.radius_m
             );
             let remedy = format!("write {:.1e} or more", 1.05 * usual.max(at_rest));
@@ -133,7 +133,7 @@ pub(super) fn check(scene: &Scene, terrain: &Terrain, warnings: &mut Vec<String>
         let needed = least(fastest_m_s.min(SELDOM_PASSED_M_S), IMPACT_DEPTH);
         if softest < needed {
             warnings.push(format!(
-                "[grounds.{name}] normal_stiffness_n_m = {softest:e} lets a rock of {} m sink in by more than {IMPACT_DEPTH} of its radius in an impact at {:.0} m/s; {needed:.1e} would not",
+                "[grounds.{name}] normal_stiffness_n_m = {softest:e} lets a rock of {:.3} m sink in by more than {IMPACT_DEPTH} of its radius in an impact at {:.0} m/s; {needed:.1e} would not",
                 largest.radius_m,
                 fastest_m_s.min(SELDOM_PASSED_M_S),
             ));

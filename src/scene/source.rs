@@ -10,7 +10,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A scene's text with the place of every key and value in it.
-pub(super) struct Source<'a> {
+pub(super) struct Lookup<'a> {
     file: &'a Path,
     text: &'a str,
     is_toml: bool,
@@ -31,7 +31,7 @@ struct Node {
     headed: bool,
 }
 
-impl<'a> Source<'a> {
+impl<'a> Lookup<'a> {
     /// Finds every key; a text that is no TOML has none.
     pub(super) fn of(file: &'a Path, text: &'a str) -> Self {
         let mut nodes = Vec::new();

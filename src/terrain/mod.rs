@@ -7,6 +7,7 @@ mod groups;
 pub mod health;
 pub mod index;
 pub mod make;
+pub mod read;
 mod merge;
 pub mod stl;
 pub mod t_junctions;
