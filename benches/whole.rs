@@ -36,7 +36,8 @@ fn main() {
     let welded = weld(&[piece], Vec3::zeros(), None).unwrap();
     println!("weld {:?}", clock.elapsed());
     let clock = Instant::now();
-    let terrain = Terrain::new(welded, vec![Sheet { path: "made".into(), ground: 0, is_tree: false }]);
+    let terrain =
+        Terrain::new(welded, vec![Sheet { path: "made".into(), ground: 0, is_tree: false }]);
     println!("index {:?} {} triangles", clock.elapsed(), terrain.triangles.len());
     let ground = Ground {
         normal_stiffness_n_m: 1e9,
@@ -46,7 +47,13 @@ fn main() {
         rolling_friction: 0.5,
         roughness_rad: 0.0,
     };
-    let step = Settings { scheme, tolerance_m_s, step_s: 0.01, shear_memory: true, capture_speed_m_s: None };
+    let step = Settings {
+        scheme,
+        tolerance_m_s,
+        step_s: 0.01,
+        shear_memory: true,
+        capture_speed_m_s: None,
+    };
     let course = Course {
         terrain: &terrain,
         gravity_m_s2: 9.8,
@@ -63,14 +70,33 @@ fn main() {
     let (mut vmax, mut time) = (0.0, 0.0);
     for i in 0..n {
         let mut place = stream(7, Purpose::Place, i);
-        let (x, y) = (140.0 + 20.0 * unit(&mut place) - 150.0, 10.0 - 200.0 + 10.0 * unit(&mut place));
+        let (x, y) =
+            (140.0 + 20.0 * unit(&mut place) - 150.0, 10.0 - 200.0 + 10.0 * unit(&mut place));
         let z = terrain.ground_below(x, y).unwrap() + 1.5;
-        let motion = Motion { time_s: 0.0, position_m: Vec3::new(x, y, z), velocity_m_s: Vec3::zeros(), spin_rad_s: Vec3::zeros() };
+        let motion = Motion {
+            time_s: 0.0,
+            position_m: Vec3::new(x, y, z),
+            velocity_m_s: Vec3::zeros(),
+            spin_rad_s: Vec3::zeros(),
+        };
         let release = Release { rock, motion, grounds: vec![ground] };
         let mut chance = stream(7, Purpose::Impacts, i);
-        let f = follow(&course, &release, Keep { path_step_s: None, impacts: false }, &mut chance, &mut scratch);
+        let f = follow(
+            &course,
+            &release,
+            Keep { path_step_s: None, impacts: false },
+            &mut chance,
+            &mut scratch,
+        );
         runouts.push(f.runout_m());
-        for (sum, x) in effort.iter_mut().zip([f.effort.steps, f.effort.rejected, f.effort.leaps, f.effort.sweeps, f.effort.triangles, u64::from(f.impact_count)]) {
+        for (sum, x) in effort.iter_mut().zip([
+            f.effort.steps,
+            f.effort.rejected,
+            f.effort.leaps,
+            f.effort.sweeps,
+            f.effort.triangles,
+            u64::from(f.impact_count),
+        ]) {
             *sum += x;
         }
         rise = rise.max(f.ledger.rise_j);
@@ -78,11 +104,29 @@ fn main() {
         rel += f.released_j;
         vmax += f.extremes.speed_m_s;
         time += f.end.time_s;
-        stops[match f.stop { Stop::AtRest => 0, Stop::LeftTerrain => 1, Stop::TimeUp => 2, Stop::Failed(_) => 3 }] += 1;
+        stops[match f.stop {
+            Stop::AtRest => 0,
+            Stop::LeftTerrain => 1,
+            Stop::TimeUp => 2,
+            Stop::Failed(_) => 3,
+        }] += 1;
     }
     let s = clock.elapsed().as_secs_f64();
     runouts.sort_by(f64::total_cmp);
-    println!("{:.0} rocks/s; per rock: steps {} rejected {} leaps {} sweeps {} triangles {} impacts {}; stops {stops:?} rise {rise:.2e} remainder {:.4} P50 {:.2} P95 {:.2} mean {:.2} vmax {:.2} time {:.1}",
-        n as f64 / s, effort[0] / n as u64, effort[1] / n as u64, effort[2] / n as u64, effort[3] / n as u64, effort[4] / n as u64, effort[5] / n as u64,
-        rem / rel, runouts[n / 2], runouts[n * 95 / 100], runouts.iter().sum::<f64>() / n as f64, vmax / n as f64, time / n as f64);
+    println!(
+        "{:.0} rocks/s; per rock: steps {} rejected {} leaps {} sweeps {} triangles {} impacts {}; stops {stops:?} rise {rise:.2e} remainder {:.4} P50 {:.2} P95 {:.2} mean {:.2} vmax {:.2} time {:.1}",
+        n as f64 / s,
+        effort[0] / n as u64,
+        effort[1] / n as u64,
+        effort[2] / n as u64,
+        effort[3] / n as u64,
+        effort[4] / n as u64,
+        effort[5] / n as u64,
+        rem / rel,
+        runouts[n / 2],
+        runouts[n * 95 / 100],
+        runouts.iter().sum::<f64>() / n as f64,
+        vmax / n as f64,
+        time / n as f64
+    );
 }

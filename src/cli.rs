@@ -2,10 +2,11 @@
 
 #![expect(clippy::print_stderr, reason = "this is the face of the program")]
 
-use crate::wiring::{self, Mode};
+use crate::wiring::{self, Order};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use rockfall::error::{Error, Result};
+use rockfall::output::Mode;
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use std::fmt::Display;
@@ -133,22 +134,24 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
     if !args.quiet {
         say(&plan);
     }
-    args.start_threads()?;
-    let interrupted = ctrl_c()?;
-    let out = args.out();
-    let mut run = wiring::Run::begin(&plan, &out, args.mode(), args.only)?;
-    let bar = args.progress(&plan);
-    while let Some(done) = run.next_chunk()? {
+    let order = args.order();
+    let mut run = wiring::Run::begin(&plan, &order)?;
+    stop_at_ctrl_c(run.stop_flag())?;
+    let asked = args.only.map_or(plan.count, |_| 1);
+    let bar = args.progress(asked);
+    let mut done = 0;
+    while let Some(so_far) = run.next_chunk()? {
+        done = so_far;
         bar.set_position(done as u64);
-        if interrupted.load(Ordering::Relaxed) && done < plan.count {
-            bar.abandon();
-            return Ok(args.interrupted(done, &plan));
-        }
+    }
+    if done < asked && run.stop_flag().load(Ordering::Relaxed) {
+        bar.abandon();
+        return Ok(args.interrupted(done, asked));
     }
     bar.finish();
     run.finish()?;
     if !args.quiet {
-        say(format!("results in {}", out.display()));
+        say(format!("results in {}", order.out.display()));
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -169,31 +172,27 @@ impl RunArgs {
         }
     }
 
-    fn out(&self) -> PathBuf {
+    fn order(&self) -> Order {
         let name = self.scene.file_stem().unwrap_or_default();
-        self.out.clone().unwrap_or_else(|| Path::new("reports").join(name))
-    }
-
-    fn mode(&self) -> Mode {
-        match (self.resume, self.overwrite) {
+        let mode = match (self.resume, self.overwrite) {
             (true, _) => Mode::Resume,
             (_, true) => Mode::Overwrite,
             _ => Mode::Fresh,
+        };
+        Order {
+            out: self.out.clone().unwrap_or_else(|| Path::new("reports").join(name)),
+            mode,
+            only: self.only,
+            threads: self.threads,
         }
-    }
-
-    fn start_threads(&self) -> Result<()> {
-        let Some(threads) = self.threads else { return Ok(()) };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        pool.map_err(|error| Error::Request(format!("--threads {threads}: {error}; write fewer")))
     }
 
     /// Rate and remaining time on a terminal, nothing when piped.
-    fn progress(&self, plan: &Plan) -> ProgressBar {
+    fn progress(&self, asked: usize) -> ProgressBar {
         if self.quiet {
             return ProgressBar::hidden();
         }
-        let bar = ProgressBar::new(plan.count as u64);
+        let bar = ProgressBar::new(asked as u64);
         match ProgressStyle::with_template("{bar:40} {pos}/{len} rocks, {per_sec}, {eta} left") {
             Ok(style) => bar.with_style(style),
             Err(_) => bar,
@@ -201,25 +200,22 @@ impl RunArgs {
     }
 
     /// Says how to go on.
-    fn interrupted(&self, done: usize, plan: &Plan) -> ExitCode {
+    fn interrupted(&self, done: usize, asked: usize) -> ExitCode {
         let mut words: Vec<String> =
             std::env::args().skip(1).filter(|word| word != "--overwrite").collect();
         if !self.resume {
             words.push("--resume".to_owned());
         }
-        eprintln!("interrupted: {done} of {} releases are written", plan.count);
+        eprintln!("interrupted: {done} of {asked} releases are written");
         eprintln!("go on with: rockfall {}", words.join(" "));
         ExitCode::from(INTERRUPTED)
     }
 }
 
-/// A flag that Ctrl-C raises: the chunk in hand is finished and written before anything ends.
-fn ctrl_c() -> Result<Arc<AtomicBool>> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&flag);
-    ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed))
-        .map_err(|error| Error::Request(format!("cannot watch for Ctrl-C: {error}")))?;
-    Ok(flag)
+/// Ctrl-C raises the flag: the chunk in hand is finished and written before anything ends.
+fn stop_at_ctrl_c(flag: Arc<AtomicBool>) -> Result<()> {
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+        .map_err(|error| Error::Request(format!("cannot watch for Ctrl-C: {error}")))
 }
 
 /// Prints; a reader that has gone away (`rockfall plan … | head`) is no error.

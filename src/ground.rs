@@ -1,8 +1,7 @@
 //! How a ground answers a rock: springs, friction, damping from restitution, rolling friction, roughness.
 
 use crate::rock::Rock;
-use std::f64::consts::PI;
-use std::sync::OnceLock;
+use std::f64::consts::{PI, TAU};
 
 /// Ground values in force for one release (a scene may give distributions; these are drawn).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,24 +93,24 @@ impl Law {
         omega: 0.0,
     };
 
-    /// The law of `ground` for `rock`.
-    pub fn new(ground: &Ground, rock: &Rock, capture: &Capture) -> Self {
+    /// The law of `ground` for `rock`; `damping` belongs to the ground's restitution.
+    pub fn new(ground: &Ground, damping: &Damping, rock: &Rock, capture: &Capture) -> Self {
         let (m, radius) = (rock.mass_kg(), rock.radius_m);
         let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
         let omega = (p_n / m).sqrt();
-        let zeta = ground.restitution.map(damping_ratio);
         let rolls = ground.rolling_friction > 0.0;
         let k_r = if rolls { ROLLING_STIFFNESS * p_s * radius * radius } else { 0.0 };
-        let physical = zeta.map_or(0.0, capture_number) * capture.gravity_m_s2 / omega;
+        let physical = damping.capture_number * capture.gravity_m_s2 / omega;
         let least = (0.5 * capture.tolerance_m_s).max(SLOWEST_REBOUND_M_S);
+        let damped = if ground.restitution.is_some() { SHEAR_DAMPING_RATIO } else { 0.0 };
         Self {
             p_n,
             p_s,
             k_r,
-            c_n: 2.0 * zeta.unwrap_or(0.0) * m * omega,
-            c_n_captured: 2.0 * CAPTURE_DAMPING_RATIO.max(zeta.unwrap_or(0.0)) * m * omega,
+            c_n: 2.0 * damping.ratio * m * omega,
+            c_n_captured: 2.0 * CAPTURE_DAMPING_RATIO.max(damping.ratio) * m * omega,
             // The contact point's mass along the surface is 2/7 m.
-            c_s: zeta.map_or(0.0, |_| 2.0 * SHEAR_DAMPING_RATIO * (p_s * m * 2.0 / 7.0).sqrt()),
+            c_s: 2.0 * damped * (p_s * m * 2.0 / 7.0).sqrt(),
             c_r: 2.0 * (k_r * 1.4 * m).sqrt() * radius,
             friction: ground.friction_angle_rad.tan(),
             rolling_m: ground.rolling_friction * radius,
@@ -147,13 +146,14 @@ pub fn damping_ratio(e: f64) -> f64 {
     let (mut lo, mut hi) = (0.0, PLASTIC_DAMPING_RATIO);
     for _ in 0..60 {
         let middle = 0.5 * (lo + hi);
-        if restitution(middle) > e { lo = middle } else { hi = middle }
+        if restitution(middle) > e {
+            lo = middle;
+        } else {
+            hi = middle;
+        }
     }
     0.5 * (lo + hi)
 }
-
-/// Parts of a period in which the first zero of the force is looked for.
-const SWING_PARTS: u32 = 256;
 
 /// One impact on a plane with gravity, exact as far as the normal motion goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -178,20 +178,20 @@ pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
         let speed = fade * ((b * wd + al * x0) * c + (x0 * wd - al * b) * s);
         (x, speed)
     };
-    let force = |t: f64| {
-        let (x, speed) = state(t);
-        omega * omega * x + 2.0 * al * speed
-    };
-    // The force is a fading swing around the weight: it first vanishes within one period or never.
-    let period = 2.0 * PI / wd;
-    let part = |k: u32| period * f64::from(k) / f64::from(SWING_PARTS);
-    let Some(k) = (1..=SWING_PARTS).find(|&k| force(part(k)) <= 0.0) else {
+    // In units of g_n and 1/ω the same swing has its first trough at a known time.
+    let (low, deepest) = first_trough(v * omega / g_n, zeta);
+    if deepest > 0.0 {
         return NormalImpact { lift_s: f64::INFINITY, rebound_m_s: None };
-    };
-    let (mut lo, mut hi) = (part(k - 1), part(k));
+    }
+    let (mut lo, mut hi) = (0.0, low / omega);
     for _ in 0..60 {
         let middle = 0.5 * (lo + hi);
-        if force(middle) > 0.0 { lo = middle } else { hi = middle }
+        let (x, speed) = state(middle);
+        if omega * omega * x + 2.0 * al * speed > 0.0 {
+            lo = middle;
+        } else {
+            hi = middle;
+        }
     }
     let t = 0.5 * (lo + hi);
     let (x, speed) = state(t);
@@ -200,27 +200,52 @@ pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
     NormalImpact { lift_s: t, rebound_m_s: leaves.then(|| out.sqrt()) }
 }
 
-/// `p* = v ω/g` below which gravity keeps the rock in contact (–), for damping ratio ζ: the physical capture speed.
-fn capture_number(zeta: f64) -> f64 {
-    const NODES: usize = 64;
-    static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
-    let table = TABLE
-        .get_or_init(|| (0..=NODES).map(|k| capture_by_search(k as f64 / NODES as f64)).collect());
-    let place = zeta.clamp(0.0, 1.0) * NODES as f64;
-    let k = (place as usize).min(NODES - 1);
-    table[k] + (table[k + 1] - table[k]) * (place - k as f64)
+/// Time and depth of the contact force's first trough, in units of 1/ω and of the weight.
+///
+/// The force swings around the weight, `F = 1 + A e^(−ζt) cos(ω_d t + φ)`, with `F(0) = 2ζp`, `F'(0) = p + 2ζ(1 − 2ζp)`
+/// at the approach speed `p = v ω/g_n`.
+fn first_trough(p: f64, zeta: f64) -> (f64, f64) {
+    let wd = (1.0 - zeta * zeta).sqrt();
+    let (off, slope) = (2.0 * zeta * p - 1.0, p + 2.0 * zeta * (1.0 - 2.0 * zeta * p));
+    let across = -(slope + zeta * off) / wd;
+    let low = PI - (zeta / wd).atan();
+    let t = (low - across.atan2(off)).rem_euclid(TAU) / wd;
+    (t, 1.0 + off.hypot(across) * (-zeta * t).exp() * low.cos())
 }
 
-fn capture_by_search(zeta: f64) -> f64 {
-    // Above ζ = 0.95 the closed form runs out of oscillation; a heavily damped impact hardly rebounds at all.
+/// What restitution asks of the normal dashpot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damping {
+    /// Restitution (–), `None` without dashpots.
+    pub restitution: Option<f64>,
+    /// Damping ratio ζ (–).
+    pub ratio: f64,
+    /// `p* = v ω/g` below which gravity keeps the rock in contact (–): the physical capture speed.
+    pub capture_number: f64,
+}
+
+impl Damping {
+    /// The dashpot of a restitution.
+    pub fn of(restitution: Option<f64>) -> Self {
+        let ratio = restitution.map_or(0.0, damping_ratio);
+        Self {
+            restitution,
+            ratio,
+            capture_number: restitution.map_or(0.0, |_| capture_number(ratio)),
+        }
+    }
+}
+
+fn capture_number(zeta: f64) -> f64 {
+    // Towards ζ = 1 the swing dies out; so heavily damped an impact hardly rebounds at all.
     let zeta = zeta.min(0.95);
     let (mut lo, mut hi) = (0.0, 200.0);
     for _ in 0..50 {
         let middle = 0.5 * (lo + hi);
         if normal_impact(middle, 1.0, zeta, 1.0).rebound_m_s.is_some() {
-            hi = middle
+            hi = middle;
         } else {
-            lo = middle
+            lo = middle;
         }
     }
     hi
@@ -260,10 +285,9 @@ mod tests {
     #[test]
     fn slow_impacts_are_captured_at_the_physical_speed() {
         for (e, p) in [(0.9, 0.722_657), (0.5, 3.492_462), (0.3, 8.714_621)] {
-            let found = capture_by_search(damping_ratio(e));
+            let zeta = damping_ratio(e);
+            let found = capture_number(zeta);
             assert!((found - p).abs() < 1e-5, "e = {e}: {found}");
-            // linear interpolation over 64 nodes
-            assert!((capture_number(damping_ratio(e)) / p - 1.0).abs() < 0.01);
         }
     }
 }

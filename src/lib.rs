@@ -2,9 +2,12 @@
 
 pub mod chance;
 pub mod contact;
+pub mod ensemble;
 pub mod error;
 pub mod flight;
 pub mod ground;
+pub mod hazard;
+pub mod output;
 pub mod plan;
 pub mod release;
 pub mod rock;

@@ -1,6 +1,7 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
 use rockfall::error::{Error, Result};
+use rockfall::output::Mode;
 use rockfall::plan::Plan;
 use rockfall::rock::Vec3;
 use rockfall::terrain::grid::Grid;
@@ -9,33 +10,37 @@ use rockfall::terrain::stl::write_binary;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain, make};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-/// What to do with results that the folder holds already.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Mode {
-    /// Refuse them.
-    Fresh,
-    /// Go on with them.
-    Resume,
-    /// Replace them.
-    Overwrite,
+/// How a run is asked for.
+#[derive(Debug)]
+pub(crate) struct Order {
+    /// Folder for the results.
+    pub(crate) out: PathBuf,
+    /// What to do with results that it holds already.
+    pub(crate) mode: Mode,
+    /// One release alone, with its full path.
+    pub(crate) only: Option<usize>,
+    /// Worker threads; `None` = all cores.
+    pub(crate) threads: Option<usize>,
 }
 
 /// A run under way.
 pub(crate) struct Run {}
 
 impl Run {
-    /// Opens the result folder; `only` = one release, with its full path.
-    pub(crate) fn begin(
-        _plan: &Plan,
-        _out: &Path,
-        _mode: Mode,
-        _only: Option<usize>,
-    ) -> Result<Self> {
+    /// Opens the result folder.
+    pub(crate) fn begin(_plan: &Plan, _order: &Order) -> Result<Self> {
         Err(not_built("running releases"))
     }
 
-    /// Computes and writes one more chunk; says how many releases are on the disk, `None` after the last.
+    /// Raise it, and no chunk follows the one in hand.
+    pub(crate) fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::default()
+    }
+
+    /// Computes and writes one more chunk; says how many releases are on the disk, `None` when no chunk follows.
     pub(crate) fn next_chunk(&mut self) -> Result<Option<usize>> {
         Err(not_built("running releases"))
     }

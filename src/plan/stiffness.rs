@@ -3,7 +3,7 @@
 use super::Settings;
 use crate::chance::Distribution;
 use crate::error::{Error, Result};
-use crate::ground::{Capture, Ground, Law};
+use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene};
 use crate::step::Scheme;
@@ -100,7 +100,8 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
             rolling_friction: 0.0,
             roughness_rad: 0.0,
         };
-        Law::new(&ground, &rock, &capture).capture_m_s
+        let damping = Damping::of(ground.restitution);
+        Law::new(&ground, &damping, &rock, &capture).capture_m_s
     };
     scene.grounds.values().map(of).collect()
 }

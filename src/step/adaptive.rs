@@ -79,7 +79,7 @@ pub fn advance(
             Some((end, error)) if error <= 1.0 => {
                 *h = grown(control, dt, error).max(if dt < wished { wished } else { 0.0 });
                 done.dt = dt;
-                accept(world, control.tableau, grip, &end, dt, &mut done.loss);
+                accept(control.tableau, grip, &end, dt, &mut done.loss);
                 return Ok(done);
             }
             Some((_, error)) if error.is_finite() => grown(control, 1.0, error),
@@ -141,7 +141,7 @@ fn attempt(
 }
 
 /// Takes over the step's end: motion, memories, losses.
-fn accept(world: &World, tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
+fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
     for k in 0..tableau.stages {
         loss.add(&grip.rates[k].loss, dt * tableau.weight(k));
     }

@@ -5,7 +5,7 @@ use super::{Stop, Trajectory};
 use crate::chance::{Chance, unit};
 use crate::contact::Touch;
 use crate::flight::{Landing, Parabola, leap};
-use crate::ground::{Capture, Law};
+use crate::ground::{Capture, Damping, Law};
 use crate::plan::RestRule;
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
@@ -36,6 +36,22 @@ pub struct Course<'a> {
 pub struct Scratch {
     grip: Grip,
     laws: Vec<Law>,
+    /// Dashpots of the grounds of the rock before: most scenes never change them.
+    damping: Vec<Damping>,
+}
+
+impl Scratch {
+    fn make_laws(&mut self, release: &Release, capture: &Capture) {
+        self.damping.truncate(release.grounds.len());
+        self.laws.clear();
+        for (k, ground) in release.grounds.iter().enumerate() {
+            if self.damping.get(k).is_none_or(|known| known.restitution != ground.restitution) {
+                self.damping.truncate(k);
+                self.damping.push(Damping::of(ground.restitution));
+            }
+            self.laws.push(Law::new(ground, &self.damping[k], &release.rock, capture));
+        }
+    }
 }
 
 /// Steps after which a rock is given up: it counts as failed.
@@ -58,10 +74,7 @@ pub fn follow(
         tolerance_m_s: course.step.tolerance_m_s,
         gravity_m_s2: course.gravity_m_s2,
     };
-    scratch.laws.clear();
-    scratch
-        .laws
-        .extend(release.grounds.iter().map(|ground| Law::new(ground, &release.rock, &capture)));
+    scratch.make_laws(release, &capture);
     scratch.grip.near.forget();
     (scratch.grip.near.tested, scratch.grip.sweeps) = (0, 0);
     let world = World {

@@ -4,6 +4,7 @@ mod fall;
 mod journey;
 
 use crate::rock::{Motion, Rock, Vec3};
+use serde::{Deserialize, Serialize};
 
 pub use fall::{Course, Scratch, follow};
 pub use journey::Keep;
@@ -22,7 +23,7 @@ pub enum Stop {
 }
 
 /// What the computation cost, counted (no clock: the same on every machine).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Effort {
     /// Accepted contact steps.
     pub steps: u64,
@@ -39,7 +40,7 @@ pub struct Effort {
 }
 
 /// Where the energy went (J). All entries but `remainder_j` are ≥ 0.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ledger {
     /// Sliding friction against the slope.
     pub friction_j: f64,
@@ -67,7 +68,8 @@ pub struct PathPoint {
 }
 
 /// State of a rock on its path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum PathState {
     /// No contact.
     Flight,
@@ -78,7 +80,8 @@ pub enum PathState {
 }
 
 /// What of the mesh was touched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum FeatureKind {
     /// Inside of a triangle.
     Face,

@@ -1,0 +1,53 @@
+//! A share of the rocks, with its confidence interval.
+
+use serde::{Deserialize, Serialize};
+
+/// Half width of the two-sided 95 % interval of the standard normal distribution (–).
+pub(super) const NORMAL_95: f64 = 1.959_963_984_540_054;
+
+/// Share of `count` among `of`, with a 95 % interval.
+///
+/// The interval is Wilson's (1927, eq. 1). It never leaves 0..1 and stays sound for small shares, where
+/// `p ± 1.96 √(p(1 − p)/n)` does not. Where nothing (or everything) was counted, the free end is the
+/// rule of three: having seen none among `n`, the share is below `3/n` with 95 % confidence.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Proportion {
+    /// How many were counted.
+    pub count: usize,
+    /// Among how many.
+    pub of: usize,
+    /// `count / of` (–), 0..1; none of none is 0.
+    pub share: f64,
+    /// Lower end of the 95 % interval (–), 0..1.
+    pub low_95: f64,
+    /// Upper end of the 95 % interval (–), 0..1.
+    pub high_95: f64,
+}
+
+impl Proportion {
+    /// Share of `count` among `of`; of nothing, nothing is known: 0..1.
+    pub fn new(count: usize, of: usize) -> Self {
+        let share = if of == 0 { 0.0 } else { count as f64 / of as f64 };
+        let (low_95, high_95) = match count {
+            _ if of == 0 => (0.0, 1.0),
+            0 => (0.0, rule_of_three(of)),
+            all if all == of => (1.0 - rule_of_three(of), 1.0),
+            _ => wilson(share, of as f64),
+        };
+        Self { count, of, share, low_95, high_95 }
+    }
+}
+
+/// Upper 95 % bound of a share of which none was seen among `n`: `1 − 0.05^(1/n) ≈ 3/n`.
+fn rule_of_three(n: usize) -> f64 {
+    (3.0 / n as f64).min(1.0)
+}
+
+/// Wilson's score interval: `(p + z²/2n ± z √(p(1 − p)/n + z²/4n²)) / (1 + z²/n)`.
+fn wilson(p: f64, n: f64) -> (f64, f64) {
+    let z2 = NORMAL_95 * NORMAL_95;
+    let middle = p + z2 / (2.0 * n);
+    let half = NORMAL_95 * (p * (1.0 - p) / n + z2 / (4.0 * n * n)).sqrt();
+    let scale = 1.0 + z2 / n;
+    ((middle - half) / scale, (middle + half) / scale)
+}

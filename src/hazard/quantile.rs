@@ -1,0 +1,141 @@
+//! Percentiles with distribution-free confidence intervals.
+//!
+//! How many of `n` rocks stay below the true percentile `q_p` is binomial(n, p), whatever the distribution
+//! of the values. So the `l`-th and `u`-th smallest value enclose `q_p` with probability `P(l ≤ B < u)`
+//! (Conover, Practical Nonparametric Statistics, section 3.2). The probabilities are summed, not approximated.
+
+use serde::{Deserialize, Serialize};
+
+/// Chance that an interval misses on one side: half of 1 − 95 %.
+const ONE_TAIL: f64 = 0.025;
+/// Chance that a one-sided bound misses: 1 − 95 %.
+const WHOLE_TAIL: f64 = 0.05;
+/// Binomial probabilities below this part of the largest are left out: their sum stays under 1e-15.
+const NEGLIGIBLE: f64 = 1e-22;
+
+/// A percentile with its confidence interval.
+///
+/// The value is interpolated between the two nearest order statistics (definition 7 of Hyndman and Fan 1996),
+/// as spreadsheets, numpy and pandas do; the ends of the intervals are order statistics themselves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Percentile {
+    /// The sample's percentile.
+    pub value: f64,
+    /// Lower end of the two-sided 95 % interval; none when there are too few rocks.
+    pub low_95: Option<f64>,
+    /// Upper end of the two-sided 95 % interval; none when there are too few rocks.
+    pub high_95: Option<f64>,
+    /// The true percentile lies below this with 95 % confidence (one-sided); none when there are too few rocks.
+    pub upper_95: Option<f64>,
+    /// Rocks needed before any [`upper_95`](Self::upper_95) exists: 59 for P95, 299 for P99.
+    pub needs: usize,
+}
+
+impl Percentile {
+    /// Percentile `p` (0 < p < 1) of values in ascending order; none of nothing.
+    pub fn of(sorted: &[f64], p: f64) -> Option<Self> {
+        let ranks = Ranks::of(sorted.len(), p);
+        let at = |rank: Option<usize>| rank.map(|rank| sorted[rank - 1]);
+        Some(Self {
+            value: interpolated(sorted, p)?,
+            low_95: at(ranks.low),
+            high_95: at(ranks.high),
+            upper_95: at(ranks.upper),
+            needs: needed(p),
+        })
+    }
+}
+
+/// The value at `(n − 1) p` of the sorted values, counted from 0, linear in between.
+fn interpolated(sorted: &[f64], p: f64) -> Option<f64> {
+    let place = sorted.len().checked_sub(1)? as f64 * p;
+    let below = sorted[place.floor() as usize];
+    let above = sorted[place.ceil() as usize];
+    Some(below + place.fract() * (above - below))
+}
+
+/// Fewest rocks of which the largest value bounds percentile `p` with 95 % confidence: `pⁿ ≤ 0.05`.
+fn needed(p: f64) -> usize {
+    (WHOLE_TAIL.ln() / p.ln()).ceil() as usize
+}
+
+/// Which of `n` sorted values bound a percentile, counted from 1; none where no value does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ranks {
+    /// Lower end of the two-sided 95 % interval: the largest `l` with `P(B < l) ≤ 0.025`.
+    pub low: Option<usize>,
+    /// Upper end of the two-sided 95 % interval: the smallest `u` with `P(B ≥ u) ≤ 0.025`.
+    pub high: Option<usize>,
+    /// One-sided 95 % upper bound: the smallest `u` with `P(B ≥ u) ≤ 0.05`.
+    pub upper: Option<usize>,
+}
+
+impl Ranks {
+    /// Ranks for percentile `p` (0 < p < 1) of `n` values.
+    pub fn of(n: usize, p: f64) -> Self {
+        let below = Binomial::new(n, p);
+        let present = |rank: usize| (1..=n).contains(&rank).then_some(rank);
+        Self {
+            low: present(below.lower(ONE_TAIL)),
+            high: present(below.upper(ONE_TAIL)),
+            upper: present(below.upper(WHOLE_TAIL)),
+        }
+    }
+}
+
+/// The probabilities of binomial(n, p) that matter, from the count `first` on.
+struct Binomial {
+    first: usize,
+    chances: Vec<f64>,
+}
+
+impl Binomial {
+    /// Walks away from the most probable count by the ratio of neighbours and divides by the sum: no factorials.
+    fn new(n: usize, p: f64) -> Self {
+        let odds = p / (1.0 - p);
+        let mode = ((n as f64 + 1.0) * p).floor().min(n as f64) as usize;
+        let mut down =
+            walk(mode, |k| (k > 0).then(|| (k - 1, k as f64 / ((n - k + 1) as f64 * odds))));
+        let up = walk(mode, |k| (k < n).then(|| (k + 1, (n - k) as f64 * odds / (k + 1) as f64)));
+        let first = mode - down.len();
+        down.reverse();
+        let weights: Vec<f64> = down.into_iter().chain([1.0]).chain(up).collect();
+        let sum: f64 = weights.iter().sum();
+        Self { first, chances: weights.into_iter().map(|weight| weight / sum).collect() }
+    }
+
+    /// The largest `l` with `P(B < l) ≤ tail`.
+    fn lower(&self, tail: f64) -> usize {
+        self.first + within(self.chances.iter(), tail)
+    }
+
+    /// The smallest `u` with `P(B ≥ u) ≤ tail`.
+    fn upper(&self, tail: f64) -> usize {
+        self.first + self.chances.len() - within(self.chances.iter().rev(), tail)
+    }
+}
+
+/// Weights relative to the mode on one side of it, while they matter; `next` gives a neighbour and the ratio to it.
+fn walk(mode: usize, next: impl Fn(usize) -> Option<(usize, f64)>) -> Vec<f64> {
+    let mut weights = Vec::new();
+    let (mut count, mut weight) = (mode, 1.0);
+    while let Some((neighbour, ratio)) = next(count) {
+        (count, weight) = (neighbour, weight * ratio);
+        if weight < NEGLIGIBLE {
+            break;
+        }
+        weights.push(weight);
+    }
+    weights
+}
+
+/// How many of the chances may be taken together without exceeding `tail`.
+fn within<'a>(chances: impl Iterator<Item = &'a f64>, tail: f64) -> usize {
+    let mut sum = 0.0;
+    chances
+        .take_while(|&&chance| {
+            sum += chance;
+            sum <= tail
+        })
+        .count()
+}

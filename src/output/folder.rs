@@ -1,0 +1,120 @@
+//! What a result folder holds already, and whether a run may use it.
+
+use super::progress::{PROGRESS, Progress};
+use super::summary::{SUMMARY, Summary};
+use super::{IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES};
+use crate::error::{Error, Result};
+use std::ffi::OsStr;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// Result files; those who say whose results they are come last, so that a half-emptied folder still knows.
+const FILES: [&str; 7] =
+    [RELEASES, PATHS, IMPACTS, "crossings.csv", "report.html", SUMMARY, PROGRESS];
+/// Folders of results with the endings of the files that belong to them.
+const FOLDERS: [(&str, &[&str]); 2] = [("figures", &["svg"]), ("maps", &["asc", "prj"])];
+
+/// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from.
+pub(super) fn prepare(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    let found = if mode == Mode::Overwrite { None } else { look(dir, info, mode)? };
+    if found.is_none() {
+        clear(dir)?;
+    }
+    Ok(found)
+}
+
+/// The run to go on with; none when the folder may be emptied. An error when it must not be touched.
+fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
+    let summary = Summary::read(dir)?;
+    let finished = summary.is_some();
+    let found = match (Progress::read(dir)?, summary) {
+        (Some(progress), _) => progress,
+        (None, Some(summary)) => finished_run(dir, summary),
+        (None, None) => return unclaimed(dir),
+    };
+    if found.done == 0 {
+        // A run that ended before its first row, by a wrong scene for instance, has no claim on the folder.
+        return Ok(None);
+    }
+    let (title, old) = (&found.title, &found.identity);
+    if let Some(difference) = old.asks_otherwise(&info.identity) {
+        return refuse(
+            dir,
+            &format!("holds other results: {difference} (\"{title}\")"),
+            "take another --out or replace them with --overwrite",
+        );
+    }
+    match mode {
+        Mode::Resume if old.version != info.identity.version => {
+            let both = format!(
+                "was begun with version {}, this is {}",
+                old.version, info.identity.version
+            );
+            refuse(dir, &both, "go on with that version or start again with --overwrite")
+        }
+        Mode::Resume => Ok(Some(found)),
+        _ if finished => Ok(None),
+        _ => {
+            let how_far =
+                format!("holds {} of {} releases of an interrupted run", found.done, old.releases);
+            refuse(dir, &how_far, "go on with --resume or start again with --overwrite")
+        }
+    }
+}
+
+/// A finished run seen as one that has nothing left to do.
+fn finished_run(dir: &Path, summary: Summary) -> Progress {
+    let Summary { title, identity, totals, run, .. } = summary;
+    let length = |name: &str| Some((name.to_owned(), fs::metadata(dir.join(name)).ok()?.len()));
+    let bytes = TABLES.into_iter().filter_map(length).collect();
+    Progress { title, done: identity.releases, identity, bytes, totals, seconds: run.seconds }
+}
+
+/// A folder that says nothing of its results must hold none.
+fn unclaimed(dir: &Path) -> Result<Option<Progress>> {
+    match FILES.iter().find(|name| dir.join(name).exists()) {
+        None => Ok(None),
+        Some(name) => refuse(
+            dir,
+            &format!("holds {name}, but no {SUMMARY} that says of which scene"),
+            "take another --out or replace it with --overwrite",
+        ),
+    }
+}
+
+fn refuse(dir: &Path, found: &str, remedy: &str) -> Result<Option<Progress>> {
+    Err(Error::Request(format!("{}: {found}; {remedy}", dir.display())))
+}
+
+/// Removes the results of an earlier run, and no other file: what is drawn must never mix two runs.
+fn clear(dir: &Path) -> Result<()> {
+    for (folder, endings) in FOLDERS {
+        let folder = dir.join(folder);
+        let entries = match fs::read_dir(&folder) {
+            Ok(entries) => entries,
+            Err(why) if why.kind() == ErrorKind::NotFound => continue,
+            Err(why) => return Err(Error::file("read", &folder)(why)),
+        };
+        for entry in entries {
+            let path = entry.map_err(Error::file("read", &folder))?.path();
+            if path
+                .extension()
+                .and_then(OsStr::to_str)
+                .is_some_and(|ending| endings.contains(&ending))
+            {
+                remove(&path)?;
+            }
+        }
+    }
+    FILES.iter().try_for_each(|name| remove(&dir.join(name)))
+}
+
+/// Removes a file if it is there.
+pub(super) fn remove(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(why) if why.kind() != ErrorKind::NotFound => Err(Error::file("remove", path)(why)),
+        _ => Ok(()),
+    }
+}

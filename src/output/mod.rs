@@ -1,0 +1,227 @@
+//! Results on the disk: tables that grow chunk by chunk, and a summary at the end.
+//!
+//! A chunk's rows are on the disk before `progress.json` says so, in one stroke; whatever a crash leaves
+//! behind that mark is cut off when the run is resumed. So a resumed run writes the same bytes as an
+//! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
+
+mod folder;
+mod progress;
+mod read;
+mod rows;
+mod summary;
+mod table;
+mod whole;
+
+pub use progress::Identity;
+pub use read::{Results, read};
+pub use rows::{ImpactRow, PathRow};
+pub use summary::{Run, Summary};
+pub use whole::write_whole;
+
+use crate::error::{Error, Result};
+use crate::hazard::{Hazard, Row};
+use crate::rock::Vec3;
+use crate::trajectory::Trajectory;
+use progress::{PROGRESS, Progress};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use table::Table;
+
+const RELEASES: &str = "releases.csv";
+const PATHS: &str = "paths.csv";
+const IMPACTS: &str = "impacts.csv";
+const TABLES: [&str; 3] = [RELEASES, PATHS, IMPACTS];
+
+/// What the results need to know of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunInfo {
+    /// Title of the scene.
+    pub title: String,
+    /// What decides every byte of the results.
+    pub identity: Identity,
+    /// Map position of the local (0, 0, 0) (m): added to every position written.
+    pub origin_m: Vec3,
+    /// Name of the ground of each mesh, in the order of [`Terrain::sheets`](crate::terrain::Terrain).
+    pub ground_of_sheet: Vec<String>,
+    /// Whether `paths.csv` is written.
+    pub keeps_paths: bool,
+    /// Whether `impacts.csv` is written.
+    pub keeps_impacts: bool,
+    /// Worker threads.
+    pub threads: usize,
+    /// The lines of the plan: what is computed, what is left out and why.
+    pub plan: Vec<String>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// Health of the meshes.
+    pub mesh_health: serde_json::Value,
+}
+
+/// What to do with results that the folder holds already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Refuse them, unless they are the finished results of the very same run.
+    Fresh,
+    /// Go on with them; start when there are none; nothing is left to do when they are complete.
+    Resume,
+    /// Replace them.
+    Overwrite,
+}
+
+/// Results being written.
+#[derive(Debug)]
+pub struct Output {
+    dir: PathBuf,
+    info: RunInfo,
+    releases: Table,
+    paths: Option<Table>,
+    impacts: Option<Table>,
+    hazard: Hazard,
+    begun: Instant,
+    /// Time that earlier sessions took (s).
+    seconds_before: f64,
+}
+
+impl Output {
+    /// Opens the folder `dir`, which is made if it is not there, for the run described by `info`.
+    ///
+    /// # Errors
+    ///
+    /// If the folder holds results that `mode` does not allow to touch, or cannot be written.
+    pub fn create(info: RunInfo, dir: &Path, mode: Mode) -> Result<Self> {
+        let found = folder::prepare(dir, &info, mode)?;
+        let bytes = found.as_ref().map(|found| &found.bytes);
+        let releases = open(dir, RELEASES, &Row::COLUMNS, bytes)?;
+        let paths =
+            info.keeps_paths.then(|| open(dir, PATHS, &PathRow::COLUMNS, bytes)).transpose()?;
+        let impacts = info
+            .keeps_impacts
+            .then(|| open(dir, IMPACTS, &ImpactRow::COLUMNS, bytes))
+            .transpose()?;
+        let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
+        let hazard = match found {
+            Some(found) => read::recall(dir, &info.identity, found.done, found.totals)?,
+            None => Hazard::default(),
+        };
+        let dir = dir.to_owned();
+        let begun = Instant::now();
+        let mut output =
+            Self { dir, info, releases, paths, impacts, hazard, begun, seconds_before };
+        output.mark()?;
+        Ok(output)
+    }
+
+    /// Release numbers still to be computed.
+    pub fn remaining(&self) -> Range<usize> {
+        let asked = self.info.identity.range();
+        asked.start + self.hazard.rocks()..asked.end
+    }
+
+    /// All rocks written so far, those of an interrupted run included.
+    pub fn hazard(&self) -> &Hazard {
+        &self.hazard
+    }
+
+    /// Writes the next journeys, which must be the first of [`Self::remaining`], in order; when it returns they
+    /// are on the disk.
+    ///
+    /// # Errors
+    ///
+    /// If the disk is full or the folder has gone; everything up to the write before stays good.
+    ///
+    /// # Panics
+    ///
+    /// If the journeys are not those: a mistake of the caller that would spoil the results.
+    pub fn write(&mut self, falls: &[Trajectory]) -> Result<()> {
+        for fall in falls {
+            assert_eq!(fall.index, self.remaining().start, "journeys must be written in order");
+            let row = Row::of(fall, self.info.origin_m);
+            self.releases.write(&row)?;
+            self.write_path(fall)?;
+            self.write_impacts(fall)?;
+            self.hazard.add(&row);
+            self.hazard.totals.add(fall);
+        }
+        self.mark()
+    }
+
+    /// Writes the summary and gives the results as they are on the disk.
+    ///
+    /// # Errors
+    ///
+    /// If releases remain: the message says how far the run came and how to go on. If the disk is full.
+    pub fn finish(self) -> Result<Results> {
+        let left = self.remaining().len();
+        if left > 0 {
+            let (done, all) = (self.hazard.rocks(), self.info.identity.releases);
+            let dir = self.dir.display();
+            return Err(Error::Request(format!(
+                "{dir}: {done} of {all} releases are written; go on with --resume"
+            )));
+        }
+        let seconds = self.seconds();
+        let summary = Summary::new(self.info, &self.hazard, seconds);
+        summary.write(&self.dir)?;
+        folder::remove(&self.dir.join(PROGRESS))?;
+        Ok(Results { dir: self.dir, summary, hazard: self.hazard })
+    }
+
+    fn write_path(&mut self, fall: &Trajectory) -> Result<()> {
+        let Some(table) = &mut self.paths else { return Ok(()) };
+        let rows = fall.path.iter().map(|point| PathRow::of(fall.index, point, self.info.origin_m));
+        rows.into_iter().try_for_each(|row| table.write(&row))
+    }
+
+    fn write_impacts(&mut self, fall: &Trajectory) -> Result<()> {
+        let Some(table) = &mut self.impacts else { return Ok(()) };
+        fall.impacts.iter().try_for_each(|impact| {
+            let ground = &self.info.ground_of_sheet[usize::from(impact.sheet)];
+            table.write(&ImpactRow::of(fall.index, impact, ground, self.info.origin_m))
+        })
+    }
+
+    /// Puts all rows on the disk, and then says that they are there.
+    fn mark(&mut self) -> Result<()> {
+        let mut bytes = BTreeMap::from([(RELEASES.to_owned(), self.releases.sync()?)]);
+        for (name, table) in [(PATHS, &mut self.paths), (IMPACTS, &mut self.impacts)] {
+            if let Some(table) = table {
+                bytes.insert(name.to_owned(), table.sync()?);
+            }
+        }
+        let progress = Progress {
+            title: self.info.title.clone(),
+            identity: self.info.identity.clone(),
+            done: self.hazard.rocks(),
+            bytes,
+            totals: self.hazard.totals.clone(),
+            seconds: self.seconds(),
+        };
+        progress.write(&self.dir)
+    }
+
+    fn seconds(&self) -> f64 {
+        self.seconds_before + self.begun.elapsed().as_secs_f64()
+    }
+}
+
+/// Opens one table: new, or behind the rows that are known to be good.
+fn open(
+    dir: &Path,
+    name: &str,
+    columns: &[&str],
+    bytes: Option<&BTreeMap<String, u64>>,
+) -> Result<Table> {
+    let path = dir.join(name);
+    match bytes.map(|bytes| bytes.get(name)) {
+        None => Table::create(path, columns),
+        Some(Some(&bytes)) => Table::go_on(path, bytes),
+        Some(None) => Err(Error::input(
+            &dir.join(PROGRESS),
+            "bytes",
+            format!("no length of {name}"),
+            "restore the file as it was written, or start again with --overwrite",
+        )),
+    }
+}

@@ -1,0 +1,73 @@
+//! What tells one run from another, and how far a run has come.
+
+use super::whole::{read_json, write_json};
+use crate::error::Result;
+use crate::hazard::Totals;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::Path;
+
+/// Name of the file that an interrupted run leaves and a finished one removes.
+pub(super) const PROGRESS: &str = "progress.json";
+
+/// What decides every byte of the results.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// Hash of the scene file and of its meshes.
+    pub scene_hash: String,
+    /// Version of rockfall.
+    pub version: String,
+    /// Seed in force (scene or command line).
+    pub seed: u64,
+    /// Number of the first release; 0 but with `--only`.
+    pub first_release: usize,
+    /// Number of releases.
+    pub releases: usize,
+}
+
+impl Identity {
+    /// Release numbers asked for.
+    pub fn range(&self) -> Range<usize> {
+        self.first_release..self.first_release + self.releases
+    }
+
+    /// What the user asked differently; none when only the version may differ.
+    pub(super) fn asks_otherwise(&self, other: &Self) -> Option<String> {
+        if self.scene_hash != other.scene_hash {
+            return Some("another scene".to_owned());
+        }
+        if self.seed != other.seed {
+            return Some(format!("seed {}, not {}", self.seed, other.seed));
+        }
+        let (mine, others) = (self.range(), other.range());
+        (mine != others).then(|| format!("releases {mine:?}, not {others:?}"))
+    }
+}
+
+/// How far a run has come: all that the next session needs beside the rows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Progress {
+    pub(super) title: String,
+    #[serde(flatten)]
+    pub(super) identity: Identity,
+    /// Releases whose rows are on the disk.
+    pub(super) done: usize,
+    /// Length of each table up to there (bytes).
+    pub(super) bytes: BTreeMap<String, u64>,
+    pub(super) totals: Totals,
+    /// Time spent so far (s).
+    pub(super) seconds: f64,
+}
+
+impl Progress {
+    /// Reads what an interrupted run left in `dir`; none if nothing.
+    pub(super) fn read(dir: &Path) -> Result<Option<Self>> {
+        read_json(&dir.join(PROGRESS))
+    }
+
+    /// Replaces the last one in one stroke.
+    pub(super) fn write(&self, dir: &Path) -> Result<()> {
+        write_json(&dir.join(PROGRESS), self)
+    }
+}

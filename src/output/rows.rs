@@ -1,0 +1,108 @@
+//! Rows of `paths.csv` and `impacts.csv`; positions in map coordinates.
+
+use crate::rock::Vec3;
+use crate::trajectory::{FeatureKind, Impact, PathPoint, PathState};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// One instant of a kept path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PathRow {
+    /// Release number.
+    pub index: usize,
+    /// Time since release (s).
+    pub time_s: f64,
+    /// Centre (m).
+    pub position_m: [f64; 3],
+    /// Velocity of the centre (m/s).
+    pub velocity_m_s: [f64; 3],
+    /// Angular velocity (rad/s).
+    pub spin_rad_s: [f64; 3],
+    /// Vertical distance from the ground below to the lowest point of the rock (m); NaN where there is none.
+    pub clearance_m: f64,
+    /// Flight, sliding or sticking.
+    pub state: PathState,
+}
+
+impl PathRow {
+    /// Columns of `paths.csv`.
+    pub const COLUMNS: [&'static str; 13] = [
+        "index",
+        "time_s",
+        "x_m",
+        "y_m",
+        "z_m",
+        "vx_m_s",
+        "vy_m_s",
+        "vz_m_s",
+        "wx_rad_s",
+        "wy_rad_s",
+        "wz_rad_s",
+        "clearance_m",
+        "state",
+    ];
+
+    /// The row of one instant of rock `index`; `origin_m` is the map position of the local (0, 0, 0).
+    pub fn of(index: usize, point: &PathPoint, origin_m: Vec3) -> Self {
+        Self {
+            index,
+            time_s: point.motion.time_s,
+            position_m: (point.motion.position_m + origin_m).into(),
+            velocity_m_s: point.motion.velocity_m_s.into(),
+            spin_rad_s: point.motion.spin_rad_s.into(),
+            clearance_m: point.clearance_m,
+            state: point.state,
+        }
+    }
+}
+
+/// One impact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ImpactRow<'a> {
+    /// Release number.
+    pub index: usize,
+    /// Time of first touch (s).
+    pub time_s: f64,
+    /// Touched point (m).
+    pub point_m: [f64; 3],
+    /// What of the mesh was touched.
+    pub feature: FeatureKind,
+    /// Name of the ground.
+    pub ground: Cow<'a, str>,
+    /// Speed of the centre before (m/s).
+    pub speed_in_m_s: f64,
+    /// Speed of the centre after (m/s).
+    pub speed_out_m_s: f64,
+    /// Mechanical energy lost (J).
+    pub energy_lost_j: f64,
+}
+
+impl<'a> ImpactRow<'a> {
+    /// Columns of `impacts.csv`.
+    pub const COLUMNS: [&'static str; 10] = [
+        "index",
+        "time_s",
+        "x_m",
+        "y_m",
+        "z_m",
+        "feature",
+        "ground",
+        "speed_in_m_s",
+        "speed_out_m_s",
+        "energy_lost_j",
+    ];
+
+    /// The row of one impact of rock `index` on the named ground.
+    pub fn of(index: usize, impact: &Impact, ground: &'a str, origin_m: Vec3) -> Self {
+        Self {
+            index,
+            time_s: impact.time_s,
+            point_m: (impact.point_m + origin_m).into(),
+            feature: impact.feature,
+            ground: Cow::Borrowed(ground),
+            speed_in_m_s: impact.speed_in_m_s,
+            speed_out_m_s: impact.speed_out_m_s,
+            energy_lost_j: impact.energy_lost_j,
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! CSV files that grow row by row and can be cut back to a length that is known to be good.
+
+use crate::error::{Error, Result};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fs::{File, OpenOptions};
+use std::io::{Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+/// Buffer of a reader or writer (bytes).
+const BUFFER: usize = 1 << 17;
+
+/// A CSV file being written.
+#[derive(Debug)]
+pub(super) struct Table {
+    path: PathBuf,
+    writer: csv::Writer<File>,
+}
+
+impl Table {
+    /// Creates the file, or empties it, and writes the names of the columns.
+    pub(super) fn create(path: PathBuf, columns: &[&str]) -> Result<Self> {
+        let file = File::create(&path).map_err(Error::file("create", &path))?;
+        let mut table = Self::over(path, file);
+        table.writer.write_record(columns).map_err(|why| in_file(&table.path, columns, why))?;
+        Ok(table)
+    }
+
+    /// Goes on behind the first `bytes` of the file and drops the rest: rows torn by a crash.
+    pub(super) fn go_on(path: PathBuf, bytes: u64) -> Result<Self> {
+        let mut file =
+            OpenOptions::new().write(true).open(&path).map_err(Error::file("open", &path))?;
+        let found = file.metadata().map_err(Error::file("read", &path))?.len();
+        if found < bytes {
+            return Err(Error::input(
+                &path,
+                "length",
+                format!("{found} bytes where the interrupted run had written {bytes}"),
+                "restore the file, or start again with --overwrite",
+            ));
+        }
+        file.set_len(bytes)
+            .and_then(|()| file.seek(SeekFrom::Start(bytes)))
+            .map_err(Error::file("cut", &path))?;
+        Ok(Self::over(path, file))
+    }
+
+    fn over(path: PathBuf, file: File) -> Self {
+        let writer =
+            csv::WriterBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_writer(file);
+        Self { path, writer }
+    }
+
+    /// Appends one row.
+    pub(super) fn write(&mut self, row: &impl Serialize) -> Result<()> {
+        self.writer.serialize(row).map_err(|why| in_file(&self.path, &[], why))
+    }
+
+    /// Puts all rows on the disk and gives the length of the file (bytes).
+    pub(super) fn sync(&mut self) -> Result<u64> {
+        let flushed = self.writer.flush();
+        let file = self.writer.get_ref();
+        flushed
+            .and_then(|()| file.sync_data())
+            .and_then(|()| file.metadata())
+            .map(|about| about.len())
+            .map_err(Error::file("write", &self.path))
+    }
+}
+
+/// Reads the rows of a CSV file one by one. The columns must be these, in this order.
+pub(super) fn rows<R: DeserializeOwned>(
+    path: PathBuf,
+    columns: &'static [&'static str],
+) -> Result<impl Iterator<Item = Result<R>>> {
+    let file = File::open(&path).map_err(Error::file("read", &path))?;
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_reader(file);
+    let mut record = csv::StringRecord::new();
+    reader.read_record(&mut record).map_err(|why| in_file(&path, columns, why))?;
+    if record != *columns {
+        let found: Vec<&str> = record.iter().collect();
+        return Err(Error::input(
+            &path,
+            "line 1",
+            format!("columns \"{}\"", found.join(",")),
+            format!("the columns must be \"{}\"", columns.join(",")),
+        ));
+    }
+    Ok(std::iter::from_fn(move || next_row(&mut reader, &mut record, &path, columns).transpose()))
+}
+
+/// The next row; none at the end of the file.
+fn next_row<R: DeserializeOwned>(
+    reader: &mut csv::Reader<File>,
+    record: &mut csv::StringRecord,
+    path: &Path,
+    columns: &[&str],
+) -> Result<Option<R>> {
+    let more = reader.read_record(record).map_err(|why| in_file(path, columns, why))?;
+    more.then(|| record.deserialize(None).map_err(|why| in_file(path, columns, why))).transpose()
+}
+
+/// Says in which line and column of which file something is wrong.
+fn in_file(path: &Path, columns: &[&str], why: csv::Error) -> Error {
+    let line = why.position().map_or("a line".to_owned(), |at| format!("line {}", at.line()));
+    let remedy = "restore the row as it was written, or run again with --overwrite";
+    match why.into_kind() {
+        csv::ErrorKind::Io(why) => Error::file("access", path)(why),
+        csv::ErrorKind::Deserialize { err, .. } => {
+            // The reader does not tell the column of an unknown word; the word itself is then in the message.
+            let column = err.field().and_then(|field| columns.get(field as usize));
+            let place = column.map_or(line.clone(), |column| format!("{line}, {column}"));
+            Error::input(path, place, err.kind().to_string(), remedy)
+        }
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            Error::input(path, line, format!("{len} values instead of {expected_len}"), remedy)
+        }
+        other => Error::input(path, line, format!("{other:?}"), remedy),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Table;
+
+    /// A full disk is met when the rows are put on it; the message names the file.
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_full_disk_is_an_error_that_names_the_file() {
+        let mut table = Table::create("/dev/full".into(), &["index"]).unwrap();
+        table.write(&1).unwrap();
+        let said = table.sync().unwrap_err().to_string();
+        assert!(said.starts_with("/dev/full: cannot write: No space left"), "{said}");
+    }
+}

@@ -1,0 +1,131 @@
+//! Made-up journeys: a pure function of their number, as real ones are.
+
+#![allow(missing_docs, dead_code, unreachable_pub)]
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rockfall::output::{Identity, RunInfo};
+use rockfall::rock::{Motion, Rock, Vec3};
+use rockfall::trajectory::{
+    Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState, Stop, Trajectory,
+};
+
+/// Releases that keep their path.
+pub const PATHS: usize = 5;
+/// Every so manieth rock fails, with no number where it ended.
+pub const FAILS_EVERY: usize = 17;
+
+pub fn info(releases: usize) -> RunInfo {
+    RunInfo {
+        title: "Ten rocks, \"made up\"".to_owned(),
+        identity: Identity {
+            scene_hash: "5ce0e".to_owned(),
+            version: "0.1.0".to_owned(),
+            seed: u64::MAX,
+            first_release: 0,
+            releases,
+        },
+        origin_m: Vec3::new(2_600_000.0, 1_200_000.0, 0.0),
+        ground_of_sheet: vec!["rock".to_owned(), "trunk, \"old\"".to_owned()],
+        keeps_paths: true,
+        keeps_impacts: true,
+        threads: 2,
+        plan: vec!["trees    left out: the scene has none".to_owned()],
+        warnings: vec![],
+        mesh_health: serde_json::json!({ "triangles": 2 }),
+    }
+}
+
+/// Numbers that belong to one rock.
+struct Chance(ChaCha8Rng);
+
+impl Chance {
+    fn number(&mut self, scale: f64) -> f64 {
+        scale * self.0.random::<f64>()
+    }
+
+    fn motion(&mut self, time_s: f64) -> Motion {
+        Motion {
+            time_s,
+            position_m: Vec3::new(self.number(100.0), self.number(100.0), self.number(50.0)),
+            velocity_m_s: Vec3::new(self.number(9.0), -self.number(9.0), 0.0),
+            spin_rad_s: Vec3::new(self.number(1e-300), 0.1 + 0.2, -0.0),
+        }
+    }
+
+    fn path(&mut self) -> Vec<PathPoint> {
+        let states = [PathState::Flight, PathState::Sliding, PathState::Sticking];
+        let point = |(step, state): (usize, PathState)| PathPoint {
+            motion: self.motion(step as f64 * 0.05),
+            clearance_m: if step == 0 { f64::NAN } else { 0.25 },
+            state,
+        };
+        states.into_iter().enumerate().map(point).collect()
+    }
+
+    fn impact(&mut self, index: usize) -> Impact {
+        Impact {
+            time_s: 1.0 / 3.0,
+            point_m: self.motion(0.0).position_m,
+            feature: [FeatureKind::Face, FeatureKind::Edge, FeatureKind::Vertex][index % 3],
+            sheet: (index % 2) as u16,
+            speed_in_m_s: self.number(30.0),
+            speed_out_m_s: self.number(10.0),
+            energy_lost_j: self.number(1e5),
+        }
+    }
+
+    fn extremes(&mut self) -> Extremes {
+        Extremes {
+            speed_m_s: self.number(30.0),
+            translational_j: self.number(1e6),
+            rotational_j: self.number(1e5),
+            total_j: self.number(1e6),
+            height_m: self.number(4.0),
+        }
+    }
+
+    fn ledger(&mut self) -> Ledger {
+        Ledger {
+            friction_j: self.number(1e5),
+            damping_j: self.number(1e5),
+            remainder_j: self.number(1e-3),
+            rise_j: self.number(1e-9),
+            ..Ledger::default()
+        }
+    }
+}
+
+fn stop(index: usize) -> Stop {
+    match index {
+        _ if index % FAILS_EVERY == 3 => Stop::Failed("the step shrank below 1e-12 s".to_owned()),
+        _ if index.is_multiple_of(5) => Stop::LeftTerrain,
+        _ => Stop::AtRest,
+    }
+}
+
+/// The journey of rock `index`.
+pub fn fall(index: usize) -> Trajectory {
+    let mut chance = Chance(ChaCha8Rng::seed_from_u64(7));
+    chance.0.set_stream(index as u64);
+    let mut fall = Trajectory {
+        index,
+        rock: Rock { radius_m: 0.1 + chance.number(0.5), density_kg_m3: 2700.0 },
+        start: chance.motion(0.0),
+        end: chance.motion(12.5),
+        stop: stop(index),
+        extremes: chance.extremes(),
+        impact_count: 1 + index as u32 % 2,
+        tree_impact_count: index as u32 % 2,
+        impacts: vec![chance.impact(index); 1 + index % 2],
+        path: if index < PATHS { chance.path() } else { vec![] },
+        ledger: chance.ledger(),
+        released_j: chance.number(1e6),
+        effort: Effort { steps: index as u64, leaps: 3, sweeps: 9, ..Effort::default() },
+    };
+    if matches!(fall.stop, Stop::Failed(_)) {
+        fall.end.position_m.x = f64::NAN;
+        fall.ledger.remainder_j = f64::NAN;
+    }
+    fall
+}
