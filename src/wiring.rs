@@ -1,5 +1,11 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
+#![expect(
+    dead_code,
+    clippy::unused_self,
+    reason = "a run has nothing to keep until releases are computed here"
+)]
+
 use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;

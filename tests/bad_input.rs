@@ -1,5 +1,7 @@
 //! Wrong scenes: each file in `tests/bad` carries in its first line the message that it must produce.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use proptest::prelude::*;
 use rockfall::scene::Scene;
 use std::path::{Path, PathBuf};
