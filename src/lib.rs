@@ -9,6 +9,7 @@ pub mod ground;
 pub mod hazard;
 pub mod output;
 pub mod plan;
+pub mod release;
 pub mod rock;
 pub mod scene;
 pub mod step;
