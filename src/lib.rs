@@ -3,6 +3,7 @@
 pub mod error;
 pub mod ground;
 pub mod plan;
+pub mod report;
 pub mod rock;
 pub mod step;
 pub mod terrain;
