@@ -105,6 +105,11 @@ fn widened(low: f64, high: f64) -> (f64, f64) {
 
 /// The smallest of 1, 2, 2.5, 5 times a power of ten that is not below `rough`.
 pub fn nice_step(rough: f64) -> f64 {
+    round_step(rough, &[1.0, 2.0, 2.5, 5.0])
+}
+
+/// The smallest of some mantissas (1 first, rising) times a power of ten that is not below `rough`; 1 when that has no sense.
+pub fn round_step(rough: f64, mantissas: &[f64]) -> f64 {
     if !(rough.is_finite() && rough > 0.0) {
         return 1.0;
     }
@@ -114,7 +119,7 @@ pub fn nice_step(rough: f64) -> f64 {
         e if e < 0 => mantissa / 10f64.powi(-e),
         e => mantissa * 10f64.powi(e),
     };
-    let nice = [1.0, 2.0, 2.5, 5.0].into_iter().map(scaled).find(|&s| rough <= s * (1.0 + 1e-9));
+    let nice = mantissas.iter().copied().map(scaled).find(|&s| rough <= s * (1.0 + 1e-9));
     nice.unwrap_or(scaled(10.0))
 }
 

@@ -21,7 +21,7 @@ const SHOWN: [Quantity; 6] = [
 ];
 const COLUMNS: usize = 2;
 const PLOT_PX: f64 = 112.0;
-const HEAD_PX: f64 = 34.0;
+const HEAD_PX: f64 = 38.0;
 const ROW_PX: f64 = HEAD_PX + PLOT_PX + FOOT_PX + 4.0;
 /// Pens of the marked percentiles, most common first.
 const MARKED: [(f64, Pen); 3] = [
@@ -44,7 +44,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
                 top: top + HEAD_PX,
                 bottom: top + HEAD_PX + PLOT_PX,
             };
-            Distribution::of(report, quantity, frame).draw(paper);
+            Distribution::of(report, quantity, frame).draw(paper, 24.0);
         }
     });
     let caption = "Distributions over all releases of each rock's largest value. The energies reach their \
@@ -77,7 +77,8 @@ impl<'a> Distribution<'a> {
         Self { report, quantity, bins, panel, largest, unit_size }
     }
 
-    pub(super) fn draw(&self, paper: &Paper<'_>) {
+    /// Draws it with its head so far above the frame (px).
+    pub(super) fn draw(&self, paper: &Paper<'_>, head_px: f64) {
         let total = self.report.releases.len();
         self.panel.grid(paper);
         self.bins.bars(paper, &self.panel, total);
@@ -86,7 +87,8 @@ impl<'a> Distribution<'a> {
             words.push(format!("max {}", format::significant(self.largest / self.unit_size, 3)));
         }
         self.panel.axes(paper);
-        head(paper, &self.panel.frame, self.quantity.name(), &words.join("  ·  "));
+        let above = Frame { top: self.panel.frame.top - head_px, ..self.panel.frame };
+        head(paper, &above, self.quantity.name(), &words.join(" · "));
         if self.bins.counts.is_empty() {
             self.panel.nothing(paper, if total == 0 { "no release" } else { "no finite value" });
         }
@@ -107,11 +109,12 @@ impl<'a> Distribution<'a> {
     }
 }
 
+/// Name left and numbers right, in two lines where they do not fit in one.
 fn head(paper: &Paper<'_>, frame: &Frame, name: &str, words: &str) {
-    let y = frame.top - 18.0;
+    let y = frame.top;
     let fits = text_width(name, NORMAL) * 1.06 + text_width(words, SMALL) + 8.0 < frame.width();
     paper.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));
-    let y = if fits { y } else { frame.top - 6.0 };
+    let y = if fits { y } else { y + 14.0 };
     paper.text(&Label::new(words, (frame.right, y)).right().coloured(GREY));
 }
 

@@ -29,9 +29,9 @@ pub struct Figure {
 /// All figures in the order of the page. To add one: a file with a `draw` function and a line here.
 pub const FIGURES: [Figure; 6] = [
     Figure { file: "plan.svg", title: "Plan view", draw: plan_view::draw },
+    Figure { file: "stops.svg", title: "How the rocks ended", draw: stops::draw },
     Figure { file: "side.svg", title: "Side view", draw: side_view::draw },
     Figure { file: "runout.svg", title: "Runout", draw: runout::draw },
-    Figure { file: "distributions.svg", title: "Speed, energy and bounce height", draw: distributions::draw },
-    Figure { file: "stops.svg", title: "Where the rocks ended", draw: stops::draw },
     Figure { file: "reach_angle.svg", title: "Reach angle", draw: reach_angle::draw },
+    Figure { file: "distributions.svg", title: "Speed, energy and bounce height", draw: distributions::draw },
 ];

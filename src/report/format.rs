@@ -28,6 +28,12 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     text + rest
 }
 
+/// A round number as it is, with no more decimals than it has: `2.5`, `10`, `0.025`.
+pub fn plain(value: f64) -> String {
+    let text = value.abs().to_string();
+    decimal(value, text.split_once('.').map_or(0, |(_, decimals)| decimals.len()))
+}
+
 /// `value` to so many significant digits (at least all whole digits), as a power of ten when very small or large.
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
@@ -44,6 +50,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     } else {
         scientific(value, digits.max(1) - 1)
     }
+}
+
+/// The nearest number with so many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{:.*e}", digits.max(1) - 1, value).parse().unwrap_or(value)
 }
 
 /// `value` as `m×10ⁿ`, the mantissa with so many decimals and left out where it is 1.
@@ -79,17 +90,9 @@ pub fn lowered(raised: char) -> Option<char> {
     char::from_digit(digit as u32, 10)
 }
 
-/// A share (0..1) in per cent with digits that still tell it from 0 and 100.
-pub fn percent(share: f64) -> String {
-    let value = 100.0 * share;
-    let from_an_end = value.min(100.0 - value);
-    let decimals = match from_an_end {
-        e if e >= 10.0 => 1,
-        e if e >= 1.0 => 2,
-        e if e > 0.0 => 3,
-        _ => 0,
-    };
-    format!("{}{THIN_SPACE}%", decimal(value, decimals))
+/// A share (0..1) in per cent with a fixed number of decimals.
+pub fn percent(share: f64, decimals: usize) -> String {
+    format!("{}{THIN_SPACE}%", decimal(100.0 * share, decimals))
 }
 
 /// Text that may stand inside an element or a quoted attribute of SVG and HTML.
@@ -126,8 +129,8 @@ mod tests {
         assert_eq!(significant(123_456.0, 3), "123\u{2009}456");
         assert_eq!(scientific(1e-5, 0), "10⁻⁵");
         assert_eq!(power_of_ten(12), "10¹²");
-        assert_eq!(percent(0.9996), "99.960\u{2009}%");
-        assert_eq!(percent(1.0), "100\u{2009}%");
+        assert_eq!(percent(0.9996, 1), "100.0\u{2009}%");
+        assert_eq!([2.5, 10.0, 0.025, 1e4].map(plain), ["2.5", "10", "0.025", "10\u{2009}000"]);
     }
 
     #[test]

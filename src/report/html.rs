@@ -4,7 +4,7 @@ mod words;
 
 use super::figure::{Drawing, Figure};
 use super::format::{self, escape};
-use super::input::{Estimate, Report, Row, Table};
+use super::input::{Estimate, Report, Row, Table, energy_unit};
 use crate::trajectory::Stop;
 use std::fmt::Write as _;
 use words::{GLOSSARY, METHOD, STYLE};
@@ -95,11 +95,12 @@ fn headline(report: &Report) -> String {
         return String::new();
     }
     let row = |row: &Row| {
-        let (value, interval) = in_words(&row.estimate);
+        let (estimate, unit) = in_short_unit(row);
+        let (value, interval) = in_words(&estimate);
         format!(
             "<tr><th scope=\"row\">{}</th><td class=\"number\">{value}</td><td class=\"number\">{interval}</td><td>{}</td></tr>\n",
             escape(&row.name),
-            escape(&row.unit)
+            escape(unit)
         )
     };
     let rows: String = report.headline.iter().map(row).collect();
@@ -111,17 +112,27 @@ fn headline(report: &Report) -> String {
     section("Results", &body)
 }
 
+/// Joules as kJ or MJ where that is shorter; other units as they are.
+fn in_short_unit(row: &Row) -> (Estimate, &str) {
+    if row.unit != "J" {
+        return (row.estimate, &row.unit);
+    }
+    let (unit, size) = energy_unit(row.estimate.value);
+    let Estimate { value, low, high } = row.estimate;
+    (Estimate { value: value / size, low: low / size, high: high / size }, unit)
+}
+
 /// Value and interval with as many digits as the interval leaves meaningful.
 fn in_words(estimate: &Estimate) -> (String, String) {
     let width = estimate.high - estimate.low;
     let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
         let leading = estimate.value.abs().log10().floor() - width.log10().floor();
-        (leading as i32 + 2).clamp(3, 6) as usize
+        (leading as i32 + 1).clamp(3, 6) as usize
     } else {
         4
     };
-    let value = format::significant(estimate.value, digits);
-    let bound = |v: f64| format::significant(v, digits);
+    let bound = |v: f64| format::significant(format::rounded(v, digits), digits);
+    let value = bound(estimate.value);
     let interval = match (estimate.low.is_finite(), estimate.high.is_finite()) {
         (true, true) => format!("{} to {}", bound(estimate.low), bound(estimate.high)),
         (true, false) => format!("at least {}", bound(estimate.low)),

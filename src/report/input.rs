@@ -242,7 +242,7 @@ impl Quantity {
 }
 
 /// J, kJ or MJ, whichever keeps numbers up to `largest_j` short.
-fn energy_unit(largest_j: f64) -> (&'static str, f64) {
+pub(super) fn energy_unit(largest_j: f64) -> (&'static str, f64) {
     match largest_j {
         e if e >= 2e6 => ("MJ", 1e6),
         e if e >= 2e3 => ("kJ", 1e3),

@@ -42,7 +42,7 @@ impl Panel {
 
     /// Labelled ticks of the y axis that fit the height.
     fn y_ticks(&self) -> Vec<Tick> {
-        self.y.ticks((self.frame.height() / 34.0).clamp(2.0, 10.0) as usize)
+        self.y.ticks((self.frame.height() / 27.0).clamp(3.0, 10.0) as usize)
     }
 
     /// Labelled ticks of the x axis that fit the width without touching.
@@ -50,7 +50,7 @@ impl Panel {
         let fits = |ticks: &[Tick]| {
             let widest = widest_label(ticks);
             let labelled = ticks.iter().filter(|t| !t.label.is_empty()).count();
-            labelled as f64 * (widest + 12.0) <= self.frame.width() + widest
+            labelled as f64 * (widest + 16.0) <= self.frame.width() + widest
         };
         let counts = (1..=10).rev().map(|count| self.x.ticks(count));
         counts.into_iter().find(|ticks| fits(ticks)).unwrap_or_else(|| self.x.ticks(1))
@@ -66,6 +66,13 @@ impl Panel {
         for tick in self.y_ticks().iter().filter(|t| !t.label.is_empty()) {
             let y = self.at(self.x.low, tick.value).1;
             paper.line(&[(self.frame.left, y), (self.frame.right, y)], GRID_PEN);
+        }
+    }
+
+    /// Light lines upwards at the ticks, to be drawn before the data.
+    pub fn grid_upright(&self, paper: &Paper<'_>) {
+        for tick in self.x_ticks() {
+            self.upright(paper, tick.value, GRID_PEN);
         }
     }
 

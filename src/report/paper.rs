@@ -242,16 +242,10 @@ impl<'a> Paper<'a> {
         self.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], pen);
     }
 
-    /// A disc, or a ring when a pen is given instead of a fill.
+    /// A disc.
     pub fn disc(&self, centre: Spot, radius_px: f64, fill: RGBColor) {
         let radius = (radius_px * TENTHS).round() as i32;
         self.put(&Circle::new(tenths(centre), radius, ShapeStyle::from(fill).filled()));
-    }
-
-    /// A ring.
-    pub fn ring(&self, centre: Spot, radius_px: f64, pen: Pen) {
-        let style = ShapeStyle::from(pen.colour).stroke_width((pen.width_px * TENTHS).round() as u32);
-        self.put(&Circle::new(tenths(centre), (radius_px * TENTHS).round() as i32, style));
     }
 
     /// Dots of one size in one path: hundreds of thousands stay small.
@@ -266,6 +260,17 @@ impl<'a> Paper<'a> {
                 colour::hex(colour),
                 (2.0 * radius_px * TENTHS).round() as i32
             ));
+        }
+    }
+
+    /// Squares of one size in one path.
+    pub fn squares(&self, centres: &[Spot], half_px: f64, colour: RGBColor) {
+        let mut data = String::new();
+        for &centre in centres {
+            path::append_square(&mut data, centre, half_px);
+        }
+        if !data.is_empty() {
+            self.fragment(&format!(r#"<path d="{data}" fill="{}"/>"#, colour::hex(colour)));
         }
     }
 

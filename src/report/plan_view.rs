@@ -7,12 +7,11 @@ use super::axis::Axis;
 use super::colour::{self, BLUE, INK, ORANGE, PURPLE, VERMILLION, WHITE};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{Fall, Report};
+use super::input::Report;
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Paper, Pen, paint};
 use super::svg::path::{Frame, Spot, clipped, thinned};
 use crate::trajectory::Stop;
-use plotters::style::RGBColor;
 use std::collections::BTreeSet;
 
 /// Tallest map (px): with its caption it still fits an A4 page.
@@ -34,7 +33,8 @@ const MANY: usize = 400;
 pub(super) fn draw(report: &Report) -> Drawing {
     let panel = layout(report);
     let key = furniture::Key::of(report);
-    let height = panel.frame.bottom + FOOT_PX + key.height_px(WIDTH_PX) + 8.0;
+    let key_left = panel.frame.left.min(0.3 * WIDTH_PX);
+    let height = panel.frame.bottom + FOOT_PX + key.height_px(WIDTH_PX - key_left) + 8.0;
     let fastest = fastest_m_s(report);
     let mut contours = None;
     let svg = paint("plan", (WIDTH_PX, height), "Plan view", |paper| {
@@ -50,10 +50,10 @@ pub(super) fn draw(report: &Report) -> Drawing {
         });
         panel.axes(paper);
         furniture::draw(paper, &panel, (fastest, !report.paths.is_empty()));
-        key.draw(paper, panel.frame.bottom + FOOT_PX + 4.0);
+        key.draw(paper, (key_left, panel.frame.bottom + FOOT_PX + 4.0));
     });
     let interval = contours.map_or(String::new(), |c| {
-        format!(" Contour interval {} m.", format::significant(c.interval_m, 2))
+        format!(" Contour interval {} m.", format::plain(c.interval_m))
     });
     let caption = format!(
         "Plan view in map coordinates, at equal scale. {} of {} paths drawn; colour gives the speed of the centre.{interval}",
@@ -169,16 +169,13 @@ fn paths(paper: &Paper<'_>, panel: &Panel, report: &Report, fastest_m_s: f64) {
 
 /// Releases, and ends by stop reason.
 fn marks(paper: &Paper<'_>, panel: &Panel, report: &Report) {
-    let radius = if report.releases.len() > MANY { 1.1 } else { 2.4 };
-    for kind in [Mark::AtRest, Mark::LeftTerrain, Mark::TimeUp, Mark::Failed] {
+    let radius = if report.releases.len() > MANY { 1.3 } else { 2.6 };
+    for kind in ENDS {
         let ends = report.releases.iter().filter(|fall| Mark::of(&fall.stop) == kind);
-        let spots = apart(panel, ends.map(|fall: &Fall| fall.end_m), 0.8 * radius);
-        paper.dots(&spots, radius + 0.5, WHITE);
-        paper.dots(&spots, radius, kind.colour());
+        kind.draw(paper, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
     }
-    let spots = apart(panel, report.releases.iter().map(|fall| fall.start_m), 0.8 * radius);
-    paper.dots(&spots, radius + 0.5, INK);
-    paper.dots(&spots, radius - 0.4, WHITE);
+    let starts = report.releases.iter().map(|fall| fall.start_m);
+    Mark::Release.draw(paper, &apart(panel, starts, 0.8 * radius), radius);
 }
 
 /// Places inside the frame, one for each little square of `raster_px`: what lies on top of each other is drawn once.
@@ -189,14 +186,18 @@ fn apart(panel: &Panel, places: impl Iterator<Item = [f64; 3]>, raster_px: f64) 
     cells.into_iter().map(|(x, y)| (x as f64 * raster_px, y as f64 * raster_px)).collect()
 }
 
-/// How an end is shown: one colour a stop reason.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+/// How a release or an end is shown: form and colour, so that a grey print keeps them apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mark {
+    Release,
     AtRest,
     LeftTerrain,
     TimeUp,
     Failed,
 }
+
+/// The ways to end, in the order they are drawn.
+const ENDS: [Mark; 4] = [Mark::AtRest, Mark::LeftTerrain, Mark::TimeUp, Mark::Failed];
 
 impl Mark {
     fn of(stop: &Stop) -> Self {
@@ -208,12 +209,32 @@ impl Mark {
         }
     }
 
-    fn colour(self) -> RGBColor {
+    /// Draws marks of a radius (px) on a white rim.
+    fn draw(self, paper: &Paper<'_>, spots: &[Spot], radius: f64) {
+        let rim = radius + 0.6;
         match self {
-            Self::AtRest => VERMILLION,
-            Self::LeftTerrain => BLUE,
-            Self::TimeUp => ORANGE,
-            Self::Failed => PURPLE,
+            Self::Release => paper.dots(spots, radius - 0.2, INK),
+            Self::AtRest => {
+                paper.dots(spots, rim, WHITE);
+                paper.dots(spots, radius, VERMILLION);
+            }
+            Self::LeftTerrain => {
+                paper.squares(spots, rim, WHITE);
+                paper.squares(spots, radius, BLUE);
+            }
+            Self::TimeUp => {
+                paper.squares(spots, rim, ORANGE);
+                paper.squares(spots, 0.5 * radius, WHITE);
+            }
+            Self::Failed => {
+                let r = radius + 0.8;
+                let strokes = |&(x, y): &Spot| {
+                    [vec![(x - r, y - r), (x + r, y + r)], vec![(x - r, y + r), (x + r, y - r)]]
+                };
+                let crosses: Vec<Vec<Spot>> = spots.iter().flat_map(strokes).collect();
+                paper.lines(&crosses, Pen::full(WHITE, 2.8));
+                paper.lines(&crosses, Pen::full(PURPLE, 1.6));
+            }
         }
     }
 }

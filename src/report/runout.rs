@@ -53,7 +53,7 @@ fn caption(bins: &Histogram, count: usize) -> String {
         "Horizontal distance from release to end. Above: share of the {} releases that run out farther, with its 95 % band; \
          bars give the 95 % interval of the marked percentiles. Below: share of releases per {} m.{left_out}",
         format::decimal(count as f64, 0),
-        format::significant(bins.width, 2)
+        format::plain(bins.width)
     )
 }
 
@@ -119,9 +119,9 @@ fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
         let (low, high) = (end(quantile.at.low, x), end(quantile.at.high, x));
         whisker(paper, (low, high), y);
         paper.disc((x, y), 3.0, VERMILLION);
-        let label_y = y.min(lowest_free - SMALL - 3.0).max(panel.frame.top + SMALL);
-        lowest_free = label_y;
-        label(paper, panel, quantile, (low, high, label_y));
+        let free_y = y.min(lowest_free - SMALL - 3.0).max(panel.frame.top + 2.0 * SMALL);
+        lowest_free = free_y;
+        label(paper, panel, quantile, (low, high, free_y));
     }
 }
 
@@ -136,7 +136,7 @@ fn whisker(paper: &Paper<'_>, (low, high): (f64, f64), y: f64) {
 fn label(paper: &Paper<'_>, panel: &Panel, quantile: &Quantile, (low, high, y): (f64, f64, f64)) {
     let at = quantile.at;
     let name = format!("P{}", format::significant(100.0 * quantile.probability, 2));
-    let head = format!("{name}  {} m", format::significant(at.value, 4));
+    let head = format!("{name} {} m", format::significant(at.value, 4));
     let tail = match (at.low.is_finite(), at.high.is_finite()) {
         (true, true) => {
             format!("({} to {})", format::significant(at.low, 4), format::significant(at.high, 4))
@@ -144,8 +144,12 @@ fn label(paper: &Paper<'_>, panel: &Panel, quantile: &Quantile, (low, high, y): 
         _ => "(too few rocks for an interval)".to_owned(),
     };
     let width = text_width(&head, SMALL) + 6.0 + text_width(&tail, SMALL);
-    let start = if high + 10.0 + width < panel.frame.right { high + 10.0 } else { low - 10.0 - width };
-    let start = start.max(panel.frame.left + 4.0);
+    // the curve falls: what stands right of a point keeps clear above it, what stands left keeps clear below
+    let (start, y) = if high + 10.0 + width < panel.frame.right {
+        (high + 10.0, y - 7.0)
+    } else {
+        ((low - 10.0 - width).max(panel.frame.left + 4.0), y + 7.0)
+    };
     paper.text_on_rim(&Label::new(head.clone(), (start, y)).bold());
     let after = start + 1.06 * text_width(&head, SMALL) + 6.0;
     paper.text_on_rim(&Label::new(tail, (after, y)).coloured(GREY));

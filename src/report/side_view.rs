@@ -51,7 +51,7 @@ fn caption(report: &Report, line: &FallLine, view: &View) -> String {
         report.paths.len(),
         line.compass(),
         line.bearing_words(),
-        format::significant(view.heights.step_m, 2),
+        format::plain(view.heights.step_m),
     )
 }
 
@@ -100,8 +100,11 @@ impl View {
             panel.on_paper(&way.collect::<Vec<_>>())
         };
         let paths: Vec<Vec<Spot>> = report.paths.iter().flat_map(on_paper).collect();
-        let opacity = (1.1 - 0.25 * (report.paths.len().max(1) as f64).log10()).clamp(0.35, 0.9);
-        paper.lines(&paths, Pen { opacity, ..Pen::full(BLUE, 0.7) });
+        // one line a path, so that many of them add up to a darker blue
+        let opacity = (1.0 - 0.3 * (report.paths.len().max(1) as f64).log10()).clamp(0.2, 0.9);
+        for path in &paths {
+            paper.line(path, Pen { opacity, ..Pen::full(BLUE, 0.7) });
+        }
         if let Some(ground) = &report.ground {
             let cut = line.profile(ground, (panel.x.low, panel.x.high));
             panel.line(paper, &cut, Pen::full(GROUND_LINE, 1.5));

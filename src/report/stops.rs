@@ -28,9 +28,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
         y: Axis::linear(0.0, lines, ""),
     };
     let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), "Stop reasons", |paper| {
-        for tick in panel.x.ticks(5) {
-            panel.upright(paper, tick.value, Pen::full(super::colour::PALE, 0.6));
-        }
+        panel.grid_upright(paper);
         for (line, share) in report.stops.iter().enumerate() {
             bar(paper, &panel, line, share);
         }
@@ -74,10 +72,18 @@ fn bar(paper: &Paper<'_>, panel: &Panel, line: usize, share: &StopShare) {
     }
     paper.text(&Label::new(name(&share.stop), (panel.frame.left - 8.0, y)).right());
     let count = format::decimal(share.count as f64, 0);
-    let words = format!("{count}  ({})", format::percent(percent.value));
+    let decimals = decimals_for(percent.high - percent.low);
+    let words = format!("{count} ({})", format::percent(percent.value, decimals));
     let x = panel.frame.right + 10.0;
     let after = x + text_width(&words, super::paper::SMALL) + 8.0;
     paper.text(&Label::new(words, (x, y)));
-    let interval = format!("{} to {}", format::percent(percent.low), format::percent(percent.high));
+    let bound = |share: f64| format::percent(share, decimals);
+    let interval = format!("{} to {}", bound(percent.low), bound(percent.high));
     paper.text(&Label::new(interval, (after, y)).coloured(GREY));
+}
+
+/// Decimals of a percentage that an interval of some width (share) leaves meaningful.
+fn decimals_for(width: f64) -> usize {
+    let leading = (100.0 * width).log10().floor();
+    if leading.is_finite() { (1.0 - leading).clamp(1.0, 4.0) as usize } else { 1 }
 }

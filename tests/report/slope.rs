@@ -1,5 +1,7 @@
 //! A made slope with made falls: a cliff, a talus and a meadow, rocks that bounce down as parabolas.
 
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use rockfall::report::input::{
     BandPoint, Estimate, Fall, Path, Point, Quantile, Quantity, Report, Row, StopShare, Table, Text,
 };
@@ -9,28 +11,27 @@ use rockfall::terrain::{Sheet, Terrain};
 use rockfall::trajectory::{PathState, Stop};
 use std::path::PathBuf;
 
-/// Numbers that look like chance and are the same on every machine (Weyl sequence).
-pub struct Dice(f64);
+/// Chance that is the same on every machine.
+pub(crate) struct Dice(ChaCha8Rng);
 
 impl Dice {
-    pub fn new(seed: usize) -> Self {
-        Self((seed as f64 * 0.754_877_666_246_692_7 + 0.1).fract())
+    pub(crate) fn new(seed: usize) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed as u64))
     }
 
     /// Even in 0..1.
-    pub fn roll(&mut self) -> f64 {
-        self.0 = (self.0 * 16_807.0 + 0.618_033_988_749_894_9).fract();
-        self.0
+    pub(crate) fn roll(&mut self) -> f64 {
+        self.0.random()
     }
 
     /// About normal.
-    pub fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         (0..6).map(|_| self.roll()).sum::<f64>() - 3.0
     }
 }
 
 /// Height of the slope (m) at metres east and north of its corner; it falls to the south.
-pub fn height_m(x: f64, y: f64) -> f64 {
+pub(crate) fn height_m(x: f64, y: f64) -> f64 {
     let gully = 3.0 * ((x - 70.0) / 22.0).tanh().powi(2);
     let bumps = 0.5 * (x * 0.31).sin() * (y * 0.23).cos() + 0.25 * (x * 0.9 + y * 0.7).sin();
     let fall = if y > 170.0 {
@@ -44,7 +45,7 @@ pub fn height_m(x: f64, y: f64) -> f64 {
 }
 
 /// The slope as a mesh of `2 n²`-ish triangles with stems of trees, at map coordinates of `origin`.
-pub fn terrain(step_m: f64, origin: Vec3) -> Terrain {
+pub(crate) fn terrain(step_m: f64, origin: Vec3) -> Terrain {
     let (columns, rows) = ((140.0 / step_m) as u32 + 1, (200.0 / step_m) as u32 + 1);
     let mut vertices = Vec::new();
     let mut triangles = Vec::new();
@@ -86,7 +87,7 @@ fn stem(vertices: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>, (x, y): (f64, f
 }
 
 /// One rock that bounces down the slope, with points every 0.05 s.
-pub fn bounce(index: usize, origin: Vec3) -> (Fall, Path) {
+pub(crate) fn bounce(index: usize, origin: Vec3) -> (Fall, Path) {
     const STEP_S: f64 = 0.05;
     const RADIUS_M: f64 = 0.4;
     let mut dice = Dice::new(index);
@@ -123,7 +124,9 @@ pub fn bounce(index: usize, origin: Vec3) -> (Fall, Path) {
             let tilt = Vec3::new(0.12 * dice.normal(), 0.12 * dice.normal(), 0.0);
             let normal = (Vec3::new(-slope(0.1, 0.0), -slope(0.0, 0.1), 1.0) + tilt).normalize();
             let along = v - normal * v.dot(&normal);
-            v = along * (0.70 + 0.15 * dice.roll()) - normal * (0.25 + 0.3 * dice.roll()) * v.dot(&normal).min(0.0);
+            let into = -v.dot(&normal).min(0.0);
+            let kept = 1.0 - (0.45 * into / along.norm().max(1e-9)).min(1.0);
+            v = along * kept * (0.94 + 0.04 * dice.roll()) + normal * (0.2 + 0.4 * dice.roll()) * into;
             at.z = height_m(at.x, at.y) + RADIUS_M;
             if v.norm() < 0.9 {
                 stop = Stop::AtRest;
@@ -156,7 +159,7 @@ pub fn bounce(index: usize, origin: Vec3) -> (Fall, Path) {
 }
 
 /// A report on `count` falls of which `paths` are kept.
-pub fn report(count: usize, paths: usize) -> Report {
+pub(crate) fn report(count: usize, paths: usize) -> Report {
     let origin = Vec3::new(2_600_000.0, 1_200_000.0, 800.0);
     let falls = (0..count).map(|i| bounce(i, origin));
     let (releases, mut kept): (Vec<Fall>, Vec<Path>) = falls.unzip();
@@ -166,7 +169,7 @@ pub fn report(count: usize, paths: usize) -> Report {
 }
 
 /// Adds the estimates that a run would bring (rough ones: only their looks matter here).
-pub fn filled(mut report: Report) -> Report {
+pub(crate) fn filled(mut report: Report) -> Report {
     for quantity in [
         Quantity::Runout,
         Quantity::ReachAngle,

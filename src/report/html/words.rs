@@ -85,6 +85,9 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   figure, tr, .warnings, dt, dd { break-inside: avoid; }
   dt { break-after: avoid; }
   .wide { overflow: visible; }
+  figure { margin: 3mm 0 5mm; }
+  figcaption { font-size: 8.5pt; }
+  pre { font-size: 7.8pt; }
   pre, .warnings { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 ";

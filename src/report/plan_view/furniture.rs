@@ -8,7 +8,6 @@ use crate::report::input::Report;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, text_width};
 use crate::report::svg::path::Frame;
-use plotters::style::RGBColor;
 
 const LINE_PX: f64 = 17.0;
 const PEN: Pen = Pen::full(INK, 0.8);
@@ -54,7 +53,7 @@ fn scale_bar(paper: &Paper<'_>, panel: &Panel) {
     let per_metre = panel.frame.width() / (panel.x.high - panel.x.low);
     let longest = nice_step((panel.x.high - panel.x.low) * 0.13);
     let length = longest * per_metre;
-    let label = format!("{}\u{2009}m", format::significant(longest, 1));
+    let label = format!("{}\u{2009}m", format::plain(longest));
     let (right, y) = (panel.frame.right, panel.frame.bottom + FOOT_PX - 8.0);
     let left = right - length;
     for (from, to, fill) in [(left, left + 0.5 * length, INK), (left + 0.5 * length, right, WHITE)] {
@@ -71,8 +70,7 @@ pub(super) struct Key {
 }
 
 enum Symbol {
-    Release,
-    End(RGBColor),
+    Mark(Mark),
     Tree,
 }
 
@@ -82,7 +80,7 @@ impl Key {
         let mut entries = Vec::new();
         if !report.releases.is_empty() {
             let count = format::decimal(report.releases.len() as f64, 0);
-            entries.push((Symbol::Release, format!("release ({count})")));
+            entries.push((Symbol::Mark(Mark::Release), format!("release ({count})")));
         }
         let names = [
             (Mark::AtRest, "at rest"),
@@ -94,7 +92,7 @@ impl Key {
             let count = report.releases.iter().filter(|f| Mark::of(&f.stop) == mark).count();
             if count > 0 {
                 let text = format!("{name} ({})", format::decimal(count as f64, 0));
-                entries.push((Symbol::End(mark.colour()), text));
+                entries.push((Symbol::Mark(mark), text));
             }
         }
         if report.ground.as_ref().is_some_and(|g| g.trees.contains(&true)) {
@@ -109,7 +107,7 @@ impl Key {
         let mut places = Vec::new();
         for (_, text) in &self.entries {
             let width = 14.0 + text_width(text, SMALL) + 20.0;
-            if x > 0.0 && x + width > width_px - 80.0 {
+            if x > 0.0 && x + width > width_px {
                 (line, x) = (line + 1, 0.0);
             }
             places.push((line, x));
@@ -122,16 +120,11 @@ impl Key {
         self.places(width_px).last().map_or(0.0, |(line, _)| (line + 1) as f64 * LINE_PX)
     }
 
-    pub(super) fn draw(&self, paper: &Paper<'_>, top: f64) {
-        let left = 62.0;
+    pub(super) fn draw(&self, paper: &Paper<'_>, (left, top): (f64, f64)) {
         for ((symbol, text), (line, x)) in self.entries.iter().zip(self.places(paper.size_px().0)) {
             let at = (left + x, top + (line as f64 + 0.5) * LINE_PX);
             match symbol {
-                Symbol::Release => {
-                    paper.disc(at, 3.2, INK);
-                    paper.disc(at, 2.1, WHITE);
-                }
-                Symbol::End(colour) => paper.disc(at, 3.0, *colour),
+                Symbol::Mark(mark) => mark.draw(paper, &[at], 3.0),
                 Symbol::Tree => paper.disc(at, 3.0, GREEN),
             }
             paper.text(&Label::new(text.clone(), (at.0 + 9.0, at.1)));

@@ -1,6 +1,6 @@
 //! Hillshade, contours and trees of the map.
 
-use crate::report::axis::nice_step;
+use crate::report::axis::round_step;
 use crate::report::colour::{GREEN, WHITE};
 use crate::report::contour::Field;
 use crate::report::format;
@@ -16,6 +16,8 @@ use std::collections::BTreeMap;
 const GRID_PX: f64 = 2.0;
 /// Contours aimed at across the relief of the map.
 const CONTOURS: f64 = 22.0;
+/// Steps that readers of maps expect: no 2.5.
+const CONTOUR_STEPS: [f64; 3] = [1.0, 2.0, 5.0];
 /// Every so many contours one is heavy and labelled.
 const INDEX_EVERY: i64 = 5;
 /// Contours shorter than this are noise of the mesh (px).
@@ -86,7 +88,7 @@ fn contours(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<C
     if !(high - low > 1e-3 * (panel.x.high - panel.x.low)) {
         return None;
     }
-    let interval_m = nice_step((high - low) / CONTOURS);
+    let interval_m = round_step((high - low) / CONTOURS, &CONTOUR_STEPS);
     let mut labels = Vec::new();
     for i in (low / interval_m).ceil() as i64..=(high / interval_m).floor() as i64 {
         let level_m = i as f64 * interval_m;
@@ -181,7 +183,7 @@ fn outlines(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster, large: &[bo
         };
         let outline: Vec<Spot> = line.iter().map(place).collect();
         if outline.iter().any(|&spot| panel.frame.holds(spot)) {
-            paper.polygon(&outline, GREEN, 0.7);
+            paper.polygon(&outline, GREEN, 0.85);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The mean fall line, and what happens along it.
 
 use crate::report::axis::nice_step;
-use crate::report::input::{Path, Point, Report};
+use crate::report::input::{Point, Report};
 use crate::report::raster::GroundRaster;
 
 /// Steps aimed at along the line.

@@ -60,6 +60,14 @@ pub fn append_dot(data: &mut String, at: Spot) {
     data.push_str("h0");
 }
 
+/// Appends a closed square. (A square cap on a line of no length is drawn differently by every program.)
+pub fn append_square(data: &mut String, (x, y): Spot, half_px: f64) {
+    let (left, top) = tenths((x - half_px, y - half_px));
+    let side = tenths((2.0 * half_px, 0.0)).0;
+    append_pair(data, 'M', left, top);
+    let _ = write!(data, "h{side}v{side}h-{side}z");
+}
+
 fn append_pair(data: &mut String, command: char, x: i32, y: i32) {
     // a minus sign separates two numbers as well as a space does
     let gap = if y < 0 { "" } else { " " };
