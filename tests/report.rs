@@ -16,7 +16,7 @@ use rockfall::trajectory::{PathState, Stop};
 #[ignore = "writes the page for looking at: cargo test --test report look -- --ignored"]
 fn look() {
     let dir = std::env::temp_dir().join("rockfall_report");
-    for (name, report) in inputs() {
+    for (name, report) in inputs().into_iter().chain([("large", large())]) {
         report::draw(&report, &dir.join(name)).unwrap();
     }
     println!("{}", dir.display());
@@ -62,7 +62,10 @@ fn still() -> Fall {
 fn one_point() -> Path {
     let place_m = [2_600_050.0, 1_200_100.0, 900.0];
     let state = PathState::Flight;
-    Path { index: 0, points: vec![Point { time_s: 0.0, place_m, speed_m_s: 0.0, clearance_m: 0.0, state }] }
+    Path {
+        index: 0,
+        points: vec![Point { time_s: 0.0, place_m, speed_m_s: 0.0, clearance_m: 0.0, state }],
+    }
 }
 
 /// Values that a failed rock may leave behind.
@@ -176,9 +179,8 @@ fn the_same_report_gives_the_same_bytes() {
     assert_eq!(page(), page());
 }
 
-/// 100 000 releases and 500 paths, ends spread over the slope: what lies on top of each other is drawn once, paths are thinned.
-#[test]
-fn a_large_run_gives_a_page_of_less_than_five_megabytes() {
+/// 100 000 releases and 500 paths, ends spread over the slope.
+fn large() -> Report {
     let mut report = slope::report(1000, 500);
     let mut dice = slope::Dice::new(5);
     let few = report.releases.clone();
@@ -189,7 +191,13 @@ fn a_large_run_gives_a_page_of_less_than_five_megabytes() {
         fall.runout_m += 5.0 * dice.normal();
         report.releases.push(fall);
     }
-    let report = slope::filled(report);
+    slope::filled(report)
+}
+
+/// What lies on top of each other is drawn once, paths are thinned, pictures are packed.
+#[test]
+fn a_large_run_gives_a_page_of_less_than_five_megabytes() {
+    let report = large();
     let drawn = report::drawings(&report);
     for (figure, drawing) in &drawn {
         svg::check(&drawing.svg, figure.file);
@@ -232,7 +240,11 @@ fn every_stem_leaves_a_mark() {
     let origin = Vec3::new(0.0, 0.0, 0.0);
     let raster = GroundRaster::from_terrain(&slope::terrain(2.0, origin), 600);
     let patches = raster.tree_patches();
-    assert!((50..=60).contains(&patches.len()), "{} patches (touching stems are one)", patches.len());
+    assert!(
+        (50..=60).contains(&patches.len()),
+        "{} patches (touching stems are one)",
+        patches.len()
+    );
     let area_m2 = raster.trees.iter().filter(|&&t| t).count() as f64 * raster.cell_m.powi(2);
     // a cell that a stem touches counts: a ring of half a cell around radius 0.2..0.45
     let (least, most) = (60.0 * 3.1 * 0.2_f64.powi(2), 60.0 * 3.2 * (0.45 + raster.cell_m).powi(2));
@@ -249,7 +261,10 @@ fn a_raster_read_back_is_the_same_raster() {
     assert_eq!(back.trees, raster.trees);
     let bits = |r: &GroundRaster| r.height_m.iter().map(|z| z.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&back), bits(&raster));
-    assert_eq!((back.west_m, back.south_m, back.cell_m), (raster.west_m, raster.south_m, raster.cell_m));
+    assert_eq!(
+        (back.west_m, back.south_m, back.cell_m),
+        (raster.west_m, raster.south_m, raster.cell_m)
+    );
     assert!(GroundRaster::read(&dir.path().join("nowhere")).unwrap().is_none());
 }
 
@@ -260,9 +275,18 @@ fn a_wrong_grid_file_says_what_is_wrong() {
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     let cases = [
         ("ncols x", "ncols"),
-        ("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize -1\nNODATA_value -9999\n1 2", "positive"),
-        ("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1", "ncols × nrows = 2"),
-        ("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1 abc", "value 2"),
+        (
+            "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize -1\nNODATA_value -9999\n1 2",
+            "positive",
+        ),
+        (
+            "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1",
+            "ncols × nrows = 2",
+        ),
+        (
+            "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1 abc",
+            "value 2",
+        ),
     ];
     for (text, expected) in cases {
         std::fs::write(&path, text).unwrap();
@@ -278,5 +302,10 @@ fn large_mesh() {
     let terrain = slope::terrain(0.1675, Vec3::new(2.6e6, 1.2e6, 0.0));
     let start = std::time::Instant::now();
     let raster = GroundRaster::from_terrain(&terrain, 600);
-    println!("{} triangles, {} cells: {:?}", terrain.triangles.len(), raster.height_m.len(), start.elapsed());
+    println!(
+        "{} triangles, {} cells: {:?}",
+        terrain.triangles.len(),
+        raster.height_m.len(),
+        start.elapsed()
+    );
 }

@@ -74,7 +74,7 @@ impl Axis {
 
     fn log_ticks(&self, count: usize) -> Vec<Tick> {
         let (down, up) = (self.low.log10().round() as i32, self.high.log10().round() as i32);
-        let every = ((up - down) as usize).div_ceil(count.max(1)).max(1) as i32;
+        let every = (f64::from(up - down) / count.max(1) as f64).ceil().max(1.0) as i32;
         let mut ticks = Vec::new();
         for exponent in down..=up {
             let is_labelled = (exponent - down) % every == 0;
@@ -127,7 +127,7 @@ pub fn round_step(rough: f64, mantissas: &[f64]) -> f64 {
 fn labeller(values: &[f64], step: f64) -> impl Fn(f64) -> String + use<> {
     let largest = values.iter().fold(step, |m, v| m.max(v.abs()));
     let (exponent, has_half) = exponent_of(step);
-    let decimals = (usize::from(has_half) as i32 - exponent).max(0) as usize;
+    let decimals = (i32::from(has_half) - exponent).max(0) as usize;
     let is_long = decimals > 4 || largest >= 1e9;
     let mantissa = (exponent_of(largest).0 - exponent).max(0) as usize + usize::from(has_half);
     move |value| match value {
@@ -167,9 +167,14 @@ mod tests {
 
     #[test]
     fn a_range_without_extent_is_still_an_axis() {
-        for (low, high) in [(3.0, 3.0), (f64::NAN, 1.0), (0.0, f64::INFINITY), (2.6e6, 2.6e6), (5.0, 1.0)] {
+        for (low, high) in
+            [(3.0, 3.0), (f64::NAN, 1.0), (0.0, f64::INFINITY), (2.6e6, 2.6e6), (5.0, 1.0)]
+        {
             let axis = Axis::linear(low, high, "");
-            assert!(axis.high > axis.low && axis.low.is_finite() && axis.high.is_finite(), "{low} {high}");
+            assert!(
+                axis.high > axis.low && axis.low.is_finite() && axis.high.is_finite(),
+                "{low} {high}"
+            );
             assert!(!axis.ticks(5).is_empty(), "{low} {high}");
         }
         let axis = Axis::log(0.0, 0.0, "");

@@ -156,15 +156,13 @@ mod tests {
     #[test]
     fn contours_of_a_cone_are_circles() {
         let spacing = 0.1;
-        let cone =
-            Field::sample((-6.0, -6.0), spacing, (121, 121), |x, y| 10.0 - x.hypot(y));
+        let cone = Field::sample((-6.0, -6.0), spacing, (121, 121), |x, y| 10.0 - x.hypot(y));
         for radius in [1.0, 2.03, 5.0] {
             let lines = cone.lines_at(10.0 - radius);
             assert_eq!(lines.len(), 1, "one circle, one line");
             let line = &lines[0];
             assert_eq!(line.first(), line.last(), "a circle is closed");
-            let worst =
-                line.iter().map(|&(x, y)| (x.hypot(y) - radius).abs()).fold(0.0, f64::max);
+            let worst = line.iter().map(|&(x, y)| (x.hypot(y) - radius).abs()).fold(0.0, f64::max);
             assert!(worst <= spacing * spacing / (4.0 * radius), "radius {radius}: {worst}");
             let length: f64 =
                 line.windows(2).map(|s| (s[1].0 - s[0].0).hypot(s[1].1 - s[0].1)).sum();
@@ -185,7 +183,12 @@ mod tests {
 
     #[test]
     fn a_saddle_gives_lines_that_do_not_cross() {
-        let saddle = Field { origin: (0.0, 0.0), spacing: 1.0, columns: 2, values: vec![1.0, 0.0, 0.0, 1.0] };
+        let saddle = Field {
+            origin: (0.0, 0.0),
+            spacing: 1.0,
+            columns: 2,
+            values: vec![1.0, 0.0, 0.0, 1.0],
+        };
         assert_eq!(saddle.lines_at(0.4).len(), 2);
         assert_eq!(saddle.lines_at(0.6).len(), 2);
         assert_eq!(saddle.lines_at(2.0).len(), 0);

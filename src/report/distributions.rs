@@ -73,7 +73,7 @@ impl<'a> Distribution<'a> {
         let bins = Histogram::of(&si.iter().map(|v| v / unit_size).collect::<Vec<_>>());
         let tallest = percent_of(bins.largest(), si.len());
         let y = Axis::from_zero([1.02 * tallest], "Releases (%)");
-        let panel = Panel { frame, x: bins.axis(&titled(quantity.name(), unit)), y };
+        let panel = Panel::new(frame, bins.axis(&titled(quantity.name(), unit)), y);
         Self { report, quantity, bins, panel, largest, unit_size }
     }
 

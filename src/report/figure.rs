@@ -33,5 +33,9 @@ pub const FIGURES: [Figure; 6] = [
     Figure { file: "side.svg", title: "Side view", draw: side_view::draw },
     Figure { file: "runout.svg", title: "Runout", draw: runout::draw },
     Figure { file: "reach_angle.svg", title: "Reach angle", draw: reach_angle::draw },
-    Figure { file: "distributions.svg", title: "Speed, energy and bounce height", draw: distributions::draw },
+    Figure {
+        file: "distributions.svg",
+        title: "Speed, energy and bounce height",
+        draw: distributions::draw,
+    },
 ];

@@ -46,7 +46,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     let rounded = format!("{:.*e}", digits.max(1) - 1, value);
     let exponent = rounded.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
     if (-4..9).contains(&exponent) {
-        decimal(value, (digits as i32 - 1 - exponent).max(0) as usize)
+        decimal(value, (digits as f64 - 1.0 - f64::from(exponent)).max(0.0) as usize)
     } else {
         scientific(value, digits.max(1) - 1)
     }

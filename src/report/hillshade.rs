@@ -38,7 +38,8 @@ pub(super) fn image(frame: &Frame, slope: impl Fn(f64, f64) -> (f64, f64)) -> St
     }
     let Ok(png) = packed(&greys(&shades), width, height) else { return String::new() };
     let data = base64::engine::general_purpose::STANDARD.encode(png);
-    let ((x0, y0), (x1, y1)) = (tenths((frame.left, frame.top)), tenths((frame.right, frame.bottom)));
+    let ((x0, y0), (x1, y1)) =
+        (tenths((frame.left, frame.top)), tenths((frame.right, frame.bottom)));
     // `xlink:href`, not `href`: older programs know only this one
     format!(
         r#"<image x="{x0}" y="{y0}" width="{}" height="{}" preserveAspectRatio="none" xlink:href="data:image/png;base64,{data}"/>"#,
@@ -51,7 +52,8 @@ pub(super) fn image(frame: &Frame, slope: impl Fn(f64, f64) -> (f64, f64)) -> St
 fn greys(shades: &[f64]) -> Vec<u8> {
     let mut sorted: Vec<f64> = shades.iter().copied().filter(|s| s.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
-    let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied().unwrap_or(0.0);
+    let at =
+        |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied().unwrap_or(0.0);
     let (low, high) = (at(CUT), at(1.0 - CUT));
     let (middle, range) = (0.5 * (low + high), (high - low).max(LEAST_RANGE));
     let grey = |&shade: &f64| {

@@ -35,7 +35,9 @@ impl Histogram {
         let from = (low / width).floor() * width;
         let bin = |v: f64| ((v - from) / width + 1e-9).floor().max(0.0) as usize;
         let mut counts = vec![0; bin(high) + 1];
-        finite.iter().for_each(|&v| counts[bin(v)] += 1);
+        for &v in &finite {
+            counts[bin(v)] += 1;
+        }
         Self { from, width, counts, left_out }
     }
 
@@ -52,9 +54,11 @@ impl Histogram {
     /// An axis on which all bins and some paper around them fit.
     pub(super) fn axis(&self, title: &str) -> Axis {
         let (from, to) = (self.from, self.to().max(self.from + self.width));
-        let margin = 0.02 * (to - from).max(4.0 * self.width);
-        // bins that begin at 0 stand at the frame: there is nothing below
-        let low = if from == 0.0 { 0.0 } else { from - margin };
+        // a few bins do not fill the frame
+        let missing = (LEAST_BINS - (to - from) / self.width).max(0.0);
+        let margin = 0.5 * missing * self.width + 0.02 * (to - from);
+        // where all values are positive there is nothing below 0
+        let low = if from >= 0.0 { (from - margin).max(0.0) } else { from - margin };
         Axis::linear(low, to + margin, title)
     }
 

@@ -50,7 +50,10 @@ fn list(lines: &[String]) -> String {
     if lines.is_empty() {
         return String::new();
     }
-    let items: String = lines.iter().map(|line| format!("<li>{}</li>\n", escape(line))).collect();
+    let mut items = String::new();
+    for line in lines {
+        let _ = writeln!(items, "<li>{}</li>", escape(line));
+    }
     format!("<ul>\n{items}</ul>\n")
 }
 
@@ -147,8 +150,10 @@ fn tables(report: &Report) -> String {
 }
 
 fn table(table: &Table) -> String {
-    let heads: String =
-        table.columns.iter().map(|c| format!("<th class=\"number\">{}</th>", escape(c))).collect();
+    let mut heads = String::new();
+    for column in &table.columns {
+        let _ = write!(heads, "<th class=\"number\">{}</th>", escape(column));
+    }
     let mut rows = String::new();
     for (name, cells) in &table.rows {
         let _ = write!(rows, "<tr><th scope=\"row\">{}</th>", escape(name));
@@ -226,7 +231,8 @@ fn quality(report: &Report) -> String {
     let remainder = text.energy_remainder.map_or("not recorded".to_owned(), |share| {
         format!("{} of the energy released, in the worst rock", format::significant(share, 2))
     });
-    let or_unknown = |words: &str| if words.is_empty() { "not stated".to_owned() } else { words.to_owned() };
+    let or_unknown =
+        |words: &str| if words.is_empty() { "not stated".to_owned() } else { words.to_owned() };
     let row = |name: &str, value: String| (name.to_owned(), value);
     let rows = [
         row("Terrain", or_unknown(&text.terrain_source)),

@@ -11,9 +11,9 @@
 pub mod axis;
 pub mod colour;
 pub mod contour;
+mod distributions;
 pub mod figure;
 pub mod format;
-mod distributions;
 mod hillshade;
 mod histogram;
 pub mod html;

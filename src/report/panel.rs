@@ -29,9 +29,25 @@ pub struct Panel {
     pub x: Axis,
     /// Upwards.
     pub y: Axis,
+    /// Least room for the tick labels left of the frame (px): what panels on top of each other share.
+    labels_px: f64,
+}
+
+/// Gives panels on top of each other one left edge and their y titles one line.
+pub fn align<const N: usize>(panels: [&mut Panel; N]) {
+    let widest = panels.iter().map(|panel| panel.labels_px()).fold(0.0, f64::max);
+    for panel in panels {
+        panel.labels_px = widest;
+        panel.frame.left = panel.room_left();
+    }
 }
 
 impl Panel {
+    /// A panel by itself.
+    pub fn new(frame: Frame, x: Axis, y: Axis) -> Self {
+        Self { frame, x, y, labels_px: 0.0 }
+    }
+
     /// Where a pair of values stands on the paper; not finite where a value is not.
     pub fn at(&self, x: f64, y: f64) -> Spot {
         (
@@ -56,9 +72,13 @@ impl Panel {
         counts.into_iter().find(|ticks| fits(ticks)).unwrap_or_else(|| self.x.ticks(1))
     }
 
+    fn labels_px(&self) -> f64 {
+        widest_label(&self.y_ticks()).max(self.labels_px)
+    }
+
     /// Room that ticks, labels and title of the y axis need left of the frame (px).
     pub fn room_left(&self) -> f64 {
-        widest_label(&self.y_ticks()) + TICK_PX + GAP_PX + TITLE_PX + 2.0
+        self.labels_px() + TICK_PX + GAP_PX + TITLE_PX + 2.0
     }
 
     /// Light lines across at the ticks, to be drawn before the data.
@@ -109,16 +129,15 @@ impl Panel {
 
     fn y_axis(&self, paper: &Paper<'_>) {
         let left = self.frame.left;
-        let ticks = self.y_ticks();
-        for tick in &ticks {
+        for tick in self.y_ticks() {
             let y = self.at(self.x.low, tick.value).1;
             let length = if tick.label.is_empty() { 0.6 * TICK_PX } else { TICK_PX };
             paper.line(&[(left - length, y), (left, y)], FRAME_PEN);
             let at = (left - TICK_PX - GAP_PX, y);
-            write_if_any(paper, &Label::new(tick.label.clone(), at).right());
+            write_if_any(paper, &Label::new(tick.label, at).right());
         }
         let middle = 0.5 * (self.frame.top + self.frame.bottom);
-        let beside = left - widest_label(&ticks) - TICK_PX - GAP_PX - 7.0;
+        let beside = left - self.labels_px() - TICK_PX - GAP_PX - 7.0;
         let title = Label::new(self.y.title.clone(), (beside, middle)).above().centred().upwards();
         write_if_any(paper, &title.sized(NORMAL));
         paper.outline(&self.frame, FRAME_PEN);

@@ -5,9 +5,14 @@ use super::svg::path::{self, Frame, Spot, tenths};
 use super::svg::{Canvas, FRAGMENT_MARK, TENTHS, document, metrics};
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
-use plotters::element::{Circle, CoordMapper, Drawable, PathElement, PointCollection, Polygon, Rectangle, Text};
+use plotters::element::{
+    Circle, CoordMapper, Drawable, PathElement, PointCollection, Polygon, Rectangle, Text,
+};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle};
+use plotters::style::{
+    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle,
+};
+use std::fmt::Write as _;
 
 /// Size of small text: tick labels, notes (px; 0.75 pt each).
 pub const SMALL: f64 = 10.5;
@@ -34,11 +39,13 @@ impl Pen {
     }
 
     /// The same line, dashed.
+    #[must_use]
     pub const fn dashed(self) -> Self {
         Self { dashes: "45 25", ..self }
     }
 
     /// The same line, dotted.
+    #[must_use]
     pub const fn dotted(self) -> Self {
         Self { dashes: "12 18", ..self }
     }
@@ -143,7 +150,12 @@ pub fn text_width(text: &str, size_px: f64) -> f64 {
 /// Draws one figure and returns the SVG file.
 ///
 /// `name` starts every id, so that figures can stand on one page.
-pub fn paint(name: &str, size_px: (f64, f64), title: &str, draw: impl FnOnce(&Paper<'_>)) -> String {
+pub fn paint(
+    name: &str,
+    size_px: (f64, f64),
+    title: &str,
+    draw: impl FnOnce(&Paper<'_>),
+) -> String {
     let mut body = String::new();
     let canvas = Canvas::new(&mut body, size_px);
     let paper = Paper { area: canvas.into_drawing_area(), name, size_px };
@@ -231,8 +243,7 @@ impl<'a> Paper<'a> {
 
     /// A filled rectangle.
     pub fn fill(&self, frame: &Frame, fill: RGBColor, opacity: f64) {
-        let corners =
-            [tenths((frame.left, frame.top)), tenths((frame.right, frame.bottom))];
+        let corners = [tenths((frame.left, frame.top)), tenths((frame.right, frame.bottom))];
         self.put(&Rectangle::new(corners, ShapeStyle::from(fill.mix(opacity)).filled()));
     }
 
@@ -312,12 +323,11 @@ impl<'a> Paper<'a> {
     /// A vertical bar whose colour runs through the sequential scale from its lower to its upper end.
     pub fn colour_bar(&self, frame: &Frame) {
         let id = format!("{}-scale", self.name);
-        let stops: String = (0..=10)
-            .map(|i| {
-                let colour = colour::hex(colour::sequential(f64::from(i) / 10.0));
-                format!(r#"<stop offset="{}%" stop-color="{colour}"/>"#, 10 * i)
-            })
-            .collect();
+        let mut stops = String::new();
+        for i in 0..=10 {
+            let colour = colour::hex(colour::sequential(f64::from(i) / 10.0));
+            let _ = write!(stops, r#"<stop offset="{}%" stop-color="{colour}"/>"#, 10 * i);
+        }
         let (x, y) = tenths((frame.left, frame.top));
         let (x1, y1) = tenths((frame.right, frame.bottom));
         self.fragment(&format!(

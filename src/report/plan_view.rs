@@ -48,13 +48,15 @@ pub(super) fn draw(report: &Report) -> Drawing {
                 contours.labels(paper);
             }
         });
+        if report.releases.is_empty() && report.ground.is_none() {
+            panel.nothing(paper, "no release, no ground");
+        }
         panel.axes(paper);
         furniture::draw(paper, &panel, (fastest, !report.paths.is_empty()));
         key.draw(paper, (key_left, panel.frame.bottom + FOOT_PX + 4.0));
     });
-    let interval = contours.map_or(String::new(), |c| {
-        format!(" Contour interval {} m.", format::plain(c.interval_m))
-    });
+    let interval = contours
+        .map_or(String::new(), |c| format!(" Contour interval {} m.", format::plain(c.interval_m)));
     let caption = format!(
         "Plan view in map coordinates, at equal scale. {} of {} paths drawn; colour gives the speed of the centre.{interval}",
         report.paths.len(),
@@ -69,12 +71,10 @@ fn layout(report: &Report) -> Panel {
     let names = ("Easting (m)", "Northing (m)");
     // the labels' width needs the ticks, the ticks need a frame: a square one is near enough
     let square = Frame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
-    let trial = Panel {
-        frame: square,
-        x: Axis::linear(x.0, x.1, names.0),
-        y: Axis::linear(y.0, y.1, names.1),
+    let panel = |frame: Frame, x: Range, y: Range| {
+        Panel::new(frame, Axis::linear(x.0, x.1, names.0), Axis::linear(y.0, y.1, names.1))
     };
-    let left = trial.room_left();
+    let left = panel(square, x, y).room_left();
     let widest = WIDTH_PX - left - RIGHT_PX;
     fill_page(&mut x, &mut y, widest, report);
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
@@ -82,7 +82,7 @@ fn layout(report: &Report) -> Panel {
     // a narrow map stands in the middle of the page
     let left = left + 0.5 * (widest - width);
     let frame = Frame { left, top: TOP_PX, right: left + width, bottom: TOP_PX + height };
-    Panel { frame, x: Axis::linear(x.0, x.1, names.0), y: Axis::linear(y.0, y.1, names.1) }
+    panel(frame, x, y)
 }
 
 type Range = (f64, f64);
@@ -94,13 +94,11 @@ fn extent(report: &Report) -> (Range, Range) {
     let places = ends.chain(points).filter(|p| p[0].is_finite() && p[1].is_finite());
     let empty = (f64::INFINITY, f64::NEG_INFINITY);
     let wider = |r: Range, v: f64| (r.0.min(v), r.1.max(v));
-    let (mut x, mut y) =
-        places.fold((empty, empty), |(x, y), p| (wider(x, p[0]), wider(y, p[1])));
+    let (mut x, mut y) = places.fold((empty, empty), |(x, y), p| (wider(x, p[0]), wider(y, p[1])));
     if x.0 > x.1 {
-        (x, y) = report
-            .ground
-            .as_ref()
-            .map_or(((0.0, 1.0), (0.0, 1.0)), |g| ((g.west_m, g.east_m()), (g.south_m, g.north_m())));
+        (x, y) = report.ground.as_ref().map_or(((0.0, 1.0), (0.0, 1.0)), |g| {
+            ((g.west_m, g.east_m()), (g.south_m, g.north_m()))
+        });
     }
     let size = (x.1 - x.0).max(y.1 - y.0);
     let size = if size > 1e-6 { size } else { 1.0 };
@@ -181,8 +179,9 @@ fn marks(paper: &Paper<'_>, panel: &Panel, report: &Report) {
 /// Places inside the frame, one for each little square of `raster_px`: what lies on top of each other is drawn once.
 fn apart(panel: &Panel, places: impl Iterator<Item = [f64; 3]>, raster_px: f64) -> Vec<Spot> {
     let spots = places.map(|p| panel.at(p[0], p[1])).filter(|&s| panel.frame.holds(s));
-    let cells: BTreeSet<(i64, i64)> =
-        spots.map(|(x, y)| ((x / raster_px).round() as i64, (y / raster_px).round() as i64)).collect();
+    let cells: BTreeSet<(i64, i64)> = spots
+        .map(|(x, y)| ((x / raster_px).round() as i64, (y / raster_px).round() as i64))
+        .collect();
     cells.into_iter().map(|(x, y)| (x as f64 * raster_px, y as f64 * raster_px)).collect()
 }
 

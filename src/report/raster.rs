@@ -129,7 +129,8 @@ impl GroundRaster {
         let mean = |part: fn(usize, usize) -> usize| {
             cells.iter().map(|&cell| part(cell, self.columns) as f64 + 0.5).sum::<f64>() / count
         };
-        let (column, row) = (mean(|cell, columns| cell % columns), mean(|cell, columns| cell / columns));
+        let (column, row) =
+            (mean(|cell, columns| cell % columns), mean(|cell, columns| cell / columns));
         (self.west_m + column * self.cell_m, self.south_m + row * self.cell_m)
     }
 

@@ -17,8 +17,7 @@ const TOP_PX: f64 = 60.0;
 
 /// Draws the histogram over the bands.
 pub(super) fn draw(report: &Report) -> Drawing {
-    let frame =
-        Frame { left: 56.0, right: WIDTH_PX - 16.0, top: TOP_PX, bottom: TOP_PX + PLOT_PX };
+    let frame = Frame { left: 56.0, right: WIDTH_PX - 16.0, top: TOP_PX, bottom: TOP_PX + PLOT_PX };
     let mut angles = Distribution::of(report, Quantity::ReachAngle, frame);
     let x = &angles.panel.x;
     // both bands stay in sight, with room for their names
@@ -35,12 +34,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
 }
 
 /// A shaded band with a bracket above the frame that names it.
-fn observed(
-    paper: &Paper<'_>,
-    panel: &Panel,
-    &(low, high, name): &(f64, f64, &str),
-    line: usize,
-) {
+fn observed(paper: &Paper<'_>, panel: &Panel, &(low, high, name): &(f64, f64, &str), line: usize) {
     let (left, right) = (panel.at(low, 0.0).0, panel.at(high, 0.0).0);
     paper.fill(&Frame { left, right, ..panel.frame }, ORANGE, 0.16);
     let y = panel.frame.top - 26.0 + 16.0 * line as f64;

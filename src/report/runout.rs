@@ -6,7 +6,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
 use super::input::{Quantile, Quantity, Report};
-use super::panel::{FOOT_PX, Panel};
+use super::panel::{FOOT_PX, Panel, align};
 use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
 
@@ -74,19 +74,17 @@ fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
     let shares = Axis::from_zero([1.05 * tallest], "Releases (%)");
     let (top, bottom) = (TOP_PX, TOP_PX + UPPER_PX);
     let right = WIDTH_PX - 16.0;
-    let mut upper = Panel { frame: Frame { left: 0.0, top, right, bottom }, x: x.clone(), y };
+    let mut upper = Panel::new(Frame { left: 0.0, top, right, bottom }, x.clone(), y);
     let (top, bottom) = (bottom + GAP_PX, bottom + GAP_PX + LOWER_PX);
-    let mut lower = Panel { frame: Frame { left: 0.0, top, right, bottom }, x, y: shares };
-    let left = upper.room_left().max(lower.room_left());
-    (upper.frame.left, lower.frame.left) = (left, left);
+    let mut lower = Panel::new(Frame { left: 0.0, top, right, bottom }, x, shares);
+    align([&mut upper, &mut lower]);
     (upper, lower)
 }
 
 /// The curve as the steps it consists of, over its band.
 fn exceedance(paper: &Paper<'_>, panel: &Panel, report: &Report) {
     let curve = &report.runout_exceedance;
-    let band: Vec<(f64, f64, f64)> =
-        curve.iter().map(|p| (p.x, p.y.low, p.y.high)).collect();
+    let band: Vec<(f64, f64, f64)> = curve.iter().map(|p| (p.x, p.y.low, p.y.high)).collect();
     panel.band(paper, &band, SKY, 0.35);
     // where the curve is 0 a logarithmic axis has no place: the line ends at the last rock
     let shown: Vec<(f64, f64)> = curve
@@ -102,26 +100,21 @@ fn exceedance(paper: &Paper<'_>, panel: &Panel, report: &Report) {
 
 /// Percentiles on the curve with their intervals and values beside them.
 fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
-    let mut lowest_free = f64::INFINITY;
+    let mut lowest_free = panel.frame.bottom - 8.0;
     // from the bottom upwards, so that a label can make way
     for quantile in quantiles.iter().rev() {
         let exceeded = 1.0 - quantile.probability;
-        let value = quantile.at.value;
-        let on_axis = (panel.x.low..=panel.x.high).contains(&value);
-        let (x, y) = panel.at(value, exceeded);
-        if !on_axis || !(panel.frame.top..=panel.frame.bottom).contains(&y) {
+        let (x, y) = panel.at(quantile.at.value, exceeded);
+        if !panel.frame.holds((x, y)) {
             continue;
         }
-        let end = |bound: f64, else_x: f64| {
-            let x = panel.at(bound, exceeded).0;
-            if x.is_finite() { x.clamp(panel.frame.left, panel.frame.right) } else { else_x }
+        let end = |bound: f64| {
+            let end = panel.at(bound, exceeded).0;
+            if end.is_finite() { end.clamp(panel.frame.left, panel.frame.right) } else { x }
         };
-        let (low, high) = (end(quantile.at.low, x), end(quantile.at.high, x));
-        whisker(paper, (low, high), y);
+        whisker(paper, (end(quantile.at.low), end(quantile.at.high)), y);
         paper.disc((x, y), 3.0, VERMILLION);
-        let free_y = y.min(lowest_free - SMALL - 3.0).max(panel.frame.top + 2.0 * SMALL);
-        lowest_free = free_y;
-        label(paper, panel, quantile, (low, high, free_y));
+        lowest_free = label(paper, panel, quantile, lowest_free) - SMALL - 3.0;
     }
 }
 
@@ -133,7 +126,8 @@ fn whisker(paper: &Paper<'_>, (low, high): (f64, f64), y: f64) {
     }
 }
 
-fn label(paper: &Paper<'_>, panel: &Panel, quantile: &Quantile, (low, high, y): (f64, f64, f64)) {
+/// Writes name, value and interval beside a point, no lower than `lowest` (px); returns where it stands.
+fn label(paper: &Paper<'_>, panel: &Panel, quantile: &Quantile, lowest: f64) -> f64 {
     let at = quantile.at;
     let name = format!("P{}", format::significant(100.0 * quantile.probability, 2));
     let head = format!("{name} {} m", format::significant(at.value, 4));
@@ -143,14 +137,17 @@ fn label(paper: &Paper<'_>, panel: &Panel, quantile: &Quantile, (low, high, y): 
         }
         _ => "(too few rocks for an interval)".to_owned(),
     };
-    let width = text_width(&head, SMALL) + 6.0 + text_width(&tail, SMALL);
-    // the curve falls: what stands right of a point keeps clear above it, what stands left keeps clear below
-    let (start, y) = if high + 10.0 + width < panel.frame.right {
-        (high + 10.0, y - 7.0)
+    let bold = 1.06 * text_width(&head, SMALL) + 5.0;
+    let width = bold + text_width(&tail, SMALL);
+    let (x, y) = panel.at(at.value, 1.0 - quantile.probability);
+    // the curve falls: what stands right of a point is clear of it above, what stands left below
+    let (left, y) = if x + 8.0 + width < panel.frame.right {
+        (x + 8.0, y - 11.0)
     } else {
-        ((low - 10.0 - width).max(panel.frame.left + 4.0), y + 7.0)
+        ((x - 8.0 - width).max(panel.frame.left + 4.0), y + 11.0)
     };
-    paper.text_on_rim(&Label::new(head.clone(), (start, y)).bold());
-    let after = start + 1.06 * text_width(&head, SMALL) + 6.0;
-    paper.text_on_rim(&Label::new(tail, (after, y)).coloured(GREY));
+    let y = y.min(lowest).max(panel.frame.top + SMALL);
+    paper.text_on_rim(&Label::new(head, (left, y)).bold());
+    paper.text_on_rim(&Label::new(tail, (left + bold, y)).coloured(GREY));
+    y
 }

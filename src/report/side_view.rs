@@ -7,7 +7,7 @@ use super::colour::{BLUE, GREY, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::input::{Path, Report};
-use super::panel::{FOOT_PX, Panel};
+use super::panel::{FOOT_PX, Panel, align};
 use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::{Frame, Spot};
 use along::{Envelope, FallLine};
@@ -78,11 +78,7 @@ impl View {
         let [mut height, mut speed] = [0, 1].map(|i| {
             stacked(0.0, LOWER_PX, &x, Axis { title: titles[i].to_owned(), ..axes[i].clone() })
         });
-        let rooms = [&ground, &height, &speed].map(Panel::room_left);
-        let left = rooms.into_iter().fold(0.0, f64::max);
-        for panel in [&mut ground, &mut height, &mut speed] {
-            panel.frame.left = left;
-        }
+        align([&mut ground, &mut height, &mut speed]);
         let exaggeration = fit_height(&mut ground);
         place_below(&ground, &mut height);
         place_below(&height, &mut speed);
@@ -118,7 +114,7 @@ impl View {
 
 fn stacked(top: f64, height: f64, x: &Axis, y: Axis) -> Panel {
     let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + height };
-    Panel { frame, x: x.clone(), y }
+    Panel::new(frame, x.clone(), y)
 }
 
 /// Gives the profile the height of equal scale, within limits; returns the exaggeration of heights.

@@ -22,11 +22,8 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let lines = report.stops.len().max(1) as f64;
     let bottom = TOP_PX + lines * LINE_PX;
     let frame = Frame { left: LEFT_PX, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom };
-    let panel = Panel {
-        frame,
-        x: Axis::linear(0.0, 100.0, "Share of releases (%)"),
-        y: Axis::linear(0.0, lines, ""),
-    };
+    let x = Axis::linear(0.0, 100.0, "Share of releases (%)");
+    let panel = Panel::new(frame, x, Axis::linear(0.0, lines, ""));
     let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), "Stop reasons", |paper| {
         panel.grid_upright(paper);
         for (line, share) in report.stops.iter().enumerate() {

@@ -79,7 +79,11 @@ impl<'a> Canvas<'a> {
     }
 
     fn finish_shape(&mut self, style: &impl BackendStyle, fill: bool) {
-        if fill { self.fill(style) } else { self.stroke(style) }
+        if fill {
+            self.fill(style);
+        } else {
+            self.stroke(style);
+        }
         self.body.push_str("/>\n");
     }
 }

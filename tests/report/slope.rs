@@ -1,5 +1,7 @@
 //! A made slope with made falls: a cliff, a talus and a meadow, rocks that bounce down as parabolas.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rockfall::report::input::{
@@ -126,7 +128,8 @@ pub(crate) fn bounce(index: usize, origin: Vec3) -> (Fall, Path) {
             let along = v - normal * v.dot(&normal);
             let into = -v.dot(&normal).min(0.0);
             let kept = 1.0 - (0.45 * into / along.norm().max(1e-9)).min(1.0);
-            v = along * kept * (0.94 + 0.04 * dice.roll()) + normal * (0.2 + 0.4 * dice.roll()) * into;
+            v = along * kept * (0.94 + 0.04 * dice.roll())
+                + normal * (0.2 + 0.4 * dice.roll()) * into;
             at.z = height_m(at.x, at.y) + RADIUS_M;
             if v.norm() < 0.9 {
                 stop = Stop::AtRest;

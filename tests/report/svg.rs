@@ -1,5 +1,7 @@
 //! A reader of the SVG that the report writes, just strict enough to find what a viewer would stumble over.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
 /// Fails when a drawing is not well-formed, holds a number that is none, or draws beyond its paper.
 pub(crate) fn check(svg: &str, place: &str) {
     check_nesting(svg, place);
@@ -12,7 +14,11 @@ pub(crate) fn check(svg: &str, place: &str) {
     };
     for tag in svg.split('<').skip(1).filter_map(|rest| rest.split('>').next()) {
         for (x, y) in points(tag) {
-            assert!(inside(x, y), "{place}: ({x}, {y}) is off the paper in <{}", &tag[..tag.len().min(120)]);
+            assert!(
+                inside(x, y),
+                "{place}: ({x}, {y}) is off the paper in <{}",
+                &tag[..tag.len().min(120)]
+            );
         }
     }
     check_texts(svg, &view, place);
@@ -31,10 +37,16 @@ fn check_texts(svg: &str, view: &[f64], place: &str) {
             Some(_) => -width,
         };
         let is_upwards = tag.contains("rotate(-90");
-        let (at, size) = if is_upwards { (view[3] - number("y"), view[3]) } else { (number("x"), view[2]) };
+        let (at, size) =
+            if is_upwards { (view[3] - number("y"), view[3]) } else { (number("x"), view[2]) };
         // 12 tenths of a pixel: bold is a little wider
         let fits = at + start >= -12.0 && at + start + width <= size + 12.0;
-        assert!(fits, "{place}: text `{words}` from {} to {} of {size}", at + start, at + start + width);
+        assert!(
+            fits,
+            "{place}: text `{words}` from {} to {} of {size}",
+            at + start,
+            at + start + width
+        );
     }
 }
 
@@ -72,17 +84,23 @@ pub(crate) fn check_nesting(text: &str, place: &str) {
 
 fn has_no_number(tag: &str) -> bool {
     let is_picture = tag.starts_with("image");
-    !is_picture && tag.split('"').skip(1).step_by(2).any(|value| value.contains("NaN") || value.split([' ', ',']).any(|w| w.trim_start_matches('-').starts_with("inf")))
+    !is_picture
+        && tag.split('"').skip(1).step_by(2).any(|value| {
+            value.contains("NaN")
+                || value.split([' ', ',']).any(|w| w.trim_start_matches('-').starts_with("inf"))
+        })
 }
 
 fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
-    let (_, rest) = tag.split_once(&format!(" {name}=\"")).or_else(|| tag.split_once(&format!("{name}=\"")))?;
+    let (_, rest) =
+        tag.split_once(&format!(" {name}=\"")).or_else(|| tag.split_once(&format!("{name}=\"")))?;
     rest.split('"').next()
 }
 
 /// All points that an element draws through.
 fn points(tag: &str) -> Vec<(f64, f64)> {
-    let number = |name: &str| attribute(tag, name).and_then(|v| v.parse::<f64>().ok()).unwrap_or(0.0);
+    let number =
+        |name: &str| attribute(tag, name).and_then(|v| v.parse::<f64>().ok()).unwrap_or(0.0);
     if let Some(data) = tag.strip_prefix("path d=\"") {
         return path_points(data.split('"').next().unwrap());
     }

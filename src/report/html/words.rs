@@ -23,14 +23,20 @@ pub(super) const GLOSSARY: [(&str, &str); 10] = [
          in the sample only.",
     ),
     ("Runout", "Horizontal distance from release to end."),
-    ("Reach angle (Fahrböschung)", "atan(drop / runout), drop and runout measured from release to end."),
+    (
+        "Reach angle (Fahrböschung)",
+        "atan(drop / runout), drop and runout measured from release to end.",
+    ),
     (
         "Bounce height",
         "Vertical distance from the ground below to the lowest point of the rock. A barrier also needs it at right angles to the slope.",
     ),
     ("Translational energy", "m v²/2 of the centre."),
     ("Rotational energy", "I ω²/2 with I = 2/5 m R²."),
-    ("Total energy", "The sum of both at one instant; its largest value is not the sum of the two largest."),
+    (
+        "Total energy",
+        "The sum of both at one instant; its largest value is not the sum of the two largest.",
+    ),
     (
         "Reach probability",
         "Crossings over releases: conditional on release. It is not a frequency; that needs the frequency of releases.",

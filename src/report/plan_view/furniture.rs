@@ -56,7 +56,8 @@ fn scale_bar(paper: &Paper<'_>, panel: &Panel) {
     let label = format!("{}\u{2009}m", format::plain(longest));
     let (right, y) = (panel.frame.right, panel.frame.bottom + FOOT_PX - 8.0);
     let left = right - length;
-    for (from, to, fill) in [(left, left + 0.5 * length, INK), (left + 0.5 * length, right, WHITE)] {
+    for (from, to, fill) in [(left, left + 0.5 * length, INK), (left + 0.5 * length, right, WHITE)]
+    {
         let half = Frame { left: from, top: y - 2.5, right: to, bottom: y + 2.5 };
         paper.fill(&half, fill, 1.0);
         paper.outline(&half, Pen::full(INK, 0.6));

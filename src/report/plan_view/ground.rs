@@ -83,9 +83,11 @@ fn contours(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<C
         ground.height_at(x, y)
     });
     let finite = field.values.iter().copied().filter(|z| z.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
+    let (low, high) =
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
     // ground that is flat to a thousandth of the map has no contours worth drawing
-    if !(high - low > 1e-3 * (panel.x.high - panel.x.low)) {
+    // (without any ground the difference is −∞)
+    if high - low <= 1e-3 * (panel.x.high - panel.x.low) {
         return None;
     }
     let interval_m = round_step((high - low) / CONTOURS, &CONTOUR_STEPS);
@@ -115,7 +117,12 @@ fn length(line: &[Spot]) -> f64 {
 }
 
 /// Puts one label on each long line, at its longest straight piece that is far from other labels and from the frame.
-fn label_lines(panel: &Panel, lines: &[Vec<Spot>], text: &str, labels: &mut Vec<(Spot, f64, String)>) {
+fn label_lines(
+    panel: &Panel,
+    lines: &[Vec<Spot>],
+    text: &str,
+    labels: &mut Vec<(Spot, f64, String)>,
+) {
     for line in lines.iter().filter(|line| length(line) > LABELS_APART_PX) {
         let middle = |s: &[Spot]| (0.5 * (s[0].0 + s[1].0), 0.5 * (s[0].1 + s[1].1));
         let is_free = |at: Spot| {
@@ -146,7 +153,9 @@ fn trees(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) {
     for patch in ground.tree_patches() {
         let diameter_px = 2.0 * (patch.len() as f64 / std::f64::consts::PI).sqrt() * cell_px;
         if diameter_px > SMALL_STEM_PX && patch.len() > 9 {
-            patch.iter().for_each(|&cell| large[cell] = true);
+            for &cell in &patch {
+                large[cell] = true;
+            }
             continue;
         }
         let (x, y) = ground.centroid_m(&patch);

@@ -20,7 +20,8 @@ impl GroundRaster {
     pub fn write(&self, dir: &Path) -> Result<()> {
         let maps = dir.join("maps");
         fs::create_dir_all(&maps).map_err(Error::file("create", &maps))?;
-        let height = |i: usize| if self.height_m[i].is_finite() { self.height_m[i] } else { NO_DATA };
+        let height =
+            |i: usize| if self.height_m[i].is_finite() { self.height_m[i] } else { NO_DATA };
         let tree = |i: usize| f64::from(u8::from(self.trees[i]));
         self.write_grid(&dir.join(GROUND), height)?;
         self.write_grid(&dir.join(TREES), tree)
@@ -107,7 +108,7 @@ fn read_values<'a>(
     no_data: f64,
 ) -> Result<Vec<f64>> {
     let read = |(i, word): (usize, &str)| match word.parse::<f64>() {
-        Ok(z) if z == no_data => Ok(f64::NAN),
+        Ok(z) if z.total_cmp(&no_data).is_eq() => Ok(f64::NAN),
         Ok(z) => Ok(z),
         Err(_) => {
             let place = format!("value {}", i + 1);

@@ -16,7 +16,8 @@ pub(super) fn for_each_centre(
     mut touch: impl FnMut(usize, usize, f64),
 ) {
     // in units of cells, centres on whole numbers
-    let [a, b, c] = corners.map(|p| [(p[0] - west) / cell - 0.5, (p[1] - south) / cell - 0.5, p[2]]);
+    let [a, b, c] =
+        corners.map(|p| [(p[0] - west) / cell - 0.5, (p[1] - south) / cell - 0.5, p[2]]);
     let span = |axis: usize, count: usize| {
         let low = a[axis].min(b[axis]).min(c[axis]);
         let high = a[axis].max(b[axis]).max(c[axis]);
@@ -90,7 +91,9 @@ impl Cover {
             let largest = (LARGEST_STEM_M2 / (self.grid.2 * self.grid.2)) as usize;
             for hole in patches(&self.is_covered, self.size.0, false) {
                 if hole.len() <= largest && !self.touches_border(&hole) {
-                    hole.iter().for_each(|&cell| self.is_covered[cell] = true);
+                    for cell in hole {
+                        self.is_covered[cell] = true;
+                    }
                 }
             }
         }

@@ -4,7 +4,8 @@ use super::{RAISED_SIZE, lowered};
 
 /// Advance widths of the characters 32 to 126 in thousandths of the font size (Adobe Font Metrics, Helvetica).
 const WIDTHS: [u16; 95] = [
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278, // space to /
+    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278,
+    278, // space to /
     556, 556, 556, 556, 556, 556, 556, 556, 556, 556, // 0 to 9
     278, 278, 584, 584, 584, 556, 1015, // : to @
     667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, // A to M

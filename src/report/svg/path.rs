@@ -179,8 +179,10 @@ mod tests {
     /// Every dropped point stays within the tolerance of what is drawn: the promise of the method.
     #[test]
     fn thinning_moves_no_point_by_more_than_the_tolerance() {
-        let line: Vec<Spot> =
-            (0..2000).map(|i| f64::from(i) * 0.05).map(|x| (x, 30.0 * (0.3 * x).sin().abs())).collect();
+        let line: Vec<Spot> = (0..2000)
+            .map(|i| f64::from(i) * 0.05)
+            .map(|x| (x, 30.0 * (0.3 * x).sin().abs()))
+            .collect();
         let thin = thinned(&line, 0.15);
         assert!(thin.len() * 5 < line.len(), "{} of {} points kept", thin.len(), line.len());
         for &p in &line {
