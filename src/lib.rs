@@ -10,6 +10,7 @@ pub mod hazard;
 pub mod output;
 pub mod plan;
 pub mod release;
+pub mod report;
 pub mod rock;
 pub mod scene;
 pub mod step;

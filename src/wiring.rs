@@ -2,7 +2,7 @@
 
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
-use rockfall::output::{self, Identity, Mode, Output, RunInfo};
+use rockfall::output::{Identity, Mode, Output, RunInfo};
 use rockfall::plan::Plan;
 use rockfall::report;
 use rockfall::rock::Vec3;
@@ -66,14 +66,15 @@ pub(crate) fn run(
         return Ok(Ended::Interrupted(done, asked));
     }
     let results = output.finish()?;
-    report::draw(&results, &report::ground_of(&plan.terrain), &order.out)?;
+    report::draw_run(&results, &plan.terrain)?;
     Ok(Ended::Complete)
 }
 
 fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) -> Result<RunInfo> {
     let only = order.only;
-    let mesh_health = serde_json::to_value(health)
+    let mut mesh_health = serde_json::to_value(health)
         .map_err(|error| Error::Request(format!("the mesh health cannot be written: {error}")))?;
+    mesh_health["table"] = health.to_string().lines().collect();
     Ok(RunInfo {
         title: plan.title.clone(),
         identity: Identity {
@@ -101,8 +102,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
 
 /// Draws figures and page again from the results in `dir`.
 pub(crate) fn draw(dir: &Path) -> Result<()> {
-    let results = output::read(dir)?;
-    report::draw(&results, &report::read_ground(dir)?, dir)
+    report::draw_again(dir)
 }
 
 /// Health of mesh files as they will be welded, in words.
