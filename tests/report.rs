@@ -5,9 +5,14 @@ mod slope;
 #[path = "report/svg.rs"]
 mod svg;
 
-use rockfall::report::figure::FIGURES;
+use rockfall::report::axis::Axis;
+use rockfall::report::colour;
+use rockfall::report::figure::{FIGURES, WIDTH_PX};
 use rockfall::report::input::{Fall, Path, Point, Report};
+use rockfall::report::panel::{FOOT_PX, Panel};
+use rockfall::report::paper::{Pen, paint};
 use rockfall::report::raster::GroundRaster;
+use rockfall::report::svg::path::Frame;
 use rockfall::report::{self, html};
 use rockfall::rock::Vec3;
 use rockfall::trajectory::{PathState, Stop};
@@ -19,6 +24,7 @@ fn look() {
     for (name, report) in inputs().into_iter().chain([("large", large())]) {
         report::draw(&report, &dir.join(name)).unwrap();
     }
+    std::fs::write(dir.join("loglog.svg"), log_log()).unwrap();
     println!("{}", dir.display());
 }
 
@@ -206,6 +212,32 @@ fn a_large_run_gives_a_page_of_less_than_five_megabytes() {
     let page = html::page(&report, &drawn);
     println!("page {} kB", page.len() / 1000);
     assert!(page.len() < 5_000_000, "{} bytes", page.len());
+}
+
+/// What a study of error against cost draws: both axes logarithmic, dashed lines, values beyond the frame.
+fn log_log() -> String {
+    let frame = Frame { left: 70.0, top: 10.0, right: 660.0, bottom: 300.0 };
+    let x = Axis::log(3e-6, 0.7, "Step (s)");
+    let panel = Panel::new(frame, x, Axis::log(1e-9, 1e-1, "Error (–)"));
+    paint("loglog", (WIDTH_PX, 300.0 + FOOT_PX), "Error", |paper| {
+        panel.grid(paper);
+        let line = |power: i32| {
+            (0..60)
+                .map(|i| 10f64.powf(-7.0 + 0.15 * f64::from(i)))
+                .map(move |h| (h, h.powi(power)))
+                .collect::<Vec<_>>()
+        };
+        panel.line(paper, &line(1), Pen::full(colour::BLUE, 1.5));
+        panel.line(paper, &line(2), Pen::full(colour::VERMILLION, 1.5).dashed());
+        panel.axes(paper);
+    })
+}
+
+#[test]
+fn lines_on_logarithmic_axes_end_at_the_frame() {
+    let svg = log_log();
+    svg::check(&svg, "log-log");
+    assert!(svg.contains("stroke-dasharray"));
 }
 
 #[test]
