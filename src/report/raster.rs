@@ -35,8 +35,8 @@ struct Bounds {
 impl GroundRaster {
     /// The ground of a terrain on about `cells` cells along the longer side.
     ///
-    /// Sheets of trees give the tree cells, all others the heights: the highest where sheets lie above each other. Heights are rounded to a
-    /// thousandth of a cell, so that a raster read back from its files is the same raster.
+    /// Sheets of trees give the tree cells, all others the heights: the highest where sheets lie above each other. Heights are rounded to
+    /// a thousandth of a cell: finer digits say nothing and make the files long.
     pub fn from_terrain(terrain: &Terrain, cells: usize) -> Self {
         let is_tree = |triangle: usize| {
             let sheet = terrain.sheet_of.get(triangle).map(|&s| usize::from(s));
@@ -187,7 +187,7 @@ fn decimals_for(cell_m: f64) -> i32 {
     (3.0 - cell_m.log10().floor()).clamp(0.0, 9.0) as i32
 }
 
-/// The double nearest to a decimal number: what reading its printed form gives back.
+/// The double nearest to a number of few decimals: its printed form is short and reads back to the same double.
 fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     let scaled = (value * scale).round();
