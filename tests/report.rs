@@ -110,7 +110,7 @@ fn stretched(mut report: Report, factor: f64) -> Report {
 /// Every way to end, often: the longest key a map can have.
 fn all_ends(mut report: Report) -> Report {
     let stops = [Stop::AtRest, Stop::LeftTerrain, Stop::TimeUp, Stop::Failed("made".to_owned())];
-    report.releases = report.releases.repeat(10);
+    report.releases = vec![report.releases; 10].concat();
     for (i, fall) in report.releases.iter_mut().enumerate() {
         fall.stop = stops[i % 4].clone();
         // a narrow map leaves the key little room

@@ -87,15 +87,6 @@ impl GroundRaster {
         self.south_m + self.rows() as f64 * self.cell_m
     }
 
-    /// Lowest and highest ground (m), if there is any.
-    pub fn relief_m(&self) -> Option<(f64, f64)> {
-        let finite = self.height_m.iter().copied().filter(|z| z.is_finite());
-        finite.fold(None, |range, z| match range {
-            None => Some((z, z)),
-            Some((low, high)) => Some((f64::min(low, z), f64::max(high, z))),
-        })
-    }
-
     /// Height of the ground at a place of the map (m), linear between cell centres; NaN outside.
     ///
     /// Beside a cell without ground the others speak alone, as long as they hold half the weight.
