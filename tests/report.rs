@@ -5,9 +5,14 @@ mod slope;
 #[path = "report/svg.rs"]
 mod svg;
 
-use rockfall::report::figure::FIGURES;
+use rockfall::report::axis::Axis;
+use rockfall::report::colour;
+use rockfall::report::figure::{FIGURES, WIDTH_PX};
 use rockfall::report::input::{Fall, Path, Point, Report};
+use rockfall::report::panel::{FOOT_PX, Panel};
+use rockfall::report::paper::{Label, Pen, paint};
 use rockfall::report::raster::GroundRaster;
+use rockfall::report::svg::path::Frame;
 use rockfall::report::{self, html};
 use rockfall::rock::Vec3;
 use rockfall::trajectory::{PathState, Stop};
@@ -19,6 +24,7 @@ fn look() {
     for (name, report) in inputs().into_iter().chain([("large", large())]) {
         report::draw(&report, &dir.join(name)).unwrap();
     }
+    std::fs::write(dir.join("loglog.svg"), log_log()).unwrap();
     println!("{}", dir.display());
 }
 
@@ -37,6 +43,7 @@ fn inputs() -> Vec<(&'static str, Report)> {
         ("not_numbers", slope::filled(broken(full))),
         ("huge", slope::filled(stretched(one, 1e7))),
         ("small", small()),
+        ("all_ends", slope::filled(all_ends(slope::report(400, 20)))),
     ]
 }
 
@@ -98,6 +105,19 @@ fn stretched(mut report: Report, factor: f64) -> Report {
     fall.runout_m = factor;
     fall.max_total_j *= factor;
     report
+}
+
+/// Every way to end, often: the longest key a map can have.
+fn all_ends(mut report: Report) -> Report {
+    let stops = [Stop::AtRest, Stop::LeftTerrain, Stop::TimeUp, Stop::Failed("made".to_owned())];
+    report.releases = vec![report.releases; 10].concat();
+    for (i, fall) in report.releases.iter_mut().enumerate() {
+        fall.stop = stops[i % 4].clone();
+        // a narrow map leaves the key little room
+        fall.start_m[0] = 2_600_070.0;
+        fall.end_m[0] = 2_600_070.0 + (i % 9) as f64;
+    }
+    Report { ground: None, paths: Vec::new(), ..report }
 }
 
 /// A table-top experiment: everything within a metre, at the origin.
@@ -208,6 +228,51 @@ fn a_large_run_gives_a_page_of_less_than_five_megabytes() {
     assert!(page.len() < 5_000_000, "{} bytes", page.len());
 }
 
+/// What a study of error against cost draws: both axes logarithmic, dashed lines, values beyond the frame.
+fn log_log() -> String {
+    let frame = Frame { left: 70.0, top: 10.0, right: 660.0, bottom: 300.0 };
+    let x = Axis::log(3e-6, 0.7, "Step (s)");
+    let panel = Panel::new(frame, x, Axis::log(1e-9, 1e-1, "Error (–)"));
+    paint("loglog", (WIDTH_PX, 300.0 + FOOT_PX), "Error", |paper| {
+        panel.grid(paper);
+        let line = |power: i32| {
+            (0..60)
+                .map(|i| 10f64.powf(-7.0 + 0.15 * f64::from(i)))
+                .map(move |h| (h, h.powi(power)))
+                .collect::<Vec<_>>()
+        };
+        panel.line(paper, &line(1), Pen::full(colour::BLUE, 1.5));
+        panel.line(paper, &line(2), Pen::full(colour::VERMILLION, 1.5).dashed());
+        panel.axes(paper);
+    })
+}
+
+/// A line beyond the range must be cut where it leaves the frame. Drawn as it is it would run over the axes; moved onto the frame it
+/// would change its direction.
+#[test]
+fn lines_on_logarithmic_axes_end_at_the_frame() {
+    let svg = log_log();
+    svg::check(&svg, "log-log");
+    for colour in [colour::BLUE, colour::VERMILLION] {
+        let points = svg::stroked_with(&svg, &colour::hex(colour));
+        assert_eq!(points.len(), 2, "a straight line, thinned: {points:?}");
+        for (x, y) in points {
+            let at_an_edge = [x - 700.0, x - 6600.0, y - 100.0, y - 3000.0];
+            assert!(at_an_edge.iter().any(|d| d.abs() <= 1.0), "({x}, {y})");
+            assert!((699.0..=6601.0).contains(&x) && (99.0..=3001.0).contains(&y), "({x}, {y})");
+        }
+    }
+}
+
+#[test]
+fn text_in_a_figure_stays_text() {
+    let svg = paint("text", (300.0, 50.0), "<title> & \"quotes\"", |paper| {
+        paper.text(&Label::new("a < b & 10⁻⁵ > 0", (10.0, 20.0)));
+    });
+    svg::check(&svg, "text");
+    assert!(svg.contains("a &lt; b &amp; 10"));
+}
+
 #[test]
 fn every_figure_has_its_own_file() {
     let mut files: Vec<&str> = FIGURES.iter().map(|f| f.file).collect();
@@ -232,6 +297,15 @@ fn the_raster_gives_the_height_of_the_mesh() {
     assert!(worst < 0.11, "{worst} m off");
     assert!(raster.height_at(origin.x - 5.0, origin.y).is_nan());
     assert!(raster.height_at(origin.x + 20.0, origin.y + 300.0).is_nan());
+}
+
+/// On cells of half a metre every second cell centre lies exactly on an edge between two triangles: it belongs to one of them.
+#[test]
+fn no_hole_between_triangles() {
+    let raster = GroundRaster::from_terrain(&slope::terrain(1.0, Vec3::zeros()), 400);
+    assert!((raster.cell_m - 0.5).abs() < 1e-12);
+    let holes = raster.height_m.iter().filter(|z| z.is_nan()).count();
+    assert_eq!(holes, 0);
 }
 
 /// 60 open prisms of 0.2 to 0.45 m on cells of a third of a metre: each leaves a mark, none is hollow.

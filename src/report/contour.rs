@@ -181,16 +181,21 @@ mod tests {
         assert!(lines.iter().flatten().all(|&(x, _)| (x - 7.5).abs() < 1e-12));
     }
 
+    /// Two high corners face each other. Below the mean height the ridge between them holds together and the lines cut off the low corners; above
+    /// the mean the lines cut off the high ones.
     #[test]
-    fn a_saddle_gives_lines_that_do_not_cross() {
-        let saddle = Field {
-            origin: (0.0, 0.0),
-            spacing: 1.0,
-            columns: 2,
-            values: vec![1.0, 0.0, 0.0, 1.0],
-        };
-        assert_eq!(saddle.lines_at(0.4).len(), 2);
-        assert_eq!(saddle.lines_at(0.6).len(), 2);
-        assert_eq!(saddle.lines_at(2.0).len(), 0);
+    fn the_mean_decides_a_saddle() {
+        let values = vec![1.0, 0.0, 0.0, 1.0];
+        let saddle = Field { origin: (0.0, 0.0), spacing: 1.0, columns: 2, values };
+        for (level, cut_off_is_low) in [(0.4, true), (0.6, false)] {
+            let lines = saddle.lines_at(level);
+            assert_eq!(lines.len(), 2);
+            for line in lines {
+                // high corners lie on the diagonal x = y
+                let off_diagonal = (line[0].0 + line[1].0 - line[0].1 - line[1].1).abs();
+                assert_eq!(off_diagonal > 0.5, cut_off_is_low, "{level}: {line:?}");
+            }
+        }
+        assert!(saddle.lines_at(2.0).is_empty());
     }
 }

@@ -129,19 +129,15 @@ fn in_short_unit(row: &Row) -> (Estimate, &str) {
 fn in_words(estimate: &Estimate) -> (String, String) {
     let width = estimate.high - estimate.low;
     let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
-        let leading = estimate.value.abs().log10().floor() - width.log10().floor();
+        // the last digit is at most a fifth of the interval
+        let leading = estimate.value.abs().log10().floor() - (0.2 * width).log10().floor();
         (leading as i32 + 1).clamp(3, 6) as usize
     } else {
         4
     };
     let bound = |v: f64| format::significant(format::rounded(v, digits), digits);
     let value = bound(estimate.value);
-    let interval = match (estimate.low.is_finite(), estimate.high.is_finite()) {
-        (true, true) => format!("{} to {}", bound(estimate.low), bound(estimate.high)),
-        (true, false) => format!("at least {}", bound(estimate.low)),
-        (false, true) => format!("at most {}", bound(estimate.high)),
-        (false, false) => format::NO_NUMBER.to_owned(),
-    };
+    let interval = format::interval(&bound(estimate.low), &bound(estimate.high));
     (value, interval)
 }
 

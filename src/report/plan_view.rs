@@ -14,8 +14,8 @@ use super::svg::path::{Frame, Spot, clipped, thinned};
 use crate::trajectory::Stop;
 use std::collections::BTreeSet;
 
-/// Tallest map (px): with its caption it still fits an A4 page.
-const TALLEST_PX: f64 = 640.0;
+/// Tallest map (px): with the stop reasons and both captions it fits an A4 page.
+const TALLEST_PX: f64 = 580.0;
 /// Least height of a map (px): room for the colour bar.
 const LOWEST_PX: f64 = 190.0;
 /// Column right of the map for north arrow and colour bar (px).
@@ -226,13 +226,16 @@ impl Mark {
                 paper.squares(spots, 0.5 * radius, WHITE);
             }
             Self::Failed => {
-                let r = radius + 0.8;
+                let is_crowd = spots.len() > MANY;
+                let r = if is_crowd { radius } else { radius + 0.8 };
                 let strokes = |&(x, y): &Spot| {
                     [vec![(x - r, y - r), (x + r, y + r)], vec![(x - r, y + r), (x + r, y - r)]]
                 };
                 let crosses: Vec<Vec<Spot>> = spots.iter().flat_map(strokes).collect();
-                paper.lines(&crosses, Pen::full(WHITE, 2.8));
-                paper.lines(&crosses, Pen::full(PURPLE, 1.6));
+                if !is_crowd {
+                    paper.lines(&crosses, Pen::full(WHITE, 2.8));
+                }
+                paper.lines(&crosses, Pen::full(PURPLE, if is_crowd { 0.9 } else { 1.6 }));
             }
         }
     }

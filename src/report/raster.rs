@@ -35,8 +35,8 @@ struct Bounds {
 impl GroundRaster {
     /// The ground of a terrain on about `cells` cells along the longer side.
     ///
-    /// Sheets of trees give the tree cells, all others the heights: the highest where sheets lie above each other. Heights are rounded to a
-    /// thousandth of a cell, so that a raster read back from its files is the same raster.
+    /// Sheets of trees give the tree cells, all others the heights: the highest where sheets lie above each other. Heights are rounded to
+    /// a thousandth of a cell: finer digits say nothing and make the files long.
     pub fn from_terrain(terrain: &Terrain, cells: usize) -> Self {
         let is_tree = |triangle: usize| {
             let sheet = terrain.sheet_of.get(triangle).map(|&s| usize::from(s));
@@ -85,15 +85,6 @@ impl GroundRaster {
     /// Northern edge, map coordinates (m).
     pub fn north_m(&self) -> f64 {
         self.south_m + self.rows() as f64 * self.cell_m
-    }
-
-    /// Lowest and highest ground (m), if there is any.
-    pub fn relief_m(&self) -> Option<(f64, f64)> {
-        let finite = self.height_m.iter().copied().filter(|z| z.is_finite());
-        finite.fold(None, |range, z| match range {
-            None => Some((z, z)),
-            Some((low, high)) => Some((f64::min(low, z), f64::max(high, z))),
-        })
     }
 
     /// Height of the ground at a place of the map (m), linear between cell centres; NaN outside.
@@ -187,7 +178,7 @@ fn decimals_for(cell_m: f64) -> i32 {
     (3.0 - cell_m.log10().floor()).clamp(0.0, 9.0) as i32
 }
 
-/// The double nearest to a decimal number: what reading its printed form gives back.
+/// The double nearest to a number of few decimals: its printed form is short and reads back to the same double.
 fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     let scaled = (value * scale).round();

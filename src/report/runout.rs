@@ -19,29 +19,30 @@ const MANY: usize = 100;
 
 /// Draws both panels over one x axis.
 pub(super) fn draw(report: &Report) -> Drawing {
-    let values: Vec<f64> = report.releases.iter().map(|fall| fall.runout_m).collect();
-    let bins = Histogram::of(&values);
-    let (upper, lower) = panels(report, &bins, values.len());
+    let runouts: Vec<f64> = report.releases.iter().map(|fall| fall.runout_m).collect();
+    let bins = Histogram::of(&runouts);
+    let (upper, lower) = panels(report, &bins, runouts.len());
     let quantiles = report.quantiles.get(&Quantity::Runout).map_or(&[][..], Vec::as_slice);
     let height = lower.frame.bottom + FOOT_PX;
     let svg = paint("runout", (WIDTH_PX, height), "Runout", |paper| {
         upper.grid(paper);
         lower.grid(paper);
         exceedance(paper, &upper, report);
-        bins.bars(paper, &lower, values.len());
+        bins.bars(paper, &lower, runouts.len());
         for quantile in quantiles {
             let pen = Pen::full(INK, 0.7).dotted();
             upper.upright(paper, quantile.at.value, pen);
             lower.upright(paper, quantile.at.value, pen);
         }
         mark(paper, &upper, quantiles);
+        values(paper, &upper, report, quantiles);
         upper.axes_above_another(paper);
         lower.axes(paper);
-        if values.is_empty() {
+        if runouts.is_empty() {
             lower.nothing(paper, "no release");
         }
     });
-    Drawing { svg, caption: caption(&bins, values.len()) }
+    Drawing { svg, caption: caption(&bins, runouts.len()) }
 }
 
 fn caption(bins: &Histogram, count: usize) -> String {
@@ -98,11 +99,9 @@ fn exceedance(paper: &Paper<'_>, panel: &Panel, report: &Report) {
     }
 }
 
-/// Percentiles on the curve with their intervals and values beside them.
+/// Percentiles on the curve with their intervals; their values in the corner that the curve leaves free.
 fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
-    let mut lowest_free = panel.frame.bottom - 8.0;
-    // from the bottom upwards, so that a label can make way
-    for quantile in quantiles.iter().rev() {
+    for quantile in quantiles {
         let exceeded = 1.0 - quantile.probability;
         let (x, y) = panel.at(quantile.at.value, exceeded);
         if !panel.frame.holds((x, y)) {
@@ -114,8 +113,18 @@ fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
         };
         whisker(paper, (end(quantile.at.low), end(quantile.at.high)), y);
         paper.disc((x, y), 3.0, VERMILLION);
-        lowest_free = label(paper, panel, quantile, lowest_free) - SMALL - 3.0;
+        // the curve falls: above and to the right of a point is free, below and to the left too
+        let label = if x + 40.0 < panel.frame.right {
+            Label::new(name(quantile), (x + 6.0, y - 10.0))
+        } else {
+            Label::new(name(quantile), (x - 6.0, y - 10.0)).right()
+        };
+        paper.text_on_rim(&label.bold());
     }
+}
+
+fn name(quantile: &Quantile) -> String {
+    format!("P{}", format::significant(100.0 * quantile.probability, 2))
 }
 
 fn whisker(paper: &Paper<'_>, (low, high): (f64, f64), y: f64) {
@@ -126,28 +135,40 @@ fn whisker(paper: &Paper<'_>, (low, high): (f64, f64), y: f64) {
     }
 }
 
-/// Writes name, value and interval beside a point, no lower than `lowest` (px); returns where it stands.
-fn label(paper: &Paper<'_>, panel: &Panel, quantile: &Quantile, lowest: f64) -> f64 {
-    let at = quantile.at;
-    let name = format!("P{}", format::significant(100.0 * quantile.probability, 2));
-    let head = format!("{name} {} m", format::significant(at.value, 4));
-    let tail = match (at.low.is_finite(), at.high.is_finite()) {
-        (true, true) => {
-            format!("({} to {})", format::significant(at.low, 4), format::significant(at.high, 4))
-        }
-        _ => "(too few rocks for an interval)".to_owned(),
-    };
-    let bold = 1.06 * text_width(&head, SMALL) + 5.0;
-    let width = bold + text_width(&tail, SMALL);
-    let (x, y) = panel.at(at.value, 1.0 - quantile.probability);
-    // the curve falls: what stands right of a point is clear of it above, what stands left below
-    let (left, y) = if x + 8.0 + width < panel.frame.right {
-        (x + 8.0, y - 11.0)
+/// Values and intervals, one line each, in the free corner.
+fn values(paper: &Paper<'_>, panel: &Panel, report: &Report, quantiles: &[Quantile]) {
+    let lines: Vec<(String, String)> = quantiles.iter().map(in_words).collect();
+    let width = |text: &String| text_width(text, SMALL);
+    let heads = lines.iter().map(|(head, _)| 1.06 * width(head) + 8.0).fold(0.0, f64::max);
+    let tails = lines.iter().map(|(_, tail)| width(tail)).fold(0.0, f64::max);
+    let line_px = SMALL + 5.0;
+    let frame = panel.frame;
+    let (left, top) = if is_low_in_the_middle(panel, report) {
+        (frame.right - heads - tails - 12.0, frame.top + 14.0)
     } else {
-        ((x - 8.0 - width).max(panel.frame.left + 4.0), y + 11.0)
+        (frame.left + 12.0, frame.bottom - line_px * lines.len() as f64)
     };
-    let y = y.min(lowest).max(panel.frame.top + SMALL);
-    paper.text_on_rim(&Label::new(head, (left, y)).bold());
-    paper.text_on_rim(&Label::new(tail, (left + bold, y)).coloured(GREY));
-    y
+    for (i, (head, tail)) in lines.into_iter().enumerate() {
+        let y = top + line_px * i as f64;
+        paper.text_on_rim(&Label::new(head, (left, y)).bold());
+        paper.text_on_rim(&Label::new(tail, (left + heads, y)).coloured(GREY));
+    }
+}
+
+/// Whether the curve passes below the middle of the panel: then the upper right corner is free, else the lower left one.
+fn is_low_in_the_middle(panel: &Panel, report: &Report) -> bool {
+    let middle = 0.5 * (panel.x.low + panel.x.high);
+    let at = report.runout_exceedance.iter().find(|p| p.x >= middle);
+    at.is_none_or(|p| panel.y.share(p.y.value) < 0.5)
+}
+
+/// Name and value, and the interval.
+fn in_words(quantile: &Quantile) -> (String, String) {
+    let at = quantile.at;
+    let number = |value: f64| format::significant(value, 4);
+    let tail = match format::interval(&number(at.low), &number(at.high)) {
+        none if none == format::NO_NUMBER => "too few rocks for an interval".to_owned(),
+        interval => interval,
+    };
+    (format!("{} {} m", name(quantile), number(at.value)), tail)
 }

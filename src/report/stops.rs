@@ -75,7 +75,7 @@ fn bar(paper: &Paper<'_>, panel: &Panel, line: usize, share: &StopShare) {
     let after = x + text_width(&words, super::paper::SMALL) + 8.0;
     paper.text(&Label::new(words, (x, y)));
     let bound = |share: f64| format::percent(share, decimals);
-    let interval = format!("{} to {}", bound(percent.low), bound(percent.high));
+    let interval = format::interval(&bound(percent.low), &bound(percent.high));
     paper.text(&Label::new(interval, (after, y)).coloured(GREY));
 }
 

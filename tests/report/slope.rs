@@ -88,77 +88,92 @@ fn stem(vertices: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>, (x, y): (f64, f
     }
 }
 
+const STEP_S: f64 = 0.05;
+const RADIUS_M: f64 = 0.4;
+
 /// One rock that bounces down the slope, with points every 0.05 s.
 pub(crate) fn bounce(index: usize, origin: Vec3) -> (Fall, Path) {
-    const STEP_S: f64 = 0.05;
-    const RADIUS_M: f64 = 0.4;
     let mut dice = Dice::new(index);
-    let mass_kg = 2700.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS_M.powi(3);
     let (x, y) = (50.0 + 40.0 * dice.roll(), 188.0 + 4.0 * dice.roll());
     let start = Vec3::new(x, y, height_m(x, y) + RADIUS_M + 0.5);
     let (mut at, mut v) = (start, Vec3::new(0.3 * dice.normal(), -0.8, 0.0));
     let mut points = Vec::new();
-    let (mut top_speed, mut top_height, mut impacts) = (0.0_f64, 0.0_f64, 0);
-    let mut stop = Stop::TimeUp;
-    for step in 0..1200 {
-        let clearance = at.z - RADIUS_M - height_m(at.x, at.y);
-        top_speed = top_speed.max(v.norm());
-        top_height = top_height.max(clearance);
-        let state = if clearance > 0.05 { PathState::Flight } else { PathState::Sliding };
-        points.push(Point {
-            time_s: f64::from(step) * STEP_S,
-            place_m: (at + origin).into(),
-            speed_m_s: v.norm(),
-            clearance_m: clearance.max(0.0),
-            state,
-        });
+    let (mut stop, mut impacts) = (Stop::TimeUp, 0);
+    while points.len() < 1200 && stop == Stop::TimeUp {
+        points.push(point(points.len(), at, v));
         v.z -= 9.81 * STEP_S;
         at += v * STEP_S;
         if at.y < 0.0 || at.x < 0.0 || at.x > 140.0 {
             stop = Stop::LeftTerrain;
-            break;
-        }
-        if at.z - RADIUS_M < height_m(at.x, at.y) {
+        } else if at.z - RADIUS_M < height_m(at.x, at.y) {
             impacts += 1;
-            let slope = |dx: f64, dy: f64| {
-                (height_m(at.x + dx, at.y + dy) - height_m(at.x - dx, at.y - dy)) / 0.2
-            };
-            let tilt = Vec3::new(0.12 * dice.normal(), 0.12 * dice.normal(), 0.0);
-            let normal = (Vec3::new(-slope(0.1, 0.0), -slope(0.0, 0.1), 1.0) + tilt).normalize();
-            let along = v - normal * v.dot(&normal);
-            let into = -v.dot(&normal).min(0.0);
-            let kept = 1.0 - (0.45 * into / along.norm().max(1e-9)).min(1.0);
-            v = along * kept * (0.94 + 0.04 * dice.roll())
-                + normal * (0.2 + 0.4 * dice.roll()) * into;
+            v = rebound(at, v, &mut dice);
             at.z = height_m(at.x, at.y) + RADIUS_M;
-            if v.norm() < 0.9 {
-                stop = Stop::AtRest;
-                break;
-            }
+            stop = if v.norm() < 0.9 { Stop::AtRest } else { stop };
         }
     }
     if index % 97 == 13 {
         stop = Stop::Failed("made up".to_owned());
     }
-    let runout_m = (at.x - start.x).hypot(at.y - start.y);
-    let drop_m = start.z - at.z;
-    let translational = 0.5 * mass_kg * top_speed * top_speed;
-    let fall = Fall {
-        stop,
-        runout_m,
-        drop_m,
-        reach_angle_deg: drop_m.atan2(runout_m).to_degrees(),
-        max_speed_m_s: top_speed,
-        max_translational_j: translational,
-        max_rotational_j: (0.12 + 0.2 * dice.roll()) * translational,
-        max_total_j: 1.2 * translational,
-        max_height_m: top_height,
-        impacts,
-        tree_impacts: 0,
-        start_m: (start + origin).into(),
-        end_m: (at + origin).into(),
-    };
+    let mut fall = summary(&points, dice.roll());
+    (fall.stop, fall.impacts, fall.end_m) = (stop, impacts, at.into());
+    fall.runout_m = (at.x - start.x).hypot(at.y - start.y);
+    fall.drop_m = start.z - at.z;
+    fall.reach_angle_deg = fall.drop_m.atan2(fall.runout_m).to_degrees();
+    let on_map = |p: [f64; 3]| [p[0] + origin.x, p[1] + origin.y, p[2] + origin.z];
+    (fall.start_m, fall.end_m) = (on_map(fall.start_m), on_map(fall.end_m));
+    for point in &mut points {
+        point.place_m = on_map(point.place_m);
+    }
     (fall, Path { index, points })
+}
+
+fn point(step: usize, at: Vec3, v: Vec3) -> Point {
+    let clearance = at.z - RADIUS_M - height_m(at.x, at.y);
+    let state = if clearance > 0.05 { PathState::Flight } else { PathState::Sliding };
+    let time_s = step as f64 * STEP_S;
+    Point {
+        time_s,
+        place_m: at.into(),
+        speed_m_s: v.norm(),
+        clearance_m: clearance.max(0.0),
+        state,
+    }
+}
+
+/// Velocity after an impact on ground tilted by chance.
+fn rebound(at: Vec3, v: Vec3, dice: &mut Dice) -> Vec3 {
+    let slope =
+        |dx: f64, dy: f64| (height_m(at.x + dx, at.y + dy) - height_m(at.x - dx, at.y - dy)) / 0.2;
+    let tilt = Vec3::new(0.12 * dice.normal(), 0.12 * dice.normal(), 0.0);
+    let normal = (Vec3::new(-slope(0.1, 0.0), -slope(0.0, 0.1), 1.0) + tilt).normalize();
+    let into = -v.dot(&normal).min(0.0);
+    let along = v - normal * v.dot(&normal);
+    let kept = 1.0 - (0.45 * into / along.norm().max(1e-9)).min(1.0);
+    along * kept * (0.94 + 0.04 * dice.roll()) + normal * (0.2 + 0.4 * dice.roll()) * into
+}
+
+/// Largest values along the points; what the end decides is filled in by the caller.
+fn summary(points: &[Point], chance: f64) -> Fall {
+    let most = |value: fn(&Point) -> f64| points.iter().map(value).fold(0.0, f64::max);
+    let mass_kg = 2700.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS_M.powi(3);
+    let max_speed_m_s = most(|p| p.speed_m_s);
+    let translational_j = 0.5 * mass_kg * max_speed_m_s * max_speed_m_s;
+    Fall {
+        stop: Stop::TimeUp,
+        runout_m: 0.0,
+        drop_m: 0.0,
+        reach_angle_deg: 0.0,
+        max_speed_m_s,
+        max_translational_j: translational_j,
+        max_rotational_j: (0.12 + 0.2 * chance) * translational_j,
+        max_total_j: 1.2 * translational_j,
+        max_height_m: most(|p| p.clearance_m),
+        impacts: 0,
+        tree_impacts: 0,
+        start_m: points[0].place_m,
+        end_m: points[0].place_m,
+    }
 }
 
 /// A report on `count` falls of which `paths` are kept.

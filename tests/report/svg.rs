@@ -139,3 +139,9 @@ fn path_points(data: &str) -> Vec<(f64, f64)> {
 fn numbers(text: &str) -> Vec<f64> {
     text.replace('-', " -").split_whitespace().map(|n| n.parse().unwrap()).collect()
 }
+
+/// All points of paths with a stroke of some colour.
+pub(crate) fn stroked_with(svg: &str, colour: &str) -> Vec<(f64, f64)> {
+    let tags = svg.split('<').skip(1).filter_map(|rest| rest.split('>').next());
+    tags.filter(|tag| attribute(tag, "stroke") == Some(colour)).flat_map(points).collect()
+}

@@ -83,11 +83,11 @@ pre { margin: 0; padding: 10px 12px; background: #f5f5f3; font: 12.5px/1.5 'Libe
 dt { font-weight: bold; margin-top: 8px; }
 dd { margin: 0 0 4px 0; }
 footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-size: 12px; overflow-wrap: anywhere; }
-@page { size: A4; margin: 16mm 15mm 18mm; }
+@page { size: A4; margin: 13mm 15mm 14mm; }
 @media print {
   body { font-size: 10pt; }
   main { max-width: none; padding: 0; }
-  h2 { break-after: avoid; }
+  h2, h3 { break-after: avoid; }
   figure, tr, .warnings, dt, dd { break-inside: avoid; }
   dt { break-after: avoid; }
   .wide { overflow: visible; }

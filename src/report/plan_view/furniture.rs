@@ -48,13 +48,17 @@ fn colour_bar(paper: &Paper<'_>, panel: &Panel, left: f64, fastest: f64) {
     paper.text(&Label::new("Speed (m/s)", middle).below().centred().upwards().sized(NORMAL));
 }
 
-/// A bar of round length below the right corner of the map.
+/// A bar of round length near the lower right corner of the map.
 fn scale_bar(paper: &Paper<'_>, panel: &Panel) {
     let per_metre = panel.frame.width() / (panel.x.high - panel.x.low);
     let longest = nice_step((panel.x.high - panel.x.low) * 0.13);
     let length = longest * per_metre;
     let label = format!("{}\u{2009}m", format::plain(longest));
-    let (right, y) = (panel.frame.right, panel.frame.bottom + FOOT_PX - 8.0);
+    let needed = length + 6.0 + text_width(&label, SMALL);
+    // beside the axis title where there is room, else beside the frame
+    let room = 0.5 * (panel.frame.width() - text_width(&panel.x.title, NORMAL)) - 16.0;
+    let beside = if needed < room { 0.0 } else { needed + 18.0 };
+    let (right, y) = (panel.frame.right + beside, panel.frame.bottom + FOOT_PX - 8.0);
     let left = right - length;
     for (from, to, fill) in [(left, left + 0.5 * length, INK), (left + 0.5 * length, right, WHITE)]
     {
@@ -122,7 +126,9 @@ impl Key {
     }
 
     pub(super) fn draw(&self, paper: &Paper<'_>, (left, top): (f64, f64)) {
-        for ((symbol, text), (line, x)) in self.entries.iter().zip(self.places(paper.size_px().0)) {
+        for ((symbol, text), (line, x)) in
+            self.entries.iter().zip(self.places(paper.size_px().0 - left))
+        {
             let at = (left + x, top + (line as f64 + 0.5) * LINE_PX);
             match symbol {
                 Symbol::Mark(mark) => mark.draw(paper, &[at], 3.0),
