@@ -3,7 +3,8 @@
 
 use rockfall::chance::{Purpose, stream, unit};
 use rockfall::ground::Ground;
-use rockfall::plan::{Release, RestRule};
+use rockfall::plan::RestRule;
+use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::step::{Scheme, Settings};
 use rockfall::terrain::make::natural_slope;

@@ -9,6 +9,8 @@ pub mod ground;
 pub mod hazard;
 pub mod output;
 pub mod plan;
+pub mod release;
+pub mod report;
 pub mod rock;
 pub mod scene;
 pub mod step;

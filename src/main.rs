@@ -1,3 +1,8 @@
 //! The `rockfall` command.
 
-fn main() {}
+mod cli;
+mod wiring;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}

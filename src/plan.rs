@@ -1,7 +1,18 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
-use crate::rock::{Motion, Rock};
-use crate::{ground::Ground, step, terrain::Terrain};
+mod listing;
+mod stiffness;
+
+pub use stiffness::{OwnDissipation, dda_restitution};
+
+use crate::chance::Distribution;
+use crate::error::Result;
+use crate::release::{Release, Releases};
+use crate::scene::{RecordTable, Scene, SolverTable};
+use crate::step::{Scheme, Settings};
+use crate::terrain::Terrain;
+use std::convert::Infallible;
+use std::path::PathBuf;
 
 /// Something a scene may do without.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,6 +21,18 @@ pub enum Part<T> {
     Kept(T),
     /// Not needed, and why.
     LeftOut(&'static str),
+}
+
+impl<T> Part<T> {
+    /// Kept if there is something to keep, else left out for the reason.
+    fn when(kept: Option<T>, reason: &'static str) -> Self {
+        kept.map_or(Self::LeftOut(reason), Self::Kept)
+    }
+
+    /// Whether it is kept.
+    pub fn is_kept(&self) -> bool {
+        matches!(self, Self::Kept(_))
+    }
 }
 
 /// Which paths are kept.
@@ -30,36 +53,211 @@ pub struct RestRule {
     pub time_s: f64,
 }
 
-/// One release, drawn: a pure function of scene, seed and index.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Release {
-    /// The rock.
-    pub rock: Rock,
-    /// Its motion at time 0 (local coordinates).
-    pub motion: Motion,
-    /// Ground values, in the order of the scene's grounds.
-    pub grounds: Vec<Ground>,
-}
-
 /// The plan.
 #[derive(Debug)]
 pub struct Plan {
+    /// Heading of the report.
+    pub title: String,
+    /// The scene file.
+    pub scene_file: PathBuf,
+    /// SHA-256 (hexadecimal) of the scene's text and its mesh files.
+    pub scene_hash: String,
+    /// Version of this crate.
+    pub version: &'static str,
+    /// EPSG code of the map coordinates.
+    pub epsg: Option<u32>,
+    /// Where chance starts.
+    pub seed: u64,
+    /// Number of releases; their indices are `0..count`.
+    pub count: usize,
+    /// How each of them is drawn.
+    pub releases: Releases,
+    /// Radius of the smallest, the median and the largest rock to reckon with (m).
+    pub radii_m: [f64; 3],
     /// The meshes.
     pub terrain: Terrain,
-    /// Gravity (m/s²), positive, along −z.
+    /// Names of the grounds, in the order of [`Release::grounds`].
+    pub ground_names: Vec<String>,
+    /// Gravity (m/s²), 0 or more, along −z.
     pub gravity_m_s2: f64,
     /// The step.
-    pub step: step::Settings,
+    pub step: Settings,
+    /// Speed below which an impact does not rebound, for the median rock on each ground (m/s).
+    pub capture_m_s: Vec<f64>,
+    /// What the scheme itself dissipates on each ground; `dda` only.
+    pub own_dissipation: Vec<OwnDissipation>,
     /// When a rock is at rest.
     pub rest: RestRule,
     /// Simulated time after which a rock is `TimeUp` (s).
     pub longest_s: f64,
+    /// Trees, with the number of their triangles.
+    pub trees: Part<usize>,
+    /// Stepping through the air; always left out.
+    pub flight: Part<Infallible>,
     /// Rolling friction.
     pub rolling: Part<()>,
     /// Random tilt of contact normals.
     pub roughness: Part<()>,
+    /// Contact between rocks; this version always leaves it out.
+    pub rock_against_rock: Part<Infallible>,
+    /// One system of equations for all rocks that touch; this version always leaves it out.
+    pub coupled_solve: Part<Infallible>,
     /// Kept paths.
     pub paths: Part<Paths>,
     /// Kept impacts.
     pub impacts: Part<()>,
+    /// What the user should look at before trusting the results.
+    pub warnings: Vec<String>,
+}
+
+/// Local error of the adaptive scheme (m/s): statistics of runout no longer change below it.
+const TOLERANCE_M_S: f64 = 0.05;
+/// Local error of the reference scheme (m/s).
+const REFERENCE_TOLERANCE_M_S: f64 = 1e-8;
+/// Largest step of the rigid scheme (s).
+const RIGID_STEP_S: f64 = 0.01;
+/// Simulated time that all but endlessly rolling rocks stay below (s); the longest journeys of
+/// kilometre-long slopes take about a minute.
+const LONGEST_S: f64 = 120.0;
+/// At rest below this speed (m/s) for [`REST_TIME_S`]: a rock so slow would stop within a millimetre or two.
+const REST_SPEED_M_S: f64 = 0.02;
+/// At rest after this time below [`REST_SPEED_M_S`] (s).
+const REST_TIME_S: f64 = 0.3;
+/// Paths kept when the scene does not say: enough to see the spread, few enough to draw.
+const PATHS: usize = 500;
+/// Time between the points of a kept path when the scene does not say (s).
+pub const PATH_STEP_S: f64 = 0.05;
+
+impl Plan {
+    /// Works out what the scene needs.
+    ///
+    /// # Errors
+    /// A place of release off the terrain, or contact springs too soft to carry the rocks.
+    pub fn compile(scene: &Scene, terrain: Terrain) -> Result<Self> {
+        let step = settings(&scene.solver);
+        let releases = Releases::compile(scene, &terrain)?;
+        let mut warnings = unused_grounds(scene, &terrain);
+        stiffness::check(scene, &terrain, &mut warnings)?;
+        let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
+        flutter(&step, &mut warnings);
+        let grounds = || scene.grounds.values();
+        let rolls = grounds().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
+        let is_rough = grounds().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
+        Ok(Self {
+            title: scene.title.clone(),
+            scene_file: scene.file.clone(),
+            scene_hash: scene.hash.clone(),
+            version: env!("CARGO_PKG_VERSION"),
+            epsg: scene.epsg,
+            seed: scene.seed,
+            count: scene.release.count,
+            releases,
+            radii_m: scene.rocks.radius_m.reckoned(),
+            ground_names: scene.grounds.keys().cloned().collect(),
+            gravity_m_s2: scene.gravity_m_s2,
+            step,
+            capture_m_s: stiffness::capture_m_s(scene, &step),
+            own_dissipation,
+            rest: RestRule {
+                speed_m_s: scene.solver.rest_speed_m_s.unwrap_or(REST_SPEED_M_S),
+                time_s: scene.solver.rest_time_s.unwrap_or(REST_TIME_S),
+            },
+            longest_s: scene.solver.longest_s.unwrap_or(LONGEST_S),
+            trees: Part::when(tree_triangles(&terrain), "the scene has none"),
+            flight: Part::LeftOut(
+                "nothing but gravity acts between touches, the parabola is exact",
+            ),
+            rolling: Part::when(rolls.then_some(()), "no ground has any"),
+            roughness: Part::when(is_rough.then_some(()), "no ground has any"),
+            rock_against_rock: Part::LeftOut("releases are independent"),
+            coupled_solve: Part::LeftOut("one rock has 6 unknowns, a dense factor is enough"),
+            paths: paths(&scene.record, scene.release.count),
+            impacts: Part::when(
+                scene.record.impacts.unwrap_or(false).then_some(()),
+                "not asked for, [record] impacts = true keeps them",
+            ),
+            warnings,
+            terrain,
+        })
+    }
+
+    /// Draws release `index`, a pure function of scene, seed and index.
+    ///
+    /// # Errors
+    /// No ground below the point drawn, or a rock that starts inside the ground or a tree.
+    pub fn release(&self, index: usize) -> Result<Release> {
+        self.releases.release(&self.terrain, index)
+    }
+
+    /// The same plan with every part kept that this version can keep: leaving out changes the cost, never
+    /// the answer.
+    #[must_use]
+    pub fn keep_everything(self) -> Self {
+        let triangles = if let Part::Kept(triangles) = self.trees { triangles } else { 0 };
+        let step_s = if let Part::Kept(paths) = &self.paths { paths.step_s } else { PATH_STEP_S };
+        Self {
+            trees: Part::Kept(triangles),
+            rolling: Part::Kept(()),
+            roughness: Part::Kept(()),
+            paths: Part::Kept(Paths { first: self.count, step_s }),
+            impacts: Part::Kept(()),
+            ..self
+        }
+    }
+}
+
+/// The step in force, defaults filled in. What a scheme has no use for is 0 (tolerance) or without limit (step).
+fn settings(solver: &SolverTable) -> Settings {
+    let scheme = solver.scheme();
+    let (tolerance_m_s, step_s) = match scheme {
+        Scheme::Adaptive => (TOLERANCE_M_S, f64::INFINITY),
+        Scheme::Reference => (REFERENCE_TOLERANCE_M_S, f64::INFINITY),
+        Scheme::Rigid => (0.0, RIGID_STEP_S),
+        // the scene check has made sure that dda has a step of its own
+        Scheme::Dda => (0.0, f64::INFINITY),
+    };
+    Settings {
+        scheme,
+        tolerance_m_s: solver.tolerance_m_s.unwrap_or(tolerance_m_s),
+        step_s: solver.step_s.unwrap_or(step_s),
+        shear_memory: solver.shear_memory.unwrap_or(true),
+        capture_speed_m_s: solver.capture_speed_m_s,
+    }
+}
+
+fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
+    let first = record.paths.unwrap_or(PATHS).min(count);
+    let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
+    Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
+}
+
+fn tree_triangles(terrain: &Terrain) -> Option<usize> {
+    let trees = (0..terrain.triangles.len() as u32).filter(|&triangle| terrain.is_tree(triangle));
+    Some(trees.count()).filter(|count| *count > 0)
+}
+
+fn can_exceed_0(value: Option<&Distribution>) -> bool {
+    value.is_some_and(|value| value.support().1 > 0.0)
+}
+
+fn unused_grounds(scene: &Scene, terrain: &Terrain) -> Vec<String> {
+    let used = |index: usize| terrain.sheets.iter().any(|sheet| usize::from(sheet.ground) == index);
+    let names = scene.grounds.keys().enumerate();
+    names
+        .filter(|(index, _)| !used(*index))
+        .map(|(_, name)| format!("[grounds.{name}] lies under no mesh"))
+        .collect()
+}
+
+/// A tolerance above twice the capture speed lets slow rocks flutter for ever.
+fn flutter(step: &Settings, warnings: &mut Vec<String>) {
+    if let Some(capture) =
+        step.capture_speed_m_s.filter(|capture| step.tolerance_m_s > 2.0 * capture)
+    {
+        warnings.push(format!(
+            "capture_speed_m_s = {capture} is below half the tolerance of {} m/s: slow rocks may flutter and never come to rest; write {} or more",
+            step.tolerance_m_s,
+            0.5 * step.tolerance_m_s
+        ));
+    }
 }

@@ -192,7 +192,7 @@ fn positive(key: &str, value: f64) -> Result<(), Flaw> {
     if value > 0.0 && value.is_finite() {
         return Ok(());
     }
-    Err(Flaw::new(format!("found {key} = {value}"), format!("write a {key} above 0")))
+    Err(Flaw::new(format!("found {key} = {value}"), format!("write {key} above 0")))
 }
 
 /// Truncation bounds, infinite where none is written.

@@ -4,6 +4,7 @@ pub mod hold;
 pub mod near;
 
 use crate::rock::Vec3;
+use crate::terrain::Terrain;
 use crate::trajectory::FeatureKind;
 
 /// Most contacts one rock keeps at a time, the deepest first.
@@ -16,6 +17,11 @@ pub struct Feature {
     pub kind: FeatureKind,
     /// Its number in the terrain's triangles, edges or vertices.
     pub id: u32,
+}
+
+impl Feature {
+    /// Nothing.
+    pub const NONE: Self = Self { kind: FeatureKind::Face, id: u32::MAX };
 }
 
 /// A strict local minimum of the distance from the centre to the mesh.
@@ -41,7 +47,7 @@ pub struct Touches {
 impl Default for Touches {
     fn default() -> Self {
         let none = Touch {
-            feature: Feature { kind: FeatureKind::Face, id: u32::MAX },
+            feature: Feature::NONE,
             triangle: 0,
             normal: Vec3::zeros(),
             distance_m: f64::INFINITY,
@@ -55,6 +61,20 @@ impl Touches {
     #[inline]
     pub fn clear(&mut self) {
         self.len = 0;
+    }
+
+    /// The same touches from another centre, if all are on faces: their planes tell, nothing need be searched.
+    #[inline]
+    pub fn slide_to(&mut self, terrain: &Terrain, centre: &Vec3) -> bool {
+        let touches = &mut self.list[..self.len];
+        if touches.iter().any(|touch| touch.feature.kind != FeatureKind::Face) {
+            return false;
+        }
+        for touch in touches {
+            let corner = terrain.features.faces[touch.feature.id as usize].a;
+            touch.distance_m = touch.normal.dot(&(centre - corner));
+        }
+        true
     }
 
     /// Adds one; when full, it takes the place of the shallowest if it is deeper.

@@ -111,8 +111,11 @@ fn within(key: &str, (low, high): (f64, f64), allowed: Allowed, hint: &str) -> C
     if allowed.holds(low, high) {
         return Ok(());
     }
-    let bounds =
-        if low < high { "; give the distribution a min and a max in this range" } else { "" };
+    let bounds = match (low < high, (high - low).is_finite()) {
+        (false, _) => "",
+        (true, true) => "; every value it can give must lie there",
+        (true, false) => "; give the distribution a min and a max",
+    };
     let hint = if hint.is_empty() { String::new() } else { format!(" ({hint})") };
     Err(Complaint::about(key, format!("{}{hint}{bounds}", allowed.in_words())))
 }
@@ -129,7 +132,7 @@ pub(super) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> O
 }
 
 /// "did you mean `x`? known: a, b, c"
-pub(super) fn suggest<'a>(word: &str, known: &[&'a str]) -> String {
+pub(super) fn suggest(word: &str, known: &[&str]) -> String {
     let list = known.join(", ");
     match nearest(word, known.iter().copied()) {
         Some(near) => format!("did you mean {near}? known here: {list}"),

@@ -1,6 +1,7 @@
 //! `[[terrain]]`, `[[trees]]` and `[mesh]`.
 
 use super::check::{Allowed, Checked, Complaint, number, optional, suggest};
+use crate::terrain::weld::Up;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -18,17 +19,6 @@ pub struct MeshFile {
     /// Metres in one unit of the file (m), positive.
     #[serde(default = "metres")]
     pub scale: f64,
-}
-
-/// The axis of a mesh file that points up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Up {
-    /// The file's y axis: it is turned.
-    Y,
-    /// The file's z axis, as everywhere in this crate.
-    #[default]
-    Z,
 }
 
 /// `[mesh]`: how files become one mesh; optional as a whole.
@@ -50,7 +40,8 @@ impl MeshFile {
         if grounds.contains(&self.ground.as_str()) {
             return Ok(());
         }
-        Err(Complaint::about("ground", format!("{} in [grounds]", suggest(&self.ground, grounds))))
+        let remedy = format!("write a name from [grounds]; {}", suggest(&self.ground, grounds));
+        Err(Complaint::about("ground", remedy))
     }
 }
 

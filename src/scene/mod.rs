@@ -15,7 +15,7 @@ mod source;
 mod wording;
 
 pub use grounds::GroundTable;
-pub use meshes::{MeshFile, MeshTable, Up};
+pub use meshes::{MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
 pub use record::{LineTable, MapsTable, RecordTable};
 pub use release::ReleaseTable;
@@ -23,10 +23,13 @@ pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 
 use crate::error::{Error, Result};
+use crate::terrain::health::Health;
+use crate::terrain::read::Source;
+use crate::terrain::{Sheet, Terrain};
 use check::{Allowed, Checked, Complaint, number};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
-use source::Source;
+use source::Lookup;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -94,7 +97,7 @@ impl Scene {
         let text = std::fs::read_to_string(file).map_err(Error::file("read", file))?;
         let mut scene = Self::parse(&text, file)?;
         scene.hash =
-            scene.fingerprint(&text).map_err(|wrong| Source::of(file, &text).refuse(wrong))?;
+            scene.fingerprint(&text).map_err(|wrong| Lookup::of(file, &text).refuse(wrong))?;
         Ok(scene)
     }
 
@@ -105,8 +108,8 @@ impl Scene {
     /// Whatever is wrong with the scene, with file, table, key and line.
     pub fn parse(text: &str, file: &Path) -> Result<Self> {
         let mut scene: Self =
-            toml::from_str(text).map_err(|error| Source::of(file, text).refuse_reading(&error))?;
-        scene.check().map_err(|wrong| Source::of(file, text).refuse(wrong))?;
+            toml::from_str(text).map_err(|error| Lookup::of(file, text).refuse_reading(&error))?;
+        scene.check().map_err(|wrong| Lookup::of(file, text).refuse(wrong))?;
         let folder = file.parent().unwrap_or(Path::new(""));
         for mesh in scene.terrain.iter_mut().chain(&mut scene.trees) {
             mesh.mesh = folder.join(&mesh.mesh);
@@ -118,6 +121,30 @@ impl Scene {
     /// Position of a ground in the scene's list of grounds.
     pub fn ground_index(&self, name: &str) -> Option<usize> {
         self.grounds.keys().position(|known| known == name)
+    }
+
+    /// The mesh files of slope and trees, ready for [`Terrain::read`].
+    pub fn mesh_sources(&self) -> Vec<Source> {
+        let source = |mesh: &MeshFile, is_tree| Source {
+            sheet: Sheet {
+                path: mesh.mesh.clone(),
+                // the check has made sure that the ground is known
+                ground: self.ground_index(&mesh.ground).unwrap_or_default() as u16,
+                is_tree,
+            },
+            up: mesh.up,
+            scale: mesh.scale,
+        };
+        let slope = self.terrain.iter().map(|mesh| source(mesh, false));
+        slope.chain(self.trees.iter().map(|mesh| source(mesh, true))).collect()
+    }
+
+    /// Reads the meshes; says what was found in them.
+    ///
+    /// # Errors
+    /// See [`Terrain::read`].
+    pub fn read_terrain(&self) -> Result<(Terrain, Health)> {
+        Terrain::read(&self.mesh_sources(), self.origin_m.into(), self.mesh.weld_tolerance_m)
     }
 
     fn check(&self) -> Checked {
@@ -145,6 +172,11 @@ impl Scene {
             let remedy =
                 "write [[terrain]] with mesh = \"slope.stl\" and ground = a name from [grounds]";
             return Err(Complaint::missing("terrain", remedy));
+        }
+        let sheets = self.terrain.len() + self.trees.len();
+        if sheets.max(self.grounds.len()) > usize::from(u16::MAX) {
+            let remedy = format!("join meshes and grounds: write at most {} of each", u16::MAX);
+            return Err(Complaint::about("terrain", remedy).finding("found too many"));
         }
         self.mesh.check().map_err(|wrong| wrong.inside("mesh"))?;
         let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();

@@ -24,7 +24,7 @@ impl TryFrom<Vec<f64>> for Point {
             [x, y] => ([x, y], None),
             [x, y, z] => ([x, y], Some(z)),
             _ => {
-                let found = format!("found a point with {} coordinates", numbers.len());
+                let found = format!("found the point {numbers:?}");
                 return Err(Flaw::new(found, "write [x, y] or [x, y, z]"));
             }
         };

@@ -10,11 +10,15 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A scene's text with the place of every key and value in it.
-pub(super) struct Source<'a> {
+pub(super) struct Lookup<'a> {
     file: &'a Path,
     text: &'a str,
+    is_toml: bool,
     nodes: Vec<Node>,
 }
+
+/// Tables that every scene must have.
+const TABLES: [&str; 3] = ["grounds", "rocks", "release"];
 
 /// One value of the file.
 struct Node {
@@ -27,14 +31,15 @@ struct Node {
     headed: bool,
 }
 
-impl<'a> Source<'a> {
+impl<'a> Lookup<'a> {
     /// Finds every key; a text that is no TOML has none.
     pub(super) fn of(file: &'a Path, text: &'a str) -> Self {
         let mut nodes = Vec::new();
-        if let Ok(root) = DeTable::parse(text) {
+        let root = DeTable::parse(text);
+        if let Ok(root) = &root {
             collect_table(text, &[], root.get_ref(), &mut nodes);
         }
-        Self { file, text, nodes }
+        Self { file, text, is_toml: root.is_ok(), nodes }
     }
 
     /// The message for a complaint of the scene's own checks.
@@ -48,14 +53,17 @@ impl<'a> Source<'a> {
     pub(super) fn refuse_reading(&self, error: &toml::de::Error) -> Error {
         let span = error.span().unwrap_or(0..0);
         let mut trail = self.trail_at(&span);
-        let said = wording::of(error.message());
-        let place = match (said.missing, self.nodes.is_empty()) {
-            (_, true) => format!("line {}", self.line(span.start)),
-            (Some(key), _) => {
-                trail.push(Step::Key(key));
-                self.place(&trail)
+        let mut said = wording::of(error.message());
+        if let Some(key) = said.missing {
+            if trail.is_empty() && TABLES.contains(&key.as_str()) {
+                said.remedy = format!("write the table [{key}]");
             }
-            (None, _) => self.place(&trail),
+            trail.push(Step::Key(key));
+        }
+        let place = if self.is_toml {
+            self.place(&trail)
+        } else {
+            format!("line {}", self.line(span.start))
         };
         Error::input(self.file, place, said.found, said.remedy)
     }
@@ -113,25 +121,22 @@ impl<'a> Source<'a> {
     }
 }
 
-/// `[a.b]`, or `[[a]] number 2` for an entry of an array of tables.
+/// `[a.b]`, or `[[a]] #2` for an entry of an array of tables.
 fn header(trail: &[Step]) -> String {
     match trail {
-        [before @ .., Step::Entry(index)] => format!("[[{}]] number {}", keys(before), index + 1),
+        [before @ .., Step::Entry(index)] => format!("[[{}]] #{}", keys(before), index + 1),
         _ => format!("[{}]", keys(trail)),
     }
 }
 
 /// `a.b, entry 3`
 fn keys(trail: &[Step]) -> String {
-    let mut text = String::new();
-    for step in trail {
-        match step {
-            Step::Key(key) if text.is_empty() => text.push_str(key),
-            Step::Key(key) => text.push_str(&format!(".{key}")),
-            Step::Entry(index) => text.push_str(&format!(", entry {}", index + 1)),
-        }
-    }
-    text
+    let in_words = trail.iter().map(|step| match step {
+        Step::Key(key) => format!(".{key}"),
+        Step::Entry(index) => format!(", entry {}", index + 1),
+    });
+    let text: String = in_words.collect();
+    text.trim_start_matches(['.', ',', ' ']).to_owned()
 }
 
 fn collect_table(text: &str, trail: &[Step], table: &DeTable<'_>, nodes: &mut Vec<Node>) {

@@ -40,6 +40,9 @@ pub(super) fn of(message: &str) -> Said {
             );
         }
     }
+    if message == "duplicate key" {
+        return Said::new("found it a second time", "write every key and every table once");
+    }
     match message.split_once("; ") {
         Some((found, remedy)) => Said::new(found, remedy),
         None => Said::new(message, "write it as TOML asks (https://toml.io)"),

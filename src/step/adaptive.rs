@@ -151,10 +151,10 @@ fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Los
     for hold in grip.holds.iter_mut() {
         hold.closed = false;
     }
-    for (spot, touch) in grip.spots[..grip.spot_count].iter().zip(grip.touches.iter()) {
+    for spot in &grip.spots[..grip.spot_count] {
         let hold = &mut grip.holds[spot.hold];
         next.shear[spot.hold] = carry(next.shear[spot.hold], &hold.n, &spot.n);
-        (hold.feature, hold.triangle) = (touch.feature, touch.triangle);
+        (hold.feature, hold.triangle) = (spot.feature, spot.triangle);
         (hold.shear, hold.roll) = spot.stretches(hh);
         hold.n = spot.n;
         hold.push = spot.push;

@@ -5,6 +5,7 @@
 //! contact it needs no matrix. This is the only place where stiffness and damping enter the `adaptive` and
 //! `reference` schemes.
 
+use crate::contact::Feature;
 use crate::ground::Law;
 use crate::rock::{Rock, Vec3};
 
@@ -40,6 +41,10 @@ impl Body {
 pub struct Spot {
     /// Which memory it belongs to.
     pub hold: usize,
+    /// Where on the mesh.
+    pub feature: Feature,
+    /// Triangle whose ground answers.
+    pub triangle: u32,
     /// Its law.
     pub law: Law,
     /// Normal damping in force (N s/m): the captured value in a captured contact.
@@ -75,6 +80,8 @@ impl Spot {
     /// No contact.
     pub const NONE: Self = Self {
         hold: 0,
+        feature: Feature::NONE,
+        triangle: 0,
         law: Law::NONE,
         c_n: 0.0,
         is_tree: false,
@@ -120,38 +127,25 @@ impl Spot {
         }
     }
 
-    /// Shear force and rolling moment together: both stick in closed form, else alternating projections.
+    /// Shear force and rolling moment together.
     ///
-    /// With `y = n × M` the tangential parts obey `(1+B) q + C y = A`, `E R q + (1+E) y = n × D`.
+    /// Each is the shortening to its cap of `q̂ = (a − C n × M)/(1+B)`, `M̂ = (d + E R n × q)/(1+E)`. Both, one or none
+    /// of them may be at its cap: three of the four cases are solved in closed form.
     fn shear_and_roll(&mut self, body: &Body, v: &Vec3, w: &Vec3, h: f64) {
-        let (law, n, r) = (&self.law, self.n, body.radius);
+        let (law, n) = (&self.law, self.n);
         let kap = law.p_s * h + law.c_s;
         let kar = law.k_r * h + law.c_r;
-        let a = self.shear * law.p_s + body.slip(&n, v, w) * kap;
-        let d = self.roll * law.k_r + w * kar;
-        let b = 3.5 * kap * h / body.mass;
-        let c = kap * h * r / body.inertia;
-        let e = kar * h / body.inertia;
-        let (cap_q, cap_m) = (law.friction * self.push, law.rolling_m * self.push);
-        let nd = n.cross(&d);
-        let det = (1.0 + b) * (1.0 + e) - c * e * r;
-        let mut q = (a * (1.0 + e) - nd * c) / det;
-        let y = (nd * (1.0 + b) - a * (e * r)) / det;
-        let mut moment = n * (n.dot(&d) / (1.0 + e)) - n.cross(&y);
-        let sticks = q.norm_squared() <= cap_q * cap_q && moment.norm_squared() <= cap_m * cap_m;
-        if !sticks {
-            for _ in 0..ALTERNATIONS {
-                moment = within((d + n.cross(&q) * (e * r)) / (1.0 + e), cap_m);
-                let next = within((a - n.cross(&moment) * c) / (1.0 + b), cap_q);
-                let change = (next - q).norm_squared();
-                q = next;
-                if change <= (SETTLED * cap_q).powi(2) {
-                    break;
-                }
-            }
-            moment = within((d + n.cross(&q) * (e * r)) / (1.0 + e), cap_m);
-        }
-        (self.drag, self.moment) = (q, moment);
+        let pair = Pair {
+            n,
+            a: self.shear * law.p_s + body.slip(&n, v, w) * kap,
+            d: self.roll * law.k_r + w * kar,
+            b1: 1.0 + 3.5 * kap * h / body.mass,
+            c: kap * h * body.radius / body.inertia,
+            e1: 1.0 + kar * h / body.inertia,
+            er: kar * h / body.inertia * body.radius,
+            caps: (law.friction * self.push, law.rolling_m * self.push),
+        };
+        (self.drag, self.moment) = pair.solve();
     }
 
     /// Change of velocity and spin by this contact's forces over `h`.
@@ -174,6 +168,117 @@ impl Spot {
     }
 }
 
+/// The coupled shear force and rolling moment of one contact.
+struct Pair {
+    n: Vec3,
+    a: Vec3,
+    d: Vec3,
+    /// 1 + B.
+    b1: f64,
+    c: f64,
+    /// 1 + E.
+    e1: f64,
+    /// E R.
+    er: f64,
+    /// Largest shear force (N) and rolling moment (N m).
+    caps: (f64, f64),
+}
+
+impl Pair {
+    #[inline]
+    fn solve(&self) -> (Vec3, Vec3) {
+        let (cap_q, cap_m) = self.caps;
+        let (q, moment) = self.both_stick();
+        let (q_fits, m_fits) =
+            (q.norm_squared() <= cap_q * cap_q, moment.norm_squared() <= cap_m * cap_m);
+        if q_fits && m_fits {
+            return (q, moment);
+        }
+        if !m_fits {
+            let moment = self.rolling_alone();
+            let q = self.shear_at(&moment);
+            if q.norm_squared() <= cap_q * cap_q {
+                return (q, moment);
+            }
+        }
+        let q = self.sliding_alone();
+        let moment = self.moment_at(&q);
+        if moment.norm_squared() <= cap_m * cap_m {
+            return (q, moment);
+        }
+        self.both_slip(q)
+    }
+
+    /// `q̂` for a moment.
+    #[inline]
+    fn shear_at(&self, moment: &Vec3) -> Vec3 {
+        (self.a - self.n.cross(moment) * self.c) / self.b1
+    }
+
+    /// `M̂` for a shear force.
+    #[inline]
+    fn moment_at(&self, q: &Vec3) -> Vec3 {
+        (self.d + self.n.cross(q) * self.er) / self.e1
+    }
+
+    /// Neither at its cap: with `y = n × M`, `(1+B) q + C y = a` and `E R q + (1+E) y = n × d`.
+    #[inline]
+    fn both_stick(&self) -> (Vec3, Vec3) {
+        let nd = self.n.cross(&self.d);
+        let det = self.b1 * self.e1 - self.c * self.er;
+        let q = (self.a * self.e1 - nd * self.c) / det;
+        let y = (nd * self.b1 - self.a * self.er) / det;
+        (q, self.n * (self.n.dot(&self.d) / self.e1) - self.n.cross(&y))
+    }
+
+    /// The moment at its cap while shear sticks: `M ∥ G + s M_t`, a scalar equation for their ratio.
+    #[inline]
+    fn rolling_alone(&self) -> Vec3 {
+        let g = self.d + self.n.cross(&self.a) * (self.er / self.b1);
+        let g_n = self.n * self.n.dot(&g);
+        let g_t = g - g_n;
+        let (t2, n2, cap2) = (g_t.norm_squared(), g_n.norm_squared(), self.caps.1 * self.caps.1);
+        let s = self.er * self.c / self.b1;
+        // M_t = λ G_t/(1 − λs), M_n = λ G_n; |M| grows with λ. Newton on λ − cap/|G/(1 − λs)| from the far side.
+        let mut ratio = 0.0;
+        for _ in 0..RATIO_STEPS {
+            let room = 1.0 / (1.0 - ratio * s);
+            let size2 = t2 * room * room + n2;
+            let miss = ratio - (cap2 / size2).sqrt();
+            let slope = 1.0 + (cap2 / size2).sqrt() * t2 * room * room * room * s / size2;
+            let change = miss / slope;
+            ratio -= change;
+            if change.abs() <= SETTLED * ratio {
+                break;
+            }
+        }
+        g_t * (ratio / (1.0 - ratio * s)) + g_n * ratio
+    }
+
+    /// Shear at its cap while rolling sticks: `q ∥ H`.
+    #[inline]
+    fn sliding_alone(&self) -> Vec3 {
+        let along = self.a - self.n.cross(&self.d) * (self.c / self.e1);
+        along * (self.caps.0 / along.norm().max(f64::MIN_POSITIVE))
+    }
+
+    /// Both at their caps: only directions are sought; alternating them settles in a few passes.
+    fn both_slip(&self, mut q: Vec3) -> (Vec3, Vec3) {
+        let (cap_q, cap_m) = self.caps;
+        for _ in 0..ALTERNATIONS {
+            let next = within(self.shear_at(&within(self.moment_at(&q), cap_m)), cap_q);
+            let change = (next - q).norm_squared();
+            q = next;
+            if change <= (SETTLED * cap_q).powi(2) {
+                break;
+            }
+        }
+        (q, within(self.moment_at(&q), cap_m))
+    }
+}
+
+/// Newton steps for the ratio of a rolling moment at its cap.
+const RATIO_STEPS: u32 = 30;
 /// Most alternations of shear and rolling in one contact.
 const ALTERNATIONS: u32 = 60;
 /// Change of a force, relative to its scale, below which it has settled (–).
@@ -225,4 +330,35 @@ pub fn solve(
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-1.0f64..1.0).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        /// Whatever case the closed forms choose, the result is the fixed point of both shortenings; 1e-8 of the caps
+        /// is what the alternation of two slipping directions leaves.
+        #[test]
+        fn shear_and_rolling_solve_their_equations(
+            a in vector(), d in vector(), caps in prop::array::uniform2(0.01f64..2.0),
+            b in 0.001f64..100.0, e in 0.001f64..100.0, r in 0.01f64..10.0,
+        ) {
+            let n = Vec3::new(0.6, 0.0, 0.8);
+            let a = a - n * n.dot(&a);
+            // C E R = 5/7 B E, as a solid sphere has it
+            let c = 5.0 / 7.0 * b / r;
+            let pair = Pair { n, a, d: d * r, b1: 1.0 + b, c, e1: 1.0 + e, er: e * r, caps: (caps[0], caps[1] * r) };
+            let (q, moment) = pair.solve();
+            let off_q = (q - within(pair.shear_at(&moment), pair.caps.0)).norm();
+            let off_m = (moment - within(pair.moment_at(&q), pair.caps.1)).norm();
+            prop_assert!(off_q <= 1e-8 * pair.caps.0 && off_m <= 1e-8 * pair.caps.1, "{off_q} {off_m}");
+            prop_assert!(q.norm() <= pair.caps.0 * (1.0 + 1e-12) && moment.norm() <= pair.caps.1 * (1.0 + 1e-12));
+        }
+    }
 }

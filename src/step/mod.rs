@@ -3,6 +3,7 @@
 pub mod adaptive;
 pub mod grip;
 pub mod law;
+pub mod rigid;
 pub mod stage;
 pub mod tableau;
 
@@ -56,12 +57,18 @@ pub struct Settings {
 pub enum Stepper {
     /// `adaptive` and `reference`, with the step to try next (s).
     Controlled(Control, f64),
+    /// `rigid`, with the longest step (s).
+    Rigid(f64),
 }
 
 impl Stepper {
     /// Begins an episode.
     pub fn new(settings: &Settings, world: &World, grip: &Grip) -> Self {
-        let tableau = if settings.scheme == Scheme::Reference { &ESDIRK4 } else { &TR_BDF2 };
+        let tableau = match settings.scheme {
+            Scheme::Rigid => return Self::Rigid(settings.step_s),
+            Scheme::Reference => &ESDIRK4,
+            Scheme::Adaptive | Scheme::Dda => &TR_BDF2,
+        };
         let control = Control { tableau, tolerance: settings.tolerance_m_s };
         Self::Controlled(control, adaptive::first_step(world, grip))
     }
@@ -73,13 +80,12 @@ impl Stepper {
 /// [`Stuck`] if no step, however short, settles.
 pub fn advance(
     stepper: &mut Stepper,
-    settings: &Settings,
     world: &World,
     grip: &mut Grip,
     h_max: f64,
 ) -> Result<Advance, Stuck> {
-    let _ = settings;
     match stepper {
         Stepper::Controlled(control, h) => adaptive::advance(world, control, grip, h, h_max),
+        Stepper::Rigid(longest) => rigid::advance(world, grip, *longest, h_max),
     }
 }

@@ -5,6 +5,7 @@ use super::law::{self, Spot, within};
 use super::tableau::Tableau;
 use crate::contact::hold::carry;
 use crate::rock::Vec3;
+use crate::trajectory::FeatureKind;
 
 /// Most passes in which geometry and forces are brought to agree.
 const PASSES: u32 = 10;
@@ -72,16 +73,17 @@ impl Grip {
         // Where it would be if it went on as in the stage before.
         let before = &self.rates[i - 1];
         let mut guess = base.c + (before.c + before.v * hh) * hh;
-        for pass in 0..PASSES {
+        if !(self.near.covers(&guess) && self.touches.slide_to(world.terrain, &guess)) {
             self.look_ahead(world, &guess);
+        }
+        for _ in 0..PASSES {
             self.place_spots(world, tableau, (i, h), (&base, &guess));
             let spots = &mut self.spots[..self.spot_count];
             let (v, w) = law::solve(&world.body, spots, vf, wf, hh, &mut self.sweeps)?;
             let c = base.c + v * hh;
+            self.look_ahead(world, &c);
             let moved = (c - guess).norm_squared();
-            // On one plane the normal is the same everywhere: the first pass is exact.
-            let exact = self.near.is_plane() && self.near.covers(&c) && pass == 0;
-            if exact || moved <= (AGREED * world.body.radius).powi(2) {
+            if moved <= (AGREED * world.body.radius).powi(2) || self.stays_on_faces() {
                 let end = End { c, v, w };
                 self.store(world, &base, &end, (i, hh));
                 return Some(end);
@@ -89,6 +91,19 @@ impl Grip {
             guess = c;
         }
         None
+    }
+
+    /// Whether the last look found the very faces that the forces were computed with: planes are the same everywhere,
+    /// so the forces are exact wherever the rock was when they were computed.
+    #[inline]
+    fn stays_on_faces(&self) -> bool {
+        let spots = &self.spots[..self.spot_count];
+        spots.len() == self.touches.len()
+            && spots.iter().zip(self.touches.iter()).all(|(spot, touch)| {
+                touch.feature.kind == FeatureKind::Face
+                    && touch.feature == spot.feature
+                    && touch.normal == spot.n
+            })
     }
 
     /// Makes the contacts of the last look into spots based at the stage's base.
@@ -124,6 +139,8 @@ impl Grip {
         let law = *world.law(touch.triangle);
         Spot {
             hold,
+            feature: touch.feature,
+            triangle: touch.triangle,
             c_n: if memory.captured { law.c_n_captured } else { law.c_n },
             is_tree: world.terrain.is_tree(touch.triangle),
             n: touch.normal,

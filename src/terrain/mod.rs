@@ -8,6 +8,7 @@ pub mod health;
 pub mod index;
 pub mod make;
 mod merge;
+pub mod read;
 pub mod stl;
 pub mod t_junctions;
 pub mod weld;

@@ -21,14 +21,14 @@ pub(super) struct Journey<'a> {
     terrain: &'a Terrain,
     rock: Rock,
     keep: Keep,
-    pub now: Motion,
-    pub extremes: Extremes,
-    pub path: Vec<PathPoint>,
-    pub impacts: Vec<Impact>,
-    pub impact_count: u32,
-    pub tree_impact_count: u32,
-    pub ledger: Ledger,
-    pub effort: Effort,
+    pub(super) now: Motion,
+    pub(super) extremes: Extremes,
+    pub(super) path: Vec<PathPoint>,
+    pub(super) impacts: Vec<Impact>,
+    pub(super) impact_count: u32,
+    pub(super) tree_impact_count: u32,
+    pub(super) ledger: Ledger,
+    pub(super) effort: Effort,
     open_impact: Option<(Impact, f64)>,
     next_point_s: f64,
 }
@@ -39,7 +39,7 @@ const HEIGHT_POINTS: f64 = 8.0;
 const HEIGHT_STEP_S: f64 = 0.1;
 
 impl<'a> Journey<'a> {
-    pub fn new(terrain: &'a Terrain, rock: Rock, start: Motion, keep: Keep) -> Self {
+    pub(super) fn new(terrain: &'a Terrain, rock: Rock, start: Motion, keep: Keep) -> Self {
         let mut journey = Self {
             terrain,
             rock,
@@ -61,7 +61,7 @@ impl<'a> Journey<'a> {
     }
 
     /// Notes the present speed and energies.
-    pub fn note_speed(&mut self) {
+    pub(super) fn note_speed(&mut self) {
         let (one, two) = (self.now.translational_j(&self.rock), self.now.rotational_j(&self.rock));
         let most = &mut self.extremes;
         most.speed_m_s = most.speed_m_s.max(self.now.velocity_m_s.norm());
@@ -83,7 +83,7 @@ impl<'a> Journey<'a> {
     }
 
     /// Goes along a flight for `dt` (s).
-    pub fn fly(&mut self, flight: &Parabola, dt: f64) {
+    pub(super) fn fly(&mut self, flight: &Parabola, dt: f64) {
         let start = self.now;
         while self.next_point_s <= start.time_s + dt {
             let t = self.next_point_s - start.time_s;
@@ -105,7 +105,7 @@ impl<'a> Journey<'a> {
     }
 
     /// Goes along one step in contact to `to`.
-    pub fn step(&mut self, to: Motion, slides: bool) {
+    pub(super) fn step(&mut self, to: Motion, slides: bool) {
         let from = std::mem::replace(&mut self.now, to);
         let dt = to.time_s - from.time_s;
         let state = if slides { PathState::Sliding } else { PathState::Sticking };
@@ -124,7 +124,7 @@ impl<'a> Journey<'a> {
     }
 
     /// Keeps the last point of the path.
-    pub fn end_path(&mut self) {
+    pub(super) fn end_path(&mut self) {
         if self.keep.path_step_s.is_some()
             && self.path.last().is_none_or(|last| last.motion.time_s < self.now.time_s)
         {
@@ -135,7 +135,7 @@ impl<'a> Journey<'a> {
     }
 
     /// Begins an impact at the present motion; it ends at `until_s` at the latest.
-    pub fn begin_impact(
+    pub(super) fn begin_impact(
         &mut self,
         point_m: Vec3,
         feature: FeatureKind,
@@ -159,7 +159,7 @@ impl<'a> Journey<'a> {
     }
 
     /// Ends the impact in hand, if any.
-    pub fn end_impact(&mut self) {
+    pub(super) fn end_impact(&mut self) {
         if let Some((mut impact, _)) = self.open_impact.take() {
             impact.speed_out_m_s = self.now.velocity_m_s.norm();
             impact.energy_lost_j += self.lost_j();
@@ -170,14 +170,14 @@ impl<'a> Journey<'a> {
     }
 
     /// Ends the impact in hand if its time is over.
-    pub fn end_impact_in_time(&mut self) {
+    pub(super) fn end_impact_in_time(&mut self) {
         if self.open_impact.as_ref().is_some_and(|(_, until_s)| self.now.time_s >= *until_s) {
             self.end_impact();
         }
     }
 
     /// Writes `times` the losses into the ledger.
-    pub fn pay(&mut self, loss: &Loss, times: f64) {
+    pub(super) fn pay(&mut self, loss: &Loss, times: f64) {
         self.ledger.friction_j += times * loss.friction;
         self.ledger.damping_j += times * loss.damping;
         self.ledger.rolling_j += times * loss.rolling;
@@ -185,7 +185,7 @@ impl<'a> Journey<'a> {
     }
 
     /// All losses so far (J).
-    pub fn lost_j(&self) -> f64 {
+    pub(super) fn lost_j(&self) -> f64 {
         let ledger = &self.ledger;
         ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
     }

@@ -6,7 +6,7 @@ mod journey;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
-pub use fall::{Course, Scratch, follow};
+pub use fall::{Course, Scratch, fall, follow};
 pub use journey::Keep;
 
 /// Why a rock's journey ended.

@@ -10,7 +10,8 @@ pub mod zoo;
 
 use rockfall::chance::{Purpose, stream};
 use rockfall::ground::Ground;
-use rockfall::plan::{Release, RestRule};
+use rockfall::plan::RestRule;
+use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::step::{Scheme, Settings};
 use rockfall::terrain::stl::{Facet, Soup};

@@ -1,0 +1,235 @@
+//! The command line: what is asked, what is said, and the exit status. Only this file prints.
+
+#![expect(clippy::print_stderr, reason = "this is the face of the program")]
+
+use crate::wiring::{self, Ended, Order};
+use clap::{Args, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+use rockfall::error::{Error, Result};
+use rockfall::output::Mode;
+use rockfall::plan::Plan;
+use rockfall::scene::Scene;
+use std::fmt::Display;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Exit status when the user's input is wrong.
+const WRONG_INPUT: u8 = 2;
+/// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal.
+const INTERRUPTED: u8 = 130;
+
+/// Rockfall hazard on triangle meshes, with the numerical error beside every number.
+#[derive(Debug, Parser)]
+#[command(name = "rockfall", version, about, arg_required_else_help = true)]
+struct Asked {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Check and plan a scene, run all releases in parallel, write results and report
+    Run(RunArgs),
+    /// Read a scene and its meshes, print mesh health and the plan; run nothing
+    Plan {
+        /// Scene file (TOML)
+        scene: PathBuf,
+    },
+    /// Draw figures and page again from the results in a folder; run no rock
+    Draw {
+        /// Folder with the results of a run
+        dir: PathBuf,
+    },
+    /// Check, convert and make meshes
+    #[command(subcommand)]
+    Mesh(MeshCommand),
+}
+
+#[derive(Debug, Subcommand)]
+enum MeshCommand {
+    /// Print the health of STL files as they will be welded
+    Check {
+        /// STL files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// Turn an ESRI ASCII grid into STL; subtract the map origin and print it
+    FromGrid {
+        /// Grid (.asc)
+        grid: PathBuf,
+        /// STL file to write
+        out: PathBuf,
+    },
+    /// Write one of the made slopes and shapes
+    Make {
+        /// Which one
+        kind: String,
+        /// STL file to write
+        out: PathBuf,
+    },
+}
+
+#[derive(Debug, Args)]
+struct RunArgs {
+    /// Scene file (TOML)
+    scene: PathBuf,
+    /// Folder for the results [default: reports/<scene name>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Number of releases, instead of the scene's
+    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    releases: Option<usize>,
+    /// Seed, instead of the scene's
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Worker threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    threads: Option<usize>,
+    /// One release alone, with its full path recorded
+    #[arg(long, value_name = "I", conflicts_with = "resume")]
+    only: Option<usize>,
+    /// Go on with an interrupted run in the same folder
+    #[arg(long, conflicts_with = "overwrite")]
+    resume: bool,
+    /// Replace the results in the folder
+    #[arg(long)]
+    overwrite: bool,
+    /// Print nothing but errors
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Reads the command line, does what it asks and answers with the exit status.
+pub(crate) fn main() -> ExitCode {
+    let done = match Asked::parse().command {
+        Command::Run(args) => run(&args),
+        Command::Plan { scene } => plan(&scene),
+        Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
+        Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
+            wiring::mesh_from_grid(&grid, &out).map(say)
+        }
+        Command::Mesh(MeshCommand::Make { kind, out }) => wiring::make_mesh(&kind, &out).map(say),
+    };
+    done.unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        ExitCode::from(WRONG_INPUT)
+    })
+}
+
+fn plan(scene: &Path) -> Result<ExitCode> {
+    let scene = Scene::read(scene)?;
+    let (terrain, health) = scene.read_terrain()?;
+    let plan = Plan::compile(&scene, terrain)?;
+    Ok(say(format!("{health}\n{plan}")))
+}
+
+fn run(args: &RunArgs) -> Result<ExitCode> {
+    let scene = args.scene()?;
+    let (terrain, health) = scene.read_terrain()?;
+    let plan = Plan::compile(&scene, terrain)?;
+    if !args.quiet {
+        say(&plan);
+    }
+    let order = args.order();
+    let bar = args.progress(args.only.map_or(plan.count, |_| 1));
+    let ended =
+        wiring::run(&plan, &health, &order, stop_at_ctrl_c, |done| bar.set_position(done as u64))?;
+    if let Ended::Interrupted(done, asked) = ended {
+        bar.abandon();
+        return Ok(args.interrupted(done, asked));
+    }
+    bar.finish();
+    if !args.quiet {
+        say(format!("results in {}", order.out.display()));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+impl RunArgs {
+    /// The scene with what the command line changes.
+    fn scene(&self) -> Result<Scene> {
+        let mut scene = Scene::read(&self.scene)?;
+        scene.release.count = self.releases.unwrap_or(scene.release.count);
+        scene.seed = self.seed.unwrap_or(scene.seed);
+        match self.only.filter(|only| *only >= scene.release.count) {
+            Some(only) => Err(Error::Request(format!(
+                "--only {only}: found {} releases; write a number from 0 to {}",
+                scene.release.count,
+                scene.release.count - 1
+            ))),
+            None => Ok(scene),
+        }
+    }
+
+    fn order(&self) -> Order {
+        let name = self.scene.file_stem().unwrap_or_default();
+        let mode = match (self.resume, self.overwrite) {
+            (true, _) => Mode::Resume,
+            (_, true) => Mode::Overwrite,
+            _ => Mode::Fresh,
+        };
+        let results = Path::new("reports").join(name);
+        // One release alone has a folder of its own: it is not the scene's result.
+        let usual = self.only.map_or(results.clone(), |only| results.join(format!("only_{only}")));
+        Order {
+            out: self.out.clone().unwrap_or(usual),
+            mode,
+            only: self.only,
+            threads: self.threads,
+        }
+    }
+
+    /// Rate and remaining time on a terminal, nothing when piped.
+    fn progress(&self, asked: usize) -> ProgressBar {
+        if self.quiet {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::new(asked as u64);
+        match ProgressStyle::with_template("{bar:40} {pos}/{len} rocks, {per_sec}, {eta} left") {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+
+    /// Says how to go on.
+    fn interrupted(&self, done: usize, asked: usize) -> ExitCode {
+        let mut words: Vec<String> =
+            std::env::args().skip(1).filter(|word| word != "--overwrite").collect();
+        if !self.resume {
+            words.push("--resume".to_owned());
+        }
+        eprintln!("interrupted: {done} of {asked} releases are written");
+        eprintln!("go on with: rockfall {}", words.join(" "));
+        ExitCode::from(INTERRUPTED)
+    }
+}
+
+/// Ctrl-C raises the flag: the chunk in hand is finished and written before anything ends.
+fn stop_at_ctrl_c(flag: Arc<AtomicBool>) -> Result<()> {
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+        .map_err(|error| Error::Request(format!("cannot watch for Ctrl-C: {error}")))
+}
+
+/// Prints; a reader that has gone away (`rockfall plan … | head`) is no error.
+fn say(text: impl Display) -> ExitCode {
+    let text = text.to_string();
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            eprintln!("error: cannot print: {error}");
+            ExitCode::from(WRONG_INPUT)
+        }
+        _ => ExitCode::SUCCESS,
+    }
+}
+
+fn at_least_1(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(0) | Err(_) => Err("write a whole number of 1 or more".to_owned()),
+        Ok(number) => Ok(number),
+    }
+}

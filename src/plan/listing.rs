@@ -1,0 +1,170 @@
+//! The plan in words: one line for everything that is computed and everything that is left out.
+
+use super::{Part, Paths, Plan, RestRule, dda_restitution};
+use crate::release::Where;
+use crate::step::{Scheme, Settings};
+use std::fmt;
+
+/// Columns before the text of a line.
+const LABEL: usize = 19;
+
+impl Plan {
+    /// The listing, line by line; `rockfall plan` prints it and every report ends with it.
+    pub fn lines(&self) -> Vec<String> {
+        // Every field by name and no `..`: a part that is not listed does not compile.
+        let Self {
+            title,
+            scene_file,
+            scene_hash,
+            version,
+            epsg,
+            seed,
+            count,
+            releases,
+            radii_m: [smallest_m, median_m, largest_m],
+            terrain,
+            ground_names,
+            gravity_m_s2,
+            step,
+            capture_m_s,
+            own_dissipation: _, // with the step
+            rest: RestRule { speed_m_s, time_s },
+            longest_s,
+            trees,
+            flight,
+            rolling,
+            roughness,
+            rock_against_rock,
+            coupled_solve,
+            paths,
+            impacts,
+            warnings,
+        } = self;
+        let place = place(releases.place());
+        let mut list = List::default();
+        list.line("scene", title);
+        list.line("file", format!("{}, {}", scene_file.display(), fingerprint(scene_hash)));
+        list.line("version", format!("rockfall {version}"));
+        list.line("releases", format!("{count} {place}, seed {seed}"));
+        list.line(
+            "radius",
+            format!("{smallest_m:.3} m smallest, {median_m:.3} m median, {largest_m:.3} m largest"),
+        );
+        list.line(
+            "terrain",
+            format!("{} triangles in {} files", terrain.triangles.len(), terrain.sheets.len()),
+        );
+        list.line("map", map(terrain.origin_m.into(), *epsg));
+        list.line("gravity", format!("{gravity_m_s2} m/s²"));
+        list.line("grounds", format!("{}: {}", ground_names.len(), ground_names.join(", ")));
+        list.line("scheme", scheme(step));
+        let captures = ground_names.iter().zip(capture_m_s);
+        for (name, speed) in captures {
+            let whose =
+                if step.capture_speed_m_s.is_some() { "given" } else { "for the median rock" };
+            list.line(
+                "capture speed",
+                format!("{speed:.4} m/s on {name}, {whose}: slower impacts do not rebound"),
+            );
+        }
+        list.lines("own dissipation", self.dissipation());
+        list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s"));
+        list.part("trees", trees, |triangles| format!("{triangles} triangles"));
+        list.line(
+            "flight",
+            match flight {
+                Part::Kept(never) => match *never {},
+                Part::LeftOut(why) => format!("leapt over: {why}"),
+            },
+        );
+        list.part("rolling friction", rolling, |()| "computed".to_owned());
+        list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
+        list.part("rock against rock", rock_against_rock, |never| match *never {});
+        list.part("coupled solve", coupled_solve, |never| match *never {});
+        list.part("paths", paths, |Paths { first, step_s }| {
+            format!("kept for {first} of {count} releases, every {step_s} s")
+        });
+        list.part("impacts", impacts, |()| "kept".to_owned());
+        list.lines("warning", warnings.iter().cloned());
+        list.0
+    }
+
+    /// What the fixed step does to an impact by itself, ground by ground.
+    fn dissipation(&self) -> impl Iterator<Item = String> {
+        self.own_dissipation.iter().map(|own| {
+            let kept = own.phases.map(|(radius_m, phase)| match dda_restitution(phase) {
+                Some(e) => format!("{e:.4} (R = {radius_m:.3} m)"),
+                None => format!("anything in 0..1 (R = {radius_m:.3} m)"),
+            });
+            let force = if own.is_in_force {
+                "restitution in force"
+            } else {
+                "beside the ground's own restitution"
+            };
+            format!(
+                "{}: the scheme itself keeps {} of the speed; {force}",
+                own.ground,
+                kept.join(", ")
+            )
+        })
+    }
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.lines().iter().try_for_each(|line| writeln!(to, "{line}"))
+    }
+}
+
+/// Lines with a label in front.
+#[derive(Default)]
+struct List(Vec<String>);
+
+impl List {
+    fn line(&mut self, label: &str, text: impl fmt::Display) {
+        self.0.push(format!("{label:<LABEL$}{text}"));
+    }
+
+    fn lines(&mut self, label: &str, texts: impl Iterator<Item = String>) {
+        texts.for_each(|text| self.line(label, text));
+    }
+
+    fn part<T>(&mut self, label: &str, part: &Part<T>, kept: impl Fn(&T) -> String) {
+        match part {
+            Part::Kept(what) => self.line(label, kept(what)),
+            Part::LeftOut(why) => self.line(label, format!("left out: {why}")),
+        }
+    }
+}
+
+fn place(place: &Where) -> String {
+    match place {
+        Where::Points(points) => format!("from {} points in turn", points.len()),
+        Where::Line(line) => format!("along a line of {:.1} m", line.length_m()),
+        Where::Area(area) => format!("over an area of {:.1} m²", area.area_m2()),
+    }
+}
+
+/// Enough of the hash to tell two scenes apart by eye.
+fn fingerprint(hash: &str) -> String {
+    format!("sha256 {}", hash.get(..16).unwrap_or("not taken"))
+}
+
+fn map([x, y, z]: [f64; 3], epsg: Option<u32>) -> String {
+    let code = epsg.map_or_else(|| "no EPSG code".to_owned(), |code| format!("EPSG:{code}"));
+    format!("origin ({x}, {y}, {z}) m subtracted, {code}")
+}
+
+fn scheme(step: &Settings) -> String {
+    let name = step.scheme.name();
+    match step.scheme {
+        Scheme::Adaptive | Scheme::Reference => {
+            format!("{name}, local error {} m/s", step.tolerance_m_s)
+        }
+        Scheme::Rigid => format!("{name}, steps of up to {} s", step.step_s),
+        Scheme::Dda => {
+            let memory = if step.shear_memory { "with" } else { "as printed, without" };
+            format!("{name}, steps of {} s, {memory} shear memory", step.step_s)
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Whether the contact springs carry the rocks, and what a fixed step does to them.
+
+use super::Settings;
+use crate::chance::Distribution;
+use crate::error::{Error, Result};
+use crate::ground::{Capture, Damping, Ground, Law};
+use crate::rock::Rock;
+use crate::scene::{GroundTable, Scene};
+use crate::step::Scheme;
+use crate::terrain::Terrain;
+use std::f64::consts::PI;
+
+/// Deepest a resting rock may press a spring, over its radius (–): a softer ground is no rigid surface.
+const STATIC_DEPTH: f64 = 0.01;
+/// Deepest an impact should press a spring, over the rock's radius (–): deeper, neighbouring triangles
+/// take part that a rigid rock would not touch.
+const IMPACT_DEPTH: f64 = 0.1;
+/// Speed that a single rock seldom passes (m/s); what free fall over the whole slope would give is rarely met.
+const SELDOM_PASSED_M_S: f64 = 40.0;
+/// Contact oscillation per step (rad) above which an impact is not resolved: the scheme then eats more than a
+/// fifth of the speed.
+const RESOLVED_PHASE: f64 = 0.3;
+/// Contact oscillation per step (rad) from which the scheme no longer oscillates: its eigenvalues turn real.
+const LOTTERY_PHASE: f64 = 4.0;
+
+/// What the fixed-step scheme dissipates by itself on one ground.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnDissipation {
+    /// Name of the ground.
+    pub ground: String,
+    /// Radius (m) with `ω Δt` (rad) of the smallest rock on the stiffest value, the median on the median and
+    /// the largest on the softest.
+    pub phases: [(f64, f64); 3],
+    /// Whether the ground has no restitution of its own, so that the scheme's is the one in force.
+    pub is_in_force: bool,
+}
+
+/// Normal restitution (–) that the right-Riemann step leaves of an undamped impact at `ω Δt` = `phase` (rad);
+/// `None` from 4 on, where it is anything between 0 and 1.
+///
+/// The step (Newmark with β = 1/2, γ = 1) shrinks the oscillation by `(1+q)^(−1/2)` while its phase turns by
+/// `θ = acos((2−q)/(2 √(1+q)))`, `q = z²/2`; half a period keeps `e = (1+q)^(−π/(2θ))`.
+pub fn dda_restitution(phase: f64) -> Option<f64> {
+    let q = 0.5 * phase * phase;
+    let angle = ((2.0 - q) / (2.0 * (1.0 + q).sqrt())).acos();
+    (phase < LOTTERY_PHASE).then(|| (1.0 + q).powf(-PI / (2.0 * angle)))
+}
+
+/// Own dissipation on every ground, with warnings for steps too long; empty unless the scheme is `dda`.
+pub(super) fn own_dissipation(
+    scene: &Scene,
+    step_s: f64,
+    warnings: &mut Vec<String>,
+) -> Vec<OwnDissipation> {
+    if scene.solver.scheme() != Scheme::Dda {
+        return Vec::new();
+    }
+    let dissipation = |(name, ground): (&String, &GroundTable)| {
+        let [soft, median, stiff] = ground.normal_stiffness_n_m.reckoned();
+        let stiffness = [stiff, median, soft];
+        let mut phases = scene.rocks.radius_m.reckoned().map(|radius_m| (radius_m, 0.0));
+        for ((radius_m, phase), stiffness) in phases.iter_mut().zip(stiffness) {
+            *phase = step_s * (stiffness / rock(scene, *radius_m).mass_kg()).sqrt();
+        }
+        warnings.extend(phase_warning(name, phases[0], step_s));
+        OwnDissipation { ground: name.clone(), phases, is_in_force: ground.restitution.is_none() }
+    };
+    scene.grounds.iter().map(dissipation).collect()
+}
+
+fn phase_warning(ground: &str, (radius_m, phase): (f64, f64), step_s: f64) -> Option<String> {
+    let trouble = if phase >= LOTTERY_PHASE {
+        "rebounds anyhow between 0 and its full speed"
+    } else if phase >= RESOLVED_PHASE {
+        "does not resolve its impacts"
+    } else {
+        return None;
+    };
+    Some(format!(
+        "[grounds.{ground}] omega * step_s = {phase:.3} for a rock of {radius_m:.3} m, which {trouble}: write a step_s below {:.1e}",
+        step_s * RESOLVED_PHASE / phase
+    ))
+}
+
+/// Speed below which the median rock does not rebound from each ground (m/s).
+pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
+    let capture = Capture {
+        own_m_s: step.capture_speed_m_s,
+        tolerance_m_s: step.tolerance_m_s,
+        gravity_m_s2: scene.gravity_m_s2,
+    };
+    let median = |value: &Distribution| value.quantile(0.5);
+    let rock = rock(scene, median(&scene.rocks.radius_m));
+    let of = |table: &GroundTable| {
+        let ground = Ground {
+            normal_stiffness_n_m: median(&table.normal_stiffness_n_m),
+            shear_stiffness_n_m: median(&table.shear_stiffness_n_m),
+            friction_angle_rad: median(&table.friction_angle_deg).to_radians(),
+            restitution: table.restitution.as_ref().map(median),
+            rolling_friction: 0.0,
+            roughness_rad: 0.0,
+        };
+        let damping = Damping::of(ground.restitution);
+        Law::new(&ground, &damping, &rock, &capture).capture_m_s
+    };
+    scene.grounds.values().map(of).collect()
+}
+
+/// Refuses springs that cannot carry the largest rock and warns of those that an impact presses too deep.
+pub(super) fn check(scene: &Scene, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<()> {
+    if scene.solver.scheme() == Scheme::Rigid {
+        return Ok(());
+    }
+    let largest = rock(scene, scene.rocks.radius_m.reckoned()[2]);
+    let fastest_m_s = fastest_m_s(scene, terrain);
+    for (name, ground) in &scene.grounds {
+        let softest = ground.normal_stiffness_n_m.reckoned()[0];
+        let liveliest = ground.restitution.as_ref().map_or(1.0, |e| e.support().1);
+        // p_N ≥ e m v²/depth², from the largest penetration √e v/ω of an impact
+        let least = |v: f64, depth: f64| {
+            liveliest * largest.mass_kg() * (v / (depth * largest.radius_m)).powi(2)
+        };
+        let at_rest = largest.mass_kg() * scene.gravity_m_s2 / (STATIC_DEPTH * largest.radius_m);
+        if softest < at_rest.max(least(fastest_m_s, 1.0)) {
+            let usual = at_rest.max(least(fastest_m_s.min(SELDOM_PASSED_M_S), IMPACT_DEPTH));
+            let place = format!("[grounds.{name}] normal_stiffness_n_m");
+            let found = format!(
+                "found {softest:e}, too soft for a rock of {:.3} m at up to {fastest_m_s:.0} m/s: it would sink in",
+                largest.radius_m
+            );
+            let remedy = format!("write {:.1e} or more", 1.05 * usual.max(at_rest));
+            return Err(Error::input(&scene.file, place, found, remedy));
+        }
+        let needed = least(fastest_m_s.min(SELDOM_PASSED_M_S), IMPACT_DEPTH);
+        if softest < needed {
+            warnings.push(format!(
+                "[grounds.{name}] normal_stiffness_n_m = {softest:e} lets a rock of {:.3} m sink in by more than {IMPACT_DEPTH} of its radius in an impact at {:.0} m/s; {needed:.1e} would not",
+                largest.radius_m,
+                fastest_m_s.min(SELDOM_PASSED_M_S),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Speed of a rock that falls freely from the highest start to the lowest vertex (m/s): no rock is faster.
+fn fastest_m_s(scene: &Scene, terrain: &Terrain) -> f64 {
+    let (low, high) = terrain.index.bounds();
+    let release = &scene.release;
+    let gap = release.height_m.as_ref().map_or(0.0, |height| height.support().1);
+    let points = release.points_m.iter().flatten().filter_map(|point| point.height_m);
+    let highest = points.map(|z| z - terrain.origin_m.z).fold(high.z + gap, f64::max);
+    let start2 = release.velocity_m_s.iter().map(|component| {
+        let [low, _, high] = component.reckoned();
+        low.abs().max(high.abs()).powi(2)
+    });
+    (start2.sum::<f64>() + 2.0 * scene.gravity_m_s2 * (highest - low.z)).sqrt()
+}
+
+fn rock(scene: &Scene, radius_m: f64) -> Rock {
+    Rock { radius_m, density_kg_m3: scene.rocks.density_kg_m3 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The closed form evaluated by hand; at z = 2 it is `3^(−π/(2 acos 0)) = 1/3`.
+    #[test]
+    fn the_scheme_keeps_what_the_table_says() {
+        let table = [
+            (0.01, 0.992_177),
+            (0.1, 0.924_563),
+            (0.5, 0.683_764),
+            (1.0, 0.497_301),
+            (2.0, 1.0 / 3.0),
+        ];
+        for (phase, restitution) in table {
+            // six printed digits
+            assert!((dda_restitution(phase).unwrap() - restitution).abs() < 6e-7, "{phase}");
+        }
+        assert_eq!(dda_restitution(4.0), None);
+    }
+}

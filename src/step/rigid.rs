@@ -1,0 +1,260 @@
+//! Scheme `rigid`: the limit of stiff springs. Impacts are a map, sustained contact is stepped in velocities.
+//!
+//! Friction and rolling friction are impulses bounded by the normal impulse; several contacts are swept
+//! (projected Gauss–Seidel, after Moreau). What each impulse takes is booked by the mean velocity it acts on, so
+//! the energy balance closes to rounding but for the push-out of penetrations.
+
+use super::adaptive::{Advance, Stuck};
+use super::grip::{Grip, Loss, TOUCH, World};
+use super::law::{Body, within};
+use crate::contact::MOST;
+use crate::ground::Law;
+use crate::rock::Vec3;
+
+/// Longest way in one step (–, relative to R): less than the slack within which features are seen.
+const TRAVEL: f64 = 0.09;
+/// Sweeps over the contacts, at most.
+const SWEEPS: u32 = 100;
+/// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
+const SETTLED: f64 = 1e-12;
+/// Alternations of friction and rolling friction in one contact; they couple by 5/7.
+const ALTERNATIONS: u32 = 12;
+
+/// One contact and its impulses.
+#[derive(Debug, Clone, Copy)]
+struct Blow {
+    n: Vec3,
+    law: Law,
+    triangle: u32,
+    /// Normal speed wanted after the impulse (m/s).
+    target: f64,
+    /// Normal impulse (N s), ≥ 0.
+    push: f64,
+    /// Impulse along the surface (N s).
+    drag: Vec3,
+    /// Rolling impulse (N m s).
+    turn: Vec3,
+}
+
+impl Blow {
+    const NONE: Self = Self {
+        n: Vec3::new(0.0, 0.0, 0.0),
+        law: Law::NONE,
+        triangle: 0,
+        target: 0.0,
+        push: 0.0,
+        drag: Vec3::new(0.0, 0.0, 0.0),
+        turn: Vec3::new(0.0, 0.0, 0.0),
+    };
+
+    /// Impulses for velocity `v` and spin `w` without this contact's own.
+    fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
+        let m = body.mass;
+        self.push = (m * (self.target - self.n.dot(v))).max(0.0);
+        let (cap, cap_turn) = (self.law.friction * self.push, self.law.rolling_m * self.push);
+        self.turn = Vec3::zeros();
+        for _ in 0..if cap_turn > 0.0 { ALTERNATIONS } else { 1 } {
+            let w_rolled = w + self.turn / body.inertia;
+            self.drag = within(body.slip(&self.n, v, &w_rolled) * (-2.0 / 7.0 * m), cap);
+            let w_dragged = w - self.n.cross(&self.drag) * (body.radius / body.inertia);
+            self.turn = within(w_dragged * -body.inertia, cap_turn);
+        }
+    }
+
+    /// Change of velocity and spin.
+    fn effect(&self, body: &Body) -> (Vec3, Vec3) {
+        let dv = (self.n * self.push + self.drag) / body.mass;
+        let dw = (self.turn - self.n.cross(&self.drag) * body.radius) / body.inertia;
+        (dv, dw)
+    }
+
+    /// Energy that the impulses take (J), at mean velocity `v` and spin `w`.
+    fn loss(&self, body: &Body, v: &Vec3, w: &Vec3) -> Loss {
+        let friction = -self.drag.dot(&body.slip(&self.n, v, w));
+        Loss {
+            friction,
+            damping: -self.push * self.n.dot(v),
+            rolling: -self.turn.dot(w),
+            trees: 0.0,
+        }
+    }
+}
+
+/// The contacts of one impact or step.
+struct Blows {
+    list: [Blow; MOST],
+    len: usize,
+}
+
+impl Blows {
+    /// One blow for each touch of the last look, with the target that `target` names for it.
+    fn of(world: &World, grip: &Grip, target: impl Fn(&Blow, f64) -> f64) -> Self {
+        let mut blows = Self { list: [Blow::NONE; MOST], len: grip.touches.len() };
+        for (blow, touch) in blows.list.iter_mut().zip(grip.touches.iter()) {
+            (blow.n, blow.triangle, blow.law) =
+                (touch.normal, touch.triangle, *world.law(touch.triangle));
+            blow.target = target(blow, touch.distance_m);
+        }
+        blows
+    }
+
+    /// Sweeps until the impulses settle; returns velocity and spin after them.
+    fn solve(&mut self, body: &Body, v: Vec3, w: Vec3, sweeps: &mut u64) -> (Vec3, Vec3) {
+        let (mut v, mut w) = (v, w);
+        for _ in 0..SWEEPS {
+            *sweeps += 1;
+            let (mut change, mut scale) = (0.0f64, f64::MIN_POSITIVE);
+            for blow in &mut self.list[..self.len] {
+                let (dv, dw) = blow.effect(body);
+                let (vf, wf, before) = (v - dv, w - dw, *blow);
+                blow.solve(body, &vf, &wf);
+                let (dv, dw) = blow.effect(body);
+                (v, w) = (vf + dv, wf + dw);
+                change = change
+                    .max((blow.push - before.push).abs())
+                    .max((blow.drag - before.drag).norm());
+                scale = scale.max(blow.push);
+            }
+            if self.len <= 1 || change <= SETTLED * scale {
+                break;
+            }
+        }
+        (v, w)
+    }
+
+    /// Takes over velocity and spin after the impulses and books their losses.
+    fn apply(&self, world: &World, grip: &mut Grip, (v, w): (Vec3, Vec3), loss: &mut Loss) {
+        let (mean_v, mean_w) = (0.5 * (grip.v + v), 0.5 * (grip.w + w));
+        for blow in &self.list[..self.len] {
+            loss.add(&blow.loss(&world.body, &mean_v, &mean_w).on(world, blow.triangle), 1.0);
+        }
+        (grip.v, grip.w) = (v, w);
+    }
+}
+
+/// One impact or one step of at most `h_max` (s) and `longest` (s).
+///
+/// # Errors
+/// [`Stuck`] if motion is no longer finite.
+pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Result<Advance, Stuck> {
+    let mut done = Advance::default();
+    let c = grip.c;
+    let r = world.body.radius;
+    grip.look(world, &c, r * (1.0 + TOUCH));
+    if hits(world, grip) {
+        impact(world, grip, &mut done);
+    } else {
+        step(world, grip, longest.min(h_max), &mut done);
+    }
+    let finite = grip.c.iter().chain(grip.v.iter()).chain(grip.w.iter()).all(|x| x.is_finite());
+    if finite { Ok(done) } else { Err(Stuck) }
+}
+
+/// Whether a touch of the last look comes in faster than the capture speed.
+fn hits(world: &World, grip: &Grip) -> bool {
+    grip.touches.iter().any(|touch| !world.captures(touch, &grip.v))
+}
+
+/// The impact map: `v_n → −e v_n` for fast touches, no rebound for slow ones.
+fn impact(world: &World, grip: &mut Grip, done: &mut Advance) {
+    let (v, w, touches) = (grip.v, grip.w, grip.touches);
+    for (k, touch) in touches.iter().enumerate() {
+        grip.holds.find(touch, &touches, (1 << k) - 1, || world.captures(touch, &v));
+    }
+    let mut elastic = 1.0;
+    // Several contacts at once may throw the rock off with more than it had (Newton's rule is not Poisson's):
+    // then the same blow without rebound, which never does.
+    loop {
+        let mut blows = Blows::of(world, grip, |blow, _| {
+            let vn = blow.n.dot(&v);
+            if -vn < blow.law.capture_m_s { 0.0 } else { -elastic * blow.law.restitution * vn }
+        });
+        let after = blows.solve(&world.body, v, w, &mut grip.sweeps);
+        let energy = |v: &Vec3, w: &Vec3| {
+            world.body.mass * v.norm_squared() + world.body.inertia * w.norm_squared()
+        };
+        if elastic == 0.0 || energy(&after.0, &after.1) <= energy(&v, &w) * (1.0 + 1e-14) {
+            blows.apply(world, grip, after, &mut done.loss);
+            break;
+        }
+        elastic = 0.0;
+    }
+    remember(world, grip, |_| true);
+}
+
+/// One step of sustained contact.
+fn step(world: &World, grip: &mut Grip, longest: f64, done: &mut Advance) {
+    let body = &world.body;
+    let r = body.radius;
+    let (c, v, w) = (grip.c, grip.v, grip.w);
+    let dt = closing(world, grip, longest.min(TRAVEL * r / v.norm().max(f64::MIN_POSITIVE)));
+    let middle = c + v * (0.5 * dt);
+    grip.look_ahead(world, &middle);
+    let mut blows = Blows::of(world, grip, |blow, distance| {
+        let gap = distance - r - blow.n.dot(&(middle - c));
+        -gap.max(0.0) / dt
+    });
+    let after = blows.solve(body, v + body.gravity * dt, w, &mut grip.sweeps);
+    blows.apply(world, grip, after, &mut done.loss);
+    grip.c = c + (v + grip.v) * (0.5 * dt);
+    done.dt = dt;
+    let pushed = blows.list[..blows.len].iter().any(|blow| blow.push > 0.0);
+    push_out(world, grip);
+    remember(world, grip, |_| pushed);
+}
+
+/// Cuts a step where a gap closes faster than the capture speed: the impact comes at the end of the step.
+fn closing(world: &World, grip: &mut Grip, dt: f64) -> f64 {
+    let c = grip.c;
+    grip.look_ahead(world, &c);
+    let r = world.body.radius;
+    grip.touches.iter().filter(|touch| !world.captures(touch, &grip.v)).fold(dt, |dt, touch| {
+        let gap = touch.distance_m - r;
+        if gap > TOUCH * r { dt.min(gap / -touch.normal.dot(&grip.v)) } else { dt }
+    })
+}
+
+/// Moves a rock that got into the mesh out along the normals; the height it gains is paid by its motion.
+fn push_out(world: &World, grip: &mut Grip) {
+    let (r, before) = (world.body.radius, grip.c);
+    for _ in 0..4 {
+        let c = grip.c;
+        grip.look(world, &c, r);
+        let out = grip.touches.iter().fold(Vec3::zeros(), |sum, touch| {
+            let missing = r - touch.distance_m - sum.dot(&touch.normal);
+            sum + touch.normal * missing.max(0.0)
+        });
+        if out.norm() <= TOUCH * r {
+            break;
+        }
+        grip.c += out;
+    }
+    let lifted = -world.body.mass * world.body.gravity.dot(&(grip.c - before));
+    let motion = grip.motion_j(&world.body);
+    if lifted > 0.0 && motion > 0.0 {
+        let kept = ((motion - lifted) / motion).max(0.0).sqrt();
+        grip.v *= kept;
+        grip.w *= kept;
+    }
+}
+
+/// Keeps a memory for every touch that still holds the rock, so that impacts are counted and rest is seen.
+fn remember(world: &World, grip: &mut Grip, holds: impl Fn(&Vec3) -> bool) {
+    let (c, v) = (grip.c, grip.v);
+    grip.look(world, &c, world.body.radius * (1.0 + 1e-4));
+    let touches = grip.touches;
+    for hold in grip.holds.iter_mut() {
+        hold.closed = false;
+    }
+    let mut taken = 0;
+    for touch in touches.iter() {
+        let k = grip.holds.find(touch, &touches, taken, || true);
+        taken |= 1 << k;
+        let hold = &mut grip.holds[k];
+        (hold.feature, hold.triangle, hold.n) = (touch.feature, touch.triangle, touch.normal);
+        // A touch that separates faster than the capture speed lets go.
+        hold.closed = holds(&v) && touch.normal.dot(&v) < world.law(touch.triangle).capture_m_s;
+        hold.slides = world.body.slip(&hold.n, &v, &grip.w).norm() > 1e-6 * (1.0 + v.norm());
+    }
+    grip.holds.retain(|hold| hold.closed);
+}

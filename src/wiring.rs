@@ -1,0 +1,147 @@
+//! Where the commands meet the floors that compute: running releases, drawing results, meshes.
+
+use rockfall::ensemble::Ensemble;
+use rockfall::error::{Error, Result};
+use rockfall::output::{Identity, Mode, Output, RunInfo};
+use rockfall::plan::Plan;
+use rockfall::report;
+use rockfall::rock::Vec3;
+use rockfall::terrain::grid::Grid;
+use rockfall::terrain::health::Health;
+use rockfall::terrain::read::Source;
+use rockfall::terrain::stl::write_binary;
+use rockfall::terrain::weld::Up;
+use rockfall::terrain::{Sheet, Terrain, make};
+use rockfall::trajectory::{self, Scratch};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// How a run is asked for.
+#[derive(Debug)]
+pub(crate) struct Order {
+    /// Folder for the results.
+    pub(crate) out: PathBuf,
+    /// What to do with results that it holds already.
+    pub(crate) mode: Mode,
+    /// One release alone, with its full path.
+    pub(crate) only: Option<usize>,
+    /// Worker threads; `None` = all cores.
+    pub(crate) threads: Option<usize>,
+}
+
+/// How a run ended.
+pub(crate) enum Ended {
+    /// All releases are written, the report is drawn.
+    Complete,
+    /// Stopped after so many releases of so many; the rest can be resumed.
+    Interrupted(usize, usize),
+}
+
+/// Computes and writes chunk by chunk, then summary, figures and page.
+///
+/// `begin` gets the flag that stops after the chunk in hand; `progress` the number of releases on the disk.
+pub(crate) fn run(
+    plan: &Plan,
+    health: &Health,
+    order: &Order,
+    begin: impl FnOnce(Arc<AtomicBool>) -> Result<()>,
+    progress: impl Fn(usize),
+) -> Result<Ended> {
+    let ensemble = Ensemble::new(order.threads)?;
+    let mut output =
+        Output::create(run_info(plan, health, order, &ensemble)?, &order.out, order.mode)?;
+    let (first, asked) = (order.only.unwrap_or(0), order.only.map_or(plan.count, |_| 1));
+    begin(ensemble.stop_flag())?;
+    let paths = order.only.map(|only| only..only + 1);
+    let fall = |index: usize, scratch: &mut Scratch| {
+        trajectory::fall(plan, index, paths.as_ref(), scratch)
+    };
+    for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
+        output.write(&falls?)?;
+        progress(output.remaining().start - first);
+    }
+    let done = output.remaining().start - first;
+    if done < asked {
+        return Ok(Ended::Interrupted(done, asked));
+    }
+    let results = output.finish()?;
+    report::draw_run(&results, &plan.terrain)?;
+    Ok(Ended::Complete)
+}
+
+fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) -> Result<RunInfo> {
+    let only = order.only;
+    let mut mesh_health = serde_json::to_value(health)
+        .map_err(|error| Error::Request(format!("the mesh health cannot be written: {error}")))?;
+    mesh_health["table"] = health.to_string().lines().collect();
+    Ok(RunInfo {
+        title: plan.title.clone(),
+        identity: Identity {
+            scene_hash: plan.scene_hash.clone(),
+            version: plan.version.to_owned(),
+            seed: plan.seed,
+            first_release: only.unwrap_or(0),
+            releases: only.map_or(plan.count, |_| 1),
+        },
+        origin_m: plan.terrain.origin_m,
+        ground_of_sheet: plan
+            .terrain
+            .sheets
+            .iter()
+            .map(|sheet| plan.ground_names[usize::from(sheet.ground)].clone())
+            .collect(),
+        keeps_paths: only.is_some() || plan.paths.is_kept(),
+        keeps_impacts: plan.impacts.is_kept(),
+        threads: ensemble.threads(),
+        plan: plan.lines(),
+        warnings: plan.warnings.clone(),
+        mesh_health,
+    })
+}
+
+/// Draws figures and page again from the results in `dir`.
+pub(crate) fn draw(dir: &Path) -> Result<()> {
+    report::draw_again(dir)
+}
+
+/// Health of mesh files as they will be welded, in words.
+pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
+    let source = |path: &PathBuf| Source {
+        sheet: Sheet { path: path.clone(), ground: 0, is_tree: false },
+        up: Up::default(),
+        scale: 1.0,
+    };
+    let sources: Vec<Source> = files.iter().map(source).collect();
+    let (_, health) = Terrain::read(&sources, Vec3::zeros(), None)?;
+    Ok(health.to_string())
+}
+
+/// Turns an ESRI ASCII grid into an STL file; says what was subtracted.
+pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
+    let grid = Grid::read(grid)?;
+    let origin_m = grid.map_origin_m();
+    let facets = grid.facets(origin_m);
+    write_binary(out, &facets)?;
+    Ok(format!(
+        "{} triangles written to {}\norigin_m = [{:?}, {:?}, {:?}]  # write this into the scene",
+        facets.len(),
+        out.display(),
+        origin_m.x,
+        origin_m.y,
+        origin_m.z
+    ))
+}
+
+/// Writes one of the made slopes and shapes.
+pub(crate) fn make_mesh(kind: &str, out: &Path) -> Result<String> {
+    let shipped = make::shipped();
+    let name = |file: &'static str| file.trim_end_matches(".stl");
+    let Some((_, facets)) = shipped.iter().find(|(file, _)| name(file) == kind) else {
+        let known: Vec<&str> = shipped.iter().map(|(file, _)| name(file)).collect();
+        let known = known.join(", ");
+        return Err(Error::Request(format!("mesh make: found {kind}; write one of {known}")));
+    };
+    write_binary(out, facets)?;
+    Ok(format!("{} triangles written to {}", facets.len(), out.display()))
+}
