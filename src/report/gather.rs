@@ -6,8 +6,8 @@ use super::input::{
 use super::raster::GroundRaster;
 use crate::error::Result;
 use crate::hazard::{self, Hazard, PERCENTS, Percentile, StopKind};
-use crate::output::Results;
 use crate::output::PathRow;
+use crate::output::Results;
 use crate::rock::Vec3;
 use crate::trajectory::Stop;
 
