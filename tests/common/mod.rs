@@ -1,5 +1,12 @@
 //! One rock on a made mesh, computed through the library's own journey.
-#![allow(dead_code, reason = "every test file uses another part")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::unwrap_used,
+    reason = "every test file uses another part"
+)]
+
+pub mod zoo;
 
 use rockfall::chance::{Purpose, stream};
 use rockfall::ground::Ground;
