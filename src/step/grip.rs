@@ -123,6 +123,8 @@ pub struct Grip {
     pub rates: [Rate; STAGES],
     /// Whether the first rate belongs to the present state.
     pub fresh: bool,
+    /// Energy in the springs of the contacts at the present state (J), if the first rate is fresh.
+    pub stored: f64,
     /// Contacts of the stage in hand.
     pub spots: [Spot; MOST],
     /// How many of them.
@@ -149,6 +151,7 @@ impl Default for Grip {
             touches: Touches::default(),
             rates: [Rate::NONE; STAGES],
             fresh: false,
+            stored: 0.0,
             spots: [Spot::NONE; MOST],
             spot_count: 0,
             sweeps: 0,

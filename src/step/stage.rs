@@ -192,6 +192,7 @@ impl Grip {
             rate.roll[hold] = roll_rate;
             rate.loss.add(&spot.loss(world, &v, &w, &shear_rate), 1.0);
         }
+        self.stored = self.springs_j(world).sum();
         self.fresh = true;
     }
 }
