@@ -60,6 +60,7 @@ impl Loss {
     }
 
     /// The same, booked under trees where the triangle is one's.
+    #[must_use]
     #[inline]
     pub fn on(self, world: &World, triangle: u32) -> Self {
         if world.terrain.is_tree(triangle) {
