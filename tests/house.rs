@@ -38,7 +38,11 @@ fn floor_of(file: &Path) -> Option<String> {
 
 /// Names that follow `crate::` in a text, comments left out; `use crate::{a, b::c}` names several.
 fn used(text: &str) -> Vec<String> {
-    let code = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let code = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n");
     let word = |from: &str| -> String {
         from.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
     };

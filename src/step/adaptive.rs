@@ -140,7 +140,7 @@ fn grown(control: &Control, dt: f64, error: f64) -> f64 {
 fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
     let (speed, r) = (grip.v.norm(), world.body.radius);
     let c = grip.c;
-    grip.look_ahead(world, &c);
+    grip.know(world, &c);
     let room = if grip.near.is_plane() { grip.near.room_m(&c).max(TRAVEL * r) } else { TRAVEL * r };
     // The weight may still speed it up on the way.
     let fall = world.body.gravity.norm();
@@ -187,7 +187,9 @@ fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Los
     let last = tableau.stages - 1;
     let hh = tableau.diagonal * dt;
     grip.stored = pressed_j(grip, end, hh);
-    let mut next = grip.rates[last];
+    let (first, later) = grip.rates.split_at_mut(last);
+    let next = &mut first[0];
+    next.take(&later[0], grip.holds.len());
     for hold in grip.holds.iter_mut() {
         hold.closed = false;
     }
@@ -209,6 +211,5 @@ fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Los
         }
     }
     grip.holds.retain(|hold| hold.closed);
-    grip.rates[0] = next;
     (grip.c, grip.v, grip.w) = (end.c, end.v, end.w);
 }
