@@ -7,7 +7,7 @@ use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene};
 use crate::step::Scheme;
-use crate::step::dda::LOTTERY_PHASE;
+use crate::step::dda::SINGLE_STEP_PHASE;
 use crate::terrain::Terrain;
 
 /// Deepest a resting rock may press a spring, over its radius (–): a softer ground is no rigid surface.
@@ -56,8 +56,8 @@ pub(super) fn own_dissipation(
 }
 
 fn phase_warning(ground: &str, (radius_m, phase): (f64, f64), step_s: f64) -> Option<String> {
-    let trouble = if phase >= LOTTERY_PHASE {
-        "rebounds anyhow between 0 and its full speed"
+    let trouble = if phase >= SINGLE_STEP_PHASE {
+        "is thrown back within one step, the livelier the longer the step"
     } else if phase >= RESOLVED_PHASE {
         "does not resolve its impacts"
     } else {

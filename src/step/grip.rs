@@ -1,6 +1,6 @@
 //! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
 
-use super::dda::Joint;
+use super::dda::Bench;
 use super::law::{Body, Spot};
 use super::tableau::STAGES;
 use crate::contact::hold::{HOLDS, Holds};
@@ -128,10 +128,8 @@ pub struct Grip {
     pub spots: [Spot; MOST],
     /// How many of them.
     pub spot_count: usize,
-    /// Contacts of the fixed step in hand.
-    pub joints: [Joint; MOST],
-    /// How many of them.
-    pub joint_count: usize,
+    /// Work space of the fixed step.
+    pub bench: Bench,
     /// Contact sweeps done.
     pub sweeps: u64,
 }
@@ -156,8 +154,7 @@ impl Default for Grip {
             fresh: false,
             spots: [Spot::NONE; MOST],
             spot_count: 0,
-            joints: [Joint::NONE; MOST],
-            joint_count: 0,
+            bench: Bench::default(),
             sweeps: 0,
         }
     }

@@ -1,6 +1,7 @@
-//! One contact inside a fixed step: its springs, dashpots and sliders, and the judgement of their states.
+//! One contact inside a fixed step: its submatrices, and the judgement of its state.
 
-use crate::contact::hold::{Hold, carry};
+use super::slider::{Change, Slider, along};
+use crate::contact::hold::{Hold, SAME_GRIP, carry};
 use crate::contact::submatrix::{
     Mat6, Vec6, displacement, friction_cap, friction_load, gap, moment_load, normal_load,
     normal_row, normal_stiffness, rolling_stiffness, shear_load, shear_stiffness, slip,
@@ -9,119 +10,55 @@ use crate::contact::submatrix::{
 use crate::contact::{Feature, Touch};
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::step::grip::Loss;
-
-/// Change of a friction force, relative to its cap, below which it has settled (–).
-const SETTLED: f64 = 1e-6;
-
-/// What a judgement changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Change {
-    /// Nothing.
-    None,
-    /// A friction force: the right-hand side.
-    Load,
-    /// Open, sliding or sticking: the matrix.
-    Mode,
-}
+use crate::step::grip::{Loss, TOUCH};
 
 /// What is the same for all contacts of a step.
 #[derive(Debug, Clone, Copy)]
-pub struct Step {
+pub(super) struct Step {
     /// Length (s).
     pub dt: f64,
     /// Displacement and rotation without contacts.
     pub free: Vec6,
     /// Radius of the sphere (m).
     pub radius: f64,
+    /// Way of the touched point per newton along the surface (m/N) and turn of the sphere per newton metre.
+    pub compliance: (f64, f64),
     /// Whether shear springs keep their stretch; if not, friction is that of the last step's end, as printed.
     pub shear_memory: bool,
 }
 
-/// A spring beside a dashpot, in series with a slider: shear (m, N) or rolling (rad, N m).
-#[derive(Debug, Clone, Copy)]
-struct Slider {
-    /// Stretch at the step's start.
-    stretch: Vec3,
-    /// Stiffness.
-    spring: f64,
-    /// Damping over the step's length.
-    damper: f64,
-    slides: bool,
-    /// Force while it slides.
-    friction: Vec3,
+/// What of a contact the matrix is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shape {
+    v: Vec3,
+    p1: Vec3,
+    normal: f64,
+    shear: f64,
+    roll: f64,
 }
 
-impl Slider {
-    const NONE: Self = Self {
-        stretch: Vec3::new(0.0, 0.0, 0.0),
-        spring: 0.0,
-        damper: 0.0,
-        slides: false,
-        friction: Vec3::new(0.0, 0.0, 0.0),
+impl Shape {
+    /// No contact.
+    pub(super) const NONE: Self = Self {
+        v: Vec3::new(0.0, 0.0, 0.0),
+        p1: Vec3::new(0.0, 0.0, 0.0),
+        normal: 0.0,
+        shear: 0.0,
+        roll: 0.0,
     };
 
-    /// Force after `way`, should it stick.
-    fn sticking(&self, way: &Vec3) -> Vec3 {
-        self.stretch * self.spring + way * (self.spring + self.damper)
+    /// Its stiffness.
+    pub(super) fn stiffness(&self) -> Mat6 {
+        let row = normal_row(&self.v);
+        normal_stiffness(self.normal, &row)
+            + shear_stiffness(self.shear, &displacement(&self.p1), &row)
+            + rolling_stiffness(self.roll)
     }
-
-    fn force(&self, way: &Vec3) -> Vec3 {
-        if self.slides { self.friction } else { self.sticking(way) }
-    }
-
-    /// Stretch that belongs to a force at the step's end.
-    fn end(&self, force: &Vec3) -> Vec3 {
-        (force + self.stretch * self.damper) / (self.spring + self.damper)
-    }
-
-    /// Slides where the force to stick passes the cap, in that force's direction.
-    fn judge(&mut self, way: &Vec3, cap: f64) -> Change {
-        let needed = self.sticking(way);
-        let size = needed.norm();
-        // At the cap itself rounding must not turn it to and fro.
-        let slides = size > if self.slides { cap * (1.0 - SETTLED) } else { cap } || cap <= 0.0;
-        let friction = if slides && size > 0.0 { needed * (cap / size) } else { Vec3::zeros() };
-        let change = if slides != self.slides {
-            Change::Mode
-        } else if slides && (friction - self.friction).norm() > SETTLED * cap {
-            Change::Load
-        } else {
-            return Change::None;
-        };
-        (self.slides, self.friction) = (slides, friction);
-        change
-    }
-
-    /// The same as printed: friction is `before`, that of the last step's end, and acts against the displacement of the
-    /// step until that turns round.
-    fn judge_as_printed(&mut self, way: &Vec3, cap: f64, before: f64) -> Change {
-        if !self.slides && self.sticking(way).norm() > cap {
-            (self.slides, self.friction) = (true, along(way) * before);
-            Change::Mode
-        } else if self.slides && way.dot(&self.friction) < 0.0 {
-            (self.slides, self.friction) = (false, Vec3::zeros());
-            Change::Mode
-        } else {
-            Change::None
-        }
-    }
-
-    /// Energy that slider and dashpot take over `way` at `force`.
-    fn loss(&self, way: &Vec3, force: &Vec3) -> (f64, f64) {
-        let stretched = self.end(force) - self.stretch;
-        (force.dot(&(way - stretched)), self.damper * stretched.norm_squared())
-    }
-}
-
-/// The direction of `x`; nothing for nothing.
-fn along(x: &Vec3) -> Vec3 {
-    x.try_normalize(0.0).unwrap_or_default()
 }
 
 /// One contact of a step.
 #[derive(Debug, Clone, Copy)]
-pub struct Joint {
+pub(super) struct Joint {
     /// Its memory.
     pub hold: usize,
     /// Where on the mesh.
@@ -132,6 +69,7 @@ pub struct Joint {
     v: Vec3,
     /// `P1` from the centre (m).
     p1: Vec3,
+    radius: f64,
     /// `λ` at the step's start (m).
     gap: f64,
     p_n: f64,
@@ -142,24 +80,23 @@ pub struct Joint {
     /// Normal force at the end of the last step (N).
     push_before: f64,
     /// Normal force (N).
-    push: f64,
+    pub push: f64,
     /// Not open.
-    presses: bool,
-    shear: Slider,
-    roll: Slider,
+    pub presses: bool,
+    pub shear: Slider,
+    pub roll: Slider,
     shear_memory: bool,
-    /// Whether the last judgement changed its mode.
-    contested: bool,
 }
 
 impl Joint {
     /// No contact.
-    pub const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         hold: 0,
         feature: Feature::NONE,
         triangle: 0,
         v: Vec3::new(0.0, 0.0, 0.0),
         p1: Vec3::new(0.0, 0.0, 0.0),
+        radius: 0.0,
         gap: 0.0,
         p_n: 0.0,
         damper: 0.0,
@@ -171,11 +108,10 @@ impl Joint {
         shear: Slider::NONE,
         roll: Slider::NONE,
         shear_memory: true,
-        contested: false,
     };
 
     /// The contact of a touch and its memory (number `k`), in the state in which it was left or will likely be.
-    pub fn new(step: &Step, law: &Law, touch: &Touch, (k, hold): (usize, &Hold)) -> Self {
+    pub(super) fn new(step: &Step, law: &Law, touch: &Touch, (k, hold): (usize, &Hold)) -> Self {
         let v = -touch.normal;
         let p1 = touching_point(&v, step.radius);
         let has_dashpots = law.c_s > 0.0;
@@ -186,17 +122,19 @@ impl Joint {
             triangle: touch.triangle,
             v,
             p1,
+            radius: step.radius,
             gap: gap(&v, &p1, &(v * touch.distance_m)),
             p_n: law.p_n,
             damper: c_n / step.dt,
             tan_phi: law.friction,
             rolling_m: law.rolling_m,
             push_before: hold.push,
-            shear: Slider { spring: law.p_s, ..Slider::NONE },
+            shear: Slider { spring: law.p_s, compliance: step.compliance.0, ..Slider::NONE },
             roll: Slider {
                 stretch: hold.roll,
                 spring: law.k_r,
                 damper: law.c_r / step.dt,
+                compliance: step.compliance.1,
                 ..Slider::NONE
             },
             shear_memory: step.shear_memory,
@@ -219,18 +157,24 @@ impl Joint {
         let (way, turn) = self.ways(free);
         let cap = friction_cap(hold.push, self.tan_phi);
         if self.shear_memory {
-            self.shear.judge(&way, cap);
+            self.shear.judge(&way, &Vec3::zeros(), cap);
         } else if hold.slides {
             (self.shear.slides, self.shear.friction) = (true, along(&way) * cap);
         }
         if self.rolling_m > 0.0 {
-            self.roll.judge(&turn, self.rolling_m * hold.push);
+            self.roll.judge(&turn, &Vec3::zeros(), self.rolling_m * hold.push);
         }
     }
 
     /// Penetration after the displacement `d` (m), negative when apart.
-    pub fn depth(&self, d: &Vec6) -> f64 {
+    pub(super) fn depth(&self, d: &Vec6) -> f64 {
         normal_row(&self.v).dot(d) - self.gap
+    }
+
+    /// Whether a touch after `d` is where this contact has got to: no deeper in a surface no steeper.
+    pub(super) fn leads_to(&self, touch: &Touch, d: &Vec6) -> bool {
+        let deeper = self.radius - touch.distance_m - self.depth(d);
+        -self.v.dot(&touch.normal) > SAME_GRIP && deeper <= TOUCH * self.radius
     }
 
     /// Slip of the touched point, Eq. (16), and rotation.
@@ -252,24 +196,22 @@ impl Joint {
         self.p_n * depth + self.damper * (depth - self.inside())
     }
 
-    /// Adds its springs and dashpots to `K`.
-    pub fn add_stiffness(&self, k: &mut Mat6) {
-        if !self.presses {
-            return;
-        }
-        let row = normal_row(&self.v);
-        *k += normal_stiffness(self.p_n + self.damper, &row);
-        if !self.shear.slides {
-            let stiff = self.shear.spring + self.shear.damper;
-            *k += shear_stiffness(stiff, &displacement(&self.p1), &row);
-        }
-        if self.rolling_m > 0.0 && !self.roll.slides {
-            *k += rolling_stiffness(self.roll.spring + self.roll.damper);
+    /// Its springs and dashpots in force.
+    pub(super) fn shape(&self) -> Shape {
+        let of = |slider: &Slider, acts: bool| {
+            if acts && !slider.slides { slider.spring + slider.damper } else { 0.0 }
+        };
+        Shape {
+            v: self.v,
+            p1: self.p1,
+            normal: if self.presses { self.p_n + self.damper } else { 0.0 },
+            shear: of(&self.shear, self.presses),
+            roll: of(&self.roll, self.presses && self.rolling_m > 0.0),
         }
     }
 
     /// Adds its loads to `F`.
-    pub fn add_load(&self, f: &mut Vec6) {
+    pub(super) fn add_load(&self, f: &mut Vec6) {
         if !self.presses {
             return;
         }
@@ -286,40 +228,36 @@ impl Joint {
         }
     }
 
-    /// Compares its state with the displacement `d` that came out, and changes it where they do not agree.
-    pub fn judge(&mut self, d: &Vec6) -> Change {
+    /// Opens or closes as the normal force after the displacement `d` asks; whether that changed anything.
+    pub(super) fn open_or_close(&mut self, d: &Vec6) -> bool {
         self.push = self.normal_force(d).max(0.0);
-        let presses = self.push > 0.0;
-        let mut change = if presses == self.presses { Change::None } else { Change::Mode };
-        self.presses = presses;
-        if presses {
+        std::mem::replace(&mut self.presses, self.push > 0.0) != self.presses
+    }
+
+    /// Compares its state with the displacement `d` that came out, and changes it where they do not agree.
+    pub(super) fn judge(&mut self, d: &Vec6) -> Change {
+        let (drag, moment) = self.forces(d);
+        let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
+        if self.presses {
             let (way, turn) = self.ways(d);
             let cap = friction_cap(self.push, self.tan_phi);
             change = change.max(if self.shear_memory {
-                self.shear.judge(&way, cap)
+                self.shear.judge(&way, &drag, cap)
             } else {
                 let before = friction_cap(self.push_before, self.tan_phi);
                 self.shear.judge_as_printed(&way, cap, before)
             });
             if self.rolling_m > 0.0 {
-                change = change.max(self.roll.judge(&turn, self.rolling_m * self.push));
+                change = change.max(self.roll.judge(&turn, &moment, self.rolling_m * self.push));
             }
         }
-        self.contested = change == Change::Mode;
         change
     }
 
-    /// Takes the safe side of a quarrel: closed, sticking. Neither adds energy.
-    pub fn give_in(&mut self) {
-        if self.contested {
-            self.presses = true;
-            (self.shear.slides, self.roll.slides) = (false, false);
-        }
-    }
-
-    /// Takes `d` as it is, settled or not.
-    pub fn accept(&mut self, d: &Vec6) {
-        self.push = if self.presses { self.normal_force(d).max(0.0) } else { 0.0 };
+    /// Lets nothing slide.
+    pub(super) fn stick(&mut self) {
+        self.shear.slides = self.tan_phi <= 0.0;
+        self.roll.slides = false;
     }
 
     /// Shear force and rolling moment after `d`.
@@ -335,7 +273,7 @@ impl Joint {
     }
 
     /// Energy that its dashpots and sliders take over `d` (J).
-    pub fn loss(&self, d: &Vec6) -> Loss {
+    pub(super) fn loss(&self, d: &Vec6) -> Loss {
         let (drag, moment) = self.forces(d);
         let (way, turn) = self.ways(d);
         let pressed = if self.presses { self.depth(d) - self.inside() } else { 0.0 };
@@ -355,7 +293,7 @@ impl Joint {
     }
 
     /// Writes what it remembers of the step into its memory.
-    pub fn remember(&self, d: &Vec6, hold: &mut Hold) {
+    pub(super) fn remember(&self, d: &Vec6, hold: &mut Hold) {
         let (drag, moment) = self.forces(d);
         (hold.feature, hold.triangle, hold.n) = (self.feature, self.triangle, -self.v);
         if self.shear_memory {
