@@ -276,8 +276,15 @@ impl Joint {
     pub(super) fn loss(&self, d: &Vec6) -> Loss {
         let (drag, moment) = self.forces(d);
         let (way, turn) = self.ways(d);
-        let pressed = if self.presses { self.depth(d) - self.inside() } else { 0.0 };
-        let mut loss = Loss { damping: self.damper * pressed * pressed, ..Loss::default() };
+        let damping = if self.presses {
+            self.damper * (self.depth(d) - self.inside()).powi(2)
+        } else if self.damper > 0.0 {
+            // Lifted off before the spring is back at its length: the dashpot beside it takes the rest.
+            0.5 * self.p_n * (self.inside().powi(2) - self.depth(d).max(0.0).powi(2))
+        } else {
+            0.0
+        };
+        let mut loss = Loss { damping, ..Loss::default() };
         if self.shear_memory {
             let (friction, damping) = self.shear.loss(&way, &drag);
             loss.friction = friction;
