@@ -2,7 +2,7 @@
 
 #![expect(clippy::print_stderr, reason = "this is the face of the program")]
 
-use crate::wiring::{self, Order};
+use crate::wiring::{self, Ended, Order};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use rockfall::error::{Error, Result};
@@ -129,27 +129,20 @@ fn plan(scene: &Path) -> Result<ExitCode> {
 
 fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
-    let (terrain, _) = scene.read_terrain()?;
+    let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
     if !args.quiet {
         say(&plan);
     }
     let order = args.order();
-    let mut run = wiring::Run::begin(&plan, &order)?;
-    stop_at_ctrl_c(run.stop_flag())?;
-    let asked = args.only.map_or(plan.count, |_| 1);
-    let bar = args.progress(asked);
-    let mut done = 0;
-    while let Some(so_far) = run.next_chunk()? {
-        done = so_far;
-        bar.set_position(done as u64);
-    }
-    if done < asked && run.stop_flag().load(Ordering::Relaxed) {
+    let bar = args.progress(args.only.map_or(plan.count, |_| 1));
+    let ended =
+        wiring::run(&plan, &health, &order, stop_at_ctrl_c, |done| bar.set_position(done as u64))?;
+    if let Ended::Interrupted(done, asked) = ended {
         bar.abandon();
         return Ok(args.interrupted(done, asked));
     }
     bar.finish();
-    run.finish()?;
     if !args.quiet {
         say(format!("results in {}", order.out.display()));
     }
@@ -179,8 +172,11 @@ impl RunArgs {
             (_, true) => Mode::Overwrite,
             _ => Mode::Fresh,
         };
+        let results = Path::new("reports").join(name);
+        // One release alone has a folder of its own: it is not the scene's result.
+        let usual = self.only.map_or(results.clone(), |only| results.join(format!("only_{only}")));
         Order {
-            out: self.out.clone().unwrap_or_else(|| Path::new("reports").join(name)),
+            out: self.out.clone().unwrap_or(usual),
             mode,
             only: self.only,
             threads: self.threads,

@@ -92,8 +92,8 @@ pub struct Plan {
     pub longest_s: f64,
     /// Trees, with the number of their triangles.
     pub trees: Part<usize>,
-    /// Stepping through the air.
-    pub flight: Part<()>,
+    /// Stepping through the air; always left out.
+    pub flight: Part<Infallible>,
     /// Rolling friction.
     pub rolling: Part<()>,
     /// Random tilt of contact normals.
@@ -126,7 +126,7 @@ const REST_TIME_S: f64 = 0.3;
 /// Paths kept when the scene does not say: enough to see the spread, few enough to draw.
 const PATHS: usize = 500;
 /// Time between the points of a kept path when the scene does not say (s).
-const PATH_STEP_S: f64 = 0.05;
+pub const PATH_STEP_S: f64 = 0.05;
 
 impl Plan {
     /// Works out what the scene needs.
@@ -197,7 +197,6 @@ impl Plan {
         let step_s = if let Part::Kept(paths) = &self.paths { paths.step_s } else { PATH_STEP_S };
         Self {
             trees: Part::Kept(triangles),
-            flight: Part::Kept(()),
             rolling: Part::Kept(()),
             roughness: Part::Kept(()),
             paths: Part::Kept(Paths { first: self.count, step_s }),

@@ -2,6 +2,7 @@
 
 use crate::chance::{Distribution, Purpose, stream, unit};
 use crate::error::{Error, Result};
+use crate::flight::{Landing, Parabola, leap};
 use crate::ground::Ground;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene};
@@ -138,7 +139,10 @@ impl Releases {
         let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(&mut chance));
         let height_m = fixed_m.map(|z| z - terrain.origin_m.z);
         let [x, y] = local(terrain, at_m);
-        Ok(Vec3::new(x, y, height_m.unwrap_or(ground_m + gap_m + radius_m)))
+        Ok(match height_m {
+            Some(z) => Vec3::new(x, y, z),
+            None => clear_of(terrain, Vec3::new(x, y, ground_m + gap_m + radius_m), radius_m),
+        })
     }
 
     /// Height of the ground at a place of the map (m, local).
@@ -219,6 +223,23 @@ fn outside(terrain: &Terrain) -> String {
         low.x, high.x, low.y, high.y
     )
 }
+
+/// A rock over steep ground may be in it although its lowest point is clear: then it is lifted, straight up, until it
+/// just touches. The place itself where it is clear already, or where no such height is near.
+fn clear_of(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
+    if distance_m(terrain, &centre, radius_m) >= radius_m {
+        return centre;
+    }
+    let start = centre + Vec3::z() * (LIFT * radius_m);
+    let down = Parabola { start, velocity: -Vec3::z(), gravity: 0.0, radius: radius_m };
+    match leap(terrain, &down, LIFT * radius_m, &mut 0) {
+        Landing::Touch(way_m) if way_m > 0.0 => start - Vec3::z() * way_m,
+        _ => centre,
+    }
+}
+
+/// A rock in steep ground is lifted by up to this many radii (–): enough for slopes up to 80°.
+const LIFT: f64 = 6.0;
 
 /// Distance from a point to the nearest triangle (m), or `reach_m` when none is nearer.
 fn distance_m(terrain: &Terrain, point: &Vec3, reach_m: f64) -> f64 {

@@ -1,20 +1,18 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
-#![expect(
-    dead_code,
-    clippy::unused_self,
-    reason = "a run has nothing to keep until releases are computed here"
-)]
-
+use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
-use rockfall::output::Mode;
+use rockfall::output::{Identity, Mode, Output, RunInfo};
 use rockfall::plan::Plan;
+use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::terrain::grid::Grid;
+use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
 use rockfall::terrain::stl::write_binary;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain, make};
+use rockfall::trajectory::{self, Scratch};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -32,34 +30,79 @@ pub(crate) struct Order {
     pub(crate) threads: Option<usize>,
 }
 
-/// A run under way.
-pub(crate) struct Run {}
+/// How a run ended.
+pub(crate) enum Ended {
+    /// All releases are written, the report is drawn.
+    Complete,
+    /// Stopped after so many releases of so many; the rest can be resumed.
+    Interrupted(usize, usize),
+}
 
-impl Run {
-    /// Opens the result folder.
-    pub(crate) fn begin(_plan: &Plan, _order: &Order) -> Result<Self> {
-        Err(not_built("running releases"))
+/// Computes and writes chunk by chunk, then summary, figures and page.
+///
+/// `begin` gets the flag that stops after the chunk in hand; `progress` the number of releases on the disk.
+pub(crate) fn run(
+    plan: &Plan,
+    health: &Health,
+    order: &Order,
+    begin: impl FnOnce(Arc<AtomicBool>) -> Result<()>,
+    progress: impl Fn(usize),
+) -> Result<Ended> {
+    let ensemble = Ensemble::new(order.threads)?;
+    let mut output =
+        Output::create(run_info(plan, health, order, &ensemble)?, &order.out, order.mode)?;
+    let (first, asked) = (order.only.unwrap_or(0), order.only.map_or(plan.count, |_| 1));
+    begin(ensemble.stop_flag())?;
+    let paths = order.only.map(|only| only..only + 1);
+    let fall = |index: usize, scratch: &mut Scratch| {
+        trajectory::fall(plan, index, paths.as_ref(), scratch)
+    };
+    for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
+        output.write(&falls?)?;
+        progress(output.remaining().start - first);
     }
+    let done = output.remaining().start - first;
+    if done < asked {
+        return Ok(Ended::Interrupted(done, asked));
+    }
+    let results = output.finish()?;
+    report::draw_run(&results, &plan.terrain)?;
+    Ok(Ended::Complete)
+}
 
-    /// Raise it, and no chunk follows the one in hand.
-    pub(crate) fn stop_flag(&self) -> Arc<AtomicBool> {
-        Arc::default()
-    }
-
-    /// Computes and writes one more chunk; says how many releases are on the disk, `None` when no chunk follows.
-    pub(crate) fn next_chunk(&mut self) -> Result<Option<usize>> {
-        Err(not_built("running releases"))
-    }
-
-    /// Writes the summary and draws figures and page.
-    pub(crate) fn finish(self) -> Result<()> {
-        Err(not_built("reports"))
-    }
+fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) -> Result<RunInfo> {
+    let only = order.only;
+    let mut mesh_health = serde_json::to_value(health)
+        .map_err(|error| Error::Request(format!("the mesh health cannot be written: {error}")))?;
+    mesh_health["table"] = health.to_string().lines().collect();
+    Ok(RunInfo {
+        title: plan.title.clone(),
+        identity: Identity {
+            scene_hash: plan.scene_hash.clone(),
+            version: plan.version.to_owned(),
+            seed: plan.seed,
+            first_release: only.unwrap_or(0),
+            releases: only.map_or(plan.count, |_| 1),
+        },
+        origin_m: plan.terrain.origin_m,
+        ground_of_sheet: plan
+            .terrain
+            .sheets
+            .iter()
+            .map(|sheet| plan.ground_names[usize::from(sheet.ground)].clone())
+            .collect(),
+        keeps_paths: only.is_some() || plan.paths.is_kept(),
+        keeps_impacts: plan.impacts.is_kept(),
+        threads: ensemble.threads(),
+        plan: plan.lines(),
+        warnings: plan.warnings.clone(),
+        mesh_health,
+    })
 }
 
 /// Draws figures and page again from the results in `dir`.
-pub(crate) fn draw(_dir: &Path) -> Result<()> {
-    Err(not_built("drawing"))
+pub(crate) fn draw(dir: &Path) -> Result<()> {
+    report::draw_again(dir)
 }
 
 /// Health of mesh files as they will be welded, in words.
@@ -101,8 +144,4 @@ pub(crate) fn make_mesh(kind: &str, out: &Path) -> Result<String> {
     };
     write_binary(out, facets)?;
     Ok(format!("{} triangles written to {}", facets.len(), out.display()))
-}
-
-fn not_built(what: &str) -> Error {
-    Error::Request(format!("{what} is not wired into this build"))
 }

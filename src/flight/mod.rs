@@ -3,6 +3,7 @@
 //! Between touches nothing but gravity acts, so the flight is leapt over: the first time at which the ball meets a
 //! face (a quadratic), an edge or a corner (quartics) is solved for, over the boxes that the parabola crosses.
 
+mod abreast;
 mod roots;
 mod touch;
 
@@ -64,21 +65,28 @@ pub fn leap(terrain: &Terrain, flight: &Parabola, longest_s: f64, tested: &mut u
     }
 }
 
-/// When the ball is outside the mesh's box for good (s): beside it, or below it.
+/// When the ball is outside the mesh's box for good (s): beside it, or below it; without gravity also above it.
 fn leaves_box_after(terrain: &Terrain, flight: &Parabola) -> f64 {
     let (lo, hi) = terrain.index.bounds();
     let (c, v, r) = (flight.start, flight.velocity, flight.radius);
-    let mut first = f64::INFINITY;
-    for k in 0..2 {
+    let straight = |k: usize| {
         let to = if v[k] > 0.0 { hi[k] + r } else { lo[k] - r };
         if v[k] != 0.0 {
-            first = first.min(((to - c[k]) / v[k]).max(0.0));
+            ((to - c[k]) / v[k]).max(0.0)
         } else if c[k] > hi[k] + r || c[k] < lo[k] - r {
-            first = 0.0;
+            0.0
+        } else {
+            f64::INFINITY
         }
-    }
-    let below = quadratic(-0.5 * flight.gravity, v.z, c.z - (lo.z - r));
-    first.min(below.map_or(f64::INFINITY, |(_, last)| last.max(0.0)))
+    };
+    let upright = if flight.gravity > 0.0 {
+        // A ball that never comes up to the floor is below it from the start.
+        let floor = quadratic(-0.5 * flight.gravity, v.z, c.z - (lo.z - r));
+        floor.map_or(0.0, |(_, last)| last.max(0.0))
+    } else {
+        straight(2)
+    };
+    straight(0).min(straight(1)).min(upright)
 }
 
 /// Time at which the ball first touches the mesh, within `limit` (s).
@@ -131,6 +139,10 @@ fn first_touch(terrain: &Terrain, flight: &Parabola, limit: f64, tested: &mut u6
     found.then_some(best)
 }
 
+/// Boxes are grown by this much more than the radius (–, relative to it): a ball that meets a plate as it enters the
+/// plate's box, which has no thickness, must not be cut off by rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// The parabola's pass through boxes: linear in x and y, quadratic in z.
 struct Slabs {
     c: Vec3,
@@ -138,6 +150,7 @@ struct Slabs {
     inv: [f64; 2],
     v_z: f64,
     g: f64,
+    /// Radius of the ball and a little more.
     radius: f64,
     /// Time and height of the apex.
     apex: (f64, f64),
@@ -148,7 +161,7 @@ impl Slabs {
         let (c, v, g) = (flight.start, flight.velocity, flight.gravity);
         let inv = [1.0 / v.x, 1.0 / v.y];
         let apex = if g > 0.0 { (v.z / g, c.z + 0.5 * v.z * v.z / g) } else { (0.0, c.z) };
-        Self { c, inv, v_z: v.z, g, radius: flight.radius, apex }
+        Self { c, inv, v_z: v.z, g, radius: flight.radius * (1.0 + ROUNDING), apex }
     }
 
     /// Times within `0..limit` between which the centre may be in the box grown by the radius (empty if reversed).
@@ -210,8 +223,6 @@ impl Slabs {
                 tb = tb.min(t_apex - half_roof);
             }
         }
-        // Square roots round: a touch exactly at the rim of a window must stay inside it.
-        let slack = 1e-12 * (1.0 + t_apex.abs());
-        (ta - slack, tb + slack)
+        (ta, tb)
     }
 }

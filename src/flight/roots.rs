@@ -17,12 +17,19 @@ pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     Some((one.min(other), one.max(other)))
 }
 
-/// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero.
+/// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero and that is `wanted`.
 ///
 /// The Bernstein coefficients over the window tell most cases at once: no change of sign, no crossing. Otherwise the
 /// window is halved until there is one change, which is then refined by safeguarded Newton steps.
-pub(super) fn first_fall(p: &[f64; 5], t0: f64, t1: f64) -> Option<f64> {
-    fall_between(&bernstein(p, t0, t1), t0, t1, 0).map(|t| polish(p, t, t0, t1))
+pub(super) fn first_fall(
+    p: &[f64; 5],
+    (t0, t1): (f64, f64),
+    wanted: &impl Fn(f64) -> bool,
+) -> Option<f64> {
+    let fall = |b: &[f64; 5], from: f64, to: f64| {
+        Some(polish(p, bisect(b, from, to), t0, t1)).filter(|&t| wanted(t))
+    };
+    fall_between(&bernstein(p, t0, t1), (t0, t1), 0, &fall)
 }
 
 /// Bernstein coefficients of a quartic on `t0..t1`.
@@ -48,22 +55,25 @@ fn bernstein(p: &[f64; 5], t0: f64, t1: f64) -> [f64; 5] {
 /// Halvings after which a window is as narrow as rounding.
 const HALVINGS: u32 = 48;
 
-fn fall_between(b: &[f64; 5], t0: f64, t1: f64, depth: u32) -> Option<f64> {
+/// The first fall on a window with Bernstein coefficients `b`; `fall` refines one where there is just one.
+fn fall_between(
+    b: &[f64; 5],
+    (t0, t1): (f64, f64),
+    depth: u32,
+    fall: &impl Fn(&[f64; 5], f64, f64) -> Option<f64>,
+) -> Option<f64> {
     if b.iter().all(|&c| c > 0.0) || b.iter().all(|&c| c <= 0.0) {
         return None;
     }
     let changes = b.windows(2).filter(|w| (w[0] > 0.0) != (w[1] > 0.0)).count();
-    if changes == 1 {
-        return (b[0] > 0.0).then(|| bisect(b, t0, t1));
-    }
-    if depth == HALVINGS {
-        return (b[0] > 0.0 && b[4] <= 0.0).then_some(t0);
+    if changes == 1 || depth == HALVINGS {
+        return if b[0] > 0.0 && b[4] <= 0.0 { fall(b, t0, t1) } else { None };
     }
     let (left, right) = halve(b);
     let middle = 0.5 * (t0 + t1);
     // A fall exactly at the middle shows as a last coefficient of 0 on the left.
-    fall_between(&left, t0, middle, depth + 1)
-        .or_else(|| fall_between(&right, middle, t1, depth + 1))
+    fall_between(&left, (t0, middle), depth + 1, fall)
+        .or_else(|| fall_between(&right, (middle, t1), depth + 1, fall))
 }
 
 /// De Casteljau at the middle.
@@ -152,10 +162,12 @@ mod tests {
                     p[k] = if k == 0 { 0.0 } else { p[k - 1] } - root * p[k];
                 }
             }
-            let expected = if sign { r[0] } else { r[1] };
-            let found = first_fall(&p, 0.0, 3.1).unwrap();
-            prop_assert!((found - expected).abs() < 1e-9, "{found} {expected}");
-            prop_assert!(first_fall(&p, r[3] + 1e-3, 4.0).is_none());
+            let k = usize::from(!sign);
+            for (root, from) in [(r[k], 0.0), (r[k + 2], r[k] + 5e-4)] {
+                let found = first_fall(&p, (0.0, 3.1), &|t| t > from).unwrap();
+                prop_assert!((found - root).abs() < 1e-9, "{found} {root}");
+            }
+            prop_assert!(first_fall(&p, (r[3] + 1e-3, 4.0), &|_| true).is_none());
         }
     }
 }

@@ -1,12 +1,15 @@
 //! When a ball on a parabola first touches one triangle, its own edges and its own corners.
 
 use super::Parabola;
+use super::abreast::Abreast;
 use super::roots::{first_fall, quadratic};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
 /// A start nearer to touching than this counts as touching (–, relative to R²): rounding of the contact before.
 const TOUCHING: f64 = 1e-12;
+/// A foot this far beside a triangle still lies on it (–, relative to R): neighbours must not leave a gap.
+const BESIDE: f64 = 1e-9;
 /// A start beside a triangle but this little under its plane (–, relative to R) is on a neighbour in the same plane.
 const ROUNDING: f64 = 1e-6;
 
@@ -29,10 +32,12 @@ pub(super) fn of_triangle(
     let mut best = tb;
     let mut found = None;
     // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
-    let on_it = ta <= 0.0 && height.h0.abs() < flight.radius && face.holds_foot_of(&flight.start);
+    let slack = BESIDE * flight.radius;
+    let on_it =
+        ta <= 0.0 && height.h0.abs() < flight.radius && face.holds_foot_of(&flight.start, slack);
     for side in [1.0, -1.0] {
         if let Some(t) = height.falls_to(side, flight.radius, on_it, (ta, best))
-            && face.holds_foot_of(&flight.centre(t))
+            && face.holds_foot_of(&flight.centre(t), slack)
         {
             best = t;
             found = Some(t);
@@ -40,13 +45,16 @@ pub(super) fn of_triangle(
     }
     let owned = terrain.features.owned[t as usize];
     if owned != 0 && slab.0 <= slab.1.min(best) {
+        let abreast = Abreast::new(face, flight, (slab.0, slab.1.min(best)));
         for k in 0..3 {
             let window = (slab.0, slab.1.min(best));
-            let time = [
-                (owned & (1 << k) != 0).then(|| edge(terrain, t, k, flight, window)).flatten(),
-                (owned & (8 << k) != 0).then(|| corner(terrain, t, k, flight, window)).flatten(),
+            let times = [
+                (owned & (1 << k) != 0 && abreast.edge(k))
+                    .then(|| edge(terrain, t, k, flight, window)),
+                (owned & (8 << k) != 0 && abreast.corner(k))
+                    .then(|| corner(terrain, t, k, flight, window)),
             ];
-            for time in time.into_iter().flatten() {
+            for time in times.into_iter().flatten().flatten() {
                 if time <= best {
                     best = time;
                     found = Some(time);
@@ -76,9 +84,19 @@ impl Height {
         let (ha, hb) = (at(ta), at(tb));
         let turn = -0.5 * self.h1 / self.h2;
         let ht = if turn > ta && turn < tb { at(turn) } else { ha };
-        let (low, high) = (ha.min(hb).min(ht), ha.max(hb).max(ht));
-        let slack = 1e-9 * radius;
-        (low <= radius + slack && high >= -radius - slack).then_some((ta, tb))
+        let near = radius * (1.0 + 1e-9);
+        if ha.min(hb).min(ht) > near || ha.max(hb).max(ht) < -near {
+            return None;
+        }
+        let (mut first, mut last) =
+            (if ha.abs() <= near { ta } else { tb }, if hb.abs() <= near { tb } else { ta });
+        for level in [near, -near] {
+            let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
+            for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
+                (first, last) = (first.min(t), last.max(t));
+            }
+        }
+        Some((first, last))
     }
 
     /// First time in the window at which the ball comes down to the plane from one side (+1, −1).
@@ -115,8 +133,8 @@ fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f6
     let slack = 1e-11 * length;
     let abreast = |x: Vec3| (-slack..=length + slack).contains(&along.dot(&(x - a)));
     let path = [off(flight.start - a), off(flight.velocity), off(fall)];
-    let time = ball_meets(path, flight.radius, abreast(flight.start), window)?;
-    abreast(flight.centre(time)).then_some(time)
+    // The line goes on beyond the edge: the ball may meet it there first and the edge later.
+    ball_meets(path, flight.radius, window, &|t| abreast(flight.centre(t)))
 }
 
 /// When the ball touches corner `k` of a triangle.
@@ -129,30 +147,29 @@ fn corner(
 ) -> Option<f64> {
     let p = terrain.vertices_m[terrain.triangles[t as usize][k] as usize];
     let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
-    ball_meets([flight.start - p, flight.velocity, fall], flight.radius, true, window)
+    ball_meets([flight.start - p, flight.velocity, fall], flight.radius, window, &|_| true)
 }
 
-/// First time at which `|x0 + x1 t + x2 t²|` falls to the radius; `can_start` unless the start is not abreast.
+/// First time that is `wanted` at which `|x0 + x1 t + x2 t²|` falls to the radius.
 #[inline]
 fn ball_meets(
     [x0, x1, x2]: [Vec3; 3],
     radius: f64,
-    can_start: bool,
     (ta, tb): (f64, f64),
+    wanted: &impl Fn(f64) -> bool,
 ) -> Option<f64> {
     let r2 = radius * radius;
     let gap = x0.norm_squared() - r2;
     let slope = 2.0 * x0.dot(&x1);
     let curve = x1.norm_squared() + 2.0 * x0.dot(&x2);
-    let starts_touching = can_start && ta <= 0.0 && gap < TOUCHING * r2;
-    if starts_touching && (slope < 0.0 || slope == 0.0 && curve < 0.0) {
-        return Some(0.0);
-    }
     let cubic = 2.0 * x1.dot(&x2);
-    if starts_touching {
+    if ta <= 0.0 && gap < TOUCHING * r2 && wanted(0.0) {
+        if slope < 0.0 || slope == 0.0 && curve < 0.0 {
+            return Some(0.0);
+        }
         // Leaving from inside or from the rim: it touches again when it is back at its starting distance. The root at
         // 0 is divided out, what is left is a cubic.
-        return first_fall(&[slope, curve, cubic, x2.norm_squared(), 0.0], 0.0, tb);
+        return first_fall(&[slope, curve, cubic, x2.norm_squared(), 0.0], (0.0, tb), wanted);
     }
-    first_fall(&[gap, slope, curve, cubic, x2.norm_squared()], ta, tb)
+    first_fall(&[gap, slope, curve, cubic, x2.norm_squared()], (ta, tb), wanted)
 }

@@ -74,7 +74,7 @@ impl Plan {
         list.line(
             "flight",
             match flight {
-                Part::Kept(()) => "stepped through".to_owned(),
+                Part::Kept(never) => match *never {},
                 Part::LeftOut(why) => format!("leapt over: {why}"),
             },
         );

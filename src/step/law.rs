@@ -5,6 +5,7 @@
 //! contact it needs no matrix. This is the only place where stiffness and damping enter the `adaptive` and
 //! `reference` schemes.
 
+use super::joint;
 use crate::contact::Feature;
 use crate::ground::Law;
 use crate::rock::{Rock, Vec3};
@@ -96,7 +97,7 @@ impl Spot {
 
     /// Forces for a base `(v, w)` without this contact's own effect, over a stage of length `h`.
     #[inline]
-    fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3, h: f64) {
+    pub(super) fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3, h: f64) {
         self.push = self.normal_force(body, v, h);
         if self.push <= 0.0 {
             (self.drag, self.moment) = (Vec3::zeros(), Vec3::zeros());
@@ -148,12 +149,31 @@ impl Spot {
         (self.drag, self.moment) = pair.solve();
     }
 
+    /// What shear and rolling springs would hold at velocity `v` and spin `w` if they did not slide.
+    pub(super) fn trials(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
+        let law = &self.law;
+        let stick = self.shear * law.p_s + body.slip(&self.n, v, w) * (law.p_s * h + law.c_s);
+        (stick, self.roll * law.k_r + w * (law.k_r * h + law.c_r))
+    }
+
     /// Change of velocity and spin by this contact's forces over `h`.
     #[inline]
-    fn effect(&self, body: &Body, h: f64) -> (Vec3, Vec3) {
+    pub(super) fn effect(&self, body: &Body, h: f64) -> (Vec3, Vec3) {
         let dv = (self.n * self.push - self.drag) * (h / body.mass);
         let dw = (self.n.cross(&self.drag) * body.radius - self.moment) * (h / body.inertia);
         (dv, dw)
+    }
+
+    /// Penetration at the stage's end (m), where the velocity is `v`.
+    #[inline]
+    pub fn pen_at(&self, v: &Vec3, h: f64) -> f64 {
+        self.pen - h * self.n.dot(v)
+    }
+
+    /// Whether it still holds the rock at the stage's end.
+    #[inline]
+    pub fn is_closed(&self, v: &Vec3, h: f64) -> bool {
+        self.push > 0.0 || self.pen_at(v, h) > 0.0
     }
 
     /// Stretches at the stage's end: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`, and the same for rolling.
@@ -283,8 +303,6 @@ const RATIO_STEPS: u32 = 30;
 const ALTERNATIONS: u32 = 60;
 /// Change of a force, relative to its scale, below which it has settled (–).
 const SETTLED: f64 = 1e-10;
-/// Most Gauss–Seidel sweeps over the contacts of one rock; a stage that needs more is rejected.
-const SWEEPS: u32 = 60;
 
 /// Solves all contacts of one stage from `(v, w)`, velocity and spin without contact forces (gravity included).
 ///
@@ -303,33 +321,7 @@ pub fn solve(
         let (dv, dw) = spot.effect(body, h);
         return Some((v + dv, w + dw));
     }
-    let (mut v, mut w) = (v, w);
-    for spot in spots.iter() {
-        let (dv, dw) = spot.effect(body, h);
-        v += dv;
-        w += dw;
-    }
-    for _ in 0..SWEEPS {
-        *sweeps += 1;
-        let (mut change, mut scale) = (0.0f64, 1e-3 * body.mass * body.gravity.norm());
-        for spot in spots.iter_mut() {
-            let before = (spot.push, spot.drag, spot.moment);
-            let (dv, dw) = spot.effect(body, h);
-            let (vf, wf) = (v - dv, w - dw);
-            spot.solve(body, &vf, &wf, h);
-            let (dv, dw) = spot.effect(body, h);
-            (v, w) = (vf + dv, wf + dw);
-            change = change
-                .max((spot.push - before.0).abs())
-                .max((spot.drag - before.1).norm())
-                .max((spot.moment - before.2).norm() / body.radius);
-            scale = scale.max(spot.push);
-        }
-        if change <= SETTLED * scale {
-            return Some((v, w));
-        }
-    }
-    None
+    joint::solve(body, spots, (v, w), h, sweeps)
 }
 
 #[cfg(test)]

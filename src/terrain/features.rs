@@ -23,26 +23,24 @@ pub struct Face {
     pub n: Vec3,
 }
 
-/// Foot points this far outside a triangle still count as inside (–, barycentric): neighbours must not leave a gap.
-const INSIDE: f64 = 1e-11;
-
 impl Face {
     fn new([a, b, c]: [Vec3; 3]) -> Self {
         let (e1, e2) = (b - a, c - a);
         Self { a, e1, e2, n: e1.cross(&e2).normalize() }
     }
 
-    /// Whether the foot of `point` on the plane lies inside the triangle, border included.
+    /// Whether the foot of `point` on the plane lies inside the triangle or at most `slack_m` (m) outside.
+    ///
+    /// Measured as a distance: barycentric coordinates of a needle round by more than any fixed slack.
     #[inline]
-    pub fn holds_foot_of(&self, point: &Vec3) -> bool {
+    pub fn holds_foot_of(&self, point: &Vec3, slack_m: f64) -> bool {
         let to = point - self.a;
-        let (d11, d12, d22) =
-            (self.e1.norm_squared(), self.e1.dot(&self.e2), self.e2.norm_squared());
-        let (t1, t2) = (to.dot(&self.e1), to.dot(&self.e2));
-        let det = d11 * d22 - d12 * d12;
-        let (u, v) = (d22 * t1 - d12 * t2, d11 * t2 - d12 * t1);
-        let slack = -INSIDE * det;
-        u >= slack && v >= slack && det - u - v >= slack
+        let e3 = self.e2 - self.e1;
+        let beyond = |along: &Vec3, to: &Vec3| {
+            let out = along.cross(&self.n).dot(to);
+            out > 0.0 && out * out > slack_m * slack_m * along.norm_squared()
+        };
+        !beyond(&self.e1, &to) && !beyond(&e3, &(to - self.e1)) && !beyond(&-self.e2, &to)
     }
 }
 

@@ -2,11 +2,12 @@
 
 use super::journey::{Journey, Keep};
 use super::{Stop, Trajectory};
-use crate::chance::{Chance, unit};
+use crate::chance::{Chance, Purpose, stream, unit};
 use crate::contact::Touch;
+use crate::error::Result;
 use crate::flight::{Landing, Parabola, leap};
 use crate::ground::{Capture, Damping, Law};
-use crate::plan::RestRule;
+use crate::plan::{PATH_STEP_S, Part, Plan, RestRule};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::step::grip::{Grip, World};
@@ -15,6 +16,7 @@ use crate::step::{self, Settings, Stepper};
 use crate::terrain::Terrain;
 use nalgebra::{Rotation3, Unit};
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 /// What all rocks of a scene have in common.
 #[derive(Debug, Clone, Copy)]
@@ -95,6 +97,36 @@ pub fn follow(
         }
     };
     fall.end(release, stop)
+}
+
+/// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
+///
+/// # Errors
+/// The release cannot be made: off the terrain, or inside the ground.
+pub fn fall(
+    plan: &Plan,
+    index: usize,
+    paths: Option<&Range<usize>>,
+    scratch: &mut Scratch,
+) -> Result<Trajectory> {
+    let release = plan.release(index)?;
+    let course = Course {
+        terrain: &plan.terrain,
+        gravity_m_s2: plan.gravity_m_s2,
+        step: &plan.step,
+        rest: plan.rest,
+        longest_s: plan.longest_s,
+    };
+    let wanted = paths.is_some_and(|paths| paths.contains(&index));
+    let path_step_s = match &plan.paths {
+        Part::Kept(paths) if wanted || index < paths.first => Some(paths.step_s),
+        Part::LeftOut(_) if wanted => Some(PATH_STEP_S),
+        _ => None,
+    };
+    let keep = Keep { path_step_s, impacts: plan.impacts.is_kept() };
+    let mut chance = stream(plan.seed, Purpose::Impacts, index);
+    let fallen = follow(&course, &release, keep, &mut chance, scratch);
+    Ok(Trajectory { index, ..fallen })
 }
 
 struct Fall<'a> {

@@ -1,0 +1,124 @@
+//! Small histograms of speed, energies, bounce height and impacts.
+
+use super::axis::Axis;
+use super::colour::{GREY, INK};
+use super::figure::{Drawing, WIDTH_PX};
+use super::format;
+use super::histogram::{Histogram, percent_of};
+use super::input::{Quantity, Report};
+use super::panel::{FOOT_PX, Panel};
+use super::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
+use super::svg::path::Frame;
+
+/// What is shown, left to right, top to bottom.
+const SHOWN: [Quantity; 6] = [
+    Quantity::Speed,
+    Quantity::Height,
+    Quantity::Translational,
+    Quantity::Rotational,
+    Quantity::Total,
+    Quantity::Impacts,
+];
+const COLUMNS: usize = 2;
+const PLOT_PX: f64 = 112.0;
+const HEAD_PX: f64 = 38.0;
+const ROW_PX: f64 = HEAD_PX + PLOT_PX + FOOT_PX + 4.0;
+/// Pens of the marked percentiles, most common first.
+const MARKED: [(f64, Pen); 3] = [
+    (0.50, Pen::full(INK, 1.3)),
+    (0.95, Pen::full(INK, 1.3).dashed()),
+    (0.99, Pen::full(INK, 1.3).dotted()),
+];
+
+/// Draws one panel a quantity.
+pub(super) fn draw(report: &Report) -> Drawing {
+    let rows = SHOWN.len().div_ceil(COLUMNS);
+    let height = rows as f64 * ROW_PX;
+    let svg = paint("distributions", (WIDTH_PX, height), "Distributions", |paper| {
+        for (i, &quantity) in SHOWN.iter().enumerate() {
+            let column = WIDTH_PX / COLUMNS as f64;
+            let (left, top) = ((i % COLUMNS) as f64 * column, (i / COLUMNS) as f64 * ROW_PX);
+            let frame = Frame {
+                left: left + 52.0,
+                right: left + column - 14.0,
+                top: top + HEAD_PX,
+                bottom: top + HEAD_PX + PLOT_PX,
+            };
+            Distribution::of(report, quantity, frame).draw(paper, 24.0);
+        }
+    });
+    let caption = "Distributions over all releases of each rock's largest value. The energies reach their \
+                   largest values at different instants, so they do not add up. Lines: P50 full, P95 dashed, P99 dotted.";
+    Drawing { svg, caption: caption.to_owned() }
+}
+
+/// The values of one quantity, ready to be drawn.
+pub(super) struct Distribution<'a> {
+    report: &'a Report,
+    quantity: Quantity,
+    bins: Histogram,
+    /// Where it is drawn; may be widened before.
+    pub(super) panel: Panel,
+    /// Largest value and the size of the shown unit (both SI).
+    largest: f64,
+    unit_size: f64,
+}
+
+impl<'a> Distribution<'a> {
+    pub(super) fn of(report: &'a Report, quantity: Quantity, frame: Frame) -> Self {
+        let si: Vec<f64> = report.releases.iter().map(|fall| quantity.of(fall)).collect();
+        let finite = si.iter().copied().filter(|v| v.is_finite());
+        let largest = finite.reduce(f64::max).unwrap_or(0.0);
+        let (unit, unit_size) = quantity.unit(largest);
+        let bins = Histogram::of(&si.iter().map(|v| v / unit_size).collect::<Vec<_>>());
+        let tallest = percent_of(bins.largest(), si.len());
+        let y = Axis::from_zero([1.02 * tallest], "Releases (%)");
+        let panel = Panel::new(frame, bins.axis(&titled(quantity.name(), unit)), y);
+        Self { report, quantity, bins, panel, largest, unit_size }
+    }
+
+    /// Draws it with its head so far above the frame (px).
+    pub(super) fn draw(&self, paper: &Paper<'_>, head_px: f64) {
+        let total = self.report.releases.len();
+        self.panel.grid(paper);
+        self.bins.bars(paper, &self.panel, total);
+        let mut words = self.percentiles(paper);
+        if total > 0 {
+            words.push(format!("max {}", format::significant(self.largest / self.unit_size, 3)));
+        }
+        self.panel.axes(paper);
+        let above = Frame { top: self.panel.frame.top - head_px, ..self.panel.frame };
+        head(paper, &above, self.quantity.name(), &words.join(" · "));
+        if self.bins.counts.is_empty() {
+            self.panel.nothing(paper, if total == 0 { "no release" } else { "no finite value" });
+        }
+    }
+
+    /// Draws the percentile lines and returns their values in words.
+    fn percentiles(&self, paper: &Paper<'_>) -> Vec<String> {
+        let known = self.report.quantiles.get(&self.quantity).map_or(&[][..], Vec::as_slice);
+        let mut words = Vec::new();
+        for (probability, pen) in MARKED {
+            let found = known.iter().find(|q| (q.probability - probability).abs() < 1e-9);
+            let Some(quantile) = found.filter(|q| q.at.value.is_finite()) else { continue };
+            let value = quantile.at.value / self.unit_size;
+            self.panel.upright(paper, value, pen);
+            words.push(format!("P{:.0} {}", 100.0 * probability, format::significant(value, 3)));
+        }
+        words
+    }
+}
+
+/// Name left and numbers right, in two lines where they do not fit in one.
+fn head(paper: &Paper<'_>, frame: &Frame, name: &str, words: &str) {
+    let y = frame.top;
+    let fits = text_width(name, NORMAL) * 1.06 + text_width(words, SMALL) + 8.0 < frame.width();
+    paper.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));
+    let y = if fits { y } else { y + 14.0 };
+    paper.text(&Label::new(words, (frame.right, y)).right().coloured(GREY));
+}
+
+/// Name with its unit.
+fn titled(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
+}

@@ -1,0 +1,41 @@
+//! The list of figures.
+
+use super::input::Report;
+use super::{distributions, plan_view, reach_angle, runout, side_view, stops};
+
+/// Width of every figure (px, 1/96 inch): 180 mm, the text width of an A4 page.
+pub const WIDTH_PX: f64 = 680.0;
+
+/// A drawn figure.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Drawing {
+    /// The file, self-contained.
+    pub svg: String,
+    /// What it shows, in whole sentences.
+    pub caption: String,
+}
+
+/// A figure of the report.
+#[derive(Debug, Clone, Copy)]
+pub struct Figure {
+    /// File name below `figures/`.
+    pub file: &'static str,
+    /// Heading on the page.
+    pub title: &'static str,
+    /// Draws it; every input gives a figure.
+    pub draw: fn(&Report) -> Drawing,
+}
+
+/// All figures in the order of the page. To add one: a file with a `draw` function and a line here.
+pub const FIGURES: [Figure; 6] = [
+    Figure { file: "plan.svg", title: "Plan view", draw: plan_view::draw },
+    Figure { file: "stops.svg", title: "How the rocks ended", draw: stops::draw },
+    Figure { file: "side.svg", title: "Side view", draw: side_view::draw },
+    Figure { file: "runout.svg", title: "Runout", draw: runout::draw },
+    Figure { file: "reach_angle.svg", title: "Reach angle", draw: reach_angle::draw },
+    Figure {
+        file: "distributions.svg",
+        title: "Speed, energy and bounce height",
+        draw: distributions::draw,
+    },
+];

@@ -1,0 +1,157 @@
+//! Numbers and text as a reader expects them: thin-space thousands, a true minus, raised powers.
+
+/// Stands between groups of three digits.
+const THIN_SPACE: char = '\u{2009}';
+const MINUS: char = '\u{2212}';
+/// Stands for a number that is not there.
+pub const NO_NUMBER: &str = "–";
+const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// `value` with a fixed number of decimals, thousands set apart.
+pub fn decimal(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return NO_NUMBER.to_owned();
+    }
+    let plain = format!("{:.decimals$}", value.abs());
+    let (whole, rest) = plain.split_at(plain.find('.').unwrap_or(plain.len()));
+    let is_negative = value < 0.0 && plain.bytes().any(|b| (b'1'..=b'9').contains(&b));
+    let mut text = String::new();
+    if is_negative {
+        text.push(MINUS);
+    }
+    for (i, digit) in whole.chars().enumerate() {
+        if i > 0 && (whole.len() - i).is_multiple_of(3) {
+            text.push(THIN_SPACE);
+        }
+        text.push(digit);
+    }
+    text + rest
+}
+
+/// A round number as it is, with no more decimals than it has: `2.5`, `10`, `0.025`.
+pub fn plain(value: f64) -> String {
+    let text = value.abs().to_string();
+    decimal(value, text.split_once('.').map_or(0, |(_, decimals)| decimals.len()))
+}
+
+/// `value` to so many significant digits (at least all whole digits), as a power of ten when very small or large.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return NO_NUMBER.to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    // the exponent after rounding: 9.996 to three digits is 10.0
+    let rounded = format!("{:.*e}", digits.max(1) - 1, value);
+    let exponent = rounded.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    if (-4..9).contains(&exponent) {
+        decimal(value, (digits as f64 - 1.0 - f64::from(exponent)).max(0.0) as usize)
+    } else {
+        scientific(value, digits.max(1) - 1)
+    }
+}
+
+/// The nearest number with so many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{:.*e}", digits.max(1) - 1, value).parse().unwrap_or(value)
+}
+
+/// `value` as `m×10ⁿ`, the mantissa with so many decimals and left out where it is 1.
+pub fn scientific(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$e}");
+    let Some((mantissa, exponent)) = text.split_once('e') else { return decimal(value, decimals) };
+    let power = power_of_ten(exponent.parse().unwrap_or(0));
+    match mantissa.parse::<f64>() {
+        Ok(m) if (m - 1.0).abs() < 1e-12 => power,
+        Ok(m) if (m + 1.0).abs() < 1e-12 => format!("{MINUS}{power}"),
+        Ok(m) => format!("{}×{power}", decimal(m, decimals)),
+        Err(_) => NO_NUMBER.to_owned(),
+    }
+}
+
+/// `10ⁿ` with raised digits.
+pub fn power_of_ten(exponent: i32) -> String {
+    let mut text = String::from("10");
+    if exponent < 0 {
+        text.push('⁻');
+    }
+    let digits = exponent.unsigned_abs().to_string();
+    text.extend(digits.bytes().map(|digit| RAISED[usize::from(digit - b'0')]));
+    text
+}
+
+/// The plain character of a raised one.
+pub fn lowered(raised: char) -> Option<char> {
+    if raised == '⁻' {
+        return Some(MINUS);
+    }
+    let digit = RAISED.iter().position(|&c| c == raised)?;
+    char::from_digit(digit as u32, 10)
+}
+
+/// Two written bounds as an interval; one that is no number leaves it open.
+pub fn interval(low: &str, high: &str) -> String {
+    match (low == NO_NUMBER, high == NO_NUMBER) {
+        (false, false) => format!("{low} to {high}"),
+        (false, true) => format!("at least {low}"),
+        (true, false) => format!("at most {high}"),
+        (true, true) => NO_NUMBER.to_owned(),
+    }
+}
+
+/// A share (0..1) in per cent with a fixed number of decimals.
+pub fn percent(share: f64, decimals: usize) -> String {
+    if !share.is_finite() {
+        return NO_NUMBER.to_owned();
+    }
+    format!("{}{THIN_SPACE}%", decimal(100.0 * share, decimals))
+}
+
+/// Text that may stand inside an element or a quoted attribute of SVG and HTML.
+pub fn escape(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\'' => safe.push_str("&#39;"),
+            // XML has no way to write the other control characters, nor the two non-characters
+            c if c.is_control() && !matches!(c, '\n' | '\t') => {}
+            '\u{fffe}' | '\u{ffff}' => {}
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_as_in_print() {
+        assert_eq!(decimal(2_600_000.0, 0), "2\u{2009}600\u{2009}000");
+        assert_eq!(decimal(-1234.5, 1), "\u{2212}1\u{2009}234.5");
+        assert_eq!(decimal(-0.04, 1), "0.0", "no negative zero");
+        assert_eq!(decimal(f64::NAN, 1), NO_NUMBER);
+        assert_eq!(significant(9.996, 3), "10.0");
+        assert_eq!(significant(0.000_012_34, 3), "1.23×10⁻⁵");
+        assert_eq!(significant(123_456.0, 3), "123\u{2009}456");
+        assert_eq!(scientific(1e-5, 0), "10⁻⁵");
+        assert_eq!(power_of_ten(12), "10¹²");
+        assert_eq!(interval("1", NO_NUMBER), "at least 1");
+        assert_eq!(percent(0.9996, 1), "100.0\u{2009}%");
+        assert_eq!([2.5, 10.0, 0.025, 1e4].map(plain), ["2.5", "10", "0.025", "10\u{2009}000"]);
+    }
+
+    #[test]
+    fn what_a_user_wrote_stays_text() {
+        let nasty = "</title><script>alert('1 & \"2\"')</script>\u{0}\u{1b}";
+        let safe = escape(nasty);
+        assert!(!safe.contains('<') && !safe.contains('"') && !safe.contains('\u{0}'));
+        assert!(safe.contains("&lt;script&gt;"));
+    }
+}

@@ -1,0 +1,99 @@
+//! Words that stand in every report.
+
+/// How the numbers came about, in five sentences.
+pub(super) const METHOD: [&str; 5] = [
+    "Each rock is a homogeneous sphere that falls, bounces, slides and rolls over the triangle meshes of slope and trees.",
+    "Contacts follow spherical discontinuous deformation analysis: springs normal and along the surface, limited by Coulomb \
+     friction, with damping that gives the stated restitution and an optional rolling friction.",
+    "A contact belongs to one face, edge or corner, so that seams between triangles are not felt.",
+    "Every rock is a function of scene, seed and its number alone: the same alone, among all others, and on any number of threads.",
+    "All rocks are counted, those that failed or left the terrain too, and every estimate stands beside its confidence interval.",
+];
+
+/// What the terms mean here.
+pub(super) const GLOSSARY: [(&str, &str); 10] = [
+    (
+        "Percentile",
+        "Over rocks, of each rock's value: its largest along the way, or at its first crossing of a line. On maps: of each rock's \
+         largest value in the cell. P95 is the value that 95 % of the rocks do not exceed.",
+    ),
+    (
+        "95 % interval",
+        "For percentiles from order statistics, which assumes no distribution; for shares Wilson's interval. It covers chance \
+         in the sample only.",
+    ),
+    ("Runout", "Horizontal distance from release to end."),
+    (
+        "Reach angle (Fahrböschung)",
+        "atan(drop / runout), drop and runout measured from release to end.",
+    ),
+    (
+        "Bounce height",
+        "Vertical distance from the ground below to the lowest point of the rock. A barrier also needs it at right angles to the slope.",
+    ),
+    ("Translational energy", "m v²/2 of the centre."),
+    ("Rotational energy", "I ω²/2 with I = 2/5 m R²."),
+    (
+        "Total energy",
+        "The sum of both at one instant; its largest value is not the sum of the two largest.",
+    ),
+    (
+        "Reach probability",
+        "Crossings over releases: conditional on release. It is not a frequency; that needs the frequency of releases.",
+    ),
+    (
+        "Stop",
+        "At rest: slower than the rest speed for the rest time, in contact. Left the terrain: beyond the edge of the meshes. \
+         Time up: still moving at the longest simulated time. Failed: the computation could not go on.",
+    ),
+];
+
+/// The style of the page, for screen and A4.
+pub(super) const STYLE: &str = "\
+:root { color-scheme: light; }
+* { box-sizing: border-box; }
+body { margin: 0; background: #fff; color: #222; font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', sans-serif; }
+main { max-width: 780px; margin: 0 auto; padding: 36px 24px 48px; }
+h1 { font-size: 27px; line-height: 1.2; margin: 0 0 6px; overflow-wrap: anywhere; }
+h2 { font-size: 18px; margin: 34px 0 8px; padding-bottom: 3px; border-bottom: 1px solid #bbb; }
+h3 { font-size: 15px; margin: 18px 0 4px; }
+p { margin: 0 0 10px; }
+.subtitle { font-size: 17px; color: #555; }
+.facts, .note, footer, small { color: #666; }
+.facts, .note { font-size: 13px; }
+.warnings { margin: 22px 0; padding: 10px 16px; border-left: 5px solid #d55e00; background: #fdf1e8; }
+.warnings h2 { margin: 0 0 4px; border: 0; font-size: 16px; }
+.warnings ul { margin: 0; }
+ul { margin: 0 0 10px; padding-left: 22px; }
+li, td, th, dd, figcaption { overflow-wrap: anywhere; }
+table { border-collapse: collapse; width: 100%; font-size: 14px; }
+th, td { text-align: left; vertical-align: top; padding: 4px 12px 4px 0; border-bottom: 1px solid #e2e2e2; }
+thead th { border-bottom: 1.5px solid #555; }
+tbody th { font-weight: normal; }
+.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.pairs th { width: 34%; font-weight: normal; color: #555; }
+.wide { overflow-x: auto; }
+.dense { font-size: 12.5px; }
+.dense th, .dense td { padding-right: 8px; }
+small { font-size: 11px; }
+figure { margin: 20px 0 28px; }
+figure svg { display: block; width: 100%; max-width: 680px; height: auto; margin: 0 auto; }
+figcaption { max-width: 680px; margin: 8px auto 0; font-size: 13px; line-height: 1.45; color: #333; }
+pre { margin: 0; padding: 10px 12px; background: #f5f5f3; font: 12.5px/1.5 'Liberation Mono', Menlo, Consolas, monospace; white-space: pre-wrap; overflow-wrap: anywhere; }
+dt { font-weight: bold; margin-top: 8px; }
+dd { margin: 0 0 4px 0; }
+footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-size: 12px; overflow-wrap: anywhere; }
+@page { size: A4; margin: 13mm 15mm 14mm; }
+@media print {
+  body { font-size: 10pt; }
+  main { max-width: none; padding: 0; }
+  h2, h3 { break-after: avoid; }
+  figure, tr, .warnings, dt, dd { break-inside: avoid; }
+  dt { break-after: avoid; }
+  .wide { overflow: visible; }
+  figure { margin: 3mm 0 5mm; }
+  figcaption { font-size: 8.5pt; }
+  pre { font-size: 7.8pt; }
+  pre, .warnings { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+}
+";

@@ -1,0 +1,80 @@
+//! Figures and the page, drawn from plain numbers.
+//!
+//! ```text
+//! Report ─► FIGURES (plan, side, runout, …) ─► figures/*.svg
+//!                                          └─► report.html (figures inlined)
+//! ```
+//!
+//! Nothing is computed here that a reader would quote: estimates and intervals come in as [`input`] has them; only the
+//! bins of histograms and the envelopes along the fall line are found for display.
+
+pub mod axis;
+pub mod colour;
+pub mod contour;
+mod distributions;
+pub mod figure;
+pub mod format;
+pub mod gather;
+mod hillshade;
+mod histogram;
+pub mod html;
+pub mod input;
+pub mod panel;
+pub mod paper;
+mod plan_view;
+pub mod raster;
+mod reach_angle;
+mod runout;
+mod side_view;
+mod stops;
+pub mod svg;
+
+use crate::error::{Error, Result};
+use crate::output::{self, Results, write_whole};
+use crate::terrain::Terrain;
+use figure::{Drawing, FIGURES, Figure};
+use input::Report;
+use raster::GroundRaster;
+use std::fs;
+use std::path::Path;
+
+/// Draws a finished run: `figures/*.svg`, `report.html`, and the ground it was drawn on, below the run's folder.
+///
+/// # Errors
+/// When a result file cannot be read or a figure cannot be written.
+pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
+    let ground = GroundRaster::from_terrain(terrain, GROUND_CELLS);
+    ground.write(&results.dir)?;
+    draw(&gather::gather(results, Some(ground))?, &results.dir)
+}
+
+/// Draws a run again from its files alone; no mesh is read.
+///
+/// # Errors
+/// When a result file cannot be read or a figure cannot be written.
+pub fn draw_again(dir: &Path) -> Result<()> {
+    let results = output::read(dir)?;
+    draw(&gather::gather(&results, GroundRaster::read(dir)?)?, dir)
+}
+
+/// Cells along the longer side of the ground that maps are drawn on: about as many as a printed figure shows.
+const GROUND_CELLS: usize = 400;
+
+/// Writes `figures/*.svg` and `report.html` below `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn draw(report: &Report, dir: &Path) -> Result<()> {
+    let figures = dir.join("figures");
+    fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
+    let drawn = drawings(report);
+    for (figure, drawing) in &drawn {
+        write_whole(&figures.join(figure.file), drawing.svg.as_bytes())?;
+    }
+    write_whole(&dir.join("report.html"), html::page(report, &drawn).as_bytes())
+}
+
+/// All figures, drawn.
+pub fn drawings(report: &Report) -> Vec<(Figure, Drawing)> {
+    FIGURES.iter().map(|figure| (*figure, (figure.draw)(report))).collect()
+}

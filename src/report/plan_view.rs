@@ -1,0 +1,242 @@
+//! The map: ground, trees, paths coloured by speed, releases and deposits.
+
+mod furniture;
+mod ground;
+
+use super::axis::Axis;
+use super::colour::{self, BLUE, INK, ORANGE, PURPLE, VERMILLION, WHITE};
+use super::figure::{Drawing, WIDTH_PX};
+use super::format;
+use super::input::Report;
+use super::panel::{FOOT_PX, Panel};
+use super::paper::{Paper, Pen, paint};
+use super::svg::path::{Frame, Spot, clipped, thinned};
+use crate::trajectory::Stop;
+use std::collections::BTreeSet;
+
+/// Tallest map (px): with the stop reasons and both captions it fits an A4 page.
+const TALLEST_PX: f64 = 580.0;
+/// Least height of a map (px): room for the colour bar.
+const LOWEST_PX: f64 = 190.0;
+/// Column right of the map for north arrow and colour bar (px).
+const RIGHT_PX: f64 = 84.0;
+/// Paper around what is shown, as a share of its size.
+const MARGIN: f64 = 0.06;
+/// Steps of the colour scale along a path: finer ones cannot be told apart on a thin line.
+const SPEED_CLASSES: usize = 14;
+const TOLERANCE_PX: f64 = 0.15;
+const TOP_PX: f64 = 10.0;
+/// From so many marks on, marks shrink to dots.
+const MANY: usize = 400;
+
+/// Draws the map.
+pub(super) fn draw(report: &Report) -> Drawing {
+    let panel = layout(report);
+    let key = furniture::Key::of(report);
+    let key_left = panel.frame.left.min(0.3 * WIDTH_PX);
+    let height = panel.frame.bottom + FOOT_PX + key.height_px(WIDTH_PX - key_left) + 8.0;
+    let fastest = fastest_m_s(report);
+    let mut contours = None;
+    let svg = paint("plan", (WIDTH_PX, height), "Plan view", |paper| {
+        paper.clip("map", &panel.frame, || {
+            if let Some(ground) = &report.ground {
+                contours = ground::draw(paper, &panel, ground);
+            }
+            paths(paper, &panel, report, fastest);
+            marks(paper, &panel, report);
+            if let Some(contours) = &contours {
+                contours.labels(paper);
+            }
+        });
+        if report.releases.is_empty() && report.ground.is_none() {
+            panel.nothing(paper, "no release, no ground");
+        }
+        panel.axes(paper);
+        furniture::draw(paper, &panel, (fastest, !report.paths.is_empty()));
+        key.draw(paper, (key_left, panel.frame.bottom + FOOT_PX + 4.0));
+    });
+    let interval = contours
+        .map_or(String::new(), |c| format!(" Contour interval {} m.", format::plain(c.interval_m)));
+    let caption = format!(
+        "Plan view in map coordinates, at equal scale. {} of {} paths drawn; colour gives the speed of the centre.{interval}",
+        report.paths.len(),
+        format::decimal(report.releases.len() as f64, 0)
+    );
+    Drawing { svg, caption }
+}
+
+/// The map frame: equal scale, as large as the page allows, showing all releases, ends and paths.
+fn layout(report: &Report) -> Panel {
+    let (mut x, mut y) = extent(report);
+    let names = ("Easting (m)", "Northing (m)");
+    // the labels' width needs the ticks, the ticks need a frame: a square one is near enough
+    let square = Frame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
+    let panel = |frame: Frame, x: Range, y: Range| {
+        Panel::new(frame, Axis::linear(x.0, x.1, names.0), Axis::linear(y.0, y.1, names.1))
+    };
+    let left = panel(square, x, y).room_left();
+    let widest = WIDTH_PX - left - RIGHT_PX;
+    fill_page(&mut x, &mut y, widest, report);
+    let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
+    let (width, height) = (scale * (x.1 - x.0), scale * (y.1 - y.0));
+    // a narrow map stands in the middle of the page
+    let left = left + 0.5 * (widest - width);
+    let frame = Frame { left, top: TOP_PX, right: left + width, bottom: TOP_PX + height };
+    panel(frame, x, y)
+}
+
+type Range = (f64, f64);
+
+/// What must be seen, with a margin; the whole ground when no rock has moved.
+fn extent(report: &Report) -> (Range, Range) {
+    let ends = report.releases.iter().flat_map(|fall| [fall.start_m, fall.end_m]);
+    let points = report.paths.iter().flat_map(|path| path.points.iter().map(|p| p.place_m));
+    let places = ends.chain(points).filter(|p| p[0].is_finite() && p[1].is_finite());
+    let empty = (f64::INFINITY, f64::NEG_INFINITY);
+    let wider = |r: Range, v: f64| (r.0.min(v), r.1.max(v));
+    let (mut x, mut y) = places.fold((empty, empty), |(x, y), p| (wider(x, p[0]), wider(y, p[1])));
+    if x.0 > x.1 {
+        (x, y) = report.ground.as_ref().map_or(((0.0, 1.0), (0.0, 1.0)), |g| {
+            ((g.west_m, g.east_m()), (g.south_m, g.north_m()))
+        });
+    }
+    let size = (x.1 - x.0).max(y.1 - y.0);
+    let size = if size > 1e-6 { size } else { 1.0 };
+    let margin = MARGIN * size;
+    ((x.0 - margin, x.1 + margin), (y.0 - margin, y.1 + margin))
+}
+
+/// Widens the shorter side towards the shape of the page as far as there is ground to show, and to the least height.
+fn fill_page(x: &mut Range, y: &mut Range, widest_px: f64, report: &Report) {
+    let ground = report.ground.as_ref();
+    let page = TALLEST_PX / widest_px;
+    if (y.1 - y.0) / (x.1 - x.0) > page {
+        let wanted = (y.1 - y.0) / page;
+        let limits = ground.map_or(*x, |g| (g.west_m, g.east_m()));
+        *x = grown(*x, wanted, limits);
+    } else {
+        let wanted = 0.75 * page * (x.1 - x.0);
+        let limits = ground.map_or(*y, |g| (g.south_m, g.north_m()));
+        *y = grown(*y, wanted, limits);
+    }
+    let least = LOWEST_PX / widest_px * (x.1 - x.0);
+    let everything = (f64::NEG_INFINITY, f64::INFINITY);
+    *y = grown(*y, least, everything);
+    *x = grown(*x, 0.3 * (y.1 - y.0), everything);
+}
+
+/// `range` widened on both sides to `wanted` where the limits allow it; never narrowed.
+fn grown(range: Range, wanted: f64, limits: Range) -> Range {
+    let more = 0.5 * (wanted - (range.1 - range.0)).max(0.0);
+    ((range.0 - more).max(limits.0).min(range.0), (range.1 + more).min(limits.1).max(range.1))
+}
+
+/// Round upper end of the speed scale (m/s).
+fn fastest_m_s(report: &Report) -> f64 {
+    let speeds = report.paths.iter().flat_map(|path| path.points.iter().map(|p| p.speed_m_s));
+    Axis::from_zero(speeds, "").high
+}
+
+/// The paths, thinned, one group a speed class, slow ones below.
+fn paths(paper: &Paper<'_>, panel: &Panel, report: &Report, fastest_m_s: f64) {
+    let mut classes: Vec<Vec<Vec<Spot>>> = vec![Vec::new(); SPEED_CLASSES];
+    for path in &report.paths {
+        let spots: Vec<Spot> =
+            path.points.iter().map(|p| panel.at(p.place_m[0], p.place_m[1])).collect();
+        let class = |i: usize| {
+            let mean = 0.5 * (path.points[i].speed_m_s + path.points[i + 1].speed_m_s);
+            ((mean / fastest_m_s * SPEED_CLASSES as f64) as usize).min(SPEED_CLASSES - 1)
+        };
+        let mut from = 0;
+        for i in 1..spots.len() {
+            if i + 1 == spots.len() || class(i) != class(from) {
+                let parts = clipped(&spots[from..=i], &panel.frame);
+                classes[class(from)].extend(parts.iter().map(|p| thinned(p, TOLERANCE_PX)));
+                from = i;
+            }
+        }
+    }
+    let many = report.paths.len() as f64;
+    let width_px = (2.2 - 0.5 * many.max(1.0).log10()).clamp(0.8, 1.8);
+    let opacity = if many > 100.0 { 0.75 } else { 0.95 };
+    for (i, lines) in classes.iter().enumerate() {
+        let colour = colour::sequential((i as f64 + 0.5) / SPEED_CLASSES as f64);
+        paper.lines(lines, Pen { opacity, ..Pen::full(colour, width_px) });
+    }
+}
+
+/// Releases, and ends by stop reason.
+fn marks(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+    let radius = if report.releases.len() > MANY { 1.3 } else { 2.6 };
+    for kind in ENDS {
+        let ends = report.releases.iter().filter(|fall| Mark::of(&fall.stop) == kind);
+        kind.draw(paper, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
+    }
+    let starts = report.releases.iter().map(|fall| fall.start_m);
+    Mark::Release.draw(paper, &apart(panel, starts, 0.8 * radius), radius);
+}
+
+/// Places inside the frame, one for each little square of `raster_px`: what lies on top of each other is drawn once.
+fn apart(panel: &Panel, places: impl Iterator<Item = [f64; 3]>, raster_px: f64) -> Vec<Spot> {
+    let spots = places.map(|p| panel.at(p[0], p[1])).filter(|&s| panel.frame.holds(s));
+    let cells: BTreeSet<(i64, i64)> = spots
+        .map(|(x, y)| ((x / raster_px).round() as i64, (y / raster_px).round() as i64))
+        .collect();
+    cells.into_iter().map(|(x, y)| (x as f64 * raster_px, y as f64 * raster_px)).collect()
+}
+
+/// How a release or an end is shown: form and colour, so that a grey print keeps them apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    Release,
+    AtRest,
+    LeftTerrain,
+    TimeUp,
+    Failed,
+}
+
+/// The ways to end, in the order they are drawn.
+const ENDS: [Mark; 4] = [Mark::AtRest, Mark::LeftTerrain, Mark::TimeUp, Mark::Failed];
+
+impl Mark {
+    fn of(stop: &Stop) -> Self {
+        match stop {
+            Stop::AtRest => Self::AtRest,
+            Stop::LeftTerrain => Self::LeftTerrain,
+            Stop::TimeUp => Self::TimeUp,
+            Stop::Failed(_) => Self::Failed,
+        }
+    }
+
+    /// Draws marks of a radius (px) on a white rim.
+    fn draw(self, paper: &Paper<'_>, spots: &[Spot], radius: f64) {
+        let rim = radius + 0.6;
+        match self {
+            Self::Release => paper.dots(spots, radius - 0.2, INK),
+            Self::AtRest => {
+                paper.dots(spots, rim, WHITE);
+                paper.dots(spots, radius, VERMILLION);
+            }
+            Self::LeftTerrain => {
+                paper.squares(spots, rim, WHITE);
+                paper.squares(spots, radius, BLUE);
+            }
+            Self::TimeUp => {
+                paper.squares(spots, rim, ORANGE);
+                paper.squares(spots, 0.5 * radius, WHITE);
+            }
+            Self::Failed => {
+                let is_crowd = spots.len() > MANY;
+                let r = if is_crowd { radius } else { radius + 0.8 };
+                let strokes = |&(x, y): &Spot| {
+                    [vec![(x - r, y - r), (x + r, y + r)], vec![(x - r, y + r), (x + r, y - r)]]
+                };
+                let crosses: Vec<Vec<Spot>> = spots.iter().flat_map(strokes).collect();
+                if !is_crowd {
+                    paper.lines(&crosses, Pen::full(WHITE, 2.8));
+                }
+                paper.lines(&crosses, Pen::full(PURPLE, if is_crowd { 0.9 } else { 1.6 }));
+            }
+        }
+    }
+}

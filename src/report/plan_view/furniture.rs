@@ -1,0 +1,140 @@
+//! What a map carries beside itself: north arrow, scale bar, colour bar and the key of its marks.
+
+use super::{Mark, RIGHT_PX};
+use crate::report::axis::{Axis, nice_step};
+use crate::report::colour::{GREEN, INK, WHITE};
+use crate::report::format;
+use crate::report::input::Report;
+use crate::report::panel::{FOOT_PX, Panel};
+use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, text_width};
+use crate::report::svg::path::Frame;
+
+const LINE_PX: f64 = 17.0;
+const PEN: Pen = Pen::full(INK, 0.8);
+
+/// North arrow, colour bar up to `fastest` (m/s) if there are paths, and scale bar.
+pub(super) fn draw(paper: &Paper<'_>, panel: &Panel, (fastest, has_paths): (f64, bool)) {
+    let left = panel.frame.right + 18.0;
+    north_arrow(paper, (left + 6.0, panel.frame.top));
+    if has_paths {
+        colour_bar(paper, panel, left, fastest);
+    }
+    scale_bar(paper, panel);
+}
+
+fn north_arrow(paper: &Paper<'_>, (x, top): (f64, f64)) {
+    paper.text(&Label::new("N", (x, top)).below().centred().bold().sized(NORMAL));
+    let (tip, foot) = (top + 13.0, top + 36.0);
+    paper.polygon(&[(x, tip), (x, foot - 5.0), (x - 6.0, foot)], INK, 1.0);
+    paper.line(&[(x, tip), (x + 6.0, foot), (x, foot - 5.0), (x, tip)], PEN);
+}
+
+fn colour_bar(paper: &Paper<'_>, panel: &Panel, left: f64, fastest: f64) {
+    let top = panel.frame.top + 58.0;
+    let bottom = panel.frame.bottom.min(top + 260.0);
+    let bar = Frame { left, top, right: left + 12.0, bottom };
+    paper.colour_bar(&bar);
+    let scale = Axis::linear(0.0, fastest, "");
+    let count = (bar.height() / 30.0).clamp(2.0, 6.0) as usize;
+    let mut widest: f64 = 0.0;
+    for tick in scale.ticks(count) {
+        let y = bottom - scale.share(tick.value) * bar.height();
+        paper.line(&[(bar.right, y), (bar.right + 4.0, y)], PEN);
+        widest = widest.max(text_width(&tick.label, SMALL));
+        paper.text(&Label::new(tick.label, (bar.right + 7.0, y)));
+    }
+    let x = (bar.right + 7.0 + widest + 5.0).min(panel.frame.right + RIGHT_PX - NORMAL);
+    let middle = (x, 0.5 * (top + bottom));
+    paper.text(&Label::new("Speed (m/s)", middle).below().centred().upwards().sized(NORMAL));
+}
+
+/// A bar of round length near the lower right corner of the map.
+fn scale_bar(paper: &Paper<'_>, panel: &Panel) {
+    let per_metre = panel.frame.width() / (panel.x.high - panel.x.low);
+    let longest = nice_step((panel.x.high - panel.x.low) * 0.13);
+    let length = longest * per_metre;
+    let label = format!("{}\u{2009}m", format::plain(longest));
+    let needed = length + 6.0 + text_width(&label, SMALL);
+    // beside the axis title where there is room, else beside the frame
+    let room = 0.5 * (panel.frame.width() - text_width(&panel.x.title, NORMAL)) - 16.0;
+    let beside = if needed < room { 0.0 } else { needed + 18.0 };
+    let (right, y) = (panel.frame.right + beside, panel.frame.bottom + FOOT_PX - 8.0);
+    let left = right - length;
+    for (from, to, fill) in [(left, left + 0.5 * length, INK), (left + 0.5 * length, right, WHITE)]
+    {
+        let half = Frame { left: from, top: y - 2.5, right: to, bottom: y + 2.5 };
+        paper.fill(&half, fill, 1.0);
+        paper.outline(&half, Pen::full(INK, 0.6));
+    }
+    paper.text(&Label::new(label, (left - 6.0, y)).right());
+}
+
+/// The marks on the map and what they mean.
+pub(super) struct Key {
+    entries: Vec<(Symbol, String)>,
+}
+
+enum Symbol {
+    Mark(Mark),
+    Tree,
+}
+
+impl Key {
+    /// Names only what the map shows.
+    pub(super) fn of(report: &Report) -> Self {
+        let mut entries = Vec::new();
+        if !report.releases.is_empty() {
+            let count = format::decimal(report.releases.len() as f64, 0);
+            entries.push((Symbol::Mark(Mark::Release), format!("release ({count})")));
+        }
+        let names = [
+            (Mark::AtRest, "at rest"),
+            (Mark::LeftTerrain, "left the terrain"),
+            (Mark::TimeUp, "time up"),
+            (Mark::Failed, "failed"),
+        ];
+        for (mark, name) in names {
+            let count = report.releases.iter().filter(|f| Mark::of(&f.stop) == mark).count();
+            if count > 0 {
+                let text = format!("{name} ({})", format::decimal(count as f64, 0));
+                entries.push((Symbol::Mark(mark), text));
+            }
+        }
+        if report.ground.as_ref().is_some_and(|g| g.trees.contains(&true)) {
+            entries.push((Symbol::Tree, "tree".to_owned()));
+        }
+        Self { entries }
+    }
+
+    /// Where each entry stands: (line, left edge).
+    fn places(&self, width_px: f64) -> Vec<(usize, f64)> {
+        let (mut line, mut x) = (0, 0.0);
+        let mut places = Vec::new();
+        for (_, text) in &self.entries {
+            let width = 14.0 + text_width(text, SMALL) + 20.0;
+            if x > 0.0 && x + width > width_px {
+                (line, x) = (line + 1, 0.0);
+            }
+            places.push((line, x));
+            x += width;
+        }
+        places
+    }
+
+    pub(super) fn height_px(&self, width_px: f64) -> f64 {
+        self.places(width_px).last().map_or(0.0, |(line, _)| (line + 1) as f64 * LINE_PX)
+    }
+
+    pub(super) fn draw(&self, paper: &Paper<'_>, (left, top): (f64, f64)) {
+        for ((symbol, text), (line, x)) in
+            self.entries.iter().zip(self.places(paper.size_px().0 - left))
+        {
+            let at = (left + x, top + (line as f64 + 0.5) * LINE_PX);
+            match symbol {
+                Symbol::Mark(mark) => mark.draw(paper, &[at], 3.0),
+                Symbol::Tree => paper.disc(at, 3.0, GREEN),
+            }
+            paper.text(&Label::new(text.clone(), (at.0 + 9.0, at.1)));
+        }
+    }
+}

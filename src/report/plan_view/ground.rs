@@ -1,0 +1,198 @@
+//! Hillshade, contours and trees of the map.
+
+use crate::report::axis::round_step;
+use crate::report::colour::{GREEN, WHITE};
+use crate::report::contour::Field;
+use crate::report::format;
+use crate::report::hillshade;
+use crate::report::panel::Panel;
+use crate::report::paper::{Label, Paper, Pen};
+use crate::report::raster::GroundRaster;
+use crate::report::svg::path::{Spot, clipped, thinned};
+use plotters::style::RGBColor;
+use std::collections::BTreeMap;
+
+/// Distance of the places where heights are taken for contours (px).
+const GRID_PX: f64 = 2.0;
+/// Contours aimed at across the relief of the map.
+const CONTOURS: f64 = 22.0;
+/// Steps that readers of maps expect: no 2.5.
+const CONTOUR_STEPS: [f64; 3] = [1.0, 2.0, 5.0];
+/// Every so many contours one is heavy and labelled.
+const INDEX_EVERY: i64 = 5;
+/// Contours shorter than this are noise of the mesh (px).
+const SHORTEST_PX: f64 = 14.0;
+/// Least distance between two labels (px).
+const LABELS_APART_PX: f64 = 90.0;
+/// Stems smaller than this are drawn as discs (px).
+const SMALL_STEM_PX: f64 = 4.0;
+const LINE: RGBColor = RGBColor(122, 104, 84);
+
+/// What the map says about its contours.
+pub(super) struct Contours {
+    pub(super) interval_m: f64,
+    labels: Vec<(Spot, f64, String)>,
+}
+
+impl Contours {
+    /// Heights on the index contours, upright to read.
+    pub(super) fn labels(&self, paper: &Paper<'_>) {
+        for (at, degrees, text) in &self.labels {
+            let label = Label::new(text.clone(), *at).centred().sized(9.0).coloured(LINE);
+            paper.text_turned(&label, *degrees);
+        }
+    }
+}
+
+/// Draws everything below the paths.
+pub(super) fn draw(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<Contours> {
+    paper.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
+    let contours = contours(paper, panel, ground);
+    trees(paper, panel, ground);
+    contours
+}
+
+/// Map coordinates of a place on the paper (m).
+fn on_map(panel: &Panel, (x, y): Spot) -> (f64, f64) {
+    let (right, up) = (
+        (x - panel.frame.left) / panel.frame.width(),
+        (panel.frame.bottom - y) / panel.frame.height(),
+    );
+    (
+        panel.x.low + right * (panel.x.high - panel.x.low),
+        panel.y.low + up * (panel.y.high - panel.y.low),
+    )
+}
+
+/// Rise to the east and to the north per metre, across one cell.
+fn slope(panel: &Panel, ground: &GroundRaster, at: Spot) -> (f64, f64) {
+    let (x, y) = on_map(panel, at);
+    let half = 0.5 * ground.cell_m;
+    let across = |dx: f64, dy: f64| {
+        let (up, down) = (ground.height_at(x + dx, y + dy), ground.height_at(x - dx, y - dy));
+        (up - down) / ground.cell_m
+    };
+    (across(half, 0.0), across(0.0, half))
+}
+
+fn contours(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<Contours> {
+    let frame = &panel.frame;
+    let size = ((frame.width() / GRID_PX) as usize + 2, (frame.height() / GRID_PX) as usize + 2);
+    let field = Field::sample((frame.left, frame.top), GRID_PX, size, |x, y| {
+        let (x, y) = on_map(panel, (x, y));
+        ground.height_at(x, y)
+    });
+    let finite = field.values.iter().copied().filter(|z| z.is_finite());
+    let (low, high) =
+        finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
+    // ground that is flat to a thousandth of the map has no contours worth drawing
+    // (without any ground the difference is −∞)
+    if high - low <= 1e-3 * (panel.x.high - panel.x.low) {
+        return None;
+    }
+    let interval_m = round_step((high - low) / CONTOURS, &CONTOUR_STEPS);
+    let mut labels = Vec::new();
+    for i in (low / interval_m).ceil() as i64..=(high / interval_m).floor() as i64 {
+        let level_m = i as f64 * interval_m;
+        let lines: Vec<Vec<Spot>> = field
+            .lines_at(level_m)
+            .iter()
+            .flat_map(|line| clipped(line, frame))
+            .filter(|line| length(line) > SHORTEST_PX)
+            .map(|line| thinned(&line, 0.2))
+            .collect();
+        let is_index = i % INDEX_EVERY == 0;
+        let pen = Pen { opacity: 0.75, ..Pen::full(LINE, if is_index { 0.9 } else { 0.4 }) };
+        paper.lines(&lines, pen);
+        if is_index {
+            let decimals = (-interval_m.log10().floor()).max(0.0) as usize;
+            label_lines(panel, &lines, &format::decimal(level_m, decimals), &mut labels);
+        }
+    }
+    Some(Contours { interval_m, labels })
+}
+
+fn length(line: &[Spot]) -> f64 {
+    line.windows(2).map(|s| (s[1].0 - s[0].0).hypot(s[1].1 - s[0].1)).sum()
+}
+
+/// Puts one label on each long line, at its longest straight piece that is far from other labels and from the frame.
+fn label_lines(
+    panel: &Panel,
+    lines: &[Vec<Spot>],
+    text: &str,
+    labels: &mut Vec<(Spot, f64, String)>,
+) {
+    for line in lines.iter().filter(|line| length(line) > LABELS_APART_PX) {
+        let middle = |s: &[Spot]| (0.5 * (s[0].0 + s[1].0), 0.5 * (s[0].1 + s[1].1));
+        let is_free = |at: Spot| {
+            let frame = &panel.frame;
+            let from_edge = (at.0 - frame.left)
+                .min(frame.right - at.0)
+                .min(at.1 - frame.top)
+                .min(frame.bottom - at.1);
+            let nearest = labels.iter().map(|(p, ..)| (p.0 - at.0).hypot(p.1 - at.1));
+            from_edge > 22.0 && nearest.fold(f64::INFINITY, f64::min) > LABELS_APART_PX
+        };
+        let free = line.windows(2).filter(|&s| is_free(middle(s)));
+        let best = free.max_by(|a, b| length(a).total_cmp(&length(b)));
+        if let Some(piece) = best {
+            let rise = (piece[1].1 - piece[0].1).atan2(piece[1].0 - piece[0].0).to_degrees();
+            // text must not stand on its head
+            let degrees = if rise.abs() > 90.0 { rise - 180.0 * rise.signum() } else { rise };
+            labels.push((middle(piece), degrees, text.to_owned()));
+        }
+    }
+}
+
+/// Stems: discs where they are small on paper, outlines where they are large.
+fn trees(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) {
+    let cell_px = ground.cell_m / (panel.x.high - panel.x.low) * panel.frame.width();
+    let mut discs: BTreeMap<u32, Vec<Spot>> = BTreeMap::new();
+    let mut large = vec![false; ground.trees.len()];
+    for patch in ground.tree_patches() {
+        let diameter_px = 2.0 * (patch.len() as f64 / std::f64::consts::PI).sqrt() * cell_px;
+        if diameter_px > SMALL_STEM_PX && patch.len() > 9 {
+            for &cell in &patch {
+                large[cell] = true;
+            }
+            continue;
+        }
+        let (x, y) = ground.centroid_m(&patch);
+        let spot = panel.at(x, y);
+        if panel.frame.holds(spot) {
+            // a cell that a stem only touches counts as a whole one: the disc is drawn a little smaller
+            let radius_px = (0.4 * diameter_px).clamp(1.1, 6.0);
+            discs.entry((radius_px * 10.0).round() as u32).or_default().push(spot);
+        }
+    }
+    for (tenths, spots) in &discs {
+        paper.dots(spots, f64::from(*tenths) / 10.0 + 0.5, WHITE);
+        paper.dots(spots, f64::from(*tenths) / 10.0, GREEN);
+    }
+    outlines(paper, panel, ground, &large);
+}
+
+fn outlines(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster, large: &[bool]) {
+    if !large.contains(&true) {
+        return;
+    }
+    // a rim of empty cells closes every outline
+    let size = (ground.columns + 2, ground.rows() + 2);
+    let value = |column: f64, row: f64| {
+        let inside = (0.0..ground.columns as f64).contains(&column) && row >= 0.0;
+        let index = row * ground.columns as f64 + column;
+        f64::from(u8::from(inside && large.get(index as usize) == Some(&true)))
+    };
+    let field = Field::sample((-1.0, -1.0), 1.0, size, value);
+    for line in field.lines_at(0.5) {
+        let place = |&(column, row): &Spot| {
+            let east = ground.west_m + (column + 0.5) * ground.cell_m;
+            panel.at(east, ground.south_m + (row + 0.5) * ground.cell_m)
+        };
+        let outline: Vec<Spot> = line.iter().map(place).collect();
+        if outline.iter().any(|&spot| panel.frame.holds(spot)) {
+            paper.polygon(&outline, GREEN, 0.85);
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! How far the rocks ran: exceedance with its band above, histogram below.
+
+use super::axis::Axis;
+use super::colour::{BLUE, GREY, INK, SKY, VERMILLION};
+use super::figure::{Drawing, WIDTH_PX};
+use super::format;
+use super::histogram::{Histogram, percent_of};
+use super::input::{Quantile, Quantity, Report};
+use super::panel::{FOOT_PX, Panel, align};
+use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
+use super::svg::path::Frame;
+
+const TOP_PX: f64 = 12.0;
+const UPPER_PX: f64 = 220.0;
+const LOWER_PX: f64 = 110.0;
+const GAP_PX: f64 = 18.0;
+/// From so many releases on the tail is worth a logarithmic scale.
+const MANY: usize = 100;
+
+/// Draws both panels over one x axis.
+pub(super) fn draw(report: &Report) -> Drawing {
+    let runouts: Vec<f64> = report.releases.iter().map(|fall| fall.runout_m).collect();
+    let bins = Histogram::of(&runouts);
+    let (upper, lower) = panels(report, &bins, runouts.len());
+    let quantiles = report.quantiles.get(&Quantity::Runout).map_or(&[][..], Vec::as_slice);
+    let height = lower.frame.bottom + FOOT_PX;
+    let svg = paint("runout", (WIDTH_PX, height), "Runout", |paper| {
+        upper.grid(paper);
+        lower.grid(paper);
+        exceedance(paper, &upper, report);
+        bins.bars(paper, &lower, runouts.len());
+        for quantile in quantiles {
+            let pen = Pen::full(INK, 0.7).dotted();
+            upper.upright(paper, quantile.at.value, pen);
+            lower.upright(paper, quantile.at.value, pen);
+        }
+        mark(paper, &upper, quantiles);
+        values(paper, &upper, report, quantiles);
+        upper.axes_above_another(paper);
+        lower.axes(paper);
+        if runouts.is_empty() {
+            lower.nothing(paper, "no release");
+        }
+    });
+    Drawing { svg, caption: caption(&bins, runouts.len()) }
+}
+
+fn caption(bins: &Histogram, count: usize) -> String {
+    let left_out = match bins.left_out {
+        0 => String::new(),
+        n => format!(" {n} runouts are not finite and in no bin."),
+    };
+    format!(
+        "Horizontal distance from release to end. Above: share of the {} releases that run out farther, with its 95 % band; \
+         bars give the 95 % interval of the marked percentiles. Below: share of releases per {} m.{left_out}",
+        format::decimal(count as f64, 0),
+        format::plain(bins.width)
+    )
+}
+
+fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
+    let mut x = bins.axis("Runout (m)");
+    // bins far from 0 still show how far that is
+    if x.low > 0.0 && x.low < 0.5 * x.high {
+        x.low = 0.0;
+    }
+    let least = report.runout_exceedance.iter().map(|p| p.y.value).filter(|&y| y > 0.0);
+    let y = if count >= MANY {
+        let least = least.fold(0.1, f64::min).max(1e-4);
+        Axis::log(least, 1.0, "Share running farther")
+    } else {
+        Axis::linear(0.0, 1.0, "Share running farther")
+    };
+    let tallest = percent_of(bins.largest(), count);
+    let shares = Axis::from_zero([1.05 * tallest], "Releases (%)");
+    let (top, bottom) = (TOP_PX, TOP_PX + UPPER_PX);
+    let right = WIDTH_PX - 16.0;
+    let mut upper = Panel::new(Frame { left: 0.0, top, right, bottom }, x.clone(), y);
+    let (top, bottom) = (bottom + GAP_PX, bottom + GAP_PX + LOWER_PX);
+    let mut lower = Panel::new(Frame { left: 0.0, top, right, bottom }, x, shares);
+    align([&mut upper, &mut lower]);
+    (upper, lower)
+}
+
+/// The curve as the steps it consists of, over its band.
+fn exceedance(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+    let curve = &report.runout_exceedance;
+    let band: Vec<(f64, f64, f64)> = curve.iter().map(|p| (p.x, p.y.low, p.y.high)).collect();
+    panel.band(paper, &band, SKY, 0.35);
+    // where the curve is 0 a logarithmic axis has no place: the line ends at the last rock
+    let shown: Vec<(f64, f64)> = curve
+        .iter()
+        .map(|p| (p.x, p.y.value))
+        .filter(|&(_, y)| !panel.y.is_log || y > 0.0)
+        .collect();
+    panel.line(paper, &shown, Pen::full(BLUE, 1.6));
+    if curve.is_empty() {
+        panel.nothing(paper, "no curve");
+    }
+}
+
+/// Percentiles on the curve with their intervals; their values in the corner that the curve leaves free.
+fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
+    for quantile in quantiles {
+        let exceeded = 1.0 - quantile.probability;
+        let (x, y) = panel.at(quantile.at.value, exceeded);
+        if !panel.frame.holds((x, y)) {
+            continue;
+        }
+        let end = |bound: f64| {
+            let end = panel.at(bound, exceeded).0;
+            if end.is_finite() { end.clamp(panel.frame.left, panel.frame.right) } else { x }
+        };
+        whisker(paper, (end(quantile.at.low), end(quantile.at.high)), y);
+        paper.disc((x, y), 3.0, VERMILLION);
+        // the curve falls: above and to the right of a point is free, below and to the left too
+        let label = if x + 40.0 < panel.frame.right {
+            Label::new(name(quantile), (x + 6.0, y - 10.0))
+        } else {
+            Label::new(name(quantile), (x - 6.0, y - 10.0)).right()
+        };
+        paper.text_on_rim(&label.bold());
+    }
+}
+
+fn name(quantile: &Quantile) -> String {
+    format!("P{}", format::significant(100.0 * quantile.probability, 2))
+}
+
+fn whisker(paper: &Paper<'_>, (low, high): (f64, f64), y: f64) {
+    let pen = Pen::full(VERMILLION, 1.4);
+    paper.line(&[(low, y), (high, y)], pen);
+    for x in [low, high] {
+        paper.line(&[(x, y - 4.0), (x, y + 4.0)], pen);
+    }
+}
+
+/// Values and intervals, one line each, in the free corner.
+fn values(paper: &Paper<'_>, panel: &Panel, report: &Report, quantiles: &[Quantile]) {
+    let lines: Vec<(String, String)> = quantiles.iter().map(in_words).collect();
+    let width = |text: &String| text_width(text, SMALL);
+    let heads = lines.iter().map(|(head, _)| 1.06 * width(head) + 8.0).fold(0.0, f64::max);
+    let tails = lines.iter().map(|(_, tail)| width(tail)).fold(0.0, f64::max);
+    let line_px = SMALL + 5.0;
+    let frame = panel.frame;
+    let (left, top) = if is_low_in_the_middle(panel, report) {
+        (frame.right - heads - tails - 12.0, frame.top + 14.0)
+    } else {
+        (frame.left + 12.0, frame.bottom - line_px * lines.len() as f64)
+    };
+    for (i, (head, tail)) in lines.into_iter().enumerate() {
+        let y = top + line_px * i as f64;
+        paper.text_on_rim(&Label::new(head, (left, y)).bold());
+        paper.text_on_rim(&Label::new(tail, (left + heads, y)).coloured(GREY));
+    }
+}
+
+/// Whether the curve passes below the middle of the panel: then the upper right corner is free, else the lower left one.
+fn is_low_in_the_middle(panel: &Panel, report: &Report) -> bool {
+    let middle = 0.5 * (panel.x.low + panel.x.high);
+    let at = report.runout_exceedance.iter().find(|p| p.x >= middle);
+    at.is_none_or(|p| panel.y.share(p.y.value) < 0.5)
+}
+
+/// Name and value, and the interval.
+fn in_words(quantile: &Quantile) -> (String, String) {
+    let at = quantile.at;
+    let number = |value: f64| format::significant(value, 4);
+    let tail = match format::interval(&number(at.low), &number(at.high)) {
+        none if none == format::NO_NUMBER => "too few rocks for an interval".to_owned(),
+        interval => interval,
+    };
+    (format!("{} {} m", name(quantile), number(at.value)), tail)
+}

@@ -1,0 +1,253 @@
+//! The mean fall line, and what happens along it.
+
+use crate::report::axis::nice_step;
+use crate::report::input::{Point, Report};
+use crate::report::raster::GroundRaster;
+
+/// Steps aimed at along the line.
+const STEPS: f64 = 50.0;
+/// Cuts of the ground across the width of the paths.
+const CUTS: usize = 15;
+/// Places at which a profile is taken: more than there are pixels.
+const PLACES: usize = 800;
+const POINTS_OF_COMPASS: [&str; 8] =
+    ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
+
+/// The line from the mean release to the mean end, in plan view.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FallLine {
+    /// Mean release (m).
+    from: (f64, f64),
+    /// Unit vector.
+    way: (f64, f64),
+    is_given: bool,
+}
+
+impl FallLine {
+    /// The line of a report; eastwards where rocks on the mean do not move.
+    pub(super) fn of(report: &Report) -> Self {
+        let mut sums = [0.0; 4];
+        let mut count = 0.0;
+        for fall in &report.releases {
+            let places = [fall.start_m[0], fall.start_m[1], fall.end_m[0], fall.end_m[1]];
+            if places.iter().all(|v| v.is_finite()) {
+                count += 1.0;
+                // running means: map coordinates are large, their sum need not be
+                (0..4).for_each(|i| sums[i] += (places[i] - sums[i]) / count);
+            }
+        }
+        let (dx, dy) = (sums[2] - sums[0], sums[3] - sums[1]);
+        let length = dx.hypot(dy);
+        let is_given = length > 1e-6;
+        let way = if is_given { (dx / length, dy / length) } else { (1.0, 0.0) };
+        Self { from: (sums[0], sums[1]), way, is_given }
+    }
+
+    /// Distance of a place along the line from the mean release (m).
+    pub(super) fn along(&self, place_m: [f64; 3]) -> f64 {
+        (place_m[0] - self.from.0) * self.way.0 + (place_m[1] - self.from.1) * self.way.1
+    }
+
+    /// Distance of a place from the line (m), positive to the left.
+    fn aside(&self, place_m: [f64; 3]) -> f64 {
+        (place_m[1] - self.from.1) * self.way.0 - (place_m[0] - self.from.0) * self.way.1
+    }
+
+    /// Bearing from north over east (degrees, 0..360).
+    fn bearing_deg(&self) -> f64 {
+        self.way.0.atan2(self.way.1).to_degrees().rem_euclid(360.0)
+    }
+
+    /// Nearest point of the compass.
+    pub(super) fn compass(&self) -> &'static str {
+        POINTS_OF_COMPASS[(self.bearing_deg() / 45.0).round() as usize % 8]
+    }
+
+    /// The bearing, or why there is none.
+    pub(super) fn bearing_words(&self) -> String {
+        if self.is_given {
+            format!("bearing {:03.0}°", self.bearing_deg().round() % 360.0)
+        } else {
+            "the rocks on the mean do not move: taken eastwards".to_owned()
+        }
+    }
+
+    /// Range along the line and range of heights to show, with a margin.
+    pub(super) fn extent(&self, report: &Report) -> ((f64, f64), (f64, f64)) {
+        let ends = report.releases.iter().flat_map(|fall| [fall.start_m, fall.end_m]);
+        let points = report.paths.iter().flat_map(|path| path.points.iter().map(|p| p.place_m));
+        let mut range = Ranges::default();
+        for place in ends.chain(points).filter(|p| p.iter().all(|v| v.is_finite())) {
+            range.take(self.along(place), place[2]);
+        }
+        let along = range.along.unwrap_or((0.0, 1.0));
+        let margin = (0.03 * (along.1 - along.0)).max(0.02);
+        let along = (along.0 - margin, along.1 + margin);
+        if let Some(ground) = &report.ground {
+            for (x, z) in self.profile(ground, along) {
+                if z.is_finite() {
+                    range.take(x, z);
+                }
+            }
+        }
+        let z = range.z.unwrap_or((0.0, 1.0));
+        let margin = (0.05 * (z.1 - z.0)).max(0.02 * (along.1 - along.0));
+        (along, (z.0 - margin, z.1 + margin))
+    }
+
+    /// The ground along the line: (distance, height); NaN where there is none.
+    pub(super) fn profile(&self, ground: &GroundRaster, along: (f64, f64)) -> Vec<(f64, f64)> {
+        self.cut(ground, along, 0.0)
+    }
+
+    fn cut(&self, ground: &GroundRaster, (from, to): (f64, f64), aside: f64) -> Vec<(f64, f64)> {
+        let height = |i: usize| {
+            let s = from + (to - from) * i as f64 / PLACES as f64;
+            let x = self.from.0 + s * self.way.0 - aside * self.way.1;
+            let y = self.from.1 + s * self.way.1 + aside * self.way.0;
+            (s, ground.height_at(x, y))
+        };
+        (0..=PLACES).map(height).collect()
+    }
+
+    /// Lowest and highest ground within the width of the paths: (distance, low, high).
+    pub(super) fn strip(
+        &self,
+        report: &Report,
+        ground: &GroundRaster,
+        along: (f64, f64),
+    ) -> Vec<(f64, f64, f64)> {
+        let asides =
+            report.paths.iter().flat_map(|path| path.points.iter().map(|p| self.aside(p.place_m)));
+        let finite = asides.filter(|a| a.is_finite());
+        let (right, left) = finite.fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+        let cuts = (0..=CUTS).map(|i| right + (left - right) * i as f64 / CUTS as f64);
+        let mut strip: Vec<(f64, f64, f64)> = Vec::new();
+        for aside in cuts {
+            for (i, (s, z)) in self.cut(ground, along, aside).into_iter().enumerate() {
+                match strip.get_mut(i) {
+                    // `min` and `max` ignore the NaN of a place without ground
+                    Some(at) => (at.1, at.2) = (at.1.min(z), at.2.max(z)),
+                    None => strip.push((s, z, z)),
+                }
+            }
+        }
+        strip.retain(|(_, low, high)| low.is_finite() && high.is_finite());
+        strip
+    }
+}
+
+#[derive(Default)]
+struct Ranges {
+    along: Option<(f64, f64)>,
+    z: Option<(f64, f64)>,
+}
+
+impl Ranges {
+    fn take(&mut self, along: f64, z: f64) {
+        let wider = |r: Option<(f64, f64)>, v: f64| {
+            let (low, high) = r.unwrap_or((v, v));
+            Some((low.min(v), high.max(v)))
+        };
+        self.along = wider(self.along, along);
+        self.z = wider(self.z, z);
+    }
+}
+
+/// P95 and maximum over paths, step by step along the line; NaN where no path has a value.
+#[derive(Debug, Clone)]
+pub(super) struct Envelope {
+    pub(super) from_m: f64,
+    pub(super) step_m: f64,
+    pub(super) p95: Vec<f64>,
+    pub(super) most: Vec<f64>,
+}
+
+impl Envelope {
+    /// Takes `value` along all paths; each path counts once a step, with its largest value there.
+    pub(super) fn of(
+        report: &Report,
+        line: &FallLine,
+        (from, to): (f64, f64),
+        value: impl Fn(&Point) -> f64,
+    ) -> Self {
+        let step_m = nice_step((to - from) / STEPS);
+        let from_m = (from / step_m).floor() * step_m;
+        let steps = ((to - from_m) / step_m).ceil().max(1.0) as usize;
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); steps];
+        for path in &report.paths {
+            let way: Vec<(f64, f64)> = path
+                .points
+                .iter()
+                .map(|p| ((line.along(p.place_m) - from_m) / step_m, value(p)))
+                .collect();
+            let largest = largest_in_steps(&way, steps);
+            for (all, own) in values.iter_mut().zip(largest) {
+                all.extend(Some(own).filter(|v| v.is_finite()));
+            }
+        }
+        for v in &mut values {
+            v.sort_by(f64::total_cmp);
+        }
+        let most = values.iter().map(|v| v.last().copied().unwrap_or(f64::NAN)).collect();
+        let p95 = values.iter().map(|v| order_statistic(v, 0.95)).collect();
+        Self { from_m, step_m, p95, most }
+    }
+}
+
+/// Smallest value that at least a share `p` of the sorted values does not exceed; NaN of nothing.
+fn order_statistic(sorted: &[f64], p: f64) -> f64 {
+    let rank = (p * sorted.len() as f64 - 1e-9).ceil().max(1.0) as usize;
+    sorted.get(rank - 1).copied().unwrap_or(f64::NAN)
+}
+
+/// Largest value of a broken line within each unit step of its first coordinate; −∞ where it never is.
+///
+/// `max` ignores NaN: a point without a value (no ground below) says nothing, its neighbours still do.
+fn largest_in_steps(way: &[(f64, f64)], steps: usize) -> Vec<f64> {
+    let mut largest = vec![f64::NEG_INFINITY; steps];
+    let step_of = |s: f64| s.floor().clamp(0.0, steps as f64 - 1.0) as usize;
+    for &(s, value) in way.iter().filter(|(s, _)| s.is_finite()) {
+        let most = &mut largest[step_of(s)];
+        *most = most.max(value);
+    }
+    for pair in way.windows(2) {
+        let ((s0, v0), (s1, v1)) = (pair[0], pair[1]);
+        if !(s0 + s1).is_finite() {
+            continue;
+        }
+        // where the line passes from one step to the next its value counts in both
+        for next in step_of(s0.min(s1)) + 1..=step_of(s0.max(s1)) {
+            let value = v0 + (v1 - v0) * (next as f64 - s0) / (s1 - s0);
+            for most in &mut largest[next - 1..=next] {
+                *most = most.max(value);
+            }
+        }
+    }
+    largest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line crossing several steps between two points counts in each of them, with the value it has there.
+    #[test]
+    fn a_leap_over_several_steps_counts_in_all() {
+        let largest = largest_in_steps(&[(0.5, 0.0), (2.5, 4.0)], 4);
+        assert_eq!(largest, [1.0, 3.0, 4.0, f64::NEG_INFINITY]);
+    }
+
+    #[test]
+    fn missing_clearance_is_no_value() {
+        let largest = largest_in_steps(&[(0.2, f64::NAN), (0.8, 1.0)], 1);
+        assert_eq!(largest, [1.0]);
+    }
+
+    #[test]
+    fn the_95th_of_a_hundred_values() {
+        let values: Vec<f64> = (1..=100).map(f64::from).collect();
+        assert!((order_statistic(&values, 0.95) - 95.0).abs() < 1e-12);
+        assert!(order_statistic(&[], 0.95).is_nan());
+    }
+}

@@ -1,0 +1,86 @@
+//! Why the rocks ended, as counts and shares.
+
+use super::axis::Axis;
+use super::colour::{GREY, INK, SKY};
+use super::figure::{Drawing, WIDTH_PX};
+use super::format;
+use super::input::{Report, StopShare};
+use super::panel::{FOOT_PX, Panel};
+use super::paper::{Label, Paper, Pen, paint, text_width};
+use super::svg::path::Frame;
+use crate::trajectory::Stop;
+
+const LINE_PX: f64 = 30.0;
+const BAR_PX: f64 = 15.0;
+const LEFT_PX: f64 = 110.0;
+/// Room right of the bars for count, share and interval (px).
+const RIGHT_PX: f64 = 210.0;
+const TOP_PX: f64 = 8.0;
+
+/// Draws the bars.
+pub(super) fn draw(report: &Report) -> Drawing {
+    let lines = report.stops.len().max(1) as f64;
+    let bottom = TOP_PX + lines * LINE_PX;
+    let frame = Frame { left: LEFT_PX, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom };
+    let x = Axis::linear(0.0, 100.0, "Share of releases (%)");
+    let panel = Panel::new(frame, x, Axis::linear(0.0, lines, ""));
+    let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), "Stop reasons", |paper| {
+        panel.grid_upright(paper);
+        for (line, share) in report.stops.iter().enumerate() {
+            bar(paper, &panel, line, share);
+        }
+        if report.stops.is_empty() {
+            panel.nothing(paper, "no release");
+        }
+        panel.x_axis(paper);
+        paper.outline(&frame, Pen::full(INK, 0.8));
+    });
+    let caption = "Stop reasons of all releases: number, share and 95 % interval of the share (Wilson). \
+                   Failed rocks are counted, never restarted and never dropped.";
+    Drawing { svg, caption: caption.to_owned() }
+}
+
+/// Name of a stop reason in a table or on an axis.
+pub(super) fn name(stop: &Stop) -> &'static str {
+    match stop {
+        Stop::AtRest => "at rest",
+        Stop::LeftTerrain => "left the terrain",
+        Stop::TimeUp => "time up",
+        Stop::Failed(_) => "failed",
+    }
+}
+
+fn bar(paper: &Paper<'_>, panel: &Panel, line: usize, share: &StopShare) {
+    let y = panel.frame.top + (line as f64 + 0.5) * LINE_PX;
+    let at = |share: f64| panel.at((100.0 * share).clamp(0.0, 100.0), 0.0).0;
+    let percent = share.share;
+    if percent.value > 0.0 {
+        let (left, right) = (panel.frame.left, at(percent.value));
+        let bar = Frame { left, right, top: y - 0.5 * BAR_PX, bottom: y + 0.5 * BAR_PX };
+        paper.fill(&bar, SKY, 1.0);
+    }
+    if percent.low.is_finite() && percent.high.is_finite() {
+        let (low, high) = (at(percent.low), at(percent.high));
+        let pen = Pen::full(INK, 1.0);
+        paper.line(&[(low, y), (high, y)], pen);
+        for x in [low, high] {
+            paper.line(&[(x, y - 3.5), (x, y + 3.5)], pen);
+        }
+    }
+    paper.text(&Label::new(name(&share.stop), (panel.frame.left - 8.0, y)).right());
+    let count = format::decimal(share.count as f64, 0);
+    let decimals = decimals_for(percent.high - percent.low);
+    let words = format!("{count} ({})", format::percent(percent.value, decimals));
+    let x = panel.frame.right + 10.0;
+    let after = x + text_width(&words, super::paper::SMALL) + 8.0;
+    paper.text(&Label::new(words, (x, y)));
+    let bound = |share: f64| format::percent(share, decimals);
+    let interval = format::interval(&bound(percent.low), &bound(percent.high));
+    paper.text(&Label::new(interval, (after, y)).coloured(GREY));
+}
+
+/// Decimals of a percentage that an interval of some width (share) leaves meaningful.
+fn decimals_for(width: f64) -> usize {
+    let leading = (100.0 * width).log10().floor();
+    if leading.is_finite() { (1.0 - leading).clamp(1.0, 4.0) as usize } else { 1 }
+}

@@ -1,0 +1,201 @@
+//! Several contacts of one rock at once: sweeps, helped along by Newton jumps in the six unknowns.
+//!
+//! Sweeping contact by contact settles slowly where two stiff contacts nearly oppose or nearly repeat each other.
+//! With the modes (open, closed, sticking, sliding) that the sweeps have found, the stage is one linear system for
+//! velocity and spin, the paper's 6×6 system of Eq. (4) for one rock; solving it jumps to where the sweeps were
+//! heading. The sweeps alone decide whether the result holds.
+
+use super::law::{Body, Spot};
+use crate::rock::Vec3;
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+/// Sweeps between two jumps.
+const SWEEPS: u32 = 4;
+/// Jumps after which a stage is given up; the step is then halved.
+const JUMPS: u32 = 12;
+/// Change of a force, relative to the largest, below which the sweeps have settled (–).
+const SETTLED: f64 = 1e-9;
+/// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
+const HOLD: f64 = 1e7;
+
+type Matrix6 = SMatrix<f64, 6, 6>;
+type Vector6 = SVector<f64, 6>;
+
+/// Solves all contacts of one stage from the free velocity and spin; `None` if the sweeps do not settle.
+pub(super) fn solve(
+    body: &Body,
+    spots: &mut [Spot],
+    free: (Vec3, Vec3),
+    h: f64,
+    sweeps: &mut u64,
+) -> Option<(Vec3, Vec3)> {
+    for spot in spots.iter_mut() {
+        // Without a guess for friction a guess for the push alone would only mislead.
+        (spot.push, spot.drag, spot.moment) = (0.0, Vec3::zeros(), Vec3::zeros());
+    }
+    let mut now = free;
+    for _ in 0..JUMPS {
+        for _ in 0..SWEEPS {
+            *sweeps += 1;
+            if sweep(body, spots, &mut now, h) {
+                return Some(now);
+            }
+        }
+        if let Some(jumped) = jump(body, spots, free, &now, h) {
+            act_on(body, spots, &jumped, h);
+            now = driven(body, spots, free, h);
+        }
+    }
+    None
+}
+
+/// One pass over the contacts; whether nothing changed.
+fn sweep(body: &Body, spots: &mut [Spot], (v, w): &mut (Vec3, Vec3), h: f64) -> bool {
+    let (mut change, mut scale) = (0.0f64, 1e-3 * body.mass * body.gravity.norm());
+    for spot in spots.iter_mut() {
+        let before = (spot.push, spot.drag, spot.moment);
+        let (dv, dw) = spot.effect(body, h);
+        let (vf, wf) = (*v - dv, *w - dw);
+        spot.solve(body, &vf, &wf, h);
+        let (dv, dw) = spot.effect(body, h);
+        (*v, *w) = (vf + dv, wf + dw);
+        change = change
+            .max((spot.push - before.0).abs())
+            .max((spot.drag - before.1).norm())
+            .max((spot.moment - before.2).norm() / body.radius);
+        scale = scale.max(spot.push);
+    }
+    change <= SETTLED * scale
+}
+
+/// Free motion and all contact forces together.
+fn driven(body: &Body, spots: &[Spot], (mut v, mut w): (Vec3, Vec3), h: f64) -> (Vec3, Vec3) {
+    for spot in spots {
+        let (dv, dw) = spot.effect(body, h);
+        v += dv;
+        w += dw;
+    }
+    (v, w)
+}
+
+/// Sets every force to what its law gives at velocity and spin `at`.
+fn act_on(body: &Body, spots: &mut [Spot], (v, w): &(Vec3, Vec3), h: f64) {
+    for spot in spots {
+        let normal = Normal::of(body, spot, h);
+        spot.push = normal.at(spot.n.dot(v));
+        let law = &spot.law;
+        let (stick, wound) = spot.trials(body, v, w, h);
+        spot.drag = super::law::within(stick, law.friction * spot.push);
+        spot.moment = super::law::within(wound, law.rolling_m * spot.push);
+    }
+}
+
+/// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
+struct Normal {
+    a: f64,
+    b: f64,
+}
+
+impl Normal {
+    /// The line of the mode the contact is in: open, pressed, or held exactly at the surface.
+    fn of(body: &Body, spot: &Spot, h: f64) -> Self {
+        let b = spot.law.p_n * h + spot.c_n;
+        if spot.push <= 0.0 {
+            return Self { a: 0.0, b: 0.0 };
+        }
+        let speed = (spot.law.p_n * spot.pen - spot.push) / b;
+        if spot.pen - h * speed < 0.0 {
+            // The push is less than spring and dashpot would give: it holds the rock at the surface.
+            let b = HOLD * body.mass / h;
+            return Self { a: b * spot.pen / h, b };
+        }
+        Self { a: spot.law.p_n * spot.pen, b }
+    }
+
+    fn at(&self, speed: f64) -> f64 {
+        (self.a - self.b * speed).max(0.0)
+    }
+}
+
+/// Velocity and spin that solve the stage linearised in its present modes.
+fn jump(
+    body: &Body,
+    spots: &[Spot],
+    free: (Vec3, Vec3),
+    now: &(Vec3, Vec3),
+    h: f64,
+) -> Option<(Vec3, Vec3)> {
+    let mut k = Matrix6::zeros();
+    let mut f = Vector6::zeros();
+    for axis in 0..3 {
+        (k[(axis, axis)], k[(axis + 3, axis + 3)]) = (body.mass / h, body.inertia / h);
+        (f[axis], f[axis + 3]) = (free.0[axis] * body.mass / h, free.1[axis] * body.inertia / h);
+    }
+    for spot in spots.iter().filter(|spot| spot.push > 0.0) {
+        add(&mut k, &mut f, body, spot, (now, h));
+    }
+    let x = k.lu().solve(&f)?;
+    let found = (x.fixed_rows::<3>(0).into(), x.fixed_rows::<3>(3).into());
+    x.iter().all(|x| x.is_finite()).then_some(found)
+}
+
+/// Adds one contact's forces, linear around `now`, to the system.
+fn add(
+    k: &mut Matrix6,
+    f: &mut Vector6,
+    body: &Body,
+    spot: &Spot,
+    ((v, w), h): (&(Vec3, Vec3), f64),
+) {
+    let normal = Normal::of(body, spot, h);
+    let (law, n, r) = (&spot.law, spot.n, body.radius);
+    // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
+    let q = Matrix3::identity() - n * n.transpose();
+    let spin = n.cross_matrix() * r;
+    let (stick, wound) = spot.trials(body, v, w, h);
+    let push = normal.at(n.dot(v));
+    let shear = Slider::of(stick, law.friction, push, law.p_s * h + law.c_s);
+    let roll = Slider::of(wound, law.rolling_m, push, law.k_r * h + law.c_r);
+    let slip = body.slip(&n, v, w);
+    // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
+    let drag0 = shear.force - shear.jacobian * slip + shear.along * (normal.b * n.dot(v));
+    let moment0 = roll.force - roll.jacobian * w + roll.along * (normal.b * n.dot(v));
+    let (jq, js) = (q * shear.jacobian * q, shear.jacobian * spin);
+    let coupling = shear.along * n.transpose() * normal.b;
+    let (vv, vw) = (n * n.transpose() * normal.b + jq - coupling, q * js);
+    let wv =
+        spin.transpose() * (shear.jacobian * q - coupling) - roll.along * n.transpose() * normal.b;
+    let ww = spin.transpose() * js + roll.jacobian;
+    for (row, column, block) in [(0, 0, vv), (0, 3, vw), (3, 0, wv), (3, 3, ww)] {
+        let mut place = k.fixed_view_mut::<3, 3>(row, column);
+        place += block;
+    }
+    let mut force = f.fixed_rows_mut::<3>(0);
+    force += n * normal.a - drag0;
+    let mut torque = f.fixed_rows_mut::<3>(3);
+    torque -= spin.transpose() * drag0 + moment0;
+}
+
+/// A slider: its force, and how that changes with the speed and with the push.
+struct Slider {
+    force: Vec3,
+    jacobian: Matrix3<f64>,
+    /// Change of force with the push; zero while it sticks.
+    along: Vec3,
+}
+
+impl Slider {
+    fn of(trial: Vec3, coefficient: f64, push: f64, stiffness: f64) -> Self {
+        let (cap, size) = (coefficient * push, trial.norm());
+        if size <= cap {
+            return Self {
+                force: trial,
+                jacobian: Matrix3::identity() * stiffness,
+                along: Vec3::zeros(),
+            };
+        }
+        let e = trial / size;
+        let across = Matrix3::identity() - e * e.transpose();
+        Self { force: e * cap, jacobian: across * (stiffness * cap / size), along: e * coefficient }
+    }
+}
