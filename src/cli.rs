@@ -184,18 +184,18 @@ impl RunArgs {
     /// The part of the releases that is asked for must be there.
     fn check_part(&self, scene: &Scene) -> Result<()> {
         let count = scene.release.count;
-        match (self.part(), scene.release.together) {
-            (Part::All, _) => Ok(()),
-            (Part::Only(only), _) if only >= count => Err(Error::Request(format!(
+        let refuse = |why: String| Err(Error::Request(why));
+        match self.part() {
+            Part::Only(only) if only >= count => refuse(format!(
                 "--only {only}: found {count} releases; write a number from 0 to {}",
                 count - 1
-            ))),
-            (Part::Shard { number, of }, _) if of > count => Err(Error::Request(format!(
+            )),
+            Part::Shard { number, of } if of > count => refuse(format!(
                 "--shard {number}/{of}: found {count} releases; write at most as many parts"
-            ))),
-            (Part::Shard { number, of }, true) => Err(Error::Request(format!(
+            )),
+            Part::Shard { number, of } if scene.release.together => refuse(format!(
                 "--shard {number}/{of}: the rocks of this scene touch each other and fall together; leave it out"
-            ))),
+            )),
             _ => Ok(()),
         }
     }

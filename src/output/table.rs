@@ -72,9 +72,8 @@ impl Table {
         rows.skip_until(b'\n').map_err(Error::file("read", other))?; // the names of the columns
         self.writer.flush().map_err(Error::file("write", &self.path))?;
         // A copy cannot say which of the two files failed; a full disk is by far the most likely.
-        std::io::copy(&mut rows, &mut &*self.writer.get_ref())
-            .map(|_| ())
-            .map_err(Error::file("write", &self.path))
+        let mut file = self.writer.get_ref();
+        std::io::copy(&mut rows, &mut file).map(|_| ()).map_err(Error::file("write", &self.path))
     }
 
     /// Puts all rows on the disk and gives the length of the file (bytes).
