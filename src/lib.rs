@@ -14,5 +14,6 @@ pub mod report;
 pub mod rock;
 pub mod scene;
 pub mod step;
+pub mod study;
 pub mod terrain;
 pub mod trajectory;
