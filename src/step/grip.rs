@@ -1,5 +1,6 @@
 //! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
 
+use super::dda::Bench;
 use super::law::{Body, Spot};
 use super::tableau::STAGES;
 use crate::contact::hold::{HOLDS, Holds};
@@ -60,6 +61,7 @@ impl Loss {
     }
 
     /// The same, booked under trees where the triangle is one's.
+    #[must_use]
     #[inline]
     pub fn on(self, world: &World, triangle: u32) -> Self {
         if world.terrain.is_tree(triangle) {
@@ -93,6 +95,14 @@ pub struct Rate {
 }
 
 impl Rate {
+    /// Takes over another's rates, of the springs the first `holds` only.
+    #[inline]
+    pub fn take(&mut self, from: &Self, holds: usize) {
+        (self.c, self.v, self.w, self.loss) = (from.c, from.v, from.w, from.loss);
+        self.shear[..holds].copy_from_slice(&from.shear[..holds]);
+        self.roll[..holds].copy_from_slice(&from.roll[..holds]);
+    }
+
     /// No change.
     pub const NONE: Self = Self {
         c: Vec3::new(0.0, 0.0, 0.0),
@@ -123,10 +133,14 @@ pub struct Grip {
     pub rates: [Rate; STAGES],
     /// Whether the first rate belongs to the present state.
     pub fresh: bool,
+    /// Energy in the springs of the contacts at the present state (J), if the first rate is fresh.
+    pub stored: f64,
     /// Contacts of the stage in hand.
     pub spots: [Spot; MOST],
     /// How many of them.
     pub spot_count: usize,
+    /// Work space of the fixed step.
+    pub bench: Bench,
     /// Contact sweeps done.
     pub sweeps: u64,
 }
@@ -149,8 +163,10 @@ impl Default for Grip {
             touches: Touches::default(),
             rates: [Rate::NONE; STAGES],
             fresh: false,
+            stored: 0.0,
             spots: [Spot::NONE; MOST],
             spot_count: 0,
+            bench: Bench::default(),
             sweeps: 0,
         }
     }
@@ -163,19 +179,24 @@ impl Grip {
         self.holds.clear();
         self.fresh = false;
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
-        let touches = self.touches;
-        for (k, touch) in touches.iter().enumerate() {
-            self.holds.find(touch, &touches, (1 << k) - 1, || world.captures(touch, &v));
+        for (k, touch) in self.touches.iter().enumerate() {
+            self.holds.find(touch, &self.touches, (1 << k) - 1, || world.captures(touch, &v));
+        }
+    }
+
+    /// Sees to it that the features around `c` are known.
+    #[inline]
+    pub fn know(&mut self, world: &World, c: &Vec3) {
+        if !self.near.covers(c) {
+            let r = world.body.radius;
+            self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
         }
     }
 
     /// Asks for the touches at `c` nearer than `reach` (m).
     #[inline]
     pub fn look(&mut self, world: &World, c: &Vec3, reach: f64) {
-        let r = world.body.radius;
-        if !self.near.covers(c) {
-            self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
-        }
+        self.know(world, c);
         self.near.touches(world.terrain, c, reach, &mut self.touches);
     }
 
@@ -188,10 +209,8 @@ impl Grip {
     /// The memory of touch `k` of the last look; a new one starts without stretch and without history of rates.
     #[inline]
     pub fn hold_of(&mut self, world: &World, k: usize, taken: u32, v: &Vec3) -> usize {
-        let before = self.holds.len();
-        let touch = self.touches[k];
-        let touches = self.touches;
-        let hold = self.holds.find(&touch, &touches, taken, || world.captures(&touch, v));
+        let (before, touch) = (self.holds.len(), &self.touches[k]);
+        let hold = self.holds.find(touch, &self.touches, taken, || world.captures(touch, v));
         if hold >= before {
             for rate in &mut self.rates {
                 (rate.shear[hold], rate.roll[hold]) = (Vec3::zeros(), Vec3::zeros());
@@ -210,16 +229,30 @@ impl Grip {
         0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
     }
 
+    /// Longest step in which the centre stays where its features are known, or goes no further than `travel` (–,
+    /// relative to R), past one plane or among several features (s).
+    pub fn longest_step(&self, world: &World, travel: f64) -> f64 {
+        let (speed, way) = (self.v.norm(), travel * world.body.radius);
+        let room = if self.near.is_plane() { self.near.room_m(&self.c).max(way) } else { way };
+        // The weight may still speed it up on the way.
+        let fall = world.body.gravity.norm();
+        2.0 * room / (speed + (speed * speed + 2.0 * fall * room).sqrt())
+    }
+
     /// Energy in the springs of the contacts (J), by the kind it was counted under:
     /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
     pub fn springs_j(&mut self, world: &World) -> Loss {
         let c = self.c;
         self.look(world, &c, world.body.radius);
+        self.stored_j(world)
+    }
+
+    /// The same for the touches of the last look.
+    pub fn stored_j(&self, world: &World) -> Loss {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
-            let pressed = 0.5
-                * world.law(touch.triangle).p_n
-                * (world.body.radius - touch.distance_m).powi(2);
+            let pen = (world.body.radius - touch.distance_m).max(0.0);
+            let pressed = 0.5 * world.law(touch.triangle).p_n * pen * pen;
             stored
                 .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
         }
