@@ -69,7 +69,7 @@ pub const SETUP: Setup = Setup {
 
 impl Setup {
     /// Follows the rock; the ends are in the coordinates of the facets, impacts and path stay local.
-    pub fn follow(&self, terrain: &Terrain, step: &Settings) -> Trajectory {
+    pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
         let course = Course {
             terrain,
             gravity_m_s2: self.gravity_m_s2,
@@ -86,7 +86,7 @@ impl Setup {
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
         let mut chance = stream(1, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
-        let mut fallen = follow(&course, &release, keep, &mut chance, &mut Scratch::default());
+        let mut fallen = follow(&course, &release, keep, &mut chance, scratch);
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;
         fallen

@@ -29,7 +29,7 @@ pub(super) fn colour(scheme: Scheme) -> RGBColor {
 }
 
 /// Draws one case.
-pub fn draw(study: &CaseStudy) -> String {
+pub(super) fn draw(study: &CaseStudy) -> String {
     let points = || study.curves.iter().flat_map(|curve| &curve.points);
     let finite = || points().filter(|point| point.error.is_finite());
     let least = finite().map(|point| shown(point.error)).fold(1.0, f64::min);
