@@ -205,8 +205,7 @@ impl Bench {
 
     /// Open–close iteration: what contacts add to the free displacement, and whether their states settled.
     ///
-    /// A step that does not settle is solved with all its contacts sticking: springs and dashpots alone take energy,
-    /// never add any. `None` if it has no solution.
+    /// A step that does not settle is solved by [`Self::stick`]. `None` if it has no solution.
     fn settle(&mut self, world: &World, step: &Step, sweeps: &mut u64) -> Option<(Vec6, bool)> {
         let contacts = &mut self.contacts[..self.count];
         let inertia = inertia(world.body.mass, world.body.inertia, step.dt);
@@ -227,7 +226,10 @@ impl Bench {
         self.stick(&inertia, &step.free, sweeps).map(|added| (added, false))
     }
 
-    /// The step with all contacts sticking, opened and closed until they agree.
+    /// The step without the search for states: contacts that begin inside hold and stick, even if they pull for this
+    /// one step; those that begin apart are smooth. That always has a solution, and no force in it adds energy.
+    ///
+    /// Of those that begin apart one at a time changes, the last first, which cannot go round in circles (Murty 1974).
     fn stick(&mut self, inertia: &Mat6, free: &Vec6, sweeps: &mut u64) -> Option<Vec6> {
         let contacts = &mut self.contacts[..self.count];
         contacts.iter_mut().for_each(Contact::stick);
@@ -236,7 +238,7 @@ impl Bench {
             *sweeps += 1;
             added = self.system.solve(inertia, free, contacts)?;
             let d = free + added;
-            if !contacts.iter_mut().fold(false, |any, contact| contact.open_or_close(&d) | any) {
+            if !contacts.iter_mut().rev().any(|contact| contact.open_or_close_apart(&d)) {
                 break;
             }
         }

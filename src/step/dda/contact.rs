@@ -254,10 +254,26 @@ impl Contact {
         change
     }
 
-    /// Lets nothing slide.
+    /// Ends the search for its state: closed and sticking for this step if it begins inside, else without friction.
     pub(super) fn stick(&mut self) {
-        self.shear.slides = self.tan_phi <= 0.0;
-        self.roll.slides = false;
+        let apart = self.begins_apart();
+        self.presses |= !apart;
+        self.shear.slides = apart || self.tan_phi <= 0.0;
+        self.roll.slides = apart;
+        (self.shear.friction, self.roll.friction) = (Vec3::zeros(), Vec3::zeros());
+    }
+
+    fn begins_apart(&self) -> bool {
+        self.gap > TOUCH * self.radius
+    }
+
+    /// After [`Self::stick`]: opens or closes if it begins apart; whether that changed anything.
+    pub(super) fn open_or_close_apart(&mut self, d: &Vec6) -> bool {
+        if self.begins_apart() {
+            return self.open_or_close(d);
+        }
+        self.push = self.normal_force(d).max(0.0);
+        false
     }
 
     /// Shear force and rolling moment after `d`.
