@@ -2,6 +2,8 @@
 
 #![expect(clippy::print_stderr, reason = "this is the face of the program")]
 
+mod study;
+
 use crate::wiring::{self, Ended, Order, Part};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -58,6 +60,9 @@ enum Command {
         /// Folder with the results of a run
         dir: PathBuf,
     },
+    /// Study the numerics: error against run time, stability
+    #[command(subcommand)]
+    Study(study::StudyCommand),
     /// Check, convert and make meshes
     #[command(subcommand)]
     Mesh(MeshCommand),
@@ -127,6 +132,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Study(command) => study::study(&command),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
             wiring::mesh_from_grid(&grid, &out).map(say)

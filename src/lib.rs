@@ -33,3 +33,4 @@ pub mod ensemble;
 pub mod hazard;
 pub mod output;
 pub mod report;
+pub mod study;

@@ -1,5 +1,7 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
+pub(crate) mod study;
+
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
