@@ -23,6 +23,9 @@ const WRONG_INPUT: u8 = 2;
 /// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
 const INTERRUPTED: u8 = 130;
 
+/// Most worker threads: more than any machine has; a slip of the key must not start a hundred thousand.
+const MOST_THREADS: usize = 4096;
+
 /// Rockfall hazard on triangle meshes, with the numerical error beside every number.
 #[derive(Debug, Parser)]
 #[command(name = "rockfall", version, about, arg_required_else_help = true)]
@@ -103,7 +106,7 @@ struct RunArgs {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
     /// One release alone, with its full path recorded
     #[arg(long, value_name = "I", conflicts_with = "resume")]
@@ -287,6 +290,13 @@ fn shard(text: &str) -> std::result::Result<Part, String> {
     match numbers {
         Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Part::Shard { number, of }),
         _ => Err("write K/N, K from 1 to N: 3/16 is the third of 16 parts".to_owned()),
+    }
+}
+
+fn threads(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(number) if (1..=MOST_THREADS).contains(&number) => Ok(number),
+        _ => Err(format!("write a whole number from 1 to {MOST_THREADS}")),
     }
 }
 
