@@ -2,6 +2,7 @@
 
 pub mod chance;
 pub mod contact;
+pub mod coupled;
 pub mod ensemble;
 pub mod error;
 pub mod flight;

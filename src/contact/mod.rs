@@ -2,6 +2,7 @@
 
 pub mod hold;
 pub mod near;
+pub mod pair;
 
 use crate::rock::Vec3;
 use crate::terrain::Terrain;

@@ -65,11 +65,12 @@ fn add_effort(sum: &mut Effort, one: &Effort) {
 
 /// Every field is named, so that a new entry does not compile until it is summed.
 fn add_ledger(sum: &mut Ledger, one: &Ledger) {
-    let Ledger { friction_j, damping_j, rolling_j, trees_j, remainder_j, rise_j } = *one;
+    let Ledger { friction_j, damping_j, rolling_j, trees_j, others_j, remainder_j, rise_j } = *one;
     sum.friction_j += friction_j;
     sum.damping_j += damping_j;
     sum.rolling_j += rolling_j;
     sum.trees_j += trees_j;
+    sum.others_j += others_j;
     sum.remainder_j += remainder_j;
     sum.rise_j = sum.rise_j.max(rise_j);
 }

@@ -6,15 +6,15 @@ use super::tableau::Tableau;
 use crate::contact::hold::carry;
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
-const ONSET: f64 = 0.3;
+pub(crate) const ONSET: f64 = 0.3;
 /// Longest way in one step where more than one plane is near (–, relative to R).
-const TRAVEL: f64 = 0.15;
+pub(crate) const TRAVEL: f64 = 0.15;
 /// The step controller's safety factor (–).
 const SAFETY: f64 = 0.9;
 /// Most that a step shrinks or grows at once (–).
 const RATIO: (f64, f64) = (0.2, 4.0);
 /// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
-const SHORTEST: f64 = 1e-9;
+pub(crate) const SHORTEST: f64 = 1e-9;
 
 /// Why a rock cannot go on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,12 +93,12 @@ pub fn advance(
     }
 }
 
-fn grown(control: &Control, dt: f64, error: f64) -> f64 {
+pub(crate) fn grown(control: &Control, dt: f64, error: f64) -> f64 {
     dt * (SAFETY * error.powf(-control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
 }
 
 /// Longest step that cannot jump over a feature (s).
-fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
+pub(crate) fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
     let (speed, r) = (grip.v.norm(), world.body.radius);
     let c = grip.c;
     grip.look_ahead(world, &c);
@@ -141,7 +141,7 @@ fn attempt(
 }
 
 /// Takes over the step's end: motion, memories, losses.
-fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
+pub(crate) fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
     for k in 0..tableau.stages {
         loss.add(&grip.rates[k].loss, dt * tableau.weight(k));
     }

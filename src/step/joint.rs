@@ -91,28 +91,34 @@ fn act_on(body: &Body, spots: &mut [Spot], (v, w): &(Vec3, Vec3), h: f64) {
 }
 
 /// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
-struct Normal {
-    a: f64,
-    b: f64,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Normal {
+    pub(crate) a: f64,
+    pub(crate) b: f64,
 }
 
 impl Normal {
     /// The line of the mode the contact is in: open, pressed, or held exactly at the surface.
     fn of(body: &Body, spot: &Spot, h: f64) -> Self {
-        let b = spot.law.p_n * h + spot.c_n;
-        if spot.push <= 0.0 {
-            return Self { a: 0.0, b: 0.0 };
-        }
-        let speed = (spot.law.p_n * spot.pen - spot.push) / b;
-        if spot.pen - h * speed < 0.0 {
-            // The push is less than spring and dashpot would give: it holds the rock at the surface.
-            let b = HOLD * body.mass / h;
-            return Self { a: b * spot.pen / h, b };
-        }
-        Self { a: spot.law.p_n * spot.pen, b }
+        Self::line((spot.law.p_n, spot.c_n), (spot.pen, spot.push), body.mass, h)
     }
 
-    fn at(&self, speed: f64) -> f64 {
+    /// The same from spring and dashpot, penetration and push, and the mass that the push moves.
+    pub(crate) fn line((p_n, c_n): (f64, f64), (pen, push): (f64, f64), m: f64, h: f64) -> Self {
+        let b = p_n * h + c_n;
+        if push <= 0.0 {
+            return Self { a: 0.0, b: 0.0 };
+        }
+        let speed = (p_n * pen - push) / b;
+        if pen - h * speed < 0.0 {
+            // The push is less than spring and dashpot would give: it holds the rock at the surface.
+            let b = HOLD * m / h;
+            return Self { a: b * pen / h, b };
+        }
+        Self { a: p_n * pen, b }
+    }
+
+    pub(crate) fn at(&self, speed: f64) -> f64 {
         (self.a - self.b * speed).max(0.0)
     }
 }
@@ -177,15 +183,16 @@ fn add(
 }
 
 /// A slider: its force, and how that changes with the speed and with the push.
-struct Slider {
-    force: Vec3,
-    jacobian: Matrix3<f64>,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slider {
+    pub(crate) force: Vec3,
+    pub(crate) jacobian: Matrix3<f64>,
     /// Change of force with the push; zero while it sticks.
-    along: Vec3,
+    pub(crate) along: Vec3,
 }
 
 impl Slider {
-    fn of(trial: Vec3, coefficient: f64, push: f64, stiffness: f64) -> Self {
+    pub(crate) fn of(trial: Vec3, coefficient: f64, push: f64, stiffness: f64) -> Self {
         let (cap, size) = (coefficient * push, trial.norm());
         if size <= cap {
             return Self {

@@ -2,7 +2,7 @@
 
 pub mod adaptive;
 pub mod grip;
-mod joint;
+pub(crate) mod joint;
 pub mod law;
 pub mod rigid;
 pub mod stage;

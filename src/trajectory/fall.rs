@@ -59,7 +59,7 @@ impl Scratch {
 /// Steps after which a rock is given up: it counts as failed.
 const MOST_STEPS: u64 = 100_000_000;
 /// An impact is over after so many contact times (–), whether the rock has left or not.
-const IMPACT_TIMES: f64 = 3.0;
+pub(super) const IMPACT_TIMES: f64 = 3.0;
 /// Tilts drawn until the rough surface faces the rock; after that the impact is smooth.
 const TILTS: u32 = 8;
 
