@@ -202,3 +202,82 @@ fn a_cradle_with_gaps_hands_on_the_velocity() {
     }
     momentum_is_kept(&falls);
 }
+
+const G: f64 = 9.8;
+
+/// A stack of two on the plane presses its springs by `(m1+m2)g/p_N` and `m2 g/p_N`, whatever the mass ratio, and comes
+/// to rest.
+fn stack(lower: (f64, f64), upper: (f64, f64)) {
+    let world = World { gravity_m_s2: G, tolerance_m_s: 1e-3, rest_time_s: 1.0, ..WORLD };
+    let (r1, r2) = (lower.0, upper.0);
+    let [m1, m2] = [lower, upper].map(|(radius_m, density_kg_m3)| Rock { radius_m, density_kg_m3 }.mass_kg());
+    let p_n = GROUND.normal_stiffness_n_m;
+    let expected = [(m1 + m2) * G / p_n, m2 * G / p_n];
+    // A heavy rock would swing for long on the springs of a light one: it starts where they carry it.
+    let start = [r1 - expected[0], 2.0 * r1 + r2 - expected[0] - expected[1]];
+    let spheres = [
+        (r1, lower.1, [0.3, 0.2, start[0]], [0.0; 3], [0.0; 3]),
+        (r2, upper.1, [0.3, 0.2, start[1]], [0.0; 3], [0.0; 3]),
+    ];
+    let falls = world.run(&plane(), &spheres, 5.0);
+    let z = [0, 1].map(|k| falls[k].end.position_m.z);
+    let pens = [r1 - z[0], r1 + r2 - (z[1] - z[0])];
+    for (pen, expected) in pens.iter().zip(expected) {
+        // a position is known to 2e-16 m; the spring of 1e9 N/m makes of that much for a light rock; a heavy one on a
+        // light one swings on, hardly damped, by what its first contact left
+        let allowed = 5e-3 * expected + 2e-12;
+        assert!((pen - expected).abs() < allowed, "{lower:?} {upper:?}: {pens:?} {expected:e}");
+    }
+    for fall in &falls {
+        assert_eq!(fall.stop, Stop::AtRest);
+        assert!(fall.end.velocity_m_s.norm() < 1e-6, "{:e}", fall.end.velocity_m_s.norm());
+    }
+}
+
+#[test]
+fn a_stack_rests_on_its_springs() {
+    stack((0.5, 2700.0), (0.5, 2700.0));
+    stack((0.5, 2700.0), (0.1, 2700.0));
+    stack((0.2, 2700.0), (0.5, 2700.0));
+}
+
+#[test]
+fn a_stack_of_mass_ratio_one_million_rests() {
+    stack((0.5, 2700.0), (0.5, 2.7e-3));
+    stack((0.5, 2.7e-3), (0.5, 2700.0));
+}
+
+#[test]
+fn a_stack_of_mass_ratio_one_billion_rests() {
+    stack((0.5, 2700.0), (0.5, 2.7e-6));
+    stack((0.5, 2.7e-6), (0.5, 2700.0));
+}
+
+/// A sphere on three others that touch each other: friction holds the three, each carries a third of its weight.
+#[test]
+fn a_sphere_rests_on_three_others() {
+    let world = World { gravity_m_s2: G, tolerance_m_s: 1e-3, rest_time_s: 0.5, ..WORLD };
+    let r = 0.5;
+    let out = 2.0 * r / 3.0f64.sqrt();
+    let mut spheres: Vec<Sphere> = (0..3)
+        .map(|k| {
+            let turn = std::f64::consts::TAU * f64::from(k) / 3.0;
+            (r, 2700.0, [out * turn.cos(), out * turn.sin(), r], [0.0; 3], [0.0; 3])
+        })
+        .collect();
+    let up = (4.0 * r * r - out * out).sqrt();
+    spheres.push((r, 2700.0, [0.0, 0.0, r + up], [0.0; 3], [0.0; 3]));
+    let falls = world.run(&plane(), &spheres, 5.0);
+    let weight = falls[0].rock.mass_kg() * G;
+    for fall in &falls {
+        assert_eq!(fall.stop, Stop::AtRest);
+    }
+    for fall in &falls[..3] {
+        // force balance: each of the three carries its own weight and a third of the fourth
+        let pen = r - fall.end.position_m.z;
+        let expected = 4.0 / 3.0 * weight / GROUND.normal_stiffness_n_m;
+        assert!((pen - expected).abs() < 2e-2 * expected, "{pen:e} {expected:e}");
+    }
+    let energy: f64 = falls.iter().map(|fall| fall.ledger.rise_j).fold(0.0, f64::max);
+    assert!(energy < 1e-6 * weight * r, "{energy:e}");
+}

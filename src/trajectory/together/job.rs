@@ -18,6 +18,9 @@ use std::f64::consts::PI;
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
 const ROUNDING: f64 = 1e-11;
 
+/// A time that is nothing (s): the clock cannot tell less after an hour.
+const SOON_S: f64 = 1e-12;
+
 /// One island and its window.
 pub(super) struct Job<'a> {
     course: &'a Course<'a>,
@@ -91,7 +94,7 @@ impl<'a> Job<'a> {
             let apart = a.journey.now.position_m - b.journey.now.position_m;
             apart.norm() <= (a.member.body.radius + b.member.body.radius) * (1.0 + ROUNDING)
         };
-        self.meeting_s(tie).is_some() && touching(tie)
+        self.meeting_s(tie).is_some_and(|t| t - self.now_s <= SOON_S || touching(tie))
     }
 
     /// Moves flying rocks along their parabolas.
