@@ -54,12 +54,21 @@ pub(crate) fn run(
     let (first, asked) = (order.only.unwrap_or(0), order.only.map_or(plan.count, |_| 1));
     begin(ensemble.stop_flag())?;
     let paths = order.only.map(|only| only..only + 1);
-    let fall = |index: usize, scratch: &mut Scratch| {
-        trajectory::fall(plan, index, paths.as_ref(), scratch)
-    };
-    for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
-        output.write(&falls?)?;
-        progress(output.remaining().start - first);
+    if plan.rock_against_rock.is_kept() {
+        let stop = ensemble.stop_flag();
+        let falls = ensemble.install(|| trajectory::fall_together(plan, paths.as_ref(), &stop))?;
+        // One world is one piece: stopped before its end, it leaves nothing to write.
+        let remaining = output.remaining();
+        let wanted = falls.into_iter().flatten().filter(|fall| remaining.contains(&fall.index));
+        output.write(&wanted.collect::<Vec<_>>())?;
+    } else {
+        let fall = |index: usize, scratch: &mut Scratch| {
+            trajectory::fall(plan, index, paths.as_ref(), scratch)
+        };
+        for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
+            output.write(&falls?)?;
+            progress(output.remaining().start - first);
+        }
     }
     let done = output.remaining().start - first;
     if done < asked {

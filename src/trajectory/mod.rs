@@ -4,12 +4,13 @@ mod fall;
 mod journey;
 mod together;
 
+pub use crate::contact::FeatureKind;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
 pub use fall::{Course, Scratch, fall, follow};
 pub use journey::Keep;
-pub use together::{Answer, follow_together};
+pub use together::{Answer, fall_together, follow_together};
 
 /// Why a rock's journey ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -82,18 +83,6 @@ pub enum PathState {
     Sliding,
     /// In contact, none slides.
     Sticking,
-}
-
-/// What of the mesh was touched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum FeatureKind {
-    /// Inside of a triangle.
-    Face,
-    /// Edge between or beside triangles.
-    Edge,
-    /// Corner.
-    Vertex,
 }
 
 /// One impact: a touch with a normal approach speed above the capture speed.

@@ -312,6 +312,7 @@ impl<'a> Rover<'a> {
             self.lands = None;
             self.quiet_s = 0.0;
             self.member.grip.holds.clear();
+            self.member.grip.stored = 0.0;
             self.began_j = (self.total_j(course), self.journey.ledger.others_j);
         }
     }
