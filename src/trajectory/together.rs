@@ -173,7 +173,9 @@ impl Crowd<'_> {
             let radius = one.body.radius.min(two.body.radius);
             let bond = Bond::new(&answer.strength, radius, length);
             let law = self.law(a, b);
-            self.tie(Tie { n, bond: Some(bond), captured: true, ..Tie::new(a, b, law) });
+            self.tie(Tie { n, bond: Some(bond), ..Tie::new(a, b, law) });
+            self.hold(a);
+            self.hold(b);
         }
     }
 }

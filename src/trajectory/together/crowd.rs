@@ -67,6 +67,13 @@ impl<'a> Crowd<'a> {
         self.ties.insert((tie.a, tie.b), tie);
     }
 
+    /// A bonded rock does not fly.
+    pub(super) fn hold(&mut self, k: u32) {
+        if let Some(rover) = &mut self.rovers[k as usize] {
+            rover.member.flying = false;
+        }
+    }
+
     /// Pairs that touch as far as typed coordinates can say.
     pub(super) fn touching_at_start(&self) -> Vec<(u32, u32)> {
         let ball = |rover: &Rover| Ball {
