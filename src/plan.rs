@@ -3,7 +3,7 @@
 mod listing;
 mod stiffness;
 
-pub use stiffness::{OwnDissipation, dda_restitution};
+pub use stiffness::OwnDissipation;
 
 use crate::chance::Distribution;
 use crate::contact::pair::Strength;

@@ -3,6 +3,7 @@
 pub mod hold;
 pub mod near;
 pub mod pair;
+pub mod submatrix;
 
 use crate::rock::Vec3;
 use crate::terrain::Terrain;

@@ -1,12 +1,15 @@
 //! An island of rocks that may touch each other, and its adaptive step.
 
 use super::bridge::{Bridge, Motion};
+use super::global::Global;
 use crate::contact::Feature;
 use crate::contact::hold::carry;
 use crate::contact::pair::{Tie, between};
+use crate::contact::submatrix::Vec6;
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::step::adaptive::{self, Control, ONSET, SHORTEST, Stuck, TRAVEL};
+use crate::step::dda::joint::Joint;
 use crate::step::grip::{Grip, Loss, World};
 use crate::step::law::{Body, Spot};
 use crate::step::stage::End;
@@ -41,6 +44,10 @@ pub struct Member {
     /// Power given to other rocks at each stage (W).
     given: [f64; STAGES],
     known: usize,
+    /// Contacts with the mesh in a fixed step.
+    pub(super) joints: Vec<Joint>,
+    /// Displacement in a fixed step: free, and what contacts add.
+    pub(super) ways: [Vec6; 2],
 }
 
 impl Default for Member {
@@ -70,6 +77,8 @@ impl Member {
             kept: Vec::new(),
             given: [0.0; STAGES],
             known: 0,
+            joints: Vec::new(),
+            ways: [Vec6::zeros(); 2],
         }
     }
 
@@ -124,6 +133,8 @@ pub struct Cluster<'a> {
     tie_rates: Vec<[Vec3; STAGES]>,
     /// Forces of the last solution.
     tie_forces: Vec<(f64, Vec3)>,
+    /// The global system of fixed steps.
+    pub(super) global: Global,
 }
 
 impl<'a> Cluster<'a> {
@@ -141,6 +152,7 @@ impl<'a> Cluster<'a> {
             tolerance: 0.0,
             tie_rates: vec![[Vec3::zeros(); STAGES]; ties.len()],
             tie_forces,
+            global: Global::default(),
             ties,
         }
     }
@@ -187,7 +199,7 @@ impl<'a> Cluster<'a> {
                 member.grip.holds.truncate(member.known);
             }
             if self.h * omega < SHORTEST {
-                return Err(Stuck);
+                return Err(Stuck::Unsettled);
             }
         }
     }
@@ -236,7 +248,7 @@ impl<'a> Cluster<'a> {
     }
 
     /// Longest step in which nothing jumps over a feature or another rock (s).
-    fn travel_limit(&mut self) -> f64 {
+    pub(super) fn travel_limit(&mut self) -> f64 {
         let mut limit = f64::INFINITY;
         for member in self.members.iter_mut().filter(|member| !member.flying) {
             let Member { grip, body, laws, .. } = &mut **member;
@@ -517,7 +529,7 @@ impl<'a> Cluster<'a> {
 }
 
 /// A broken bond keeps what friction can hold; the rest of its stretch is lost.
-fn break_bond(tie: &mut Tie) {
+pub(super) fn break_bond(tie: &mut Tie) {
     tie.bond = None;
     tie.captured = true;
     tie.push = tie.push.max(0.0);

@@ -6,16 +6,14 @@
 use super::bridge::{Bridge, Motion};
 use super::cluster::Member;
 
+use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::rock::Vec3;
 use crate::step::joint::{Normal, Slider};
 use crate::step::law::Spot;
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
-use nalgebra::{Matrix3, SMatrix, SVector};
+use nalgebra::Matrix3;
 
-type Vec6 = SVector<f64, 6>;
-type Mat6 = SMatrix<f64, 6, 6>;
-type Mat3x6 = SMatrix<f64, 3, 6>;
 
 /// One contact, linear around the present motion.
 struct Linear {

@@ -4,10 +4,13 @@
 //! step of a single rock for all of its rocks at once; only the contact forces are sought together.
 
 mod bridge;
+mod fixed;
+mod global;
 pub mod broad;
 mod cluster;
 pub mod islands;
 mod jump;
+mod link;
 mod sweeps;
 
 pub use cluster::{Cluster, Done, Member};

@@ -169,7 +169,7 @@ pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Resu
         step(world, grip, longest.min(h_max), &mut done);
     }
     let finite = grip.c.iter().chain(grip.v.iter()).chain(grip.w.iter()).all(|x| x.is_finite());
-    if finite { Ok(done) } else { Err(Stuck) }
+    if finite { Ok(done) } else { Err(Stuck::NotFinite) }
 }
 
 /// Whether a touch of the last look comes in faster than the capture speed.

@@ -51,6 +51,7 @@ pub struct Case {
     pub scheme: Scheme,
     pub tolerance_m_s: f64,
     pub step_s: f64,
+    pub shear_memory: bool,
     pub ground: Ground,
     pub rock: Rock,
     pub capture_speed_m_s: Option<f64>,
@@ -62,6 +63,7 @@ pub const CASE: Case = Case {
     scheme: Scheme::Adaptive,
     tolerance_m_s: 1e-3,
     step_s: 1e-5,
+    shear_memory: true,
     ground: GROUND,
     rock: ROCK,
     capture_speed_m_s: None,
@@ -77,7 +79,7 @@ impl Case {
             scheme: self.scheme,
             tolerance_m_s: self.tolerance_m_s,
             step_s: self.step_s,
-            shear_memory: true,
+            shear_memory: self.shear_memory,
             capture_speed_m_s: self.capture_speed_m_s,
         };
         let course = Course {

@@ -8,7 +8,7 @@ use crate::flight::{Landing, Parabola, leap};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::step::Scheme;
-use crate::step::adaptive::{Control, ONSET};
+use crate::step::adaptive::{Control, ONSET, Stuck};
 use crate::step::grip::World;
 use crate::step::tableau::{ESDIRK4, TR_BDF2};
 use crate::trajectory::fall::{Course, IMPACT_TIMES};
@@ -145,10 +145,17 @@ impl<'a> Job<'a> {
         while self.now_s < until_s {
             let room = until_s - self.now_s;
             let sweeps = cluster.sweeps + cluster.jumps;
-            let Ok(done) = cluster.advance(&control, room) else {
-                self.fail();
-                goes_on = false;
-                break;
+            let tried = match self.course.step.scheme {
+                Scheme::Dda => cluster.advance_fixed(self.course.step, room),
+                _ => cluster.advance(&control, room),
+            };
+            let done = match tried {
+                Ok(done) => done,
+                Err(stuck) => {
+                    self.fail(&stuck);
+                    goes_on = false;
+                    break;
+                }
             };
             self.now_s = if done.dt >= room { until_s } else { self.now_s + done.dt };
             let all_fly = self.note(&mut cluster, &done, sweeps);
@@ -208,9 +215,9 @@ impl<'a> Job<'a> {
         cluster.members.iter().all(|member| member.flying)
     }
 
-    fn fail(&mut self) {
+    fn fail(&mut self, stuck: &Stuck) {
         for rover in &mut self.rovers {
-            rover.leave(Stop::Failed("the contact step would not settle, however short".to_owned()));
+            rover.leave(Stop::Failed(stuck.to_string()));
         }
     }
 
