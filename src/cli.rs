@@ -9,6 +9,7 @@ use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
+use rockfall::study::verify::Verification;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -16,6 +17,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Exit status when a case does not hold.
+const CHECK_FAILED: u8 = 1;
 /// Exit status when the user's input is wrong.
 const WRONG_INPUT: u8 = 2;
 /// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal.
@@ -42,6 +45,12 @@ enum Command {
     Draw {
         /// Folder with the results of a run
         dir: PathBuf,
+    },
+    /// Run the exact cases and the method paper's examples; write table and figures
+    Verify {
+        /// Folder for table and figures
+        #[arg(long, value_name = "DIR", default_value = "reports/verification")]
+        out: PathBuf,
     },
     /// Check, convert and make meshes
     #[command(subcommand)]
@@ -108,6 +117,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Verify { out } => verify(&out),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
             wiring::mesh_from_grid(&grid, &out).map(say)
@@ -125,6 +135,13 @@ fn plan(scene: &Path) -> Result<ExitCode> {
     let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
     Ok(say(format!("{health}\n{plan}")))
+}
+
+fn verify(out: &Path) -> Result<ExitCode> {
+    let verification = Verification::run()?;
+    verification.write(out)?;
+    say(format!("{}\ntable and figures in {}", verification.table(), out.display()));
+    Ok(if verification.holds() { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }
 
 fn run(args: &RunArgs) -> Result<ExitCode> {

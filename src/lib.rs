@@ -34,3 +34,4 @@ pub mod ensemble;
 pub mod hazard;
 pub mod output;
 pub mod report;
+pub mod study;
