@@ -122,7 +122,8 @@ fn momentum_is_kept(falls: &[Trajectory]) {
     let (p1, l1) = momentum(falls, true);
     let largest = |of: &dyn Fn(&Trajectory) -> f64| falls.iter().map(of).fold(0.0, f64::max);
     let p = largest(&|f| f.rock.mass_kg() * f.extremes.speed_m_s);
-    let l = largest(&|f| f.rock.mass_kg() * f.extremes.speed_m_s * f.end.position_m.norm().max(1.0));
+    let l =
+        largest(&|f| f.rock.mass_kg() * f.extremes.speed_m_s * f.end.position_m.norm().max(1.0));
     assert!((p1 - p0).norm() <= 1e-12 * p, "{:e}", (p1 - p0).norm() / p);
     assert!((l1 - l0).norm() <= 1e-12 * l, "{:e}", (l1 - l0).norm() / l);
 }
@@ -198,7 +199,11 @@ fn a_cradle_with_gaps_hands_on_the_velocity() {
     for (k, fall) in falls.iter().enumerate() {
         let expected = if k == 4 { 1.0 } else { 0.0 };
         // five collisions at a local error of 1e-4 m/s a step
-        assert!((fall.end.velocity_m_s.x - expected).abs() < 5e-3, "{k}: {}", fall.end.velocity_m_s.x);
+        assert!(
+            (fall.end.velocity_m_s.x - expected).abs() < 5e-3,
+            "{k}: {}",
+            fall.end.velocity_m_s.x
+        );
     }
     momentum_is_kept(&falls);
 }
@@ -210,7 +215,8 @@ const G: f64 = 9.8;
 fn stack(lower: (f64, f64), upper: (f64, f64)) {
     let world = World { gravity_m_s2: G, tolerance_m_s: 1e-3, rest_time_s: 1.0, ..WORLD };
     let (r1, r2) = (lower.0, upper.0);
-    let [m1, m2] = [lower, upper].map(|(radius_m, density_kg_m3)| Rock { radius_m, density_kg_m3 }.mass_kg());
+    let [m1, m2] =
+        [lower, upper].map(|(radius_m, density_kg_m3)| Rock { radius_m, density_kg_m3 }.mass_kg());
     let p_n = GROUND.normal_stiffness_n_m;
     let expected = [(m1 + m2) * G / p_n, m2 * G / p_n];
     // A heavy rock would swing for long on the springs of a light one: it starts where they carry it.

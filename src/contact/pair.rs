@@ -72,11 +72,7 @@ impl Bond {
     /// (N, negative in tension), `drag` the size of the shear force (N).
     pub fn overload(&self, push: f64, drag: f64, tan_phi: f64) -> f64 {
         let over = |load: f64, most: f64| {
-            if load <= most {
-                0.0
-            } else {
-                (load - most) / most.max(f64::MIN_POSITIVE)
-            }
+            if load <= most { 0.0 } else { (load - most) / most.max(f64::MIN_POSITIVE) }
         };
         over(-push, self.pull_n).max(over(drag, (self.shear_n + push * tan_phi).max(0.0)))
     }

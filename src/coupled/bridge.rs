@@ -89,8 +89,7 @@ impl Bridge {
     /// Forces for motions without this contact's own effect, over a stage of length `h`.
     pub(super) fn solve(&mut self, ends: [&Motion; 2], h: f64) {
         let (springs, vn) = ((self.law.p_n, self.c_n), self.speed(ends));
-        let free = self.trial(ends, h)
-            / (1.0 + h * (self.law.p_s * h + self.law.c_s) * self.inv_t);
+        let free = self.trial(ends, h) / (1.0 + h * (self.law.p_s * h + self.law.c_s) * self.inv_t);
         if self.bond.is_some() {
             let stiff = self.law.p_n * h + self.c_n;
             self.push = (self.law.p_n * self.pen - stiff * vn) / (1.0 + stiff * h * self.inv_m);

@@ -1,7 +1,8 @@
 //! Scheme `dda` for an island: the paper's step at a fixed time step, open–close iteration over all contacts.
 
-use super::cluster::{Cluster, Done, Member};
+use super::cluster::{Cluster, Done};
 use super::link::Link;
+use super::member::Member;
 use crate::contact::Touch;
 use crate::contact::submatrix::Vec6;
 use crate::rock::Vec3;
@@ -200,8 +201,8 @@ impl Member {
         let touches = self.grip.touches;
         let before = self.joints.len();
         for (k, touch) in touches.iter().enumerate() {
-            let is_inside = touch.distance_m < self.body.radius
-                && self.joints.len() < crate::contact::MOST;
+            let is_inside =
+                touch.distance_m < self.body.radius && self.joints.len() < crate::contact::MOST;
             if is_inside && !knows(&self.joints, touch, &touches, &d) {
                 self.add_joint(terrain, how, (k, touch.distance_m - touch.normal.dot(&way)));
             }

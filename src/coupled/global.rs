@@ -3,8 +3,8 @@
 //! Rocks that no other touches have a block of their own; the rest is factorised together by sparse Cholesky, whose
 //! symbolic part is kept as long as the same rocks touch.
 
-use super::cluster::Member;
 use super::link::Link;
+use super::member::Member;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
 use faer::Side;
 use faer::prelude::Solve;
@@ -26,8 +26,10 @@ impl Global {
         let mut blocks: Vec<Mat6> = Vec::with_capacity(members.len());
         let mut loads: Vec<Vec6> = Vec::with_capacity(members.len());
         for member in members.iter() {
-            let contacts =
-                member.joints.iter().fold(Mat6::zeros(), |sum, joint| sum + joint.shape().stiffness());
+            let contacts = member
+                .joints
+                .iter()
+                .fold(Mat6::zeros(), |sum, joint| sum + joint.shape().stiffness());
             let mut load = -(contacts * member.ways[0]);
             member.joints.iter().for_each(|joint| joint.add_load(&mut load));
             blocks.push(contacts + inertia(member.body.mass, member.body.inertia, dt));

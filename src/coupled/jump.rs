@@ -4,7 +4,7 @@
 //! unsymmetric; solved by sparse LU.
 
 use super::bridge::{Bridge, Motion};
-use super::cluster::Member;
+use super::member::Member;
 
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::rock::Vec3;
@@ -13,7 +13,6 @@ use crate::step::law::Spot;
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use nalgebra::Matrix3;
-
 
 /// One contact, linear around the present motion.
 struct Linear {
@@ -67,9 +66,8 @@ impl Linear {
             slip: bridge.slip(ends),
             speed,
             n: bridge.n,
-            ends: [0, 1].map(|k| {
-                Some((bridge.ends[k], if k == 0 { 1.0 } else { -1.0 }, bridge.levers[k]))
-            }),
+            ends: [0, 1]
+                .map(|k| Some((bridge.ends[k], if k == 0 { 1.0 } else { -1.0 }, bridge.levers[k]))),
         }
     }
 }
@@ -88,8 +86,7 @@ impl System {
 
     fn add_spot(&mut self, k: usize, member: &Member, spot: &Spot, h: f64) {
         let (body, law, (v, w)) = (&member.body, &spot.law, &member.now);
-        let normal =
-            Normal::line((law.p_n, spot.c_n), (spot.pen, spot.push), body.mass, h);
+        let normal = Normal::line((law.p_n, spot.c_n), (spot.pen, spot.push), body.mass, h);
         let speed = spot.n.dot(v);
         let (stick, wound) = spot.trials(body, v, w, h);
         let push = normal.at(speed);
@@ -123,13 +120,16 @@ impl System {
     /// `K_kl += N_kᵀ b N_l + S_kᵀ (J S_l − e μ b N_l)`, with the rows `N` of the normal speed and `S` of the slip.
     fn add(&mut self, contact: &Linear) {
         let Linear { normal, shear, n, .. } = contact;
-        let constant = shear.force - shear.jacobian * contact.slip
-            + shear.along * (normal.b * contact.speed);
+        let constant =
+            shear.force - shear.jacobian * contact.slip + shear.along * (normal.b * contact.speed);
         let rows = contact.ends.map(|end| end.map(|(k, sign, lever)| (k, rows(n, sign, lever))));
         for (k, (n_k, s_k)) in rows.iter().flatten() {
             for (l, (n_l, s_l)) in rows.iter().flatten() {
                 let drag = shear.jacobian * s_l - (shear.along * normal.b) * n_l.transpose();
-                self.add_block((*k, *l), &((n_k * normal.b) * n_l.transpose() + s_k.transpose() * drag));
+                self.add_block(
+                    (*k, *l),
+                    &((n_k * normal.b) * n_l.transpose() + s_k.transpose() * drag),
+                );
             }
             let load = n_k * normal.a - s_k.transpose() * constant;
             for row in 0..6 {

@@ -51,10 +51,7 @@ impl Link {
             return None;
         }
         let v = -n;
-        let points = [
-            touching_point(&v, bodies[0].radius),
-            touching_point(&-v, bodies[1].radius),
-        ];
+        let points = [touching_point(&v, bodies[0].radius), touching_point(&-v, bodies[1].radius)];
         let law = &tie.law;
         let damped = law.c_s > 0.0;
         let c_n = if tie.captured && damped { law.c_n_captured } else { law.c_n };
@@ -125,8 +122,11 @@ impl Link {
         }
         // What the dashpot has done before the touch is not its work.
         let constant = self.p_n * self.gap - self.damper * self.inside();
-        let drag =
-            if self.shear.slides { self.shear.friction } else { self.shear.stretch * self.shear.spring };
+        let drag = if self.shear.slides {
+            self.shear.friction
+        } else {
+            self.shear.stretch * self.shear.spring
+        };
         (normal_row(&self.v) * constant - force_at(&self.t[k], &drag)) * SIGN[k]
     }
 
@@ -184,7 +184,7 @@ impl Link {
         let overload = |bond: &Bond| bond.overload(self.push, drag.norm(), self.tan_phi);
         let breaks = self.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0);
         if breaks {
-            super::cluster::break_bond(tie);
+            super::accept::break_bond(tie);
         }
         breaks
     }

@@ -3,6 +3,7 @@
 //! Rocks that may touch within a short while form an island; islands know nothing of each other. An island takes the
 //! step of a single rock for all of its rocks at once; only the contact forces are sought together.
 
+mod accept;
 mod bridge;
 mod fixed;
 mod global;
@@ -11,6 +12,9 @@ mod cluster;
 pub mod islands;
 mod jump;
 mod link;
+mod member;
+mod stage;
 mod sweeps;
 
-pub use cluster::{Cluster, Done, Member};
+pub use cluster::{Cluster, Done};
+pub use member::Member;

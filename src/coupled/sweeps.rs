@@ -5,8 +5,9 @@
 //! modes that they have found, and the sweeps judge the result.
 
 use super::bridge::Motion;
-use super::cluster::{Cluster, Member};
+use super::cluster::Cluster;
 use super::jump::jump;
+use super::member::Member;
 use crate::rock::Vec3;
 use crate::step::joint::Normal;
 use crate::step::law::within;
@@ -67,7 +68,8 @@ impl Cluster<'_> {
         let mut settled = true;
         for k in 0..spots + bridges {
             let k = if backwards { spots + bridges - 1 - k } else { k };
-            settled &= if k < spots { self.sweep_spots(k, h) } else { self.sweep_bridge(k - spots, h) };
+            settled &=
+                if k < spots { self.sweep_spots(k, h) } else { self.sweep_bridge(k - spots, h) };
         }
         settled
     }

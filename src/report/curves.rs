@@ -40,14 +40,16 @@ impl Curves {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
         };
         let (x, mut y) = (range(|p| p.0), range(|p| p.1));
-        let frame = Frame { left: 60.0, top: TOP_PX, right: WIDTH_PX - 16.0, bottom: TOP_PX + HEIGHT_PX };
+        let frame =
+            Frame { left: 60.0, top: TOP_PX, right: WIDTH_PX - 16.0, bottom: TOP_PX + HEIGHT_PX };
         let scale = frame.width() / (x.1 - x.0);
         if !self.discs.is_empty() {
             let middle = 0.5 * (y.0 + y.1);
             let half = (0.5 * frame.height() / scale).max(0.5 * (y.1 - y.0));
             y = (middle - half, middle + half);
         }
-        let panel = Panel::new(frame, Axis::linear(x.0, x.1, self.x), Axis::linear(y.0, y.1, self.y));
+        let panel =
+            Panel::new(frame, Axis::linear(x.0, x.1, self.x), Axis::linear(y.0, y.1, self.y));
         let size = (WIDTH_PX, TOP_PX + HEIGHT_PX + FOOT_PX);
         paint(name, size, &self.title, |paper| {
             panel.grid(paper);

@@ -23,11 +23,11 @@ pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 
 use crate::error::{Error, Result};
+use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
 use check::{Allowed, Checked, Complaint, number};
-use crate::step::Scheme;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use source::Lookup;

@@ -6,6 +6,7 @@
 
 mod crowd;
 mod job;
+mod rover;
 
 use super::fall::{Course, kept};
 use super::journey::{Journey, Keep};

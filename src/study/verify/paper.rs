@@ -63,7 +63,13 @@ fn symmetric_edge(all: &mut Verification) -> Result<()> {
     };
     let settles = settles_at_step(&falls[0].path);
     let off = falls[0].end.position_m.x;
-    all.rows.push(row("comes to rest at step", 109_881.0, SOURCE, settles, STEPS_SHARE * 109_881.0));
+    all.rows.push(row(
+        "comes to rest at step",
+        109_881.0,
+        SOURCE,
+        settles,
+        STEPS_SHARE * 109_881.0,
+    ));
     all.rows.push(row("stays above the edge, off by (m)", 0.0, "symmetry", off, 1e-12));
     all.figures.push(("fig_09b", speeds("Example 1b: speed and step (Fig. 9b)", &falls[0].path)));
     all.figures.push(("fig_08", side("Example 1b: way of the centre (Fig. 8)", &falls, 0)));
@@ -87,13 +93,29 @@ fn tetrahedron(all: &mut Verification) -> Result<()> {
         seconds,
     };
     let share = |step: f64| STEPS_SHARE * step;
-    all.rows.push(row("comes to rest at step", 107_004.0, SOURCE, settles, share(107_004.0), seconds));
-    all.rows.push(row("begins to fall at step", 151_004.0, SOURCE, leaves, share(151_004.0), seconds));
+    all.rows.push(row(
+        "comes to rest at step",
+        107_004.0,
+        SOURCE,
+        settles,
+        share(107_004.0),
+        seconds,
+    ));
+    all.rows.push(row(
+        "begins to fall at step",
+        151_004.0,
+        SOURCE,
+        leaves,
+        share(151_004.0),
+        seconds,
+    ));
     let off = balanced[0].end.position_m.x;
-    let still = row("without asymmetry stays, off by (m)", 0.0, "symmetry", off, 1e-6, balanced_seconds);
+    let still =
+        row("without asymmetry stays, off by (m)", 0.0, "symmetry", off, 1e-6, balanced_seconds);
     all.rows.push(still);
     all.figures.push(("fig_11", speeds("Example 2: speed and step (Fig. 11)", path)));
-    all.figures.push(("fig_12", heights("Example 2: vertical displacement and step (Fig. 12)", path)));
+    all.figures
+        .push(("fig_12", heights("Example 2: vertical displacement and step (Fig. 12)", path)));
     all.figures.push(("fig_10", side("Example 2: way of the centre (Fig. 10)", &falls, 0)));
     Ok(())
 }
@@ -110,20 +132,40 @@ fn containers(all: &mut Verification) -> Result<()> {
         allowed,
         seconds,
     };
-    let count = |of: &dyn Fn(&Trajectory) -> bool| falls.iter().filter(|fall| of(fall)).count() as f64;
+    let count =
+        |of: &dyn Fn(&Trajectory) -> bool| falls.iter().filter(|fall| of(fall)).count() as f64;
     let rest = count(&|fall| fall.stop == Stop::AtRest);
-    all.rows.push(row("spheres at rest at the end", 48.0, "the paper's Fig. 14; none is lost", rest, 0.0));
+    all.rows.push(row(
+        "spheres at rest at the end",
+        48.0,
+        "the paper's Fig. 14; none is lost",
+        rest,
+        0.0,
+    ));
     let left = count(&|fall| fall.end.position_m.x < 0.0);
     all.rows.push(row("spheres on the left", 24.0, "symmetry of the inferred start", left, 4.0));
     // the weight of all spheres on one spring
     let weight = 48.0 * falls[0].rock.mass_kg() * 9.8 / 1e9;
     let deepest = deepest_overlap(&falls);
-    all.rows.push(row("deepest overlap of two spheres (m)", 0.0, "weight of all on one spring", deepest, weight));
+    all.rows.push(row(
+        "deepest overlap of two spheres (m)",
+        0.0,
+        "weight of all on one spring",
+        deepest,
+        weight,
+    ));
     let unsettled = falls.iter().map(|fall| fall.effort.unsettled).sum::<u64>() as f64;
     let steps = falls.iter().map(|fall| fall.effort.steps).sum::<u64>() as f64;
-    all.rows.push(row("share of rock steps that did not settle", 0.0, "8 in 50 000 steps are usual", unsettled / steps, 1e-2));
+    all.rows.push(row(
+        "share of rock steps that did not settle",
+        0.0,
+        "8 in 50 000 steps are usual",
+        unsettled / steps,
+        1e-2,
+    ));
     for (name, step) in [("fig_14_a", 3_691), ("fig_14_b", 19_673), ("fig_14_end", usize::MAX)] {
-        all.figures.push((name, side("Example 3: the spheres from the side (Fig. 14)", &falls, step)));
+        all.figures
+            .push((name, side("Example 3: the spheres from the side (Fig. 14)", &falls, step)));
     }
     Ok(())
 }
@@ -142,10 +184,13 @@ fn rockfall(all: &mut Verification) -> Result<()> {
     };
     // y runs down the slope: its foot begins at 11 m
     let arrived = |fall: &&Trajectory| {
-        !matches!(fall.stop, Stop::Failed(_)) && (fall.stop == Stop::AtRest || fall.end.position_m.y > 11.0)
+        !matches!(fall.stop, Stop::Failed(_))
+            && (fall.stop == Stop::AtRest || fall.end.position_m.y > 11.0)
     };
-    all.rows.push(row("rocks at rest or past the foot", falls.iter().filter(arrived).count() as f64));
-    let mut ways = Curves::new("Example 4: trajectories (Fig. 17)", "down the slope (m)", "height (m)");
+    all.rows
+        .push(row("rocks at rest or past the foot", falls.iter().filter(arrived).count() as f64));
+    let mut ways =
+        Curves::new("Example 4: trajectories (Fig. 17)", "down the slope (m)", "height (m)");
     for fall in &falls {
         let way = fall.path.iter().map(|p| (p.motion.position_m.y, p.motion.position_m.z));
         ways.lines.push(way.collect());
@@ -215,9 +260,8 @@ fn settles_at_step(path: &[PathPoint]) -> f64 {
 /// Step at which the sphere, settled before, is off the apex by 1 % of its radius.
 fn leaves_at_step(path: &[PathPoint]) -> f64 {
     const OFF_M: f64 = 0.01 * 0.032;
-    let off = |point: &&PathPoint| {
-        point.motion.position_m.x.hypot(point.motion.position_m.y) > OFF_M
-    };
+    let off =
+        |point: &&PathPoint| point.motion.position_m.x.hypot(point.motion.position_m.y) > OFF_M;
     path.iter().find(off).map_or(f64::NAN, |point| point.motion.time_s / STEP_S)
 }
 
@@ -242,8 +286,7 @@ fn speeds(title: &str, path: &[PathPoint]) -> Curves {
 fn heights(title: &str, path: &[PathPoint]) -> Curves {
     let mut curves = Curves::new(title, "step", "vertical displacement (m)");
     let start = path.first().map_or(0.0, |point| point.motion.position_m.z);
-    let at =
-        |point: &PathPoint| (point.motion.time_s / STEP_S, point.motion.position_m.z - start);
+    let at = |point: &PathPoint| (point.motion.time_s / STEP_S, point.motion.position_m.z - start);
     curves.lines.push(path.iter().map(at).collect());
     curves
 }

@@ -8,8 +8,8 @@ use crate::coupled::islands::Islands;
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
 use crate::rock::Vec3;
-use crate::trajectory::fall::Course;
 use crate::trajectory::Trajectory;
+use crate::trajectory::fall::Course;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -129,9 +129,8 @@ impl<'a> Crowd<'a> {
     fn islands(&self, dt: f64) -> (Vec<(u32, u32)>, Islands) {
         let count = self.rovers.len();
         let g = self.course.gravity_m_s2;
-        let present: Vec<u32> = (0..count as u32)
-            .filter(|&k| !matches!(self.rover(k).state, State::Gone(_)))
-            .collect();
+        let present: Vec<u32> =
+            (0..count as u32).filter(|&k| !matches!(self.rover(k).state, State::Gone(_))).collect();
         let places: Vec<(Vec3, f64, f64)> = present
             .iter()
             .map(|&k| {
@@ -229,6 +228,9 @@ impl<'a> Crowd<'a> {
     pub(super) fn end(self, releases: &[Release]) -> Vec<Trajectory> {
         let Self { course, rovers, now_s, .. } = self;
         let rovers = rovers.into_iter().flatten().enumerate();
-        rovers.zip(releases).map(|((k, rover), release)| rover.end(course, k, release, now_s)).collect()
+        rovers
+            .zip(releases)
+            .map(|((k, rover), release)| rover.end(course, k, release, now_s))
+            .collect()
     }
 }
