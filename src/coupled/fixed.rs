@@ -8,7 +8,7 @@ use crate::contact::submatrix::Vec6;
 use crate::rock::Vec3;
 use crate::step::Settings;
 use crate::step::adaptive::Stuck;
-use crate::step::dda::joint::{Joint, Step};
+use crate::step::dda::contact::{Contact, Step};
 use crate::step::dda::slider::Change;
 use crate::step::dda::{DEEPEST, ROUNDS, SOLVES, compliance, free_motion, knows};
 use crate::step::grip::{Loss, World};
@@ -76,7 +76,7 @@ impl Cluster<'_> {
             }
         }
         for member in &mut self.members {
-            member.joints.iter_mut().for_each(Joint::stick);
+            member.joints.iter_mut().for_each(Contact::stick);
         }
         links.iter_mut().for_each(Link::stick);
         for _ in 0..SOLVES {
@@ -188,7 +188,7 @@ impl Member {
         let hold = grip.hold_of(&world, k, taken, &v);
         let touch = Touch { distance_m, ..grip.touches[k] };
         let law = world.law(touch.triangle);
-        joints.push(Joint::new(&step, law, &touch, (hold, &grip.holds[hold])));
+        joints.push(Contact::new(&step, law, &touch, (hold, &grip.holds[hold])));
     }
 
     /// Adds the contacts that the step ran into; whether there are any.

@@ -8,7 +8,7 @@ use super::member::Member;
 
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::rock::Vec3;
-use crate::step::joint::{Normal, Slider};
+use crate::step::joint::{Answer, Normal, Slider};
 use crate::step::law::Spot;
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
@@ -17,7 +17,7 @@ use nalgebra::Matrix3;
 /// One contact, linear around the present motion.
 struct Linear {
     normal: Normal,
-    shear: Slider,
+    shear: Answer,
     /// Slip and normal speed there.
     slip: Vec3,
     speed: f64,
@@ -59,10 +59,12 @@ impl Linear {
             let normal = Normal::line(springs, (bridge.pen, bridge.push), 1.0 / bridge.inv_m, h);
             (normal, law.friction)
         };
-        let push = if bridge.bond.is_some() { 1.0 } else { normal.at(speed) };
+        let (push, held) =
+            if bridge.bond.is_some() { (1.0, 1.0) } else { (normal.at(speed), bridge.push) };
+        let slider = Slider::left(cap, law.p_s * h + law.c_s, (&bridge.drag, held));
         Self {
             normal,
-            shear: Slider::of(trial, cap, push, law.p_s * h + law.c_s),
+            shear: slider.at(trial, push),
             slip: bridge.slip(ends),
             speed,
             n: bridge.n,
@@ -90,11 +92,14 @@ impl System {
         let speed = spot.n.dot(v);
         let (stick, wound) = spot.trials(body, v, w, h);
         let push = normal.at(speed);
-        let shear = Slider::of(stick, law.friction, push, law.p_s * h + law.c_s);
+        let shear = Slider::left(law.friction, law.p_s * h + law.c_s, (&spot.drag, spot.push));
+        let shear = shear.at(stick, push);
         let ends = [Some((k, 1.0, body.radius)), None];
         self.add(&Linear { normal, shear, slip: body.slip(&spot.n, v, w), speed, n: spot.n, ends });
         if law.rolling_m > 0.0 {
-            let roll = Slider::of(wound, law.rolling_m, push, law.k_r * h + law.c_r);
+            let roll =
+                Slider::left(law.rolling_m, law.k_r * h + law.c_r, (&spot.moment, spot.push));
+            let roll = roll.at(wound, push);
             self.add_rolling(k, &roll, &normal, (&spot.n, speed, w));
         }
     }
@@ -102,7 +107,7 @@ impl System {
     fn add_rolling(
         &mut self,
         k: usize,
-        roll: &Slider,
+        roll: &Answer,
         normal: &Normal,
         (n, speed, w): (&Vec3, f64, &Vec3),
     ) {

@@ -5,7 +5,7 @@ use crate::contact::Feature;
 use crate::contact::submatrix::Vec6;
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::step::dda::joint::Joint;
+use crate::step::dda::contact::Contact;
 use crate::step::grip::{Grip, World};
 use crate::step::law::{Body, Spot};
 use crate::step::stage::End;
@@ -36,7 +36,7 @@ pub struct Member {
     pub(super) given: [f64; STAGES],
     pub(super) known: usize,
     /// Contacts with the mesh in a fixed step.
-    pub(super) joints: Vec<Joint>,
+    pub(super) joints: Vec<Contact>,
     /// Displacement in a fixed step: free, and what contacts add.
     pub(super) ways: [Vec6; 2],
 }

@@ -4,7 +4,9 @@
 //! behind that mark is cut off when the run is resumed. So a resumed run writes the same bytes as an
 //! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
 
+mod claim;
 mod folder;
+mod merge;
 mod progress;
 mod read;
 mod rows;
@@ -12,6 +14,8 @@ mod summary;
 mod table;
 mod whole;
 
+pub use claim::Claim;
+pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
 pub use rows::{ImpactRow, PathRow};
@@ -73,6 +77,7 @@ pub enum Mode {
 /// Results being written.
 #[derive(Debug)]
 pub struct Output {
+    claim: Claim,
     dir: PathBuf,
     info: RunInfo,
     releases: Table,
@@ -89,8 +94,10 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// If the folder holds results that `mode` does not allow to touch, or cannot be written.
+    /// If the folder holds results that `mode` does not allow to touch, cannot be written, or is being written by
+    /// another process.
     pub fn create(info: RunInfo, dir: &Path, mode: Mode) -> Result<Self> {
+        let claim = Claim::on(dir)?;
         let found = folder::prepare(dir, &info, mode)?;
         let bytes = found.as_ref().map(|found| &found.bytes);
         let releases = open(dir, RELEASES, &Row::COLUMNS, bytes)?;
@@ -101,14 +108,15 @@ impl Output {
             .then(|| open(dir, IMPACTS, &ImpactRow::COLUMNS, bytes))
             .transpose()?;
         let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
-        let hazard = match found {
-            Some(found) => read::recall(dir, &info.identity, found.done, found.totals)?,
-            None => Hazard::default(),
-        };
+        let mut hazard = Hazard::default();
+        if let Some(found) = found {
+            hazard.totals = found.totals;
+            read::recall(dir, &info.identity, found.done, &mut hazard)?;
+        }
         let dir = dir.to_owned();
         let begun = Instant::now();
         let mut output =
-            Self { dir, info, releases, paths, impacts, hazard, begun, seconds_before };
+            Self { claim, dir, info, releases, paths, impacts, hazard, begun, seconds_before };
         output.mark()?;
         Ok(output)
     }
@@ -147,12 +155,13 @@ impl Output {
         self.mark()
     }
 
-    /// Writes the summary and gives the results as they are on the disk.
+    /// Writes the summary and gives the results as they are on the disk. Of a part of a run the progress stays:
+    /// it holds what [`merge`] needs.
     ///
     /// # Errors
     ///
     /// If releases remain: the message says how far the run came and how to go on. If the disk is full.
-    pub fn finish(self) -> Result<Results> {
+    pub fn finish(mut self) -> Result<Results> {
         let left = self.remaining().len();
         if left > 0 {
             let (done, all) = (self.hazard.rocks(), self.info.identity.releases);
@@ -162,10 +171,14 @@ impl Output {
             )));
         }
         let seconds = self.seconds();
+        let is_part = self.info.identity.is_part();
         let summary = Summary::new(self.info, &self.hazard, seconds);
         summary.write(&self.dir)?;
-        folder::remove(&self.dir.join(PROGRESS))?;
-        Ok(Results { dir: self.dir, summary, hazard: self.hazard })
+        if !is_part {
+            folder::remove(&self.dir.join(PROGRESS))?;
+        }
+        self.hazard.totals = summary.totals.clone();
+        Ok(Results { dir: self.dir, summary, hazard: self.hazard, claim: Some(self.claim) })
     }
 
     fn write_path(&mut self, fall: &Trajectory) -> Result<()> {
@@ -182,14 +195,18 @@ impl Output {
         })
     }
 
+    /// The tables that are written, with their names.
+    fn tables(&mut self) -> impl Iterator<Item = (&'static str, &mut Table)> {
+        let Self { releases, paths, impacts, .. } = self;
+        let kept = [(PATHS, paths), (IMPACTS, impacts)].into_iter();
+        let kept = kept.filter_map(|(name, table)| Some((name, table.as_mut()?)));
+        std::iter::once((RELEASES, releases)).chain(kept)
+    }
+
     /// Puts all rows on the disk, and then says that they are there.
     fn mark(&mut self) -> Result<()> {
-        let mut bytes = BTreeMap::from([(RELEASES.to_owned(), self.releases.sync()?)]);
-        for (name, table) in [(PATHS, &mut self.paths), (IMPACTS, &mut self.impacts)] {
-            if let Some(table) = table {
-                bytes.insert(name.to_owned(), table.sync()?);
-            }
-        }
+        let length = |(name, table): (&str, &mut Table)| Ok((name.to_owned(), table.sync()?));
+        let bytes: BTreeMap<String, u64> = self.tables().map(length).collect::<Result<_>>()?;
         let progress = Progress {
             title: self.info.title.clone(),
             identity: self.info.identity.clone(),

@@ -1,11 +1,12 @@
 //! Results read back: what figures and pages are drawn from.
 
-use super::progress::{Identity, PROGRESS};
+use super::claim::Claim;
+use super::progress::{Identity, PROGRESS, Progress};
 use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
 use super::{IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
-use crate::hazard::{Hazard, Row, Totals};
+use crate::hazard::{Hazard, Row};
 use std::path::{Path, PathBuf};
 
 /// The complete results in a folder.
@@ -17,6 +18,9 @@ pub struct Results {
     pub summary: Summary,
     /// All rocks together, from `releases.csv` and the totals of the summary.
     pub hazard: Hazard,
+    /// Keeps other processes away as long as the run that wrote them goes on.
+    #[expect(dead_code, reason = "held until it is dropped")]
+    pub(super) claim: Option<Claim>,
 }
 
 /// Reads the results in `dir`.
@@ -26,16 +30,29 @@ pub struct Results {
 /// If the folder holds no results, or those of a run that is not finished, or if `releases.csv` or `summary.json`
 /// is not as it was written.
 pub fn read(dir: &Path) -> Result<Results> {
-    let Some(summary) = Summary::read(dir)? else {
-        let why = if dir.join(PROGRESS).exists() {
-            "holds a run that is not finished: go on with `rockfall run SCENE --resume`"
-        } else {
-            "holds no results: there is no summary.json; write some with `rockfall run SCENE --out DIR`"
-        };
-        return Err(Error::Request(format!("{}: {why}", dir.display())));
+    let refuse = |why| Err(Error::Request(format!("{}: {why}", dir.display())));
+    let summary = match (Progress::read(dir)?, Summary::read(dir)?) {
+        // A summary beside a run that has begun again is that of the run before.
+        (Some(progress), _) if !progress.is_complete() => {
+            return refuse(
+                "holds a run that is not finished; go on with `rockfall run SCENE --resume`",
+            );
+        }
+        (_, Some(summary)) => summary,
+        (Some(_), None) => {
+            return refuse(
+                "holds a run without its summary; write it with `rockfall run SCENE --resume`",
+            );
+        }
+        (None, None) => {
+            return refuse(
+                "holds no results: there is no summary.json; write some with `rockfall run SCENE --out DIR`",
+            );
+        }
     };
-    let hazard = recall(dir, &summary.identity, summary.identity.releases, summary.totals.clone())?;
-    Ok(Results { dir: dir.to_owned(), summary, hazard })
+    let mut hazard = Hazard::with(summary.totals.clone());
+    recall(dir, &summary.identity, summary.identity.releases, &mut hazard)?;
+    Ok(Results { dir: dir.to_owned(), summary, hazard, claim: None })
 }
 
 impl Results {
@@ -67,17 +84,17 @@ impl Results {
     }
 }
 
-/// All rocks of the first `done` rows, which must be the releases asked for, in order, and no more.
+/// Adds the rocks of all `done` rows, which must be the first releases asked for, in order, and no more.
 pub(super) fn recall(
     dir: &Path,
     identity: &Identity,
     done: usize,
-    totals: Totals,
-) -> Result<Hazard> {
-    let mut hazard = Hazard::with(totals);
+    hazard: &mut Hazard,
+) -> Result<()> {
+    let before = hazard.rocks();
     for row in releases(dir)? {
         let row = row?;
-        let expected = identity.first_release + hazard.rocks();
+        let expected = identity.first_release + hazard.rocks() - before;
         if row.index != expected {
             return Err(broken(
                 dir,
@@ -86,10 +103,9 @@ pub(super) fn recall(
         }
         hazard.add(&row);
     }
-    if hazard.rocks() == done {
-        Ok(hazard)
-    } else {
-        Err(broken(dir, format!("{} rows instead of {done}", hazard.rocks())))
+    match hazard.rocks() - before {
+        rows if rows == done => Ok(()),
+        rows => Err(broken(dir, format!("{rows} rows instead of {done}"))),
     }
 }
 

@@ -84,7 +84,7 @@ impl Summary {
             stop_shares: by_stop(|stop| hazard.ended(stop)),
             statistics: statistics(hazard),
             largest_energy_balance_error: hazard.largest_balance_error(),
-            totals: hazard.totals.clone(),
+            totals: hazard.totals.rounded(),
             origin_m: info.origin_m.into(),
             plan: info.plan,
             warnings: info.warnings,

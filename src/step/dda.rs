@@ -12,7 +12,7 @@
 //! gains, however long the step. Dashpots act on the mean velocity `D/Δt` for that reason: on `V₁` they may add energy
 //! where a step turns the motion round.
 
-pub(crate) mod joint;
+pub(crate) mod contact;
 pub(crate) mod slider;
 
 use super::Settings;
@@ -22,7 +22,7 @@ use super::law::Body;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
 use crate::contact::{MOST, Touch};
 use crate::rock::Vec3;
-use joint::{Joint, Shape, Step};
+use contact::{Contact, Shape, Step};
 use nalgebra::{Cholesky, U6};
 use slider::Change;
 use std::f64::consts::PI;
@@ -98,11 +98,11 @@ impl Fixed {
         let (added, settled) = solve(world, &step, grip).ok_or(Stuck::NotFinite)?;
         let d = step.free + added;
         let mut done = Advance { dt, unsettled: !settled, ..Advance::default() };
-        for joint in grip.bench.joints() {
-            if joint.depth(&d) > DEEPEST * step.radius {
+        for contact in grip.bench.contacts() {
+            if contact.depth(&d) > DEEPEST * step.radius {
                 return Err(Stuck::SankIn);
             }
-            done.loss.add(&joint.loss(&d).on(world, joint.triangle), 1.0);
+            done.loss.add(&contact.loss(&d).on(world, contact.triangle), 1.0);
         }
         carry_on(world, grip, &d, &(added * (2.0 / dt)), dt);
         let stored = grip.stored_j(world);
@@ -131,16 +131,16 @@ pub(crate) fn compliance(body: &Body, dt: f64) -> (f64, f64) {
 /// Work space of the steps.
 #[derive(Debug)]
 pub struct Bench {
-    joints: [Joint; MOST],
+    contacts: [Contact; MOST],
     count: usize,
-    /// Memories that belong to the joints.
+    /// Memories that belong to the contacts.
     taken: u32,
     system: System,
 }
 
 impl Default for Bench {
     fn default() -> Self {
-        Self { joints: [Joint::NONE; MOST], count: 0, taken: 0, system: System::default() }
+        Self { contacts: [Contact::NONE; MOST], count: 0, taken: 0, system: System::default() }
     }
 }
 
@@ -148,18 +148,18 @@ impl Default for Bench {
 fn meet(world: &World, step: &Step, grip: &mut Grip) {
     (grip.bench.count, grip.bench.taken) = (0, 0);
     for k in 0..grip.touches.len() {
-        add_joint(world, step, grip, (k, grip.touches[k].distance_m));
+        add_contact(world, step, grip, (k, grip.touches[k].distance_m));
     }
 }
 
 /// Makes touch `k` of the last look into a contact, its plane being so far from the centre at the step's start (m).
-fn add_joint(world: &World, step: &Step, grip: &mut Grip, (k, distance_m): (usize, f64)) {
+fn add_contact(world: &World, step: &Step, grip: &mut Grip, (k, distance_m): (usize, f64)) {
     let v = grip.v;
     let hold = grip.hold_of(world, k, grip.bench.taken, &v);
     let touch = Touch { distance_m, ..grip.touches[k] };
     let law = world.law(touch.triangle);
     let bench = &mut grip.bench;
-    bench.joints[bench.count] = Joint::new(step, law, &touch, (hold, &grip.holds[hold]));
+    bench.contacts[bench.count] = Contact::new(step, law, &touch, (hold, &grip.holds[hold]));
     bench.count += 1;
     bench.taken |= 1 << hold;
 }
@@ -179,8 +179,8 @@ fn solve(world: &World, step: &Step, grip: &mut Grip) -> Option<(Vec6, bool)> {
         let before = grip.bench.count;
         for (k, touch) in touches.iter().enumerate() {
             let is_inside = touch.distance_m < step.radius && grip.bench.count < MOST;
-            if is_inside && !knows(grip.bench.joints(), touch, &touches, &d) {
-                add_joint(world, step, grip, (k, touch.distance_m - touch.normal.dot(&way)));
+            if is_inside && !knows(grip.bench.contacts(), touch, &touches, &d) {
+                add_contact(world, step, grip, (k, touch.distance_m - touch.normal.dot(&way)));
             }
         }
         if grip.bench.count == before {
@@ -190,17 +190,17 @@ fn solve(world: &World, step: &Step, grip: &mut Grip) -> Option<(Vec6, bool)> {
 }
 
 /// Whether a touch of the step's end took part in it, by itself or as the part of the surface that it came from.
-pub(crate) fn knows(joints: &[Joint], touch: &Touch, touches: &[Touch], d: &Vec6) -> bool {
-    joints.iter().any(|joint| {
-        joint.feature == touch.feature
-            || joint.leads_to(touch, d)
-                && touches.iter().all(|other| other.feature != joint.feature)
+pub(crate) fn knows(contacts: &[Contact], touch: &Touch, touches: &[Touch], d: &Vec6) -> bool {
+    contacts.iter().any(|contact| {
+        contact.feature == touch.feature
+            || contact.leads_to(touch, d)
+                && touches.iter().all(|other| other.feature != contact.feature)
     })
 }
 
 impl Bench {
-    fn joints(&self) -> &[Joint] {
-        &self.joints[..self.count]
+    fn contacts(&self) -> &[Contact] {
+        &self.contacts[..self.count]
     }
 
     /// Open–close iteration: what contacts add to the free displacement, and whether their states settled.
@@ -208,14 +208,14 @@ impl Bench {
     /// A step that does not settle is solved with all its contacts sticking: springs and dashpots alone take energy,
     /// never add any. `None` if it has no solution.
     fn settle(&mut self, world: &World, step: &Step, sweeps: &mut u64) -> Option<(Vec6, bool)> {
-        let joints = &mut self.joints[..self.count];
+        let contacts = &mut self.contacts[..self.count];
         let inertia = inertia(world.body.mass, world.body.inertia, step.dt);
         let mut rounds = 0;
         for _ in 0..SOLVES {
             *sweeps += 1;
-            let added = self.system.solve(&inertia, &step.free, joints)?;
+            let added = self.system.solve(&inertia, &step.free, contacts)?;
             let d = step.free + added;
-            match joints.iter_mut().map(|joint| joint.judge(&d)).max() {
+            match contacts.iter_mut().map(|contact| contact.judge(&d)).max() {
                 None | Some(Change::None) => return Some((added, true)),
                 Some(Change::Load) => {}
                 Some(Change::Mode) => rounds += 1,
@@ -229,14 +229,14 @@ impl Bench {
 
     /// The step with all contacts sticking, opened and closed until they agree.
     fn stick(&mut self, inertia: &Mat6, free: &Vec6, sweeps: &mut u64) -> Option<Vec6> {
-        let joints = &mut self.joints[..self.count];
-        joints.iter_mut().for_each(Joint::stick);
+        let contacts = &mut self.contacts[..self.count];
+        contacts.iter_mut().for_each(Contact::stick);
         let mut added = Vec6::zeros();
         for _ in 0..SOLVES {
             *sweeps += 1;
-            added = self.system.solve(inertia, free, joints)?;
+            added = self.system.solve(inertia, free, contacts)?;
             let d = free + added;
-            if !joints.iter_mut().fold(false, |any, joint| joint.open_or_close(&d) | any) {
+            if !contacts.iter_mut().fold(false, |any, contact| contact.open_or_close(&d) | any) {
                 break;
             }
         }
@@ -250,8 +250,8 @@ struct System {
     inertia: Mat6,
     shapes: [Shape; MOST],
     count: usize,
-    /// Stiffness of the contacts.
-    contacts: Mat6,
+    /// What the contacts add to the matrix.
+    springs: Mat6,
     /// Factor of inertia and contacts; `None` if there is none.
     factor: Option<Cholesky<f64, U6>>,
 }
@@ -262,26 +262,26 @@ impl Default for System {
             inertia: Mat6::zeros(),
             shapes: [Shape::NONE; MOST],
             count: 0,
-            contacts: Mat6::zeros(),
+            springs: Mat6::zeros(),
             factor: None,
         }
     }
 }
 
 impl System {
-    fn solve(&mut self, inertia: &Mat6, free: &Vec6, joints: &[Joint]) -> Option<Vec6> {
-        let shapes = || joints.iter().map(Joint::shape);
+    fn solve(&mut self, inertia: &Mat6, free: &Vec6, contacts: &[Contact]) -> Option<Vec6> {
+        let shapes = || contacts.iter().map(Contact::shape);
         let same = self.shapes[..self.count].iter().copied().eq(shapes());
         if !same || self.inertia != *inertia {
             self.inertia = *inertia;
-            self.count = joints.len();
+            self.count = contacts.len();
             self.shapes.iter_mut().zip(shapes()).for_each(|(known, shape)| *known = shape);
-            self.contacts = shapes().fold(Mat6::zeros(), |sum, shape| sum + shape.stiffness());
-            self.factor = Cholesky::new(self.contacts + inertia);
+            self.springs = shapes().fold(Mat6::zeros(), |sum, shape| sum + shape.stiffness());
+            self.factor = Cholesky::new(self.springs + inertia);
         }
-        let mut load = -(self.contacts * free);
-        for joint in joints {
-            joint.add_load(&mut load);
+        let mut load = -(self.springs * free);
+        for contact in contacts {
+            contact.add_load(&mut load);
         }
         self.factor.as_ref()?.solve_mut(&mut load);
         load.iter().all(|x| x.is_finite()).then_some(load)
@@ -293,8 +293,8 @@ fn carry_on(world: &World, grip: &mut Grip, d: &Vec6, kick: &Vec6, dt: f64) {
     for hold in grip.holds.iter_mut() {
         hold.closed = false;
     }
-    for joint in grip.bench.joints() {
-        joint.remember(d, &mut grip.holds[joint.hold]);
+    for contact in grip.bench.contacts() {
+        contact.remember(d, &mut grip.holds[contact.hold]);
     }
     grip.holds.retain(|hold| hold.closed);
     grip.c += d.fixed_rows::<3>(0);

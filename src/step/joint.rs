@@ -15,6 +15,8 @@ const SWEEPS: u32 = 4;
 const JUMPS: u32 = 12;
 /// Change of a force, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-9;
+/// A force below this part of its cap is held (–).
+const INSIDE: f64 = 1.0 - 1e-9;
 /// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
 const HOLD: f64 = 1e7;
 
@@ -160,8 +162,11 @@ fn add(
     let spin = n.cross_matrix() * r;
     let (stick, wound) = spot.trials(body, v, w, h);
     let push = normal.at(n.dot(v));
-    let shear = Slider::of(stick, law.friction, push, law.p_s * h + law.c_s);
-    let roll = Slider::of(wound, law.rolling_m, push, law.k_r * h + law.c_r);
+    // The sweeps know the mode. What the law gives at `now` does not: a newton of another contact that has changed
+    // since moves a stiff spring far beyond its cap.
+    let shear = Slider::left(law.friction, law.p_s * h + law.c_s, (&spot.drag, spot.push));
+    let roll = Slider::left(law.rolling_m, law.k_r * h + law.c_r, (&spot.moment, spot.push));
+    let (shear, roll) = (shear.at(stick, push), roll.at(wound, push));
     let slip = body.slip(&n, v, w);
     // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
     let drag0 = shear.force - shear.jacobian * slip + shear.along * (normal.b * n.dot(v));
@@ -182,9 +187,17 @@ fn add(
     torque -= spin.transpose() * drag0 + moment0;
 }
 
-/// A slider: its force, and how that changes with the speed and with the push.
+/// A slider and its mode.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slider {
+    coefficient: f64,
+    stiffness: f64,
+    holds: bool,
+}
+
+/// A slider's force, and how that changes with the speed and with the push.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Answer {
     pub(crate) force: Vec3,
     pub(crate) jacobian: Matrix3<f64>,
     /// Change of force with the push; zero while it sticks.
@@ -192,17 +205,21 @@ pub(crate) struct Slider {
 }
 
 impl Slider {
-    pub(crate) fn of(trial: Vec3, coefficient: f64, push: f64, stiffness: f64) -> Self {
-        let (cap, size) = (coefficient * push, trial.norm());
-        if size <= cap {
-            return Self {
-                force: trial,
-                jacobian: Matrix3::identity() * stiffness,
-                along: Vec3::zeros(),
-            };
+    /// The slider in the mode in which the sweeps left it with `force` under `push`; in no mode but sticking where the
+    /// push is without bound.
+    pub(crate) fn left(coefficient: f64, stiffness: f64, (force, push): (&Vec3, f64)) -> Self {
+        Self { coefficient, stiffness, holds: force.norm() < coefficient * push * INSIDE }
+    }
+
+    pub(crate) fn at(&self, trial: Vec3, push: f64) -> Answer {
+        let (cap, size) = (self.coefficient * push, trial.norm());
+        if self.holds || size <= cap {
+            let jacobian = Matrix3::identity() * self.stiffness;
+            return Answer { force: trial, jacobian, along: Vec3::zeros() };
         }
         let e = trial / size;
         let across = Matrix3::identity() - e * e.transpose();
-        Self { force: e * cap, jacobian: across * (stiffness * cap / size), along: e * coefficient }
+        let jacobian = across * (self.stiffness * cap / size);
+        Answer { force: e * cap, jacobian, along: e * self.coefficient }
     }
 }

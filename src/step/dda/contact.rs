@@ -58,7 +58,7 @@ impl Shape {
 
 /// One contact of a step.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Joint {
+pub(crate) struct Contact {
     /// Its memory.
     pub hold: usize,
     /// Where on the mesh.
@@ -88,7 +88,7 @@ pub(crate) struct Joint {
     shear_memory: bool,
 }
 
-impl Joint {
+impl Contact {
     /// No contact.
     pub(crate) const NONE: Self = Self {
         hold: 0,
@@ -116,7 +116,7 @@ impl Joint {
         let p1 = touching_point(&v, step.radius);
         let has_dashpots = law.c_s > 0.0;
         let c_n = if hold.captured && has_dashpots { law.c_n_captured } else { law.c_n };
-        let mut joint = Self {
+        let mut contact = Self {
             hold: k,
             feature: touch.feature,
             triangle: touch.triangle,
@@ -141,12 +141,12 @@ impl Joint {
             ..Self::NONE
         };
         if step.shear_memory {
-            joint.shear.stretch = carry(hold.shear, &hold.n, &touch.normal);
-            joint.shear.damper = law.c_s / step.dt;
+            contact.shear.stretch = carry(hold.shear, &hold.n, &touch.normal);
+            contact.shear.damper = law.c_s / step.dt;
         }
-        joint.presses = hold.closed || joint.depth(&step.free) > 0.0;
-        joint.expect(&step.free, hold);
-        joint
+        contact.presses = hold.closed || contact.depth(&step.free) > 0.0;
+        contact.expect(&step.free, hold);
+        contact
     }
 
     /// Begins with the sliders' state that the free motion and the last normal force suggest.
