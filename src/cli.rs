@@ -11,6 +11,7 @@ use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
+use rockfall::study::verify::Verification;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -18,6 +19,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Exit status when a case does not hold.
+const CHECK_FAILED: u8 = 1;
 /// Exit status when the user's input is wrong.
 const WRONG_INPUT: u8 = 2;
 /// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
@@ -59,6 +62,12 @@ enum Command {
     Draw {
         /// Folder with the results of a run
         dir: PathBuf,
+    },
+    /// Run the exact cases and the method paper's examples; write table and figures
+    Verify {
+        /// Folder for table and figures
+        #[arg(long, value_name = "DIR", default_value = "reports/verification")]
+        out: PathBuf,
     },
     /// Study the numerics: error against run time, stability
     #[command(subcommand)]
@@ -132,6 +141,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Verify { out } => verify(&out),
         Command::Study(command) => study::study(&command),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
@@ -150,6 +160,13 @@ fn plan(scene: &Path) -> Result<ExitCode> {
     let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
     Ok(say(format!("{health}\n{plan}")))
+}
+
+fn verify(out: &Path) -> Result<ExitCode> {
+    let verification = Verification::run()?;
+    verification.write(out)?;
+    say(format!("{}\ntable and figures in {}", verification.table(), out.display()));
+    Ok(if verification.holds() { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }
 
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
