@@ -2,13 +2,15 @@
 
 mod listing;
 mod stiffness;
+mod watch;
 
 pub use stiffness::{OwnDissipation, dda_restitution};
+pub use watch::{Curtain, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;
 use crate::error::Result;
 use crate::release::{Release, Releases};
-use crate::scene::{RecordTable, Scene, SolverTable};
+use crate::scene::{LineTable, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
 use std::convert::Infallible;
@@ -106,6 +108,10 @@ pub struct Plan {
     pub paths: Part<Paths>,
     /// Kept impacts.
     pub impacts: Part<()>,
+    /// Evaluation lines.
+    pub lines: Part<Vec<Curtain>>,
+    /// Cells of the maps.
+    pub maps: Part<Lattice>,
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
 }
@@ -176,6 +182,11 @@ impl Plan {
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
             ),
+            lines: Part::when(curtains(scene, &terrain), "the scene has none"),
+            maps: Part::when(
+                lattice(scene, &terrain)?,
+                "not asked for, [maps] cell_m = … writes them",
+            ),
             warnings,
             terrain,
         })
@@ -187,6 +198,14 @@ impl Plan {
     /// No ground below the point drawn, or a rock that starts inside the ground or a tree.
     pub fn release(&self, index: usize) -> Result<Release> {
         self.releases.release(&self.terrain, index)
+    }
+
+    /// What every rock is watched for.
+    pub fn watch(&self) -> Watch<'_> {
+        Watch {
+            lines: if let Part::Kept(lines) = &self.lines { lines } else { &[] },
+            cells: if let Part::Kept(cells) = &self.maps { Some(cells) } else { None },
+        }
     }
 
     /// The same plan with every part kept that this version can keep: leaving out changes the cost, never
@@ -229,6 +248,15 @@ fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
     let first = record.paths.unwrap_or(PATHS).min(count);
     let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
+}
+
+fn curtains(scene: &Scene, terrain: &Terrain) -> Option<Vec<Curtain>> {
+    let curtain = |line: &LineTable| Curtain::new(&line.name, &line.points_m, terrain.origin_m);
+    (!scene.lines.is_empty()).then(|| scene.lines.iter().map(curtain).collect())
+}
+
+fn lattice(scene: &Scene, terrain: &Terrain) -> Result<Option<Lattice>> {
+    scene.maps.as_ref().map(|maps| Lattice::over(terrain, maps, &scene.file)).transpose()
 }
 
 fn tree_triangles(terrain: &Terrain) -> Option<usize> {

@@ -2,8 +2,9 @@
 
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
+use rockfall::hazard::{LineInfo, MapFrame};
 use rockfall::output::{Identity, Mode, Output, RunInfo};
-use rockfall::plan::Plan;
+use rockfall::plan::{Curtain, Plan};
 use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::terrain::grid::Grid;
@@ -91,12 +92,37 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
             .iter()
             .map(|sheet| plan.ground_names[usize::from(sheet.ground)].clone())
             .collect(),
+        lines: line_infos(plan),
+        maps: map_frame(plan),
         keeps_paths: only.is_some() || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
         threads: ensemble.threads(),
         plan: plan.lines(),
         warnings: plan.warnings.clone(),
         mesh_health,
+    })
+}
+
+fn line_infos(plan: &Plan) -> Vec<LineInfo> {
+    let info = |line: &Curtain| LineInfo {
+        name: line.name.clone(),
+        length_m: line.length_m(),
+        corners_m: line.corners_m(plan.terrain.origin_m),
+    };
+    plan.watch().lines.iter().map(info).collect()
+}
+
+fn map_frame(plan: &Plan) -> Option<MapFrame> {
+    let cells = plan.watch().cells?;
+    // edges lie at multiples of the cell: the digits that the origin cost come back
+    let whole = |edge_m: f64| (edge_m / cells.cell_m).round() * cells.cell_m;
+    Some(MapFrame {
+        west_m: whole(cells.west_m + plan.terrain.origin_m.x),
+        south_m: whole(cells.south_m + plan.terrain.origin_m.y),
+        cell_m: cells.cell_m,
+        columns: cells.columns,
+        rows: cells.rows,
+        epsg: plan.epsg,
     })
 }
 

@@ -2,7 +2,7 @@
 
 use super::progress::{PROGRESS, Progress};
 use super::summary::{SUMMARY, Summary};
-use super::{IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES};
+use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES};
 use crate::error::{Error, Result};
 use std::ffi::OsStr;
 use std::fs;
@@ -10,10 +10,10 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files; those who say whose results they are come last, so that a half-emptied folder still knows.
-const FILES: [&str; 7] =
-    [RELEASES, PATHS, IMPACTS, "crossings.csv", "report.html", SUMMARY, PROGRESS];
+const FILES: [&str; 7] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY, PROGRESS];
 /// Folders of results with the endings of the files that belong to them.
-const FOLDERS: [(&str, &[&str]); 2] = [("figures", &["svg"]), ("maps", &["asc", "prj"])];
+const FOLDERS: [(&str, &[&str]); 2] =
+    [("figures", &["svg"]), ("maps", &["asc", "prj", "tif", "xml", "state"])];
 
 /// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from.
 pub(super) fn prepare(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {

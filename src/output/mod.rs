@@ -5,6 +5,7 @@
 //! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
 
 mod folder;
+mod maps;
 mod progress;
 mod read;
 mod rows;
@@ -19,7 +20,7 @@ pub use summary::{Run, Summary};
 pub use whole::write_whole;
 
 use crate::error::{Error, Result};
-use crate::hazard::{Hazard, Row};
+use crate::hazard::{CrossingRow, Hazard, Line, LineInfo, MapFrame, MapState, Maps, Row};
 use crate::rock::Vec3;
 use crate::trajectory::Trajectory;
 use progress::{PROGRESS, Progress};
@@ -32,7 +33,8 @@ use table::Table;
 const RELEASES: &str = "releases.csv";
 const PATHS: &str = "paths.csv";
 const IMPACTS: &str = "impacts.csv";
-const TABLES: [&str; 3] = [RELEASES, PATHS, IMPACTS];
+const CROSSINGS: &str = "crossings.csv";
+const TABLES: [&str; 4] = [RELEASES, PATHS, IMPACTS, CROSSINGS];
 
 /// What the results need to know of a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +47,10 @@ pub struct RunInfo {
     pub origin_m: Vec3,
     /// Name of the ground of each mesh, in the order of [`Terrain::sheets`](crate::terrain::Terrain).
     pub ground_of_sheet: Vec<String>,
+    /// Evaluation lines, in the order of the scene; none leaves `crossings.csv` out.
+    pub lines: Vec<LineInfo>,
+    /// Where the maps lie; none leaves them out.
+    pub maps: Option<MapFrame>,
     /// Whether `paths.csv` is written.
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.
@@ -78,8 +84,14 @@ pub struct Output {
     releases: Table,
     paths: Option<Table>,
     impacts: Option<Table>,
+    crossings: Option<Table>,
     hazard: Hazard,
+    lines: Vec<Line>,
+    /// None also when they are complete already.
+    maps: Option<Maps>,
     begun: Instant,
+    /// Rocks after which the state of the maps was last put on the disk.
+    state_at: Option<usize>,
     /// Time that earlier sessions took (s).
     seconds_before: f64,
 }
@@ -100,6 +112,11 @@ impl Output {
             .keeps_impacts
             .then(|| open(dir, IMPACTS, &ImpactRow::COLUMNS, bytes))
             .transpose()?;
+        let crossings = (!info.lines.is_empty())
+            .then(|| open(dir, CROSSINGS, &CrossingRow::COLUMNS, bytes))
+            .transpose()?;
+        let lines = read::recall_lines(dir, &info.lines, found.is_some())?;
+        let maps = open_maps(dir, &info, found.as_ref())?;
         let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
         let hazard = match found {
             Some(found) => read::recall(dir, &info.identity, found.done, found.totals)?,
@@ -107,8 +124,20 @@ impl Output {
         };
         let dir = dir.to_owned();
         let begun = Instant::now();
-        let mut output =
-            Self { dir, info, releases, paths, impacts, hazard, begun, seconds_before };
+        let mut output = Self {
+            dir,
+            info,
+            releases,
+            paths,
+            impacts,
+            crossings,
+            hazard,
+            lines,
+            maps,
+            begun,
+            state_at: None,
+            seconds_before,
+        };
         output.mark()?;
         Ok(output)
     }
@@ -141,6 +170,10 @@ impl Output {
             self.releases.write(&row)?;
             self.write_path(fall)?;
             self.write_impacts(fall)?;
+            self.write_crossings(fall)?;
+            if let Some(maps) = &mut self.maps {
+                maps.add(&fall.visits, row.stop, row.end_m);
+            }
             self.hazard.add(&row);
             self.hazard.totals.add(fall);
         }
@@ -162,10 +195,15 @@ impl Output {
             )));
         }
         let seconds = self.seconds();
-        let summary = Summary::new(self.info, &self.hazard, seconds);
+        let done = self.hazard.rocks();
+        if let Some(maps) = &self.maps {
+            maps::write(&self.dir, maps, done)?;
+        }
+        let summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
         summary.write(&self.dir)?;
         folder::remove(&self.dir.join(PROGRESS))?;
-        Ok(Results { dir: self.dir, summary, hazard: self.hazard })
+        maps::remove_state(&self.dir, done)?;
+        Ok(Results { dir: self.dir, summary, hazard: self.hazard, lines: self.lines })
     }
 
     fn write_path(&mut self, fall: &Trajectory) -> Result<()> {
@@ -182,28 +220,67 @@ impl Output {
         })
     }
 
+    fn write_crossings(&mut self, fall: &Trajectory) -> Result<()> {
+        let Some(table) = &mut self.crossings else { return Ok(()) };
+        for crossing in &fall.crossings {
+            let line = &mut self.lines[crossing.line];
+            let who = (fall.index, &fall.rock);
+            let row = CrossingRow::of(who, crossing, &line.info.name, self.info.origin_m);
+            table.write(&row)?;
+            line.add(&row);
+        }
+        Ok(())
+    }
+
     /// Puts all rows on the disk, and then says that they are there.
     fn mark(&mut self) -> Result<()> {
         let mut bytes = BTreeMap::from([(RELEASES.to_owned(), self.releases.sync()?)]);
-        for (name, table) in [(PATHS, &mut self.paths), (IMPACTS, &mut self.impacts)] {
+        for (name, table) in [
+            (PATHS, &mut self.paths),
+            (IMPACTS, &mut self.impacts),
+            (CROSSINGS, &mut self.crossings),
+        ] {
             if let Some(table) = table {
                 bytes.insert(name.to_owned(), table.sync()?);
             }
         }
+        let done = self.hazard.rocks();
+        if let Some(maps) = &self.maps {
+            maps::write_state(&self.dir, maps, done)?;
+        }
         let progress = Progress {
             title: self.info.title.clone(),
             identity: self.info.identity.clone(),
-            done: self.hazard.rocks(),
+            done,
             bytes,
             totals: self.hazard.totals.clone(),
             seconds: self.seconds(),
         };
-        progress.write(&self.dir)
+        progress.write(&self.dir)?;
+        match self.state_at.replace(done).filter(|before| *before != done) {
+            Some(before) => maps::remove_state(&self.dir, before),
+            None => Ok(()),
+        }
     }
 
     fn seconds(&self) -> f64 {
         self.seconds_before + self.begun.elapsed().as_secs_f64()
     }
+}
+
+/// The maps so far; none when they are not asked for or complete.
+fn open_maps(dir: &Path, info: &RunInfo, found: Option<&Progress>) -> Result<Option<Maps>> {
+    let Some(frame) = info.maps else { return Ok(None) };
+    let state = match found {
+        None => MapState::default(),
+        Some(found)
+            if found.done == found.identity.releases && !maps::has_state(dir, found.done) =>
+        {
+            return Ok(None);
+        }
+        Some(found) => maps::read_state(dir, found.done)?,
+    };
+    Ok(Some(Maps::new(frame, state)))
 }
 
 /// Opens one table: new, or behind the rows that are known to be good.

@@ -3,9 +3,9 @@
 use super::progress::{Identity, PROGRESS};
 use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
-use super::{IMPACTS, PATHS, RELEASES, table};
+use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
-use crate::hazard::{Hazard, Row, Totals};
+use crate::hazard::{CrossingRow, Hazard, Line, LineInfo, Row, Totals};
 use std::path::{Path, PathBuf};
 
 /// The complete results in a folder.
@@ -17,6 +17,8 @@ pub struct Results {
     pub summary: Summary,
     /// All rocks together, from `releases.csv` and the totals of the summary.
     pub hazard: Hazard,
+    /// All first crossings line by line, from `crossings.csv`.
+    pub lines: Vec<Line>,
 }
 
 /// Reads the results in `dir`.
@@ -35,7 +37,9 @@ pub fn read(dir: &Path) -> Result<Results> {
         return Err(Error::Request(format!("{}: {why}", dir.display())));
     };
     let hazard = recall(dir, &summary.identity, summary.identity.releases, summary.totals.clone())?;
-    Ok(Results { dir: dir.to_owned(), summary, hazard })
+    let infos: Vec<LineInfo> = summary.lines.iter().map(|line| line.info.clone()).collect();
+    let lines = recall_lines(dir, &infos, true)?;
+    Ok(Results { dir: dir.to_owned(), summary, hazard, lines })
 }
 
 impl Results {
@@ -57,6 +61,15 @@ impl Results {
         if_there(self.dir.join(PATHS), &PathRow::COLUMNS)
     }
 
+    /// The rows of `crossings.csv`, one by one, in the order of releases and of lines; none without lines.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::rows`].
+    pub fn crossings(&self) -> Result<impl Iterator<Item = Result<CrossingRow>>> {
+        if_there(self.dir.join(CROSSINGS), &CrossingRow::COLUMNS)
+    }
+
     /// The rows of `impacts.csv`, one by one, in the order of releases and of time; none if no impact was kept.
     ///
     /// # Errors
@@ -65,6 +78,29 @@ impl Results {
     pub fn impacts(&self) -> Result<impl Iterator<Item = Result<ImpactRow<'static>>>> {
         if_there(self.dir.join(IMPACTS), &ImpactRow::COLUMNS)
     }
+}
+
+/// The lines with the crossings that are on the disk, if any are there.
+pub(super) fn recall_lines(dir: &Path, infos: &[LineInfo], has_rows: bool) -> Result<Vec<Line>> {
+    let mut lines: Vec<Line> = infos.iter().cloned().map(Line::new).collect();
+    if lines.is_empty() || !has_rows {
+        return Ok(lines);
+    }
+    for row in table::rows::<CrossingRow>(dir.join(CROSSINGS), &CrossingRow::COLUMNS)? {
+        let row = row?;
+        let Some(line) = lines.iter_mut().find(|line| line.info.name == row.line) else {
+            let remedy =
+                format!("it must agree with {SUMMARY}: restore it, or run again with --overwrite");
+            return Err(Error::input(
+                &dir.join(CROSSINGS),
+                "rows",
+                format!("the line {}", row.line),
+                remedy,
+            ));
+        };
+        line.add(&row);
+    }
+    Ok(lines)
 }
 
 /// All rocks of the first `done` rows, which must be the releases asked for, in order, and no more.

@@ -1,6 +1,6 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{Part, Paths, Plan, RestRule, dda_restitution};
+use super::{Curtain, Part, Paths, Plan, RestRule, dda_restitution};
 use crate::release::Where;
 use crate::step::{Scheme, Settings};
 use std::fmt;
@@ -38,6 +38,8 @@ impl Plan {
             coupled_solve,
             paths,
             impacts,
+            lines,
+            maps,
             warnings,
         } = self;
         let place = place(releases.place());
@@ -85,6 +87,14 @@ impl Plan {
             format!("kept for {first} of {count} releases, every {step_s} s")
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
+        list.part("lines", lines, |lines| {
+            let each = |line: &Curtain| format!("{} ({:.1} m)", line.name, line.length_m());
+            let each: Vec<String> = lines.iter().map(each).collect();
+            format!("{}: {}; crossings exact between stored points", lines.len(), each.join(", "))
+        });
+        list.part("maps", maps, |cells| {
+            format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
+        });
         list.lines("warning", warnings.iter().cloned());
         list.0
     }

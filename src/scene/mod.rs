@@ -26,7 +26,7 @@ use crate::error::{Error, Result};
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
-use check::{Allowed, Checked, Complaint, number};
+use check::{Allowed, Checked, Complaint, check_names, number};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use source::Lookup;
@@ -161,6 +161,7 @@ impl Scene {
         self.release.check().map_err(|wrong| wrong.inside("release"))?;
         self.solver.check().map_err(|wrong| wrong.inside("solver"))?;
         self.record.check().map_err(|wrong| wrong.inside("record"))?;
+        check_names("lines", self.lines.iter().map(|line| line.name.as_str()))?;
         if let Some(maps) = &self.maps {
             maps.check().map_err(|wrong| wrong.inside("maps"))?;
         }
@@ -204,14 +205,6 @@ impl Scene {
             }
             let remedy = format!("write false: contact between rocks {later}");
             return Err(Complaint::about("together", remedy).inside("release"));
-        }
-        if !self.lines.is_empty() {
-            let remedy = format!("remove [[lines]]: evaluation at lines {later}");
-            return Err(Complaint::about("lines", remedy).finding("found an evaluation line"));
-        }
-        if self.maps.is_some() {
-            let remedy = format!("remove [maps]: writing rasters {later}");
-            return Err(Complaint::about("maps", remedy).finding("found a raster"));
         }
         Ok(())
     }
