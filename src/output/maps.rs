@@ -7,7 +7,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use tiff::encoder::{Compression, TiffEncoder, colortype::Gray32Float};
+use tiff::encoder::colortype::Gray32Float;
+use tiff::encoder::compression::DeflateLevel;
+use tiff::encoder::{Compression, TiffEncoder};
 use tiff::tags::Tag;
 
 /// Folder of the rasters below the result folder.
@@ -69,7 +71,7 @@ fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
     const GDAL_NODATA: u16 = 42_113;
     let mut bytes = Cursor::new(Vec::new());
     let mut file =
-        TiffEncoder::new(&mut bytes)?.with_compression(Compression::Deflate(Default::default()));
+        TiffEncoder::new(&mut bytes)?.with_compression(Compression::Deflate(DeflateLevel::default()));
     let mut image = file.new_image::<Gray32Float>(frame.columns, frame.rows)?;
     let north_m = frame.south_m + f64::from(frame.rows) * frame.cell_m;
     let tie = [0.0, 0.0, 0.0, frame.west_m, north_m, 0.0];

@@ -102,7 +102,7 @@ impl Chance {
             height_normal_m: if index == 1 { f64::NAN } else { self.number(2.0) },
             times: 1 + line as u32,
         };
-        (0..1 + index % 2).map(crossing).collect()
+        (0..=index % 2).map(crossing).collect()
     }
 
     fn visits(&mut self) -> Vec<Visit> {
