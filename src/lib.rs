@@ -1,18 +1,35 @@
 //! Rockfall hazard by spherical discontinuous deformation analysis (SDDA) on triangle meshes.
+//!
+//! A **scene** says what is asked. A **plan** says what that needs, and names what it leaves out and why. Each
+//! **rock** is a pure function of the plan and its number. The **hazard** is what all rocks say together. Files and
+//! figures are drawn from the hazard, and nothing flows back:
+//!
+//! ```text
+//! scene.toml ─► Scene ─► Terrain ─► Plan ─► Trajectory × n ─► Hazard ─► CSV · JSON · SVG · HTML
+//! ```
+//!
+//! The modules below stand in the order of the floors of a house: each uses only modules above it in the list.
+//! SI units and `f64` throughout; z points up. The library prints nothing.
 
-pub mod chance;
-pub mod contact;
-pub mod ensemble;
+// words
 pub mod error;
-pub mod flight;
+pub mod chance;
+pub mod rock;
+// world
 pub mod ground;
+pub mod terrain;
+// physics
+pub mod contact;
+pub mod flight;
+pub mod step;
+// question
+pub mod scene;
+pub mod release;
+pub mod plan;
+// run
+pub mod trajectory;
+pub mod ensemble;
+// answer
 pub mod hazard;
 pub mod output;
-pub mod plan;
-pub mod release;
 pub mod report;
-pub mod rock;
-pub mod scene;
-pub mod step;
-pub mod terrain;
-pub mod trajectory;

@@ -5,10 +5,22 @@ pub mod near;
 
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use crate::trajectory::FeatureKind;
+use serde::{Deserialize, Serialize};
 
 /// Most contacts one rock keeps at a time, the deepest first.
 pub const MOST: usize = 8;
+
+/// What of the mesh was touched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FeatureKind {
+    /// Inside of a triangle.
+    Face,
+    /// Edge between or beside triangles.
+    Edge,
+    /// Corner.
+    Vertex,
+}
 
 /// What of the mesh a contact belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,9 +6,9 @@
 //! either side of a sheet, and every contact belongs to one feature.
 
 use super::{Feature, Touch, Touches};
+use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use crate::trajectory::FeatureKind;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
 const SLACK: f64 = 1e-9;

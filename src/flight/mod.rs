@@ -3,6 +3,7 @@
 //! Between touches nothing but gravity acts, so the flight is leapt over: the first time at which the ball meets a
 //! face (a quadratic), an edge or a corner (quartics) is solved for, over the boxes that the parabola crosses.
 
+mod abreast;
 mod roots;
 mod touch;
 

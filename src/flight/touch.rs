@@ -1,6 +1,7 @@
 //! When a ball on a parabola first touches one triangle, its own edges and its own corners.
 
 use super::Parabola;
+use super::abreast::Abreast;
 use super::roots::{first_fall, quadratic};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -44,13 +45,16 @@ pub(super) fn of_triangle(
     }
     let owned = terrain.features.owned[t as usize];
     if owned != 0 && slab.0 <= slab.1.min(best) {
+        let abreast = Abreast::new(face, flight, (slab.0, slab.1.min(best)));
         for k in 0..3 {
             let window = (slab.0, slab.1.min(best));
-            let time = [
-                (owned & (1 << k) != 0).then(|| edge(terrain, t, k, flight, window)).flatten(),
-                (owned & (8 << k) != 0).then(|| corner(terrain, t, k, flight, window)).flatten(),
+            let times = [
+                (owned & (1 << k) != 0 && abreast.edge(k))
+                    .then(|| edge(terrain, t, k, flight, window)),
+                (owned & (8 << k) != 0 && abreast.corner(k))
+                    .then(|| corner(terrain, t, k, flight, window)),
             ];
-            for time in time.into_iter().flatten() {
+            for time in times.into_iter().flatten().flatten() {
                 if time <= best {
                     best = time;
                     found = Some(time);
@@ -80,9 +84,19 @@ impl Height {
         let (ha, hb) = (at(ta), at(tb));
         let turn = -0.5 * self.h1 / self.h2;
         let ht = if turn > ta && turn < tb { at(turn) } else { ha };
-        let (low, high) = (ha.min(hb).min(ht), ha.max(hb).max(ht));
-        let slack = 1e-9 * radius;
-        (low <= radius + slack && high >= -radius - slack).then_some((ta, tb))
+        let near = radius * (1.0 + 1e-9);
+        if ha.min(hb).min(ht) > near || ha.max(hb).max(ht) < -near {
+            return None;
+        }
+        let (mut first, mut last) =
+            (if ha.abs() <= near { ta } else { tb }, if hb.abs() <= near { tb } else { ta });
+        for level in [near, -near] {
+            let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
+            for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
+                (first, last) = (first.min(t), last.max(t));
+            }
+        }
+        Some((first, last))
     }
 
     /// First time in the window at which the ball comes down to the plane from one side (+1, −1).

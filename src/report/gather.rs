@@ -5,7 +5,7 @@ use super::input::{
 };
 use super::raster::GroundRaster;
 use crate::error::Result;
-use crate::hazard::{self, Hazard, PERCENTS, Percentile, StopKind};
+use crate::hazard::{self, Exceedance, Hazard, PERCENTS, Percentile, StopKind};
 use crate::output::PathRow;
 use crate::output::Results;
 use crate::rock::Vec3;
@@ -31,25 +31,43 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let hazard = &results.hazard;
     let releases =
         results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
-    let runout = hazard.sample(hazard::Quantity::Runout).exceedance();
-    let band = |x: f64, share: f64, low: Option<f64>, high: Option<f64>| BandPoint {
-        x,
-        y: estimate(share, low, high),
-    };
     Ok(Report {
         text: text_of(results),
         releases,
         paths: paths_of(results)?,
         ground,
-        runout_exceedance: runout
-            .iter()
-            .map(|at| band(at.value, at.share, at.low_95, at.high_95))
-            .collect(),
+        runout_exceedance: band(&hazard.sample(hazard::Quantity::Runout).exceedance()),
         quantiles: TABLED.map(|(here, there)| (here, quantiles(hazard, there))).into(),
         stops: StopKind::ALL.map(|kind| stop_share(hazard, kind)).into(),
         headline: headline(hazard),
         tables: vec![table(hazard)],
     })
+}
+
+/// The exceedance curve with its band upright: the intervals of the percentiles lie along x, figures want them along y.
+fn band(curve: &[Exceedance]) -> Vec<BandPoint> {
+    let low: Vec<(f64, f64)> = curve.iter().filter_map(|at| Some((at.low_95?, at.share))).collect();
+    let high: Vec<(f64, f64)> =
+        curve.iter().filter_map(|at| Some((at.high_95?, at.share))).collect();
+    let point = |at: &Exceedance| BandPoint {
+        x: at.value,
+        y: Estimate {
+            value: at.share,
+            low: share_at(&low, at.value),
+            high: share_at(&high, at.value),
+        },
+    };
+    curve.iter().map(point).collect()
+}
+
+/// Share at `x` on a curve of points that rise in x and fall in share: 1 before the curve, 0 after it.
+fn share_at(curve: &[(f64, f64)], x: f64) -> f64 {
+    let k = curve.partition_point(|&(value, _)| value < x);
+    match (k.checked_sub(1).and_then(|before| curve.get(before)), curve.get(k)) {
+        (Some(&(x0, y0)), Some(&(x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+        (None, Some(_)) => 1.0,
+        _ => 0.0,
+    }
 }
 
 fn estimate(value: f64, low: Option<f64>, high: Option<f64>) -> Estimate {

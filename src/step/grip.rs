@@ -60,6 +60,7 @@ impl Loss {
     }
 
     /// The same, booked under trees where the triangle is one's.
+    #[must_use]
     #[inline]
     pub fn on(self, world: &World, triangle: u32) -> Self {
         if world.terrain.is_tree(triangle) {
@@ -93,6 +94,14 @@ pub struct Rate {
 }
 
 impl Rate {
+    /// Takes over another's rates, of the springs the first `holds` only.
+    #[inline]
+    pub fn take(&mut self, from: &Self, holds: usize) {
+        (self.c, self.v, self.w, self.loss) = (from.c, from.v, from.w, from.loss);
+        self.shear[..holds].copy_from_slice(&from.shear[..holds]);
+        self.roll[..holds].copy_from_slice(&from.roll[..holds]);
+    }
+
     /// No change.
     pub const NONE: Self = Self {
         c: Vec3::new(0.0, 0.0, 0.0),
@@ -123,6 +132,8 @@ pub struct Grip {
     pub rates: [Rate; STAGES],
     /// Whether the first rate belongs to the present state.
     pub fresh: bool,
+    /// Energy in the springs of the contacts at the present state (J), if the first rate is fresh.
+    pub stored: f64,
     /// Contacts of the stage in hand.
     pub spots: [Spot; MOST],
     /// How many of them.
@@ -149,6 +160,7 @@ impl Default for Grip {
             touches: Touches::default(),
             rates: [Rate::NONE; STAGES],
             fresh: false,
+            stored: 0.0,
             spots: [Spot::NONE; MOST],
             spot_count: 0,
             sweeps: 0,
@@ -163,19 +175,24 @@ impl Grip {
         self.holds.clear();
         self.fresh = false;
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
-        let touches = self.touches;
-        for (k, touch) in touches.iter().enumerate() {
-            self.holds.find(touch, &touches, (1 << k) - 1, || world.captures(touch, &v));
+        for (k, touch) in self.touches.iter().enumerate() {
+            self.holds.find(touch, &self.touches, (1 << k) - 1, || world.captures(touch, &v));
+        }
+    }
+
+    /// Sees to it that the features around `c` are known.
+    #[inline]
+    pub fn know(&mut self, world: &World, c: &Vec3) {
+        if !self.near.covers(c) {
+            let r = world.body.radius;
+            self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
         }
     }
 
     /// Asks for the touches at `c` nearer than `reach` (m).
     #[inline]
     pub fn look(&mut self, world: &World, c: &Vec3, reach: f64) {
-        let r = world.body.radius;
-        if !self.near.covers(c) {
-            self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
-        }
+        self.know(world, c);
         self.near.touches(world.terrain, c, reach, &mut self.touches);
     }
 
@@ -188,10 +205,8 @@ impl Grip {
     /// The memory of touch `k` of the last look; a new one starts without stretch and without history of rates.
     #[inline]
     pub fn hold_of(&mut self, world: &World, k: usize, taken: u32, v: &Vec3) -> usize {
-        let before = self.holds.len();
-        let touch = self.touches[k];
-        let touches = self.touches;
-        let hold = self.holds.find(&touch, &touches, taken, || world.captures(&touch, v));
+        let (before, touch) = (self.holds.len(), &self.touches[k]);
+        let hold = self.holds.find(touch, &self.touches, taken, || world.captures(touch, v));
         if hold >= before {
             for rate in &mut self.rates {
                 (rate.shear[hold], rate.roll[hold]) = (Vec3::zeros(), Vec3::zeros());

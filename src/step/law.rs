@@ -164,6 +164,18 @@ impl Spot {
         (dv, dw)
     }
 
+    /// Penetration at the stage's end (m), where the velocity is `v`.
+    #[inline]
+    pub fn pen_at(&self, v: &Vec3, h: f64) -> f64 {
+        self.pen - h * self.n.dot(v)
+    }
+
+    /// Whether it still holds the rock at the stage's end.
+    #[inline]
+    pub fn is_closed(&self, v: &Vec3, h: f64) -> bool {
+        self.push > 0.0 || self.pen_at(v, h) > 0.0
+    }
+
     /// Stretches at the stage's end: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`, and the same for rolling.
     #[inline]
     pub fn stretches(&self, h: f64) -> (Vec3, Vec3) {

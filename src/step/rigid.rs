@@ -17,8 +17,8 @@ const TRAVEL: f64 = 0.09;
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-12;
-/// Alternations of friction and rolling friction in one contact; they couple by 5/7.
-const ALTERNATIONS: u32 = 12;
+/// Alternations of friction and rolling friction where one of them is at its limit; they couple by 5/7.
+const ALTERNATIONS: u32 = 90;
 
 /// One contact and its impulses.
 #[derive(Debug, Clone, Copy)]
@@ -52,13 +52,35 @@ impl Blow {
         let m = body.mass;
         self.push = (m * (self.target - self.n.dot(v))).max(0.0);
         let (cap, cap_turn) = (self.law.friction * self.push, self.law.rolling_m * self.push);
-        self.turn = Vec3::zeros();
-        for _ in 0..if cap_turn > 0.0 { ALTERNATIONS } else { 1 } {
-            let w_rolled = w + self.turn / body.inertia;
-            self.drag = within(body.slip(&self.n, v, &w_rolled) * (-2.0 / 7.0 * m), cap);
-            let w_dragged = w - self.n.cross(&self.drag) * (body.radius / body.inertia);
-            self.turn = within(w_dragged * -body.inertia, cap_turn);
+        if cap_turn == 0.0 {
+            let slip = body.slip(&self.n, v, w);
+            (self.drag, self.turn) = (within(slip * (-2.0 / 7.0 * m), cap), Vec3::zeros());
+            return;
         }
+        // Both hold: the rock comes to a stop along the surface and does not spin.
+        self.drag = (v - self.n * self.n.dot(v)) * -m;
+        self.turn = self.stop_spin(body, w);
+        if self.drag.norm_squared() <= cap * cap && self.turn.norm_squared() <= cap_turn * cap_turn
+        {
+            return;
+        }
+        for _ in 0..ALTERNATIONS {
+            self.turn = within(self.turn, cap_turn);
+            let w_rolled = w + self.turn / body.inertia;
+            let drag = within(body.slip(&self.n, v, &w_rolled) * (-2.0 / 7.0 * m), cap);
+            let change = (drag - self.drag).norm_squared();
+            self.drag = drag;
+            self.turn = self.stop_spin(body, w);
+            if change <= (SETTLED * cap).powi(2) {
+                break;
+            }
+        }
+        self.turn = within(self.turn, cap_turn);
+    }
+
+    /// The rolling impulse that would stop spin `w` after the impulse along the surface (N m s).
+    fn stop_spin(&self, body: &Body, w: &Vec3) -> Vec3 {
+        self.n.cross(&self.drag) * body.radius - w * body.inertia
     }
 
     /// Change of velocity and spin.

@@ -3,9 +3,9 @@
 use super::grip::{Grip, Loss, Rate, TOUCH, World};
 use super::law::{self, Spot, within};
 use super::tableau::Tableau;
+use crate::contact::FeatureKind;
 use crate::contact::hold::carry;
 use crate::rock::Vec3;
-use crate::trajectory::FeatureKind;
 
 /// Most passes in which geometry and forces are brought to agree.
 const PASSES: u32 = 10;
@@ -192,6 +192,7 @@ impl Grip {
             rate.roll[hold] = roll_rate;
             rate.loss.add(&spot.loss(world, &v, &w, &shear_rate), 1.0);
         }
+        self.stored = self.springs_j(world).sum();
         self.fresh = true;
     }
 }

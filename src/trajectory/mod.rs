@@ -5,6 +5,7 @@ mod fall;
 mod journey;
 mod visit;
 
+pub use crate::contact::FeatureKind;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -81,18 +82,6 @@ pub enum PathState {
     Sliding,
     /// In contact, none slides.
     Sticking,
-}
-
-/// What of the mesh was touched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum FeatureKind {
-    /// Inside of a triangle.
-    Face,
-    /// Edge between or beside triangles.
-    Edge,
-    /// Corner.
-    Vertex,
 }
 
 /// One impact: a touch with a normal approach speed above the capture speed.

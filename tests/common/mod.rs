@@ -103,3 +103,62 @@ impl Case {
         fallen
     }
 }
+
+/// One way to compute, and how near it must come to the exact answer.
+#[derive(Debug, Clone, Copy)]
+pub struct Row {
+    pub name: &'static str,
+    pub case: Case,
+    /// Whether the ground answers with springs; the rigid scheme has their limit.
+    pub springs: bool,
+    /// Relative error allowed where an impact decides.
+    pub impact: f64,
+    /// Relative error allowed where the rock slides, rolls or pivots all the time.
+    pub smooth: f64,
+}
+
+/// Every scheme. A new one needs one row: all exact cases then run over it by themselves.
+///
+/// The local error allowed is a speed; over an impact of 5 m/s the errors of its dozen steps add up to some ten times
+/// that, of which `impact` is the share. In smooth motion the error of a step is far below the one allowed, because the
+/// first step after a change must resolve the springs.
+pub const ROWS: [Row; 4] = [
+    Row {
+        name: "adaptive 1e-2",
+        case: Case { tolerance_m_s: 1e-2, ..CASE },
+        springs: true,
+        impact: 2e-2,
+        smooth: 2e-4,
+    },
+    Row {
+        name: "adaptive 1e-4",
+        case: Case { tolerance_m_s: 1e-4, ..CASE },
+        springs: true,
+        impact: 1e-3,
+        smooth: 1e-5,
+    },
+    Row {
+        name: "reference",
+        case: Case { scheme: Scheme::Reference, tolerance_m_s: 1e-8, ..CASE },
+        springs: true,
+        impact: 1e-6,
+        smooth: 1e-7,
+    },
+    Row {
+        name: "rigid",
+        case: Case { scheme: Scheme::Rigid, step_s: 1e-2, ..CASE },
+        springs: false,
+        impact: 1e-9,
+        // Where sliding turns to rolling within a step of 10 ms: up to a dt²/8 of the way.
+        smooth: 1e-5,
+    },
+];
+
+/// Compares one number with the exact one, relative to `scale`; prints the line of the table of exact cases.
+#[track_caller]
+pub fn hold(row: &Row, what: &str, [ours, exact, scale]: [f64; 3], allowed: f64) {
+    let error = (ours - exact).abs() / scale.abs();
+    let verdict = if error <= allowed { "" } else { "  <-- too far" };
+    println!("{:14} | {what:40} | {exact:>20.13} | {ours:>20.13} | {error:.1e}{verdict}", row.name);
+    assert!(error <= allowed, "{} {what}: {ours} for {exact}, error {error:e}", row.name);
+}

@@ -9,9 +9,12 @@ use rockfall::report::input::{
 };
 use rockfall::report::raster::GroundRaster;
 use rockfall::rock::Vec3;
+use rockfall::terrain::grid::triangulate;
+use rockfall::terrain::make::{Stem, stem};
+use rockfall::terrain::stl::Soup;
+use rockfall::terrain::weld::{Piece, Up, weld};
 use rockfall::terrain::{Sheet, Terrain};
 use rockfall::trajectory::{PathState, Stop};
-use std::path::PathBuf;
 
 /// Chance that is the same on every machine.
 pub(crate) struct Dice(ChaCha8Rng);
@@ -48,44 +51,27 @@ pub(crate) fn height_m(x: f64, y: f64) -> f64 {
 
 /// The slope as a mesh of `2 n²`-ish triangles with stems of trees, at map coordinates of `origin`.
 pub(crate) fn terrain(step_m: f64, origin: Vec3) -> Terrain {
-    let (columns, rows) = ((140.0 / step_m) as u32 + 1, (200.0 / step_m) as u32 + 1);
-    let mut vertices = Vec::new();
-    let mut triangles = Vec::new();
-    for row in 0..rows {
-        for column in 0..columns {
-            let (x, y) = (f64::from(column) * step_m, f64::from(row) * step_m);
-            vertices.push(Vec3::new(x, y, height_m(x, y)));
-            if row > 0 && column > 0 {
-                let here = row * columns + column;
-                triangles.push([here - columns - 1, here - columns, here]);
-                triangles.push([here - columns - 1, here, here - 1]);
-            }
-        }
-    }
-    let mut sheet_of = vec![0; triangles.len()];
+    let (columns, rows) = ((140.0 / step_m) as usize + 1, (200.0 / step_m) as usize + 1);
+    let slope = triangulate(columns, rows, |column, row| {
+        let (x, y) = (column as f64 * step_m, row as f64 * step_m);
+        Some(Vec3::new(x, y, height_m(x, y)))
+    });
     let mut dice = Dice::new(7);
-    for _ in 0..60 {
-        let (x, y) = (10.0 + 120.0 * dice.roll(), 15.0 + 60.0 * dice.roll());
-        stem(&mut vertices, &mut triangles, (x, y), 0.2 + 0.25 * dice.roll());
-    }
-    sheet_of.resize(triangles.len(), 1);
-    let sheet = |name: &str, is_tree| Sheet { path: PathBuf::from(name), ground: 0, is_tree };
-    let sheets = vec![sheet("slope.stl", false), sheet("trees.stl", true)];
-    Terrain { origin_m: origin, vertices_m: vertices, triangles, sheet_of, sheets }
-}
-
-/// An open prism of eight sides.
-fn stem(vertices: &mut Vec<Vec3>, triangles: &mut Vec<[u32; 3]>, (x, y): (f64, f64), radius: f64) {
-    let first = vertices.len() as u32;
-    for i in 0..8 {
-        let angle = f64::from(i) * std::f64::consts::FRAC_PI_4;
-        let (dx, dy) = (radius * angle.cos(), radius * angle.sin());
-        vertices.push(Vec3::new(x + dx, y + dy, height_m(x, y) - 1.0));
-        vertices.push(Vec3::new(x + dx, y + dy, height_m(x, y) + 12.0));
-        let (a, b) = (first + 2 * i as u32, first + 2 * ((i as u32 + 1) % 8));
-        triangles.push([a, b, b + 1]);
-        triangles.push([a, b + 1, a + 1]);
-    }
+    let trees = (0..60).flat_map(|_| {
+        let (x_m, y_m) = (10.0 + 120.0 * dice.roll(), 15.0 + 60.0 * dice.roll());
+        stem(&Stem { x_m, y_m, dbh_m: 0.4 + 0.5 * dice.roll(), height_m: 12.0 }, height_m(x_m, y_m))
+    });
+    let soups = [Soup::from(slope), Soup::from(trees.collect::<Vec<_>>())];
+    let names = ["slope.stl", "trees.stl"];
+    let pieces = [0, 1].map(|sheet| Piece {
+        file: names[sheet].as_ref(),
+        soup: &soups[sheet],
+        up: Up::Z,
+        scale: 1.0,
+        sheet: sheet as u16,
+    });
+    let sheets = [0, 1].map(|k| Sheet { path: names[k].into(), ground: 0, is_tree: k == 1 });
+    Terrain::new(weld(&pieces, origin, None).unwrap(), sheets.into())
 }
 
 const STEP_S: f64 = 0.05;
