@@ -70,8 +70,8 @@ fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
     const MODEL_TIEPOINT: u16 = 33_922;
     const GDAL_NODATA: u16 = 42_113;
     let mut bytes = Cursor::new(Vec::new());
-    let mut file =
-        TiffEncoder::new(&mut bytes)?.with_compression(Compression::Deflate(DeflateLevel::default()));
+    let mut file = TiffEncoder::new(&mut bytes)?
+        .with_compression(Compression::Deflate(DeflateLevel::default()));
     let mut image = file.new_image::<Gray32Float>(frame.columns, frame.rows)?;
     let north_m = frame.south_m + f64::from(frame.rows) * frame.cell_m;
     let tie = [0.0, 0.0, 0.0, frame.west_m, north_m, 0.0];
