@@ -43,6 +43,10 @@ enum Command {
         /// Folder with the results of a run
         dir: PathBuf,
     },
+    /// List the grounds that `like` knows, with their sources
+    Grounds,
+    /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
+    Calibrate(CalibrateArgs),
     /// Check, convert and make meshes
     #[command(subcommand)]
     Mesh(MeshCommand),
@@ -70,6 +74,21 @@ enum MeshCommand {
         /// STL file to write
         out: PathBuf,
     },
+}
+
+#[derive(Debug, Args)]
+struct CalibrateArgs {
+    /// Scene file (TOML) with a table [calibrate]
+    scene: PathBuf,
+    /// Folder for calibration.csv and calibration.json [default: reports/<scene name>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Releases of each trial
+    #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
+    releases: usize,
+    /// Worker threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    threads: Option<usize>,
 }
 
 #[derive(Debug, Args)]
@@ -108,6 +127,8 @@ pub(crate) fn main() -> ExitCode {
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Grounds => Ok(say(rockfall::scene::catalogue())),
+        Command::Calibrate(args) => calibrate(&args),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
             wiring::mesh_from_grid(&grid, &out).map(say)
@@ -118,6 +139,13 @@ pub(crate) fn main() -> ExitCode {
         eprintln!("error: {error}");
         ExitCode::from(WRONG_INPUT)
     })
+}
+
+fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
+    let scene = Scene::read(&args.scene)?;
+    let name = args.scene.file_stem().unwrap_or_default();
+    let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
+    wiring::calibrate(&scene, (args.releases, args.threads), &out).map(say)
 }
 
 fn plan(scene: &Path) -> Result<ExitCode> {

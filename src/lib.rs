@@ -31,5 +31,6 @@ pub mod trajectory;
 pub mod ensemble;
 // answer
 pub mod hazard;
+pub mod calibrate;
 pub mod output;
 pub mod report;

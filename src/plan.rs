@@ -10,7 +10,7 @@ pub use watch::{Curtain, Lattice, Piece, Watch};
 use crate::chance::Distribution;
 use crate::error::Result;
 use crate::release::{Release, Releases};
-use crate::scene::{LineTable, RecordTable, Scene, SolverTable};
+use crate::scene::{GroundTable, LineTable, RecordTable, Scene, SolverTable, known_ground};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
 use std::convert::Infallible;
@@ -112,6 +112,10 @@ pub struct Plan {
     pub lines: Part<Vec<Curtain>>,
     /// Cells of the maps.
     pub maps: Part<Lattice>,
+    /// Grounds with values of the catalogue: name, what was taken, source.
+    pub catalogued: Vec<String>,
+    /// File of measured ends that the report compares with.
+    pub deposits: Option<PathBuf>,
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
 }
@@ -187,6 +191,8 @@ impl Plan {
                 lattice(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
             ),
+            catalogued: catalogued(scene),
+            deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             terrain,
         })
@@ -248,6 +254,19 @@ fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
     let first = record.paths.unwrap_or(PATHS).min(count);
     let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
+}
+
+fn catalogued(scene: &Scene) -> Vec<String> {
+    let taken = |(name, ground): (&String, &GroundTable)| {
+        let known = known_ground(ground.like.as_deref()?)?;
+        Some(format!(
+            "{name} like {}: {} unless written in the scene; {}",
+            known.name,
+            known.values(),
+            known.source
+        ))
+    };
+    scene.grounds.iter().filter_map(taken).collect()
 }
 
 fn curtains(scene: &Scene, terrain: &Terrain) -> Option<Vec<Curtain>> {

@@ -1,12 +1,14 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
+use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
-use rockfall::hazard::{LineInfo, MapFrame};
-use rockfall::output::{Identity, Mode, Output, RunInfo};
+use rockfall::hazard::{LineInfo, MapFrame, Way};
+use rockfall::output::{self, Identity, Mode, Output, RunInfo};
 use rockfall::plan::{Curtain, Plan};
 use rockfall::report;
 use rockfall::rock::Vec3;
+use rockfall::scene::Scene;
 use rockfall::terrain::grid::Grid;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
@@ -94,6 +96,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
             .collect(),
         lines: line_infos(plan),
         maps: map_frame(plan),
+        observed: plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)?,
         keeps_paths: only.is_some() || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
         threads: ensemble.threads(),
@@ -124,6 +127,25 @@ fn map_frame(plan: &Plan) -> Option<MapFrame> {
         rows: cells.rows,
         epsg: plan.epsg,
     })
+}
+
+/// Calibrates a scene, writes all trials into `out` and says what was found.
+pub(crate) fn calibrate(
+    scene: &Scene,
+    (releases, threads): (usize, Option<usize>),
+    out: &Path,
+) -> Result<String> {
+    let ensemble = Ensemble::new(threads)?;
+    let mut trials: Vec<(usize, Trial)> = Vec::new();
+    let found = calibrate::calibrate(scene, &ensemble, releases, &mut |half, trial| {
+        trials.push((half, trial.clone()));
+    })?;
+    output::write_calibration(out, &found, &trials)?;
+    Ok(format!(
+        "{found}
+all trials in {}",
+        out.join("calibration.csv").display()
+    ))
 }
 
 /// Draws figures and page again from the results in `dir`.

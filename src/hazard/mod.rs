@@ -6,6 +6,7 @@
 
 mod lines;
 mod maps;
+mod observed;
 mod proportion;
 mod quantile;
 mod quantity;
@@ -15,6 +16,7 @@ mod totals;
 
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
+pub use observed::{Agreement, Way};
 pub use proportion::Proportion;
 pub use quantile::{Percentile, Ranks};
 pub use quantity::Quantity;

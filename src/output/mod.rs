@@ -4,6 +4,7 @@
 //! behind that mark is cut off when the run is resumed. So a resumed run writes the same bytes as an
 //! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
 
+mod calibration;
 mod folder;
 mod maps;
 mod progress;
@@ -13,6 +14,7 @@ mod summary;
 mod table;
 mod whole;
 
+pub use calibration::{read_calibration, write_calibration};
 pub use progress::Identity;
 pub use read::{Results, read};
 pub use rows::{ImpactRow, PathRow};
@@ -20,7 +22,7 @@ pub use summary::{Run, Summary};
 pub use whole::write_whole;
 
 use crate::error::{Error, Result};
-use crate::hazard::{CrossingRow, Hazard, Line, LineInfo, MapFrame, MapState, Maps, Row};
+use crate::hazard::{CrossingRow, Hazard, Line, LineInfo, MapFrame, MapState, Maps, Row, Way};
 use crate::rock::Vec3;
 use crate::trajectory::Trajectory;
 use progress::{PROGRESS, Progress};
@@ -51,6 +53,8 @@ pub struct RunInfo {
     pub lines: Vec<LineInfo>,
     /// Where the maps lie; none leaves them out.
     pub maps: Option<MapFrame>,
+    /// Measured ways to compare with; none if the scene names none.
+    pub observed: Vec<Way>,
     /// Whether `paths.csv` is written.
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.

@@ -5,7 +5,8 @@ use super::progress::Identity;
 use super::whole::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::{
-    Hazard, Largest, Line, LineSummary, MapFrame, Proportion, Quantity, Statistic, StopKind, Totals,
+    Hazard, Largest, Line, LineSummary, MapFrame, Proportion, Quantity, Statistic, StopKind,
+    Totals, Way,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -60,6 +61,9 @@ pub struct Summary {
     /// What crosses each evaluation line, in the order of the scene.
     #[serde(default)]
     pub lines: Vec<LineSummary>,
+    /// Measured ways, if the scene names any.
+    #[serde(default)]
+    pub observed: Vec<Way>,
     /// Where the maps lie, if there are any.
     #[serde(default)]
     pub maps: Option<MapFrame>,
@@ -100,6 +104,7 @@ impl Summary {
             stop_shares: by_stop(|stop| hazard.ended(stop)),
             statistics: statistics(hazard),
             lines: lines.iter().map(|line| line.summary(hazard.rocks())).collect(),
+            observed: info.observed,
             maps: info.maps,
             largest_energy_balance_error: hazard.largest_balance_error(),
             totals: hazard.totals.clone(),

@@ -40,6 +40,8 @@ impl Plan {
             impacts,
             lines,
             maps,
+            catalogued,
+            deposits,
             warnings,
         } = self;
         let place = place(releases.place());
@@ -59,6 +61,7 @@ impl Plan {
         list.line("map", map(terrain.origin_m.into(), *epsg));
         list.line("gravity", format!("{gravity_m_s2} m/s²"));
         list.line("grounds", format!("{}: {}", ground_names.len(), ground_names.join(", ")));
+        list.lines("catalogue", catalogued.iter().cloned());
         list.line("scheme", scheme(step));
         let captures = ground_names.iter().zip(capture_m_s);
         for (name, speed) in captures {
@@ -95,6 +98,9 @@ impl Plan {
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
         });
+        if let Some(file) = deposits {
+            list.line("compared with", format!("measured ends in {}", file.display()));
+        }
         list.lines("warning", warnings.iter().cloned());
         list.0
     }

@@ -1,6 +1,7 @@
 //! The report's numbers, gathered from the result files of a run: a report drawn again is the same report.
 
 mod lines;
+mod measured;
 
 use super::input::{
     BandPoint, Estimate, Fall, Path, Point, Quantile, Quantity, Report, Row, StopShare, Table, Text,
@@ -42,9 +43,14 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         quantiles: TABLED.map(|(here, there)| (here, quantiles(hazard, there))).into(),
         stops: StopKind::ALL.map(|kind| stop_share(hazard, kind)).into(),
         headline: headline(hazard),
-        tables: [table(hazard)].into_iter().chain(lines::tables(results)).collect(),
+        tables: [table(hazard)]
+            .into_iter()
+            .chain(lines::tables(results))
+            .chain(measured::tables(results)?)
+            .collect(),
         lines: lines::lines(results)?,
         maps: lines::maps(results)?,
+        observed: measured::observed(results)?,
     })
 }
 

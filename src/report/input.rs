@@ -1,6 +1,7 @@
 //! What a report is drawn from: plain numbers and text, filled by a run or read back from its result files.
 
 use super::raster::GroundRaster;
+use crate::hazard::{Agreement, Way};
 use crate::trajectory::{PathState, Stop};
 use std::collections::BTreeMap;
 
@@ -27,6 +28,8 @@ pub struct Report {
     pub tables: Vec<Table>,
     /// Evaluation lines, in the order of the scene.
     pub lines: Vec<Line>,
+    /// Measured ends, where the scene names some.
+    pub observed: Option<Observed>,
     /// Maps, where the scene asks for them.
     pub maps: Option<CellMap>,
 }
@@ -217,6 +220,17 @@ pub struct LinePoint {
     pub height_m: f64,
     /// Total energy (J).
     pub total_j: f64,
+}
+
+/// Measured ends beside the computed ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observed {
+    /// Measured ways.
+    pub measured: Vec<Way>,
+    /// Computed ways, failed rocks left out.
+    pub computed: Vec<Way>,
+    /// How well they agree.
+    pub agreement: Agreement,
 }
 
 /// Maps cell by cell; cells that no rock reaches are left out.

@@ -21,6 +21,7 @@ pub mod html;
 pub mod input;
 mod lines;
 mod maps;
+mod measured;
 pub mod panel;
 pub mod paper;
 mod plan_view;
@@ -84,6 +85,12 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         .iter()
         .map(|figure| (heading(figure.file, figure.title), (figure.draw)(report)))
         .collect();
+    if let Some(observed) = &report.observed {
+        drawn.push((
+            heading("measured.svg", "Measured and computed"),
+            measured::draw(report, observed),
+        ));
+    }
     if let Some(cells) = &report.maps {
         drawn.push((heading("maps.svg", "Maps"), maps::draw(report, cells)));
     }

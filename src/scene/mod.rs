@@ -3,6 +3,8 @@
 //! Every table stands in a file of its own and checks its own keys. Physics has no default: what is absent
 //! here is either numerics, filled in and printed by the plan, or an error.
 
+mod calibrate;
+mod catalogue;
 mod check;
 mod grounds;
 mod meshes;
@@ -14,6 +16,8 @@ mod solver;
 mod source;
 mod wording;
 
+pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
+pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use grounds::GroundTable;
 pub use meshes::{MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
@@ -75,6 +79,8 @@ pub struct Scene {
     pub lines: Vec<LineTable>,
     /// Rasters.
     pub maps: Option<MapsTable>,
+    /// Measured ends, and what may be fitted to them.
+    pub calibrate: Option<CalibrateTable>,
     /// The scene file itself.
     #[serde(skip)]
     pub file: PathBuf,
@@ -109,10 +115,16 @@ impl Scene {
     pub fn parse(text: &str, file: &Path) -> Result<Self> {
         let mut scene: Self =
             toml::from_str(text).map_err(|error| Lookup::of(file, text).refuse_reading(&error))?;
-        scene.check().map_err(|wrong| Lookup::of(file, text).refuse(wrong))?;
+        scene
+            .take_from_catalogue()
+            .and_then(|()| scene.check())
+            .map_err(|wrong| Lookup::of(file, text).refuse(wrong))?;
         let folder = file.parent().unwrap_or(Path::new(""));
         for mesh in scene.terrain.iter_mut().chain(&mut scene.trees) {
             mesh.mesh = folder.join(&mesh.mesh);
+        }
+        if let Some(calibrate) = &mut scene.calibrate {
+            calibrate.deposits = folder.join(&calibrate.deposits);
         }
         file.clone_into(&mut scene.file);
         Ok(scene)
@@ -147,6 +159,14 @@ impl Scene {
         Terrain::read(&self.mesh_sources(), self.origin_m.into(), self.mesh.weld_tolerance_m)
     }
 
+    /// Fills in what grounds leave to the catalogue.
+    fn take_from_catalogue(&mut self) -> Checked {
+        for (name, ground) in &mut self.grounds {
+            ground.take_from_catalogue().map_err(|wrong| wrong.inside(name).inside("grounds"))?;
+        }
+        Ok(())
+    }
+
     fn check(&self) -> Checked {
         number("gravity_m_s2", self.gravity_m_s2, Allowed::NotNegative, "9.81 on Earth")?;
         if self.origin_m.iter().any(|coordinate| !coordinate.is_finite()) {
@@ -162,6 +182,10 @@ impl Scene {
         self.solver.check().map_err(|wrong| wrong.inside("solver"))?;
         self.record.check().map_err(|wrong| wrong.inside("record"))?;
         check_names("lines", self.lines.iter().map(|line| line.name.as_str()))?;
+        if let Some(calibrate) = &self.calibrate {
+            let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
+            calibrate.check(&grounds).map_err(|wrong| wrong.inside("calibrate"))?;
+        }
         if let Some(maps) = &self.maps {
             maps.check().map_err(|wrong| wrong.inside("maps"))?;
         }

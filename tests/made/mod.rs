@@ -44,6 +44,7 @@ pub fn info(releases: usize) -> RunInfo {
             rows: 10,
             epsg: Some(2056),
         }),
+        observed: vec![],
         keeps_paths: true,
         keeps_impacts: true,
         threads: 2,
