@@ -10,7 +10,9 @@ pub use watch::{Curtain, Lattice, Piece, Watch};
 use crate::chance::Distribution;
 use crate::error::Result;
 use crate::release::{Release, Releases};
-use crate::scene::{GroundTable, LineTable, RecordTable, Scene, SolverTable, known_ground};
+use crate::scene::{
+    BarrierTable, GroundTable, Polyline, RecordTable, Scene, SolverTable, known_ground,
+};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
 use std::convert::Infallible;
@@ -110,6 +112,8 @@ pub struct Plan {
     pub impacts: Part<()>,
     /// Evaluation lines.
     pub lines: Part<Vec<Curtain>>,
+    /// Barriers; each has an evaluation line of its name.
+    pub barriers: Part<Vec<BarrierTable>>,
     /// Cells of the maps.
     pub maps: Part<Lattice>,
     /// Grounds with values of the catalogue: name, what was taken, source.
@@ -187,6 +191,10 @@ impl Plan {
                 "not asked for, [record] impacts = true keeps them",
             ),
             lines: Part::when(curtains(scene, &terrain), "the scene has none"),
+            barriers: Part::when(
+                Some(scene.barriers.clone()).filter(|all| !all.is_empty()),
+                "the scene has none",
+            ),
             maps: Part::when(
                 lattice(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
@@ -270,8 +278,10 @@ fn catalogued(scene: &Scene) -> Vec<String> {
 }
 
 fn curtains(scene: &Scene, terrain: &Terrain) -> Option<Vec<Curtain>> {
-    let curtain = |line: &LineTable| Curtain::new(&line.name, &line.points_m, terrain.origin_m);
-    (!scene.lines.is_empty()).then(|| scene.lines.iter().map(curtain).collect())
+    let lines = scene.lines.iter().map(|line| (&line.name, &line.points_m));
+    let barriers = scene.barriers.iter().map(|barrier| (&barrier.name, &barrier.points_m));
+    let curtain = |(name, line): (&String, &Polyline)| Curtain::new(name, line, terrain.origin_m);
+    Some(lines.chain(barriers).map(curtain).collect()).filter(|all: &Vec<Curtain>| !all.is_empty())
 }
 
 fn lattice(scene: &Scene, terrain: &Terrain) -> Result<Option<Lattice>> {

@@ -3,12 +3,12 @@
 use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
-use rockfall::hazard::{LineInfo, MapFrame, Way};
+use rockfall::hazard::{Barrier, LineInfo, MapFrame, Rule, Way};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
-use rockfall::plan::{Curtain, Plan};
+use rockfall::plan::{Curtain, Part, Plan};
 use rockfall::report;
 use rockfall::rock::Vec3;
-use rockfall::scene::Scene;
+use rockfall::scene::{BarrierTable, DesignTable, Scene};
 use rockfall::terrain::grid::Grid;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
@@ -96,6 +96,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
             .collect(),
         lines: line_infos(plan),
         maps: map_frame(plan),
+        barriers: barriers(plan),
         observed: plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)?,
         keeps_paths: only.is_some() || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
@@ -113,6 +114,24 @@ fn line_infos(plan: &Plan) -> Vec<LineInfo> {
         corners_m: line.corners_m(plan.terrain.origin_m),
     };
     plan.watch().lines.iter().map(info).collect()
+}
+
+fn barriers(plan: &Plan) -> Vec<Barrier> {
+    let Part::Kept(tables) = &plan.barriers else { return Vec::new() };
+    let rule = |rule: &DesignTable| Rule {
+        percentile: rule.percentile,
+        speed_factors: rule.speed_factors.clone(),
+        mass_factors: rule.mass_factors.clone(),
+        height_factors: rule.height_factors.clone(),
+        free_height_m: rule.free_height_m,
+    };
+    let barrier = |table: &BarrierTable| Barrier {
+        name: table.name.clone(),
+        height_m: table.height_m,
+        capacity_j: table.capacity_j,
+        design: table.design.as_ref().map(rule),
+    };
+    tables.iter().map(barrier).collect()
 }
 
 fn map_frame(plan: &Plan) -> Option<MapFrame> {

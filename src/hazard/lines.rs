@@ -45,6 +45,8 @@ pub struct CrossingRow {
     pub descent_deg: f64,
     /// Mass of the rock (kg).
     pub mass_kg: f64,
+    /// Radius of the rock (m).
+    pub radius_m: f64,
     /// How often the rock crosses the line in all.
     pub times: u32,
     /// Centre of the rock in map coordinates (m).
@@ -53,7 +55,7 @@ pub struct CrossingRow {
 
 impl CrossingRow {
     /// Columns of `crossings.csv`.
-    pub const COLUMNS: [&'static str; 15] = [
+    pub const COLUMNS: [&'static str; 16] = [
         "index",
         "line",
         "time_s",
@@ -65,6 +67,7 @@ impl CrossingRow {
         "height_normal_m",
         "descent_deg",
         "mass_kg",
+        "radius_m",
         "times",
         "x_m",
         "y_m",
@@ -91,6 +94,7 @@ impl CrossingRow {
             height_normal_m: crossing.height_normal_m,
             descent_deg: crossing.descent_deg(),
             mass_kg: rock.mass_kg(),
+            radius_m: rock.radius_m,
             times: crossing.times,
             position_m: (motion.position_m + origin_m).into(),
         }

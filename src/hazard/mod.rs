@@ -4,6 +4,7 @@
 //! Nothing is sketched or binned before it is asked for, so the statistics do not depend on the order or the
 //! grouping in which rocks arrive, and a drawing from files shows the same bits as the run itself.
 
+mod barriers;
 mod lines;
 mod maps;
 mod observed;
@@ -14,6 +15,7 @@ mod row;
 mod sample;
 mod totals;
 
+pub use barriers::{Barrier, BarrierSummary, Design, Rule, judge};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{Agreement, Way};

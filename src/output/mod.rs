@@ -12,6 +12,7 @@ mod read;
 mod rows;
 mod summary;
 mod table;
+mod vector;
 mod whole;
 
 pub use calibration::{read_calibration, write_calibration};
@@ -22,7 +23,10 @@ pub use summary::{Run, Summary};
 pub use whole::write_whole;
 
 use crate::error::{Error, Result};
-use crate::hazard::{CrossingRow, Hazard, Line, LineInfo, MapFrame, MapState, Maps, Row, Way};
+use crate::hazard;
+use crate::hazard::{
+    Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, MapState, Maps, Row, Way,
+};
 use crate::rock::Vec3;
 use crate::trajectory::Trajectory;
 use progress::{PROGRESS, Progress};
@@ -53,6 +57,8 @@ pub struct RunInfo {
     pub lines: Vec<LineInfo>,
     /// Where the maps lie; none leaves them out.
     pub maps: Option<MapFrame>,
+    /// Barriers; each on the line of its name.
+    pub barriers: Vec<Barrier>,
     /// Measured ways to compare with; none if the scene names none.
     pub observed: Vec<Way>,
     /// Whether `paths.csv` is written.
@@ -203,11 +209,18 @@ impl Output {
         if let Some(maps) = &self.maps {
             maps::write(&self.dir, maps, done)?;
         }
-        let summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
+        let crossings = read::crossings(&self.dir)?;
+        let barriers = hazard::judge(&self.info.barriers, crossings, done)?;
+        let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
+        summary.barriers = barriers;
         summary.write(&self.dir)?;
-        folder::remove(&self.dir.join(PROGRESS))?;
-        maps::remove_state(&self.dir, done)?;
-        Ok(Results { dir: self.dir, summary, hazard: self.hazard, lines: self.lines })
+        let results = Results { dir: self.dir, summary, hazard: self.hazard, lines: self.lines };
+        if results.summary.maps.is_some() {
+            results.write_vectors()?;
+        }
+        folder::remove(&results.dir.join(PROGRESS))?;
+        maps::remove_state(&results.dir, done)?;
+        Ok(results)
     }
 
     fn write_path(&mut self, fall: &Trajectory) -> Result<()> {

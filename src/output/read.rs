@@ -3,6 +3,7 @@
 use super::progress::{Identity, PROGRESS};
 use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
+use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
 use crate::hazard::{CrossingRow, Hazard, Line, LineInfo, Row, Totals};
@@ -61,13 +62,25 @@ impl Results {
         if_there(self.dir.join(PATHS), &PathRow::COLUMNS)
     }
 
+    /// Writes `maps/ends.geojson`, and `maps/paths.geojson` and `maps/paths.vtk` where paths were kept.
+    pub(super) fn write_vectors(&self) -> Result<()> {
+        let (folder, epsg) =
+            (self.dir.join(super::maps::FOLDER), self.summary.maps.and_then(|maps| maps.epsg));
+        vector::write_ends(&folder.join("ends.geojson"), epsg, self.rows()?)?;
+        if self.dir.join(PATHS).exists() {
+            vector::write_paths(&folder.join("paths.geojson"), epsg, self.paths()?)?;
+            vector::write_vtk(&folder.join("paths.vtk"), self.summary.origin_m, self.paths()?)?;
+        }
+        Ok(())
+    }
+
     /// The rows of `crossings.csv`, one by one, in the order of releases and of lines; none without lines.
     ///
     /// # Errors
     ///
     /// As [`Self::rows`].
     pub fn crossings(&self) -> Result<impl Iterator<Item = Result<CrossingRow>>> {
-        if_there(self.dir.join(CROSSINGS), &CrossingRow::COLUMNS)
+        crossings(&self.dir)
     }
 
     /// The rows of `impacts.csv`, one by one, in the order of releases and of time; none if no impact was kept.
@@ -78,6 +91,11 @@ impl Results {
     pub fn impacts(&self) -> Result<impl Iterator<Item = Result<ImpactRow<'static>>>> {
         if_there(self.dir.join(IMPACTS), &ImpactRow::COLUMNS)
     }
+}
+
+/// The rows of `crossings.csv` in `dir`.
+pub(super) fn crossings(dir: &Path) -> Result<impl Iterator<Item = Result<CrossingRow>> + use<>> {
+    if_there(dir.join(CROSSINGS), &CrossingRow::COLUMNS)
 }
 
 /// The lines with the crossings that are on the disk, if any are there.

@@ -5,8 +5,8 @@ use super::progress::Identity;
 use super::whole::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::{
-    Hazard, Largest, Line, LineSummary, MapFrame, Proportion, Quantity, Statistic, StopKind,
-    Totals, Way,
+    BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion, Quantity, Statistic,
+    StopKind, Totals, Way,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -16,7 +16,11 @@ use std::path::Path;
 pub(super) const SUMMARY: &str = "summary.json";
 
 /// What the numbers mean, printed beside them.
-const DEFINITIONS: [(&str, &str); 8] = [
+const DEFINITIONS: [(&str, &str); 9] = [
+    (
+        "barriers",
+        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height",
+    ),
     (
         "energy_balance_error",
         "|numerical remainder of the energy| / (potential energy released + kinetic energy at the start), the largest of all rocks",
@@ -61,6 +65,9 @@ pub struct Summary {
     /// What crosses each evaluation line, in the order of the scene.
     #[serde(default)]
     pub lines: Vec<LineSummary>,
+    /// What each barrier stops and what its rule asks for.
+    #[serde(default)]
+    pub barriers: Vec<BarrierSummary>,
     /// Measured ways, if the scene names any.
     #[serde(default)]
     pub observed: Vec<Way>,
@@ -104,6 +111,7 @@ impl Summary {
             stop_shares: by_stop(|stop| hazard.ended(stop)),
             statistics: statistics(hazard),
             lines: lines.iter().map(|line| line.summary(hazard.rocks())).collect(),
+            barriers: Vec::new(),
             observed: info.observed,
             maps: info.maps,
             largest_energy_balance_error: hazard.largest_balance_error(),

@@ -2,6 +2,7 @@
 
 use super::{Curtain, Part, Paths, Plan, RestRule, dda_restitution};
 use crate::release::Where;
+use crate::scene::BarrierTable;
 use crate::step::{Scheme, Settings};
 use std::fmt;
 
@@ -39,6 +40,7 @@ impl Plan {
             paths,
             impacts,
             lines,
+            barriers,
             maps,
             catalogued,
             deposits,
@@ -94,6 +96,13 @@ impl Plan {
             let each = |line: &Curtain| format!("{} ({:.1} m)", line.name, line.length_m());
             let each: Vec<String> = lines.iter().map(each).collect();
             format!("{}: {}; crossings exact between stored points", lines.len(), each.join(", "))
+        });
+        list.part("barriers", barriers, |all| {
+            let each = |b: &BarrierTable| {
+                format!("{} ({} m, {} kJ)", b.name, b.height_m, b.capacity_j / 1e3)
+            };
+            let each: Vec<String> = all.iter().map(each).collect();
+            format!("{}: judged on the rocks that cross, they change no way", each.join(", "))
         });
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)

@@ -1,5 +1,6 @@
 //! The report's numbers, gathered from the result files of a run: a report drawn again is the same report.
 
+mod barriers;
 mod lines;
 mod measured;
 
@@ -46,6 +47,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         tables: [table(hazard)]
             .into_iter()
             .chain(lines::tables(results))
+            .chain(barriers::tables(results))
             .chain(measured::tables(results)?)
             .collect(),
         lines: lines::lines(results)?,

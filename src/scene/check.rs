@@ -120,19 +120,21 @@ fn within(key: &str, (low, high): (f64, f64), allowed: Allowed, hint: &str) -> C
     Err(Complaint::about(key, format!("{}{hint}{bounds}", allowed.in_words())))
 }
 
-/// Checks that every entry of a list has a name of its own.
-pub(super) fn check_names<'a>(table: &str, names: impl Iterator<Item = &'a str>) -> Checked {
+/// Checks that every entry of some lists has a name of its own.
+pub(super) fn check_names(tables: &[(&str, Vec<&str>)]) -> Checked {
     let mut known: Vec<&str> = Vec::new();
-    for (index, name) in names.enumerate() {
-        let wrong = if name.trim().is_empty() {
-            "write a name; it stands in tables and files"
-        } else if known.contains(&name) {
-            "write another name: an entry before has the same"
-        } else {
-            known.push(name);
-            continue;
-        };
-        return Err(Complaint::about("name", wrong).in_entry(index).inside(table));
+    for (table, names) in tables {
+        for (index, &name) in names.iter().enumerate() {
+            let wrong = if name.trim().is_empty() {
+                "write a name; it stands in tables and files"
+            } else if known.contains(&name) {
+                "write another name: an entry before has the same"
+            } else {
+                known.push(name);
+                continue;
+            };
+            return Err(Complaint::about("name", wrong).in_entry(index).inside(table));
+        }
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 //! Every table stands in a file of its own and checks its own keys. Physics has no default: what is absent
 //! here is either numerics, filled in and printed by the plan, or an error.
 
+mod barrier;
 mod calibrate;
 mod catalogue;
 mod check;
@@ -16,6 +17,7 @@ mod solver;
 mod source;
 mod wording;
 
+pub use barrier::{BarrierTable, DesignTable};
 pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use grounds::GroundTable;
@@ -77,6 +79,9 @@ pub struct Scene {
     /// Evaluation lines.
     #[serde(default)]
     pub lines: Vec<LineTable>,
+    /// Barriers, judged on what crosses them.
+    #[serde(default)]
+    pub barriers: Vec<BarrierTable>,
     /// Rasters.
     pub maps: Option<MapsTable>,
     /// Measured ends, and what may be fitted to them.
@@ -181,7 +186,12 @@ impl Scene {
         self.release.check().map_err(|wrong| wrong.inside("release"))?;
         self.solver.check().map_err(|wrong| wrong.inside("solver"))?;
         self.record.check().map_err(|wrong| wrong.inside("record"))?;
-        check_names("lines", self.lines.iter().map(|line| line.name.as_str()))?;
+        for (index, barrier) in self.barriers.iter().enumerate() {
+            barrier.check().map_err(|wrong| wrong.in_entry(index).inside("barriers"))?;
+        }
+        let lines = self.lines.iter().map(|line| line.name.as_str());
+        let barriers = self.barriers.iter().map(|barrier| barrier.name.as_str());
+        check_names(&[("lines", lines.collect()), ("barriers", barriers.collect())])?;
         if let Some(calibrate) = &self.calibrate {
             let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
             calibrate.check(&grounds).map_err(|wrong| wrong.inside("calibrate"))?;

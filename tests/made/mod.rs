@@ -44,6 +44,7 @@ pub fn info(releases: usize) -> RunInfo {
             rows: 10,
             epsg: Some(2056),
         }),
+        barriers: vec![],
         observed: vec![],
         keeps_paths: true,
         keeps_impacts: true,
