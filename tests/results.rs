@@ -40,7 +40,7 @@ fn bytes(dir: &Path) -> Vec<Vec<u8>> {
     let mut files: Vec<_> =
         TABLES.iter().map(|name| fs::read(dir.join(name)).expect(name)).collect();
     for layer in Layer::ALL {
-        for kind in ["asc", "tif", "asc.aux.xml"] {
+        for kind in ["asc", "tif"] {
             let name = format!("maps/{}.{kind}", layer.file());
             files.push(fs::read(dir.join(&name)).expect(&name));
         }

@@ -13,7 +13,7 @@ use std::path::Path;
 const FILES: [&str; 7] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY, PROGRESS];
 /// Folders of results with the endings of the files that belong to them.
 const FOLDERS: [(&str, &[&str]); 2] =
-    [("figures", &["svg"]), ("maps", &["asc", "prj", "tif", "xml", "state", "geojson", "vtk"])];
+    [("figures", &["svg"]), ("maps", &["asc", "prj", "tif", "state", "geojson", "vtk"])];
 
 /// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from.
 pub(super) fn prepare(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {

@@ -32,11 +32,6 @@ pub(super) fn write(dir: &Path, maps: &Maps, releases: usize) -> Result<()> {
         let bytes = geotiff(&maps.frame, &cells)
             .map_err(|why| Error::file("write", &tif)(std::io::Error::other(why)))?;
         write_whole(&tif, &bytes)?;
-        if let Some(code) = maps.frame.epsg {
-            // An ASCII grid has no place for its coordinate system; GDAL and QGIS read it from beside.
-            let text = format!("<PAMDataset>\n  <SRS>EPSG:{code}</SRS>\n</PAMDataset>\n");
-            write_whole(&path.with_extension("asc.aux.xml"), text.as_bytes())?;
-        }
     }
     Ok(())
 }

@@ -73,7 +73,7 @@ fn intensity_keys() -> Vec<(String, RGBColor)> {
 /// Two equal frames over all cells reached, at equal scale.
 fn panels(maps: &CellMap) -> [Panel; 2] {
     let (mut x, mut y) = maps.extent();
-    let room = 62.0;
+    let room = 76.0;
     let widest = 0.5 * WIDTH_PX - room - 8.0;
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     // a slender map is given some ground beside it
