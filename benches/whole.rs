@@ -50,7 +50,7 @@ fn main() {
     let step = Settings {
         scheme,
         tolerance_m_s,
-        step_s: 0.01,
+        step_s: args.get(5).and_then(|s| s.parse().ok()).unwrap_or(0.01),
         shear_memory: true,
         capture_speed_m_s: None,
     };
@@ -66,7 +66,7 @@ fn main() {
     let mut scratch = Scratch::default();
     let clock = Instant::now();
     let mut runouts = Vec::new();
-    let (mut effort, mut rise, mut rem, mut rel) = ([0u64; 6], 0.0f64, 0.0, 0.0);
+    let (mut effort, mut rise, mut rem, mut rel) = ([0u64; 7], 0.0f64, 0.0, 0.0);
     let mut stops = [0; 4];
     let (mut vmax, mut time) = (0.0, 0.0);
     for i in 0..n {
@@ -97,6 +97,7 @@ fn main() {
             f.effort.sweeps,
             f.effort.triangles,
             u64::from(f.impact_count),
+            f.effort.unsettled,
         ]) {
             *sum += x;
         }
@@ -115,7 +116,7 @@ fn main() {
     let s = clock.elapsed().as_secs_f64();
     runouts.sort_by(f64::total_cmp);
     println!(
-        "{:.0} rocks/s; per rock: steps {} rejected {} leaps {} sweeps {} triangles {} impacts {}; stops {stops:?} rise {rise:.2e} remainder {:.4} P50 {:.2} P95 {:.2} mean {:.2} vmax {:.2} time {:.1}",
+        "{:.0} rocks/s; per rock: steps {} rejected {} leaps {} sweeps {} triangles {} impacts {} unsettled {}; stops {stops:?} rise {rise:.2e} remainder {:.4} P50 {:.2} P95 {:.2} mean {:.2} vmax {:.2} time {:.1}",
         n as f64 / s,
         effort[0] / n as u64,
         effort[1] / n as u64,
@@ -123,6 +124,7 @@ fn main() {
         effort[3] / n as u64,
         effort[4] / n as u64,
         effort[5] / n as u64,
+        effort[6] / n as u64,
         rem / rel,
         runouts[n / 2],
         runouts[n * 95 / 100],

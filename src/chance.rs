@@ -30,6 +30,8 @@ pub enum Purpose {
     Grounds = 4,
     /// The tilt of the contact normal at its impacts.
     Impacts = 5,
+    /// Which rocks a statistic is computed from again, to see how far chance moves it.
+    Redraw = 6,
 }
 
 /// The stream of one purpose of one release: the same alone, resumed, or among a million.

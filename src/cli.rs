@@ -2,7 +2,9 @@
 
 #![expect(clippy::print_stderr, reason = "this is the face of the program")]
 
-use crate::wiring::{self, Ended, Order};
+mod study;
+
+use crate::wiring::{self, Ended, Order, Part};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use rockfall::error::{Error, Result};
@@ -18,7 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit status when the user's input is wrong.
 const WRONG_INPUT: u8 = 2;
-/// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal.
+/// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
 const INTERRUPTED: u8 = 130;
 
 /// Rockfall hazard on triangle meshes, with the numerical error beside every number.
@@ -38,6 +40,18 @@ enum Command {
         /// Scene file (TOML)
         scene: PathBuf,
     },
+    /// Put the results of all shards of a run together: the same bytes as the run at once
+    Merge {
+        /// Folders of the shards, in any order
+        #[arg(required = true, value_name = "DIR")]
+        shards: Vec<PathBuf>,
+        /// Folder for the results
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Replace the results in the folder
+        #[arg(long)]
+        overwrite: bool,
+    },
     /// Draw figures and page again from the results in a folder; run no rock
     Draw {
         /// Folder with the results of a run
@@ -47,6 +61,9 @@ enum Command {
     Grounds,
     /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
     Calibrate(CalibrateArgs),
+    /// Study the numerics: error against run time, stability
+    #[command(subcommand)]
+    Study(study::StudyCommand),
     /// Check, convert and make meshes
     #[command(subcommand)]
     Mesh(MeshCommand),
@@ -110,6 +127,9 @@ struct RunArgs {
     /// One release alone, with its full path recorded
     #[arg(long, value_name = "I", conflicts_with = "resume")]
     only: Option<usize>,
+    /// The K-th of N parts of the releases, K from 1 to N; `rockfall merge` puts them together
+    #[arg(long, value_name = "K/N", value_parser = shard, conflicts_with = "only")]
+    shard: Option<Part>,
     /// Go on with an interrupted run in the same folder
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
@@ -126,9 +146,11 @@ pub(crate) fn main() -> ExitCode {
     let done = match Asked::parse().command {
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
+        Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
         Command::Calibrate(args) => calibrate(&args),
+        Command::Study(command) => study::study(&command),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
             wiring::mesh_from_grid(&grid, &out).map(say)
@@ -155,6 +177,12 @@ fn plan(scene: &Path) -> Result<ExitCode> {
     Ok(say(format!("{health}\n{plan}")))
 }
 
+fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
+    let mode = if overwrite { Mode::Overwrite } else { Mode::Fresh };
+    wiring::merge(shards, out, mode)?;
+    Ok(say(format!("results in {}", out.display())))
+}
+
 fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
     let (terrain, health) = scene.read_terrain()?;
@@ -163,7 +191,7 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
         say(&plan);
     }
     let order = args.order();
-    let bar = args.progress(args.only.map_or(plan.count, |_| 1));
+    let bar = args.progress(order.part.range(plan.count).len());
     let ended =
         wiring::run(&plan, &health, &order, stop_at_ctrl_c, |done| bar.set_position(done as u64))?;
     if let Ended::Interrupted(done, asked) = ended {
@@ -183,14 +211,31 @@ impl RunArgs {
         let mut scene = Scene::read(&self.scene)?;
         scene.release.count = self.releases.unwrap_or(scene.release.count);
         scene.seed = self.seed.unwrap_or(scene.seed);
-        match self.only.filter(|only| *only >= scene.release.count) {
-            Some(only) => Err(Error::Request(format!(
-                "--only {only}: found {} releases; write a number from 0 to {}",
-                scene.release.count,
-                scene.release.count - 1
-            ))),
-            None => Ok(scene),
+        self.check_part(&scene)?;
+        Ok(scene)
+    }
+
+    /// The part of the releases that is asked for must be there.
+    fn check_part(&self, scene: &Scene) -> Result<()> {
+        let count = scene.release.count;
+        let refuse = |why: String| Err(Error::Request(why));
+        match self.part() {
+            Part::Only(only) if only >= count => refuse(format!(
+                "--only {only}: found {count} releases; write a number from 0 to {}",
+                count - 1
+            )),
+            Part::Shard { number, of } if of > count => refuse(format!(
+                "--shard {number}/{of}: found {count} releases; write at most as many parts"
+            )),
+            Part::Shard { number, of } if scene.release.together => refuse(format!(
+                "--shard {number}/{of}: the rocks of this scene touch each other and fall together; leave it out"
+            )),
+            _ => Ok(()),
         }
+    }
+
+    fn part(&self) -> Part {
+        self.only.map(Part::Only).or(self.shard).unwrap_or(Part::All)
     }
 
     fn order(&self) -> Order {
@@ -201,12 +246,16 @@ impl RunArgs {
             _ => Mode::Fresh,
         };
         let results = Path::new("reports").join(name);
-        // One release alone has a folder of its own: it is not the scene's result.
-        let usual = self.only.map_or(results.clone(), |only| results.join(format!("only_{only}")));
+        // A part of the releases has a folder of its own: it is not the scene's result.
+        let usual = match self.part() {
+            Part::All => results,
+            Part::Only(only) => results.join(format!("only_{only}")),
+            Part::Shard { number, of } => results.join(format!("shard_{number}_of_{of}")),
+        };
         Order {
             out: self.out.clone().unwrap_or(usual),
             mode,
-            only: self.only,
+            part: self.part(),
             threads: self.threads,
         }
     }
@@ -236,9 +285,15 @@ impl RunArgs {
     }
 }
 
-/// Ctrl-C raises the flag: the chunk in hand is finished and written before anything ends.
+/// Ctrl-C or SIGTERM raises the flag: the chunk in hand is finished and written before anything ends.
+/// The second one ends at once: what is on the disk is good whenever a run is cut off.
 fn stop_at_ctrl_c(flag: Arc<AtomicBool>) -> Result<()> {
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed))
+    let stop = move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(INTERRUPTED.into());
+        }
+    };
+    ctrlc::set_handler(stop)
         .map_err(|error| Error::Request(format!("cannot watch for Ctrl-C: {error}")))
 }
 
@@ -252,6 +307,14 @@ fn say(text: impl Display) -> ExitCode {
             ExitCode::from(WRONG_INPUT)
         }
         _ => ExitCode::SUCCESS,
+    }
+}
+
+fn shard(text: &str) -> std::result::Result<Part, String> {
+    let numbers = text.split_once('/').map(|(number, of)| (number.parse(), of.parse()));
+    match numbers {
+        Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Part::Shard { number, of }),
+        _ => Err("write K/N, K from 1 to N: 3/16 is the third of 16 parts".to_owned()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! The one error type. An error is always the user's: it says where, what was found and what to write instead.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// What may be wrong with the user's input or the file system.
@@ -18,7 +19,7 @@ pub enum Error {
         remedy: String,
     },
     /// A file that cannot be read or written.
-    #[error("{file}: cannot {action}: {source}", file = .file.display())]
+    #[error("{file}: cannot {action}: {source}; {remedy}", file = .file.display(), remedy = remedy(.source.kind()))]
     File {
         /// The file.
         file: PathBuf,
@@ -30,6 +31,25 @@ pub enum Error {
     /// A request that does not fit together (command line, result folder).
     #[error("{0}")]
     Request(String),
+}
+
+/// What to do about the system's answer.
+fn remedy(kind: ErrorKind) -> &'static str {
+    match kind {
+        ErrorKind::NotFound => "write a path that is there",
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "write a path that you may use, or take the right to use this one"
+        }
+        ErrorKind::IsADirectory => "this is a folder: write the path of a file",
+        ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {
+            "a file stands where a folder should be: write another path"
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "make room and go on with --resume, or write a path on another disk"
+        }
+        ErrorKind::InvalidData => "write the path of a text file in UTF-8",
+        _ => "check the disk, or write another path",
+    }
 }
 
 /// What is wrong with a value and what to write instead: an [`Error::Input`] that does not yet know its place.

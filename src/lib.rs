@@ -34,3 +34,4 @@ pub mod hazard;
 pub mod calibrate;
 pub mod output;
 pub mod report;
+pub mod study;

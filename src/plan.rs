@@ -4,7 +4,7 @@ mod listing;
 mod stiffness;
 mod watch;
 
-pub use stiffness::{OwnDissipation, dda_restitution};
+pub use stiffness::OwnDissipation;
 pub use watch::{Curtain, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;

@@ -1,11 +1,13 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
+pub(crate) mod study;
+
 use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::hazard::{Barrier, LineInfo, MapFrame, Rule, Way};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
-use rockfall::plan::{Curtain, Part, Plan};
+use rockfall::plan::{self, Curtain, Plan};
 use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::scene::{BarrierTable, DesignTable, Scene};
@@ -16,6 +18,7 @@ use rockfall::terrain::stl::write_binary;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain, make};
 use rockfall::trajectory::{self, Scratch};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -27,10 +30,39 @@ pub(crate) struct Order {
     pub(crate) out: PathBuf,
     /// What to do with results that it holds already.
     pub(crate) mode: Mode,
-    /// One release alone, with its full path.
-    pub(crate) only: Option<usize>,
+    /// What part of the releases.
+    pub(crate) part: Part,
     /// Worker threads; `None` = all cores.
     pub(crate) threads: Option<usize>,
+}
+
+/// What part of the releases a run computes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Part {
+    /// All of them.
+    All,
+    /// This one alone, with its full path.
+    Only(usize),
+    /// The `number`-th of `of` nearly equal parts, both from 1.
+    Shard {
+        /// Which part.
+        number: usize,
+        /// Of how many.
+        of: usize,
+    },
+}
+
+impl Part {
+    /// Its release numbers of `count`.
+    pub(crate) fn range(self, count: usize) -> Range<usize> {
+        // In 128 bits the product of two counts cannot overflow.
+        let cut = |number: usize, of: usize| (count as u128 * number as u128 / of as u128) as usize;
+        match self {
+            Self::All => 0..count,
+            Self::Only(index) => index..index + 1,
+            Self::Shard { number, of } => cut(number - 1, of)..cut(number, of),
+        }
+    }
 }
 
 /// How a run ended.
@@ -54,19 +86,19 @@ pub(crate) fn run(
     let ensemble = Ensemble::new(order.threads)?;
     let mut output =
         Output::create(run_info(plan, health, order, &ensemble)?, &order.out, order.mode)?;
-    let (first, asked) = (order.only.unwrap_or(0), order.only.map_or(plan.count, |_| 1));
+    let asked = order.part.range(plan.count);
     begin(ensemble.stop_flag())?;
-    let paths = order.only.map(|only| only..only + 1);
+    let paths = matches!(order.part, Part::Only(_)).then(|| asked.clone());
     let fall = |index: usize, scratch: &mut Scratch| {
         trajectory::fall(plan, index, paths.as_ref(), scratch)
     };
     for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
         output.write(&falls?)?;
-        progress(output.remaining().start - first);
+        progress(output.remaining().start - asked.start);
     }
-    let done = output.remaining().start - first;
-    if done < asked {
-        return Ok(Ended::Interrupted(done, asked));
+    let done = output.remaining().start - asked.start;
+    if done < asked.len() {
+        return Ok(Ended::Interrupted(done, asked.len()));
     }
     let results = output.finish()?;
     report::draw_run(&results, &plan.terrain)?;
@@ -74,7 +106,7 @@ pub(crate) fn run(
 }
 
 fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) -> Result<RunInfo> {
-    let only = order.only;
+    let asked = order.part.range(plan.count);
     let mut mesh_health = serde_json::to_value(health)
         .map_err(|error| Error::Request(format!("the mesh health cannot be written: {error}")))?;
     mesh_health["table"] = health.to_string().lines().collect();
@@ -84,8 +116,9 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
             scene_hash: plan.scene_hash.clone(),
             version: plan.version.to_owned(),
             seed: plan.seed,
-            first_release: only.unwrap_or(0),
-            releases: only.map_or(plan.count, |_| 1),
+            first_release: asked.start,
+            releases: asked.len(),
+            of_releases: plan.count,
         },
         origin_m: plan.terrain.origin_m,
         ground_of_sheet: plan
@@ -98,7 +131,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         maps: map_frame(plan),
         barriers: barriers(plan),
         observed: plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)?,
-        keeps_paths: only.is_some() || plan.paths.is_kept(),
+        keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
         threads: ensemble.threads(),
         plan: plan.lines(),
@@ -117,7 +150,7 @@ fn line_infos(plan: &Plan) -> Vec<LineInfo> {
 }
 
 fn barriers(plan: &Plan) -> Vec<Barrier> {
-    let Part::Kept(tables) = &plan.barriers else { return Vec::new() };
+    let plan::Part::Kept(tables) = &plan.barriers else { return Vec::new() };
     let rule = |rule: &DesignTable| Rule {
         percentile: rule.percentile,
         speed_factors: rule.speed_factors.clone(),
@@ -165,6 +198,12 @@ pub(crate) fn calibrate(
 all trials in {}",
         out.join("calibration.csv").display()
     ))
+}
+
+/// Puts the shards of a run together, and draws the report.
+pub(crate) fn merge(shards: &[PathBuf], out: &Path, mode: Mode) -> Result<()> {
+    let results = output::merge(shards, out, mode)?;
+    report::draw_merged(&results, &shards[0])
 }
 
 /// Draws figures and page again from the results in `dir`.

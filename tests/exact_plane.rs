@@ -6,7 +6,7 @@ use nalgebra::Rotation3;
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
 use rockfall::terrain::{Terrain, make};
-use rockfall::trajectory::{FeatureKind, Stop, Trajectory};
+use rockfall::trajectory::{Stop, Trajectory};
 
 /// The same plane, falling in +y, from unlike triangles.
 fn planes(angle_rad: f64) -> Vec<Terrain> {

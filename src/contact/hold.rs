@@ -8,7 +8,7 @@ pub const HOLDS: usize = 2 * MOST;
 
 /// Cosine of the turn of the normal up to which a new contact takes over an old one's springs (–): a rock rolling
 /// from face to edge to face keeps its grip.
-const SAME_GRIP: f64 = 0.7;
+pub const SAME_GRIP: f64 = 0.7;
 
 /// The memory of one contact.
 #[derive(Debug, Clone, Copy)]

@@ -2,6 +2,7 @@
 
 pub mod hold;
 pub mod near;
+pub mod submatrix;
 
 use crate::rock::Vec3;
 use crate::terrain::Terrain;

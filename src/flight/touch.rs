@@ -11,7 +11,7 @@ const TOUCHING: f64 = 1e-12;
 /// A foot this far beside a triangle still lies on it (–, relative to R): neighbours must not leave a gap.
 const BESIDE: f64 = 1e-9;
 /// A start beside a triangle but this little under its plane (–, relative to R) is on a neighbour in the same plane.
-const ROUNDING: f64 = 1e-6;
+const ROUNDING: f64 = 1e-9;
 
 /// First touch within a window of time, with the triangle and the edges and corners that it owns.
 #[inline]

@@ -68,10 +68,19 @@ fn middle_of(class: u16) -> f64 {
 
 impl Counts {
     fn add(&mut self, value: f64) {
-        let class = class_of(value);
+        self.add_class(class_of(value), 1);
+    }
+
+    fn add_class(&mut self, class: u16, count: u32) {
         match self.0.binary_search_by_key(&class, |(known, _)| *known) {
-            Ok(at) => self.0[at].1 += 1,
-            Err(at) => self.0.insert(at, (class, 1)),
+            Ok(at) => self.0[at].1 += count,
+            Err(at) => self.0.insert(at, (class, count)),
+        }
+    }
+
+    fn join(&mut self, other: &Self) {
+        for &(class, count) in &other.0 {
+            self.add_class(class, count);
         }
     }
 
@@ -99,6 +108,17 @@ struct Cell {
     largest_m: f64,
     totals_j: Counts,
     heights_m: Counts,
+}
+
+impl Cell {
+    fn join(&mut self, other: &Self) {
+        self.passages += other.passages;
+        self.deposits += other.deposits;
+        self.largest_j = self.largest_j.max(other.largest_j);
+        self.largest_m = self.largest_m.max(other.largest_m);
+        self.totals_j.join(&other.totals_j);
+        self.heights_m.join(&other.heights_m);
+    }
 }
 
 /// One of the maps.
@@ -190,6 +210,13 @@ impl Maps {
     /// What a resumed run needs.
     pub fn state(&self) -> MapState {
         MapState(self.cells.iter().map(|(cell, known)| (*cell, known.clone())).collect())
+    }
+
+    /// Adds what other rocks left.
+    pub fn join(&mut self, other: MapState) {
+        for (number, cell) in other.0 {
+            self.cells.entry(number).or_default().join(&cell);
+        }
     }
 
     /// Adds the cells of one rock and where it ended (map coordinates).

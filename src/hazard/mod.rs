@@ -13,6 +13,7 @@ mod quantile;
 mod quantity;
 mod row;
 mod sample;
+mod sum;
 mod totals;
 
 pub use barriers::{Barrier, BarrierSummary, Design, Rule, judge};
@@ -24,7 +25,8 @@ pub use quantile::{Percentile, Ranks};
 pub use quantity::Quantity;
 pub use row::{Row, StopKind};
 pub use sample::{Exceedance, Histogram, Mean, Sample};
-pub use totals::{Largest, Totals};
+pub use sum::Sum;
+pub use totals::{Largest, LedgerSums, Totals};
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

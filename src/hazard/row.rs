@@ -53,6 +53,16 @@ pub struct Row {
     pub leaps: u64,
     /// Passes over the contacts.
     pub sweeps: u64,
+    /// Energy lost to sliding friction on the slope (J).
+    pub friction_j: f64,
+    /// Energy lost to dashpots on the slope (J).
+    pub damping_j: f64,
+    /// Energy lost to rolling friction on the slope (J).
+    pub rolling_j: f64,
+    /// Energy lost in contacts with trees (J).
+    pub trees_j: f64,
+    /// What the numerics lost (positive) or gained (negative) beside the rest (J).
+    pub remainder_j: f64,
 }
 
 /// [`Stop`] without the reason of a failure.
@@ -97,7 +107,7 @@ impl From<&Stop> for StopKind {
 
 impl Row {
     /// Columns of `releases.csv`, in order; a vector takes three.
-    pub const COLUMNS: [&'static str; 31] = [
+    pub const COLUMNS: [&'static str; 36] = [
         "index",
         "stop",
         "time_s",
@@ -129,6 +139,11 @@ impl Row {
         "steps",
         "leaps",
         "sweeps",
+        "friction_j",
+        "damping_j",
+        "rolling_j",
+        "trees_j",
+        "remainder_j",
     ];
 
     /// The row of one journey; `origin_m` is the map position of the local (0, 0, 0).
@@ -158,6 +173,11 @@ impl Row {
             steps: fall.effort.steps,
             leaps: fall.effort.leaps,
             sweeps: fall.effort.sweeps,
+            friction_j: fall.ledger.friction_j,
+            damping_j: fall.ledger.damping_j,
+            rolling_j: fall.ledger.rolling_j,
+            trees_j: fall.ledger.trees_j,
+            remainder_j: fall.ledger.remainder_j,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Sums over all rocks of what `releases.csv` has no column for.
 
+use super::sum::Sum;
 use crate::trajectory::{Effort, Ledger, Stop, Trajectory};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -22,17 +23,35 @@ impl Largest {
     }
 }
 
-/// Effort, energy ledger and failures of all rocks, added in the order of releases.
+/// [`Ledger`]s added up (J).
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct LedgerSums {
+    /// Sliding friction against the slope.
+    pub friction_j: Sum,
+    /// Normal and shear dashpots against the slope.
+    pub damping_j: Sum,
+    /// Rolling friction against the slope.
+    pub rolling_j: Sum,
+    /// Everything lost in contacts with trees.
+    pub trees_j: Sum,
+    /// What the numerics lost (positive) or gained (negative).
+    pub remainder_j: Sum,
+    /// The largest [`Ledger::rise_j`]; no sum.
+    pub rise_j: f64,
+}
+
+/// Effort, energy ledger and failures of all rocks. The totals of a run's parts [join](Self::join) to the bits of
+/// the whole.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Totals {
     /// Release numbers of the rocks that failed, by reason.
     pub failures: BTreeMap<String, Vec<usize>>,
     /// What the computation cost, counted.
     pub effort: Effort,
-    /// Where the energy of the rocks that did not fail went: sums (J), but [`Ledger::rise_j`] is the largest.
-    pub ledger: Ledger,
+    /// Where the energy of the rocks that did not fail went.
+    pub ledger: LedgerSums,
     /// Energy released by the same rocks (J): the scale of the ledger.
-    pub released_j: f64,
+    pub released_j: Sum,
     /// Largest rise of mechanical energy over one contact episode (J).
     pub largest_energy_rise_j: Option<Largest>,
 }
@@ -46,9 +65,33 @@ impl Totals {
             self.failures.entry(reason.clone()).or_default().push(fall.index);
             return;
         }
-        add_ledger(&mut self.ledger, &fall.ledger);
-        self.released_j += fall.released_j;
+        self.ledger.add(&fall.ledger);
+        self.released_j.add(fall.released_j);
         Largest::update(&mut self.largest_energy_rise_j, fall.index, fall.ledger.rise_j);
+    }
+
+    /// Adds the totals of the releases that follow.
+    pub fn join(&mut self, next: &Self) {
+        let Self { failures, effort, ledger, released_j, largest_energy_rise_j } = next;
+        for (reason, releases) in failures {
+            self.failures.entry(reason.clone()).or_default().extend(releases);
+        }
+        add_effort(&mut self.effort, effort);
+        self.ledger.join(ledger);
+        self.released_j.join(released_j);
+        if let Some(largest) = largest_energy_rise_j {
+            Largest::update(&mut self.largest_energy_rise_j, largest.release, largest.value);
+        }
+    }
+
+    /// With sums as one number each, as a summary shows them.
+    #[must_use]
+    pub fn rounded(&self) -> Self {
+        Self {
+            ledger: self.ledger.rounded(),
+            released_j: self.released_j.rounded(),
+            ..self.clone()
+        }
     }
 }
 
@@ -63,13 +106,36 @@ fn add_effort(sum: &mut Effort, one: &Effort) {
     sum.unsettled += unsettled;
 }
 
-/// Every field is named, so that a new entry does not compile until it is summed.
-fn add_ledger(sum: &mut Ledger, one: &Ledger) {
-    let Ledger { friction_j, damping_j, rolling_j, trees_j, remainder_j, rise_j } = *one;
-    sum.friction_j += friction_j;
-    sum.damping_j += damping_j;
-    sum.rolling_j += rolling_j;
-    sum.trees_j += trees_j;
-    sum.remainder_j += remainder_j;
-    sum.rise_j = sum.rise_j.max(rise_j);
+impl LedgerSums {
+    /// Every field is named, so that a new entry does not compile until it is summed.
+    fn add(&mut self, one: &Ledger) {
+        let Ledger { friction_j, damping_j, rolling_j, trees_j, remainder_j, rise_j } = *one;
+        self.friction_j.add(friction_j);
+        self.damping_j.add(damping_j);
+        self.rolling_j.add(rolling_j);
+        self.trees_j.add(trees_j);
+        self.remainder_j.add(remainder_j);
+        self.rise_j = self.rise_j.max(rise_j);
+    }
+
+    fn join(&mut self, other: &Self) {
+        let Self { friction_j, damping_j, rolling_j, trees_j, remainder_j, rise_j } = other;
+        self.friction_j.join(friction_j);
+        self.damping_j.join(damping_j);
+        self.rolling_j.join(rolling_j);
+        self.trees_j.join(trees_j);
+        self.remainder_j.join(remainder_j);
+        self.rise_j = self.rise_j.max(*rise_j);
+    }
+
+    fn rounded(&self) -> Self {
+        Self {
+            friction_j: self.friction_j.rounded(),
+            damping_j: self.damping_j.rounded(),
+            rolling_j: self.rolling_j.rounded(),
+            trees_j: self.trees_j.rounded(),
+            remainder_j: self.remainder_j.rounded(),
+            rise_j: self.rise_j,
+        }
+    }
 }

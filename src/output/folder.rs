@@ -1,7 +1,8 @@
 //! What a result folder holds already, and whether a run may use it.
 
-use super::progress::{PROGRESS, Progress};
+use super::progress::Progress;
 use super::summary::{SUMMARY, Summary};
+use super::whole::PART;
 use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES};
 use crate::error::{Error, Result};
 use std::ffi::OsStr;
@@ -9,17 +10,20 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Result files; those who say whose results they are come last, so that a half-emptied folder still knows.
-const FILES: [&str; 7] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY, PROGRESS];
+/// Result files besides `progress.json`.
+const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY];
 /// Folders of results with the endings of the files that belong to them.
-const FOLDERS: [(&str, &[&str]); 2] =
-    [("figures", &["svg"]), ("maps", &["asc", "prj", "tif", "state", "geojson", "vtk"])];
+const FOLDERS: [(&str, &[&str]); 2] = [
+    ("figures", &["svg", PART]),
+    ("maps", &["asc", "prj", "tif", "state", "geojson", "vtk", PART]),
+];
 
 /// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from.
 pub(super) fn prepare(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
-    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     let found = if mode == Mode::Overwrite { None } else { look(dir, info, mode)? };
     if found.is_none() {
+        // First of all the folder says whose it is: killed at any moment from here on, the run can be resumed.
+        Progress::none_of(info).write(dir)?;
         clear(dir)?;
     }
     Ok(found)

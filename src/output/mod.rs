@@ -5,8 +5,10 @@
 //! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
 
 mod calibration;
+mod claim;
 mod folder;
 mod maps;
+mod merge;
 mod progress;
 mod read;
 mod rows;
@@ -16,6 +18,8 @@ mod vector;
 mod whole;
 
 pub use calibration::{read_calibration, write_calibration};
+pub use claim::Claim;
+pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
 pub use rows::{ImpactRow, PathRow};
@@ -89,6 +93,7 @@ pub enum Mode {
 /// Results being written.
 #[derive(Debug)]
 pub struct Output {
+    claim: Claim,
     dir: PathBuf,
     info: RunInfo,
     releases: Table,
@@ -111,8 +116,10 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// If the folder holds results that `mode` does not allow to touch, or cannot be written.
+    /// If the folder holds results that `mode` does not allow to touch, cannot be written, or is being written by
+    /// another process.
     pub fn create(info: RunInfo, dir: &Path, mode: Mode) -> Result<Self> {
+        let claim = Claim::on(dir)?;
         let found = folder::prepare(dir, &info, mode)?;
         let bytes = found.as_ref().map(|found| &found.bytes);
         let releases = open(dir, RELEASES, &Row::COLUMNS, bytes)?;
@@ -125,16 +132,21 @@ impl Output {
         let crossings = (!info.lines.is_empty())
             .then(|| open(dir, CROSSINGS, &CrossingRow::COLUMNS, bytes))
             .transpose()?;
-        let lines = read::recall_lines(dir, &info.lines, found.is_some())?;
+        let mut lines: Vec<Line> = info.lines.iter().cloned().map(Line::new).collect();
+        if found.is_some() {
+            read::recall_lines(dir, &mut lines)?;
+        }
         let maps = open_maps(dir, &info, found.as_ref())?;
         let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
-        let hazard = match found {
-            Some(found) => read::recall(dir, &info.identity, found.done, found.totals)?,
-            None => Hazard::default(),
-        };
+        let mut hazard = Hazard::default();
+        if let Some(found) = found {
+            hazard.totals = found.totals;
+            read::recall(dir, &info.identity, found.done, &mut hazard)?;
+        }
         let dir = dir.to_owned();
         let begun = Instant::now();
         let mut output = Self {
+            claim,
             dir,
             info,
             releases,
@@ -190,12 +202,13 @@ impl Output {
         self.mark()
     }
 
-    /// Writes the summary and gives the results as they are on the disk.
+    /// Writes the summary and gives the results as they are on the disk. Of a part of a run the progress stays:
+    /// it holds what [`merge`] needs.
     ///
     /// # Errors
     ///
     /// If releases remain: the message says how far the run came and how to go on. If the disk is full.
-    pub fn finish(self) -> Result<Results> {
+    pub fn finish(mut self) -> Result<Results> {
         let left = self.remaining().len();
         if left > 0 {
             let (done, all) = (self.hazard.rocks(), self.info.identity.releases);
@@ -205,6 +218,7 @@ impl Output {
             )));
         }
         let seconds = self.seconds();
+        let is_part = self.info.identity.is_part();
         let done = self.hazard.rocks();
         if let Some(maps) = &self.maps {
             maps::write(&self.dir, maps, done)?;
@@ -214,12 +228,22 @@ impl Output {
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
         summary.barriers = barriers;
         summary.write(&self.dir)?;
-        let results = Results { dir: self.dir, summary, hazard: self.hazard, lines: self.lines };
+        self.hazard.totals = summary.totals.clone();
+        let results = Results {
+            dir: self.dir,
+            summary,
+            hazard: self.hazard,
+            lines: self.lines,
+            claim: Some(self.claim),
+        };
         if results.summary.maps.is_some() {
             results.write_vectors()?;
         }
-        folder::remove(&results.dir.join(PROGRESS))?;
-        maps::remove_state(&results.dir, done)?;
+        // a part keeps what putting parts together needs
+        if !is_part {
+            folder::remove(&results.dir.join(PROGRESS))?;
+            maps::remove_state(&results.dir, done)?;
+        }
         Ok(results)
     }
 
@@ -249,18 +273,18 @@ impl Output {
         Ok(())
     }
 
+    /// The tables that are written, with their names.
+    fn tables(&mut self) -> impl Iterator<Item = (&'static str, &mut Table)> {
+        let Self { releases, paths, impacts, crossings, .. } = self;
+        let kept = [(PATHS, paths), (IMPACTS, impacts), (CROSSINGS, crossings)].into_iter();
+        let kept = kept.filter_map(|(name, table)| Some((name, table.as_mut()?)));
+        std::iter::once((RELEASES, releases)).chain(kept)
+    }
+
     /// Puts all rows on the disk, and then says that they are there.
     fn mark(&mut self) -> Result<()> {
-        let mut bytes = BTreeMap::from([(RELEASES.to_owned(), self.releases.sync()?)]);
-        for (name, table) in [
-            (PATHS, &mut self.paths),
-            (IMPACTS, &mut self.impacts),
-            (CROSSINGS, &mut self.crossings),
-        ] {
-            if let Some(table) = table {
-                bytes.insert(name.to_owned(), table.sync()?);
-            }
-        }
+        let length = |(name, table): (&str, &mut Table)| Ok((name.to_owned(), table.sync()?));
+        let bytes: BTreeMap<String, u64> = self.tables().map(length).collect::<Result<_>>()?;
         let done = self.hazard.rocks();
         if let Some(maps) = &self.maps {
             maps::write_state(&self.dir, maps, done)?;

@@ -1,5 +1,6 @@
 //! What tells one run from another, and how far a run has come.
 
+use super::RunInfo;
 use super::whole::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::Totals;
@@ -8,7 +9,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 
-/// Name of the file that an interrupted run leaves and a finished one removes.
+/// Name of the file that an interrupted run and a part of a run leave, and a finished run removes.
 pub(super) const PROGRESS: &str = "progress.json";
 
 /// What decides every byte of the results.
@@ -20,16 +21,32 @@ pub struct Identity {
     pub version: String,
     /// Seed in force (scene or command line).
     pub seed: u64,
-    /// Number of the first release; 0 but with `--only`.
+    /// Number of the first release; 0 but for a part of a run (`--only`, `--shard`).
     pub first_release: usize,
     /// Number of releases.
     pub releases: usize,
+    /// Number of releases of the whole run.
+    pub of_releases: usize,
 }
 
 impl Identity {
     /// Release numbers asked for.
     pub fn range(&self) -> Range<usize> {
         self.first_release..self.first_release + self.releases
+    }
+
+    /// Whether other releases of the same run stand elsewhere.
+    pub fn is_part(&self) -> bool {
+        self.releases < self.of_releases
+    }
+
+    /// What tells the whole run from another; none when they are the same.
+    pub(super) fn runs_otherwise(&self, other: &Self) -> Option<String> {
+        if self.version != other.version {
+            return Some(format!("version {}, not {}", self.version, other.version));
+        }
+        let whole = |part: &Self| Self { first_release: 0, releases: 0, ..part.clone() };
+        whole(self).asks_otherwise(&whole(other))
     }
 
     /// What the user asked differently; none when only the version may differ.
@@ -41,7 +58,11 @@ impl Identity {
             return Some(format!("seed {}, not {}", self.seed, other.seed));
         }
         let (mine, others) = (self.range(), other.range());
-        (mine != others).then(|| format!("releases {mine:?}, not {others:?}"))
+        if mine != others {
+            return Some(format!("releases {mine:?}, not {others:?}"));
+        }
+        let (mine, others) = (self.of_releases, other.of_releases);
+        (mine != others).then(|| format!("releases of {mine}, not of {others}"))
     }
 }
 
@@ -61,6 +82,23 @@ pub(super) struct Progress {
 }
 
 impl Progress {
+    /// A run that begins.
+    pub(super) fn none_of(info: &RunInfo) -> Self {
+        Self {
+            title: info.title.clone(),
+            identity: info.identity.clone(),
+            done: 0,
+            bytes: BTreeMap::new(),
+            totals: Totals::default(),
+            seconds: 0.0,
+        }
+    }
+
+    /// Whether no release is left.
+    pub(super) fn is_complete(&self) -> bool {
+        self.done == self.identity.releases
+    }
+
     /// Reads what an interrupted run left in `dir`; none if nothing.
     pub(super) fn read(dir: &Path) -> Result<Option<Self>> {
         read_json(&dir.join(PROGRESS))

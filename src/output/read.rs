@@ -1,12 +1,13 @@
 //! Results read back: what figures and pages are drawn from.
 
-use super::progress::{Identity, PROGRESS};
+use super::claim::Claim;
+use super::progress::{Identity, PROGRESS, Progress};
 use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
 use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
-use crate::hazard::{CrossingRow, Hazard, Line, LineInfo, Row, Totals};
+use crate::hazard::{CrossingRow, Hazard, Line, Row};
 use std::path::{Path, PathBuf};
 
 /// The complete results in a folder.
@@ -20,6 +21,9 @@ pub struct Results {
     pub hazard: Hazard,
     /// All first crossings line by line, from `crossings.csv`.
     pub lines: Vec<Line>,
+    /// Keeps other processes away as long as the run that wrote them goes on.
+    #[expect(dead_code, reason = "held until it is dropped")]
+    pub(super) claim: Option<Claim>,
 }
 
 /// Reads the results in `dir`.
@@ -29,18 +33,32 @@ pub struct Results {
 /// If the folder holds no results, or those of a run that is not finished, or if `releases.csv` or `summary.json`
 /// is not as it was written.
 pub fn read(dir: &Path) -> Result<Results> {
-    let Some(summary) = Summary::read(dir)? else {
-        let why = if dir.join(PROGRESS).exists() {
-            "holds a run that is not finished: go on with `rockfall run SCENE --resume`"
-        } else {
-            "holds no results: there is no summary.json; write some with `rockfall run SCENE --out DIR`"
-        };
-        return Err(Error::Request(format!("{}: {why}", dir.display())));
+    let refuse = |why| Err(Error::Request(format!("{}: {why}", dir.display())));
+    let summary = match (Progress::read(dir)?, Summary::read(dir)?) {
+        // A summary beside a run that has begun again is that of the run before.
+        (Some(progress), _) if !progress.is_complete() => {
+            return refuse(
+                "holds a run that is not finished; go on with `rockfall run SCENE --resume`",
+            );
+        }
+        (_, Some(summary)) => summary,
+        (Some(_), None) => {
+            return refuse(
+                "holds a run without its summary; write it with `rockfall run SCENE --resume`",
+            );
+        }
+        (None, None) => {
+            return refuse(
+                "holds no results: there is no summary.json; write some with `rockfall run SCENE --out DIR`",
+            );
+        }
     };
-    let hazard = recall(dir, &summary.identity, summary.identity.releases, summary.totals.clone())?;
-    let infos: Vec<LineInfo> = summary.lines.iter().map(|line| line.info.clone()).collect();
-    let lines = recall_lines(dir, &infos, true)?;
-    Ok(Results { dir: dir.to_owned(), summary, hazard, lines })
+    let mut hazard = Hazard::with(summary.totals.clone());
+    recall(dir, &summary.identity, summary.identity.releases, &mut hazard)?;
+    let mut lines: Vec<Line> =
+        summary.lines.iter().map(|line| Line::new(line.info.clone())).collect();
+    recall_lines(dir, &mut lines)?;
+    Ok(Results { dir: dir.to_owned(), summary, hazard, lines, claim: None })
 }
 
 impl Results {
@@ -98,40 +116,35 @@ pub(super) fn crossings(dir: &Path) -> Result<impl Iterator<Item = Result<Crossi
     if_there(dir.join(CROSSINGS), &CrossingRow::COLUMNS)
 }
 
-/// The lines with the crossings that are on the disk, if any are there.
-pub(super) fn recall_lines(dir: &Path, infos: &[LineInfo], has_rows: bool) -> Result<Vec<Line>> {
-    let mut lines: Vec<Line> = infos.iter().cloned().map(Line::new).collect();
-    if lines.is_empty() || !has_rows {
-        return Ok(lines);
+/// Adds the crossings in `dir` to their lines.
+pub(super) fn recall_lines(dir: &Path, lines: &mut [Line]) -> Result<()> {
+    if lines.is_empty() {
+        return Ok(());
     }
     for row in table::rows::<CrossingRow>(dir.join(CROSSINGS), &CrossingRow::COLUMNS)? {
         let row = row?;
         let Some(line) = lines.iter_mut().find(|line| line.info.name == row.line) else {
+            let found = format!("the line {}", row.line);
             let remedy =
                 format!("it must agree with {SUMMARY}: restore it, or run again with --overwrite");
-            return Err(Error::input(
-                &dir.join(CROSSINGS),
-                "rows",
-                format!("the line {}", row.line),
-                remedy,
-            ));
+            return Err(Error::input(&dir.join(CROSSINGS), "rows", found, remedy));
         };
         line.add(&row);
     }
-    Ok(lines)
+    Ok(())
 }
 
-/// All rocks of the first `done` rows, which must be the releases asked for, in order, and no more.
+/// Adds the rocks of all `done` rows, which must be the first releases asked for, in order, and no more.
 pub(super) fn recall(
     dir: &Path,
     identity: &Identity,
     done: usize,
-    totals: Totals,
-) -> Result<Hazard> {
-    let mut hazard = Hazard::with(totals);
+    hazard: &mut Hazard,
+) -> Result<()> {
+    let before = hazard.rocks();
     for row in releases(dir)? {
         let row = row?;
-        let expected = identity.first_release + hazard.rocks();
+        let expected = identity.first_release + hazard.rocks() - before;
         if row.index != expected {
             return Err(broken(
                 dir,
@@ -140,10 +153,9 @@ pub(super) fn recall(
         }
         hazard.add(&row);
     }
-    if hazard.rocks() == done {
-        Ok(hazard)
-    } else {
-        Err(broken(dir, format!("{} rows instead of {done}", hazard.rocks())))
+    match hazard.rocks() - before {
+        rows if rows == done => Ok(()),
+        rows => Err(broken(dir, format!("{rows} rows instead of {done}"))),
     }
 }
 

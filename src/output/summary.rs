@@ -115,7 +115,7 @@ impl Summary {
             observed: info.observed,
             maps: info.maps,
             largest_energy_balance_error: hazard.largest_balance_error(),
-            totals: hazard.totals.clone(),
+            totals: hazard.totals.rounded(),
             origin_m: info.origin_m.into(),
             plan: info.plan,
             warnings: info.warnings,

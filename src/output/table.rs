@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{File, OpenOptions};
-use std::io::{Seek, SeekFrom};
+use std::io::{BufRead, BufReader, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Buffer of a reader or writer (bytes).
@@ -54,6 +54,26 @@ impl Table {
     /// Appends one row.
     pub(super) fn write(&mut self, row: &impl Serialize) -> Result<()> {
         self.writer.serialize(row).map_err(|why| in_file(&self.path, &[], why))
+    }
+
+    /// Appends the rows of another table, which must be `bytes` long: what was known to be good when it was written.
+    pub(super) fn append(&mut self, other: &Path, bytes: u64) -> Result<()> {
+        let file = File::open(other).map_err(Error::file("read", other))?;
+        let found = file.metadata().map_err(Error::file("read", other))?.len();
+        if found != bytes {
+            return Err(Error::input(
+                other,
+                "length",
+                format!("{found} bytes where the run had written {bytes}"),
+                "restore the file, or run again with --overwrite",
+            ));
+        }
+        let mut rows = BufReader::with_capacity(BUFFER, file);
+        rows.skip_until(b'\n').map_err(Error::file("read", other))?; // the names of the columns
+        self.writer.flush().map_err(Error::file("write", &self.path))?;
+        // A copy cannot say which of the two files failed; a full disk is by far the most likely.
+        let mut file = self.writer.get_ref();
+        std::io::copy(&mut rows, &mut file).map(|_| ()).map_err(Error::file("write", &self.path))
     }
 
     /// Puts all rows on the disk and gives the length of the file (bytes).

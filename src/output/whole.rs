@@ -7,6 +7,9 @@ use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
+/// Ending of a file that is not yet whole.
+pub(super) const PART: &str = "part";
+
 /// Writes a file under a temporary name beside it, and renames it when it is on the disk.
 ///
 /// A reader, or a crash, finds the old file or the new one, never a part of it.
@@ -16,19 +19,30 @@ use std::path::Path;
 /// If the disk is full or the folder cannot be written; the old file then stands as it was.
 pub fn write_whole(path: &Path, contents: &[u8]) -> Result<()> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
+    name.push(".");
+    name.push(PART);
     let part = path.with_file_name(name);
     let write = || {
         let mut file = File::create(&part)?;
         file.write_all(contents)?;
         file.sync_all()?;
-        fs::rename(&part, path)
+        fs::rename(&part, path)?;
+        sync_folder_of(path)
     };
     write().map_err(|why| {
         // The part is of no use and may fill the disk; that it cannot be removed either would add nothing.
         let _ = fs::remove_file(&part);
         Error::file("write", path)(why)
     })
+}
+
+/// Puts the names in a folder on the disk: a power failure must not bring an old file back.
+fn sync_folder_of(path: &Path) -> std::io::Result<()> {
+    match path.parent().filter(|_| cfg!(unix)) {
+        Some(folder) if folder != Path::new("") => File::open(folder)?.sync_all(),
+        Some(_) => File::open(".")?.sync_all(),
+        None => Ok(()), // elsewhere a folder cannot be opened as a file
+    }
 }
 
 /// Writes a value as indented JSON, whole.

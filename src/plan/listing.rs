@@ -1,8 +1,9 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{Curtain, Part, Paths, Plan, RestRule, dda_restitution};
+use super::{Curtain, Part, Paths, Plan, RestRule};
 use crate::release::Where;
 use crate::scene::BarrierTable;
+use crate::step::dda::own_restitution;
 use crate::step::{Scheme, Settings};
 use std::fmt;
 
@@ -117,9 +118,8 @@ impl Plan {
     /// What the fixed step does to an impact by itself, ground by ground.
     fn dissipation(&self) -> impl Iterator<Item = String> {
         self.own_dissipation.iter().map(|own| {
-            let kept = own.phases.map(|(radius_m, phase)| match dda_restitution(phase) {
-                Some(e) => format!("{e:.4} (R = {radius_m:.3} m)"),
-                None => format!("anything in 0..1 (R = {radius_m:.3} m)"),
+            let kept = own.phases.map(|(radius_m, phase)| {
+                format!("{:.4} (R = {radius_m:.3} m)", own_restitution(phase))
             });
             let force = if own.is_in_force {
                 "restitution in force"

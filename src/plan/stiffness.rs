@@ -7,8 +7,8 @@ use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene};
 use crate::step::Scheme;
+use crate::step::dda::SINGLE_STEP_PHASE;
 use crate::terrain::Terrain;
-use std::f64::consts::PI;
 
 /// Deepest a resting rock may press a spring, over its radius (–): a softer ground is no rigid surface.
 const STATIC_DEPTH: f64 = 0.01;
@@ -20,8 +20,6 @@ const SELDOM_PASSED_M_S: f64 = 40.0;
 /// Contact oscillation per step (rad) above which an impact is not resolved: the scheme then eats more than a
 /// fifth of the speed.
 const RESOLVED_PHASE: f64 = 0.3;
-/// Contact oscillation per step (rad) from which the scheme no longer oscillates: its eigenvalues turn real.
-const LOTTERY_PHASE: f64 = 4.0;
 
 /// What the fixed-step scheme dissipates by itself on one ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,17 +31,6 @@ pub struct OwnDissipation {
     pub phases: [(f64, f64); 3],
     /// Whether the ground has no restitution of its own, so that the scheme's is the one in force.
     pub is_in_force: bool,
-}
-
-/// Normal restitution (–) that the right-Riemann step leaves of an undamped impact at `ω Δt` = `phase` (rad);
-/// `None` from 4 on, where it is anything between 0 and 1.
-///
-/// The step (Newmark with β = 1/2, γ = 1) shrinks the oscillation by `(1+q)^(−1/2)` while its phase turns by
-/// `θ = acos((2−q)/(2 √(1+q)))`, `q = z²/2`; half a period keeps `e = (1+q)^(−π/(2θ))`.
-pub fn dda_restitution(phase: f64) -> Option<f64> {
-    let q = 0.5 * phase * phase;
-    let angle = ((2.0 - q) / (2.0 * (1.0 + q).sqrt())).acos();
-    (phase < LOTTERY_PHASE).then(|| (1.0 + q).powf(-PI / (2.0 * angle)))
 }
 
 /// Own dissipation on every ground, with warnings for steps too long; empty unless the scheme is `dda`.
@@ -69,8 +56,8 @@ pub(super) fn own_dissipation(
 }
 
 fn phase_warning(ground: &str, (radius_m, phase): (f64, f64), step_s: f64) -> Option<String> {
-    let trouble = if phase >= LOTTERY_PHASE {
-        "rebounds anyhow between 0 and its full speed"
+    let trouble = if phase >= SINGLE_STEP_PHASE {
+        "is thrown back within one step, the livelier the longer the step"
     } else if phase >= RESOLVED_PHASE {
         "does not resolve its impacts"
     } else {
@@ -159,26 +146,4 @@ fn fastest_m_s(scene: &Scene, terrain: &Terrain) -> f64 {
 
 fn rock(scene: &Scene, radius_m: f64) -> Rock {
     Rock { radius_m, density_kg_m3: scene.rocks.density_kg_m3 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The closed form evaluated by hand; at z = 2 it is `3^(−π/(2 acos 0)) = 1/3`.
-    #[test]
-    fn the_scheme_keeps_what_the_table_says() {
-        let table = [
-            (0.01, 0.992_177),
-            (0.1, 0.924_563),
-            (0.5, 0.683_764),
-            (1.0, 0.497_301),
-            (2.0, 1.0 / 3.0),
-        ];
-        for (phase, restitution) in table {
-            // six printed digits
-            assert!((dda_restitution(phase).unwrap() - restitution).abs() < 6e-7, "{phase}");
-        }
-        assert_eq!(dda_restitution(4.0), None);
-    }
 }

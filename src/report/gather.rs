@@ -214,8 +214,16 @@ fn text_of(results: &Results) -> Text {
         let table = value.get("table").and_then(serde_json::Value::as_array);
         table.into_iter().flatten().filter_map(|line| line.as_str().map(str::to_owned)).collect()
     };
+    // The plan's lines are a name and what is said of it.
+    let planned = |name: &str| {
+        let said = |line: &String| line.strip_prefix(name).map(|rest| rest.trim().to_owned());
+        summary.plan.iter().find_map(said).unwrap_or_default()
+    };
     Text {
         title: summary.title.clone(),
+        subtitle: planned("file "),
+        scheme: format!("Scheme in force: {}.", planned("scheme ")),
+        terrain_source: planned("terrain "),
         plan: summary.plan.clone(),
         warnings: summary.warnings.clone(),
         mesh_health: lines(&summary.mesh_health),

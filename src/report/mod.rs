@@ -33,7 +33,7 @@ mod stops;
 pub mod svg;
 
 use crate::error::{Error, Result};
-use crate::output::{self, Results, write_whole};
+use crate::output::{self, Claim, Results, write_whole};
 use crate::terrain::Terrain;
 use figure::{Drawing, FIGURES, Heading};
 use input::Report;
@@ -51,12 +51,25 @@ pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     draw(&gather::gather(results, Some(ground))?, &results.dir)
 }
 
+/// Draws a run put together from shards; the ground is that of `shard`, one of their folders.
+///
+/// # Errors
+/// When a result file cannot be read or a figure cannot be written.
+pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
+    let ground = GroundRaster::read(shard)?;
+    if let Some(ground) = &ground {
+        ground.write(&results.dir)?;
+    }
+    draw(&gather::gather(results, ground)?, &results.dir)
+}
+
 /// Draws a run again from its files alone; no mesh is read.
 ///
 /// # Errors
 /// When a result file cannot be read or a figure cannot be written.
 pub fn draw_again(dir: &Path) -> Result<()> {
     let results = output::read(dir)?;
+    let _claim = Claim::on(dir)?;
     draw(&gather::gather(&results, GroundRaster::read(dir)?)?, dir)
 }
 

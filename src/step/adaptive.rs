@@ -24,8 +24,18 @@ const ROUNDING: f64 = 1e-10;
 const PLACE_ROUNDING: f64 = 1e-11;
 
 /// Why a rock cannot go on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stuck;
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Stuck {
+    /// No step, however short, settles.
+    #[error("the contact step would not settle, however short")]
+    Unsettled,
+    /// It is so deep in the mesh that its contacts mean nothing any more.
+    #[error("the rock sank in by half its radius: its contact springs are too soft for its speed")]
+    SankIn,
+    /// Position, velocity or spin are no longer numbers.
+    #[error("the motion is no longer finite")]
+    NotFinite,
+}
 
 /// What one advance did.
 #[derive(Debug, Clone, Copy, Default)]
@@ -103,7 +113,7 @@ pub fn advance(
         done.rejected += 1;
         *h = dt * ratio;
         if *h * omega < SHORTEST {
-            return Err(Stuck);
+            return Err(Stuck::Unsettled);
         }
     }
 }
@@ -138,13 +148,9 @@ fn grown(control: &Control, dt: f64, error: f64) -> f64 {
 
 /// Longest step that cannot jump over a feature (s).
 fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
-    let (speed, r) = (grip.v.norm(), world.body.radius);
     let c = grip.c;
     grip.know(world, &c);
-    let room = if grip.near.is_plane() { grip.near.room_m(&c).max(TRAVEL * r) } else { TRAVEL * r };
-    // The weight may still speed it up on the way.
-    let fall = world.body.gravity.norm();
-    2.0 * room / (speed + (speed * speed + 2.0 * fall * room).sqrt())
+    grip.longest_step(world, TRAVEL)
 }
 
 /// One step: where it ends and its error relative to the tolerance; `None` if a stage does not settle.

@@ -1,5 +1,6 @@
 //! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
 
+use super::dda::Bench;
 use super::law::{Body, Spot};
 use super::tableau::STAGES;
 use crate::contact::hold::{HOLDS, Holds};
@@ -138,6 +139,8 @@ pub struct Grip {
     pub spots: [Spot; MOST],
     /// How many of them.
     pub spot_count: usize,
+    /// Work space of the fixed step.
+    pub bench: Bench,
     /// Contact sweeps done.
     pub sweeps: u64,
 }
@@ -163,6 +166,7 @@ impl Default for Grip {
             stored: 0.0,
             spots: [Spot::NONE; MOST],
             spot_count: 0,
+            bench: Bench::default(),
             sweeps: 0,
         }
     }
@@ -225,16 +229,30 @@ impl Grip {
         0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
     }
 
+    /// Longest step in which the centre stays where its features are known, or goes no further than `travel` (–,
+    /// relative to R), past one plane or among several features (s).
+    pub fn longest_step(&self, world: &World, travel: f64) -> f64 {
+        let (speed, way) = (self.v.norm(), travel * world.body.radius);
+        let room = if self.near.is_plane() { self.near.room_m(&self.c).max(way) } else { way };
+        // The weight may still speed it up on the way.
+        let fall = world.body.gravity.norm();
+        2.0 * room / (speed + (speed * speed + 2.0 * fall * room).sqrt())
+    }
+
     /// Energy in the springs of the contacts (J), by the kind it was counted under:
     /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
     pub fn springs_j(&mut self, world: &World) -> Loss {
         let c = self.c;
         self.look(world, &c, world.body.radius);
+        self.stored_j(world)
+    }
+
+    /// The same for the touches of the last look.
+    pub fn stored_j(&self, world: &World) -> Loss {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
-            let pressed = 0.5
-                * world.law(touch.triangle).p_n
-                * (world.body.radius - touch.distance_m).powi(2);
+            let pen = (world.body.radius - touch.distance_m).max(0.0);
+            let pressed = 0.5 * world.law(touch.triangle).p_n * pen * pen;
             stored
                 .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
         }

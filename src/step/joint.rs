@@ -15,6 +15,8 @@ const SWEEPS: u32 = 4;
 const JUMPS: u32 = 12;
 /// Change of a force, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-9;
+/// A force below this part of its cap is held (–).
+const INSIDE: f64 = 1.0 - 1e-9;
 /// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
 const HOLD: f64 = 1e7;
 
@@ -154,8 +156,20 @@ fn add(
     let spin = n.cross_matrix() * r;
     let (stick, wound) = spot.trials(body, v, w, h);
     let push = normal.at(n.dot(v));
-    let shear = Slider::of(stick, law.friction, push, law.p_s * h + law.c_s);
-    let roll = Slider::of(wound, law.rolling_m, push, law.k_r * h + law.c_r);
+    // The sweeps know the mode. What the law gives at `now` does not: a newton of another contact that has changed
+    // since moves a stiff spring far beyond its cap.
+    let holds = |force: &Vec3, coefficient: f64| force.norm() < coefficient * spot.push * INSIDE;
+    let shear = Slider {
+        coefficient: law.friction,
+        stiffness: law.p_s * h + law.c_s,
+        holds: holds(&spot.drag, law.friction),
+    };
+    let roll = Slider {
+        coefficient: law.rolling_m,
+        stiffness: law.k_r * h + law.c_r,
+        holds: holds(&spot.moment, law.rolling_m),
+    };
+    let (shear, roll) = (shear.at(stick, push), roll.at(wound, push));
     let slip = body.slip(&n, v, w);
     // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
     let drag0 = shear.force - shear.jacobian * slip + shear.along * (normal.b * n.dot(v));
@@ -176,8 +190,15 @@ fn add(
     torque -= spin.transpose() * drag0 + moment0;
 }
 
-/// A slider: its force, and how that changes with the speed and with the push.
+/// A slider and its mode.
 struct Slider {
+    coefficient: f64,
+    stiffness: f64,
+    holds: bool,
+}
+
+/// A slider's force, and how that changes with the speed and with the push.
+struct Answer {
     force: Vec3,
     jacobian: Matrix3<f64>,
     /// Change of force with the push; zero while it sticks.
@@ -185,17 +206,15 @@ struct Slider {
 }
 
 impl Slider {
-    fn of(trial: Vec3, coefficient: f64, push: f64, stiffness: f64) -> Self {
-        let (cap, size) = (coefficient * push, trial.norm());
-        if size <= cap {
-            return Self {
-                force: trial,
-                jacobian: Matrix3::identity() * stiffness,
-                along: Vec3::zeros(),
-            };
+    fn at(&self, trial: Vec3, push: f64) -> Answer {
+        let (cap, size) = (self.coefficient * push, trial.norm());
+        if self.holds || size <= cap {
+            let jacobian = Matrix3::identity() * self.stiffness;
+            return Answer { force: trial, jacobian, along: Vec3::zeros() };
         }
         let e = trial / size;
         let across = Matrix3::identity() - e * e.transpose();
-        Self { force: e * cap, jacobian: across * (stiffness * cap / size), along: e * coefficient }
+        let jacobian = across * (self.stiffness * cap / size);
+        Answer { force: e * cap, jacobian, along: e * self.coefficient }
     }
 }

@@ -1,6 +1,7 @@
 //! One implicit step of a rock in contact.
 
 pub mod adaptive;
+pub mod dda;
 pub mod grip;
 mod joint;
 pub mod law;
@@ -60,15 +61,18 @@ pub enum Stepper {
     Controlled(Control, f64),
     /// `rigid`, with the longest step (s).
     Rigid(f64),
+    /// `dda`.
+    Dda(dda::Fixed),
 }
 
 impl Stepper {
     /// Begins an episode.
-    pub fn new(settings: &Settings, world: &World, grip: &Grip) -> Self {
+    pub fn new(settings: &Settings, world: &World, grip: &mut Grip) -> Self {
         let tableau = match settings.scheme {
             Scheme::Rigid => return Self::Rigid(settings.step_s),
             Scheme::Reference => &ESDIRK4,
-            Scheme::Adaptive | Scheme::Dda => &TR_BDF2,
+            Scheme::Dda => return Self::Dda(dda::Fixed::new(settings, world, grip)),
+            Scheme::Adaptive => &TR_BDF2,
         };
         let control = Control { tableau, tolerance: settings.tolerance_m_s };
         Self::Controlled(control, adaptive::first_step(world, grip))
@@ -87,6 +91,7 @@ pub fn advance(
 ) -> Result<Advance, Stuck> {
     match stepper {
         Stepper::Controlled(control, h) => adaptive::advance(world, control, grip, h, h_max),
+        Stepper::Dda(fixed) => fixed.advance(world, grip, h_max),
         Stepper::Rigid(longest) => rigid::advance(world, grip, *longest, h_max),
     }
 }

@@ -7,10 +7,13 @@
 use super::adaptive::{Advance, Stuck};
 use super::grip::{Grip, Loss, TOUCH, World};
 use super::law::{Body, within};
-use crate::contact::MOST;
+use crate::contact::{MOST, Touch};
 use crate::ground::Law;
 use crate::rock::Vec3;
 
+/// No impact is slower than this (m/s), whatever capture speed is asked for: a blow takes no time, and rounding would
+/// strike them without end.
+const LEAST_M_S: f64 = 1e-6;
 /// Longest way in one step (–, relative to R): less than the slack within which features are seen.
 const TRAVEL: f64 = 0.09;
 /// Sweeps over the contacts, at most.
@@ -169,19 +172,29 @@ pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Resu
         step(world, grip, longest.min(h_max), &mut done);
     }
     let finite = grip.c.iter().chain(grip.v.iter()).chain(grip.w.iter()).all(|x| x.is_finite());
-    if finite { Ok(done) } else { Err(Stuck) }
+    if finite { Ok(done) } else { Err(Stuck::NotFinite) }
 }
 
 /// Whether a touch of the last look comes in faster than the capture speed.
 fn hits(world: &World, grip: &Grip) -> bool {
-    grip.touches.iter().any(|touch| !world.captures(touch, &grip.v))
+    grip.touches.iter().any(|touch| is_fast(world, touch, &grip.v))
+}
+
+/// Speed of approach up to which a contact does not rebound (m/s).
+fn capture_m_s(law: &Law) -> f64 {
+    law.capture_m_s.max(LEAST_M_S)
+}
+
+/// Whether a rock with velocity `v` hits a touch too fast to be captured.
+fn is_fast(world: &World, touch: &Touch, v: &Vec3) -> bool {
+    -touch.normal.dot(v) >= capture_m_s(world.law(touch.triangle))
 }
 
 /// The impact map: `v_n → −e v_n` for fast touches, no rebound for slow ones.
 fn impact(world: &World, grip: &mut Grip, done: &mut Advance) {
     let (v, w, touches) = (grip.v, grip.w, grip.touches);
     for (k, touch) in touches.iter().enumerate() {
-        grip.holds.find(touch, &touches, (1 << k) - 1, || world.captures(touch, &v));
+        grip.holds.find(touch, &touches, (1 << k) - 1, || !is_fast(world, touch, &v));
     }
     let mut elastic = 1.0;
     // Several contacts at once may throw the rock off with more than it had (Newton's rule is not Poisson's):
@@ -189,7 +202,7 @@ fn impact(world: &World, grip: &mut Grip, done: &mut Advance) {
     loop {
         let mut blows = Blows::of(world, grip, |blow, _| {
             let vn = blow.n.dot(&v);
-            if -vn < blow.law.capture_m_s { 0.0 } else { -elastic * blow.law.restitution * vn }
+            if -vn < capture_m_s(&blow.law) { 0.0 } else { -elastic * blow.law.restitution * vn }
         });
         let after = blows.solve(&world.body, v, w, &mut grip.sweeps);
         let energy = |v: &Vec3, w: &Vec3| {
@@ -214,7 +227,8 @@ fn step(world: &World, grip: &mut Grip, longest: f64, done: &mut Advance) {
     grip.look_ahead(world, &middle);
     let mut blows = Blows::of(world, grip, |blow, distance| {
         let gap = distance - r - blow.n.dot(&(middle - c));
-        -gap.max(0.0) / dt
+        // A push never works on the rock: over an edge, half of the turn is before the middle and half after it.
+        -(gap / dt).max(blow.n.dot(&v)).max(0.0)
     });
     let after = blows.solve(body, v + body.gravity * dt, w, &mut grip.sweeps);
     blows.apply(world, grip, after, &mut done.loss);
@@ -230,7 +244,7 @@ fn closing(world: &World, grip: &mut Grip, dt: f64) -> f64 {
     let c = grip.c;
     grip.look_ahead(world, &c);
     let r = world.body.radius;
-    grip.touches.iter().filter(|touch| !world.captures(touch, &grip.v)).fold(dt, |dt, touch| {
+    grip.touches.iter().filter(|touch| is_fast(world, touch, &grip.v)).fold(dt, |dt, touch| {
         let gap = touch.distance_m - r;
         if gap > TOUCH * r { dt.min(gap / -touch.normal.dot(&grip.v)) } else { dt }
     })
@@ -275,7 +289,7 @@ fn remember(world: &World, grip: &mut Grip, holds: impl Fn(&Vec3) -> bool) {
         let hold = &mut grip.holds[k];
         (hold.feature, hold.triangle, hold.n) = (touch.feature, touch.triangle, touch.normal);
         // A touch that separates faster than the capture speed lets go.
-        hold.closed = holds(&v) && touch.normal.dot(&v) < world.law(touch.triangle).capture_m_s;
+        hold.closed = holds(&v) && touch.normal.dot(&v) < capture_m_s(world.law(touch.triangle));
         hold.slides = world.body.slip(&hold.n, &v, &grip.w).norm() > 1e-6 * (1.0 + v.norm());
     }
     grip.holds.retain(|hold| hold.closed);

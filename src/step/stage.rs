@@ -73,7 +73,10 @@ impl Grip {
         // Where it would be if it went on as in the stage before.
         let before = &self.rates[i - 1];
         let mut guess = base.c + (before.c + before.v * hh) * hh;
-        if !(self.near.covers(&guess) && self.touches.slide_to(world.terrain, &guess)) {
+        // Planes slid along may have ended on the way: what they say must be confirmed by the look at the end.
+        let mut looked =
+            !(self.near.covers(&guess) && self.touches.slide_to(world.terrain, &guess));
+        if looked {
             self.look_ahead(world, &guess);
         }
         for _ in 0..PASSES {
@@ -83,12 +86,13 @@ impl Grip {
             let c = base.c + v * hh;
             self.look_ahead(world, &c);
             let moved = (c - guess).norm_squared();
-            if moved <= (AGREED * world.body.radius).powi(2) || self.stays_on_faces() {
+            let agrees = looked && moved <= (AGREED * world.body.radius).powi(2);
+            if agrees || self.stays_on_faces() {
                 let end = End { c, v, w };
                 self.store(world, &base, &end, (i, hh));
                 return Some(end);
             }
-            guess = c;
+            (guess, looked) = (c, true);
         }
         None
     }

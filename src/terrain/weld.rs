@@ -296,10 +296,15 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
         return Error::Request("no mesh file is given; name at least one STL file".into());
     };
     let found = format!(
-        "none of {} facets has an area after welding within {} m",
+        "none of {} facets has an area after welding within {:.1e} m",
         welded.zero_area.count, welded.tolerance_m
     );
-    Error::input(first.file, "mesh", found, "check the file, its scale and the weld tolerance")
+    Error::input(
+        first.file,
+        "mesh",
+        found,
+        "export the mesh again, or write another scale or weld_tolerance_m",
+    )
 }
 
 #[cfg(test)]

@@ -196,10 +196,9 @@ impl Fall<'_> {
         let mut quiet_s = 0.0;
         loop {
             let left = self.course.longest_s - self.journey.now.time_s;
-            let Ok(done) = step::advance(stepper, &self.world, self.grip, left) else {
-                return Some(Stop::Failed(
-                    "the contact step would not settle, however short".to_owned(),
-                ));
+            let done = match step::advance(stepper, &self.world, self.grip, left) {
+                Ok(done) => done,
+                Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
             let effort = &mut self.journey.effort;
             effort.steps += 1;

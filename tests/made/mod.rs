@@ -26,6 +26,7 @@ pub fn info(releases: usize) -> RunInfo {
             seed: u64::MAX,
             first_release: 0,
             releases,
+            of_releases: releases,
         },
         origin_m: Vec3::new(2_600_000.0, 1_200_000.0, 0.0),
         ground_of_sheet: vec!["rock".to_owned(), "trunk, \"old\"".to_owned()],

@@ -2,6 +2,7 @@
 
 use super::GroundRaster;
 use crate::error::{Error, Result};
+use crate::output::write_whole;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -45,7 +46,7 @@ impl GroundRaster {
             }
             text.push('\n');
         }
-        fs::write(path, text).map_err(Error::file("write", path))
+        write_whole(path, text.as_bytes())
     }
 
     /// Reads back what [`GroundRaster::write`] wrote: the same raster, bit for bit. `Ok(None)` when there is no `maps/ground.asc`.

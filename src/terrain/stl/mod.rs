@@ -102,19 +102,53 @@ pub fn parse(bytes: Vec<u8>, file: &Path) -> Result<Soup> {
     Ok(soup)
 }
 
+/// How other files begin that end up under the name of an STL file, and what to do about them.
+const OTHER_KINDS: [(&[u8], &str, &str); 12] = [
+    (b"\xff\xfe", "text in UTF-16", "save it as UTF-8 or ASCII"),
+    (b"\xfe\xff", "text in UTF-16", "save it as UTF-8 or ASCII"),
+    (b"PK\x03\x04", "a ZIP archive", "unpack it and write the STL file in it"),
+    (b"\x1f\x8b", "a gzip archive", "unpack it and write the STL file in it"),
+    (b"<!DOCTYPE", "a web page", "download the mesh again"),
+    (b"<html", "a web page", "download the mesh again"),
+    (b"<?xml", "an XML file", EXPORT),
+    (b"\x89PNG", "a PNG image", EXPORT),
+    (b"ply", "a PLY file", EXPORT),
+    (b"glTF", "a glTF file", EXPORT),
+    (b"v ", "a Wavefront OBJ file", EXPORT),
+    (b"ncols", "an ESRI ASCII grid", "turn it into STL with `rockfall mesh from-grid`"),
+];
+
+/// What to do about a file that is no STL.
+const EXPORT: &str = "export the mesh again as STL, binary or ASCII";
+
+/// Why bytes that are neither kind of STL are refused.
 fn neither(bytes: &[u8], file: &Path) -> Error {
-    let remedy = "export the mesh again as STL, binary or ASCII";
-    let Some(triangles) = binary::announced(bytes) else {
+    if bytes.is_empty() {
+        return Error::input(file, "start", "the file is empty", EXPORT);
+    }
+    if let Some((_, kind, remedy)) = OTHER_KINDS.iter().find(|(start, ..)| bytes.starts_with(start))
+    {
+        return Error::input(file, "start", format!("found {kind}, no STL"), *remedy);
+    }
+    let (Some(triangles), false) = (binary::announced(bytes), is_text(bytes)) else {
         let found = format!("{} bytes that do not begin with `solid`", bytes.len());
-        return Error::input(file, "start", found, remedy);
+        return Error::input(file, "start", found, EXPORT);
     };
     let expected = 84 + 50 * u64::from(triangles);
     let found = format!(
-        "no text STL, and as binary STL it announces {triangles} triangles \
-         = {expected} bytes, but has {}",
+        "as binary STL the file announces {triangles} triangles = {expected} bytes, but has {}",
         bytes.len()
     );
-    Error::input(file, "bytes 80 to 83", found, format!("the file is cut off or no STL: {remedy}"))
+    let why =
+        if (bytes.len() as u64) < expected { "the file is cut off" } else { "too many bytes" };
+    Error::input(file, "bytes 80 to 83", found, format!("{why}, or it is no STL: {EXPORT}"))
+}
+
+/// Whether the head reads like text: a binary STL has zero bytes or others that no text has in its first 84.
+fn is_text(bytes: &[u8]) -> bool {
+    let printed =
+        |byte: &u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace() || *byte >= 0x80;
+    bytes[..bytes.len().min(84)].iter().all(printed)
 }
 
 /// Twice the area, along the normal that the winding gives (right-hand rule).

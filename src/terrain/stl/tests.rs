@@ -107,8 +107,12 @@ fn a_refused_binary_names_the_triangle_or_the_lengths() {
         (none.clone(), "announces 0 triangles = 84 bytes, but has 184"),
         (none[..84].to_vec(), "no triangle"),
         (solid_bomb, "announces 4294967295 triangles"),
-        (Vec::new(), "0 bytes that do not begin with `solid`"),
-        (b"<!DOCTYPE html>".repeat(9), "export the mesh again"),
+        (Vec::new(), "the file is empty"),
+        (b"<!DOCTYPE html>".repeat(9), "found a web page, no STL"),
+        (
+            b"Dear Sir or Madam, ".repeat(9),
+            "171 bytes that do not begin with `solid`; export the mesh again",
+        ),
     ] {
         let message = refusal(&bytes);
         assert!(message.contains(part), "{message}");

@@ -1,0 +1,63 @@
+//! `rockfall study`.
+
+use super::{at_least_1, say};
+use crate::wiring::study::{self as wiring, SceneOrder};
+use clap::{Args, Subcommand};
+use rockfall::error::Result;
+use rockfall::study::aim::Aim;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum StudyCommand {
+    /// Error against run time: of a scene's own statistics, or of the exact cases when no scene is given
+    Error(ErrorArgs),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ErrorArgs {
+    /// Scene file (TOML)
+    scene: Option<PathBuf>,
+    /// Folder for page, table and figures [default: reports/error, with a scene reports/error/<scene name>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Number of releases under each setting, instead of the scene's
+    #[arg(long, value_name = "N", value_parser = at_least_1, requires = "scene")]
+    releases: Option<usize>,
+    /// Worker threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = at_least_1, requires = "scene")]
+    threads: Option<usize>,
+    /// Also find the cheapest setting for this 95 % interval of both errors together, as in "runout.p95 < 1.0 m"
+    #[arg(long, value_name = "AIM", requires = "scene")]
+    within: Option<Aim>,
+}
+
+/// Does what a study asks.
+pub(super) fn study(command: &StudyCommand) -> Result<ExitCode> {
+    match command {
+        StudyCommand::Error(args) => error(args),
+    }
+}
+
+fn error(args: &ErrorArgs) -> Result<ExitCode> {
+    let usual = PathBuf::from("reports/error");
+    let Some(scene) = &args.scene else {
+        let out = args.out.clone().unwrap_or(usual);
+        let say_done = |case: &str| {
+            say(format!("{case} done"));
+        };
+        return wiring::exact_cases(&out, say_done).map(say);
+    };
+    let name = scene.file_stem().unwrap_or_default();
+    let order = SceneOrder {
+        scene: scene.clone(),
+        out: args.out.clone().unwrap_or_else(|| usual.join(name)),
+        releases: args.releases,
+        threads: args.threads,
+        within: args.within,
+    };
+    let say_done = |line: String| {
+        say(line);
+    };
+    wiring::scene_errors(&order, say_done).map(say)
+}

@@ -1,0 +1,316 @@
+//! One contact inside a fixed step: its submatrices, and the judgement of its state.
+
+use super::slider::{Change, Slider, along};
+use crate::contact::hold::{Hold, SAME_GRIP, carry};
+use crate::contact::submatrix::{
+    Mat6, Vec6, displacement, friction_cap, friction_load, gap, moment_load, normal_load,
+    normal_row, normal_stiffness, rolling_stiffness, shear_load, shear_stiffness, slip,
+    touching_point,
+};
+use crate::contact::{Feature, Touch};
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::step::grip::{Loss, TOUCH};
+
+/// What is the same for all contacts of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    /// Length (s).
+    pub dt: f64,
+    /// Displacement and rotation without contacts.
+    pub free: Vec6,
+    /// Radius of the sphere (m).
+    pub radius: f64,
+    /// Way of the touched point per newton along the surface (m/N) and turn of the sphere per newton metre.
+    pub compliance: (f64, f64),
+    /// Whether shear springs keep their stretch; if not, friction is that of the last step's end, as printed.
+    pub shear_memory: bool,
+}
+
+/// What of a contact the matrix is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shape {
+    v: Vec3,
+    p1: Vec3,
+    normal: f64,
+    shear: f64,
+    roll: f64,
+}
+
+impl Shape {
+    /// No contact.
+    pub(super) const NONE: Self = Self {
+        v: Vec3::new(0.0, 0.0, 0.0),
+        p1: Vec3::new(0.0, 0.0, 0.0),
+        normal: 0.0,
+        shear: 0.0,
+        roll: 0.0,
+    };
+
+    /// Its stiffness.
+    pub(super) fn stiffness(&self) -> Mat6 {
+        let row = normal_row(&self.v);
+        normal_stiffness(self.normal, &row)
+            + shear_stiffness(self.shear, &displacement(&self.p1), &row)
+            + rolling_stiffness(self.roll)
+    }
+}
+
+/// One contact of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Contact {
+    /// Its memory.
+    pub hold: usize,
+    /// Where on the mesh.
+    pub feature: Feature,
+    /// Triangle whose ground answers.
+    pub triangle: u32,
+    /// `V`, from the centre to the touched point.
+    v: Vec3,
+    /// `P1` from the centre (m).
+    p1: Vec3,
+    radius: f64,
+    /// `λ` at the step's start (m).
+    gap: f64,
+    p_n: f64,
+    /// Normal damping over the step's length (N/m).
+    damper: f64,
+    tan_phi: f64,
+    rolling_m: f64,
+    /// Normal force at the end of the last step (N).
+    push_before: f64,
+    /// Normal force (N).
+    pub push: f64,
+    /// Not open.
+    pub presses: bool,
+    pub shear: Slider,
+    pub roll: Slider,
+    shear_memory: bool,
+}
+
+impl Contact {
+    /// No contact.
+    pub(super) const NONE: Self = Self {
+        hold: 0,
+        feature: Feature::NONE,
+        triangle: 0,
+        v: Vec3::new(0.0, 0.0, 0.0),
+        p1: Vec3::new(0.0, 0.0, 0.0),
+        radius: 0.0,
+        gap: 0.0,
+        p_n: 0.0,
+        damper: 0.0,
+        tan_phi: 0.0,
+        rolling_m: 0.0,
+        push_before: 0.0,
+        push: 0.0,
+        presses: false,
+        shear: Slider::NONE,
+        roll: Slider::NONE,
+        shear_memory: true,
+    };
+
+    /// The contact of a touch and its memory (number `k`), in the state in which it was left or will likely be.
+    pub(super) fn new(step: &Step, law: &Law, touch: &Touch, (k, hold): (usize, &Hold)) -> Self {
+        let v = -touch.normal;
+        let p1 = touching_point(&v, step.radius);
+        let has_dashpots = law.c_s > 0.0;
+        let c_n = if hold.captured && has_dashpots { law.c_n_captured } else { law.c_n };
+        let mut contact = Self {
+            hold: k,
+            feature: touch.feature,
+            triangle: touch.triangle,
+            v,
+            p1,
+            radius: step.radius,
+            gap: gap(&v, &p1, &(v * touch.distance_m)),
+            p_n: law.p_n,
+            damper: c_n / step.dt,
+            tan_phi: law.friction,
+            rolling_m: law.rolling_m,
+            push_before: hold.push,
+            shear: Slider { spring: law.p_s, compliance: step.compliance.0, ..Slider::NONE },
+            roll: Slider {
+                stretch: hold.roll,
+                spring: law.k_r,
+                damper: law.c_r / step.dt,
+                compliance: step.compliance.1,
+                ..Slider::NONE
+            },
+            shear_memory: step.shear_memory,
+            ..Self::NONE
+        };
+        if step.shear_memory {
+            contact.shear.stretch = carry(hold.shear, &hold.n, &touch.normal);
+            contact.shear.damper = law.c_s / step.dt;
+        }
+        contact.presses = hold.closed || contact.depth(&step.free) > 0.0;
+        contact.expect(&step.free, hold);
+        contact
+    }
+
+    /// Begins with the sliders' state that the free motion and the last normal force suggest.
+    fn expect(&mut self, free: &Vec6, hold: &Hold) {
+        if hold.push <= 0.0 {
+            return;
+        }
+        let (way, turn) = self.ways(free);
+        let cap = friction_cap(hold.push, self.tan_phi);
+        if self.shear_memory {
+            self.shear.judge(&way, &Vec3::zeros(), cap);
+        } else if hold.slides {
+            (self.shear.slides, self.shear.friction) = (true, along(&way) * cap);
+        }
+        if self.rolling_m > 0.0 {
+            self.roll.judge(&turn, &Vec3::zeros(), self.rolling_m * hold.push);
+        }
+    }
+
+    /// Penetration after the displacement `d` (m), negative when apart.
+    pub(super) fn depth(&self, d: &Vec6) -> f64 {
+        normal_row(&self.v).dot(d) - self.gap
+    }
+
+    /// Whether a touch after `d` is where this contact has got to: no deeper in a surface no steeper.
+    pub(super) fn leads_to(&self, touch: &Touch, d: &Vec6) -> bool {
+        let deeper = self.radius - touch.distance_m - self.depth(d);
+        -self.v.dot(&touch.normal) > SAME_GRIP && deeper <= TOUCH * self.radius
+    }
+
+    /// Slip of the touched point, Eq. (16), and rotation.
+    fn ways(&self, d: &Vec6) -> (Vec3, Vec3) {
+        (slip(&self.v, &(displacement(&self.p1) * d)), d.fixed_rows::<3>(3).into())
+    }
+
+    /// Penetration at the start (m), 0 when apart.
+    fn inside(&self) -> f64 {
+        (-self.gap).max(0.0)
+    }
+
+    /// Normal force after `d` (N): spring and dashpot, the dashpot working from the touch on.
+    ///
+    /// Counted from the touch the force grows steadily from nothing as the rock gets in, so every set of contacts has
+    /// one state that fits; a dashpot that worked on the way there would leave none.
+    fn normal_force(&self, d: &Vec6) -> f64 {
+        let depth = self.depth(d);
+        self.p_n * depth + self.damper * (depth - self.inside())
+    }
+
+    /// Its springs and dashpots in force.
+    pub(super) fn shape(&self) -> Shape {
+        let of = |slider: &Slider, acts: bool| {
+            if acts && !slider.slides { slider.spring + slider.damper } else { 0.0 }
+        };
+        Shape {
+            v: self.v,
+            p1: self.p1,
+            normal: if self.presses { self.p_n + self.damper } else { 0.0 },
+            shear: of(&self.shear, self.presses),
+            roll: of(&self.roll, self.presses && self.rolling_m > 0.0),
+        }
+    }
+
+    /// Adds its loads to `F`.
+    pub(super) fn add_load(&self, f: &mut Vec6) {
+        if !self.presses {
+            return;
+        }
+        let t = displacement(&self.p1);
+        let stiff = if self.gap < 0.0 { self.p_n } else { self.p_n + self.damper };
+        *f += normal_load(stiff, self.gap, &normal_row(&self.v));
+        *f += if self.shear.slides {
+            friction_load(&t, &self.shear.friction)
+        } else {
+            shear_load(self.shear.spring, &t, &self.shear.stretch)
+        };
+        if self.rolling_m > 0.0 {
+            *f -= moment_load(&self.roll.force(&Vec3::zeros()));
+        }
+    }
+
+    /// Opens or closes as the normal force after the displacement `d` asks; whether that changed anything.
+    pub(super) fn open_or_close(&mut self, d: &Vec6) -> bool {
+        self.push = self.normal_force(d).max(0.0);
+        std::mem::replace(&mut self.presses, self.push > 0.0) != self.presses
+    }
+
+    /// Compares its state with the displacement `d` that came out, and changes it where they do not agree.
+    pub(super) fn judge(&mut self, d: &Vec6) -> Change {
+        let (drag, moment) = self.forces(d);
+        let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
+        if self.presses {
+            let (way, turn) = self.ways(d);
+            let cap = friction_cap(self.push, self.tan_phi);
+            change = change.max(if self.shear_memory {
+                self.shear.judge(&way, &drag, cap)
+            } else {
+                let before = friction_cap(self.push_before, self.tan_phi);
+                self.shear.judge_as_printed(&way, cap, before)
+            });
+            if self.rolling_m > 0.0 {
+                change = change.max(self.roll.judge(&turn, &moment, self.rolling_m * self.push));
+            }
+        }
+        change
+    }
+
+    /// Lets nothing slide.
+    pub(super) fn stick(&mut self) {
+        self.shear.slides = self.tan_phi <= 0.0;
+        self.roll.slides = false;
+    }
+
+    /// Shear force and rolling moment after `d`.
+    fn forces(&self, d: &Vec6) -> (Vec3, Vec3) {
+        let (way, turn) = self.ways(d);
+        if !self.presses {
+            (Vec3::zeros(), Vec3::zeros())
+        } else if self.rolling_m > 0.0 {
+            (self.shear.force(&way), self.roll.force(&turn))
+        } else {
+            (self.shear.force(&way), Vec3::zeros())
+        }
+    }
+
+    /// Energy that its dashpots and sliders take over `d` (J).
+    pub(super) fn loss(&self, d: &Vec6) -> Loss {
+        let (drag, moment) = self.forces(d);
+        let (way, turn) = self.ways(d);
+        let damping = if self.presses {
+            self.damper * (self.depth(d) - self.inside()).powi(2)
+        } else if self.damper > 0.0 {
+            // Lifted off before the spring is back at its length: the dashpot beside it takes the rest.
+            0.5 * self.p_n * (self.inside().powi(2) - self.depth(d).max(0.0).powi(2))
+        } else {
+            0.0
+        };
+        let mut loss = Loss { damping, ..Loss::default() };
+        if self.shear_memory {
+            let (friction, damping) = self.shear.loss(&way, &drag);
+            loss.friction = friction;
+            loss.damping += damping;
+        } else if self.shear.slides {
+            loss.friction = drag.dot(&way);
+        }
+        if self.rolling_m > 0.0 {
+            let (slider, dashpot) = self.roll.loss(&turn, &moment);
+            loss.rolling = slider + dashpot;
+        }
+        loss
+    }
+
+    /// Writes what it remembers of the step into its memory.
+    pub(super) fn remember(&self, d: &Vec6, hold: &mut Hold) {
+        let (drag, moment) = self.forces(d);
+        (hold.feature, hold.triangle, hold.n) = (self.feature, self.triangle, -self.v);
+        if self.shear_memory {
+            hold.shear = self.shear.end(&drag);
+        }
+        if self.rolling_m > 0.0 {
+            hold.roll = self.roll.end(&moment);
+        }
+        hold.push = self.push;
+        hold.slides = self.presses && self.shear.slides;
+        hold.closed = self.presses || self.depth(d) > 0.0;
+    }
+}

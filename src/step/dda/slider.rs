@@ -1,0 +1,108 @@
+//! The element that shear and rolling are made of.
+
+use crate::rock::Vec3;
+
+/// Change of a friction force, relative to its cap, below which it has settled (–).
+const SETTLED: f64 = 1e-5;
+
+/// What a judgement changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Change {
+    /// Nothing.
+    None,
+    /// A friction force: the right-hand side.
+    Load,
+    /// Open, sliding or sticking: the matrix.
+    Mode,
+}
+
+/// A spring beside a dashpot, in series with a slider: shear (m, N) or rolling (rad, N m).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slider {
+    /// Stretch at the step's start.
+    pub stretch: Vec3,
+    /// Stiffness.
+    pub spring: f64,
+    /// Damping over the step's length.
+    pub damper: f64,
+    /// Way that a unit of its force takes off the sphere in the step.
+    pub compliance: f64,
+    /// Whether it slides.
+    pub slides: bool,
+    /// Force while it slides.
+    pub friction: Vec3,
+}
+
+impl Slider {
+    /// None.
+    pub(super) const NONE: Self = Self {
+        stretch: Vec3::new(0.0, 0.0, 0.0),
+        spring: 0.0,
+        damper: 0.0,
+        compliance: 0.0,
+        slides: false,
+        friction: Vec3::new(0.0, 0.0, 0.0),
+    };
+
+    /// Force after `way`, should it stick.
+    pub(super) fn sticking(&self, way: &Vec3) -> Vec3 {
+        self.stretch * self.spring + way * (self.spring + self.damper)
+    }
+
+    pub(super) fn force(&self, way: &Vec3) -> Vec3 {
+        if self.slides { self.friction } else { self.sticking(way) }
+    }
+
+    /// Stretch that belongs to a force at the step's end.
+    pub(super) fn end(&self, force: &Vec3) -> Vec3 {
+        (force + self.stretch * self.damper) / (self.spring + self.damper)
+    }
+
+    /// Slides where the force that would make it stick passes the cap, in that force's direction.
+    ///
+    /// `way` is what came out with the force `used`. Taking the effect of that force off before asking is what makes the
+    /// iteration settle: the slip that friction itself has left says little about its direction.
+    pub(super) fn judge(&mut self, way: &Vec3, used: &Vec3, cap: f64) -> Change {
+        let stiff = 1.0 + (self.spring + self.damper) * self.compliance;
+        let needed = self.sticking(&(way + used * self.compliance)) / stiff;
+        let size = needed.norm();
+        // At the cap itself rounding must not turn the state to and fro.
+        let least = if self.slides { cap * (1.0 - SETTLED) } else { cap };
+        let slides = cap <= 0.0 || size > least;
+        let friction = if slides && size > 0.0 { needed * (cap / size) } else { Vec3::zeros() };
+        let change = if slides != self.slides {
+            Change::Mode
+        } else if slides && (friction - self.friction).norm() > SETTLED * cap {
+            Change::Load
+        } else {
+            return Change::None;
+        };
+        (self.slides, self.friction) = (slides, friction);
+        change
+    }
+
+    /// The same as printed: friction is `before`, that of the last step's end, and acts against the displacement of the
+    /// step until that turns round.
+    pub(super) fn judge_as_printed(&mut self, way: &Vec3, cap: f64, before: f64) -> Change {
+        if !self.slides && self.sticking(way).norm() > cap {
+            (self.slides, self.friction) = (true, along(way) * before);
+            Change::Mode
+        } else if self.slides && way.dot(&self.friction) < 0.0 {
+            (self.slides, self.friction) = (false, Vec3::zeros());
+            Change::Mode
+        } else {
+            Change::None
+        }
+    }
+
+    /// Energy that slider and dashpot take over `way` at `force`.
+    pub(super) fn loss(&self, way: &Vec3, force: &Vec3) -> (f64, f64) {
+        let stretched = self.end(force) - self.stretch;
+        (force.dot(&(way - stretched)), self.damper * stretched.norm_squared())
+    }
+}
+
+/// The direction of `x`; nothing for nothing.
+pub(super) fn along(x: &Vec3) -> Vec3 {
+    x.try_normalize(0.0).unwrap_or_default()
+}

@@ -1,0 +1,129 @@
+//! One rock on a made mesh, computed through the library's own journey.
+
+use crate::chance::{Purpose, stream};
+use crate::ground::Ground;
+use crate::plan::RestRule;
+use crate::release::Release;
+use crate::rock::{Motion, Rock, Vec3};
+use crate::step::{Scheme, Settings};
+use crate::terrain::stl::{Facet, Soup};
+use crate::terrain::weld::{Piece, Up, weld};
+use crate::terrain::{Sheet, Terrain};
+use crate::trajectory::{Course, Keep, Scratch, Trajectory, follow};
+use std::path::Path;
+
+/// Gravity of the cases (m/s²), as in the paper's Table 1.
+pub const GRAVITY_M_S2: f64 = 9.8;
+
+/// The rock of the cases: radius 0.5 m, 2700 kg/m³, so 1414 kg.
+pub const ROCK: Rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
+
+/// The ground of the cases: springs and friction of the paper's Table 1, with a restitution of 0.5.
+pub const GROUND: Ground = Ground {
+    normal_stiffness_n_m: 1e9,
+    shear_stiffness_n_m: 0.25e9,
+    friction_angle_rad: std::f64::consts::FRAC_PI_6,
+    restitution: Some(0.5),
+    rolling_friction: 0.0,
+    roughness_rad: 0.0,
+};
+
+/// Corners closer than this are one (m): made meshes repeat theirs to rounding.
+const WELD_M: f64 = 1e-9;
+
+/// What one rock is, where it starts and how long it is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setup {
+    /// The rock.
+    pub rock: Rock,
+    /// The ground everywhere.
+    pub ground: Ground,
+    /// Centre at the start (m), in the coordinates of the facets.
+    pub centre_m: Vec3,
+    /// Velocity at the start (m/s).
+    pub velocity_m_s: Vec3,
+    /// Spin at the start (rad/s).
+    pub spin_rad_s: Vec3,
+    /// Gravity (m/s²), 0 or more.
+    pub gravity_m_s2: f64,
+    /// How long the rock is followed (s).
+    pub longest_s: f64,
+    /// Time below the rest speed of 0.02 m/s after which it counts as at rest (s).
+    pub rest_time_s: f64,
+    /// Time between the points of a kept path (s); `None` keeps none.
+    pub path_step_s: Option<f64>,
+}
+
+/// The usual rock and ground, at rest in the origin, followed for a second, never taken to be at rest.
+pub const SETUP: Setup = Setup {
+    rock: ROCK,
+    ground: GROUND,
+    centre_m: Vec3::new(0.0, 0.0, 0.0),
+    velocity_m_s: Vec3::new(0.0, 0.0, 0.0),
+    spin_rad_s: Vec3::new(0.0, 0.0, 0.0),
+    gravity_m_s2: GRAVITY_M_S2,
+    longest_s: 1.0,
+    rest_time_s: f64::INFINITY,
+    path_step_s: None,
+};
+
+impl Setup {
+    /// Follows the rock; the ends are in the coordinates of the facets, impacts and path stay local.
+    pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
+        let course = Course {
+            watch: crate::plan::Watch::default(),
+            terrain,
+            gravity_m_s2: self.gravity_m_s2,
+            step,
+            rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
+            longest_s: self.longest_s,
+        };
+        let motion = Motion {
+            time_s: 0.0,
+            position_m: self.centre_m - terrain.origin_m,
+            velocity_m_s: self.velocity_m_s,
+            spin_rad_s: self.spin_rad_s,
+        };
+        let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
+        let mut chance = stream(1, Purpose::Impacts, 0);
+        let keep = Keep { path_step_s: self.path_step_s, impacts: true };
+        let mut fallen = follow(&course, &release, keep, &mut chance, scratch);
+        fallen.start.position_m += terrain.origin_m;
+        fallen.end.position_m += terrain.origin_m;
+        fallen
+    }
+
+    /// How deep the weight presses one spring where the ground is inclined at `angle_rad` (m).
+    pub fn pressed_m(&self, angle_rad: f64) -> f64 {
+        self.rock.mass_kg() * self.gravity_m_s2 * angle_rad.cos() / self.ground.normal_stiffness_n_m
+    }
+}
+
+/// A terrain of one sheet from facets.
+///
+/// # Panics
+/// If nothing is left of the facets: made meshes are whole.
+pub fn terrain(facets: Vec<Facet>) -> Terrain {
+    let soup = Soup::from(facets);
+    let piece = Piece { file: Path::new("made"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
+    let welded = weld(&[piece], Vec3::zeros(), Some(WELD_M)).expect("made meshes can be welded");
+    Terrain::new(welded, vec![Sheet { path: "made".into(), ground: 0, is_tree: false }])
+}
+
+/// Settings of one scheme at one tolerance (m/s) or step (s), whichever it goes by, and the speed below which
+/// impacts do not rebound (m/s).
+pub fn settings(scheme: Scheme, fineness: f64, capture_speed_m_s: Option<f64>) -> Settings {
+    let by_tolerance = goes_by_tolerance(scheme);
+    Settings {
+        scheme,
+        tolerance_m_s: if by_tolerance { fineness } else { 0.0 },
+        step_s: if by_tolerance { f64::INFINITY } else { fineness },
+        shear_memory: true,
+        capture_speed_m_s,
+    }
+}
+
+/// Whether a scheme is refined by its tolerance (m/s), not by its step (s).
+pub fn goes_by_tolerance(scheme: Scheme) -> bool {
+    matches!(scheme, Scheme::Adaptive | Scheme::Reference)
+}

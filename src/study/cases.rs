@@ -1,0 +1,416 @@
+//! The exact cases: one row each, with the scene, the exact solution and where it comes from.
+
+mod closed;
+mod pivot;
+
+use super::bench::{SETUP, Setup, settings, terrain};
+use crate::rock::Vec3;
+use crate::step::{Scheme, Settings};
+use crate::terrain::Terrain;
+use crate::terrain::make;
+use crate::terrain::stl::Facet;
+use crate::trajectory::{Scratch, Trajectory};
+use nalgebra::Rotation3;
+use pivot::Lift;
+use std::f64::consts::FRAC_1_SQRT_2;
+
+/// One number of a case: what it should be and how large an error is large.
+#[derive(Debug, Clone, Copy)]
+pub struct Measure {
+    /// What it is, with its unit.
+    pub what: &'static str,
+    /// The exact value.
+    pub exact: f64,
+    /// What an error is compared with, same unit.
+    pub scale: f64,
+    /// Reads it from a journey.
+    pub of: fn(&Trajectory) -> f64,
+}
+
+/// What decides how near a scheme comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Contact all the time: after the first steps nothing has to be resolved.
+    Smooth,
+    /// Contact that ends by itself.
+    Edge,
+    /// Impacts: their dozen steps decide.
+    Impact,
+    /// Impacts on edges, one after the other: the motion is chaotic.
+    Stairs,
+}
+
+/// One exact case. Schemes with springs are held against the solution with springs, the rigid scheme against its limit.
+#[derive(Debug, Clone, Copy)]
+pub struct Case {
+    /// Short name, a word.
+    pub name: &'static str,
+    /// What happens, in a sentence.
+    pub title: &'static str,
+    /// Where the exact solution comes from.
+    pub source: &'static str,
+    /// What decides the error.
+    pub kind: Kind,
+    /// Impacts slower than this do not rebound (m/s).
+    pub capture_speed_m_s: f64,
+    /// The mesh.
+    pub facets: fn() -> Vec<Facet>,
+    /// Rock, ground and start; with springs or in the rigid limit.
+    pub setup: fn(has_springs: bool) -> Setup,
+    /// The exact values; none where there is no closed form, only a finer computation.
+    pub exact: Option<fn(&Setup, has_springs: bool) -> Vec<Measure>>,
+}
+
+impl Case {
+    /// Its mesh, welded.
+    pub fn terrain(&self) -> Terrain {
+        terrain((self.facets)())
+    }
+
+    /// Follows its rock with one scheme at one tolerance (m/s) or step (s).
+    pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
+        (self.setup)(has_springs(step.scheme)).follow(terrain, step, scratch)
+    }
+
+    /// Settings of a scheme for this case.
+    pub fn settings(&self, scheme: Scheme, fineness: f64) -> Settings {
+        settings(scheme, fineness, Some(self.capture_speed_m_s))
+    }
+
+    /// What should come out for a scheme. Without a closed form: what the scheme itself gives when it is `finest`.
+    pub fn measures(&self, terrain: &Terrain, scheme: Scheme) -> Vec<Measure> {
+        let has_springs = has_springs(scheme);
+        if let Some(exact) = self.exact {
+            return exact(&(self.setup)(has_springs), has_springs);
+        }
+        let finest = if has_springs {
+            self.settings(Scheme::Reference, FINEST_TOLERANCE_M_S)
+        } else {
+            self.settings(Scheme::Rigid, FINEST_STEP_S)
+        };
+        let end = self.follow(terrain, &finest, &mut Scratch::default()).end.position_m;
+        place(end.x, end.y, end.z)
+    }
+
+    /// Error of a journey: the largest of all measures, relative to their scales (–).
+    pub fn error(&self, measures: &[Measure], journey: &Trajectory) -> f64 {
+        let off = |one: &Measure| ((one.of)(journey) - one.exact).abs() / one.scale;
+        // NaN is the largest error of all, and `max` would hide it
+        let worst = measures.iter().map(off).fold(0.0, f64::max);
+        if measures.iter().any(|one| (one.of)(journey).is_nan()) { f64::INFINITY } else { worst }
+    }
+
+    /// The error that a scheme may have (–) and why.
+    pub fn allowed(&self, step: &Settings) -> (f64, &'static str) {
+        match (step.scheme, self.kind) {
+            (Scheme::Adaptive, Kind::Smooth) => (
+                0.5 * step.tolerance_m_s + 1e-9,
+                "only the first steps, which must resolve the springs, are as coarse as the local error allows",
+            ),
+            (Scheme::Adaptive, _) => (
+                0.2 * self.growth() * step.tolerance_m_s.powf(2.0 / 3.0),
+                "second order under a third-order local error: tolerance to the power 2/3, times what the motion itself makes of an error",
+            ),
+            (Scheme::Reference, _) => (
+                self.growth() * (10.0 * step.tolerance_m_s + 3e-8),
+                "fourth order, and the nine digits of the exact value",
+            ),
+            (Scheme::Rigid, Kind::Impact | Kind::Stairs) => {
+                (1e-9, "the impact map is exact up to rounding")
+            }
+            (Scheme::Rigid, _) => (
+                0.2 * step.step_s,
+                "first order where sliding turns into rolling or the rock lifts off",
+            ),
+            (Scheme::Dda, _) => (
+                300.0 * self.growth() * step.step_s,
+                "first order: half the contact oscillation per step",
+            ),
+        }
+    }
+
+    /// How much the motion multiplies an error: every impact on an edge by about three.
+    fn growth(&self) -> f64 {
+        if self.kind == Kind::Stairs { 50.0 } else { 1.0 }
+    }
+}
+
+/// Tolerance (m/s) of what stands in for an exact solution.
+const FINEST_TOLERANCE_M_S: f64 = 1e-10;
+/// Step (s) of what stands in for an exact solution in the rigid limit.
+const FINEST_STEP_S: f64 = 2e-6;
+
+/// Whether the ground answers with springs; the rigid scheme has their limit.
+pub fn has_springs(scheme: Scheme) -> bool {
+    scheme != Scheme::Rigid
+}
+
+/// All exact cases. To add one: a row.
+pub const CASES: [Case; 10] = [
+    Case {
+        name: "roll",
+        title: "A sphere rolls down 20° from rest, 1 s",
+        source: "uniform acceleration 5/7 g sin α; springs: critically damped oscillator",
+        kind: Kind::Smooth,
+        facets: || plane(20.0),
+        setup: |has_springs| lying(20.0, has_springs),
+        exact: Some(|setup, has_springs| {
+            let way = closed::rolled_way_m(angle(20.0), 1.0, 1.0);
+            let sprung = closed::stuck_way_m(setup, angle(20.0), 1.0, 1.0);
+            along(setup, angle(20.0), if has_springs { sprung } else { way })
+        }),
+        ..STILL
+    },
+    Case {
+        name: "slip",
+        title: "A sphere slips down 40° with friction 0.2 from rest, 1 s",
+        source: "uniform acceleration; springs: friction grows within a millisecond",
+        kind: Kind::Smooth,
+        facets: || plane(40.0),
+        setup: |has_springs| slippery(lying(40.0, has_springs)),
+        exact: Some(|setup, has_springs| {
+            let (way, spin) = closed::slipped(setup, angle(40.0), 1.0, has_springs);
+            let mut measures = along(setup, angle(40.0), way);
+            measures.push(Measure {
+                what: "spin (rad/s)",
+                exact: -spin,
+                scale: spin,
+                of: |journey| journey.end.spin_rad_s.x,
+            });
+            measures
+        }),
+        ..STILL
+    },
+    Case {
+        name: "skid",
+        title: "A sphere pushed with 5 m/s over level ground with friction 0.2: slides, then rolls, 1 s",
+        source: "rolls with 5/7 of its speed; springs: gives back what its shear spring holds",
+        kind: Kind::Smooth,
+        facets: || plane(0.0),
+        setup: |has_springs| Setup {
+            velocity_m_s: Vec3::new(0.0, 5.0, 0.0),
+            ..slippery(lying(0.0, has_springs))
+        },
+        exact: Some(|setup, has_springs| {
+            along(setup, 0.0, closed::skidded(setup, 5.0, 1.0, has_springs).0)
+        }),
+        ..STILL
+    },
+    Case {
+        name: "bounce",
+        title: "A sphere dropped from 1 m with restitution 0.5, two impacts, 1 s",
+        source: "springs: closed form of the damped oscillator with gravity (13 digits); rigid: parabolas",
+        kind: Kind::Impact,
+        capture_speed_m_s: 0.05,
+        facets: || plane(0.0),
+        setup: |_| Setup { centre_m: Vec3::new(0.1, 0.2, 1.5), ..SETUP },
+        exact: Some(|_, has_springs| {
+            let z = if has_springs { 0.558_838_697_250_74 } else { rigid_bounce_m() };
+            vec![Measure { what: "height (m)", exact: z, scale: 1.0, of: |j| j.end.position_m.z }]
+        }),
+        ..STILL
+    },
+    Case {
+        name: "oblique",
+        title: "A spinning sphere strikes the ground obliquely, 0.2 s",
+        source: "springs: explicit Runge-Kutta steps of the law (9 digits); rigid: impulses",
+        kind: Kind::Impact,
+        capture_speed_m_s: 0.01,
+        facets: || plane(0.0),
+        setup: |_| Setup {
+            centre_m: Vec3::new(0.0, 0.0, 0.6),
+            velocity_m_s: Vec3::new(5.0, 1.0, -5.0),
+            spin_rad_s: Vec3::new(3.0, -20.0, 4.0),
+            longest_s: 0.2,
+            ..SETUP
+        },
+        exact: Some(|setup, has_springs| {
+            let ([x, y, z], _) = closed::struck(setup, 0.2);
+            if has_springs {
+                place(0.202_693_999, 0.067_115_667, 0.804_023_327)
+            } else {
+                place(x, y, z)
+            }
+        }),
+        ..STILL
+    },
+    Case {
+        name: "pivot",
+        title: "A sphere tips over an edge from rest at 0.1 rad, friction 30°: rolls, slips, lifts off, 1 s",
+        source: "springs: explicit Runge-Kutta steps in polar coordinates; rigid: closed form of slip and lift-off",
+        kind: Kind::Edge,
+        capture_speed_m_s: 0.0,
+        facets: roof,
+        setup: |has_springs| tipping(30.0, has_springs),
+        exact: Some(|setup, has_springs| {
+            let rigid = Lift {
+                angle_rad: 0.926_860_928_088_68,
+                time_s: 0.784_278_576_868_45,
+                speed_m_s: 1.715_139_101_983_2,
+            };
+            tipped(setup, &rigid, has_springs)
+        }),
+        ..STILL
+    },
+    Case {
+        name: "pivot_rough",
+        title: "The same without slip until the very end, friction 89°",
+        source: "springs: explicit Runge-Kutta steps in polar coordinates; rigid: energy, lifts off at cos θ = 10/17 cos 0.1",
+        kind: Kind::Edge,
+        capture_speed_m_s: 0.0,
+        facets: roof,
+        setup: |has_springs| tipping(89.0, has_springs),
+        exact: Some(|setup, has_springs| {
+            let rigid = Lift::by_energy(0.5, TIPPED_RAD, 10.0 / 7.0, 0.790_441_637_957_75);
+            tipped(setup, &rigid, has_springs)
+        }),
+        ..STILL
+    },
+    Case {
+        name: "pivot_smooth",
+        title: "The same without friction",
+        source: "springs: explicit Runge-Kutta steps in polar coordinates; rigid: energy, lifts off at cos θ = 2/3 cos 0.1",
+        kind: Kind::Edge,
+        capture_speed_m_s: 0.0,
+        facets: roof,
+        setup: |has_springs| tipping(0.0, has_springs),
+        exact: Some(|setup, has_springs| {
+            let rigid = Lift::by_energy(0.5, TIPPED_RAD, 2.0, 0.641_750_884_357_65);
+            tipped(setup, &rigid, has_springs)
+        }),
+        ..STILL
+    },
+    Case {
+        name: "groove",
+        title: "A sphere rolls down a right-angled groove that falls at 20°, two contacts, 1 s",
+        source: "uniform acceleration g sin α/(1 + 4/5); springs: over-damped oscillator",
+        kind: Kind::Smooth,
+        facets: || tilted(make::v_groove(4.0, angle(45.0)), 20.0),
+        setup: in_groove,
+        exact: Some(|setup, has_springs| {
+            let way = closed::rolled_way_m(angle(20.0), 2.0, 1.0);
+            let sprung = closed::stuck_way_m(setup, angle(20.0), 2.0, 1.0);
+            along(setup, angle(20.0), if has_springs { sprung } else { way })
+        }),
+        ..STILL
+    },
+    Case {
+        name: "stairs",
+        title: "A sphere of 0.2 m hops down stairs: impacts on treads and edges, 2 s",
+        source: "no closed form: the same law at a tolerance of 1e-10 m/s (rigid: a step of 2e-6 s)",
+        kind: Kind::Stairs,
+        capture_speed_m_s: 0.05,
+        facets: || make::stairs(20, 0.3, 0.5, 3.0),
+        setup: |_| {
+            let rock = crate::rock::Rock { radius_m: 0.2, ..SETUP.rock };
+            Setup {
+                rock,
+                centre_m: Vec3::new(0.1, 0.15, 0.5),
+                velocity_m_s: Vec3::new(0.0, 1.0, 0.0),
+                longest_s: 2.0,
+                ..SETUP
+            }
+        },
+        exact: None,
+        ..STILL
+    },
+];
+
+/// What rows have in common.
+const STILL: Case = Case {
+    name: "",
+    title: "",
+    source: "",
+    kind: Kind::Smooth,
+    capture_speed_m_s: 0.02,
+    facets: Vec::new,
+    setup: |_| SETUP,
+    exact: None,
+};
+
+fn angle(degrees: f64) -> f64 {
+    degrees.to_radians()
+}
+
+/// A plane through the origin that falls in +y.
+fn plane(degrees: f64) -> Vec<Facet> {
+    make::jittered_plane(16.0, 12, angle(degrees))
+}
+
+/// Turned downwards in +y about the x axis.
+fn tilted(facets: Vec<Facet>, degrees: f64) -> Vec<Facet> {
+    let down = Rotation3::from_axis_angle(&Vec3::x_axis(), -angle(degrees));
+    facets.into_iter().map(|facet| facet.map(|corner| down * corner)).collect()
+}
+
+/// A roof with its edge along y through the origin, so steep that a rock tips off without touching the flanks.
+fn roof() -> Vec<Facet> {
+    make::ridge(4.0, angle(80.0))
+}
+
+/// At rest above the origin of [`plane`], pressed in as the weight presses it.
+fn lying(degrees: f64, has_springs: bool) -> Setup {
+    let pressed = if has_springs { SETUP.pressed_m(angle(degrees)) } else { 0.0 };
+    let (sin, cos) = angle(degrees).sin_cos();
+    let height = SETUP.rock.radius_m - pressed;
+    Setup { centre_m: Vec3::new(0.0, height * sin, height * cos), ..SETUP }
+}
+
+fn slippery(setup: Setup) -> Setup {
+    let ground = crate::ground::Ground { friction_angle_rad: 0.2f64.atan(), ..setup.ground };
+    Setup { ground, ..setup }
+}
+
+/// Angle from the upright at which spheres begin to tip (rad).
+const TIPPED_RAD: f64 = 0.1;
+
+/// At rest over the edge of [`roof`], friction in degrees.
+fn tipping(degrees: f64, has_springs: bool) -> Setup {
+    let ground = crate::ground::Ground { friction_angle_rad: angle(degrees), ..SETUP.ground };
+    let pressed = if has_springs { SETUP.pressed_m(TIPPED_RAD) } else { 0.0 };
+    let lever = SETUP.rock.radius_m - pressed;
+    let centre_m = Vec3::new(lever * TIPPED_RAD.sin(), 0.3, lever * TIPPED_RAD.cos());
+    Setup { ground, centre_m, ..SETUP }
+}
+
+fn tipped(setup: &Setup, rigid: &Lift, has_springs: bool) -> Vec<Measure> {
+    let (x, z) = if has_springs {
+        pivot::on_springs(setup, TIPPED_RAD, setup.longest_s)
+    } else {
+        rigid.then(setup.rock.radius_m, setup.longest_s)
+    };
+    place(x, setup.centre_m.y, z)
+}
+
+/// At rest in the middle of a right-angled groove that falls at 20°; friction 50°.
+fn in_groove(has_springs: bool) -> Setup {
+    let ground = crate::ground::Ground { friction_angle_rad: angle(50.0), ..SETUP.ground };
+    // Each wall carries N = m g cos 20°/√2; the axis sinks by √2 times what that presses.
+    let sinks = if has_springs { SETUP.pressed_m(angle(20.0)) } else { 0.0 };
+    let height = SETUP.rock.radius_m / FRAC_1_SQRT_2 - sinks;
+    let down = Rotation3::from_axis_angle(&Vec3::x_axis(), -angle(20.0));
+    Setup { ground, centre_m: down * Vec3::new(0.0, -3.0, height), ..SETUP }
+}
+
+/// Height 1 s after a drop from 1 m with e = 0.5 in the rigid limit: two impacts, at t_f and 2 t_f, then a parabola (m).
+fn rigid_bounce_m() -> f64 {
+    let g = SETUP.gravity_m_s2;
+    let falls = (2.0 / g).sqrt();
+    let (left, up) = (1.0 - 2.0 * falls, 0.25 * g * falls);
+    SETUP.rock.radius_m + up * left - 0.5 * g * left * left
+}
+
+/// The end of a way (m) down a plane that falls in +y.
+fn along(setup: &Setup, angle_rad: f64, way_m: f64) -> Vec<Measure> {
+    let end = setup.centre_m + Vec3::new(0.0, angle_rad.cos(), -angle_rad.sin()) * way_m;
+    place(end.x, end.y, end.z)
+}
+
+/// The centre at the end (m).
+fn place(x: f64, y: f64, z: f64) -> Vec<Measure> {
+    vec![
+        Measure { what: "x (m)", exact: x, scale: 1.0, of: |journey| journey.end.position_m.x },
+        Measure { what: "y (m)", exact: y, scale: 1.0, of: |journey| journey.end.position_m.y },
+        Measure { what: "z (m)", exact: z, scale: 1.0, of: |journey| journey.end.position_m.z },
+    ]
+}

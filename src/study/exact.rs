@@ -1,0 +1,236 @@
+//! Error against run time on the exact cases: every scheme over a ladder of steps or tolerances.
+
+use super::bench::goes_by_tolerance;
+use super::cases::{CASES, Case};
+use crate::step::Scheme;
+use crate::terrain::Terrain;
+use crate::trajectory::{Effort, Scratch, Trajectory};
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// A run is timed this often at least …
+const RUNS: usize = 5;
+/// … and until this time is spent, but not more often than [`MOST_RUNS`].
+const TIMED: Duration = Duration::from_millis(20);
+const MOST_RUNS: usize = 51;
+/// Errors below this are rounding, or the last digits of the exact value: no order shows there (–).
+const ROUNDING: f64 = 1e-8;
+/// Errors above this are no longer small: no order shows there either (–).
+const LARGE: f64 = 0.1;
+
+/// A scheme, its ladder from coarse to fine (m/s or s), and its order in theory.
+#[derive(Debug, Clone, Copy)]
+pub struct Rungs {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// Tolerances (m/s) or steps (s), falling.
+    pub fineness: &'static [f64],
+    /// Order of convergence in theory, against steps taken.
+    pub order: f64,
+}
+
+/// Every scheme. To add one: a row.
+pub const LADDERS: [Rungs; 4] = [
+    Rungs {
+        scheme: Scheme::Dda,
+        fineness: &[1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6],
+        order: 1.0,
+    },
+    Rungs {
+        scheme: Scheme::Adaptive,
+        fineness: &[1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6],
+        order: 2.0,
+    },
+    Rungs {
+        scheme: Scheme::Reference,
+        fineness: &[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8],
+        order: 4.0,
+    },
+    Rungs {
+        scheme: Scheme::Rigid,
+        fineness: &[2e-2, 1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4],
+        order: 1.0,
+    },
+];
+
+/// One case with one scheme at one step or tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Tolerance (m/s) or step (s).
+    pub fineness: f64,
+    /// Largest error of the case's measures (–); infinite where the run failed.
+    pub error: f64,
+    /// What it cost, counted.
+    pub effort: Effort,
+    /// Median run time (s).
+    pub seconds: f64,
+}
+
+/// One case with one scheme.
+#[derive(Debug, Clone)]
+pub struct Curve {
+    /// The scheme with its ladder.
+    pub rungs: Rungs,
+    /// From coarse to fine.
+    pub points: Vec<Point>,
+}
+
+/// One case with every scheme.
+#[derive(Debug, Clone)]
+pub struct CaseStudy {
+    /// The case.
+    pub case: Case,
+    /// One curve a scheme, in the order of [`LADDERS`].
+    pub curves: Vec<Curve>,
+}
+
+/// How much cheaper one scheme is than another at equal error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Saving {
+    /// The error both reach (–).
+    pub error: f64,
+    /// Run time of the other over that of the one (–).
+    pub time: f64,
+    /// Passes over the contacts of the other over those of the one (–).
+    pub sweeps: f64,
+}
+
+/// Runs every case with every scheme; `done` hears of each.
+pub fn study(done: impl Fn(&str)) -> Vec<CaseStudy> {
+    let study_case = |case: &Case| {
+        let terrain = case.terrain();
+        let curves = LADDERS.map(|rungs| curve(case, &terrain, rungs)).into();
+        done(case.name);
+        CaseStudy { case: *case, curves }
+    };
+    CASES.iter().map(study_case).collect()
+}
+
+fn curve(case: &Case, terrain: &Terrain, rungs: Rungs) -> Curve {
+    let measures = case.measures(terrain, rungs.scheme);
+    // one work space for all runs, as in an ensemble
+    let mut scratch = Scratch::default();
+    let point = |&fineness: &f64| {
+        let step = case.settings(rungs.scheme, fineness);
+        let (journey, seconds) = timed(|| case.follow(terrain, &step, &mut scratch));
+        let error = case.error(&measures, &journey);
+        Point { fineness, error, effort: journey.effort, seconds }
+    };
+    Curve { rungs, points: rungs.fineness.iter().map(point).collect() }
+}
+
+/// The journey and the median time of repeated runs (s).
+fn timed(mut run: impl FnMut() -> Trajectory) -> (Trajectory, f64) {
+    let mut times = Vec::new();
+    let begun = Instant::now();
+    let journey = loop {
+        let start = Instant::now();
+        let journey = black_box(run());
+        times.push(start.elapsed().as_secs_f64());
+        let enough = begun.elapsed() > TIMED || times.len() >= MOST_RUNS;
+        if times.len() >= RUNS && enough {
+            break journey;
+        }
+    };
+    times.sort_by(f64::total_cmp);
+    (journey, times[times.len() / 2])
+}
+
+impl Curve {
+    /// Order of convergence: the slope of log error over log contact steps, least squares over the rungs where an order
+    /// can show; `None` where fewer than three do.
+    pub fn order(&self) -> Option<f64> {
+        let shows = |point: &&Point| (ROUNDING..LARGE).contains(&point.error);
+        let logs: Vec<(f64, f64)> = self
+            .points
+            .iter()
+            .filter(shows)
+            .map(|point| ((point.effort.steps as f64).ln(), point.error.ln()))
+            .collect();
+        if logs.len() < 3 {
+            return None;
+        }
+        let n = logs.len() as f64;
+        let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / n;
+        let (x, y) = (mean(|log| log.0), mean(|log| log.1));
+        let (mut xx, mut xy) = (0.0, 0.0);
+        for log in &logs {
+            xx += (log.0 - x).powi(2);
+            xy += (log.0 - x) * (log.1 - y);
+        }
+        // the same number of steps on every rung shows no order
+        (xx > 0.05 * n).then_some(-xy / xx)
+    }
+
+    /// Whether every rung is exact to rounding.
+    pub fn is_exact(&self) -> bool {
+        self.points.iter().all(|point| point.error < ROUNDING)
+    }
+
+    /// The cheapest point at most as far off as `error` (–).
+    fn cheapest(&self, error: f64) -> Option<&Point> {
+        let good = self.points.iter().filter(|point| point.error <= error.max(ROUNDING));
+        good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+}
+
+impl CaseStudy {
+    /// The curve of a scheme.
+    pub fn curve(&self, scheme: Scheme) -> Option<&Curve> {
+        self.curves.iter().find(|curve| curve.rungs.scheme == scheme)
+    }
+
+    /// What the default scheme saves against the paper's at each error that the paper's reaches on its ladder: the
+    /// cheapest run of either that is at least as good. None where one of them does not converge.
+    pub fn savings(&self) -> Vec<Saving> {
+        let (Some(paper), Some(ours)) = (self.curve(Scheme::Dda), self.curve(Scheme::Adaptive))
+        else {
+            return Vec::new();
+        };
+        let saving = |point: &Point| {
+            let (theirs, our) = (paper.cheapest(point.error)?, ours.cheapest(point.error)?);
+            Some(Saving {
+                error: point.error.max(ROUNDING),
+                time: theirs.seconds / our.seconds,
+                sweeps: theirs.effort.sweeps as f64 / our.effort.sweeps.max(1) as f64,
+            })
+        };
+        let small = paper.points.iter().filter(|point| point.error < LARGE);
+        let mut savings: Vec<Saving> = small.filter_map(saving).collect();
+        // a finer step may do no better: only what is better than all before it
+        let mut best = f64::INFINITY;
+        savings.retain(|saving| {
+            let is_better = saving.error < best;
+            best = best.min(saving.error);
+            is_better
+        });
+        savings
+    }
+}
+
+/// Unit and name of what refines a scheme.
+pub fn fineness_column(scheme: Scheme) -> &'static str {
+    if goes_by_tolerance(scheme) { "tolerance_m_s" } else { "step_s" }
+}
+
+/// All points as CSV.
+pub fn csv(studies: &[CaseStudy]) -> String {
+    let mut text = String::from(
+        "case,scheme,refined_by,fineness,error,seconds,steps,rejected,leaps,sweeps,triangles,unsettled\n",
+    );
+    for study in studies {
+        for curve in &study.curves {
+            for Point { fineness, error, seconds, effort } in &curve.points {
+                let scheme = curve.rungs.scheme;
+                let Effort { steps, rejected, leaps, sweeps, triangles, unsettled } = effort;
+                text += &format!(
+                    "{},{},{},{fineness:e},{error:.3e},{seconds:.3e},{steps},{rejected},{leaps},{sweeps},{triangles},{unsettled}\n",
+                    study.case.name,
+                    scheme.name(),
+                    fineness_column(scheme)
+                );
+            }
+        }
+    }
+    text
+}

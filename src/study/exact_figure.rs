@@ -1,0 +1,112 @@
+//! Work and precision: error over run time, one panel a case, one curve a scheme.
+
+use super::exact::{CaseStudy, Curve};
+use crate::report::axis::Axis;
+use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION};
+use crate::report::figure::WIDTH_PX;
+use crate::report::format;
+use crate::report::panel::{FOOT_PX, Panel};
+use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
+use crate::report::svg::path::Frame;
+use crate::step::Scheme;
+use plotters::style::RGBColor;
+
+const PLOT_PX: f64 = 250.0;
+const TOP_PX: f64 = 26.0;
+/// Room right of the frame for the names of the curves (px).
+const KEY_PX: f64 = 190.0;
+/// Errors below this are drawn here: rounding has no place on a logarithmic axis.
+const FLOOR: f64 = 1e-12;
+
+/// The colour of a scheme in every figure of the studies.
+pub(super) fn colour(scheme: Scheme) -> RGBColor {
+    match scheme {
+        Scheme::Dda => VERMILLION,
+        Scheme::Adaptive => BLUE,
+        Scheme::Reference => GREEN,
+        Scheme::Rigid => ORANGE,
+    }
+}
+
+/// Draws one case.
+pub(super) fn draw(study: &CaseStudy) -> String {
+    let points = || study.curves.iter().flat_map(|curve| &curve.points);
+    let finite = || points().filter(|point| point.error.is_finite());
+    let least = finite().map(|point| shown(point.error)).fold(1.0, f64::min);
+    let most = finite().map(|point| shown(point.error)).fold(least, f64::max);
+    let (fast, slow) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), point| {
+        (low.min(point.seconds), high.max(point.seconds))
+    });
+    let frame =
+        Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
+    let x = Axis::log(fast, slow, "Run time (s)");
+    let mut panel = Panel::new(frame, x, Axis::log(least, most, "Error (–)"));
+    panel.frame.left = panel.room_left();
+    paint(study.case.name, (WIDTH_PX, panel.frame.bottom + FOOT_PX), study.case.title, |paper| {
+        paper.text(&Label::new(study.case.title, (panel.frame.left, 12.0)).sized(NORMAL).bold());
+        panel.grid(paper);
+        panel.grid_upright(paper);
+        for curve in &study.curves {
+            draw_curve(paper, &panel, curve);
+        }
+        panel.axes(paper);
+        key(paper, &panel, study);
+    })
+}
+
+fn shown(error: f64) -> f64 {
+    error.max(FLOOR)
+}
+
+fn draw_curve(paper: &Paper<'_>, panel: &Panel, curve: &Curve) {
+    let ink = colour(curve.rungs.scheme);
+    let finite = curve.points.iter().filter(|point| point.error.is_finite());
+    let values: Vec<(f64, f64)> = finite.map(|p| (p.seconds, shown(p.error))).collect();
+    panel.line(paper, &values, Pen::full(ink, 1.4));
+    for &(x, y) in &values {
+        paper.disc(panel.at(x, y), 2.6, ink);
+    }
+}
+
+/// Names of the schemes with their measured and theoretical orders.
+fn key(paper: &Paper<'_>, panel: &Panel, study: &CaseStudy) {
+    let left = panel.frame.right + 14.0;
+    let mut y = panel.frame.top + 8.0;
+    for curve in &study.curves {
+        let scheme = curve.rungs.scheme;
+        let middle = y;
+        paper.line(&[(left, middle), (left + 18.0, middle)], Pen::full(colour(scheme), 1.4));
+        paper.disc((left + 9.0, middle), 2.6, colour(scheme));
+        paper.text(&Label::new(scheme.name(), (left + 24.0, y)).bold());
+        paper.text(
+            &Label::new(order_in_words(curve), (left + 24.0, y + SMALL + 3.0)).coloured(GREY),
+        );
+        y += 2.0 * SMALL + 16.0;
+    }
+    for line in savings_in_words(study) {
+        debug_assert!(text_width(&line, SMALL) < KEY_PX);
+        paper.text(&Label::new(line, (left, y)).coloured(PURPLE));
+        y += SMALL + 4.0;
+    }
+}
+
+/// Measured order beside the theoretical one.
+pub(super) fn order_in_words(curve: &Curve) -> String {
+    let theory = format::plain(curve.rungs.order);
+    match curve.order() {
+        Some(order) => format!("order {} (theory {theory})", format::decimal(order, 1)),
+        None if curve.is_exact() => "exact to rounding".to_owned(),
+        None => format!("no order to see (theory {theory})"),
+    }
+}
+
+fn savings_in_words(study: &CaseStudy) -> Vec<String> {
+    let savings = study.savings();
+    let Some(last) = savings.last() else { return Vec::new() };
+    let times = format::significant(last.time, 2);
+    vec![
+        "adaptive against dda,".to_owned(),
+        format!("error {}:", format::significant(last.error, 1)),
+        format!("{times} times faster"),
+    ]
+}

@@ -1,0 +1,53 @@
+//! What the numerics cost and what they are worth: error against run time, stability, exact cases.
+//!
+//! ```text
+//! cases ─┬─► exact      error of every scheme against the exact solution, over run time
+//!        └─► stability  stiff and extreme cases, each held against its bound
+//! plan ────► scene      sampling error and error of the steps of a scene's own statistics
+//! ```
+
+pub mod aim;
+pub mod bench;
+pub mod cases;
+pub mod exact;
+mod exact_figure;
+mod exact_page;
+pub mod scene;
+mod scene_figure;
+mod scene_page;
+pub mod spread;
+
+use crate::error::{Error, Result};
+use crate::output::write_whole;
+use exact::CaseStudy;
+use scene::SceneStudy;
+use std::fs;
+use std::path::Path;
+
+pub use scene_page::{Wish, sentence, setting};
+
+/// Writes the exact cases' page, table and figures into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_exact(studies: &[CaseStudy], dir: &Path) -> Result<()> {
+    let figures = dir.join("figures");
+    fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
+    for study in studies {
+        let file = figures.join(format!("{}.svg", study.case.name));
+        write_whole(&file, exact_figure::draw(study).as_bytes())?;
+    }
+    write_whole(&dir.join("exact.csv"), exact::csv(studies).as_bytes())?;
+    write_whole(&dir.join("README.md"), exact_page::page(studies).as_bytes())
+}
+
+/// Writes a scene's page, table and figure into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    write_whole(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
+    write_whole(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
+    write_whole(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
+}

@@ -1,0 +1,231 @@
+//! The two errors of a scene's statistics, apart: that of the sample and that of the steps.
+//!
+//! Paths of rocks are chaotic: from the same release they end metres apart at any two tolerances, so single paths do not
+//! converge. Their statistics do. All settings get the same releases, so most of what chance does drops out of the
+//! difference; what is left is drawn again and again to say how far it can be trusted.
+
+use super::bench::goes_by_tolerance;
+use super::spread::{Interval, Ladder, Paired};
+use crate::ensemble::Ensemble;
+use crate::error::Result;
+use crate::hazard::{Percentile, Quantity, Row, StopKind};
+use crate::plan::{Part, Plan};
+use crate::step::{Scheme, Settings};
+use crate::trajectory::{self, Effort, Scratch};
+use std::time::Instant;
+
+/// Quantities of the study with what they are called and their units.
+pub const QUANTITIES: [(Quantity, &str, &str); 3] = [
+    (Quantity::Runout, "runout", "m"),
+    (Quantity::MaxTotal, "energy", "J"),
+    (Quantity::MaxHeight, "height", "m"),
+];
+/// Percentiles of the study (per cent).
+pub const PERCENTS: [u8; 3] = [50, 95, 99];
+/// Fewest releases of which a sampling error is given.
+const FEWEST: usize = 100;
+
+/// All releases under one setting.
+#[derive(Debug, Clone)]
+pub struct Rung {
+    /// The setting.
+    pub step: Settings,
+    /// Its tolerance or step over the scene's own (–).
+    pub relative: f64,
+    /// Run time of all releases (s).
+    pub seconds: f64,
+    /// What they cost, counted.
+    pub effort: Effort,
+    /// Rocks that failed.
+    pub failed: usize,
+    /// Values of each of [`QUANTITIES`], release by release; NaN for a failed rock.
+    values: [Vec<f64>; QUANTITIES.len()],
+}
+
+/// One percentile of one quantity.
+#[derive(Debug, Clone)]
+pub struct Statistic {
+    /// Which of [`QUANTITIES`].
+    pub quantity: usize,
+    /// Per cent.
+    pub percent: u8,
+    /// Under the scene's own setting.
+    pub own: Percentile,
+    /// Half the 95 % interval of the first so many releases, for rising numbers up to all.
+    pub sampling: Vec<(usize, f64)>,
+    /// Over the ladder.
+    pub ladder: Ladder,
+}
+
+/// What the study of one scene found.
+#[derive(Debug, Clone)]
+pub struct SceneStudy {
+    /// Title of the scene.
+    pub title: String,
+    /// Releases under every setting.
+    pub releases: usize,
+    /// Worker threads.
+    pub threads: usize,
+    /// From coarse to fine.
+    pub rungs: Vec<Rung>,
+    /// Which of them is the scene's own.
+    pub own: usize,
+    /// Each of [`PERCENTS`] for each of [`QUANTITIES`].
+    pub statistics: Vec<Statistic>,
+}
+
+/// A setting that gives a statistic with a wanted error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Offer {
+    /// Which rung.
+    pub rung: usize,
+    /// How many releases.
+    pub releases: usize,
+    /// Run time (s).
+    pub seconds: f64,
+}
+
+/// How fine the settings are over the scene's own, and the order of their error against that.
+///
+/// Local error and step are tied by `tolerance ~ step^(p+1)` (p: order of the embedded method); the error of the result
+/// goes with `step^p'`: 2/3 for TR-BDF2, 1 for the fourth-order tableau, 1 for fixed steps.
+fn ladder_of(scheme: Scheme) -> (&'static [f64], f64) {
+    match scheme {
+        Scheme::Adaptive => (&[4.0, 2.0, 1.0, 0.25, 0.0625], 2.0 / 3.0),
+        // already at the fine end
+        Scheme::Reference => (&[4096.0, 256.0, 16.0, 1.0], 1.0),
+        Scheme::Rigid => (&[4.0, 2.0, 1.0, 0.25, 0.0625], 1.0),
+        // each halving costs double
+        Scheme::Dda => (&[4.0, 2.0, 1.0, 0.5], 1.0),
+    }
+}
+
+/// Runs all releases of a plan under every setting; `done` hears of each.
+///
+/// # Errors
+/// A release that cannot be made.
+pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(&Rung)) -> Result<SceneStudy> {
+    plan.paths = Part::LeftOut("a study keeps no paths");
+    plan.impacts = Part::LeftOut("a study keeps no impacts");
+    let own_step = plan.step;
+    let (relatives, order) = ladder_of(own_step.scheme);
+    let mut rungs = Vec::new();
+    for &relative in relatives {
+        plan.step = finer(&own_step, relative);
+        let rung = rung(&plan, relative, ensemble)?;
+        done(&rung);
+        rungs.push(rung);
+    }
+    let own = relatives.iter().position(|&relative| relative == 1.0).unwrap_or(0);
+    let mut statistics = Vec::new();
+    for quantity in 0..QUANTITIES.len() {
+        let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[quantity].clone()).collect();
+        let paired = Paired::new(&all);
+        for percent in PERCENTS {
+            let p = f64::from(percent) / 100.0;
+            let Some(found) = percentile(&all[own], p) else { continue };
+            let ladder = paired.ladder(p, relatives, order, plan.seed);
+            let sampling = sampling(&all[own], p);
+            statistics.push(Statistic { quantity, percent, own: found, sampling, ladder });
+        }
+    }
+    Ok(SceneStudy {
+        title: plan.title.clone(),
+        releases: plan.count,
+        threads: ensemble.threads(),
+        rungs,
+        own,
+        statistics,
+    })
+}
+
+/// The same setting with another tolerance or step.
+fn finer(step: &Settings, relative: f64) -> Settings {
+    let mut finer = *step;
+    if goes_by_tolerance(step.scheme) {
+        finer.tolerance_m_s *= relative;
+    } else {
+        finer.step_s *= relative;
+    }
+    finer
+}
+
+fn rung(plan: &Plan, relative: f64, ensemble: &Ensemble) -> Result<Rung> {
+    let fall = |index: usize, scratch: &mut Scratch| trajectory::fall(plan, index, None, scratch);
+    let begun = Instant::now();
+    let mut rung = Rung {
+        step: plan.step,
+        relative,
+        seconds: 0.0,
+        effort: Effort::default(),
+        failed: 0,
+        values: Default::default(),
+    };
+    let mut totals = crate::hazard::Totals::default();
+    for falls in ensemble.in_chunks(0..plan.count, Scratch::default, fall) {
+        for fall in falls? {
+            let row = Row::of(&fall, plan.terrain.origin_m);
+            let failed = row.stop == StopKind::Failed;
+            rung.failed += usize::from(failed);
+            totals.add(&fall);
+            for (values, (quantity, ..)) in rung.values.iter_mut().zip(QUANTITIES) {
+                values.push(if failed { f64::NAN } else { quantity.of(&row) });
+            }
+        }
+    }
+    rung.effort = totals.effort;
+    rung.seconds = begun.elapsed().as_secs_f64();
+    Ok(rung)
+}
+
+fn percentile(values: &[f64], p: f64) -> Option<Percentile> {
+    crate::hazard::Sample::of(values.iter().copied()).percentile(p)
+}
+
+/// Half widths of the 95 % interval for the first 100, 200, 500, 1000 … releases.
+fn sampling(values: &[f64], p: f64) -> Vec<(usize, f64)> {
+    let numbers = (2..).flat_map(|power| [1, 2, 5].map(|step| step * 10usize.pow(power)));
+    let inner = numbers.take_while(|&n| n < values.len()).filter(|&n| n >= FEWEST);
+    let half = |n: usize| {
+        let found = percentile(&values[..n], p)?;
+        Some((n, 0.5 * (found.high_95? - found.low_95?)))
+    };
+    inner.chain([values.len()]).filter_map(half).collect()
+}
+
+impl Statistic {
+    /// Half the 95 % interval under the scene's own setting; `None` with too few releases.
+    pub fn sampling_error(&self) -> Option<f64> {
+        Some(0.5 * (self.own.high_95? - self.own.low_95?))
+    }
+
+    /// Error of the steps under a setting so much coarser than the scene's own, signed.
+    pub fn step_error(&self, relative: f64, scheme: Scheme) -> Interval {
+        let times = relative.powf(ladder_of(scheme).1);
+        let Interval { value, low, high } = self.ladder.own_error;
+        Interval { value: value * times, low: low * times, high: high * times }
+    }
+
+    /// Both errors of the scene's own setting together, root of the sum of squares.
+    pub fn total_error(&self) -> Option<f64> {
+        Some(self.sampling_error()?.hypot(self.ladder.own_error.value))
+    }
+}
+
+impl SceneStudy {
+    /// The cheapest of the settings that gives a statistic with a total error of `wanted`, at as many releases as it
+    /// needs; `None` where the error of the steps alone is larger under all of them.
+    pub fn cheapest(&self, statistic: &Statistic, wanted: f64) -> Option<Offer> {
+        let sampling = statistic.sampling_error()?;
+        let offer = |(rung, setting): (usize, &Rung)| {
+            let steps = statistic.step_error(setting.relative, setting.step.scheme).value;
+            let room = wanted * wanted - steps * steps;
+            let times = sampling * sampling / room;
+            let releases = (self.releases as f64 * times).ceil().max(FEWEST as f64);
+            let seconds = setting.seconds / self.releases as f64 * releases;
+            (room > 0.0).then_some(Offer { rung, releases: releases as usize, seconds })
+        };
+        let offers = self.rungs.iter().enumerate().filter_map(offer);
+        offers.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+}

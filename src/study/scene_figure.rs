@@ -1,0 +1,129 @@
+//! Both errors of a scene's statistics over run time.
+
+use super::scene::{QUANTITIES, SceneStudy, Statistic};
+use crate::report::axis::Axis;
+use crate::report::colour::{BLUE, GREY, INK, VERMILLION};
+use crate::report::figure::WIDTH_PX;
+use crate::report::panel::{FOOT_PX, Panel, align};
+use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
+use crate::report::svg::path::Frame;
+
+const PLOT_PX: f64 = 150.0;
+const TOP_PX: f64 = 44.0;
+const GAP_PX: f64 = 30.0;
+/// The percentile that the figure shows (per cent).
+const SHOWN: u8 = 95;
+
+/// Draws one panel a quantity.
+pub(super) fn draw(study: &SceneStudy) -> String {
+    let shown: Vec<&Statistic> =
+        study.statistics.iter().filter(|statistic| statistic.percent == SHOWN).collect();
+    let times = shown.iter().flat_map(|statistic| points(study, statistic)).map(|point| point.0);
+    let (fast, slow) = times.fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(t), b.max(t)));
+    let mut panels: Vec<Panel> = (0..shown.len())
+        .map(|row| panel(study, shown[row], row, (fast, slow), row + 1 == shown.len()))
+        .collect();
+    if let [a, b, c] = &mut panels[..] {
+        align([a, b, c]);
+    }
+    let bottom = panels.last().map_or(TOP_PX, |panel| panel.frame.bottom);
+    paint("error", (WIDTH_PX, bottom + FOOT_PX), "Error over run time", |paper| {
+        key(paper, panels.first());
+        for (panel, statistic) in panels.iter().zip(&shown) {
+            panel.grid(paper);
+            draw_statistic(paper, panel, study, statistic);
+        }
+        let (last, rest) = match panels.split_last() {
+            Some((last, rest)) => (Some(last), rest),
+            None => (None, &[][..]),
+        };
+        rest.iter().for_each(|panel| panel.axes_above_another(paper));
+        if let Some(last) = last {
+            last.axes(paper);
+        }
+    })
+}
+
+fn panel(
+    study: &SceneStudy,
+    statistic: &Statistic,
+    row: usize,
+    (fast, slow): (f64, f64),
+    is_last: bool,
+) -> Panel {
+    let errors = || points(study, statistic).into_iter().map(|point| point.1);
+    let least = errors().filter(|error| *error > 0.0).fold(f64::INFINITY, f64::min);
+    let most = errors().fold(least, f64::max);
+    let (_, name, unit) = QUANTITIES[statistic.quantity];
+    let y = Axis::log(least.max(1e-3 * most), most, format!("P{SHOWN} {name} ({unit})"));
+    let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
+    let title = if is_last { "Run time of the whole ensemble on this machine (s)" } else { "" };
+    let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
+    let mut panel = Panel::new(frame, Axis::log(fast, slow, title), y);
+    panel.frame.left = panel.room_left();
+    panel
+}
+
+/// Everything that must find room: run time (s) and error.
+fn points(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64)> {
+    let steps =
+        steps(study, statistic).into_iter().flat_map(|(t, error, most)| [(t, error), (t, most)]);
+    sampling(study, statistic).into_iter().chain(steps).collect()
+}
+
+/// Sampling error of the first so many releases over the time they take.
+fn sampling(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64)> {
+    let each_s = study.rungs[study.own].seconds / study.releases as f64;
+    statistic.sampling.iter().map(|&(n, error)| (each_s * n as f64, error)).collect()
+}
+
+/// Error of the steps and what it is at most, over the time of all releases under each setting.
+fn steps(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64, f64)> {
+    let one = |rung: &super::scene::Rung| {
+        let error = statistic.step_error(rung.relative, rung.step.scheme);
+        (rung.seconds, error.value.abs(), error.at_most())
+    };
+    study.rungs.iter().map(one).collect()
+}
+
+fn draw_statistic(paper: &Paper<'_>, panel: &Panel, study: &SceneStudy, statistic: &Statistic) {
+    let inside = |error: f64| error.max(panel.y.low);
+    let sampled = sampling(study, statistic);
+    panel.line(paper, &sampled, Pen::full(BLUE, 1.4));
+    for &(t, error) in &sampled {
+        paper.disc(panel.at(t, error), 2.4, BLUE);
+    }
+    let steps = steps(study, statistic);
+    let middle: Vec<(f64, f64)> = steps.iter().map(|&(t, error, _)| (t, inside(error))).collect();
+    panel.line(paper, &middle, Pen::full(VERMILLION, 1.4));
+    for &(t, error, most) in &steps {
+        let (spot, end) = (panel.at(t, inside(error)), panel.at(t, inside(most)));
+        paper.line(&[spot, end], Pen::full(VERMILLION, 0.8));
+        paper.line(&[(end.0 - 3.0, end.1), (end.0 + 3.0, end.1)], Pen::full(VERMILLION, 0.8));
+        paper.disc(spot, 2.4, VERMILLION);
+    }
+    let own_steps = panel.at(steps[study.own].0, inside(steps[study.own].1));
+    let own_sample = sampled.last().map(|&(t, error)| panel.at(t, error));
+    for (x, y) in own_sample.into_iter().chain([own_steps]) {
+        let ring = Frame { left: x - 5.0, right: x + 5.0, top: y - 5.0, bottom: y + 5.0 };
+        paper.outline(&ring, Pen::full(INK, 1.0));
+    }
+}
+
+fn key(paper: &Paper<'_>, first: Option<&Panel>) {
+    let Some(panel) = first else { return };
+    let mut x = panel.frame.left;
+    let title = format!("Error of the {SHOWN}th percentiles over run time");
+    paper.text(&Label::new(title, (x, 12.0)).sized(NORMAL).bold());
+    for (ink, words) in [
+        (BLUE, "sampling: half the 95 % interval of the first n releases"),
+        (VERMILLION, "steps: estimate and 95 % bound"),
+    ] {
+        paper.line(&[(x, 30.0), (x + 18.0, 30.0)], Pen::full(ink, 1.4));
+        paper.text(&Label::new(words, (x + 23.0, 30.0)));
+        x += 23.0 + text_width(words, SMALL) + 16.0;
+    }
+    paper
+        .outline(&Frame { left: x, right: x + 10.0, top: 25.0, bottom: 35.0 }, Pen::full(INK, 1.0));
+    paper.text(&Label::new("the scene's own setting", (x + 15.0, 30.0)).coloured(GREY));
+}

@@ -1,0 +1,167 @@
+//! The page of a scene's errors: sentences, tables, CSV.
+
+use super::bench::goes_by_tolerance;
+use super::scene::{QUANTITIES, Rung, SceneStudy, Statistic};
+use crate::report::format::{self, significant};
+use crate::step::Settings;
+use std::fmt::Write as _;
+
+/// A statistic and the total error wanted of it (same unit).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wish {
+    /// Which of [`SceneStudy::statistics`].
+    pub statistic: usize,
+    /// The wanted error.
+    pub error: f64,
+}
+
+/// Writes the page.
+pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
+    let mut page = format!("# Error against run time: {}\n\n", study.title);
+    let _ = writeln!(
+        page,
+        "{} releases under each of {} settings, {} threads. Paths of rocks are chaotic: the same release ends metres apart under any two \
+         settings, so single paths do not converge, but their statistics do. **Sampling error**: half the 95 % interval of the percentile \
+         (order statistics, whatever the distribution). **Error of the steps**: the percentile minus where it goes when the steps are refined, \
+         from a fit over all settings with the same releases; its interval from drawing the rocks again 400 times.\n",
+        format::decimal(study.releases as f64, 0),
+        study.rungs.len(),
+        study.threads
+    );
+    sentences(&mut page, study, wish);
+    page += "\n![Error over run time](error.svg)\n\n";
+    settings_table(&mut page, study);
+    statistics_table(&mut page, study);
+    page
+}
+
+fn sentences(page: &mut String, study: &SceneStudy, wish: Option<Wish>) {
+    for (number, statistic) in study.statistics.iter().enumerate() {
+        let wished = wish.filter(|wish| wish.statistic == number).map(|wish| wish.error);
+        if statistic.percent == 95 || wished.is_some() {
+            let _ = writeln!(page, "- {}", sentence(study, statistic, wished));
+        }
+    }
+}
+
+/// What dominates, and the cheapest way to a wanted error (half the present one where none is given).
+pub fn sentence(study: &SceneStudy, statistic: &Statistic, wanted: Option<f64>) -> String {
+    let (_, name, unit) = QUANTITIES[statistic.quantity];
+    let head =
+        format!("**P{} {name} {} {unit}**", statistic.percent, significant(statistic.own.value, 4));
+    let (Some(sampling), Some(total)) = (statistic.sampling_error(), statistic.total_error())
+    else {
+        return format!(
+            "{head}: too few rocks for an interval; {} or more are needed.",
+            statistic.own.needs
+        );
+    };
+    let steps = statistic.ladder.own_error;
+    let small = |value: f64| significant(value, 2);
+    let certainty = if steps.is_certain() { "" } else { ", not distinguishable from 0" };
+    let dominates =
+        if sampling > steps.value.abs() { "Sampling" } else { "The error of the steps" };
+    let wanted = wanted.unwrap_or(0.5 * total);
+    let offer = match study.cheapest(statistic, wanted) {
+        None => format!(
+            "no setting tried brings it to {} {unit}: the steps must be finer",
+            small(wanted)
+        ),
+        Some(offer) => format!(
+            "cheapest for a total of {} {unit}: {} with {} releases, about {} s",
+            small(wanted),
+            setting(&study.rungs[offer.rung].step),
+            format::decimal(offer.releases as f64, 0),
+            small(offer.seconds)
+        ),
+    };
+    format!(
+        "{head}: sampling error ±{} {unit}, error of the steps {} {unit} ({} to {}{certainty}), total {} {unit}. {dominates} dominates; {offer}.",
+        small(sampling),
+        small(steps.value),
+        small(steps.low),
+        small(steps.high),
+        small(total)
+    )
+}
+
+/// A setting in words.
+pub fn setting(step: &Settings) -> String {
+    if goes_by_tolerance(step.scheme) {
+        format!("tolerance {} m/s", step.tolerance_m_s)
+    } else {
+        format!("step {} s", step.step_s)
+    }
+}
+
+fn settings_table(page: &mut String, study: &SceneStudy) {
+    *page += "| setting | run time (s) | contact steps per rock | passes per rock | failed | unsettled steps |\n|---|---|---|---|---|---|\n";
+    for (number, Rung { step, seconds, effort, failed, .. }) in study.rungs.iter().enumerate() {
+        let each = |count: u64| significant(count as f64 / study.releases as f64, 4);
+        let own = if number == study.own { " (the scene's own)" } else { "" };
+        let _ = writeln!(
+            page,
+            "| {}{own} | {} | {} | {} | {failed} | {} |",
+            setting(step),
+            significant(*seconds, 3),
+            each(effort.steps),
+            each(effort.sweeps),
+            effort.unsettled
+        );
+    }
+    *page += "\n";
+}
+
+fn statistics_table(page: &mut String, study: &SceneStudy) {
+    *page += "| statistic |";
+    for rung in &study.rungs {
+        let _ = write!(page, " {} |", setting(&rung.step));
+    }
+    let _ = writeln!(page, " limit |\n|---|{}---|", "---|".repeat(study.rungs.len()));
+    for statistic in &study.statistics {
+        let (_, name, unit) = QUANTITIES[statistic.quantity];
+        let _ = write!(page, "| P{} {name} ({unit}) |", statistic.percent);
+        for value in &statistic.ladder.values {
+            let _ = write!(page, " {} |", significant(*value, 5));
+        }
+        let limit = statistic.ladder.limit;
+        let ends = [limit.low, limit.high].map(|end| significant(end, 5));
+        let _ = writeln!(page, " {} ({} to {}) |", significant(limit.value, 5), ends[0], ends[1]);
+    }
+}
+
+/// All numbers as CSV: one row a statistic and setting.
+pub(super) fn csv(study: &SceneStudy) -> String {
+    let mut text = String::from(
+        "quantity,percent,fineness,seconds,steps,rejected,leaps,sweeps,triangles,unsettled,failed,value,step_error,step_error_low_95,step_error_high_95,sampling_error_95\n",
+    );
+    for statistic in &study.statistics {
+        for (rung, value) in study.rungs.iter().zip(&statistic.ladder.values) {
+            let step = &rung.step;
+            let by_tolerance = goes_by_tolerance(step.scheme);
+            let fineness = if by_tolerance { step.tolerance_m_s } else { step.step_s };
+            let error = statistic.step_error(rung.relative, step.scheme);
+            let sampling =
+                statistic.sampling_error().map_or(String::new(), |half| half.to_string());
+            let effort = &rung.effort;
+            let _ = writeln!(
+                text,
+                "{},{},{fineness},{:.3},{},{},{},{},{},{},{},{value},{},{},{},{sampling}",
+                QUANTITIES[statistic.quantity].0.column(),
+                statistic.percent,
+                rung.seconds,
+                effort.steps,
+                effort.rejected,
+                effort.leaps,
+                effort.sweeps,
+                effort.triangles,
+                effort.unsettled,
+                rung.failed,
+                error.value,
+                error.low,
+                error.high
+            );
+        }
+    }
+    text
+}

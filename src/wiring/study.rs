@@ -1,0 +1,84 @@
+//! Studies: from the command line to the study floor and to files.
+
+use rockfall::ensemble::Ensemble;
+use rockfall::error::{Error, Result};
+use rockfall::plan::Plan;
+use rockfall::scene::Scene;
+use rockfall::study::aim::Aim;
+use rockfall::study::scene::{PERCENTS, QUANTITIES, SceneStudy};
+use rockfall::study::{self, Wish, exact, scene};
+use std::path::{Path, PathBuf};
+
+/// How a study of a scene is asked for.
+#[derive(Debug)]
+pub(crate) struct SceneOrder {
+    /// The scene file.
+    pub(crate) scene: PathBuf,
+    /// Folder for page, table and figure.
+    pub(crate) out: PathBuf,
+    /// Releases under each setting, instead of the scene's.
+    pub(crate) releases: Option<usize>,
+    /// Worker threads; `None` = all cores.
+    pub(crate) threads: Option<usize>,
+    /// What the cheapest setting shall reach.
+    pub(crate) within: Option<Aim>,
+}
+
+/// Studies the exact cases and says where the result is.
+pub(crate) fn exact_cases(out: &Path, done: impl Fn(&str)) -> Result<String> {
+    let studies = exact::study(done);
+    study::write_exact(&studies, out)?;
+    Ok(format!("page, table and figures in {}", out.display()))
+}
+
+/// Studies a scene and says what was found in a few sentences.
+pub(crate) fn scene_errors(order: &SceneOrder, done: impl Fn(String)) -> Result<String> {
+    let mut asked = Scene::read(&order.scene)?;
+    asked.release.count = order.releases.unwrap_or(asked.release.count);
+    let (terrain, _) = asked.read_terrain()?;
+    let plan = Plan::compile(&asked, terrain)?;
+    if let Some(aim) = &order.within {
+        among_studied(aim)?;
+    }
+    let ensemble = Ensemble::new(order.threads)?;
+    let found = scene::study(plan, &ensemble, |rung| {
+        let each = 1e3 * rung.seconds / asked.release.count as f64;
+        done(format!("{}: {:.1} s, {each:.2} ms a rock", study::setting(&rung.step), rung.seconds));
+    })?;
+    let wish = order.within.as_ref().and_then(|aim| wish(aim, &found));
+    study::write_scene(&found, wish, &order.out)?;
+    let mut words: Vec<String> = found
+        .statistics
+        .iter()
+        .enumerate()
+        .filter_map(|(number, statistic)| {
+            let wished = wish.filter(|wish| wish.statistic == number).map(|wish| wish.error);
+            let is_shown = statistic.percent == 95 || wished.is_some();
+            is_shown.then(|| study::sentence(&found, statistic, wished).replace("**", ""))
+        })
+        .collect();
+    words.push(format!("page, table and figure in {}", order.out.display()));
+    Ok(words.join("\n"))
+}
+
+/// The error that an interval allows is half its width.
+fn wish(aim: &Aim, found: &SceneStudy) -> Option<Wish> {
+    let is_it = |statistic: &scene::Statistic| {
+        QUANTITIES[statistic.quantity].0 == aim.quantity && statistic.percent == aim.percent
+    };
+    let statistic = found.statistics.iter().position(is_it)?;
+    Some(Wish { statistic, error: 0.5 * aim.width })
+}
+
+fn among_studied(aim: &Aim) -> Result<()> {
+    let is_studied = QUANTITIES.iter().any(|(quantity, ..)| *quantity == aim.quantity)
+        && PERCENTS.contains(&aim.percent);
+    if is_studied {
+        return Ok(());
+    }
+    let names = QUANTITIES.map(|(_, name, _)| name).join(", ");
+    let percents = PERCENTS.map(|percent| format!("p{percent}")).join(", ");
+    Err(Error::Request(format!(
+        "--within: found \"{aim}\"; a study looks at {percents} of {names}: write one of these"
+    )))
+}
