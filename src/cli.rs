@@ -69,6 +69,10 @@ enum Command {
         #[arg(long, value_name = "DIR", default_value = "reports/verification")]
         out: PathBuf,
     },
+    /// List the grounds that `like` knows, with their sources
+    Grounds,
+    /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
+    Calibrate(CalibrateArgs),
     /// Study the numerics: error against run time, stability
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -99,6 +103,21 @@ enum MeshCommand {
         /// STL file to write
         out: PathBuf,
     },
+}
+
+#[derive(Debug, Args)]
+struct CalibrateArgs {
+    /// Scene file (TOML) with a table [calibrate]
+    scene: PathBuf,
+    /// Folder for calibration.csv and calibration.json [default: reports/<scene name>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Releases of each trial
+    #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
+    releases: usize,
+    /// Worker threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    threads: Option<usize>,
 }
 
 #[derive(Debug, Args)]
@@ -142,6 +161,8 @@ pub(crate) fn main() -> ExitCode {
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
         Command::Verify { out } => verify(&out),
+        Command::Grounds => Ok(say(rockfall::scene::catalogue())),
+        Command::Calibrate(args) => calibrate(&args),
         Command::Study(command) => study::study(&command),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
@@ -153,6 +174,13 @@ pub(crate) fn main() -> ExitCode {
         eprintln!("error: {error}");
         ExitCode::from(WRONG_INPUT)
     })
+}
+
+fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
+    let scene = Scene::read(&args.scene)?;
+    let name = args.scene.file_stem().unwrap_or_default();
+    let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
+    wiring::calibrate(&scene, (args.releases, args.threads), &out).map(say)
 }
 
 fn plan(scene: &Path) -> Result<ExitCode> {

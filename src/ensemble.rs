@@ -5,7 +5,7 @@
 //! short enough that an interrupt is answered in seconds and that its paths fit in memory.
 
 use crate::error::{Error, Result};
-use crate::trajectory::{Impact, PathPoint, Trajectory};
+use crate::trajectory::{Crossing, Impact, PathPoint, Trajectory, Visit};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -167,6 +167,8 @@ fn bytes_of(falls: &[Trajectory]) -> usize {
         size_of::<Trajectory>()
             + size_of_val::<[PathPoint]>(&fall.path)
             + size_of_val::<[Impact]>(&fall.impacts)
+            + size_of_val::<[Crossing]>(&fall.crossings)
+            + size_of_val::<[Visit]>(&fall.visits)
     };
     falls.iter().map(kept).sum()
 }

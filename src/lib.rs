@@ -32,6 +32,7 @@ pub mod trajectory;
 pub mod ensemble;
 // answer
 pub mod hazard;
+pub mod calibrate;
 pub mod output;
 pub mod report;
 pub mod study;

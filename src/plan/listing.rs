@@ -1,7 +1,8 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{Part, Paths, Plan, RestRule};
+use super::{Curtain, Part, Paths, Plan, RestRule};
 use crate::release::Where;
+use crate::scene::BarrierTable;
 use crate::step::dda::own_restitution;
 use crate::step::{Scheme, Settings};
 use std::fmt;
@@ -40,6 +41,11 @@ impl Plan {
             bonds,
             paths,
             impacts,
+            lines,
+            barriers,
+            maps,
+            catalogued,
+            deposits,
             warnings,
         } = self;
         let place = place(releases.place());
@@ -59,6 +65,7 @@ impl Plan {
         list.line("map", map(terrain.origin_m.into(), *epsg));
         list.line("gravity", format!("{gravity_m_s2} m/s²"));
         list.line("grounds", format!("{}: {}", ground_names.len(), ground_names.join(", ")));
+        list.lines("catalogue", catalogued.iter().cloned());
         list.line("scheme", scheme(step));
         let captures = ground_names.iter().zip(capture_m_s);
         for (name, speed) in captures {
@@ -106,6 +113,24 @@ impl Plan {
             format!("kept for {first} of {count} releases, every {step_s} s")
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
+        list.part("lines", lines, |lines| {
+            let each = |line: &Curtain| format!("{} ({:.1} m)", line.name, line.length_m());
+            let each: Vec<String> = lines.iter().map(each).collect();
+            format!("{}: {}; crossings exact between stored points", lines.len(), each.join(", "))
+        });
+        list.part("barriers", barriers, |all| {
+            let each = |b: &BarrierTable| {
+                format!("{} ({} m, {} kJ)", b.name, b.height_m, b.capacity_j / 1e3)
+            };
+            let each: Vec<String> = all.iter().map(each).collect();
+            format!("{}: judged on the rocks that cross, they change no way", each.join(", "))
+        });
+        list.part("maps", maps, |cells| {
+            format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
+        });
+        if let Some(file) = deposits {
+            list.line("compared with", format!("measured ends in {}", file.display()));
+        }
         list.lines("warning", warnings.iter().cloned());
         list.0
     }

@@ -7,7 +7,7 @@ use crate::contact::Touch;
 use crate::error::Result;
 use crate::flight::{Landing, Parabola, leap};
 use crate::ground::{Capture, Damping, Law};
-use crate::plan::{PATH_STEP_S, Part, Plan, RestRule};
+use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::step::grip::{Grip, World};
@@ -31,6 +31,8 @@ pub struct Course<'a> {
     pub rest: RestRule,
     /// Simulated time after which a rock is out of time (s).
     pub longest_s: f64,
+    /// Evaluation lines and map cells.
+    pub watch: Watch<'a>,
 }
 
 /// Work space of one thread; nothing of one rock is left for the next.
@@ -89,7 +91,7 @@ pub fn follow(
         world,
         grip: &mut scratch.grip,
         chance,
-        journey: Journey::new(course.terrain, release.rock, release.motion, keep),
+        journey: Journey::new(course.terrain, release.rock, release.motion, (keep, course.watch)),
     };
     let stop = loop {
         if let Some(stop) = fall.fly().or_else(|| fall.touch()) {
@@ -125,6 +127,7 @@ impl<'a> Course<'a> {
             step: &plan.step,
             rest: plan.rest,
             longest_s: plan.longest_s,
+            watch: plan.watch(),
         }
     }
 }
@@ -324,6 +327,8 @@ impl Fall<'_> {
             tree_impact_count: journey.tree_impact_count,
             impacts: journey.impacts,
             path: journey.path,
+            crossings: journey.crossings.into_found(),
+            visits: journey.visits.into_found(),
             ledger: journey.ledger,
             released_j: self.world.body.mass * self.course.gravity_m_s2 * fallen + kinetic,
             effort: journey.effort,

@@ -1,16 +1,20 @@
 //! One rock from release to rest: leap, touch, step, stop.
 
+mod crossing;
 mod fall;
 mod journey;
 mod together;
+mod visit;
 
 pub use crate::contact::FeatureKind;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
+pub use crossing::Crossing;
 pub use fall::{Course, Scratch, fall, follow};
 pub use journey::Keep;
 pub use together::{Answer, fall_together, follow_together};
+pub use visit::Visit;
 
 /// Why a rock's journey ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -142,6 +146,10 @@ pub struct Trajectory {
     pub impacts: Vec<Impact>,
     /// The path, if the plan keeps it.
     pub path: Vec<PathPoint>,
+    /// First crossings of the plan's lines, in the order of lines.
+    pub crossings: Vec<Crossing>,
+    /// Cells of the plan's maps that it passed, in the order of cells.
+    pub visits: Vec<Visit>,
     /// Energy ledger.
     pub ledger: Ledger,
     /// Potential energy released plus kinetic energy at the start (J): the scale of the ledger.

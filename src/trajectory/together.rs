@@ -147,7 +147,7 @@ fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
     let start = (motion.position_m, motion.velocity_m_s, motion.spin_rad_s);
     Rover {
         member: Box::new(Member::new(body, laws.collect(), start)),
-        journey: Journey::new(course.terrain, release.rock, motion, keep),
+        journey: Journey::new(course.terrain, release.rock, motion, (keep, course.watch)),
         state: State::Moving,
         lands: None,
         quiet_s: 0.0,

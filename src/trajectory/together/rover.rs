@@ -228,6 +228,8 @@ impl Rover<'_> {
             tree_impact_count: journey.tree_impact_count,
             impacts: journey.impacts,
             path: journey.path,
+            crossings: journey.crossings.into_found(),
+            visits: journey.visits.into_found(),
             ledger: journey.ledger,
             released_j: self.member.body.mass * course.gravity_m_s2 * fallen + kinetic,
             effort,
