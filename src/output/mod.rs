@@ -15,6 +15,7 @@ mod table;
 mod whole;
 
 pub use claim::Claim;
+pub use folder::releases_in;
 pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
@@ -70,6 +71,8 @@ pub enum Mode {
     Fresh,
     /// Go on with them; start when there are none; nothing is left to do when they are complete.
     Resume,
+    /// The same, also where they are the first of the releases asked for.
+    Extend,
     /// Replace them.
     Overwrite,
 }
