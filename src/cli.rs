@@ -11,6 +11,7 @@ use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
+use rockfall::study::verify::Verification;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -18,10 +19,15 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Exit status when a case does not hold.
+const CHECK_FAILED: u8 = 1;
 /// Exit status when the user's input is wrong.
 const WRONG_INPUT: u8 = 2;
 /// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
 const INTERRUPTED: u8 = 130;
+
+/// Most worker threads: more than any machine has; a slip of the key must not start a hundred thousand.
+const MOST_THREADS: usize = 4096;
 
 /// Rockfall hazard on triangle meshes, with the numerical error beside every number.
 #[derive(Debug, Parser)]
@@ -61,6 +67,12 @@ enum Command {
     Grounds,
     /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
     Calibrate(CalibrateArgs),
+    /// Run the exact cases and the method paper's examples; write table and figures
+    Verify {
+        /// Folder for table and figures
+        #[arg(long, value_name = "DIR", default_value = "reports/verification")]
+        out: PathBuf,
+    },
     /// Study the numerics: error against run time, stability
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -122,7 +134,7 @@ struct RunArgs {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
     /// One release alone, with its full path recorded
     #[arg(long, value_name = "I", conflicts_with = "resume")]
@@ -150,6 +162,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
         Command::Calibrate(args) => calibrate(&args),
+        Command::Verify { out } => verify(&out),
         Command::Study(command) => study::study(&command),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
@@ -175,6 +188,13 @@ fn plan(scene: &Path) -> Result<ExitCode> {
     let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
     Ok(say(format!("{health}\n{plan}")))
+}
+
+fn verify(out: &Path) -> Result<ExitCode> {
+    let verification = Verification::run()?;
+    verification.write(out)?;
+    say(format!("{}\ntable and figures in {}", verification.table(), out.display()));
+    Ok(if verification.holds() { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }
 
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
@@ -315,6 +335,13 @@ fn shard(text: &str) -> std::result::Result<Part, String> {
     match numbers {
         Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Part::Shard { number, of }),
         _ => Err("write K/N, K from 1 to N: 3/16 is the third of 16 parts".to_owned()),
+    }
+}
+
+fn threads(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(number) if (1..=MOST_THREADS).contains(&number) => Ok(number),
+        _ => Err(format!("write a whole number from 1 to {MOST_THREADS}")),
     }
 }
 

@@ -64,6 +64,11 @@ impl Ensemble {
         Arc::clone(&self.stop)
     }
 
+    /// Computes something whose parts spread over the workers by themselves.
+    pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
+    }
+
     /// Computes the `releases` with `fall`, giving the journeys of one chunk at a time, in order.
     ///
     /// `scratch` makes the memory that a worker reuses from rock to rock; nothing in it may show in a journey.

@@ -22,6 +22,7 @@ pub mod terrain;
 pub mod contact;
 pub mod flight;
 pub mod step;
+pub mod coupled;
 // question
 pub mod scene;
 pub mod release;

@@ -8,7 +8,9 @@ pub use stiffness::OwnDissipation;
 pub use watch::{Curtain, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;
+use crate::contact::pair::Strength;
 use crate::error::Result;
+use crate::ground::Ground;
 use crate::release::{Release, Releases};
 use crate::scene::{
     BarrierTable, GroundTable, Polyline, RecordTable, Scene, SolverTable, known_ground,
@@ -102,10 +104,12 @@ pub struct Plan {
     pub rolling: Part<()>,
     /// Random tilt of contact normals.
     pub roughness: Part<()>,
-    /// Contact between rocks; this version always leaves it out.
-    pub rock_against_rock: Part<Infallible>,
-    /// One system of equations for all rocks that touch; this version always leaves it out.
-    pub coupled_solve: Part<Infallible>,
+    /// Contact between rocks, as their grounds' law.
+    pub rock_against_rock: Part<Ground>,
+    /// One system of equations for all rocks that touch.
+    pub coupled_solve: Part<()>,
+    /// Bonds between rocks that touch at the start.
+    pub bonds: Part<Strength>,
     /// Kept paths.
     pub paths: Part<Paths>,
     /// Kept impacts.
@@ -155,6 +159,7 @@ impl Plan {
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
         let grounds = || scene.grounds.values();
+        let between = scene.release.together.then(|| between_rocks(scene)).flatten();
         let rolls = grounds().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
         let is_rough = grounds().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
         Ok(Self {
@@ -183,8 +188,12 @@ impl Plan {
             ),
             rolling: Part::when(rolls.then_some(()), "no ground has any"),
             roughness: Part::when(is_rough.then_some(()), "no ground has any"),
-            rock_against_rock: Part::LeftOut("releases are independent"),
-            coupled_solve: Part::LeftOut("one rock has 6 unknowns, a dense factor is enough"),
+            rock_against_rock: Part::when(between, "releases are independent"),
+            coupled_solve: Part::when(
+                between.map(|_| ()),
+                "one rock has 6 unknowns, a dense factor is enough",
+            ),
+            bonds: bonds(scene),
             paths: paths(&scene.record, scene.release.count),
             impacts: Part::when(
                 scene.record.impacts.unwrap_or(false).then_some(()),
@@ -256,6 +265,30 @@ fn settings(solver: &SolverTable) -> Settings {
         shear_memory: solver.shear_memory.unwrap_or(true),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
+}
+
+/// How rocks answer each other.
+fn between_rocks(scene: &Scene) -> Option<Ground> {
+    scene.rocks.contact.as_ref().map(|contact| Ground {
+        normal_stiffness_n_m: contact.normal_stiffness_n_m,
+        shear_stiffness_n_m: contact.shear_stiffness_n_m,
+        friction_angle_rad: contact.friction_angle_deg.to_radians(),
+        restitution: contact.restitution,
+        rolling_friction: 0.0,
+        roughness_rad: 0.0,
+    })
+}
+
+fn bonds(scene: &Scene) -> Part<Strength> {
+    let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
+        return Part::LeftOut("releases are independent");
+    };
+    let strength =
+        Strength { tensile_pa: contact.tensile_strength_pa, cohesion_pa: contact.cohesion_pa };
+    Part::when(
+        strength.is_some().then_some(strength),
+        "neither tensile_strength_pa nor cohesion_pa is above 0",
+    )
 }
 
 fn paths(record: &RecordTable, count: usize) -> Part<Paths> {

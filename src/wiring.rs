@@ -89,12 +89,21 @@ pub(crate) fn run(
     let asked = order.part.range(plan.count);
     begin(ensemble.stop_flag())?;
     let paths = matches!(order.part, Part::Only(_)).then(|| asked.clone());
-    let fall = |index: usize, scratch: &mut Scratch| {
-        trajectory::fall(plan, index, paths.as_ref(), scratch)
-    };
-    for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
-        output.write(&falls?)?;
-        progress(output.remaining().start - asked.start);
+    if plan.rock_against_rock.is_kept() {
+        let stop = ensemble.stop_flag();
+        let falls = ensemble.install(|| trajectory::fall_together(plan, paths.as_ref(), &stop))?;
+        // One world is one piece: stopped before its end, it leaves nothing to write.
+        let remaining = output.remaining();
+        let wanted = falls.into_iter().flatten().filter(|fall| remaining.contains(&fall.index));
+        output.write(&wanted.collect::<Vec<_>>())?;
+    } else {
+        let fall = |index: usize, scratch: &mut Scratch| {
+            trajectory::fall(plan, index, paths.as_ref(), scratch)
+        };
+        for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
+            output.write(&falls?)?;
+            progress(output.remaining().start - asked.start);
+        }
     }
     let done = output.remaining().start - asked.start;
     if done < asked.len() {

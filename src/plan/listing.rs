@@ -38,6 +38,7 @@ impl Plan {
             roughness,
             rock_against_rock,
             coupled_solve,
+            bonds,
             paths,
             impacts,
             lines,
@@ -87,8 +88,27 @@ impl Plan {
         );
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
-        list.part("rock against rock", rock_against_rock, |never| match *never {});
-        list.part("coupled solve", coupled_solve, |never| match *never {});
+        list.part("rock against rock", rock_against_rock, |ground| {
+            format!(
+                "one world: springs of {:e} and {:e} N/m, friction angle {:.1}°, {}",
+                ground.normal_stiffness_n_m,
+                ground.shear_stiffness_n_m,
+                ground.friction_angle_rad.to_degrees(),
+                ground.restitution.map_or_else(
+                    || "restitution of the scheme itself".to_owned(),
+                    |e| format!("restitution {e}")
+                )
+            )
+        });
+        list.part("coupled solve", coupled_solve, |()| {
+            "islands of rocks that may touch, each with its own step".to_owned()
+        });
+        list.part("bonds", bonds, |strength| {
+            format!(
+                "between rocks that touch at the start: tensile strength {:e} Pa, cohesion {:e} Pa",
+                strength.tensile_pa, strength.cohesion_pa
+            )
+        });
         list.part("paths", paths, |Paths { first, step_s }| {
             format!("kept for {first} of {count} releases, every {step_s} s")
         });

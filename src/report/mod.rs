@@ -11,6 +11,7 @@
 pub mod axis;
 pub mod colour;
 pub mod contour;
+pub mod curves;
 mod distributions;
 pub mod figure;
 pub mod format;

@@ -29,6 +29,7 @@ pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 
 use crate::error::{Error, Result};
+use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
@@ -199,7 +200,8 @@ impl Scene {
         if let Some(maps) = &self.maps {
             maps.check().map_err(|wrong| wrong.inside("maps"))?;
         }
-        self.check_version()
+        self.check_together()?;
+        Ok(())
     }
 
     fn check_meshes(&self) -> Checked {
@@ -228,17 +230,31 @@ impl Scene {
         Ok(())
     }
 
-    /// What the scene file can ask for but this version cannot do is refused, never ignored.
-    fn check_version(&self) -> Checked {
-        let later = "is not in this version";
-        if self.release.together {
-            if self.rocks.contact.is_none() {
-                let remedy =
-                    "write the table [rocks.contact]: rocks that share one world can touch";
-                return Err(Complaint::missing("contact", remedy).inside("rocks"));
+    /// What rocks in one world need, and what cannot be had together with it.
+    fn check_together(&self) -> Checked {
+        if !self.release.together {
+            return Ok(());
+        }
+        let scheme = self.solver.scheme();
+        let Some(contact) = &self.rocks.contact else {
+            let remedy = "write the table [rocks.contact]: rocks that share one world can touch";
+            return Err(Complaint::missing("contact", remedy).inside("rocks"));
+        };
+        if contact.restitution.is_none() && scheme != Scheme::Dda {
+            let remedy = "write restitution = 0..1; only scheme \"dda\" can do without";
+            let missing = Complaint::missing("restitution", remedy);
+            return Err(missing.inside("contact").inside("rocks"));
+        }
+        if matches!(scheme, Scheme::Rigid) {
+            let remedy = "write \"adaptive\", \"reference\" or \"dda\": the rigid limit knows no rocks that touch, [release] together = false does without";
+            return Err(Complaint::about("scheme", remedy).inside("solver"));
+        }
+        for (name, ground) in &self.grounds {
+            if ground.roughness_deg.as_ref().is_some_and(|value| value.support().1 > 0.0) {
+                let remedy = "remove it: a random tilt of an impact belongs to one rock alone, and with [release] together = true others may touch it meanwhile";
+                let about = Complaint::about("roughness_deg", remedy);
+                return Err(about.inside(name).inside("grounds"));
             }
-            let remedy = format!("write false: contact between rocks {later}");
-            return Err(Complaint::about("together", remedy).inside("release"));
         }
         Ok(())
     }

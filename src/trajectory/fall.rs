@@ -61,7 +61,7 @@ impl Scratch {
 /// Steps after which a rock is given up: it counts as failed.
 const MOST_STEPS: u64 = 100_000_000;
 /// An impact is over after so many contact times (–), whether the rock has left or not.
-const IMPACT_TIMES: f64 = 3.0;
+pub(super) const IMPACT_TIMES: f64 = 3.0;
 /// Tilts drawn until the rough surface faces the rock; after that the impact is smooth.
 const TILTS: u32 = 8;
 
@@ -112,24 +112,35 @@ pub fn fall(
     scratch: &mut Scratch,
 ) -> Result<Trajectory> {
     let release = plan.release(index)?;
-    let course = Course {
-        terrain: &plan.terrain,
-        gravity_m_s2: plan.gravity_m_s2,
-        step: &plan.step,
-        rest: plan.rest,
-        longest_s: plan.longest_s,
-        watch: plan.watch(),
-    };
+    let mut chance = stream(plan.seed, Purpose::Impacts, index);
+    let fallen =
+        follow(&Course::of(plan), &release, kept(plan, index, paths), &mut chance, scratch);
+    Ok(Trajectory { index, ..fallen })
+}
+
+impl<'a> Course<'a> {
+    /// What the rocks of a plan have in common.
+    pub fn of(plan: &'a Plan) -> Self {
+        Self {
+            terrain: &plan.terrain,
+            gravity_m_s2: plan.gravity_m_s2,
+            step: &plan.step,
+            rest: plan.rest,
+            longest_s: plan.longest_s,
+            watch: plan.watch(),
+        }
+    }
+}
+
+/// What to keep of release `index`: a path for the plan's first releases and for `paths`.
+pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> Keep {
     let wanted = paths.is_some_and(|paths| paths.contains(&index));
     let path_step_s = match &plan.paths {
         Part::Kept(paths) if wanted || index < paths.first => Some(paths.step_s),
         Part::LeftOut(_) if wanted => Some(PATH_STEP_S),
         _ => None,
     };
-    let keep = Keep { path_step_s, impacts: plan.impacts.is_kept() };
-    let mut chance = stream(plan.seed, Purpose::Impacts, index);
-    let fallen = follow(&course, &release, keep, &mut chance, scratch);
-    Ok(Trajectory { index, ..fallen })
+    Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
 struct Fall<'a> {

@@ -120,15 +120,22 @@ impl<'a> Journey<'a> {
 
     /// Goes along one step in contact to `to`.
     pub(super) fn step(&mut self, to: Motion, slides: bool) {
+        self.step_as(to, if slides { PathState::Sliding } else { PathState::Sticking });
+    }
+
+    /// Goes along one step in `state` to `to`.
+    pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
         let from = std::mem::replace(&mut self.now, to);
         self.crossings.step((self.terrain, &self.rock), &from, &to);
         self.visits.step(&self.rock, &from, &to);
         let dt = to.time_s - from.time_s;
-        let state = if slides { PathState::Sliding } else { PathState::Sticking };
         while self.next_point_s <= to.time_s {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };
             let motion = between(&from, &to, s.clamp(0.0, 1.0));
             self.point(Motion { time_s: self.next_point_s, ..motion }, state);
+        }
+        if state == PathState::Flight {
+            self.note_height(&to.position_m);
         }
         self.note_speed();
     }
@@ -203,7 +210,7 @@ impl<'a> Journey<'a> {
     /// All losses so far (J).
     pub(super) fn lost_j(&self) -> f64 {
         let ledger = &self.ledger;
-        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
+        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j + ledger.others_j
     }
 }
 

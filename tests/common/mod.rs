@@ -6,6 +6,7 @@
     reason = "every test file uses another part"
 )]
 
+pub mod episode;
 pub mod zoo;
 
 use rockfall::chance::{Purpose, stream};
