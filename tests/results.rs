@@ -181,7 +181,8 @@ fn a_resumed_run_writes_the_same_bytes() {
             file.as_ref().unwrap().path().extension().is_some_and(|kind| kind == "state")
         });
         assert_eq!(states.count(), 0);
-        assert_eq!(results.lines, output::read(dir.path()).unwrap().lines);
+        // a height where there is no ground is no number
+        assert!(same(&results.lines, &output::read(dir.path()).unwrap().lines));
     }
 }
 

@@ -17,6 +17,7 @@ pub struct Way {
 
 /// Columns that a file of measured ends must have; it may have more.
 #[derive(Debug, Deserialize)]
+#[expect(clippy::struct_field_names, reason = "the names are those of the columns")]
 struct Measured {
     release_x_m: f64,
     release_y_m: f64,

@@ -3,6 +3,8 @@
 //! Only values that were read in their source stand here. None of the tables knows contact springs or the friction
 //! angle of this law: a scene writes those itself.
 
+use std::fmt::Write as _;
+
 /// A ground of the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownGround {
@@ -90,13 +92,10 @@ pub fn catalogue() -> String {
          always the scene's own. The tangential restitution of the sources has no place in this law, friction replaces it.\n",
     );
     for ground in &CATALOGUE {
-        text += &format!(
-            "\n{}\n    {}\n    {}\n    source: {}\n",
-            ground.name,
-            ground.what,
-            ground.values(),
-            ground.source
-        );
+        let KnownGround { name, what, source, .. } = ground;
+        let values = ground.values();
+        // writing to a string cannot fail
+        let _ = write!(text, "\n{name}\n    {what}\n    {values}\n    source: {source}\n");
     }
     text
 }
