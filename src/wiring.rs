@@ -104,12 +104,11 @@ pub(crate) fn run(
             return Ok(Ended::Interrupted(done, asked.len()));
         }
         let results = output.finish()?;
-        match more(order.until.as_ref(), &results.hazard, plan.count) {
-            Some(releases) => plan.count = releases,
-            None => {
-                report::draw_run(&results, &plan.terrain)?;
-                return Ok(Ended::Complete(report::headline(&results.hazard)));
-            }
+        if let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) {
+            plan.count = releases
+        } else {
+            report::draw_run(&results, &plan.terrain)?;
+            return Ok(Ended::Complete(report::headline(&results.hazard)));
         }
         mode = Mode::Extend;
     }

@@ -1,4 +1,4 @@
-//! Ends and paths for GIS (GeoJSON) and for ParaView (VTK), written from the tables when a run is complete.
+//! Ends and paths for GIS (GeoJSON) and for `ParaView` (VTK), written from the tables when a run is complete.
 
 use super::PathRow;
 use crate::error::{Error, Result};
@@ -105,7 +105,7 @@ impl<'a> Features<'a> {
 }
 
 /// Writes all kept paths as straight pieces of a legacy VTK unstructured grid in ASCII, with release, time, speed and
-/// clearance at every point; ParaView, pyvista and meshio read it. Coordinates are local to `origin_m`, as programs that
+/// clearance at every point; `ParaView`, pyvista and meshio read it. Coordinates are local to `origin_m`, as programs that
 /// draw in single precision need them.
 pub(super) fn write_vtk(
     path: &Path,

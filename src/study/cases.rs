@@ -392,7 +392,7 @@ fn in_groove(has_springs: bool) -> Setup {
     Setup { ground, centre_m: down * Vec3::new(0.0, -3.0, height), ..SETUP }
 }
 
-/// Height 1 s after a drop from 1 m with e = 0.5 in the rigid limit: two impacts, at t_f and 2 t_f, then a parabola (m).
+/// Height 1 s after a drop from 1 m with e = 0.5 in the rigid limit: two impacts, at `t_f` and 2 `t_f`, then a parabola (m).
 fn rigid_bounce_m() -> f64 {
     let g = SETUP.gravity_m_s2;
     let falls = (2.0 / g).sqrt();

@@ -200,7 +200,7 @@ pub(super) fn restitution(way: &Way, notes: &mut Notes) {
         // keeps exp(−π ω Δt/4) of the speed in each of ten bounces: 0.0066 of it, twice that of the height
         Scheme::Dda => notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 0.15),
         Scheme::Adaptive => {
-            notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 10.0 * 4.0 * way.fineness / 4.4)
+            notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 10.0 * 4.0 * way.fineness / 4.4);
         }
         _ => notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 1e-3),
     }
