@@ -120,6 +120,9 @@ pub(super) fn write_vtk(
         .map_err(Error::file("write", path))
 }
 
+/// Name of a column and where its numbers come from.
+type Column = (&'static str, fn(&PathRow) -> f64);
+
 fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io::Result<()> {
     writeln!(to, "# vtk DataFile Version 3.0")?;
     writeln!(
@@ -143,7 +146,7 @@ fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io:
         writeln!(to, "3")?;
     }
     writeln!(to, "POINT_DATA {}", rows.len())?;
-    let columns: [(&str, fn(&PathRow) -> f64); 4] = [
+    let columns: [Column; 4] = [
         ("release", |row| row.index as f64),
         ("time_s", |row| row.time_s),
         ("speed_m_s", |row| Vec3::from(row.velocity_m_s).norm()),

@@ -98,7 +98,8 @@ pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
         Ok(cells)
     };
     let intensity = read(Layer::Intensity)?;
-    let of_class = |class: f64| intensity.iter().filter(|(_, found)| *found == class).count();
+    let of_class =
+        |class: f64| intensity.iter().filter(|(_, found)| found.total_cmp(&class).is_eq()).count();
     Ok(Some(CellMap {
         west_m: frame.west_m,
         south_m: frame.south_m,
