@@ -60,6 +60,7 @@ fn main() {
         step: &step,
         rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
         longest_s: 120.0,
+        watch: rockfall::plan::Watch::default(),
     };
     let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
     let mut scratch = Scratch::default();

@@ -12,6 +12,7 @@ use rockfall::output::Mode;
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
+use rockfall::study::verify::Verification;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -25,6 +26,9 @@ const CHECK_FAILED: u8 = 1;
 const WRONG_INPUT: u8 = 2;
 /// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
 const INTERRUPTED: u8 = 130;
+
+/// Most worker threads: more than any machine has; a slip of the key must not start a hundred thousand.
+const MOST_THREADS: usize = 4096;
 
 /// Rockfall hazard on triangle meshes, with the numerical error beside every number.
 #[derive(Debug, Parser)]
@@ -60,6 +64,16 @@ enum Command {
         /// Folder with the results of a run
         dir: PathBuf,
     },
+    /// Run the exact cases and the method paper's examples; write table and figures
+    Verify {
+        /// Folder for table and figures
+        #[arg(long, value_name = "DIR", default_value = "reports/verification")]
+        out: PathBuf,
+    },
+    /// List the grounds that `like` knows, with their sources
+    Grounds,
+    /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
+    Calibrate(CalibrateArgs),
     /// Study the numerics: error against run time, stability
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -93,6 +107,21 @@ enum MeshCommand {
 }
 
 #[derive(Debug, Args)]
+struct CalibrateArgs {
+    /// Scene file (TOML) with a table [calibrate]
+    scene: PathBuf,
+    /// Folder for calibration.csv and calibration.json [default: reports/<scene name>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Releases of each trial
+    #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
+    releases: usize,
+    /// Worker threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    threads: Option<usize>,
+}
+
+#[derive(Debug, Args)]
 struct RunArgs {
     /// Scene file (TOML)
     scene: PathBuf,
@@ -106,7 +135,7 @@ struct RunArgs {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
     /// One release alone, with its full path recorded
     #[arg(long, value_name = "I", conflicts_with = "resume")]
@@ -135,6 +164,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Verify { out } => verify(&out),
+        Command::Grounds => Ok(say(rockfall::scene::catalogue())),
+        Command::Calibrate(args) => calibrate(&args),
         Command::Study(command) => study::study(&command),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
@@ -148,11 +180,25 @@ pub(crate) fn main() -> ExitCode {
     })
 }
 
+fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
+    let scene = Scene::read(&args.scene)?;
+    let name = args.scene.file_stem().unwrap_or_default();
+    let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
+    wiring::calibrate(&scene, (args.releases, args.threads), &out).map(say)
+}
+
 fn plan(scene: &Path) -> Result<ExitCode> {
     let scene = Scene::read(scene)?;
     let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
     Ok(say(format!("{health}\n{plan}")))
+}
+
+fn verify(out: &Path) -> Result<ExitCode> {
+    let verification = Verification::run()?;
+    verification.write(out)?;
+    say(format!("{}\ntable and figures in {}", verification.table(), out.display()));
+    Ok(if verification.holds() { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }
 
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
@@ -305,6 +351,13 @@ fn shard(text: &str) -> std::result::Result<Part, String> {
     match numbers {
         Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Part::Shard { number, of }),
         _ => Err("write K/N, K from 1 to N: 3/16 is the third of 16 parts".to_owned()),
+    }
+}
+
+fn threads(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(number) if (1..=MOST_THREADS).contains(&number) => Ok(number),
+        _ => Err(format!("write a whole number from 1 to {MOST_THREADS}")),
     }
 }
 

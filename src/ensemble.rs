@@ -5,7 +5,7 @@
 //! short enough that an interrupt is answered in seconds and that its paths fit in memory.
 
 use crate::error::{Error, Result};
-use crate::trajectory::{Impact, PathPoint, Trajectory};
+use crate::trajectory::{Crossing, Impact, PathPoint, Trajectory, Visit};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -62,6 +62,11 @@ impl Ensemble {
     /// Set it, from a Ctrl-C handler for example, and no chunk follows the one in hand.
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.stop)
+    }
+
+    /// Computes something whose parts spread over the workers by themselves.
+    pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
     }
 
     /// Computes the `releases` with `fall`, giving the journeys of one chunk at a time, in order.
@@ -162,6 +167,8 @@ fn bytes_of(falls: &[Trajectory]) -> usize {
         size_of::<Trajectory>()
             + size_of_val::<[PathPoint]>(&fall.path)
             + size_of_val::<[Impact]>(&fall.impacts)
+            + size_of_val::<[Crossing]>(&fall.crossings)
+            + size_of_val::<[Visit]>(&fall.visits)
     };
     falls.iter().map(kept).sum()
 }

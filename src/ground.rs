@@ -95,7 +95,17 @@ impl Law {
 
     /// The law of `ground` for `rock`; `damping` belongs to the ground's restitution.
     pub fn new(ground: &Ground, damping: &Damping, rock: &Rock, capture: &Capture) -> Self {
-        let (m, radius) = (rock.mass_kg(), rock.radius_m);
+        Self::of_mass(ground, damping, (rock.mass_kg(), rock.radius_m), capture)
+    }
+
+    /// The law of a contact that moves the mass `m` (kg), of a rolling radius (m). For two rocks that is their reduced
+    /// mass `m_a m_b/(m_a + m_b)`: the same formulas hold, along the surface too, as both are solid spheres.
+    pub fn of_mass(
+        ground: &Ground,
+        damping: &Damping,
+        (m, radius): (f64, f64),
+        capture: &Capture,
+    ) -> Self {
         let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
         let omega = (p_n / m).sqrt();
         let rolls = ground.rolling_friction > 0.0;

@@ -22,6 +22,7 @@ pub mod terrain;
 pub mod contact;
 pub mod flight;
 pub mod step;
+pub mod coupled;
 // question
 pub mod scene;
 pub mod release;
@@ -31,6 +32,7 @@ pub mod trajectory;
 pub mod ensemble;
 // answer
 pub mod hazard;
+pub mod calibrate;
 pub mod output;
 pub mod report;
 pub mod study;

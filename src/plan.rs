@@ -2,13 +2,19 @@
 
 mod listing;
 mod stiffness;
+mod watch;
 
 pub use stiffness::OwnDissipation;
+pub use watch::{Curtain, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;
+use crate::contact::pair::Strength;
 use crate::error::Result;
+use crate::ground::Ground;
 use crate::release::{Release, Releases};
-use crate::scene::{RecordTable, Scene, SolverTable};
+use crate::scene::{
+    BarrierTable, GroundTable, Polyline, RecordTable, Scene, SolverTable, known_ground,
+};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
 use std::convert::Infallible;
@@ -98,14 +104,26 @@ pub struct Plan {
     pub rolling: Part<()>,
     /// Random tilt of contact normals.
     pub roughness: Part<()>,
-    /// Contact between rocks; this version always leaves it out.
-    pub rock_against_rock: Part<Infallible>,
-    /// One system of equations for all rocks that touch; this version always leaves it out.
-    pub coupled_solve: Part<Infallible>,
+    /// Contact between rocks, as their grounds' law.
+    pub rock_against_rock: Part<Ground>,
+    /// One system of equations for all rocks that touch.
+    pub coupled_solve: Part<()>,
+    /// Bonds between rocks that touch at the start.
+    pub bonds: Part<Strength>,
     /// Kept paths.
     pub paths: Part<Paths>,
     /// Kept impacts.
     pub impacts: Part<()>,
+    /// Evaluation lines.
+    pub lines: Part<Vec<Curtain>>,
+    /// Barriers; each has an evaluation line of its name.
+    pub barriers: Part<Vec<BarrierTable>>,
+    /// Cells of the maps.
+    pub maps: Part<Lattice>,
+    /// Grounds with values of the catalogue: name, what was taken, source.
+    pub catalogued: Vec<String>,
+    /// File of measured ends that the report compares with.
+    pub deposits: Option<PathBuf>,
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
 }
@@ -141,6 +159,7 @@ impl Plan {
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
         let grounds = || scene.grounds.values();
+        let between = scene.release.together.then(|| between_rocks(scene)).flatten();
         let rolls = grounds().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
         let is_rough = grounds().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
         Ok(Self {
@@ -169,13 +188,28 @@ impl Plan {
             ),
             rolling: Part::when(rolls.then_some(()), "no ground has any"),
             roughness: Part::when(is_rough.then_some(()), "no ground has any"),
-            rock_against_rock: Part::LeftOut("releases are independent"),
-            coupled_solve: Part::LeftOut("one rock has 6 unknowns, a dense factor is enough"),
+            rock_against_rock: Part::when(between, "releases are independent"),
+            coupled_solve: Part::when(
+                between.map(|_| ()),
+                "one rock has 6 unknowns, a dense factor is enough",
+            ),
+            bonds: bonds(scene),
             paths: paths(&scene.record, scene.release.count),
             impacts: Part::when(
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
             ),
+            lines: Part::when(curtains(scene, &terrain), "the scene has none"),
+            barriers: Part::when(
+                Some(scene.barriers.clone()).filter(|all| !all.is_empty()),
+                "the scene has none",
+            ),
+            maps: Part::when(
+                lattice(scene, &terrain)?,
+                "not asked for, [maps] cell_m = … writes them",
+            ),
+            catalogued: catalogued(scene),
+            deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             terrain,
         })
@@ -187,6 +221,14 @@ impl Plan {
     /// No ground below the point drawn, or a rock that starts inside the ground or a tree.
     pub fn release(&self, index: usize) -> Result<Release> {
         self.releases.release(&self.terrain, index)
+    }
+
+    /// What every rock is watched for.
+    pub fn watch(&self) -> Watch<'_> {
+        Watch {
+            lines: if let Part::Kept(lines) = &self.lines { lines } else { &[] },
+            cells: if let Part::Kept(cells) = &self.maps { Some(cells) } else { None },
+        }
     }
 
     /// The same plan with every part kept that this version can keep: leaving out changes the cost, never
@@ -225,10 +267,58 @@ fn settings(solver: &SolverTable) -> Settings {
     }
 }
 
+/// How rocks answer each other.
+fn between_rocks(scene: &Scene) -> Option<Ground> {
+    scene.rocks.contact.as_ref().map(|contact| Ground {
+        normal_stiffness_n_m: contact.normal_stiffness_n_m,
+        shear_stiffness_n_m: contact.shear_stiffness_n_m,
+        friction_angle_rad: contact.friction_angle_deg.to_radians(),
+        restitution: contact.restitution,
+        rolling_friction: 0.0,
+        roughness_rad: 0.0,
+    })
+}
+
+fn bonds(scene: &Scene) -> Part<Strength> {
+    let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
+        return Part::LeftOut("releases are independent");
+    };
+    let strength =
+        Strength { tensile_pa: contact.tensile_strength_pa, cohesion_pa: contact.cohesion_pa };
+    Part::when(
+        strength.is_some().then_some(strength),
+        "neither tensile_strength_pa nor cohesion_pa is above 0",
+    )
+}
+
 fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
     let first = record.paths.unwrap_or(PATHS).min(count);
     let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
+}
+
+fn catalogued(scene: &Scene) -> Vec<String> {
+    let taken = |(name, ground): (&String, &GroundTable)| {
+        let known = known_ground(ground.like.as_deref()?)?;
+        Some(format!(
+            "{name} like {}: {} unless written in the scene; {}",
+            known.name,
+            known.values(),
+            known.source
+        ))
+    };
+    scene.grounds.iter().filter_map(taken).collect()
+}
+
+fn curtains(scene: &Scene, terrain: &Terrain) -> Option<Vec<Curtain>> {
+    let lines = scene.lines.iter().map(|line| (&line.name, &line.points_m));
+    let barriers = scene.barriers.iter().map(|barrier| (&barrier.name, &barrier.points_m));
+    let curtain = |(name, line): (&String, &Polyline)| Curtain::new(name, line, terrain.origin_m);
+    Some(lines.chain(barriers).map(curtain).collect()).filter(|all: &Vec<Curtain>| !all.is_empty())
+}
+
+fn lattice(scene: &Scene, terrain: &Terrain) -> Result<Option<Lattice>> {
+    scene.maps.as_ref().map(|maps| Lattice::over(terrain, maps, &scene.file)).transpose()
 }
 
 fn tree_triangles(terrain: &Terrain) -> Option<usize> {

@@ -54,10 +54,11 @@ pub struct Releases {
 
 impl Releases {
     /// Takes what a release needs from the scene and looks whether the corners of its place lie on the
-    /// terrain.
+    /// terrain, and whether the first rock from each point is clear of it.
     ///
     /// # Errors
-    /// A point or corner of the place with no ground below, with its coordinates.
+    /// A point or corner of the place with no ground below, or a rock that starts in ground or tree, with its
+    /// coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
         let asked = &scene.release;
         let place = match (&asked.points_m, &asked.line_m, &asked.polygon_m) {
@@ -90,6 +91,11 @@ impl Releases {
         for (number, corner) in corners_m.into_iter().enumerate() {
             let who = format!("[release] {key}, entry {}", number + 1);
             releases.ground_m(terrain, corner, &who)?;
+        }
+        if let Where::Points(points) = &releases.place {
+            for index in 0..points.len().min(asked.count) {
+                releases.release(terrain, index)?;
+            }
         }
         Ok(releases)
     }
@@ -170,10 +176,10 @@ impl Releases {
         let found = if buried {
             "found its centre under the terrain".to_owned()
         } else {
-            format!("found it {depth_m} m deep in the ground or a tree")
+            format!("found it {depth_m:.2e} m deep in the ground or a tree")
         };
         let remedy = format!(
-            "release it higher, or elsewhere: a rock of radius {} m needs its centre that far from every triangle",
+            "write a higher place, or another: a rock of radius {} m needs its centre that far from every triangle",
             rock.radius_m
         );
         Err(Error::input(&self.file, who, found, remedy))

@@ -2,13 +2,15 @@
 
 pub(crate) mod study;
 
+use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
-use rockfall::hazard::Hazard;
+use rockfall::hazard::{Barrier, Hazard, LineInfo, MapFrame, Rule, Way};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
-use rockfall::plan::Plan;
+use rockfall::plan::{self, Curtain, Plan};
 use rockfall::report;
 use rockfall::rock::Vec3;
+use rockfall::scene::{BarrierTable, DesignTable, Scene};
 use rockfall::study::aim::Aim;
 use rockfall::terrain::grid::Grid;
 use rockfall::terrain::health::Health;
@@ -123,12 +125,21 @@ fn compute(
 ) -> Result<Output> {
     let asked = order.part.range(plan.count);
     let paths = matches!(order.part, Part::Only(_)).then(|| asked.clone());
-    let fall = |index: usize, scratch: &mut Scratch| {
-        trajectory::fall(plan, index, paths.as_ref(), scratch)
-    };
-    for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
-        output.write(&falls?)?;
-        progress(output.remaining().start - asked.start);
+    if plan.rock_against_rock.is_kept() {
+        let stop = ensemble.stop_flag();
+        let falls = ensemble.install(|| trajectory::fall_together(plan, paths.as_ref(), &stop))?;
+        // One world is one piece: stopped before its end, it leaves nothing to write.
+        let remaining = output.remaining();
+        let wanted = falls.into_iter().flatten().filter(|fall| remaining.contains(&fall.index));
+        output.write(&wanted.collect::<Vec<_>>())?;
+    } else {
+        let fall = |index: usize, scratch: &mut Scratch| {
+            trajectory::fall(plan, index, paths.as_ref(), scratch)
+        };
+        for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
+            output.write(&falls?)?;
+            progress(output.remaining().start - asked.start);
+        }
     }
     Ok(output)
 }
@@ -165,6 +176,10 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
             .iter()
             .map(|sheet| plan.ground_names[usize::from(sheet.ground)].clone())
             .collect(),
+        lines: line_infos(plan),
+        maps: map_frame(plan),
+        barriers: barriers(plan),
+        observed: plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)?,
         keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
         threads: ensemble.threads(),
@@ -172,6 +187,66 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         warnings: plan.warnings.clone(),
         mesh_health,
     })
+}
+
+fn line_infos(plan: &Plan) -> Vec<LineInfo> {
+    let info = |line: &Curtain| LineInfo {
+        name: line.name.clone(),
+        length_m: line.length_m(),
+        corners_m: line.corners_m(plan.terrain.origin_m),
+    };
+    plan.watch().lines.iter().map(info).collect()
+}
+
+fn barriers(plan: &Plan) -> Vec<Barrier> {
+    let plan::Part::Kept(tables) = &plan.barriers else { return Vec::new() };
+    let rule = |rule: &DesignTable| Rule {
+        percentile: rule.percentile,
+        speed_factors: rule.speed_factors.clone(),
+        mass_factors: rule.mass_factors.clone(),
+        height_factors: rule.height_factors.clone(),
+        free_height_m: rule.free_height_m,
+    };
+    let barrier = |table: &BarrierTable| Barrier {
+        name: table.name.clone(),
+        height_m: table.height_m,
+        capacity_j: table.capacity_j,
+        design: table.design.as_ref().map(rule),
+    };
+    tables.iter().map(barrier).collect()
+}
+
+fn map_frame(plan: &Plan) -> Option<MapFrame> {
+    let cells = plan.watch().cells?;
+    // edges lie at multiples of the cell: the digits that the origin cost come back
+    let whole = |edge_m: f64| (edge_m / cells.cell_m).round() * cells.cell_m;
+    Some(MapFrame {
+        west_m: whole(cells.west_m + plan.terrain.origin_m.x),
+        south_m: whole(cells.south_m + plan.terrain.origin_m.y),
+        cell_m: cells.cell_m,
+        columns: cells.columns,
+        rows: cells.rows,
+        epsg: plan.epsg,
+    })
+}
+
+/// Calibrates a scene, writes all trials into `out` and says what was found.
+pub(crate) fn calibrate(
+    scene: &Scene,
+    (releases, threads): (usize, Option<usize>),
+    out: &Path,
+) -> Result<String> {
+    let ensemble = Ensemble::new(threads)?;
+    let mut trials: Vec<(usize, Trial)> = Vec::new();
+    let found = calibrate::calibrate(scene, &ensemble, releases, &mut |half, trial| {
+        trials.push((half, trial.clone()));
+    })?;
+    output::write_calibration(out, &found, &trials)?;
+    Ok(format!(
+        "{found}
+all trials in {}",
+        out.join("calibration.csv").display()
+    ))
 }
 
 /// Puts the shards of a run together, and draws the report.

@@ -1,17 +1,13 @@
 //! Scheme `dda`: what the paper's fixed step keeps, loses and gets wrong, against closed forms.
 
-#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
 mod common;
 
+use common::episode::Episode;
 use common::{CASE, Case, G, GROUND, ROCK, terrain};
-use rockfall::flight::{Landing, Parabola, leap};
-use rockfall::ground::{Capture, Damping, Ground, Law, damping_ratio, restitution};
+use rockfall::ground::{Ground, damping_ratio, restitution};
 use rockfall::rock::{Rock, Vec3};
+use rockfall::step::Scheme;
 use rockfall::step::dda::own_restitution;
-use rockfall::step::grip::{Grip, World};
-use rockfall::step::law::Body;
-use rockfall::step::{Scheme, Settings, Stepper, advance};
 use rockfall::terrain::{Terrain, make};
 use rockfall::trajectory::Stop;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, PI, SQRT_2};
@@ -27,55 +23,6 @@ fn omega() -> f64 {
 
 fn level() -> Terrain {
     terrain(make::jittered_plane(4.0, 8, 0.0))
-}
-
-/// One rock in contact, stepped by hand.
-struct Episode<'a> {
-    terrain: &'a Terrain,
-    laws: [Law; 1],
-    body: Body,
-    settings: Settings,
-}
-
-impl<'a> Episode<'a> {
-    fn new(terrain: &'a Terrain, case: &Case, gravity_m_s2: f64) -> Self {
-        let capture = Capture { own_m_s: None, tolerance_m_s: 0.0, gravity_m_s2 };
-        let damping = Damping::of(case.ground.restitution);
-        let settings = Settings {
-            scheme: case.scheme,
-            tolerance_m_s: case.tolerance_m_s,
-            step_s: case.step_s,
-            shear_memory: case.shear_memory,
-            capture_speed_m_s: None,
-        };
-        Self {
-            terrain,
-            laws: [Law::new(&case.ground, &damping, &case.rock, &capture)],
-            body: Body::new(&case.rock, gravity_m_s2),
-            settings,
-        }
-    }
-
-    /// Takes steps until the rock is free or `steps` are done; `see` looks at each.
-    fn run(
-        &self,
-        [c, v, w]: [[f64; 3]; 3],
-        steps: usize,
-        mut see: impl FnMut(&World, &Grip),
-    ) -> Grip {
-        let world = World { terrain: self.terrain, body: self.body, laws: &self.laws };
-        let mut grip = Grip::default();
-        grip.begin(&world, Vec3::from(c) - self.terrain.origin_m, v.into(), w.into());
-        let mut stepper = Stepper::new(&self.settings, &world, &mut grip);
-        for _ in 0..steps {
-            advance(&mut stepper, &world, &mut grip, f64::INFINITY).unwrap();
-            see(&world, &grip);
-            if grip.is_free() && grip.v.dot(&Vec3::z()) > 0.0 {
-                break;
-            }
-        }
-        grip
-    }
 }
 
 /// Rebound over approach speed of an undamped impact without gravity that begins `share` of a step before the touch.
@@ -373,69 +320,6 @@ fn a_rock_that_sinks_in_fails() {
     let case = Case { ground, step_s: 1e-4, ..DDA };
     let fall = case.run(&level(), [[0.1, 0.2, 1.5], [0.0; 3], [0.0; 3]], 9.0);
     assert!(matches!(&fall.stop, Stop::Failed(why) if why.contains("sank in")), "{:?}", fall.stop);
-}
-
-/// No step of any length adds energy, springs included: on a plane, over an edge, into a fold, settled or not.
-///
-/// A rock already pressed in by more than `R δ²/2` that comes over a fold of angle δ is excepted: the other flank's
-/// spring is there at once, in the law itself.
-#[test]
-fn no_step_adds_energy() {
-    let shapes = [
-        (make::jittered_plane(4.0, 8, 0.6), "plane"),
-        (make::ridge(4.0, 0.5), "ridge"),
-        (make::v_groove(4.0, 0.7), "groove"),
-        (make::stairs(8, 0.5, 0.6, 2.0), "stairs"),
-        (make::tetrahedron(1.5), "tetrahedron"),
-    ];
-    let grounds = [
-        BARE,
-        GROUND,
-        Ground { rolling_friction: 0.4, ..GROUND },
-        Ground { friction_angle_rad: 0.0, ..BARE },
-        Ground { friction_angle_rad: 1.4, rolling_friction: 0.1, ..BARE },
-    ];
-    let mut steps = 0u64;
-    for (facets, shape) in shapes {
-        let terrain = terrain(facets);
-        for ground in grounds {
-            for step_s in [1e-5, 1e-4, 1e-3, 1e-2] {
-                for shear_memory in [true, false] {
-                    let case = Case { step_s, shear_memory, ground, ..DDA };
-                    steps += watch(&terrain, &case, &format!("{shape} {case:?}"));
-                }
-            }
-        }
-    }
-    assert!(steps > 100_000, "{steps}");
-}
-
-/// Throws rocks at the terrain and follows them in contact; every step's energy, springs included, against the one
-/// before.
-fn watch(terrain: &Terrain, case: &Case, what: &str) -> u64 {
-    let mut steps = 0;
-    for k in 0..6u32 {
-        let (s, c) = (2.4 * f64::from(k)).sin_cos();
-        let flight = Parabola {
-            start: Vec3::new(0.3 * c, 0.3 * s + 0.2, 2.0) - terrain.origin_m,
-            velocity: Vec3::new(2.0 * s, 2.0 * c, -2.0),
-            gravity: G,
-            radius: case.rock.radius_m,
-        };
-        let Landing::Touch(t) = leap(terrain, &flight, 9.0, &mut 0) else { continue };
-        let touch = flight.centre(t) + terrain.origin_m;
-        let start = [touch.into(), flight.velocity(t).into(), [4.0 * c, 4.0 * s, 1.0]];
-        let mut before = f64::INFINITY;
-        Episode::new(terrain, case, G).run(start, 400, |world, grip| {
-            steps += 1;
-            let weight = world.body.mass * world.body.gravity.dot(&grip.c);
-            let energy = grip.motion_j(&world.body) - weight + grip.stored_j(world).sum();
-            // rounding of coordinates of 1 m in springs of 1e9 N/m
-            assert!(energy < before + 1e-6, "{what}: {before} -> {energy}");
-            before = energy;
-        });
-    }
-    steps
 }
 
 /// Half a period of the free step: `ρ^N` shrinks as `exp(−π ω Δt/4)`, numerical damping of ratio ω Δt/4.

@@ -180,9 +180,17 @@ fn a_rock_inside_the_ground_is_refused_with_index_and_coordinates() {
     assert!(said.contains("release 1 at (1, 2, 0.1): found it"), "{said}");
     let said = refused(&at("-0.1"), &level);
     assert!(said.contains("under the terrain"), "{said}");
-    // 60°: the distance is half the vertical one, so a gap below R is too little
-    let said = refused(&scene("height_m = 0.1\npoints_m = [[0, 0]]", ""), &plane(60.0));
-    assert!(said.contains("deep in the ground"), "{said}");
+}
+
+/// On 60° the distance to the ground is half the vertical one: a gap below R would put the rock into it, so it is
+/// lifted until it just touches, its centre R above the plane along the normal, 2 R above it along the vertical.
+#[test]
+fn a_rock_over_steep_ground_is_lifted_until_it_touches() {
+    let (steep, asked) = (plane(60.0), scene("height_m = 0.1\npoints_m = [[0, 0]]", ""));
+    let release = Releases::compile(&asked, &steep).unwrap().release(&steep, 0).unwrap();
+    let centre = release.motion.position_m;
+    let ground = steep.ground_below(centre.x, centre.y).unwrap();
+    assert!((centre.z - ground - 2.0 * release.rock.radius_m).abs() < 1e-12);
 }
 
 /// A rock that rests exactly on the ground is clear of it.
@@ -228,7 +236,7 @@ fn keeping_everything_leaves_the_question_as_it_is() {
     assert!(!lean.paths.is_kept() && !lean.rolling.is_kept());
     let first = lean.release(0).unwrap();
     let full = lean.keep_everything();
-    assert!(full.rolling.is_kept() && full.roughness.is_kept() && full.flight.is_kept());
+    assert!(full.rolling.is_kept() && full.roughness.is_kept());
     assert!(full.trees.is_kept() && full.impacts.is_kept());
     assert!(matches!(full.paths, Part::Kept(paths) if paths.first == full.count));
     assert_eq!(full.release(0).unwrap(), first);

@@ -220,7 +220,7 @@ fn a_large_run_gives_a_page_of_less_than_five_megabytes() {
     let report = large();
     let drawn = report::drawings(&report);
     for (figure, drawing) in &drawn {
-        svg::check(&drawing.svg, figure.file);
+        svg::check(&drawing.svg, &figure.file);
         println!("{} {} kB", figure.file, drawing.svg.len() / 1000);
     }
     let page = html::page(&report, &drawn);

@@ -6,7 +6,7 @@ use made::{FAILS_EVERY, PATHS, fall, info};
 use proptest::prelude::*;
 use rockfall::ensemble::Ensemble;
 use rockfall::error::Result;
-use rockfall::hazard::{Hazard, Quantity, Row, StopKind};
+use rockfall::hazard::{Hazard, Layer, Quantity, Row, StopKind};
 use rockfall::output::{self, ImpactRow, Mode, Output, PathRow, RunInfo};
 use rockfall::rock::Vec3;
 use rockfall::trajectory::{Stop, Trajectory};
@@ -16,7 +16,7 @@ use std::path::Path;
 use tempfile::TempDir;
 
 const RELEASES: usize = 60;
-const TABLES: [&str; 3] = ["releases.csv", "paths.csv", "impacts.csv"];
+const TABLES: [&str; 4] = ["releases.csv", "paths.csv", "impacts.csv", "crossings.csv"];
 
 fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
@@ -39,6 +39,12 @@ fn whole_run(dir: &Path, info: RunInfo) -> Result<output::Results> {
 fn bytes(dir: &Path) -> Vec<Vec<u8>> {
     let mut files: Vec<_> =
         TABLES.iter().map(|name| fs::read(dir.join(name)).expect(name)).collect();
+    for layer in Layer::ALL {
+        for kind in ["asc", "tif"] {
+            let name = format!("maps/{}.{kind}", layer.file());
+            files.push(fs::read(dir.join(&name)).expect(&name));
+        }
+    }
     let summary = fs::read_to_string(dir.join("summary.json")).expect("a summary");
     let (same, _clock) = summary.split_once("\"run\":").expect("the run comes last");
     files.push(same.as_bytes().to_vec());
@@ -171,6 +177,12 @@ fn a_resumed_run_writes_the_same_bytes() {
         assert_eq!(results.hazard, output::read(dir.path()).unwrap().hazard);
         assert_eq!(bytes(dir.path()), bytes(reference.path()), "interrupted after {chunks} chunks");
         assert!(!dir.path().join("progress.json").exists());
+        let states = fs::read_dir(dir.path().join("maps")).unwrap().filter(|file| {
+            file.as_ref().unwrap().path().extension().is_some_and(|kind| kind == "state")
+        });
+        assert_eq!(states.count(), 0);
+        // a height where there is no ground is no number
+        assert!(same(&results.lines, &output::read(dir.path()).unwrap().lines));
     }
 }
 

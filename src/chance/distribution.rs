@@ -98,7 +98,15 @@ impl Distribution {
         self.quantile(unit(chance))
     }
 
-    pub(super) fn uniform([low, high]: [f64; 2]) -> Result<Self, Flaw> {
+    /// Even between two numbers.
+    ///
+    /// # Errors
+    /// Numbers that are not finite or not rising.
+    /// Even between two numbers.
+    ///
+    /// # Errors
+    /// Numbers that are not finite or not rising.
+    pub fn uniform([low, high]: [f64; 2]) -> Result<Self, Flaw> {
         finite(&[low, high])?;
         if low >= high {
             return Err(Flaw::new(

@@ -2,6 +2,7 @@
 
 pub mod hold;
 pub mod near;
+pub mod pair;
 pub mod submatrix;
 
 use crate::rock::Vec3;

@@ -67,21 +67,33 @@ pub struct Near {
 impl Default for Near {
     fn default() -> Self {
         Self {
-            centre: Vec3::repeat(f64::INFINITY),
-            margin: 0.0,
-            radius: 0.0,
-            reach: 0.0,
             faces: Vec::with_capacity(64),
             edges: Vec::with_capacity(64),
             corners: Vec::with_capacity(64),
             rays: Vec::with_capacity(512),
             sheets: Vec::with_capacity(256),
-            tested: 0,
+            ..Self::empty()
         }
     }
 }
 
 impl Near {
+    /// No features yet and no memory taken: for rocks that are kept by the thousand.
+    pub fn empty() -> Self {
+        Self {
+            centre: Vec3::repeat(f64::INFINITY),
+            margin: 0.0,
+            radius: 0.0,
+            reach: 0.0,
+            faces: Vec::new(),
+            edges: Vec::new(),
+            corners: Vec::new(),
+            rays: Vec::new(),
+            sheets: Vec::new(),
+            tested: 0,
+        }
+    }
+
     /// Forgets the place (before the next rock).
     pub fn forget(&mut self) {
         self.centre = Vec3::repeat(f64::INFINITY);

@@ -4,6 +4,10 @@
 //! Nothing is sketched or binned before it is asked for, so the statistics do not depend on the order or the
 //! grouping in which rocks arrive, and a drawing from files shows the same bits as the run itself.
 
+mod barriers;
+mod lines;
+mod maps;
+mod observed;
 mod proportion;
 mod quantile;
 mod quantity;
@@ -12,6 +16,10 @@ mod sample;
 mod sum;
 mod totals;
 
+pub use barriers::{Barrier, BarrierSummary, Design, Rule, judge};
+pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
+pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
+pub use observed::{Agreement, Way};
 pub use proportion::Proportion;
 pub use quantile::{Percentile, Ranks};
 pub use quantity::Quantity;
@@ -103,21 +111,25 @@ impl Hazard {
 
     /// Statistics of one quantity.
     pub fn statistic(&self, quantity: Quantity) -> Statistic {
-        let sample = self.sample(quantity);
-        let percentiles: BTreeMap<String, Percentile> = PERCENTS
-            .iter()
-            .filter_map(|&percent| {
-                let percentile = sample.percentile(f64::from(percent) / 100.0)?;
-                Some((format!("p{percent}"), percentile))
-            })
-            .collect();
-        Statistic {
-            rocks: sample.values().len(),
-            mean: sample.mean(),
-            too_few: too_few(sample.values().len(), &percentiles),
-            percentiles,
-            max: self.largest[quantity as usize],
-        }
+        statistic(&self.sample(quantity), self.largest[quantity as usize])
+    }
+}
+
+/// What is said of a sample whose largest value is known.
+fn statistic(sample: &Sample, max: Option<Largest>) -> Statistic {
+    let percentiles: BTreeMap<String, Percentile> = PERCENTS
+        .iter()
+        .filter_map(|&percent| {
+            let percentile = sample.percentile(f64::from(percent) / 100.0)?;
+            Some((format!("p{percent}"), percentile))
+        })
+        .collect();
+    Statistic {
+        rocks: sample.values().len(),
+        mean: sample.mean(),
+        too_few: too_few(sample.values().len(), &percentiles),
+        percentiles,
+        max,
     }
 }
 

@@ -3,7 +3,7 @@
 use super::progress::{Identity, Progress};
 use super::summary::{SUMMARY, Summary};
 use super::whole::PART;
-use super::{IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES};
+use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES};
 use crate::error::{Error, Result};
 use std::ffi::OsStr;
 use std::fs;
@@ -11,10 +11,12 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files besides `progress.json`.
-const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, "crossings.csv", "report.html", SUMMARY];
+const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY];
 /// Folders of results with the endings of the files that belong to them.
-const FOLDERS: [(&str, &[&str]); 2] =
-    [("figures", &["svg", PART]), ("maps", &["asc", "prj", PART])];
+const FOLDERS: [(&str, &[&str]); 2] = [
+    ("figures", &["svg", PART]),
+    ("maps", &["asc", "prj", "tif", "state", "geojson", "vtk", PART]),
+];
 
 /// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from.
 pub(super) fn prepare(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {

@@ -3,7 +3,7 @@
 use super::progress::Progress;
 use super::read;
 use super::summary::{SUMMARY, Summary};
-use super::{IMPACTS, Mode, Output, PATHS, Results, RunInfo};
+use super::{IMPACTS, Mode, Output, PATHS, Results, RunInfo, maps};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use std::path::{Path, PathBuf};
@@ -65,8 +65,19 @@ impl Shard {
 
     /// What the whole run would have said of itself.
     fn run_info(&self, shards: &[Self]) -> RunInfo {
-        let Summary { title, identity, origin_m, plan, warnings, mesh_health, .. } =
-            self.summary.clone();
+        let Summary {
+            title,
+            identity,
+            origin_m,
+            plan,
+            warnings,
+            mesh_health,
+            lines,
+            maps,
+            barriers,
+            observed,
+            ..
+        } = self.summary.clone();
         let keeps = |table: &str| self.progress.bytes.contains_key(table);
         let of_releases = identity.of_releases;
         RunInfo {
@@ -75,6 +86,10 @@ impl Shard {
             origin_m: Vec3::from(origin_m),
             // rows are copied, and hold the names already
             ground_of_sheet: Vec::new(),
+            lines: lines.into_iter().map(|line| line.info).collect(),
+            maps,
+            barriers: barriers.into_iter().map(|one| one.barrier).collect(),
+            observed,
             keeps_paths: keeps(PATHS),
             keeps_impacts: keeps(IMPACTS),
             threads: shards.iter().map(|shard| shard.summary.run.threads).max().unwrap_or(0),
@@ -148,6 +163,10 @@ impl Output {
                 ));
             };
             table.append(&shard.dir.join(name), bytes)?;
+        }
+        read::recall_lines(&shard.dir, &mut self.lines)?;
+        if let Some(all) = &mut self.maps {
+            all.join(maps::read_state(&shard.dir, *done)?);
         }
         self.mark()
     }

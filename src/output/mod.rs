@@ -4,16 +4,20 @@
 //! behind that mark is cut off when the run is resumed. So a resumed run writes the same bytes as an
 //! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
 
+mod calibration;
 mod claim;
 mod folder;
+mod maps;
 mod merge;
 mod progress;
 mod read;
 mod rows;
 mod summary;
 mod table;
+mod vector;
 mod whole;
 
+pub use calibration::{read_calibration, write_calibration};
 pub use claim::Claim;
 pub use folder::releases_in;
 pub use merge::merge;
@@ -24,7 +28,10 @@ pub use summary::{Run, Summary};
 pub use whole::write_whole;
 
 use crate::error::{Error, Result};
-use crate::hazard::{Hazard, Row};
+use crate::hazard;
+use crate::hazard::{
+    Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, MapState, Maps, Row, Way,
+};
 use crate::rock::Vec3;
 use crate::trajectory::Trajectory;
 use progress::{PROGRESS, Progress};
@@ -37,7 +44,8 @@ use table::Table;
 const RELEASES: &str = "releases.csv";
 const PATHS: &str = "paths.csv";
 const IMPACTS: &str = "impacts.csv";
-const TABLES: [&str; 3] = [RELEASES, PATHS, IMPACTS];
+const CROSSINGS: &str = "crossings.csv";
+const TABLES: [&str; 4] = [RELEASES, PATHS, IMPACTS, CROSSINGS];
 
 /// What the results need to know of a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +58,14 @@ pub struct RunInfo {
     pub origin_m: Vec3,
     /// Name of the ground of each mesh, in the order of [`Terrain::sheets`](crate::terrain::Terrain).
     pub ground_of_sheet: Vec<String>,
+    /// Evaluation lines, in the order of the scene; none leaves `crossings.csv` out.
+    pub lines: Vec<LineInfo>,
+    /// Where the maps lie; none leaves them out.
+    pub maps: Option<MapFrame>,
+    /// Barriers; each on the line of its name.
+    pub barriers: Vec<Barrier>,
+    /// Measured ways to compare with; none if the scene names none.
+    pub observed: Vec<Way>,
     /// Whether `paths.csv` is written.
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.
@@ -86,8 +102,14 @@ pub struct Output {
     releases: Table,
     paths: Option<Table>,
     impacts: Option<Table>,
+    crossings: Option<Table>,
     hazard: Hazard,
+    lines: Vec<Line>,
+    /// None also when they are complete already.
+    maps: Option<Maps>,
     begun: Instant,
+    /// Rocks after which the state of the maps was last put on the disk.
+    state_at: Option<usize>,
     /// Time that earlier sessions took (s).
     seconds_before: f64,
 }
@@ -110,6 +132,14 @@ impl Output {
             .keeps_impacts
             .then(|| open(dir, IMPACTS, &ImpactRow::COLUMNS, bytes))
             .transpose()?;
+        let crossings = (!info.lines.is_empty())
+            .then(|| open(dir, CROSSINGS, &CrossingRow::COLUMNS, bytes))
+            .transpose()?;
+        let mut lines: Vec<Line> = info.lines.iter().cloned().map(Line::new).collect();
+        if found.is_some() {
+            read::recall_lines(dir, &mut lines)?;
+        }
+        let maps = open_maps(dir, &info, found.as_ref())?;
         let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
         let mut hazard = Hazard::default();
         if let Some(found) = found {
@@ -118,8 +148,21 @@ impl Output {
         }
         let dir = dir.to_owned();
         let begun = Instant::now();
-        let mut output =
-            Self { claim, dir, info, releases, paths, impacts, hazard, begun, seconds_before };
+        let mut output = Self {
+            claim,
+            dir,
+            info,
+            releases,
+            paths,
+            impacts,
+            crossings,
+            hazard,
+            lines,
+            maps,
+            begun,
+            state_at: None,
+            seconds_before,
+        };
         output.mark()?;
         Ok(output)
     }
@@ -152,6 +195,10 @@ impl Output {
             self.releases.write(&row)?;
             self.write_path(fall)?;
             self.write_impacts(fall)?;
+            self.write_crossings(fall)?;
+            if let Some(maps) = &mut self.maps {
+                maps.add(&fall.visits, row.stop, row.end_m);
+            }
             self.hazard.add(&row);
             self.hazard.totals.add(fall);
         }
@@ -175,13 +222,32 @@ impl Output {
         }
         let seconds = self.seconds();
         let is_part = self.info.identity.is_part();
-        let summary = Summary::new(self.info, &self.hazard, seconds);
-        summary.write(&self.dir)?;
-        if !is_part {
-            folder::remove(&self.dir.join(PROGRESS))?;
+        let done = self.hazard.rocks();
+        if let Some(maps) = &self.maps {
+            maps::write(&self.dir, maps, done)?;
         }
+        let crossings = read::crossings(&self.dir)?;
+        let barriers = hazard::judge(&self.info.barriers, crossings, done)?;
+        let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
+        summary.barriers = barriers;
+        summary.write(&self.dir)?;
         self.hazard.totals = summary.totals.clone();
-        Ok(Results { dir: self.dir, summary, hazard: self.hazard, claim: Some(self.claim) })
+        let results = Results {
+            dir: self.dir,
+            summary,
+            hazard: self.hazard,
+            lines: self.lines,
+            claim: Some(self.claim),
+        };
+        if results.summary.maps.is_some() {
+            results.write_vectors()?;
+        }
+        // a part keeps what putting parts together needs
+        if !is_part {
+            folder::remove(&results.dir.join(PROGRESS))?;
+            maps::remove_state(&results.dir, done)?;
+        }
+        Ok(results)
     }
 
     fn write_path(&mut self, fall: &Trajectory) -> Result<()> {
@@ -198,10 +264,22 @@ impl Output {
         })
     }
 
+    fn write_crossings(&mut self, fall: &Trajectory) -> Result<()> {
+        let Some(table) = &mut self.crossings else { return Ok(()) };
+        for crossing in &fall.crossings {
+            let line = &mut self.lines[crossing.line];
+            let who = (fall.index, &fall.rock);
+            let row = CrossingRow::of(who, crossing, &line.info.name, self.info.origin_m);
+            table.write(&row)?;
+            line.add(&row);
+        }
+        Ok(())
+    }
+
     /// The tables that are written, with their names.
     fn tables(&mut self) -> impl Iterator<Item = (&'static str, &mut Table)> {
-        let Self { releases, paths, impacts, .. } = self;
-        let kept = [(PATHS, paths), (IMPACTS, impacts)].into_iter();
+        let Self { releases, paths, impacts, crossings, .. } = self;
+        let kept = [(PATHS, paths), (IMPACTS, impacts), (CROSSINGS, crossings)].into_iter();
         let kept = kept.filter_map(|(name, table)| Some((name, table.as_mut()?)));
         std::iter::once((RELEASES, releases)).chain(kept)
     }
@@ -210,20 +288,43 @@ impl Output {
     fn mark(&mut self) -> Result<()> {
         let length = |(name, table): (&str, &mut Table)| Ok((name.to_owned(), table.sync()?));
         let bytes: BTreeMap<String, u64> = self.tables().map(length).collect::<Result<_>>()?;
+        let done = self.hazard.rocks();
+        if let Some(maps) = &self.maps {
+            maps::write_state(&self.dir, maps, done)?;
+        }
         let progress = Progress {
             title: self.info.title.clone(),
             identity: self.info.identity.clone(),
-            done: self.hazard.rocks(),
+            done,
             bytes,
             totals: self.hazard.totals.clone(),
             seconds: self.seconds(),
         };
-        progress.write(&self.dir)
+        progress.write(&self.dir)?;
+        match self.state_at.replace(done).filter(|before| *before != done) {
+            Some(before) => maps::remove_state(&self.dir, before),
+            None => Ok(()),
+        }
     }
 
     fn seconds(&self) -> f64 {
         self.seconds_before + self.begun.elapsed().as_secs_f64()
     }
+}
+
+/// The maps so far; none when they are not asked for or complete.
+fn open_maps(dir: &Path, info: &RunInfo, found: Option<&Progress>) -> Result<Option<Maps>> {
+    let Some(frame) = info.maps else { return Ok(None) };
+    let state = match found {
+        None => MapState::default(),
+        Some(found)
+            if found.done == found.identity.releases && !maps::has_state(dir, found.done) =>
+        {
+            return Ok(None);
+        }
+        Some(found) => maps::read_state(dir, found.done)?,
+    };
+    Ok(Some(Maps::new(frame, state)))
 }
 
 /// Opens one table: new, or behind the rows that are known to be good.

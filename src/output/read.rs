@@ -4,9 +4,10 @@ use super::claim::Claim;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
-use super::{IMPACTS, PATHS, RELEASES, table};
+use super::vector;
+use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
-use crate::hazard::{Hazard, Row};
+use crate::hazard::{CrossingRow, Hazard, Line, Row};
 use std::path::{Path, PathBuf};
 
 /// The complete results in a folder.
@@ -18,6 +19,8 @@ pub struct Results {
     pub summary: Summary,
     /// All rocks together, from `releases.csv` and the totals of the summary.
     pub hazard: Hazard,
+    /// All first crossings line by line, from `crossings.csv`.
+    pub lines: Vec<Line>,
     /// Keeps other processes away as long as the run that wrote them goes on.
     #[expect(dead_code, reason = "held until it is dropped")]
     pub(super) claim: Option<Claim>,
@@ -52,7 +55,10 @@ pub fn read(dir: &Path) -> Result<Results> {
     };
     let mut hazard = Hazard::with(summary.totals.clone());
     recall(dir, &summary.identity, summary.identity.releases, &mut hazard)?;
-    Ok(Results { dir: dir.to_owned(), summary, hazard, claim: None })
+    let mut lines: Vec<Line> =
+        summary.lines.iter().map(|line| Line::new(line.info.clone())).collect();
+    recall_lines(dir, &mut lines)?;
+    Ok(Results { dir: dir.to_owned(), summary, hazard, lines, claim: None })
 }
 
 impl Results {
@@ -74,6 +80,27 @@ impl Results {
         if_there(self.dir.join(PATHS), &PathRow::COLUMNS)
     }
 
+    /// Writes `maps/ends.geojson`, and `maps/paths.geojson` and `maps/paths.vtk` where paths were kept.
+    pub(super) fn write_vectors(&self) -> Result<()> {
+        let (folder, epsg) =
+            (self.dir.join(super::maps::FOLDER), self.summary.maps.and_then(|maps| maps.epsg));
+        vector::write_ends(&folder.join("ends.geojson"), epsg, self.rows()?)?;
+        if self.dir.join(PATHS).exists() {
+            vector::write_paths(&folder.join("paths.geojson"), epsg, self.paths()?)?;
+            vector::write_vtk(&folder.join("paths.vtk"), self.summary.origin_m, self.paths()?)?;
+        }
+        Ok(())
+    }
+
+    /// The rows of `crossings.csv`, one by one, in the order of releases and of lines; none without lines.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::rows`].
+    pub fn crossings(&self) -> Result<impl Iterator<Item = Result<CrossingRow>>> {
+        crossings(&self.dir)
+    }
+
     /// The rows of `impacts.csv`, one by one, in the order of releases and of time; none if no impact was kept.
     ///
     /// # Errors
@@ -82,6 +109,29 @@ impl Results {
     pub fn impacts(&self) -> Result<impl Iterator<Item = Result<ImpactRow<'static>>>> {
         if_there(self.dir.join(IMPACTS), &ImpactRow::COLUMNS)
     }
+}
+
+/// The rows of `crossings.csv` in `dir`.
+pub(super) fn crossings(dir: &Path) -> Result<impl Iterator<Item = Result<CrossingRow>> + use<>> {
+    if_there(dir.join(CROSSINGS), &CrossingRow::COLUMNS)
+}
+
+/// Adds the crossings in `dir` to their lines.
+pub(super) fn recall_lines(dir: &Path, lines: &mut [Line]) -> Result<()> {
+    if lines.is_empty() {
+        return Ok(());
+    }
+    for row in table::rows::<CrossingRow>(dir.join(CROSSINGS), &CrossingRow::COLUMNS)? {
+        let row = row?;
+        let Some(line) = lines.iter_mut().find(|line| line.info.name == row.line) else {
+            let found = format!("the line {}", row.line);
+            let remedy =
+                format!("it must agree with {SUMMARY}: restore it, or run again with --overwrite");
+            return Err(Error::input(&dir.join(CROSSINGS), "rows", found, remedy));
+        };
+        line.add(&row);
+    }
+    Ok(())
 }
 
 /// Adds the rocks of all `done` rows, which must be the first releases asked for, in order, and no more.

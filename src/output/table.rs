@@ -126,7 +126,7 @@ fn in_file(path: &Path, columns: &[&str], why: csv::Error) -> Error {
     let line = why.position().map_or("a line".to_owned(), |at| format!("line {}", at.line()));
     let remedy = "restore the row as it was written, or run again with --overwrite";
     match why.into_kind() {
-        csv::ErrorKind::Io(why) => Error::file("access", path)(why),
+        csv::ErrorKind::Io(why) => Error::file("read or write", path)(why),
         csv::ErrorKind::Deserialize { err, .. } => {
             // The reader does not tell the column of an unknown word; the word itself is then in the message.
             let column = err.field().and_then(|field| columns.get(field as usize));

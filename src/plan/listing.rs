@@ -1,7 +1,8 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{Part, Paths, Plan, RestRule};
+use super::{Curtain, Part, Paths, Plan, RestRule};
 use crate::release::Where;
+use crate::scene::BarrierTable;
 use crate::step::dda::own_restitution;
 use crate::step::{Scheme, Settings};
 use std::fmt;
@@ -37,8 +38,14 @@ impl Plan {
             roughness,
             rock_against_rock,
             coupled_solve,
+            bonds,
             paths,
             impacts,
+            lines,
+            barriers,
+            maps,
+            catalogued,
+            deposits,
             warnings,
         } = self;
         let place = place(releases.place());
@@ -58,6 +65,7 @@ impl Plan {
         list.line("map", map(terrain.origin_m.into(), *epsg));
         list.line("gravity", format!("{gravity_m_s2} m/s²"));
         list.line("grounds", format!("{}: {}", ground_names.len(), ground_names.join(", ")));
+        list.lines("catalogue", catalogued.iter().cloned());
         list.line("scheme", scheme(step));
         let captures = ground_names.iter().zip(capture_m_s);
         for (name, speed) in captures {
@@ -80,12 +88,49 @@ impl Plan {
         );
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
-        list.part("rock against rock", rock_against_rock, |never| match *never {});
-        list.part("coupled solve", coupled_solve, |never| match *never {});
+        list.part("rock against rock", rock_against_rock, |ground| {
+            format!(
+                "one world: springs of {:e} and {:e} N/m, friction angle {:.1}°, {}",
+                ground.normal_stiffness_n_m,
+                ground.shear_stiffness_n_m,
+                ground.friction_angle_rad.to_degrees(),
+                ground.restitution.map_or_else(
+                    || "restitution of the scheme itself".to_owned(),
+                    |e| format!("restitution {e}")
+                )
+            )
+        });
+        list.part("coupled solve", coupled_solve, |()| {
+            "islands of rocks that may touch, each with its own step".to_owned()
+        });
+        list.part("bonds", bonds, |strength| {
+            format!(
+                "between rocks that touch at the start: tensile strength {:e} Pa, cohesion {:e} Pa",
+                strength.tensile_pa, strength.cohesion_pa
+            )
+        });
         list.part("paths", paths, |Paths { first, step_s }| {
             format!("kept for {first} of {count} releases, every {step_s} s")
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
+        list.part("lines", lines, |lines| {
+            let each = |line: &Curtain| format!("{} ({:.1} m)", line.name, line.length_m());
+            let each: Vec<String> = lines.iter().map(each).collect();
+            format!("{}: {}; crossings exact between stored points", lines.len(), each.join(", "))
+        });
+        list.part("barriers", barriers, |all| {
+            let each = |b: &BarrierTable| {
+                format!("{} ({} m, {} kJ)", b.name, b.height_m, b.capacity_j / 1e3)
+            };
+            let each: Vec<String> = all.iter().map(each).collect();
+            format!("{}: judged on the rocks that cross, they change no way", each.join(", "))
+        });
+        list.part("maps", maps, |cells| {
+            format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
+        });
+        if let Some(file) = deposits {
+            list.line("compared with", format!("measured ends in {}", file.display()));
+        }
         list.lines("warning", warnings.iter().cloned());
         list.0
     }

@@ -15,6 +15,15 @@ pub struct Drawing {
     pub caption: String,
 }
 
+/// Where a drawn figure goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Heading {
+    /// File name below `figures/`.
+    pub file: String,
+    /// Heading on the page.
+    pub title: String,
+}
+
 /// A figure of the report.
 #[derive(Debug, Clone, Copy)]
 pub struct Figure {

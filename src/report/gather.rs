@@ -1,11 +1,15 @@
 //! The report's numbers, gathered from the result files of a run: a report drawn again is the same report.
 
+mod barriers;
+mod lines;
+mod measured;
+
 use super::input::{
     BandPoint, Estimate, Fall, Path, Point, Quantile, Quantity, Report, Row, StopShare, Table, Text,
 };
 use super::raster::GroundRaster;
 use crate::error::Result;
-use crate::hazard::{self, Exceedance, Hazard, PERCENTS, Percentile, StopKind};
+use crate::hazard::{self, Exceedance, Hazard, PERCENTS, Percentile, Sample, StopKind};
 use crate::output::PathRow;
 use crate::output::Results;
 use crate::rock::Vec3;
@@ -40,7 +44,15 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         quantiles: TABLED.map(|(here, there)| (here, quantiles(hazard, there))).into(),
         stops: StopKind::ALL.map(|kind| stop_share(hazard, kind)).into(),
         headline: headline(hazard),
-        tables: vec![table(hazard)],
+        tables: [table(hazard)]
+            .into_iter()
+            .chain(lines::tables(results))
+            .chain(barriers::tables(results))
+            .chain(measured::tables(results)?)
+            .collect(),
+        lines: lines::lines(results)?,
+        maps: lines::maps(results)?,
+        observed: measured::observed(results)?,
     })
 }
 
@@ -163,12 +175,21 @@ pub(super) fn headline(hazard: &Hazard) -> Vec<Row> {
 }
 
 fn table(hazard: &Hazard) -> Table {
+    let rows = TABLED.map(|(here, there)| (here.name(), here, hazard.sample(there)));
+    let note = format!(
+        "Over {} rocks. Percentiles with distribution-free 95 % intervals (order statistics); a bound that the sample is too small for is left open.",
+        hazard.rocks()
+    );
+    statistics_table("Statistics over all releases", note, &rows)
+}
+
+/// A table of mean, percentiles and maximum: name, the quantity whose unit it has, and the values of each row.
+fn statistics_table(title: &str, note: String, rows: &[(&str, Quantity, Sample)]) -> Table {
     let percents = PERCENTS.map(|percent| format!("{percent} %"));
     let columns =
         ["mean".to_owned()].into_iter().chain(percents).chain(["maximum".to_owned()]).collect();
-    let rows = TABLED.map(|(here, there)| {
-        let sample = hazard.sample(there);
-        let (unit, size) = here.unit(sample.values().last().copied().unwrap_or(0.0));
+    let rows = rows.iter().map(|(name, like, sample)| {
+        let (unit, size) = like.unit(sample.values().last().copied().unwrap_or(0.0));
         let scaled = |x: Estimate| Estimate {
             value: x.value / size,
             low: x.low / size,
@@ -181,24 +202,10 @@ fn table(hazard: &Hazard) -> Table {
         });
         let cells =
             [mean].into_iter().chain(middle).chain([most]).map(|cell| cell.map(scaled)).collect();
-        (
-            if unit.is_empty() {
-                here.name().to_owned()
-            } else {
-                format!("{} ({unit})", here.name())
-            },
-            cells,
-        )
+        let name = if unit.is_empty() { (*name).to_owned() } else { format!("{name} ({unit})") };
+        (name, cells)
     });
-    Table {
-        title: "Statistics over all releases".to_owned(),
-        note: format!(
-            "Over {} rocks. Percentiles with distribution-free 95 % intervals (order statistics); a bound that the sample is too small for is left open.",
-            hazard.rocks()
-        ),
-        columns,
-        rows: rows.into(),
-    }
+    Table { title: title.to_owned(), note, columns, rows: rows.collect() }
 }
 
 fn text_of(results: &Results) -> Text {

@@ -2,7 +2,7 @@
 
 mod words;
 
-use super::figure::{Drawing, Figure};
+use super::figure::{Drawing, Heading};
 use super::format::{self, escape};
 use super::input::{Estimate, Report, Row, Table, energy_unit};
 use crate::trajectory::Stop;
@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use words::{GLOSSARY, METHOD, STYLE};
 
 /// The page with the figures inlined.
-pub fn page(report: &Report, figures: &[(Figure, Drawing)]) -> String {
+pub fn page(report: &Report, figures: &[(Heading, Drawing)]) -> String {
     let mut page = head(&report.text.title);
     let parts = [
         title_block(report),
@@ -203,7 +203,7 @@ fn table_cell(estimate: Option<&Estimate>) -> String {
     format!("<td class=\"number\">{value}{below}</td>")
 }
 
-fn figure_section(figures: &[(Figure, Drawing)]) -> String {
+fn figure_section(figures: &[(Heading, Drawing)]) -> String {
     let mut body = String::new();
     for (number, (figure, drawing)) in figures.iter().enumerate() {
         let _ = write!(
@@ -211,7 +211,7 @@ fn figure_section(figures: &[(Figure, Drawing)]) -> String {
             "<figure>\n{}<figcaption><b>Figure {}. {}.</b> {}</figcaption>\n</figure>\n",
             drawing.svg,
             number + 1,
-            escape(figure.title),
+            escape(&figure.title),
             escape(&drawing.caption)
         );
     }

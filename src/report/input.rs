@@ -1,6 +1,7 @@
 //! What a report is drawn from: plain numbers and text, filled by a run or read back from its result files.
 
 use super::raster::GroundRaster;
+use crate::hazard::{Agreement, Way};
 use crate::trajectory::{PathState, Stop};
 use std::collections::BTreeMap;
 
@@ -25,6 +26,12 @@ pub struct Report {
     pub headline: Vec<Row>,
     /// Further tables: one an evaluation line, for instance.
     pub tables: Vec<Table>,
+    /// Evaluation lines, in the order of the scene.
+    pub lines: Vec<Line>,
+    /// Measured ends, where the scene names some.
+    pub observed: Option<Observed>,
+    /// Maps, where the scene asks for them.
+    pub maps: Option<CellMap>,
 }
 
 /// Words and provenance.
@@ -177,6 +184,91 @@ pub struct Table {
     pub columns: Vec<String>,
     /// Name with unit, and one cell a column (`None` = not available).
     pub rows: Vec<(String, Vec<Option<Estimate>>)>,
+}
+
+/// One evaluation line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Its name.
+    pub name: String,
+    /// Its length (m).
+    pub length_m: f64,
+    /// All releases.
+    pub releases: usize,
+    /// Share of the releases that cross it.
+    pub reach: Estimate,
+    /// Rocks that cross it more than once.
+    pub crossing_again: usize,
+    /// First crossings.
+    pub crossings: Vec<LinePoint>,
+    /// Percentiles of total energy (J).
+    pub energy_quantiles: Vec<Quantile>,
+    /// Percentiles of height (m).
+    pub height_quantiles: Vec<Quantile>,
+    /// Share of the rocks that cross with more than `x` (J).
+    pub energy_exceedance: Vec<BandPoint>,
+    /// Share of the rocks that cross higher than `x` (m).
+    pub height_exceedance: Vec<BandPoint>,
+}
+
+/// One first crossing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinePoint {
+    /// Along the line (m).
+    pub along_m: f64,
+    /// Vertical height of the lowest point (m); NaN where there is no ground.
+    pub height_m: f64,
+    /// Total energy (J).
+    pub total_j: f64,
+}
+
+/// Measured ends beside the computed ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observed {
+    /// Measured ways.
+    pub measured: Vec<Way>,
+    /// Computed ways, failed rocks left out.
+    pub computed: Vec<Way>,
+    /// How well they agree.
+    pub agreement: Agreement,
+}
+
+/// Maps cell by cell; cells that no rock reaches are left out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CellMap {
+    /// Western edge, map coordinates (m).
+    pub west_m: f64,
+    /// Southern edge, map coordinates (m).
+    pub south_m: f64,
+    /// Side of a cell (m).
+    pub cell_m: f64,
+    /// Number of columns; cell 0 is the most south-western, rows run east.
+    pub columns: u32,
+    /// Share of the releases that pass (–).
+    pub reach: Vec<(u32, f64)>,
+    /// Swiss class of intensity, 1 to 3.
+    pub intensity: Vec<(u32, f64)>,
+    /// Cells of each class.
+    pub intensity_cells: [usize; 3],
+}
+
+impl CellMap {
+    /// Middle of a cell, map coordinates (m).
+    pub fn centre_m(&self, cell: u32) -> (f64, f64) {
+        let at = |edge: f64, number: u32| edge + (f64::from(number) + 0.5) * self.cell_m;
+        (at(self.west_m, cell % self.columns), at(self.south_m, cell / self.columns))
+    }
+
+    /// West and east, south and north end of the cells reached, with a cell round them (m).
+    pub(super) fn extent(&self) -> ((f64, f64), (f64, f64)) {
+        let empty = (f64::INFINITY, f64::NEG_INFINITY);
+        let wider = |r: (f64, f64), v: f64| {
+            (r.0.min(v - 1.5 * self.cell_m), r.1.max(v + 1.5 * self.cell_m))
+        };
+        let centres = self.reach.iter().map(|(cell, _)| self.centre_m(*cell));
+        let (x, y) = centres.fold((empty, empty), |(x, y), c| (wider(x, c.0), wider(y, c.1)));
+        if x.0 < x.1 { (x, y) } else { ((0.0, 1.0), (0.0, 1.0)) }
+    }
 }
 
 /// What is measured of every release.

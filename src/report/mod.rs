@@ -11,6 +11,7 @@
 pub mod axis;
 pub mod colour;
 pub mod contour;
+pub mod curves;
 mod distributions;
 pub mod figure;
 pub mod format;
@@ -19,6 +20,9 @@ mod hillshade;
 mod histogram;
 pub mod html;
 pub mod input;
+mod lines;
+mod maps;
+mod measured;
 pub mod panel;
 pub mod paper;
 mod plan_view;
@@ -33,7 +37,7 @@ use crate::error::{Error, Result};
 use crate::hazard::Hazard;
 use crate::output::{self, Claim, Results, write_whole};
 use crate::terrain::Terrain;
-use figure::{Drawing, FIGURES, Figure};
+use figure::{Drawing, FIGURES, Heading};
 use input::Report;
 use raster::GroundRaster;
 use std::fs;
@@ -90,13 +94,37 @@ pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
     let drawn = drawings(report);
-    for (figure, drawing) in &drawn {
-        write_whole(&figures.join(figure.file), drawing.svg.as_bytes())?;
+    for (heading, drawing) in &drawn {
+        write_whole(&figures.join(&heading.file), drawing.svg.as_bytes())?;
     }
     write_whole(&dir.join("report.html"), html::page(report, &drawn).as_bytes())
 }
 
 /// All figures, drawn.
-pub fn drawings(report: &Report) -> Vec<(Figure, Drawing)> {
-    FIGURES.iter().map(|figure| (*figure, (figure.draw)(report))).collect()
+pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
+    let heading =
+        |file: &str, title: &str| Heading { file: file.to_owned(), title: title.to_owned() };
+    let mut drawn: Vec<(Heading, Drawing)> = FIGURES
+        .iter()
+        .map(|figure| (heading(figure.file, figure.title), (figure.draw)(report)))
+        .collect();
+    if let Some(observed) = &report.observed {
+        drawn.push((
+            heading("measured.svg", "Measured and computed"),
+            measured::draw(report, observed),
+        ));
+    }
+    if let Some(cells) = &report.maps {
+        drawn.push((heading("maps.svg", "Maps"), maps::draw(report, cells)));
+    }
+    if report.lines.len() > 1 {
+        drawn.push((heading("retention.svg", "Retention"), lines::retention(&report.lines)));
+    }
+    for (number, line) in report.lines.iter().enumerate() {
+        // names of lines may hold anything: files are numbered
+        let file = format!("line_{}.svg", number + 1);
+        let title = format!("Evaluation line “{}”", line.name);
+        drawn.push((heading(&file, &title), lines::draw(line, number + 1)));
+    }
+    drawn
 }

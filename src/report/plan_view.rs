@@ -1,7 +1,7 @@
 //! The map: ground, trees, paths coloured by speed, releases and deposits.
 
 mod furniture;
-mod ground;
+pub(super) mod ground;
 
 use super::axis::Axis;
 use super::colour::{self, BLUE, INK, ORANGE, PURPLE, VERMILLION, WHITE};

@@ -120,6 +120,25 @@ fn within(key: &str, (low, high): (f64, f64), allowed: Allowed, hint: &str) -> C
     Err(Complaint::about(key, format!("{}{hint}{bounds}", allowed.in_words())))
 }
 
+/// Checks that every entry of some lists has a name of its own.
+pub(super) fn check_names(tables: &[(&str, Vec<&str>)]) -> Checked {
+    let mut known: Vec<&str> = Vec::new();
+    for (table, names) in tables {
+        for (index, &name) in names.iter().enumerate() {
+            let wrong = if name.trim().is_empty() {
+                "write a name; it stands in tables and files"
+            } else if known.contains(&name) {
+                "write another name: an entry before has the same"
+            } else {
+                known.push(name);
+                continue;
+            };
+            return Err(Complaint::about("name", wrong).in_entry(index).inside(table));
+        }
+    }
+    Ok(())
+}
+
 /// The known word that looks most like the one written, if any is near.
 pub(super) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     /// Similarity above which two words are worth comparing; the same as in `clap`.

@@ -1,6 +1,7 @@
 //! `[grounds.NAME]`.
 
-use super::check::{Allowed, Checked, Complaint, drawn};
+use super::catalogue::{CATALOGUE, known_ground};
+use super::check::{Allowed, Checked, Complaint, drawn, suggest};
 use crate::chance::Distribution;
 use crate::step::Scheme;
 use serde::Deserialize;
@@ -9,6 +10,8 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [grounds.NAME]")]
 pub struct GroundTable {
+    /// A ground of the catalogue that gives restitution and rolling friction where they are absent here.
+    pub like: Option<String>,
     /// Normal contact spring `p_N` (N/m), positive.
     pub normal_stiffness_n_m: Distribution,
     /// Shear contact spring `p_s` (N/m), positive.
@@ -24,6 +27,19 @@ pub struct GroundTable {
 }
 
 impl GroundTable {
+    pub(super) fn take_from_catalogue(&mut self) -> Checked {
+        let Some(name) = &self.like else { return Ok(()) };
+        let Some(known) = known_ground(name) else {
+            let names = CATALOGUE.map(|ground| ground.name);
+            return Err(Complaint::about("like", suggest(name, &names)));
+        };
+        let drawn = |range: [f64; 2]| Distribution::uniform(range).ok();
+        self.restitution = self.restitution.take().or_else(|| drawn(known.restitution));
+        self.rolling_friction =
+            self.rolling_friction.take().or_else(|| known.rolling_friction.and_then(drawn));
+        Ok(())
+    }
+
     pub(super) fn check(&self, scheme: Scheme) -> Checked {
         stiffness("normal_stiffness_n_m", &self.normal_stiffness_n_m)?;
         stiffness("shear_stiffness_n_m", &self.shear_stiffness_n_m)?;

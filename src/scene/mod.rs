@@ -3,6 +3,9 @@
 //! Every table stands in a file of its own and checks its own keys. Physics has no default: what is absent
 //! here is either numerics, filled in and printed by the plan, or an error.
 
+mod barrier;
+mod calibrate;
+mod catalogue;
 mod check;
 mod grounds;
 mod meshes;
@@ -14,6 +17,9 @@ mod solver;
 mod source;
 mod wording;
 
+pub use barrier::{BarrierTable, DesignTable};
+pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
+pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use grounds::GroundTable;
 pub use meshes::{MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
@@ -23,10 +29,11 @@ pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 
 use crate::error::{Error, Result};
+use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
-use check::{Allowed, Checked, Complaint, number};
+use check::{Allowed, Checked, Complaint, check_names, number};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use source::Lookup;
@@ -73,8 +80,13 @@ pub struct Scene {
     /// Evaluation lines.
     #[serde(default)]
     pub lines: Vec<LineTable>,
+    /// Barriers, judged on what crosses them.
+    #[serde(default)]
+    pub barriers: Vec<BarrierTable>,
     /// Rasters.
     pub maps: Option<MapsTable>,
+    /// Measured ends, and what may be fitted to them.
+    pub calibrate: Option<CalibrateTable>,
     /// The scene file itself.
     #[serde(skip)]
     pub file: PathBuf,
@@ -109,10 +121,16 @@ impl Scene {
     pub fn parse(text: &str, file: &Path) -> Result<Self> {
         let mut scene: Self =
             toml::from_str(text).map_err(|error| Lookup::of(file, text).refuse_reading(&error))?;
-        scene.check().map_err(|wrong| Lookup::of(file, text).refuse(wrong))?;
+        scene
+            .take_from_catalogue()
+            .and_then(|()| scene.check())
+            .map_err(|wrong| Lookup::of(file, text).refuse(wrong))?;
         let folder = file.parent().unwrap_or(Path::new(""));
         for mesh in scene.terrain.iter_mut().chain(&mut scene.trees) {
             mesh.mesh = folder.join(&mesh.mesh);
+        }
+        if let Some(calibrate) = &mut scene.calibrate {
+            calibrate.deposits = folder.join(&calibrate.deposits);
         }
         file.clone_into(&mut scene.file);
         Ok(scene)
@@ -147,6 +165,14 @@ impl Scene {
         Terrain::read(&self.mesh_sources(), self.origin_m.into(), self.mesh.weld_tolerance_m)
     }
 
+    /// Fills in what grounds leave to the catalogue.
+    fn take_from_catalogue(&mut self) -> Checked {
+        for (name, ground) in &mut self.grounds {
+            ground.take_from_catalogue().map_err(|wrong| wrong.inside(name).inside("grounds"))?;
+        }
+        Ok(())
+    }
+
     fn check(&self) -> Checked {
         number("gravity_m_s2", self.gravity_m_s2, Allowed::NotNegative, "9.81 on Earth")?;
         if self.origin_m.iter().any(|coordinate| !coordinate.is_finite()) {
@@ -161,10 +187,20 @@ impl Scene {
         self.release.check().map_err(|wrong| wrong.inside("release"))?;
         self.solver.check().map_err(|wrong| wrong.inside("solver"))?;
         self.record.check().map_err(|wrong| wrong.inside("record"))?;
+        for (index, barrier) in self.barriers.iter().enumerate() {
+            barrier.check().map_err(|wrong| wrong.in_entry(index).inside("barriers"))?;
+        }
+        let lines = self.lines.iter().map(|line| line.name.as_str());
+        let barriers = self.barriers.iter().map(|barrier| barrier.name.as_str());
+        check_names(&[("lines", lines.collect()), ("barriers", barriers.collect())])?;
+        if let Some(calibrate) = &self.calibrate {
+            let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
+            calibrate.check(&grounds).map_err(|wrong| wrong.inside("calibrate"))?;
+        }
         if let Some(maps) = &self.maps {
             maps.check().map_err(|wrong| wrong.inside("maps"))?;
         }
-        self.check_version()
+        self.check_together()
     }
 
     fn check_meshes(&self) -> Checked {
@@ -193,25 +229,31 @@ impl Scene {
         Ok(())
     }
 
-    /// What the scene file can ask for but this version cannot do is refused, never ignored.
-    fn check_version(&self) -> Checked {
-        let later = "is not in this version";
-        if self.release.together {
-            if self.rocks.contact.is_none() {
-                let remedy =
-                    "write the table [rocks.contact]: rocks that share one world can touch";
-                return Err(Complaint::missing("contact", remedy).inside("rocks"));
+    /// What rocks in one world need, and what cannot be had together with it.
+    fn check_together(&self) -> Checked {
+        if !self.release.together {
+            return Ok(());
+        }
+        let scheme = self.solver.scheme();
+        let Some(contact) = &self.rocks.contact else {
+            let remedy = "write the table [rocks.contact]: rocks that share one world can touch";
+            return Err(Complaint::missing("contact", remedy).inside("rocks"));
+        };
+        if contact.restitution.is_none() && scheme != Scheme::Dda {
+            let remedy = "write restitution = 0..1; only scheme \"dda\" can do without";
+            let missing = Complaint::missing("restitution", remedy);
+            return Err(missing.inside("contact").inside("rocks"));
+        }
+        if matches!(scheme, Scheme::Rigid) {
+            let remedy = "write \"adaptive\", \"reference\" or \"dda\": the rigid limit knows no rocks that touch, [release] together = false does without";
+            return Err(Complaint::about("scheme", remedy).inside("solver"));
+        }
+        for (name, ground) in &self.grounds {
+            if ground.roughness_deg.as_ref().is_some_and(|value| value.support().1 > 0.0) {
+                let remedy = "remove it: a random tilt of an impact belongs to one rock alone, and with [release] together = true others may touch it meanwhile";
+                let about = Complaint::about("roughness_deg", remedy);
+                return Err(about.inside(name).inside("grounds"));
             }
-            let remedy = format!("write false: contact between rocks {later}");
-            return Err(Complaint::about("together", remedy).inside("release"));
-        }
-        if !self.lines.is_empty() {
-            let remedy = format!("remove [[lines]]: evaluation at lines {later}");
-            return Err(Complaint::about("lines", remedy).finding("found an evaluation line"));
-        }
-        if self.maps.is_some() {
-            let remedy = format!("remove [maps]: writing rasters {later}");
-            return Err(Complaint::about("maps", remedy).finding("found a raster"));
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! `[rocks]` and `[rocks.contact]`.
 
-use super::check::{Allowed, Checked, drawn, number};
+use super::check::{Allowed, Checked, drawn, number, optional};
 use crate::chance::Distribution;
 use serde::Deserialize;
 
@@ -26,6 +26,8 @@ pub struct RockContact {
     pub shear_stiffness_n_m: f64,
     /// Friction angle (degrees), 0..90.
     pub friction_angle_deg: f64,
+    /// Normal restitution, 0..1; may be absent only with scheme `dda`.
+    pub restitution: Option<f64>,
     /// Tensile strength of a bond between rocks that touch at the start (Pa), 0 or more.
     pub tensile_strength_pa: f64,
     /// Cohesion of such a bond (Pa), 0 or more.
@@ -54,6 +56,6 @@ impl RockContact {
         ] {
             number(key, value, allowed, "")?;
         }
-        Ok(())
+        optional("restitution", self.restitution, Allowed::Share, "")
     }
 }

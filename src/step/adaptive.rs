@@ -6,22 +6,22 @@ use super::tableau::Tableau;
 use crate::contact::hold::carry;
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
-const ONSET: f64 = 0.3;
+pub(crate) const ONSET: f64 = 0.3;
 /// Longest way in one step where more than one plane is near (–, relative to R).
-const TRAVEL: f64 = 0.15;
+pub(crate) const TRAVEL: f64 = 0.15;
 /// The step controller's safety factor (–).
 const SAFETY: f64 = 0.9;
 /// Most that a step shrinks or grows at once (–).
 const RATIO: (f64, f64) = (0.2, 4.0);
 /// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
-const SHORTEST: f64 = 1e-9;
+pub(crate) const SHORTEST: f64 = 1e-9;
 
 /// A step this short, in radians of the stiffest contact, resolves everything: what it still gains is rounding (–).
-const RESOLVED: f64 = 1e-3;
+pub(crate) const RESOLVED: f64 = 1e-3;
 /// Gain of energy in one step that is rounding (–).
-const ROUNDING: f64 = 1e-10;
+pub(crate) const ROUNDING: f64 = 1e-10;
 /// Rounding of positions, relative to the radius (–).
-const PLACE_ROUNDING: f64 = 1e-11;
+pub(crate) const PLACE_ROUNDING: f64 = 1e-11;
 
 /// Why a rock cannot go on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -132,7 +132,7 @@ fn gains(world: &World, grip: &Grip, end: &End, hh: f64) -> bool {
 }
 
 /// Energy in the springs of the contacts that are closed at the end of the step (J).
-fn pressed_j(grip: &Grip, end: &End, hh: f64) -> f64 {
+pub(crate) fn pressed_j(grip: &Grip, end: &End, hh: f64) -> f64 {
     let closed = grip.spots[..grip.spot_count].iter().filter(|spot| spot.is_closed(&end.v, hh));
     let stored = closed.map(|spot| {
         let (pen, law) = (spot.pen_at(&end.v, hh).max(0.0), &spot.law);
@@ -142,12 +142,12 @@ fn pressed_j(grip: &Grip, end: &End, hh: f64) -> f64 {
     stored.sum()
 }
 
-fn grown(control: &Control, dt: f64, error: f64) -> f64 {
+pub(crate) fn grown(control: &Control, dt: f64, error: f64) -> f64 {
     dt * (SAFETY * error.powf(-control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
 }
 
 /// Longest step that cannot jump over a feature (s).
-fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
+pub(crate) fn travel_limit(world: &World, grip: &mut Grip) -> f64 {
     let c = grip.c;
     grip.know(world, &c);
     grip.longest_step(world, TRAVEL)
@@ -186,7 +186,7 @@ fn attempt(
 }
 
 /// Takes over the step's end: motion, memories, losses.
-fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
+pub(crate) fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
     for k in 0..tableau.stages {
         loss.add(&grip.rates[k].loss, dt * tableau.weight(k));
     }

@@ -12,8 +12,8 @@
 //! gains, however long the step. Dashpots act on the mean velocity `D/Δt` for that reason: on `V₁` they may add energy
 //! where a step turns the motion round.
 
-mod contact;
-mod slider;
+pub(crate) mod contact;
+pub(crate) mod slider;
 
 use super::Settings;
 use super::adaptive::{Advance, Stuck};
@@ -28,15 +28,15 @@ use slider::Change;
 use std::f64::consts::PI;
 
 /// Changes of state in the open–close iteration (Shi's practice; the paper states no limit) …
-const ROUNDS: u32 = 6;
+pub(crate) const ROUNDS: u32 = 6;
 /// … and solves with friction forces brought to agree, which need no new matrix.
-const SOLVES: u32 = 40;
+pub(crate) const SOLVES: u32 = 40;
 /// Longest way in one step (–, relative to R) where more than one plane is near: features are seen a tenth of the
 /// radius ahead.
-const TRAVEL: f64 = 0.09;
+pub(crate) const TRAVEL: f64 = 0.09;
 /// Deepest penetration that still is one (–, relative to R). Where the centre passes the surface `V` turns round and
 /// the contact would push the rock through.
-const DEEPEST: f64 = 0.5;
+pub(crate) const DEEPEST: f64 = 0.5;
 /// Contact oscillation per step (rad) from which an impact is turned round within one step: the longer, the livelier.
 pub const SINGLE_STEP_PHASE: f64 = 2.0;
 
@@ -118,12 +118,12 @@ fn six(a: &Vec3, b: &Vec3) -> Vec6 {
 }
 
 /// Displacement and rotation over `dt` without contacts.
-fn free_motion(world: &World, grip: &Grip, dt: f64) -> Vec6 {
+pub(crate) fn free_motion(world: &World, grip: &Grip, dt: f64) -> Vec6 {
     six(&(grip.v * dt + world.body.gravity * (0.5 * dt * dt)), &(grip.w * dt))
 }
 
 /// Way of the touched point per newton along the surface (m/N), turn of the sphere per newton metre, over `dt`.
-fn compliance(body: &Body, dt: f64) -> (f64, f64) {
+pub(crate) fn compliance(body: &Body, dt: f64) -> (f64, f64) {
     let turn = 0.5 * dt * dt / body.inertia;
     (0.5 * dt * dt / body.mass + body.radius * body.radius * turn, turn)
 }
@@ -179,7 +179,7 @@ fn solve(world: &World, step: &Step, grip: &mut Grip) -> Option<(Vec6, bool)> {
         let before = grip.bench.count;
         for (k, touch) in touches.iter().enumerate() {
             let is_inside = touch.distance_m < step.radius && grip.bench.count < MOST;
-            if is_inside && !grip.bench.knows(touch, &touches, &d) {
+            if is_inside && !knows(grip.bench.contacts(), touch, &touches, &d) {
                 add_contact(world, step, grip, (k, touch.distance_m - touch.normal.dot(&way)));
             }
         }
@@ -189,24 +189,23 @@ fn solve(world: &World, step: &Step, grip: &mut Grip) -> Option<(Vec6, bool)> {
     }
 }
 
+/// Whether a touch of the step's end took part in it, by itself or as the part of the surface that it came from.
+pub(crate) fn knows(contacts: &[Contact], touch: &Touch, touches: &[Touch], d: &Vec6) -> bool {
+    contacts.iter().any(|contact| {
+        contact.feature == touch.feature
+            || contact.leads_to(touch, d)
+                && touches.iter().all(|other| other.feature != contact.feature)
+    })
+}
+
 impl Bench {
     fn contacts(&self) -> &[Contact] {
         &self.contacts[..self.count]
     }
 
-    /// Whether a touch of the step's end took part in it, by itself or as the part of the surface that it came from.
-    fn knows(&self, touch: &Touch, touches: &[Touch], d: &Vec6) -> bool {
-        self.contacts().iter().any(|contact| {
-            contact.feature == touch.feature
-                || contact.leads_to(touch, d)
-                    && touches.iter().all(|other| other.feature != contact.feature)
-        })
-    }
-
     /// Open–close iteration: what contacts add to the free displacement, and whether their states settled.
     ///
-    /// A step that does not settle is solved with all its contacts sticking: springs and dashpots alone take energy,
-    /// never add any. `None` if it has no solution.
+    /// A step that does not settle is solved by [`Self::stick`]. `None` if it has no solution.
     fn settle(&mut self, world: &World, step: &Step, sweeps: &mut u64) -> Option<(Vec6, bool)> {
         let contacts = &mut self.contacts[..self.count];
         let inertia = inertia(world.body.mass, world.body.inertia, step.dt);
@@ -227,7 +226,10 @@ impl Bench {
         self.stick(&inertia, &step.free, sweeps).map(|added| (added, false))
     }
 
-    /// The step with all contacts sticking, opened and closed until they agree.
+    /// The step without the search for states: contacts that begin inside hold and stick, even if they pull for this
+    /// one step; those that begin apart are smooth. That always has a solution, and no force in it adds energy.
+    ///
+    /// Of those that begin apart one at a time changes, the last first, which cannot go round in circles (Murty 1974).
     fn stick(&mut self, inertia: &Mat6, free: &Vec6, sweeps: &mut u64) -> Option<Vec6> {
         let contacts = &mut self.contacts[..self.count];
         contacts.iter_mut().for_each(Contact::stick);
@@ -236,7 +238,7 @@ impl Bench {
             *sweeps += 1;
             added = self.system.solve(inertia, free, contacts)?;
             let d = free + added;
-            if !contacts.iter_mut().fold(false, |any, contact| contact.open_or_close(&d) | any) {
+            if !contacts.iter_mut().rev().any(|contact| contact.open_or_close_apart(&d)) {
                 break;
             }
         }

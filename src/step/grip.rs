@@ -154,12 +154,21 @@ pub const TOUCH: f64 = 1e-9;
 
 impl Default for Grip {
     fn default() -> Self {
+        // room for what is usually near, so that the first rock of a thread need not stop to make it
+        let near = Near::default();
+        Self { near, ..Self::unused() }
+    }
+}
+
+impl Grip {
+    /// Without memory taken: for rocks that are kept by the thousand.
+    pub fn unused() -> Self {
         Self {
             c: Vec3::zeros(),
             v: Vec3::zeros(),
             w: Vec3::zeros(),
             holds: Holds::default(),
-            near: Near::default(),
+            near: Near::empty(),
             touches: Touches::default(),
             rates: [Rate::NONE; STAGES],
             fresh: false,

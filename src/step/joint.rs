@@ -93,28 +93,34 @@ fn act_on(body: &Body, spots: &mut [Spot], (v, w): &(Vec3, Vec3), h: f64) {
 }
 
 /// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
-struct Normal {
-    a: f64,
-    b: f64,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Normal {
+    pub(crate) a: f64,
+    pub(crate) b: f64,
 }
 
 impl Normal {
     /// The line of the mode the contact is in: open, pressed, or held exactly at the surface.
     fn of(body: &Body, spot: &Spot, h: f64) -> Self {
-        let b = spot.law.p_n * h + spot.c_n;
-        if spot.push <= 0.0 {
-            return Self { a: 0.0, b: 0.0 };
-        }
-        let speed = (spot.law.p_n * spot.pen - spot.push) / b;
-        if spot.pen - h * speed < 0.0 {
-            // The push is less than spring and dashpot would give: it holds the rock at the surface.
-            let b = HOLD * body.mass / h;
-            return Self { a: b * spot.pen / h, b };
-        }
-        Self { a: spot.law.p_n * spot.pen, b }
+        Self::line((spot.law.p_n, spot.c_n), (spot.pen, spot.push), body.mass, h)
     }
 
-    fn at(&self, speed: f64) -> f64 {
+    /// The same from spring and dashpot, penetration and push, and the mass that the push moves.
+    pub(crate) fn line((p_n, c_n): (f64, f64), (pen, push): (f64, f64), m: f64, h: f64) -> Self {
+        let b = p_n * h + c_n;
+        if push <= 0.0 {
+            return Self { a: 0.0, b: 0.0 };
+        }
+        let speed = (p_n * pen - push) / b;
+        if pen - h * speed < 0.0 {
+            // The push is less than spring and dashpot would give: it holds the rock at the surface.
+            let b = HOLD * m / h;
+            return Self { a: b * pen / h, b };
+        }
+        Self { a: p_n * pen, b }
+    }
+
+    pub(crate) fn at(&self, speed: f64) -> f64 {
         (self.a - self.b * speed).max(0.0)
     }
 }
@@ -158,17 +164,8 @@ fn add(
     let push = normal.at(n.dot(v));
     // The sweeps know the mode. What the law gives at `now` does not: a newton of another contact that has changed
     // since moves a stiff spring far beyond its cap.
-    let holds = |force: &Vec3, coefficient: f64| force.norm() < coefficient * spot.push * INSIDE;
-    let shear = Slider {
-        coefficient: law.friction,
-        stiffness: law.p_s * h + law.c_s,
-        holds: holds(&spot.drag, law.friction),
-    };
-    let roll = Slider {
-        coefficient: law.rolling_m,
-        stiffness: law.k_r * h + law.c_r,
-        holds: holds(&spot.moment, law.rolling_m),
-    };
+    let shear = Slider::left(law.friction, law.p_s * h + law.c_s, (&spot.drag, spot.push));
+    let roll = Slider::left(law.rolling_m, law.k_r * h + law.c_r, (&spot.moment, spot.push));
     let (shear, roll) = (shear.at(stick, push), roll.at(wound, push));
     let slip = body.slip(&n, v, w);
     // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
@@ -191,22 +188,30 @@ fn add(
 }
 
 /// A slider and its mode.
-struct Slider {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slider {
     coefficient: f64,
     stiffness: f64,
     holds: bool,
 }
 
 /// A slider's force, and how that changes with the speed and with the push.
-struct Answer {
-    force: Vec3,
-    jacobian: Matrix3<f64>,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Answer {
+    pub(crate) force: Vec3,
+    pub(crate) jacobian: Matrix3<f64>,
     /// Change of force with the push; zero while it sticks.
-    along: Vec3,
+    pub(crate) along: Vec3,
 }
 
 impl Slider {
-    fn at(&self, trial: Vec3, push: f64) -> Answer {
+    /// The slider in the mode in which the sweeps left it with `force` under `push`; in no mode but sticking where the
+    /// push is without bound.
+    pub(crate) fn left(coefficient: f64, stiffness: f64, (force, push): (&Vec3, f64)) -> Self {
+        Self { coefficient, stiffness, holds: force.norm() < coefficient * push * INSIDE }
+    }
+
+    pub(crate) fn at(&self, trial: Vec3, push: f64) -> Answer {
         let (cap, size) = (self.coefficient * push, trial.norm());
         if self.holds || size <= cap {
             let jacobian = Matrix3::identity() * self.stiffness;

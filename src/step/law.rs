@@ -72,7 +72,7 @@ const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
 /// Shortens `x` to at most `cap`.
 #[inline]
-pub(super) fn within(x: Vec3, cap: f64) -> Vec3 {
+pub(crate) fn within(x: Vec3, cap: f64) -> Vec3 {
     let size2 = x.norm_squared();
     if size2 > cap * cap { x * (cap / size2.sqrt()) } else { x }
 }
@@ -97,7 +97,7 @@ impl Spot {
 
     /// Forces for a base `(v, w)` without this contact's own effect, over a stage of length `h`.
     #[inline]
-    pub(super) fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3, h: f64) {
+    pub(crate) fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3, h: f64) {
         self.push = self.normal_force(body, v, h);
         if self.push <= 0.0 {
             (self.drag, self.moment) = (Vec3::zeros(), Vec3::zeros());
@@ -115,17 +115,7 @@ impl Spot {
     /// `F = p_N pen + c_N pen'` at the stage's end, no tension, set-valued where the rock just does not get in.
     #[inline]
     fn normal_force(&self, body: &Body, v: &Vec3, h: f64) -> f64 {
-        let (p_n, vn, m) = (self.law.p_n, self.n.dot(v), body.mass);
-        let reached = self.pen - h * vn;
-        let force = (p_n * reached - self.c_n * vn) / (1.0 + (p_n * h + self.c_n) * h / m);
-        if force <= 0.0 {
-            0.0
-        } else if reached - h * h * force / m < 0.0 {
-            // The dashpot alone would keep the rock out: the force that holds it exactly at the surface.
-            (reached * m / (h * h)).max(0.0)
-        } else {
-            force
-        }
+        normal_force((self.law.p_n, self.c_n), self.pen, self.n.dot(v), body.mass, h)
     }
 
     /// Shear force and rolling moment together.
@@ -150,7 +140,7 @@ impl Spot {
     }
 
     /// What shear and rolling springs would hold at velocity `v` and spin `w` if they did not slide.
-    pub(super) fn trials(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
+    pub(crate) fn trials(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
         let law = &self.law;
         let stick = self.shear * law.p_s + body.slip(&self.n, v, w) * (law.p_s * h + law.c_s);
         (stick, self.roll * law.k_r + w * (law.k_r * h + law.c_r))
@@ -158,7 +148,7 @@ impl Spot {
 
     /// Change of velocity and spin by this contact's forces over `h`.
     #[inline]
-    pub(super) fn effect(&self, body: &Body, h: f64) -> (Vec3, Vec3) {
+    pub(crate) fn effect(&self, body: &Body, h: f64) -> (Vec3, Vec3) {
         let dv = (self.n * self.push - self.drag) * (h / body.mass);
         let dw = (self.n.cross(&self.drag) * body.radius - self.moment) * (h / body.inertia);
         (dv, dw)
@@ -185,6 +175,22 @@ impl Spot {
         let roll =
             if hr > 0.0 { (self.moment * h + self.roll * law.c_r) / hr } else { Vec3::zeros() };
         (shear, roll)
+    }
+}
+
+/// `F = p_N pen + c_N pen'` at the end of a stage of length `h`, no tension, set-valued where the bodies just do not get
+/// in; `vn` is their normal speed apart without this force, `m` the mass that it moves.
+#[inline]
+pub(crate) fn normal_force((p_n, c_n): (f64, f64), pen: f64, vn: f64, m: f64, h: f64) -> f64 {
+    let reached = pen - h * vn;
+    let force = (p_n * reached - c_n * vn) / (1.0 + (p_n * h + c_n) * h / m);
+    if force <= 0.0 {
+        0.0
+    } else if reached - h * h * force / m < 0.0 {
+        // The dashpot alone would keep the rock out: the force that holds it exactly at the surface.
+        (reached * m / (h * h)).max(0.0)
+    } else {
+        force
     }
 }
 

@@ -3,7 +3,7 @@
 pub mod adaptive;
 pub mod dda;
 pub mod grip;
-mod joint;
+pub(crate) mod joint;
 pub mod law;
 pub mod rigid;
 pub mod stage;

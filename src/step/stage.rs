@@ -8,9 +8,9 @@ use crate::contact::hold::carry;
 use crate::rock::Vec3;
 
 /// Most passes in which geometry and forces are brought to agree.
-const PASSES: u32 = 10;
+pub(crate) const PASSES: u32 = 10;
 /// Change of the centre, relative to the radius, below which they agree (–).
-const AGREED: f64 = 1e-9;
+pub(crate) const AGREED: f64 = 1e-9;
 
 impl Spot {
     /// Power that goes into the contact (W) at velocity `v` and spin `w`: what its springs store is counted in.
@@ -55,7 +55,7 @@ pub struct End {
 
 impl Grip {
     /// The base of implicit stage `i`: the state plus the explicit part of the earlier stages.
-    fn base(&self, tableau: &Tableau, i: usize, h: f64) -> End {
+    pub(crate) fn base(&self, tableau: &Tableau, i: usize, h: f64) -> End {
         let mut base = End { c: self.c, v: self.v, w: self.w };
         for (rate, a) in self.rates.iter().zip(tableau.a[i]) {
             base.c += rate.c * (h * a);
@@ -111,7 +111,7 @@ impl Grip {
     }
 
     /// Makes the contacts of the last look into spots based at the stage's base.
-    fn place_spots(
+    pub(crate) fn place_spots(
         &mut self,
         world: &World,
         tableau: &Tableau,
@@ -159,7 +159,7 @@ impl Grip {
     }
 
     /// Stores the rates of stage `i`.
-    fn store(&mut self, world: &World, base: &End, end: &End, (i, hh): (usize, f64)) {
+    pub(crate) fn store(&mut self, world: &World, base: &End, end: &End, (i, hh): (usize, f64)) {
         let rate = &mut self.rates[i];
         (rate.c, rate.v, rate.w) = (end.v, (end.v - base.v) / hh, (end.w - base.w) / hh);
         rate.loss = Loss::default();

@@ -71,6 +71,7 @@ impl Setup {
     /// Follows the rock; the ends are in the coordinates of the facets, impacts and path stay local.
     pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
         let course = Course {
+            watch: crate::plan::Watch::default(),
             terrain,
             gravity_m_s2: self.gravity_m_s2,
             step,

@@ -4,6 +4,7 @@
 //! cases ─┬─► exact      error of every scheme against the exact solution, over run time
 //!        └─► stability  stiff and extreme cases, each held against its bound
 //! plan ────► scene      sampling error and error of the steps of a scene's own statistics
+//!            verify     exact cases of several rocks and the method paper's examples
 //! ```
 
 pub mod aim;
@@ -16,6 +17,7 @@ pub mod scene;
 mod scene_figure;
 mod scene_page;
 pub mod spread;
+pub mod verify;
 pub mod stability;
 mod stability_figure;
 

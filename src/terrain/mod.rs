@@ -90,16 +90,24 @@ impl Terrain {
 
     /// The highest slope surface at (x, y) that is not above `under_m` (m, local).
     pub fn ground_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<f64> {
-        let mut best = f64::NEG_INFINITY;
+        self.slope_under(x_m, y_m, under_m).map(|(height_m, _)| height_m)
+    }
+
+    /// The highest slope surface at (x, y) that is not above `under_m`, and its unit normal (m, local).
+    pub fn slope_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<(f64, Vec3)> {
+        let (mut best, mut of) = (f64::NEG_INFINITY, None);
         self.index.along_vertical(x_m, y_m, |start, count| {
             for t in start..start + count {
                 let height = self.height_of(t, x_m, y_m);
                 if height > best && height <= under_m && !self.is_tree(t) {
-                    best = height;
+                    (best, of) = (height, Some(t));
                 }
             }
         });
-        best.is_finite().then_some(best)
+        of.map(|triangle| {
+            let face = &self.features.faces[triangle as usize];
+            (best, face.e1.cross(&face.e2).normalize())
+        })
     }
 
     /// Height at which the vertical through (x, y) meets a triangle, −∞ if it does not (m).

@@ -7,7 +7,7 @@ use crate::contact::Touch;
 use crate::error::Result;
 use crate::flight::{Landing, Parabola, leap};
 use crate::ground::{Capture, Damping, Law};
-use crate::plan::{PATH_STEP_S, Part, Plan, RestRule};
+use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::step::grip::{Grip, World};
@@ -31,6 +31,8 @@ pub struct Course<'a> {
     pub rest: RestRule,
     /// Simulated time after which a rock is out of time (s).
     pub longest_s: f64,
+    /// Evaluation lines and map cells.
+    pub watch: Watch<'a>,
 }
 
 /// Work space of one thread; nothing of one rock is left for the next.
@@ -59,7 +61,7 @@ impl Scratch {
 /// Steps after which a rock is given up: it counts as failed.
 const MOST_STEPS: u64 = 100_000_000;
 /// An impact is over after so many contact times (–), whether the rock has left or not.
-const IMPACT_TIMES: f64 = 3.0;
+pub(super) const IMPACT_TIMES: f64 = 3.0;
 /// Tilts drawn until the rough surface faces the rock; after that the impact is smooth.
 const TILTS: u32 = 8;
 
@@ -89,7 +91,7 @@ pub fn follow(
         world,
         grip: &mut scratch.grip,
         chance,
-        journey: Journey::new(course.terrain, release.rock, release.motion, keep),
+        journey: Journey::new(course.terrain, release.rock, release.motion, (keep, course.watch)),
     };
     // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
     let mut stop = if fall.is_pressed() { fall.touch() } else { None };
@@ -113,23 +115,35 @@ pub fn fall(
     scratch: &mut Scratch,
 ) -> Result<Trajectory> {
     let release = plan.release(index)?;
-    let course = Course {
-        terrain: &plan.terrain,
-        gravity_m_s2: plan.gravity_m_s2,
-        step: &plan.step,
-        rest: plan.rest,
-        longest_s: plan.longest_s,
-    };
+    let mut chance = stream(plan.seed, Purpose::Impacts, index);
+    let fallen =
+        follow(&Course::of(plan), &release, kept(plan, index, paths), &mut chance, scratch);
+    Ok(Trajectory { index, ..fallen })
+}
+
+impl<'a> Course<'a> {
+    /// What the rocks of a plan have in common.
+    pub fn of(plan: &'a Plan) -> Self {
+        Self {
+            terrain: &plan.terrain,
+            gravity_m_s2: plan.gravity_m_s2,
+            step: &plan.step,
+            rest: plan.rest,
+            longest_s: plan.longest_s,
+            watch: plan.watch(),
+        }
+    }
+}
+
+/// What to keep of release `index`: a path for the plan's first releases and for `paths`.
+pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> Keep {
     let wanted = paths.is_some_and(|paths| paths.contains(&index));
     let path_step_s = match &plan.paths {
         Part::Kept(paths) if wanted || index < paths.first => Some(paths.step_s),
         Part::LeftOut(_) if wanted => Some(PATH_STEP_S),
         _ => None,
     };
-    let keep = Keep { path_step_s, impacts: plan.impacts.is_kept() };
-    let mut chance = stream(plan.seed, Purpose::Impacts, index);
-    let fallen = follow(&course, &release, keep, &mut chance, scratch);
-    Ok(Trajectory { index, ..fallen })
+    Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
 struct Fall<'a> {
@@ -326,6 +340,8 @@ impl Fall<'_> {
             tree_impact_count: journey.tree_impact_count,
             impacts: journey.impacts,
             path: journey.path,
+            crossings: journey.crossings.into_found(),
+            visits: journey.visits.into_found(),
             ledger: journey.ledger,
             released_j: self.world.body.mass * self.course.gravity_m_s2 * fallen + kinetic,
             effort: journey.effort,

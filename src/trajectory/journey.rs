@@ -1,7 +1,10 @@
 //! What is noted down along one rock's way: largest values, path, impacts, ledger, effort.
 
+use super::crossing::Crossings;
+use super::visit::Visits;
 use super::{Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState};
 use crate::flight::Parabola;
+use crate::plan::Watch;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::step::grip::Loss;
 use crate::terrain::Terrain;
@@ -25,6 +28,8 @@ pub(super) struct Journey<'a> {
     pub(super) extremes: Extremes,
     pub(super) path: Vec<PathPoint>,
     pub(super) impacts: Vec<Impact>,
+    pub(super) crossings: Crossings<'a>,
+    pub(super) visits: Visits<'a>,
     pub(super) impact_count: u32,
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
@@ -39,7 +44,12 @@ const HEIGHT_POINTS: f64 = 8.0;
 const HEIGHT_STEP_S: f64 = 0.1;
 
 impl<'a> Journey<'a> {
-    pub(super) fn new(terrain: &'a Terrain, rock: Rock, start: Motion, keep: Keep) -> Self {
+    pub(super) fn new(
+        terrain: &'a Terrain,
+        rock: Rock,
+        start: Motion,
+        (keep, watch): (Keep, Watch<'a>),
+    ) -> Self {
         let mut journey = Self {
             terrain,
             rock,
@@ -48,6 +58,8 @@ impl<'a> Journey<'a> {
             extremes: Extremes::default(),
             path: Vec::new(),
             impacts: Vec::new(),
+            crossings: Crossings::of(watch.lines),
+            visits: Visits::of(watch.cells),
             impact_count: 0,
             tree_impact_count: 0,
             ledger: Ledger::default(),
@@ -99,6 +111,8 @@ impl<'a> Journey<'a> {
         for k in 1..=points {
             self.note_height(&flight.centre(dt * f64::from(k) / f64::from(points + 1)));
         }
+        self.crossings.fly((self.terrain, &self.rock), &start, flight, dt);
+        self.visits.fly((self.terrain, &self.rock), &start, flight, dt);
         self.now.time_s += dt;
         (self.now.position_m, self.now.velocity_m_s) = (flight.centre(dt), flight.velocity(dt));
         self.note_speed();
@@ -106,13 +120,22 @@ impl<'a> Journey<'a> {
 
     /// Goes along one step in contact to `to`.
     pub(super) fn step(&mut self, to: Motion, slides: bool) {
+        self.step_as(to, if slides { PathState::Sliding } else { PathState::Sticking });
+    }
+
+    /// Goes along one step in `state` to `to`.
+    pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
         let from = std::mem::replace(&mut self.now, to);
+        self.crossings.step((self.terrain, &self.rock), &from, &to);
+        self.visits.step(&self.rock, &from, &to);
         let dt = to.time_s - from.time_s;
-        let state = if slides { PathState::Sliding } else { PathState::Sticking };
         while self.next_point_s <= to.time_s {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };
             let motion = between(&from, &to, s.clamp(0.0, 1.0));
             self.point(Motion { time_s: self.next_point_s, ..motion }, state);
+        }
+        if state == PathState::Flight {
+            self.note_height(&to.position_m);
         }
         self.note_speed();
     }
@@ -187,12 +210,12 @@ impl<'a> Journey<'a> {
     /// All losses so far (J).
     pub(super) fn lost_j(&self) -> f64 {
         let ledger = &self.ledger;
-        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
+        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j + ledger.others_j
     }
 }
 
 /// The motion a share `s` of a step after its start: cubic in position, linear in velocity and spin.
-fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
+pub(super) fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
     let dt = to.time_s - from.time_s;
     let way = to.position_m - from.position_m;
     let (v0, v1) = (from.velocity_m_s * dt - way, to.velocity_m_s * dt - way);

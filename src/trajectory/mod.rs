@@ -1,14 +1,20 @@
 //! One rock from release to rest: leap, touch, step, stop.
 
+mod crossing;
 mod fall;
 mod journey;
+mod together;
+mod visit;
 
 pub use crate::contact::FeatureKind;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
+pub use crossing::Crossing;
 pub use fall::{Course, Scratch, fall, follow};
 pub use journey::Keep;
+pub use together::{Answer, fall_together, follow_together};
+pub use visit::Visit;
 
 /// Why a rock's journey ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,7 +46,7 @@ pub struct Effort {
     pub unsettled: u64,
 }
 
-/// Where the energy went (J). All entries but `remainder_j` are ≥ 0.
+/// Where the energy went (J). All entries but `others_j` and `remainder_j` are ≥ 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ledger {
     /// Sliding friction against the slope.
@@ -51,6 +57,9 @@ pub struct Ledger {
     pub rolling_j: f64,
     /// Everything lost in contacts with trees.
     pub trees_j: f64,
+    /// Given to other rocks and to the springs between them, negative if received; 0 for a rock alone.
+    #[serde(default)]
+    pub others_j: f64,
     /// What the numerics lost (positive) or gained (negative).
     pub remainder_j: f64,
     /// Largest rise of mechanical energy seen over one contact episode (J), ≥ 0; 0 in exact arithmetic.
@@ -137,6 +146,10 @@ pub struct Trajectory {
     pub impacts: Vec<Impact>,
     /// The path, if the plan keeps it.
     pub path: Vec<PathPoint>,
+    /// First crossings of the plan's lines, in the order of lines.
+    pub crossings: Vec<Crossing>,
+    /// Cells of the plan's maps that it passed, in the order of cells.
+    pub visits: Vec<Visit>,
     /// Energy ledger.
     pub ledger: Ledger,
     /// Potential energy released plus kinetic energy at the start (J): the scale of the ledger.

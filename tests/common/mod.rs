@@ -6,6 +6,7 @@
     reason = "every test file uses another part"
 )]
 
+pub mod episode;
 pub mod zoo;
 
 use rockfall::chance::{Purpose, stream};
@@ -88,6 +89,7 @@ impl Case {
             step: &step,
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
+            watch: rockfall::plan::Watch::default(),
         };
         let motion = Motion {
             time_s: 0.0,

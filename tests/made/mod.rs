@@ -4,10 +4,12 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rockfall::hazard::{LineInfo, MapFrame};
 use rockfall::output::{Identity, RunInfo};
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::trajectory::{
-    Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState, Stop, Trajectory,
+    Crossing, Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState, Stop,
+    Trajectory, Visit,
 };
 
 /// Releases that keep their path.
@@ -28,6 +30,23 @@ pub fn info(releases: usize) -> RunInfo {
         },
         origin_m: Vec3::new(2_600_000.0, 1_200_000.0, 0.0),
         ground_of_sheet: vec!["rock".to_owned(), "trunk, \"old\"".to_owned()],
+        lines: [("road", 40.0), ("fence, \"upper\"", 35.5)]
+            .map(|(name, length_m)| LineInfo {
+                name: name.to_owned(),
+                length_m,
+                corners_m: vec![[0.0, 0.0], [length_m, 0.0]],
+            })
+            .into(),
+        maps: Some(MapFrame {
+            west_m: 2_600_000.0,
+            south_m: 1_200_000.0,
+            cell_m: 10.0,
+            columns: 10,
+            rows: 10,
+            epsg: Some(2056),
+        }),
+        barriers: vec![],
+        observed: vec![],
         keeps_paths: true,
         keeps_impacts: true,
         threads: 2,
@@ -76,6 +95,28 @@ impl Chance {
         }
     }
 
+    /// Every other rock crosses the second line too, and it twice.
+    fn crossings(&mut self, index: usize) -> Vec<Crossing> {
+        let crossing = |line: usize| Crossing {
+            line,
+            motion: self.motion(2.5),
+            along_m: self.number(30.0),
+            height_m: self.number(3.0),
+            height_normal_m: if index == 1 { f64::NAN } else { self.number(2.0) },
+            times: 1 + line as u32,
+        };
+        (0..=index % 2).map(crossing).collect()
+    }
+
+    fn visits(&mut self) -> Vec<Visit> {
+        let visit = |cell: u32| Visit {
+            cell: 5 * cell,
+            total_j: self.number(1e5),
+            height_m: if cell == 2 { 0.0 } else { self.number(4.0) },
+        };
+        (0..8).map(visit).collect()
+    }
+
     fn extremes(&mut self) -> Extremes {
         Extremes {
             speed_m_s: self.number(30.0),
@@ -119,6 +160,8 @@ pub fn fall(index: usize) -> Trajectory {
         impact_count: 1 + index as u32 % 2,
         tree_impact_count: index as u32 % 2,
         impacts: vec![chance.impact(index); 1 + index % 2],
+        crossings: if index.is_multiple_of(4) { vec![] } else { chance.crossings(index) },
+        visits: chance.visits(),
         path: if index < PATHS { chance.path() } else { vec![] },
         ledger: chance.ledger(),
         released_j: chance.number(1e6),

@@ -29,7 +29,7 @@ const SMALL_STEM_PX: f64 = 4.0;
 const LINE: RGBColor = RGBColor(122, 104, 84);
 
 /// What the map says about its contours.
-pub(super) struct Contours {
+pub(in crate::report) struct Contours {
     pub(super) interval_m: f64,
     labels: Vec<(Spot, f64, String)>,
 }
@@ -45,7 +45,11 @@ impl Contours {
 }
 
 /// Draws everything below the paths.
-pub(super) fn draw(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<Contours> {
+pub(in crate::report) fn draw(
+    paper: &Paper<'_>,
+    panel: &Panel,
+    ground: &GroundRaster,
+) -> Option<Contours> {
     paper.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
     let contours = contours(paper, panel, ground);
     trees(paper, panel, ground);

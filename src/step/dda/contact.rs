@@ -14,7 +14,7 @@ use crate::step::grip::{Loss, TOUCH};
 
 /// What is the same for all contacts of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(crate) struct Step {
     /// Length (s).
     pub dt: f64,
     /// Displacement and rotation without contacts.
@@ -29,7 +29,7 @@ pub(super) struct Step {
 
 /// What of a contact the matrix is made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shape {
+pub(crate) struct Shape {
     v: Vec3,
     p1: Vec3,
     normal: f64,
@@ -39,7 +39,7 @@ pub(super) struct Shape {
 
 impl Shape {
     /// No contact.
-    pub(super) const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         v: Vec3::new(0.0, 0.0, 0.0),
         p1: Vec3::new(0.0, 0.0, 0.0),
         normal: 0.0,
@@ -48,7 +48,7 @@ impl Shape {
     };
 
     /// Its stiffness.
-    pub(super) fn stiffness(&self) -> Mat6 {
+    pub(crate) fn stiffness(&self) -> Mat6 {
         let row = normal_row(&self.v);
         normal_stiffness(self.normal, &row)
             + shear_stiffness(self.shear, &displacement(&self.p1), &row)
@@ -58,7 +58,7 @@ impl Shape {
 
 /// One contact of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contact {
+pub(crate) struct Contact {
     /// Its memory.
     pub hold: usize,
     /// Where on the mesh.
@@ -90,7 +90,7 @@ pub(super) struct Contact {
 
 impl Contact {
     /// No contact.
-    pub(super) const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         hold: 0,
         feature: Feature::NONE,
         triangle: 0,
@@ -111,7 +111,7 @@ impl Contact {
     };
 
     /// The contact of a touch and its memory (number `k`), in the state in which it was left or will likely be.
-    pub(super) fn new(step: &Step, law: &Law, touch: &Touch, (k, hold): (usize, &Hold)) -> Self {
+    pub(crate) fn new(step: &Step, law: &Law, touch: &Touch, (k, hold): (usize, &Hold)) -> Self {
         let v = -touch.normal;
         let p1 = touching_point(&v, step.radius);
         let has_dashpots = law.c_s > 0.0;
@@ -167,12 +167,12 @@ impl Contact {
     }
 
     /// Penetration after the displacement `d` (m), negative when apart.
-    pub(super) fn depth(&self, d: &Vec6) -> f64 {
+    pub(crate) fn depth(&self, d: &Vec6) -> f64 {
         normal_row(&self.v).dot(d) - self.gap
     }
 
     /// Whether a touch after `d` is where this contact has got to: no deeper in a surface no steeper.
-    pub(super) fn leads_to(&self, touch: &Touch, d: &Vec6) -> bool {
+    pub(crate) fn leads_to(&self, touch: &Touch, d: &Vec6) -> bool {
         let deeper = self.radius - touch.distance_m - self.depth(d);
         -self.v.dot(&touch.normal) > SAME_GRIP && deeper <= TOUCH * self.radius
     }
@@ -197,7 +197,7 @@ impl Contact {
     }
 
     /// Its springs and dashpots in force.
-    pub(super) fn shape(&self) -> Shape {
+    pub(crate) fn shape(&self) -> Shape {
         let of = |slider: &Slider, acts: bool| {
             if acts && !slider.slides { slider.spring + slider.damper } else { 0.0 }
         };
@@ -211,7 +211,7 @@ impl Contact {
     }
 
     /// Adds its loads to `F`.
-    pub(super) fn add_load(&self, f: &mut Vec6) {
+    pub(crate) fn add_load(&self, f: &mut Vec6) {
         if !self.presses {
             return;
         }
@@ -229,13 +229,13 @@ impl Contact {
     }
 
     /// Opens or closes as the normal force after the displacement `d` asks; whether that changed anything.
-    pub(super) fn open_or_close(&mut self, d: &Vec6) -> bool {
+    pub(crate) fn open_or_close(&mut self, d: &Vec6) -> bool {
         self.push = self.normal_force(d).max(0.0);
         std::mem::replace(&mut self.presses, self.push > 0.0) != self.presses
     }
 
     /// Compares its state with the displacement `d` that came out, and changes it where they do not agree.
-    pub(super) fn judge(&mut self, d: &Vec6) -> Change {
+    pub(crate) fn judge(&mut self, d: &Vec6) -> Change {
         let (drag, moment) = self.forces(d);
         let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
         if self.presses {
@@ -254,10 +254,26 @@ impl Contact {
         change
     }
 
-    /// Lets nothing slide.
-    pub(super) fn stick(&mut self) {
-        self.shear.slides = self.tan_phi <= 0.0;
-        self.roll.slides = false;
+    /// Ends the search for its state: closed and sticking for this step if it begins inside, else without friction.
+    pub(crate) fn stick(&mut self) {
+        let apart = self.begins_apart();
+        self.presses |= !apart;
+        self.shear.slides = apart || self.tan_phi <= 0.0;
+        self.roll.slides = apart;
+        (self.shear.friction, self.roll.friction) = (Vec3::zeros(), Vec3::zeros());
+    }
+
+    fn begins_apart(&self) -> bool {
+        self.gap > TOUCH * self.radius
+    }
+
+    /// After [`Self::stick`]: opens or closes if it begins apart; whether that changed anything.
+    pub(crate) fn open_or_close_apart(&mut self, d: &Vec6) -> bool {
+        if self.begins_apart() {
+            return self.open_or_close(d);
+        }
+        self.push = self.normal_force(d).max(0.0);
+        false
     }
 
     /// Shear force and rolling moment after `d`.
@@ -273,7 +289,7 @@ impl Contact {
     }
 
     /// Energy that its dashpots and sliders take over `d` (J).
-    pub(super) fn loss(&self, d: &Vec6) -> Loss {
+    pub(crate) fn loss(&self, d: &Vec6) -> Loss {
         let (drag, moment) = self.forces(d);
         let (way, turn) = self.ways(d);
         let damping = if self.presses {
@@ -300,7 +316,7 @@ impl Contact {
     }
 
     /// Writes what it remembers of the step into its memory.
-    pub(super) fn remember(&self, d: &Vec6, hold: &mut Hold) {
+    pub(crate) fn remember(&self, d: &Vec6, hold: &mut Hold) {
         let (drag, moment) = self.forces(d);
         (hold.feature, hold.triangle, hold.n) = (self.feature, self.triangle, -self.v);
         if self.shear_memory {

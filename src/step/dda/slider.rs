@@ -7,7 +7,7 @@ const SETTLED: f64 = 1e-5;
 
 /// What a judgement changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Change {
+pub(crate) enum Change {
     /// Nothing.
     None,
     /// A friction force: the right-hand side.
@@ -18,7 +18,7 @@ pub(super) enum Change {
 
 /// A spring beside a dashpot, in series with a slider: shear (m, N) or rolling (rad, N m).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Slider {
+pub(crate) struct Slider {
     /// Stretch at the step's start.
     pub stretch: Vec3,
     /// Stiffness.
@@ -35,7 +35,7 @@ pub(super) struct Slider {
 
 impl Slider {
     /// None.
-    pub(super) const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         stretch: Vec3::new(0.0, 0.0, 0.0),
         spring: 0.0,
         damper: 0.0,
@@ -45,16 +45,16 @@ impl Slider {
     };
 
     /// Force after `way`, should it stick.
-    pub(super) fn sticking(&self, way: &Vec3) -> Vec3 {
+    pub(crate) fn sticking(&self, way: &Vec3) -> Vec3 {
         self.stretch * self.spring + way * (self.spring + self.damper)
     }
 
-    pub(super) fn force(&self, way: &Vec3) -> Vec3 {
+    pub(crate) fn force(&self, way: &Vec3) -> Vec3 {
         if self.slides { self.friction } else { self.sticking(way) }
     }
 
     /// Stretch that belongs to a force at the step's end.
-    pub(super) fn end(&self, force: &Vec3) -> Vec3 {
+    pub(crate) fn end(&self, force: &Vec3) -> Vec3 {
         (force + self.stretch * self.damper) / (self.spring + self.damper)
     }
 
@@ -62,7 +62,7 @@ impl Slider {
     ///
     /// `way` is what came out with the force `used`. Taking the effect of that force off before asking is what makes the
     /// iteration settle: the slip that friction itself has left says little about its direction.
-    pub(super) fn judge(&mut self, way: &Vec3, used: &Vec3, cap: f64) -> Change {
+    pub(crate) fn judge(&mut self, way: &Vec3, used: &Vec3, cap: f64) -> Change {
         let stiff = 1.0 + (self.spring + self.damper) * self.compliance;
         let needed = self.sticking(&(way + used * self.compliance)) / stiff;
         let size = needed.norm();
@@ -83,7 +83,7 @@ impl Slider {
 
     /// The same as printed: friction is `before`, that of the last step's end, and acts against the displacement of the
     /// step until that turns round.
-    pub(super) fn judge_as_printed(&mut self, way: &Vec3, cap: f64, before: f64) -> Change {
+    pub(crate) fn judge_as_printed(&mut self, way: &Vec3, cap: f64, before: f64) -> Change {
         if !self.slides && self.sticking(way).norm() > cap {
             (self.slides, self.friction) = (true, along(way) * before);
             Change::Mode
@@ -96,13 +96,13 @@ impl Slider {
     }
 
     /// Energy that slider and dashpot take over `way` at `force`.
-    pub(super) fn loss(&self, way: &Vec3, force: &Vec3) -> (f64, f64) {
+    pub(crate) fn loss(&self, way: &Vec3, force: &Vec3) -> (f64, f64) {
         let stretched = self.end(force) - self.stretch;
         (force.dot(&(way - stretched)), self.damper * stretched.norm_squared())
     }
 }
 
 /// The direction of `x`; nothing for nothing.
-pub(super) fn along(x: &Vec3) -> Vec3 {
+pub(crate) fn along(x: &Vec3) -> Vec3 {
     x.try_normalize(0.0).unwrap_or_default()
 }

@@ -26,6 +26,10 @@ pub fn shipped() -> Vec<(&'static str, Vec<Facet>)> {
         ("paper_slope.stl", paper.facets),
         ("quick_trees.stl", slopes::quick_trees(&quick)),
         ("quick_slope.stl", quick.facets),
+        ("paper_ridge.stl", shapes::paper_ridge()),
+        ("paper_roof.stl", shapes::paper_roof()),
+        ("paper_tetrahedron.stl", shapes::paper_tetrahedron()),
+        ("paper_containers.stl", shapes::paper_containers()),
     ]
 }
 

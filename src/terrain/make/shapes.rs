@@ -93,3 +93,39 @@ pub fn stairs(steps: usize, rise_m: f64, tread_m: f64, half_m: f64) -> Vec<Facet
         Some(Vec3::new((2.0 * i as f64 - 1.0) * half_m, tread_m * (step + end), -rise_m * step))
     })
 }
+
+/// The ridge of the method paper's example 1b: 45° flanks, 0.5 m wide each and 1 m long.
+pub(super) fn paper_ridge() -> Vec<Facet> {
+    triangulate(3, 2, |i, j| {
+        let (x, y) = (0.5 * (i as f64 - 1.0), j as f64 - 0.5);
+        Some(Vec3::new(x, y, -x.abs()))
+    })
+}
+
+/// The same ridge between two valleys, example 1a: beyond a foot 0.5 m below the edge the ground rises again at 45°.
+pub(super) fn paper_roof() -> Vec<Facet> {
+    triangulate(5, 2, |i, j| {
+        let (x, y) = (0.5 * (i as f64 - 2.0), j as f64 - 0.5);
+        Some(Vec3::new(x, y, -0.5 + (x.abs() - 0.5).abs()))
+    })
+}
+
+/// The tetrahedron of example 2, edges of 1 m, apex at the origin, on a floor that catches what falls from it. Corners
+/// are dyadic fractions near those of the regular body, so that every machine writes the same file.
+pub(super) fn paper_tetrahedron() -> Vec<Facet> {
+    let (apex, down) = (Vec3::zeros(), -0.816_406_25);
+    let a = Vec3::new(0.577_148_437_5, 0.0, down);
+    let b = Vec3::new(-0.288_574_218_75, 0.5, down);
+    let c = Vec3::new(-0.288_574_218_75, -0.5, down);
+    vec![[apex, a, b], [apex, b, c], [apex, c, a], [a, c, b]]
+}
+
+/// The two containers of example 3, 0.5 m wide, 0.625 m long and 0.625 m deep, on a floor 4 m wide.
+pub(super) fn paper_containers() -> Vec<Facet> {
+    let mut facets = containers(0.5, 0.3125, 0.625, 0.125);
+    let (half, z) = (2.0, -0.125);
+    let at = |x: f64, y: f64| Vec3::new(x * half, y * half, z);
+    facets.push([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0)]);
+    facets.push([at(-1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+    facets
+}

@@ -1,0 +1,160 @@
+//! Where two rocks touch, what they remember of it, and the bond that may hold them together.
+
+use crate::ground::Law;
+use crate::rock::Vec3;
+use std::f64::consts::PI;
+
+/// Unit normal from sphere `b` to sphere `a` and the distance of their centres (m). Spheres about one centre part
+/// vertically, so that the answer is the same on every machine.
+#[inline]
+pub fn between(a: &Vec3, b: &Vec3) -> (Vec3, f64) {
+    let off = a - b;
+    let distance = off.norm();
+    if distance > 0.0 { (off / distance, distance) } else { (Vec3::z(), 0.0) }
+}
+
+/// First time (s) from now at which two spheres in free flight touch: under the same gravity they move in straight
+/// lines relative to each other, `|d + u t| = R_a + R_b`.
+///
+/// `apart` is `d = c_a − c_b` (m), `closing` is `u = v_a − v_b` (m/s), `reach` the sum of the radii (m). Spheres that
+/// touch already and approach meet at 0; those that part do not meet.
+pub fn meeting_s(apart: &Vec3, closing: &Vec3, reach: f64) -> Option<f64> {
+    let toward = -apart.dot(closing);
+    let speed2 = closing.norm_squared();
+    if toward <= 0.0 || speed2 == 0.0 {
+        return None;
+    }
+    // |d|² − reach² as a product: the difference of squares would cost the digits of a small gap.
+    let distance = apart.norm();
+    let outside = (distance - reach) * (distance + reach);
+    let root2 = toward * toward - speed2 * outside;
+    if outside <= 0.0 {
+        return Some(0.0);
+    }
+    (root2 >= 0.0).then(|| outside / (toward + root2.sqrt()))
+}
+
+/// How two rocks of a scene answer each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strength {
+    /// Tensile strength of a bond (Pa), 0 or more.
+    pub tensile_pa: f64,
+    /// Its cohesion (Pa), 0 or more.
+    pub cohesion_pa: f64,
+}
+
+impl Strength {
+    /// Whether there is anything to bond with.
+    pub fn is_some(&self) -> bool {
+        self.tensile_pa > 0.0 || self.cohesion_pa > 0.0
+    }
+}
+
+/// A bond between two rocks: Mohr–Coulomb with a tension cut-off over a disc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bond {
+    /// Largest pull (N): `σ_t A`.
+    pub pull_n: f64,
+    /// Largest shear force without normal force (N): `c A`.
+    pub shear_n: f64,
+    /// Distance of the centres without force (m): that of the start, so that a block begins without stress.
+    pub length_m: f64,
+}
+
+impl Bond {
+    /// The bond of two rocks whose smaller radius is `radius_m`, at a distance of `length_m`; its disc has that radius.
+    pub fn new(strength: &Strength, radius_m: f64, length_m: f64) -> Self {
+        let area = PI * radius_m * radius_m;
+        Self { pull_n: strength.tensile_pa * area, shear_n: strength.cohesion_pa * area, length_m }
+    }
+
+    /// How far a load passes the strength, as a share of it; 0 or less while the bond holds. `push` is the normal force
+    /// (N, negative in tension), `drag` the size of the shear force (N).
+    pub fn overload(&self, push: f64, drag: f64, tan_phi: f64) -> f64 {
+        let over = |load: f64, most: f64| {
+            if load <= most { 0.0 } else { (load - most) / most.max(f64::MIN_POSITIVE) }
+        };
+        over(-push, self.pull_n).max(over(drag, (self.shear_n + push * tan_phi).max(0.0)))
+    }
+}
+
+/// The memory of the contact of two rocks.
+#[derive(Debug, Clone, Copy)]
+pub struct Tie {
+    /// The rock with the smaller number …
+    pub a: u32,
+    /// … and the other.
+    pub b: u32,
+    /// The contact law of the two.
+    pub law: Law,
+    /// Normal from `b` to `a` to which `shear` is tangent.
+    pub n: Vec3,
+    /// Stretch of the shear spring (m), of `a` relative to `b`.
+    pub shear: Vec3,
+    /// Normal force at the end of the last step (N).
+    pub push: f64,
+    /// Shear force at the end of the last step (N).
+    pub drag: Vec3,
+    /// Came in too slowly to rebound.
+    pub captured: bool,
+    /// Whether it slid at the end of the last step.
+    pub slides: bool,
+    /// Whether it was there at the last accepted step.
+    pub closed: bool,
+    /// The bond, until it breaks.
+    pub bond: Option<Bond>,
+}
+
+impl Tie {
+    /// Two rocks that do not touch yet.
+    pub fn new(a: u32, b: u32, law: Law) -> Self {
+        Self {
+            a,
+            b,
+            law,
+            n: Vec3::z(),
+            shear: Vec3::zeros(),
+            push: 0.0,
+            drag: Vec3::zeros(),
+            captured: false,
+            slides: false,
+            closed: false,
+            bond: None,
+        }
+    }
+
+    /// Whether it must be remembered.
+    pub fn is_held(&self) -> bool {
+        self.closed || self.bond.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The gap closes linearly in a head-on flight; a glance at distance R of the line is met at the chord.
+    #[test]
+    fn flying_spheres_meet_when_their_distance_is_the_sum_of_radii() {
+        let u = Vec3::new(-2.0, 0.0, 0.0);
+        assert_eq!(meeting_s(&Vec3::new(3.0, 0.0, 0.0), &u, 1.0), Some(1.0));
+        let t = meeting_s(&Vec3::new(3.0, 0.6, 0.0), &u, 1.0).unwrap();
+        // |(3 − 2t, 0.6)| = 1 at 3 − 2t = 0.8
+        assert!((t - 1.1).abs() < 1e-15);
+        assert_eq!(meeting_s(&Vec3::new(3.0, 1.1, 0.0), &u, 1.0), None);
+        assert_eq!(meeting_s(&Vec3::new(-3.0, 0.0, 0.0), &u, 1.0), None);
+        assert_eq!(meeting_s(&Vec3::new(1.0, 0.0, 0.0), &u, 1.0), Some(0.0));
+    }
+
+    /// Pull breaks at `σ_t A`, shear without normal force at `c A`, under pressure at `c A + F tan φ`.
+    #[test]
+    fn a_bond_holds_up_to_its_strength() {
+        let bond = Bond::new(&Strength { tensile_pa: 1e6, cohesion_pa: 2e6 }, 0.5, 1.0);
+        let area = 0.25 * PI;
+        assert!(bond.overload(-0.999e6 * area, 0.0, 0.5) <= 0.0);
+        assert!((bond.overload(-1.1e6 * area, 0.0, 0.5) - 0.1).abs() < 1e-12);
+        assert!(bond.overload(0.0, 1.999e6 * area, 0.5) <= 0.0);
+        assert!(bond.overload(0.0, 2.001e6 * area, 0.5) > 0.0);
+        assert!(bond.overload(1e6 * area, 2.499e6 * area, 0.5) <= 0.0);
+    }
+}

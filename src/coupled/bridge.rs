@@ -1,0 +1,135 @@
+//! The contact of two rocks inside one implicit stage: the law of [`Spot`](crate::step::law::Spot) with a second body.
+
+use crate::contact::pair::{Bond, Tie, between};
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::step::law::{Body, normal_force, within};
+
+/// A velocity and a spin.
+pub(super) type Motion = (Vec3, Vec3);
+
+/// One contact of two rocks: its state at the stage's base and the forces that are sought.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bridge {
+    /// Which tie it belongs to.
+    pub(super) tie: usize,
+    /// The two rocks, as places in the cluster.
+    pub(super) ends: [usize; 2],
+    pub(super) law: Law,
+    /// Normal damping in force (N s/m).
+    pub(super) c_n: f64,
+    /// Too slow to rebound.
+    pub(super) captured: bool,
+    /// Holds in tension too.
+    pub(super) bond: Option<Bond>,
+    /// Unit normal from the second to the first.
+    pub(super) n: Vec3,
+    /// Penetration at the stage's base, along `n` (m).
+    pub(super) pen: f64,
+    /// Stretch of the shear spring at the base (m).
+    pub(super) shear: Vec3,
+    /// Distances from the centres to the common point that is touched (m): forces with one line of action keep the
+    /// angular momentum.
+    pub(super) levers: [f64; 2],
+    /// Normal force (N), negative only in a bond.
+    pub(super) push: f64,
+    /// Shear force: the first rock feels `−q`, the second `q` (N).
+    pub(super) drag: Vec3,
+    /// `1/m_a + 1/m_b` (1/kg).
+    pub(super) inv_m: f64,
+    /// The same for the touched point along the surface, `+ L_a²/I_a + L_b²/I_b` (1/kg).
+    pub(super) inv_t: f64,
+}
+
+impl Bridge {
+    /// The bridge over a tie for centres at `at`, if they are near enough; no stretch and no forces yet.
+    pub(super) fn over(tie: &Tie, bodies: [&Body; 2], at: [&Vec3; 2], slack: f64) -> Option<Self> {
+        let (n, distance) = between(at[0], at[1]);
+        let reach = bodies[0].radius + bodies[1].radius;
+        if distance > reach + slack && tie.bond.is_none() {
+            return None;
+        }
+        let levers = bodies.map(|body| distance * body.radius / reach);
+        let inv_m = 1.0 / bodies[0].mass + 1.0 / bodies[1].mass;
+        let turning = [0, 1].map(|k| levers[k] * levers[k] / bodies[k].inertia);
+        Some(Self {
+            tie: 0,
+            ends: [tie.a as usize, tie.b as usize],
+            law: tie.law,
+            c_n: if tie.captured { tie.law.c_n_captured } else { tie.law.c_n },
+            captured: tie.captured,
+            bond: tie.bond,
+            n,
+            pen: tie.bond.map_or(reach, |bond| bond.length_m) - distance,
+            shear: Vec3::zeros(),
+            levers,
+            push: tie.push,
+            drag: Vec3::zeros(),
+            inv_m,
+            inv_t: inv_m + turning[0] + turning[1],
+        })
+    }
+
+    /// Normal speed apart (m/s).
+    pub(super) fn speed(&self, [a, b]: [&Motion; 2]) -> f64 {
+        self.n.dot(&(a.0 - b.0))
+    }
+
+    /// Slip of the first rock over the second at the touched point (m/s).
+    pub(super) fn slip(&self, [a, b]: [&Motion; 2]) -> Vec3 {
+        let u = a.0 - b.0;
+        u - self.n * self.n.dot(&u) + self.n.cross(&(a.1 * self.levers[0] + b.1 * self.levers[1]))
+    }
+
+    /// What the shear spring would hold if it did not slide (N).
+    pub(super) fn trial(&self, ends: [&Motion; 2], h: f64) -> Vec3 {
+        self.shear * self.law.p_s + self.slip(ends) * (self.law.p_s * h + self.law.c_s)
+    }
+
+    /// Forces for motions without this contact's own effect, over a stage of length `h`.
+    pub(super) fn solve(&mut self, ends: [&Motion; 2], h: f64) {
+        let (springs, vn) = ((self.law.p_n, self.c_n), self.speed(ends));
+        let free = self.trial(ends, h) / (1.0 + h * (self.law.p_s * h + self.law.c_s) * self.inv_t);
+        if self.bond.is_some() {
+            let stiff = self.law.p_n * h + self.c_n;
+            self.push = (self.law.p_n * self.pen - stiff * vn) / (1.0 + stiff * h * self.inv_m);
+            self.drag = free;
+            return;
+        }
+        self.push = normal_force(springs, self.pen, vn, 1.0 / self.inv_m, h);
+        self.drag = within(free, self.law.friction * self.push);
+    }
+
+    /// Forces at the present state, for the explicit first stage; gives the rate of the shear spring.
+    pub(super) fn act_now(&mut self, ends: [&Motion; 2]) -> Vec3 {
+        let (pen, vn) = (self.pen, self.speed(ends));
+        let held = self.shear * self.law.p_s;
+        let stick = held + self.slip(ends) * self.law.c_s;
+        if self.bond.is_some() {
+            (self.push, self.drag) = (self.law.p_n * pen - self.c_n * vn, stick);
+        } else {
+            self.push = (self.law.p_n * pen.max(0.0) - self.c_n * vn).max(0.0);
+            self.drag = within(stick, self.law.friction * self.push);
+        }
+        if self.law.c_s > 0.0 { (self.drag - held) / self.law.c_s } else { Vec3::zeros() }
+    }
+
+    /// Force and moment on end `k` (N, N m).
+    pub(super) fn load(&self, k: usize) -> Motion {
+        let force = self.n * self.push - self.drag;
+        let moment = self.n.cross(&self.drag) * self.levers[k];
+        (if k == 0 { force } else { -force }, moment)
+    }
+
+    /// Adds `times` the effect over `h` on end `k` to its motion.
+    pub(super) fn act(&self, k: usize, body: &Body, times_h: f64, (v, w): &mut Motion) {
+        let (force, moment) = self.load(k);
+        *v += force * (times_h / body.mass);
+        *w += moment * (times_h / body.inertia);
+    }
+
+    /// Stretch of the shear spring at the stage's end: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`.
+    pub(super) fn stretch(&self, h: f64) -> Vec3 {
+        (self.drag * h + self.shear * self.law.c_s) / (h * self.law.p_s + self.law.c_s)
+    }
+}

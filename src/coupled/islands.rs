@@ -1,0 +1,54 @@
+//! Islands: rocks that may touch each other, directly or through others.
+
+/// A forest of sets; the smallest number of a set stands for it.
+#[derive(Debug, Clone)]
+pub struct Islands(Vec<u32>);
+
+impl Islands {
+    /// `count` rocks, each alone.
+    pub fn alone(count: usize) -> Self {
+        Self((0..count as u32).collect())
+    }
+
+    /// The rock that stands for the island of `k`.
+    pub fn of(&mut self, k: u32) -> u32 {
+        let mut root = k;
+        while self.0[root as usize] != root {
+            // halving the path keeps it short
+            self.0[root as usize] = self.0[self.0[root as usize] as usize];
+            root = self.0[root as usize];
+        }
+        root
+    }
+
+    /// Makes one island of two.
+    pub fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.of(a), self.of(b));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+
+    /// The members of every island, in ascending order.
+    pub fn lists(&mut self) -> Vec<Vec<u32>> {
+        let count = self.0.len();
+        let mut lists = vec![Vec::new(); count];
+        for k in 0..count as u32 {
+            lists[self.of(k) as usize].push(k);
+        }
+        lists.retain(|list| !list.is_empty());
+        lists
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joined_rocks_share_an_island_whatever_the_order() {
+        let mut islands = Islands::alone(6);
+        for (a, b) in [(5, 3), (1, 0), (3, 1)] {
+            islands.join(a, b);
+        }
+        assert_eq!(islands.lists(), [vec![0, 1, 3, 5], vec![2], vec![4]]);
+    }
+}

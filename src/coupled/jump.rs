@@ -1,0 +1,174 @@
+//! Newton jumps for a whole island: the stage linearised in the modes that the sweeps have found.
+//!
+//! The paper's global system of 6×6 blocks, Eq. (4), with the change of friction with the normal force, which makes it
+//! unsymmetric; solved by sparse LU.
+
+use super::bridge::{Bridge, Motion};
+use super::member::Member;
+
+use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
+use crate::rock::Vec3;
+use crate::step::joint::{Answer, Normal, Slider};
+use crate::step::law::Spot;
+use faer::prelude::Solve;
+use faer::sparse::{SparseColMat, Triplet};
+use nalgebra::Matrix3;
+
+/// One contact, linear around the present motion.
+struct Linear {
+    normal: Normal,
+    shear: Answer,
+    /// Slip and normal speed there.
+    slip: Vec3,
+    speed: f64,
+    n: Vec3,
+    /// Its ends: place, sign of the first or second body, lever.
+    ends: [Option<(usize, f64, f64)>; 2],
+}
+
+/// Six rows for each body of the island, triplets of the matrix.
+struct System {
+    triplets: Vec<Triplet<usize, usize, f64>>,
+    load: Vec<f64>,
+}
+
+/// Motions that solve the stage of length `h` linearised around the present ones.
+pub(super) fn jump(members: &[Box<Member>], bridges: &[Bridge], h: f64) -> Option<Vec<Motion>> {
+    let size = 6 * members.len();
+    let mut system = System { triplets: Vec::with_capacity(72 * size), load: vec![0.0; size] };
+    for (k, member) in members.iter().enumerate() {
+        system.add_inertia(k, member, h);
+        for spot in member.spots().iter().filter(|spot| spot.push > 0.0) {
+            system.add_spot(k, member, spot, h);
+        }
+    }
+    for bridge in bridges.iter().filter(|bridge| bridge.push > 0.0 || bridge.bond.is_some()) {
+        system.add(&Linear::of_bridge(bridge, members, h));
+    }
+    system.solve()
+}
+
+impl Linear {
+    fn of_bridge(bridge: &Bridge, members: &[Box<Member>], h: f64) -> Self {
+        let ends = bridge.ends.map(|k| &members[k].now);
+        let (law, speed, trial) = (&bridge.law, bridge.speed(ends), bridge.trial(ends, h));
+        let (normal, cap) = if bridge.bond.is_some() {
+            (Normal { a: law.p_n * bridge.pen, b: law.p_n * h + bridge.c_n }, f64::INFINITY)
+        } else {
+            let springs = (law.p_n, bridge.c_n);
+            let normal = Normal::line(springs, (bridge.pen, bridge.push), 1.0 / bridge.inv_m, h);
+            (normal, law.friction)
+        };
+        let (push, held) =
+            if bridge.bond.is_some() { (1.0, 1.0) } else { (normal.at(speed), bridge.push) };
+        let slider = Slider::left(cap, law.p_s * h + law.c_s, (&bridge.drag, held));
+        Self {
+            normal,
+            shear: slider.at(trial, push),
+            slip: bridge.slip(ends),
+            speed,
+            n: bridge.n,
+            ends: [0, 1]
+                .map(|k| Some((bridge.ends[k], if k == 0 { 1.0 } else { -1.0 }, bridge.levers[k]))),
+        }
+    }
+}
+
+impl System {
+    fn add_inertia(&mut self, k: usize, member: &Member, h: f64) {
+        let (m, i) = (member.body.mass / h, member.body.inertia / h);
+        for axis in 0..3 {
+            let (row, turn) = (6 * k + axis, 6 * k + 3 + axis);
+            self.triplets.push(Triplet::new(row, row, m));
+            self.triplets.push(Triplet::new(turn, turn, i));
+            self.load[row] += m * member.free.0[axis];
+            self.load[turn] += i * member.free.1[axis];
+        }
+    }
+
+    fn add_spot(&mut self, k: usize, member: &Member, spot: &Spot, h: f64) {
+        let (body, law, (v, w)) = (&member.body, &spot.law, &member.now);
+        let normal = Normal::line((law.p_n, spot.c_n), (spot.pen, spot.push), body.mass, h);
+        let speed = spot.n.dot(v);
+        let (stick, wound) = spot.trials(body, v, w, h);
+        let push = normal.at(speed);
+        let shear = Slider::left(law.friction, law.p_s * h + law.c_s, (&spot.drag, spot.push));
+        let shear = shear.at(stick, push);
+        let ends = [Some((k, 1.0, body.radius)), None];
+        self.add(&Linear { normal, shear, slip: body.slip(&spot.n, v, w), speed, n: spot.n, ends });
+        if law.rolling_m > 0.0 {
+            let roll =
+                Slider::left(law.rolling_m, law.k_r * h + law.c_r, (&spot.moment, spot.push));
+            let roll = roll.at(wound, push);
+            self.add_rolling(k, &roll, &normal, (&spot.n, speed, w));
+        }
+    }
+
+    fn add_rolling(
+        &mut self,
+        k: usize,
+        roll: &Answer,
+        normal: &Normal,
+        (n, speed, w): (&Vec3, f64, &Vec3),
+    ) {
+        let constant = roll.force - roll.jacobian * w + roll.along * (normal.b * speed);
+        let coupling = roll.along * n.transpose() * normal.b;
+        let mut block = Mat6::zeros();
+        block.fixed_view_mut::<3, 3>(3, 3).copy_from(&roll.jacobian);
+        block.fixed_view_mut::<3, 3>(3, 0).copy_from(&-coupling);
+        self.add_block((k, k), &block);
+        for axis in 0..3 {
+            self.load[6 * k + 3 + axis] -= constant[axis];
+        }
+    }
+
+    /// `K_kl += N_kᵀ b N_l + S_kᵀ (J S_l − e μ b N_l)`, with the rows `N` of the normal speed and `S` of the slip.
+    fn add(&mut self, contact: &Linear) {
+        let Linear { normal, shear, n, .. } = contact;
+        let constant =
+            shear.force - shear.jacobian * contact.slip + shear.along * (normal.b * contact.speed);
+        let rows = contact.ends.map(|end| end.map(|(k, sign, lever)| (k, rows(n, sign, lever))));
+        for (k, (n_k, s_k)) in rows.iter().flatten() {
+            for (l, (n_l, s_l)) in rows.iter().flatten() {
+                let drag = shear.jacobian * s_l - (shear.along * normal.b) * n_l.transpose();
+                self.add_block(
+                    (*k, *l),
+                    &((n_k * normal.b) * n_l.transpose() + s_k.transpose() * drag),
+                );
+            }
+            let load = n_k * normal.a - s_k.transpose() * constant;
+            for row in 0..6 {
+                self.load[6 * k + row] += load[row];
+            }
+        }
+    }
+
+    fn add_block(&mut self, (k, l): (usize, usize), block: &Mat6) {
+        for column in 0..6 {
+            for row in 0..6 {
+                let value = block[(row, column)];
+                self.triplets.push(Triplet::new(6 * k + row, 6 * l + column, value));
+            }
+        }
+    }
+
+    fn solve(self) -> Option<Vec<Motion>> {
+        let size = self.load.len();
+        let matrix = SparseColMat::try_new_from_triplets(size, size, &self.triplets).ok()?;
+        let factor = matrix.sp_lu().ok()?;
+        let load = faer::Col::from_fn(size, |k| self.load[k]);
+        let x = factor.solve(&load);
+        let at = |k: usize| Vec3::new(x[k], x[k + 1], x[k + 2]);
+        let finite = (0..size).all(|k| x[k].is_finite());
+        finite.then(|| (0..size / 6).map(|k| (at(6 * k), at(6 * k + 3))).collect())
+    }
+}
+
+/// Rows of normal speed and slip of one end.
+fn rows(n: &Vec3, sign: f64, lever: f64) -> (Vec6, Mat3x6) {
+    let across = (Matrix3::identity() - n * n.transpose()) * sign;
+    let mut slip = Mat3x6::zeros();
+    slip.fixed_view_mut::<3, 3>(0, 0).copy_from(&across);
+    slip.fixed_view_mut::<3, 3>(0, 3).copy_from(&(n.cross_matrix() * lever));
+    (Vec6::new(n.x * sign, n.y * sign, n.z * sign, 0.0, 0.0, 0.0), slip)
+}

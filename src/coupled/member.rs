@@ -1,0 +1,120 @@
+//! One rock of an island.
+
+use super::bridge::Motion;
+use crate::contact::Feature;
+use crate::contact::submatrix::Vec6;
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::step::dda::contact::Contact;
+use crate::step::grip::{Grip, World};
+use crate::step::law::{Body, Spot};
+use crate::step::stage::End;
+use crate::step::tableau::{STAGES, Tableau};
+use crate::terrain::Terrain;
+
+/// One rock of an island.
+#[derive(Debug)]
+pub struct Member {
+    /// Motion, contacts with the mesh and scratch space.
+    pub grip: Grip,
+    /// Mass, size, gravity.
+    pub body: Body,
+    /// The law of every ground for this rock.
+    pub laws: Vec<Law>,
+    /// Whether nothing touches it.
+    pub flying: bool,
+    pub(super) base: End,
+    pub(super) guess: Vec3,
+    /// Velocity and spin at the stage's end without contact forces …
+    pub(super) free: Motion,
+    /// … and with them.
+    pub(super) now: Motion,
+    pub(super) end: End,
+    /// Forces of the last solution, to start the next from.
+    pub(super) kept: Vec<(Feature, f64, Vec3, Vec3)>,
+    /// Power given to other rocks at each stage (W).
+    pub(super) given: [f64; STAGES],
+    pub(super) known: usize,
+    /// Contacts with the mesh in a fixed step.
+    pub(super) joints: Vec<Contact>,
+    /// Displacement in a fixed step: free, and what contacts add.
+    pub(super) ways: [Vec6; 2],
+}
+
+impl Default for Member {
+    /// A place holder.
+    fn default() -> Self {
+        let nothing = Body { mass: 1.0, inertia: 1.0, radius: 1.0, gravity: Vec3::zeros() };
+        Self::new(nothing, Vec::new(), (Vec3::zeros(), Vec3::zeros(), Vec3::zeros()))
+    }
+}
+
+impl Member {
+    /// A rock in flight at `(c, v, w)`.
+    pub fn new(body: Body, laws: Vec<Law>, (c, v, w): (Vec3, Vec3, Vec3)) -> Self {
+        let zero = (Vec3::zeros(), Vec3::zeros());
+        let end = End { c, v, w };
+        let grip = Grip { c, v, w, ..Grip::unused() };
+        Self {
+            grip,
+            body,
+            laws,
+            flying: true,
+            base: end,
+            guess: c,
+            free: zero,
+            now: zero,
+            end,
+            kept: Vec::new(),
+            given: [0.0; STAGES],
+            known: 0,
+            joints: Vec::new(),
+            ways: [Vec6::zeros(); 2],
+        }
+    }
+
+    pub(super) fn spots(&self) -> &[Spot] {
+        &self.grip.spots[..self.grip.spot_count]
+    }
+
+    /// Stiffest contact with the mesh (rad/s), 0 if there is none.
+    pub(super) fn omega(&self, terrain: &Terrain) -> f64 {
+        let world = World { terrain, body: self.body, laws: &self.laws };
+        self.grip.holds.iter().map(|hold| world.law(hold.triangle).omega).fold(0.0, f64::max)
+    }
+}
+
+impl Member {
+    pub(super) fn look(&mut self, terrain: &Terrain) {
+        let world = World { terrain, body: self.body, laws: &self.laws };
+        let guess = self.guess;
+        self.grip.look_ahead(&world, &guess);
+    }
+
+    pub(super) fn place_spots(
+        &mut self,
+        terrain: &Terrain,
+        tableau: &Tableau,
+        (i, h): (usize, f64),
+    ) {
+        let world = World { terrain, body: self.body, laws: &self.laws };
+        self.grip.place_spots(&world, tableau, (i, h), (&self.base, &self.guess));
+        for spot in &mut self.grip.spots[..self.grip.spot_count] {
+            let kept = self.kept.iter().find(|kept| kept.0 == spot.feature);
+            if let Some((_, push, drag, moment)) = kept {
+                (spot.push, spot.drag, spot.moment) = (*push, *drag, *moment);
+            }
+        }
+    }
+
+    pub(super) fn store(&mut self, terrain: &Terrain, (i, hh): (usize, f64)) {
+        let world = World { terrain, body: self.body, laws: &self.laws };
+        let c = self.base.c + self.now.0 * hh;
+        self.end = End { c, v: self.now.0, w: self.now.1 };
+        let (base, end) = (self.base, self.end);
+        self.grip.store(&world, &base, &end, (i, hh));
+        self.kept.clear();
+        let spots = &self.grip.spots[..self.grip.spot_count];
+        self.kept.extend(spots.iter().map(|s| (s.feature, s.push, s.drag, s.moment)));
+    }
+}

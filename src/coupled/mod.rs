@@ -1,0 +1,20 @@
+//! The step for rocks that touch each other: islands, force sweeps, block systems.
+//!
+//! Rocks that may touch within a short while form an island; islands know nothing of each other. An island takes the
+//! step of a single rock for all of its rocks at once; only the contact forces are sought together.
+
+mod accept;
+mod bridge;
+mod fixed;
+mod global;
+pub mod broad;
+mod cluster;
+pub mod islands;
+mod jump;
+mod link;
+mod member;
+mod stage;
+mod sweeps;
+
+pub use cluster::{Cluster, Done};
+pub use member::Member;

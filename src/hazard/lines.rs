@@ -1,0 +1,245 @@
+//! What all rocks say at one evaluation line.
+
+use super::proportion::Proportion;
+use super::sample::Sample;
+use super::totals::Largest;
+use super::{Statistic, statistic};
+use crate::rock::{Rock, Vec3};
+use crate::trajectory::Crossing;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// An evaluation line on the map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LineInfo {
+    /// Name in the scene.
+    pub name: String,
+    /// Its length (m).
+    pub length_m: f64,
+    /// Its corners in map coordinates (m).
+    pub corners_m: Vec<[f64; 2]>,
+}
+
+/// One row of `crossings.csv`: the first crossing of a line by a rock.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CrossingRow {
+    /// Release number.
+    pub index: usize,
+    /// Name of the line.
+    pub line: String,
+    /// Time since release (s).
+    pub time_s: f64,
+    /// Where along the line (m), from its first corner.
+    pub along_m: f64,
+    /// Vertical distance from the ground below to the lowest point of the rock (m); NaN where there is no ground.
+    pub height_m: f64,
+    /// Speed of the centre (m/s).
+    pub speed_m_s: f64,
+    /// Translational energy (J).
+    pub translational_j: f64,
+    /// Rotational energy (J).
+    pub rotational_j: f64,
+    /// Distance from the slope to the rock along the slope's normal (m); NaN where there is no ground.
+    pub height_normal_m: f64,
+    /// Slope of the path against the horizontal (degrees), positive downwards.
+    pub descent_deg: f64,
+    /// Mass of the rock (kg).
+    pub mass_kg: f64,
+    /// Radius of the rock (m).
+    pub radius_m: f64,
+    /// How often the rock crosses the line in all.
+    pub times: u32,
+    /// Centre of the rock in map coordinates (m).
+    pub position_m: [f64; 3],
+}
+
+impl CrossingRow {
+    /// Columns of `crossings.csv`.
+    pub const COLUMNS: [&'static str; 16] = [
+        "index",
+        "line",
+        "time_s",
+        "along_m",
+        "height_m",
+        "speed_m_s",
+        "translational_j",
+        "rotational_j",
+        "height_normal_m",
+        "descent_deg",
+        "mass_kg",
+        "radius_m",
+        "times",
+        "x_m",
+        "y_m",
+        "z_m",
+    ];
+
+    /// The row of one crossing of rock `index`; `origin_m` is the map position of the local (0, 0, 0).
+    pub fn of(
+        (index, rock): (usize, &Rock),
+        crossing: &Crossing,
+        line: &str,
+        origin_m: Vec3,
+    ) -> Self {
+        let motion = &crossing.motion;
+        Self {
+            index,
+            line: line.to_owned(),
+            time_s: motion.time_s,
+            along_m: crossing.along_m,
+            height_m: crossing.height_m,
+            speed_m_s: motion.velocity_m_s.norm(),
+            translational_j: motion.translational_j(rock),
+            rotational_j: motion.rotational_j(rock),
+            height_normal_m: crossing.height_normal_m,
+            descent_deg: crossing.descent_deg(),
+            mass_kg: rock.mass_kg(),
+            radius_m: rock.radius_m,
+            times: crossing.times,
+            position_m: (motion.position_m + origin_m).into(),
+        }
+    }
+
+    /// Sum of translational and rotational energy (J).
+    pub fn total_j(&self) -> f64 {
+        self.translational_j + self.rotational_j
+    }
+}
+
+/// A quantity at a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LineQuantity {
+    /// Speed of the centre (m/s).
+    Speed,
+    /// Translational energy (J).
+    Translational,
+    /// Rotational energy (J).
+    Rotational,
+    /// Sum of both (J).
+    Total,
+    /// Vertical height of the lowest point over the ground (m).
+    Height,
+    /// Height along the normal of the slope (m).
+    HeightNormal,
+    /// Slope of the path against the horizontal (degrees).
+    Descent,
+}
+
+impl LineQuantity {
+    /// All of them, in the order of tables.
+    pub const ALL: [Self; 7] = [
+        Self::Speed,
+        Self::Translational,
+        Self::Rotational,
+        Self::Total,
+        Self::Height,
+        Self::HeightNormal,
+        Self::Descent,
+    ];
+
+    /// Its name in `summary.json`, the column of `crossings.csv` where there is one.
+    pub fn column(self) -> &'static str {
+        match self {
+            Self::Speed => "speed_m_s",
+            Self::Translational => "translational_j",
+            Self::Rotational => "rotational_j",
+            Self::Total => "total_j",
+            Self::Height => "height_m",
+            Self::HeightNormal => "height_normal_m",
+            Self::Descent => "descent_deg",
+        }
+    }
+
+    /// Its value at one crossing.
+    pub fn of(self, row: &CrossingRow) -> f64 {
+        match self {
+            Self::Speed => row.speed_m_s,
+            Self::Translational => row.translational_j,
+            Self::Rotational => row.rotational_j,
+            Self::Total => row.total_j(),
+            Self::Height => row.height_m,
+            Self::HeightNormal => row.height_normal_m,
+            Self::Descent => row.descent_deg,
+        }
+    }
+}
+
+/// All first crossings of one line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// The line.
+    pub info: LineInfo,
+    crossings: usize,
+    repeated: usize,
+    values: [Vec<f64>; LineQuantity::ALL.len()],
+    largest: [Option<Largest>; LineQuantity::ALL.len()],
+}
+
+/// What `summary.json` says of a line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LineSummary {
+    /// The line.
+    #[serde(flatten)]
+    pub info: LineInfo,
+    /// Rocks that cross it, as a share of all releases.
+    pub reach: Proportion,
+    /// Rocks that cross it more than once; only their first crossing counts in the statistics.
+    pub crossing_again: usize,
+    /// Statistics by quantity, over first crossings.
+    pub statistics: BTreeMap<String, Statistic>,
+}
+
+impl Line {
+    /// Without crossings.
+    pub fn new(info: LineInfo) -> Self {
+        Self {
+            info,
+            crossings: 0,
+            repeated: 0,
+            values: Default::default(),
+            largest: Default::default(),
+        }
+    }
+
+    /// Adds the first crossing of a rock.
+    pub fn add(&mut self, row: &CrossingRow) {
+        self.crossings += 1;
+        self.repeated += usize::from(row.times > 1);
+        for (slot, quantity) in LineQuantity::ALL.into_iter().enumerate() {
+            let value = quantity.of(row);
+            self.values[slot].push(value);
+            Largest::update(&mut self.largest[slot], row.index, value);
+        }
+    }
+
+    /// Rocks that cross it, as a share of `releases`.
+    pub fn reach(&self, releases: usize) -> Proportion {
+        Proportion::new(self.crossings, releases)
+    }
+
+    /// Rocks that cross it more than once.
+    pub fn crossing_again(&self) -> usize {
+        self.repeated
+    }
+
+    /// All values of one quantity, sorted.
+    pub fn sample(&self, quantity: LineQuantity) -> Sample {
+        Sample::of(self.values[quantity as usize].iter().copied())
+    }
+
+    /// Statistics of one quantity.
+    pub fn statistic(&self, quantity: LineQuantity) -> Statistic {
+        statistic(&self.sample(quantity), self.largest[quantity as usize])
+    }
+
+    /// All of it, among so many releases.
+    pub fn summary(&self, releases: usize) -> LineSummary {
+        let of = |quantity: LineQuantity| (quantity.column().to_owned(), self.statistic(quantity));
+        LineSummary {
+            info: self.info.clone(),
+            reach: self.reach(releases),
+            crossing_again: self.repeated,
+            statistics: LineQuantity::ALL.into_iter().map(of).collect(),
+        }
+    }
+}

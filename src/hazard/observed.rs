@@ -1,0 +1,172 @@
+//! Measured ends of rocks beside computed ones.
+
+use super::row::{Row, StopKind};
+use super::sample::Sample;
+use crate::error::{Error, Result};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A rock's way in plan view, measured or computed (map coordinates).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Way {
+    /// Where it was released (m).
+    pub start_m: [f64; 2],
+    /// Where it ended (m).
+    pub end_m: [f64; 2],
+}
+
+/// Columns that a file of measured ends must have; it may have more.
+#[derive(Debug, Deserialize)]
+#[expect(clippy::struct_field_names, reason = "the names are those of the columns")]
+struct Measured {
+    release_x_m: f64,
+    release_y_m: f64,
+    x_m: f64,
+    y_m: f64,
+}
+
+/// How far computed ends lie from measured ones.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// Measured rocks.
+    pub measured: usize,
+    /// Computed rocks.
+    pub computed: usize,
+    /// Mean runout measured (m).
+    pub measured_mean_m: f64,
+    /// Mean runout computed (m).
+    pub computed_mean_m: f64,
+    /// Largest difference of the two distributions of runout (–), Kolmogorov and Smirnov.
+    pub ks: f64,
+    /// The difference that equal distributions exceed in 5 % of all samples (–): `1.36 √((n + m)/(n m))`.
+    pub ks_limit: f64,
+    /// Area between the two distributions of runout (m): how far rocks must be moved on average to agree.
+    pub area_m: f64,
+    /// Standard deviation of the measured ends across the mean measured direction (m).
+    pub measured_side_m: f64,
+    /// The same of the computed ends, across the same direction (m).
+    pub computed_side_m: f64,
+}
+
+impl Way {
+    /// Horizontal distance from release to end (m).
+    pub fn runout_m(&self) -> f64 {
+        let [x, y] = self.vector_m();
+        x.hypot(y)
+    }
+
+    fn vector_m(&self) -> [f64; 2] {
+        [self.end_m[0] - self.start_m[0], self.end_m[1] - self.start_m[1]]
+    }
+
+    /// The way of a computed rock; a failed one has none.
+    pub fn of(row: &Row) -> Option<Self> {
+        let flat = |[x, y, _]: [f64; 3]| [x, y];
+        let ended = row.stop != StopKind::Failed;
+        ended.then(|| Self { start_m: flat(row.start_m), end_m: flat(row.end_m) })
+    }
+
+    /// Reads measured ways from a CSV file with the columns `release_x_m`, `release_y_m`, `x_m`, `y_m`.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a row without these numbers.
+    pub fn read(path: &Path) -> Result<Vec<Self>> {
+        let wrong = |why: csv::Error| {
+            let line = why.position().map_or(1, csv::Position::line);
+            let remedy = "write numbers in the columns release_x_m, release_y_m, x_m, y_m";
+            Error::input(path, format!("line {line}"), why.to_string(), remedy)
+        };
+        let file = std::fs::File::open(path).map_err(Error::file("read", path))?;
+        let mut reader = csv::Reader::from_reader(file);
+        let way = |row: Measured| Self {
+            start_m: [row.release_x_m, row.release_y_m],
+            end_m: [row.x_m, row.y_m],
+        };
+        let ways: Result<Vec<Self>> =
+            reader.deserialize().map(|row| row.map(way).map_err(wrong)).collect();
+        let ways = ways?;
+        if ways.len() < 2 {
+            let found = format!("found {} measured ends", ways.len());
+            return Err(Error::input(path, "rows", found, "write at least two"));
+        }
+        Ok(ways)
+    }
+}
+
+impl Agreement {
+    /// Compares measured and computed ways; none if either is empty.
+    pub fn of(measured: &[Way], computed: &[Way]) -> Option<Self> {
+        let runouts = |ways: &[Way]| Sample::of(ways.iter().map(Way::runout_m));
+        let (one, other) = (runouts(measured), runouts(computed));
+        let (n, m) = (one.values().len() as f64, other.values().len() as f64);
+        let (ks, area_m) = distances(one.values(), other.values());
+        let along = mean_direction(measured);
+        Some(Self {
+            measured: one.values().len(),
+            computed: other.values().len(),
+            measured_mean_m: one.mean()?.value,
+            computed_mean_m: other.mean()?.value,
+            ks,
+            ks_limit: 1.36 * ((n + m) / (n * m)).sqrt(),
+            area_m,
+            measured_side_m: side_sd_m(measured, along),
+            computed_side_m: side_sd_m(computed, along),
+        })
+    }
+}
+
+/// Largest difference of two empirical distributions, and the area between them, from sorted values.
+fn distances(one: &[f64], other: &[f64]) -> (f64, f64) {
+    let share = |sorted: &[f64], x: f64| {
+        sorted.partition_point(|value| *value <= x) as f64 / sorted.len() as f64
+    };
+    let mut all: Vec<f64> = one.iter().chain(other).copied().collect();
+    all.sort_by(f64::total_cmp);
+    let gap = |x: f64| (share(one, x) - share(other, x)).abs();
+    let largest = all.iter().map(|x| gap(*x)).fold(0.0, f64::max);
+    let area = all.windows(2).map(|pair| gap(pair[0]) * (pair[1] - pair[0])).sum();
+    (largest, area)
+}
+
+/// Unit vector of the mean way.
+fn mean_direction(ways: &[Way]) -> [f64; 2] {
+    let sum = ways.iter().map(Way::vector_m).fold([0.0, 0.0], |s, v| [s[0] + v[0], s[1] + v[1]]);
+    let length = sum[0].hypot(sum[1]).max(f64::MIN_POSITIVE);
+    [sum[0] / length, sum[1] / length]
+}
+
+/// Standard deviation of the ends across a direction (m).
+fn side_sd_m(ways: &[Way], along: [f64; 2]) -> f64 {
+    let sides: Vec<f64> = ways
+        .iter()
+        .map(Way::vector_m)
+        .map(|[x, y]| along[0] * y - along[1] * x)
+        .filter(|side| side.is_finite())
+        .collect();
+    let n = sides.len() as f64;
+    let mean = sides.iter().sum::<f64>() / n;
+    (sides.iter().map(|side| (side - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ways(runouts: &[f64]) -> Vec<Way> {
+        let way = |r: &f64| Way { start_m: [5.0, 5.0], end_m: [5.0, 5.0 + r] };
+        runouts.iter().map(way).collect()
+    }
+
+    /// By hand: of 1, 2, 3, 4 and 3, 4, 5, 6 the curves are half apart between 2 and 5; moving each by 2 m makes them
+    /// equal.
+    #[test]
+    fn distances_of_two_small_samples_are_those_found_by_hand() {
+        let found =
+            Agreement::of(&ways(&[1.0, 2.0, 3.0, 4.0]), &ways(&[6.0, 5.0, 4.0, 3.0])).unwrap();
+        assert!((found.ks - 0.5).abs() < 1e-15);
+        assert!((found.area_m - 2.0).abs() < 1e-15);
+        assert!((found.computed_mean_m - 4.5).abs() < 1e-15);
+        assert!(found.computed_side_m.abs() < 1e-12);
+        assert!((found.ks_limit - 1.36 * 0.5_f64.sqrt()).abs() < 1e-15);
+    }
+}

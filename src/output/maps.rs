@@ -1,0 +1,124 @@
+//! Rasters in plan view: ESRI ASCII grids for every editor, GeoTIFF for every GIS.
+
+use super::whole::write_whole;
+use crate::error::{Error, Result};
+use crate::hazard::{Layer, MapFrame, MapState, Maps};
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use tiff::encoder::colortype::Gray32Float;
+use tiff::encoder::compression::DeflateLevel;
+use tiff::encoder::{Compression, TiffEncoder};
+use tiff::tags::Tag;
+
+/// Folder of the rasters below the result folder.
+pub(super) const FOLDER: &str = "maps";
+/// Stands in cells where no rock came.
+const NO_DATA: f32 = -9999.0;
+
+/// Writes all layers; a cell where no rock came holds no data.
+pub(super) fn write(dir: &Path, maps: &Maps, releases: usize) -> Result<()> {
+    let folder = dir.join(FOLDER);
+    fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
+    for layer in Layer::ALL {
+        let mut cells = vec![NO_DATA; maps.frame.cells()];
+        for (cell, value) in maps.values(layer, releases) {
+            cells[cell as usize] = value as f32;
+        }
+        let path = folder.join(layer.file());
+        write_whole(&path.with_extension("asc"), ascii(&maps.frame, &cells).as_bytes())?;
+        let tif = path.with_extension("tif");
+        let bytes = geotiff(&maps.frame, &cells)
+            .map_err(|why| Error::file("write", &tif)(std::io::Error::other(why)))?;
+        write_whole(&tif, &bytes)?;
+    }
+    Ok(())
+}
+
+/// Rows from north to south, as both formats have them.
+fn rows<'a>(frame: &MapFrame, cells: &'a [f32]) -> impl Iterator<Item = &'a [f32]> {
+    cells.chunks(frame.columns as usize).rev()
+}
+
+fn ascii(frame: &MapFrame, cells: &[f32]) -> String {
+    let MapFrame { west_m, south_m, cell_m, columns, rows: count, .. } = frame;
+    let mut text = format!(
+        "ncols {columns}\nnrows {count}\nxllcorner {west_m}\nyllcorner {south_m}\ncellsize {cell_m}\nNODATA_value {NO_DATA}\n"
+    );
+    for row in rows(frame, cells) {
+        for (column, value) in row.iter().enumerate() {
+            let gap = if column == 0 { "" } else { " " };
+            // writing to a string cannot fail
+            let _ = write!(text, "{gap}{value}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// One deflated band of 32-bit floats with the keys of OGC 19-008r4 (GeoTIFF 1.1): pixel is area, projected system by
+/// its EPSG code where one is given.
+fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
+    const GEO_KEY_DIRECTORY: u16 = 34_735;
+    const MODEL_PIXEL_SCALE: u16 = 33_550;
+    const MODEL_TIEPOINT: u16 = 33_922;
+    const GDAL_NODATA: u16 = 42_113;
+    let mut bytes = Cursor::new(Vec::new());
+    let mut file = TiffEncoder::new(&mut bytes)?
+        .with_compression(Compression::Deflate(DeflateLevel::default()));
+    let mut image = file.new_image::<Gray32Float>(frame.columns, frame.rows)?;
+    let north_m = frame.south_m + f64::from(frame.rows) * frame.cell_m;
+    let tie = [0.0, 0.0, 0.0, frame.west_m, north_m, 0.0];
+    let tags = image.encoder();
+    tags.write_tag(Tag::Unknown(MODEL_PIXEL_SCALE), &[frame.cell_m, frame.cell_m, 0.0][..])?;
+    tags.write_tag(Tag::Unknown(MODEL_TIEPOINT), &tie[..])?;
+    // GTModelType projected, GTRasterType pixel is area, ProjectedCRS
+    let keys: Vec<u16> = match frame.epsg.and_then(|code| u16::try_from(code).ok()) {
+        Some(code) => vec![1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, code],
+        None => vec![1, 1, 0, 1, 1025, 0, 1, 1],
+    };
+    tags.write_tag(Tag::Unknown(GEO_KEY_DIRECTORY), &keys[..])?;
+    tags.write_tag(Tag::Unknown(GDAL_NODATA), "-9999")?;
+    let values: Vec<f32> = rows(frame, cells).flatten().copied().collect();
+    image.write_data(&values)?;
+    Ok(bytes.into_inner())
+}
+
+/// Where the maps after so many rocks wait for a resumed run.
+fn state_path(dir: &Path, done: usize) -> PathBuf {
+    dir.join(FOLDER).join(format!("{done}.state"))
+}
+
+/// Puts what a resumed run needs on the disk.
+pub(super) fn write_state(dir: &Path, maps: &Maps, done: usize) -> Result<()> {
+    let path = state_path(dir, done);
+    let folder = dir.join(FOLDER);
+    fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
+    let text = serde_json::to_vec(&maps.state())
+        .map_err(|why| Error::file("write", &path)(std::io::Error::other(why)))?;
+    write_whole(&path, &text)
+}
+
+/// Whether it is there: a finished run has removed it.
+pub(super) fn has_state(dir: &Path, done: usize) -> bool {
+    state_path(dir, done).exists()
+}
+
+/// Reads it back.
+pub(super) fn read_state(dir: &Path, done: usize) -> Result<MapState> {
+    let path = state_path(dir, done);
+    super::whole::read_json(&path)?.ok_or_else(|| {
+        Error::input(
+            &path,
+            "file",
+            "found nothing",
+            "restore the file as it was written, or start again with --overwrite",
+        )
+    })
+}
+
+/// Removes it when it is of no use any more.
+pub(super) fn remove_state(dir: &Path, done: usize) -> Result<()> {
+    super::folder::remove(&state_path(dir, done))
+}

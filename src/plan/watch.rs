@@ -1,0 +1,156 @@
+//! What is watched along every rock's way: evaluation lines and the cells of maps, in local coordinates.
+
+use crate::error::{Error, Result};
+use crate::rock::Vec3;
+use crate::scene::{Corner, MapsTable, Polyline};
+use crate::terrain::Terrain;
+use std::path::Path;
+
+/// An evaluation line: a vertical curtain over a polyline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curtain {
+    /// Name in the results.
+    pub name: String,
+    /// Its straight pieces, one behind the other.
+    pub pieces: Vec<Piece>,
+    low_m: Corner,
+    high_m: Corner,
+}
+
+/// A straight piece of a curtain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Its start (m, local).
+    pub from_m: Corner,
+    /// From its start to its end (m).
+    pub way_m: Corner,
+    /// Length of the line before it (m).
+    pub along_m: f64,
+}
+
+impl Piece {
+    /// Its length (m), positive.
+    pub fn length_m(&self) -> f64 {
+        self.way_m[0].hypot(self.way_m[1])
+    }
+
+    /// Distance of a point from the line through the piece (m), positive on its left.
+    pub fn side_m(&self, at_m: Corner) -> f64 {
+        let (x, y) = (at_m[0] - self.from_m[0], at_m[1] - self.from_m[1]);
+        (self.way_m[0] * y - self.way_m[1] * x) / self.length_m()
+    }
+
+    /// How far along the piece a point lies (–): 0 at its start, 1 at its end.
+    pub fn share(&self, at_m: Corner) -> f64 {
+        let (x, y) = (at_m[0] - self.from_m[0], at_m[1] - self.from_m[1]);
+        let [dx, dy] = self.way_m;
+        (x * dx + y * dy) / (dx * dx + dy * dy)
+    }
+}
+
+impl Curtain {
+    /// The curtain over a line given in map coordinates.
+    pub fn new(name: &str, line: &Polyline, origin_m: Vec3) -> Self {
+        let local = |corner: &Corner| [corner[0] - origin_m.x, corner[1] - origin_m.y];
+        let corners: Vec<Corner> = line.corners_m().iter().map(local).collect();
+        let mut along_m = 0.0;
+        let mut pieces = Vec::new();
+        for pair in corners.windows(2) {
+            let way_m = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+            let piece = Piece { from_m: pair[0], way_m, along_m };
+            along_m += piece.length_m();
+            pieces.push(piece);
+        }
+        let extreme = |of: fn(f64, f64) -> f64, from: f64| {
+            corners.iter().fold([from; 2], |end, c| [of(end[0], c[0]), of(end[1], c[1])])
+        };
+        let low_m = extreme(f64::min, f64::INFINITY);
+        let high_m = extreme(f64::max, f64::NEG_INFINITY);
+        Self { name: name.to_owned(), pieces, low_m, high_m }
+    }
+
+    /// Its length (m).
+    pub fn length_m(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |last| last.along_m + last.length_m())
+    }
+
+    /// Its corners in map coordinates (m).
+    pub fn corners_m(&self, origin_m: Vec3) -> Vec<Corner> {
+        let end = self
+            .pieces
+            .last()
+            .map(|last| [last.from_m[0] + last.way_m[0], last.from_m[1] + last.way_m[1]]);
+        let corners = self.pieces.iter().map(|piece| piece.from_m).chain(end);
+        corners.map(|[x, y]| [x + origin_m.x, y + origin_m.y]).collect()
+    }
+
+    /// Whether a box in plan view comes near enough to be looked at.
+    #[inline]
+    pub fn is_near(&self, low_m: Corner, high_m: Corner) -> bool {
+        (0..2).all(|axis| low_m[axis] <= self.high_m[axis] && high_m[axis] >= self.low_m[axis])
+    }
+}
+
+/// The square cells of all maps. Cell 0 is the most south-western, its eastern neighbour is cell 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// Western edge (m, local).
+    pub west_m: f64,
+    /// Southern edge (m, local).
+    pub south_m: f64,
+    /// Side of a cell (m), positive.
+    pub cell_m: f64,
+    /// Number of columns.
+    pub columns: u32,
+    /// Number of rows.
+    pub rows: u32,
+}
+
+/// Most cells of a map: what a raster file of 32-bit numbers holds without special formats.
+const MOST_CELLS: f64 = 250e6;
+
+impl Lattice {
+    /// Cells over the whole terrain, with edges at multiples of the cell on the map.
+    ///
+    /// # Errors
+    /// A cell so small that there would be too many.
+    pub fn over(terrain: &Terrain, asked: &MapsTable, scene: &Path) -> Result<Self> {
+        let (low, high) = terrain.index.bounds();
+        let origin = terrain.origin_m;
+        let cell_m = asked.cell_m;
+        let edge = |at: f64, origin: f64| ((at + origin) / cell_m).floor() * cell_m - origin;
+        let (west_m, south_m) = (edge(low.x, origin.x), edge(low.y, origin.y));
+        let count = |from: f64, to: f64| ((to - from) / cell_m).ceil().max(1.0);
+        let (columns, rows) = (count(west_m, high.x), count(south_m, high.y));
+        if columns * rows > MOST_CELLS {
+            let found = format!("found {cell_m}, which gives {columns} x {rows} cells");
+            let least = cell_m * (columns * rows / MOST_CELLS).sqrt();
+            let remedy = format!("write {least:.1e} or more");
+            return Err(Error::input(scene, "[maps] cell_m", found, remedy));
+        }
+        Ok(Self { west_m, south_m, cell_m, columns: columns as u32, rows: rows as u32 })
+    }
+
+    /// A place in units of cells, from the south-western corner.
+    #[inline]
+    pub fn place(&self, x_m: f64, y_m: f64) -> [f64; 2] {
+        [(x_m - self.west_m) / self.cell_m, (y_m - self.south_m) / self.cell_m]
+    }
+
+    /// The cell of a column and row; none outside.
+    #[inline]
+    pub fn cell(&self, column: i64, row: i64) -> Option<u32> {
+        let inside = (0..i64::from(self.columns)).contains(&column)
+            && (0..i64::from(self.rows)).contains(&row);
+        inside.then(|| row as u32 * self.columns + column as u32)
+    }
+}
+
+/// What is watched; nothing by default.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Watch<'a> {
+    /// Evaluation lines.
+    pub lines: &'a [Curtain],
+    /// Cells of the maps.
+    pub cells: Option<&'a Lattice>,
+}

@@ -1,0 +1,90 @@
+//! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
+
+use super::super::input::{Estimate, Observed, Table};
+use super::estimate;
+use crate::calibrate::{Calibration, Trial};
+use crate::error::Result;
+use crate::hazard::{Agreement, Way};
+use crate::output::{Results, read_calibration};
+
+/// Columns of both tables.
+const COLUMNS: [&str; 7] = [
+    "runout measured (m)",
+    "runout computed (m)",
+    "KS distance",
+    "KS limit 5 %",
+    "area between curves (m)",
+    "side scatter measured (m)",
+    "side scatter computed (m)",
+];
+
+/// Measured and computed ways, if the scene names measured ones.
+pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
+    let measured = results.summary.observed.clone();
+    if measured.is_empty() {
+        return Ok(None);
+    }
+    let mut computed = Vec::new();
+    for row in results.rows()? {
+        computed.extend(Way::of(&row?));
+    }
+    let agreement = Agreement::of(&measured, &computed);
+    Ok(agreement.map(|agreement| Observed { measured, computed, agreement }))
+}
+
+/// How well this run and the calibration agree with what was measured.
+pub(super) fn tables(results: &Results) -> Result<Vec<Table>> {
+    let mut tables = Vec::new();
+    if let Some(observed) = observed(results)? {
+        tables.push(Table {
+            title: "Agreement with measured ends".to_owned(),
+            note: format!(
+                "{} measured and {} computed rocks. KS: largest difference of the two distributions of runout; equal ones \
+                 exceed the limit in 5 % of all samples. Side scatter: standard deviation across the mean measured direction.",
+                observed.agreement.measured, observed.agreement.computed
+            ),
+            columns: COLUMNS.map(str::to_owned).into(),
+            rows: vec![("This run".to_owned(), cells(&observed.agreement))],
+        });
+    }
+    tables.extend(read_calibration(&results.dir)?.map(|found| calibration(&found)));
+    Ok(tables)
+}
+
+fn calibration(found: &Calibration) -> Table {
+    let row = |who: &str, trial: &Trial, of: &Agreement| {
+        let values = found.names.iter().zip(&trial.values);
+        let values: Vec<String> =
+            values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
+        (format!("{who}: {}", values.join(", ")), cells(of))
+    };
+    let (first, second) = (&found.first, &found.second);
+    Table {
+        title: "Calibration and what it is worth".to_owned(),
+        note: format!(
+            "{} trials of {} releases on each half of the measured rocks; a value counts only on the half that it was not fitted to.",
+            found.trials, found.releases
+        ),
+        columns: COLUMNS.map(str::to_owned).into(),
+        rows: vec![
+            row("Uncalibrated, all rocks", &found.before, &found.before.all),
+            row("Fitted on the first half, seen on it", first, &first.fitted),
+            row("The same on the held-out half", first, &first.kept_apart),
+            row("Fitted on the second half, seen on it", second, &second.fitted),
+            row("The same on the held-out half", second, &second.kept_apart),
+        ],
+    }
+}
+
+fn cells(of: &Agreement) -> Vec<Option<Estimate>> {
+    let numbers = [
+        of.measured_mean_m,
+        of.computed_mean_m,
+        of.ks,
+        of.ks_limit,
+        of.area_m,
+        of.measured_side_m,
+        of.computed_side_m,
+    ];
+    numbers.map(|value| Some(estimate(value, None, None))).into()
+}

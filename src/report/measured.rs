@@ -1,0 +1,125 @@
+//! Measured and computed ends: distributions of runout, and where the rocks lie.
+
+use super::axis::Axis;
+use super::colour::{BLUE, GREY, INK, VERMILLION};
+use super::figure::{Drawing, WIDTH_PX};
+use super::format;
+use super::input::{Observed, Report};
+use super::panel::{FOOT_PX, Panel};
+use super::paper::{Label, NORMAL, Paper, Pen, paint};
+use super::plan_view::ground;
+use super::svg::path::{Frame, Spot};
+use crate::hazard::{Sample, Way};
+
+const TOP_PX: f64 = 26.0;
+const CURVE_PX: f64 = 210.0;
+const GAP_PX: f64 = 34.0;
+const TALLEST_PX: f64 = 420.0;
+const LEFT_PX: f64 = 66.0;
+
+/// Draws the two distributions above the map of ends.
+pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
+    let curves = curve_panel(observed);
+    let map = map_panel(observed, curves.frame.bottom + FOOT_PX + GAP_PX);
+    let size = (WIDTH_PX, map.frame.bottom + FOOT_PX);
+    let svg = paint("measured", size, "Measured and computed", |paper| {
+        head(paper, &curves, "Share that stops within a runout");
+        curves.grid(paper);
+        steps(paper, &curves, &observed.computed, Pen::full(BLUE, 1.6));
+        steps(paper, &curves, &observed.measured, Pen::full(VERMILLION, 1.6));
+        curves.axes(paper);
+        key(paper, &curves);
+        head(paper, &map, "Where the rocks lie");
+        paper.clip("map", &map.frame, || {
+            if let Some(raster) = &report.ground {
+                let _ = ground::draw(paper, &map, raster);
+            }
+            paper.dots(&ends(&map, &observed.computed), 1.2, BLUE);
+            let measured = ends(&map, &observed.measured);
+            paper.dots(&measured, 3.0, INK);
+            paper.dots(&measured, 2.4, VERMILLION);
+            let starts = observed.measured.iter().map(|w| map.at(w.start_m[0], w.start_m[1]));
+            paper.dots(&starts.collect::<Vec<_>>(), 1.2, INK);
+        });
+        map.axes(paper);
+    });
+    let at = observed.agreement;
+    let number = |value: f64| format::significant(value, 3);
+    let caption = format!(
+        "{} measured (vermillion) and {} computed (blue) ends. Mean runout {} m measured, {} m computed; largest difference \
+         of the distributions (KS) {}, limit at 5 % {}; scatter across the mean direction {} m measured, {} m computed. \
+         Black dots: releases.",
+        at.measured,
+        format::decimal(at.computed as f64, 0),
+        number(at.measured_mean_m),
+        number(at.computed_mean_m),
+        number(at.ks),
+        number(at.ks_limit),
+        number(at.measured_side_m),
+        number(at.computed_side_m)
+    );
+    Drawing { svg, caption }
+}
+
+fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
+    let at = (panel.frame.left, panel.frame.top - 10.0);
+    paper.text(&Label::new(words, at).bold().sized(NORMAL));
+}
+
+fn key(paper: &Paper<'_>, panel: &Panel) {
+    for (k, (words, colour)) in
+        [("measured", VERMILLION), ("computed", BLUE)].into_iter().enumerate()
+    {
+        let y = panel.frame.top + 16.0 + 16.0 * k as f64;
+        let x = panel.frame.left + 14.0;
+        paper.line(&[(x, y), (x + 22.0, y)], Pen::full(colour, 2.0));
+        paper.text(&Label::new(words, (x + 28.0, y)).coloured(GREY));
+    }
+}
+
+fn curve_panel(observed: &Observed) -> Panel {
+    let runouts = observed.measured.iter().chain(&observed.computed).map(Way::runout_m);
+    let frame =
+        Frame { left: LEFT_PX, top: TOP_PX, right: WIDTH_PX - 14.0, bottom: TOP_PX + CURVE_PX };
+    let x = Axis::from_zero(runouts, "Runout (m)");
+    Panel::new(frame, x, Axis::linear(0.0, 1.0, "Share of rocks"))
+}
+
+/// The empirical distribution as the steps it consists of.
+fn steps(paper: &Paper<'_>, panel: &Panel, ways: &[Way], pen: Pen) {
+    let sample = Sample::of(ways.iter().map(Way::runout_m));
+    let n = sample.values().len() as f64;
+    let corners = |(k, x): (usize, &f64)| [(*x, k as f64 / n), (*x, (k + 1) as f64 / n)];
+    let line: Vec<(f64, f64)> = sample.values().iter().enumerate().flat_map(corners).collect();
+    panel.line(paper, &line, pen);
+    if line.is_empty() {
+        panel.nothing(paper, "no rock");
+    }
+}
+
+fn map_panel(observed: &Observed, top: f64) -> Panel {
+    let places = || {
+        let all = observed.measured.iter().chain(&observed.computed);
+        all.flat_map(|way| [way.start_m, way.end_m])
+    };
+    let range = |axis: usize| {
+        let (low, high) = places()
+            .map(|place| place[axis])
+            .filter(|x| x.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        (low - 5.0, high + 5.0)
+    };
+    let (mut x, y) = (range(0), range(1));
+    let widest = WIDTH_PX - 14.0 - LEFT_PX;
+    let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
+    let more = 0.5 * (widest / scale - (x.1 - x.0)).max(0.0);
+    x = (x.0 - more, x.1 + more);
+    let bottom = top + scale * (y.1 - y.0);
+    let frame = Frame { left: LEFT_PX, top, right: LEFT_PX + widest, bottom };
+    Panel::new(frame, Axis::linear(x.0, x.1, "Easting (m)"), Axis::linear(y.0, y.1, "Northing (m)"))
+}
+
+fn ends(panel: &Panel, ways: &[Way]) -> Vec<Spot> {
+    let spots = ways.iter().map(|way| panel.at(way.end_m[0], way.end_m[1]));
+    spots.filter(|&spot| panel.frame.holds(spot)).collect()
+}

@@ -1,0 +1,91 @@
+//! `[calibrate]`: measured ends, and which ground values may be fitted to them.
+
+use super::check::{Allowed, Checked, Complaint, number, suggest};
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// What a scene is compared with and what may be fitted.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [calibrate]")]
+pub struct CalibrateTable {
+    /// CSV file of measured ends with `release_x_m`, `release_y_m`, `x_m`, `y_m` in map coordinates.
+    pub deposits: PathBuf,
+    /// The ground values that `rockfall calibrate` searches; may be none.
+    #[serde(default)]
+    pub vary: Vec<VaryTable>,
+}
+
+/// One ground value and the range it is searched in.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table { ground, key, from, to, before }")]
+pub struct VaryTable {
+    /// Name under `[grounds]`.
+    pub ground: String,
+    /// Which of its values.
+    pub key: VaryKey,
+    /// Smallest value tried.
+    pub from: f64,
+    /// Largest value tried.
+    pub to: f64,
+    /// The value that would stand there without calibration, from literature; reported beside the fitted one.
+    pub before: f64,
+}
+
+/// A ground value that may be fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VaryKey {
+    /// Friction angle (degrees).
+    FrictionAngleDeg,
+    /// Normal restitution (–).
+    Restitution,
+    /// Rolling friction (–).
+    RollingFriction,
+    /// Roughness (degrees).
+    RoughnessDeg,
+}
+
+impl VaryKey {
+    /// Its key in the scene.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FrictionAngleDeg => "friction_angle_deg",
+            Self::Restitution => "restitution",
+            Self::RollingFriction => "rolling_friction",
+            Self::RoughnessDeg => "roughness_deg",
+        }
+    }
+
+    fn allowed(self) -> Allowed {
+        match self {
+            Self::FrictionAngleDeg | Self::RoughnessDeg => Allowed::Slope,
+            Self::Restitution => Allowed::Share,
+            Self::RollingFriction => Allowed::NotNegative,
+        }
+    }
+}
+
+impl CalibrateTable {
+    pub(super) fn check(&self, grounds: &[&str]) -> Checked {
+        for (index, vary) in self.vary.iter().enumerate() {
+            vary.check(grounds).map_err(|wrong| wrong.in_entry(index).inside("vary"))?;
+        }
+        Ok(())
+    }
+}
+
+impl VaryTable {
+    fn check(&self, grounds: &[&str]) -> Checked {
+        if !grounds.contains(&self.ground.as_str()) {
+            let remedy = format!("write a name from [grounds]; {}", suggest(&self.ground, grounds));
+            return Err(Complaint::about("ground", remedy));
+        }
+        for (key, value) in [("from", self.from), ("to", self.to), ("before", self.before)] {
+            number(key, value, self.key.allowed(), "")?;
+        }
+        if self.from >= self.to {
+            return Err(Complaint::about("to", "write a number above from"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,310 @@
+//! The paper's four examples, with its scheme, step and Table 1.
+
+use super::{Row, Verification, timed};
+use crate::error::{Error, Result};
+use crate::plan::Plan;
+use crate::report::curves::Curves;
+use crate::scene::Scene;
+use crate::terrain::Terrain;
+use crate::terrain::make::shipped;
+use crate::terrain::stl::Soup;
+use crate::terrain::weld::{Piece, weld};
+use crate::trajectory::{PathPoint, Scratch, Stop, Trajectory, fall, fall_together};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// The paper's time step (s): steps are printed, not times.
+const STEP_S: f64 = 1e-5;
+/// Slower than this a sphere has settled (m/s), as the printed step numbers were read.
+const SETTLED_M_S: f64 = 1e-3;
+/// Share by which a printed step number may be missed: sizes are not printed, and were fitted to 3 %.
+const STEPS_SHARE: f64 = 0.06;
+
+const SOURCE: &str = "the paper, printed";
+
+pub(super) fn run(all: &mut Verification) -> Result<()> {
+    asymmetric_edge(all)?;
+    symmetric_edge(all)?;
+    tetrahedron(all)?;
+    containers(all)?;
+    rockfall(all)
+}
+
+fn asymmetric_edge(all: &mut Verification) -> Result<()> {
+    let text = include_str!("../../../examples/paper/1a_asymmetric_edge.toml");
+    let (falls, seconds) = timed(|| example(text, 0.01))?;
+    let row = Row {
+        case: "1a sphere beside an edge",
+        quantity: "place across the edge at the end (m): the left valley",
+        expected: -0.5,
+        source: "the paper's Fig. 7; the valley of the inferred roof",
+        computed: falls[0].end.position_m.x,
+        // half a radius: what the valley's two flanks leave a sphere at rest
+        allowed: 0.016,
+        seconds,
+    };
+    all.rows.push(row);
+    all.figures.push(("fig_09a", speeds("Example 1a: speed and step (Fig. 9a)", &falls[0].path)));
+    all.figures.push(("fig_07", side("Example 1a: way of the centre (Fig. 7)", &falls, 0)));
+    Ok(())
+}
+
+fn symmetric_edge(all: &mut Verification) -> Result<()> {
+    let text = include_str!("../../../examples/paper/1b_symmetric_edge.toml");
+    let (falls, seconds) = timed(|| example(text, 0.001))?;
+    let row = |quantity, expected: f64, source, computed: f64, allowed: f64| Row {
+        case: "1b sphere on an edge",
+        quantity,
+        expected,
+        source,
+        computed,
+        allowed,
+        seconds,
+    };
+    let settles = settles_at_step(&falls[0].path);
+    let off = falls[0].end.position_m.x;
+    all.rows.push(row(
+        "comes to rest at step",
+        109_881.0,
+        SOURCE,
+        settles,
+        STEPS_SHARE * 109_881.0,
+    ));
+    all.rows.push(row("stays above the edge, off by (m)", 0.0, "symmetry", off, 1e-12));
+    all.figures.push(("fig_09b", speeds("Example 1b: speed and step (Fig. 9b)", &falls[0].path)));
+    all.figures.push(("fig_08", side("Example 1b: way of the centre (Fig. 8)", &falls, 0)));
+    Ok(())
+}
+
+fn tetrahedron(all: &mut Verification) -> Result<()> {
+    let text = include_str!("../../../examples/paper/2_tetrahedron.toml");
+    let (falls, seconds) = timed(|| example(text, 0.001))?;
+    let even = text.replace("3.2e-12", "0.0");
+    let (balanced, balanced_seconds) = timed(|| example(&even, 0.001))?;
+    let path = &falls[0].path;
+    let (settles, leaves) = (settles_at_step(path), leaves_at_step(path));
+    let row = |quantity, expected: f64, source, computed: f64, allowed: f64, seconds| Row {
+        case: "2 sphere on a tetrahedron",
+        quantity,
+        expected,
+        source,
+        computed,
+        allowed,
+        seconds,
+    };
+    let share = |step: f64| STEPS_SHARE * step;
+    all.rows.push(row(
+        "comes to rest at step",
+        107_004.0,
+        SOURCE,
+        settles,
+        share(107_004.0),
+        seconds,
+    ));
+    all.rows.push(row(
+        "begins to fall at step",
+        151_004.0,
+        SOURCE,
+        leaves,
+        share(151_004.0),
+        seconds,
+    ));
+    let off = balanced[0].end.position_m.x;
+    let still =
+        row("without asymmetry stays, off by (m)", 0.0, "symmetry", off, 1e-6, balanced_seconds);
+    all.rows.push(still);
+    all.figures.push(("fig_11", speeds("Example 2: speed and step (Fig. 11)", path)));
+    all.figures
+        .push(("fig_12", heights("Example 2: vertical displacement and step (Fig. 12)", path)));
+    all.figures.push(("fig_10", side("Example 2: way of the centre (Fig. 10)", &falls, 0)));
+    Ok(())
+}
+
+fn containers(all: &mut Verification) -> Result<()> {
+    let text = include_str!("../../../examples/paper/3_containers.toml");
+    let (falls, seconds) = timed(|| example(text, 0.01))?;
+    let row = |quantity, expected: f64, source, computed: f64, allowed: f64| Row {
+        case: "3 spheres into containers",
+        quantity,
+        expected,
+        source,
+        computed,
+        allowed,
+        seconds,
+    };
+    let count =
+        |of: &dyn Fn(&Trajectory) -> bool| falls.iter().filter(|fall| of(fall)).count() as f64;
+    let rest = count(&|fall| fall.stop == Stop::AtRest);
+    all.rows.push(row(
+        "spheres at rest at the end",
+        48.0,
+        "the paper's Fig. 14; none is lost",
+        rest,
+        0.0,
+    ));
+    let left = count(&|fall| fall.end.position_m.x < 0.0);
+    all.rows.push(row("spheres on the left", 24.0, "symmetry of the inferred start", left, 4.0));
+    // the weight of all spheres on one spring
+    let weight = 48.0 * falls[0].rock.mass_kg() * 9.8 / 1e9;
+    let deepest = deepest_overlap(&falls);
+    all.rows.push(row(
+        "deepest overlap of two spheres (m)",
+        0.0,
+        "weight of all on one spring",
+        deepest,
+        weight,
+    ));
+    let unsettled = falls.iter().map(|fall| fall.effort.unsettled).sum::<u64>() as f64;
+    let steps = falls.iter().map(|fall| fall.effort.steps).sum::<u64>() as f64;
+    all.rows.push(row(
+        "share of rock steps that did not settle",
+        0.0,
+        "8 in 50 000 steps are usual",
+        unsettled / steps,
+        1e-2,
+    ));
+    for (name, step) in [("fig_14_a", 3_691), ("fig_14_b", 19_673), ("fig_14_end", usize::MAX)] {
+        all.figures
+            .push((name, side("Example 3: the spheres from the side (Fig. 14)", &falls, step)));
+    }
+    Ok(())
+}
+
+fn rockfall(all: &mut Verification) -> Result<()> {
+    let text = include_str!("../../../examples/paper/4_rockfall.toml");
+    let (falls, seconds) = timed(|| example(text, 0.01))?;
+    let row = |quantity, computed: f64| Row {
+        case: "4 rocks on a slope with trees",
+        quantity,
+        expected: 10.0,
+        source: "the paper's Fig. 17; none is lost",
+        computed,
+        allowed: 0.0,
+        seconds,
+    };
+    // y runs down the slope: its foot begins at 11 m
+    let arrived = |fall: &&Trajectory| {
+        !matches!(fall.stop, Stop::Failed(_))
+            && (fall.stop == Stop::AtRest || fall.end.position_m.y > 11.0)
+    };
+    all.rows
+        .push(row("rocks at rest or past the foot", falls.iter().filter(arrived).count() as f64));
+    let mut ways =
+        Curves::new("Example 4: trajectories (Fig. 17)", "down the slope (m)", "height (m)");
+    for fall in &falls {
+        let way = fall.path.iter().map(|p| (p.motion.position_m.y, p.motion.position_m.z));
+        ways.lines.push(way.collect());
+    }
+    all.figures.push(("fig_17", ways));
+    Ok(())
+}
+
+/// Runs an example on its meshes as made; results in map coordinates, paths at `path_step_s`.
+fn example(text: &str, path_step_s: f64) -> Result<Vec<Trajectory>> {
+    let mut scene = Scene::parse(text, Path::new("examples/paper/example.toml"))?;
+    scene.record.path_step_s = Some(path_step_s);
+    let plan = Plan::compile(&scene, made_terrain(&scene)?)?;
+    let mut falls = if plan.rock_against_rock.is_kept() {
+        fall_together(&plan, None, &AtomicBool::new(false))?.unwrap_or_default()
+    } else {
+        let mut scratch = Scratch::default();
+        (0..plan.count).map(|k| fall(&plan, k, None, &mut scratch)).collect::<Result<_>>()?
+    };
+    for fall in &mut falls {
+        fall.start.position_m += plan.terrain.origin_m;
+        fall.end.position_m += plan.terrain.origin_m;
+        for point in &mut fall.path {
+            point.motion.position_m += plan.terrain.origin_m;
+        }
+    }
+    Ok(falls)
+}
+
+/// The meshes of a scene, from the generator that also wrote the shipped files.
+fn made_terrain(scene: &Scene) -> Result<Terrain> {
+    let made = shipped();
+    let sources = scene.mesh_sources();
+    let mut soups = Vec::new();
+    for source in &sources {
+        let path = &source.sheet.path;
+        let known = made.iter().find(|(name, _)| path.ends_with(name));
+        let Some((_, facets)) = known else {
+            return Err(Error::Request(format!("{}: not a made mesh", path.display())));
+        };
+        soups.push(Soup::from(facets.clone()));
+    }
+    let pieces: Vec<Piece> = (0..)
+        .zip(sources.iter().zip(&soups))
+        .map(|(sheet, (source, soup))| Piece {
+            file: &source.sheet.path,
+            soup,
+            up: source.up,
+            scale: source.scale,
+            sheet,
+        })
+        .collect();
+    let welded = weld(&pieces, scene.origin_m.into(), None)?;
+    Ok(Terrain::new(welded, sources.iter().map(|source| source.sheet.clone()).collect()))
+}
+
+/// First step after which the sphere stays slower than [`SETTLED_M_S`] for a tenth of a second.
+fn settles_at_step(path: &[PathPoint]) -> f64 {
+    let slow = |point: &PathPoint| point.motion.velocity_m_s.norm() < SETTLED_M_S;
+    let settled = (0..path.len()).find(|&k| {
+        let start_s = path[k].motion.time_s;
+        path[k..].iter().take_while(|point| point.motion.time_s < start_s + 0.1).all(slow)
+    });
+    settled.map_or(f64::NAN, |k| path[k].motion.time_s / STEP_S)
+}
+
+/// Step at which the sphere, settled before, is off the apex by 1 % of its radius.
+fn leaves_at_step(path: &[PathPoint]) -> f64 {
+    const OFF_M: f64 = 0.01 * 0.032;
+    let off =
+        |point: &&PathPoint| point.motion.position_m.x.hypot(point.motion.position_m.y) > OFF_M;
+    path.iter().find(off).map_or(f64::NAN, |point| point.motion.time_s / STEP_S)
+}
+
+fn deepest_overlap(falls: &[Trajectory]) -> f64 {
+    let mut deepest = 0.0f64;
+    for (k, one) in falls.iter().enumerate() {
+        for two in &falls[k + 1..] {
+            let distance = (one.end.position_m - two.end.position_m).norm();
+            deepest = deepest.max(one.rock.radius_m + two.rock.radius_m - distance);
+        }
+    }
+    deepest
+}
+
+fn speeds(title: &str, path: &[PathPoint]) -> Curves {
+    let mut curves = Curves::new(title, "step", "speed (m/s)");
+    let at = |point: &PathPoint| (point.motion.time_s / STEP_S, point.motion.velocity_m_s.norm());
+    curves.lines.push(path.iter().map(at).collect());
+    curves
+}
+
+fn heights(title: &str, path: &[PathPoint]) -> Curves {
+    let mut curves = Curves::new(title, "step", "vertical displacement (m)");
+    let start = path.first().map_or(0.0, |point| point.motion.position_m.z);
+    let at = |point: &PathPoint| (point.motion.time_s / STEP_S, point.motion.position_m.z - start);
+    curves.lines.push(path.iter().map(at).collect());
+    curves
+}
+
+/// Spheres at a step as seen along the edge; at step 0 the whole way of the centres.
+fn side(title: &str, falls: &[Trajectory], step: usize) -> Curves {
+    let mut curves = Curves::new(title, "across (m)", "height (m)");
+    for fall in falls {
+        let places = fall.path.iter().map(|p| (p.motion.position_m.x, p.motion.position_m.z));
+        if step == 0 {
+            curves.lines.push(places.collect());
+            continue;
+        }
+        let before = |point: &&PathPoint| point.motion.time_s <= step as f64 * STEP_S;
+        let k = fall.path.iter().filter(before).count().saturating_sub(1);
+        if let Some((x, z)) = places.clone().nth(k) {
+            curves.discs.push((x, z, fall.rock.radius_m));
+        }
+    }
+    curves
+}

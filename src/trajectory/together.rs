@@ -1,0 +1,182 @@
+//! Many rocks in one world: short windows of time in which those that may meet form islands.
+//!
+//! Rocks in flight leap, also past each other: their meeting is a quadratic. An island has its own step; where all of
+//! it is quiet it sleeps until something comes near. Windows, islands and contacts stand in a fixed order, so the
+//! number of threads changes nothing.
+
+mod crowd;
+mod job;
+mod rover;
+
+use super::fall::{Course, kept};
+use super::journey::{Journey, Keep};
+use super::{Stop, Trajectory};
+use crate::contact::pair::{Bond, Strength, Tie, between};
+use crate::coupled::Member;
+use crate::coupled::broad::{Ball, overlapping};
+use crate::error::{Error, Result};
+use crate::ground::{Capture, Damping, Ground, Law};
+use crate::plan::{Part, Plan};
+use crate::release::Release;
+use crate::step::law::Body;
+use crowd::Crowd;
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+
+/// How the rocks of a scene answer each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// Springs, friction and restitution, as of a ground.
+    pub ground: Ground,
+    /// Bonds between rocks that touch at the start.
+    pub strength: Strength,
+}
+
+/// Rocks nearer than this at the start touch (–, relative to the smaller radius): coordinates are typed with five or
+/// six digits.
+const TOUCHING: f64 = 1e-4;
+
+/// One rock on its way.
+struct Rover<'a> {
+    member: Box<Member>,
+    journey: Journey<'a>,
+    state: State,
+    /// When its flight ends (s), and how.
+    lands: Option<(f64, Option<Stop>)>,
+    /// How long it has been slow (s).
+    quiet_s: f64,
+    /// Step its last island would have tried next (s).
+    h: f64,
+    /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
+    began_j: (f64, f64),
+}
+
+/// Where a rock is in its story.
+#[derive(Debug, Clone, PartialEq)]
+enum State {
+    /// Under way.
+    Moving,
+    /// At rest until something comes near.
+    Asleep,
+    /// No longer in the world.
+    Gone(Stop),
+}
+
+/// Deepest overlap of two rocks at the start (–, relative to the smaller radius): deeper, their springs would shoot them
+/// apart.
+const DEEPEST_START: f64 = 0.01;
+
+/// All releases of a plan whose rocks share one world, in order; `None` if `stop` was raised before the end. A path is
+/// kept for the plan's first releases and for `paths`.
+///
+/// # Errors
+/// A release that cannot be made, rocks that overlap at the start, a plan without contact between rocks.
+pub fn fall_together(
+    plan: &Plan,
+    paths: Option<&Range<usize>>,
+    stop: &AtomicBool,
+) -> Result<Option<Vec<Trajectory>>> {
+    let Part::Kept(ground) = &plan.rock_against_rock else {
+        return Err(Error::Request("the rocks of this plan do not share one world".to_owned()));
+    };
+    let releases =
+        (0..plan.count).map(|index| plan.release(index)).collect::<Result<Vec<Release>>>()?;
+    check_apart(plan, &releases)?;
+    let none = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
+    let strength = if let Part::Kept(strength) = plan.bonds { strength } else { none };
+    let answer = Answer { ground: *ground, strength };
+    let keep = |index| kept(plan, index, paths);
+    Ok(follow_together(&Course::of(plan), &releases, &answer, keep, stop))
+}
+
+fn check_apart(plan: &Plan, releases: &[Release]) -> Result<()> {
+    let ball = |release: &Release| Ball {
+        centre: release.motion.position_m,
+        radius: release.rock.radius_m,
+    };
+    let balls: Vec<Ball> = releases.iter().map(ball).collect();
+    for (a, b) in overlapping(&balls) {
+        let [one, two] = [&balls[a as usize], &balls[b as usize]];
+        let overlap_m = one.radius + two.radius - (one.centre - two.centre).norm();
+        if overlap_m > DEEPEST_START * one.radius.min(two.radius) {
+            return Err(Error::input(
+                &plan.scene_file,
+                "[release]",
+                format!("found releases {a} and {b} to overlap by {overlap_m} m at the start"),
+                "write points that are at least the sum of two radii apart",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Follows all rocks of one world to their stops, in the order of the releases; `None` if `stop` was raised.
+///
+/// `keep` says what to keep of each rock's way.
+pub fn follow_together(
+    course: &Course,
+    releases: &[Release],
+    answer: &Answer,
+    keep: impl Fn(usize) -> Keep,
+    stop: &AtomicBool,
+) -> Option<Vec<Trajectory>> {
+    let rovers = releases
+        .iter()
+        .enumerate()
+        .map(|(k, release)| Some(rover(course, release, keep(k))))
+        .collect();
+    let mut crowd = Crowd::new(course, answer, rovers);
+    crowd.bond(answer);
+    crowd.run(stop).then(|| crowd.end(releases))
+}
+
+fn capture(course: &Course) -> Capture {
+    Capture {
+        own_m_s: course.step.capture_speed_m_s,
+        tolerance_m_s: course.step.tolerance_m_s,
+        gravity_m_s2: course.gravity_m_s2,
+    }
+}
+
+fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
+    let laws = release.grounds.iter().map(|ground| {
+        Law::new(ground, &Damping::of(ground.restitution), &release.rock, &capture(course))
+    });
+    let motion = release.motion;
+    let body = Body::new(&release.rock, course.gravity_m_s2);
+    let start = (motion.position_m, motion.velocity_m_s, motion.spin_rad_s);
+    Rover {
+        member: Box::new(Member::new(body, laws.collect(), start)),
+        journey: Journey::new(course.terrain, release.rock, motion, (keep, course.watch)),
+        state: State::Moving,
+        lands: None,
+        quiet_s: 0.0,
+        h: f64::INFINITY,
+        began_j: (0.0, 0.0),
+    }
+}
+
+/// The contact law of two rocks.
+fn law_between(a: &Body, b: &Body, answer: &(Ground, Damping), capture: &Capture) -> Law {
+    let mass = a.mass * b.mass / (a.mass + b.mass);
+    Law::of_mass(&answer.0, &answer.1, (mass, a.radius.min(b.radius)), capture)
+}
+
+impl Crowd<'_> {
+    /// Bonds the rocks that touch at the start.
+    fn bond(&mut self, answer: &Answer) {
+        if !answer.strength.is_some() {
+            return;
+        }
+        for (a, b) in self.touching_at_start() {
+            let [one, two] = [a, b].map(|k| &self.rover(k).member);
+            let (n, length) = between(&one.grip.c, &two.grip.c);
+            let radius = one.body.radius.min(two.body.radius);
+            let bond = Bond::new(&answer.strength, radius, length);
+            let law = self.law(a, b);
+            self.tie(Tie { n, bond: Some(bond), ..Tie::new(a, b, law) });
+            self.hold(a);
+            self.hold(b);
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! One rock of a world: flying, touching, resting, and what is noted down of it.
+
+use super::{Rover, State};
+use crate::coupled::Member;
+use crate::flight::{Landing, Parabola, leap};
+use crate::release::Release;
+use crate::rock::{Motion, Vec3};
+use crate::step::adaptive::ONSET;
+use crate::step::grip::{Loss, World};
+use crate::trajectory::fall::{Course, IMPACT_TIMES};
+use crate::trajectory::{PathState, Stop, Trajectory};
+use std::f64::consts::PI;
+
+impl Rover<'_> {
+    pub(super) fn flight(&self, course: &Course) -> Parabola {
+        Parabola {
+            start: self.journey.now.position_m,
+            velocity: self.journey.now.velocity_m_s,
+            gravity: course.gravity_m_s2,
+            radius: self.member.body.radius,
+        }
+    }
+
+    /// Centre at a time not before its own (m).
+    pub(super) fn position_at(&self, course: &Course, time_s: f64) -> Vec3 {
+        if self.member.flying && time_s > self.journey.now.time_s {
+            self.flight(course).centre(time_s - self.journey.now.time_s)
+        } else {
+            self.journey.now.position_m
+        }
+    }
+
+    /// Velocity at a time not before its own (m/s).
+    pub(super) fn velocity_at(&self, course: &Course, time_s: f64) -> Vec3 {
+        if self.member.flying && time_s > self.journey.now.time_s {
+            self.flight(course).velocity(time_s - self.journey.now.time_s)
+        } else {
+            self.journey.now.velocity_m_s
+        }
+    }
+
+    /// Brings a rock that slept to the present; one that flies without knowing where looks ahead.
+    pub(super) fn wake(&mut self, course: &Course, now_s: f64) {
+        if self.state == State::Asleep {
+            self.state = State::Moving;
+            let now = Motion { time_s: now_s, ..self.journey.now };
+            self.journey.step_as(now, PathState::Sticking);
+        }
+        if self.member.flying && self.lands.is_none() {
+            self.look_ahead(course);
+        }
+    }
+
+    /// Finds the end of the flight that begins now.
+    pub(super) fn look_ahead(&mut self, course: &Course) {
+        let now_s = self.journey.now.time_s;
+        let left = course.longest_s - now_s;
+        let flight = self.flight(course);
+        let effort = &mut self.journey.effort;
+        effort.leaps += 1;
+        self.lands = Some(match leap(course.terrain, &flight, left, &mut effort.triangles) {
+            Landing::Touch(t) => (now_s + t, None),
+            Landing::Leaves(t) => (now_s + t, Some(Stop::LeftTerrain)),
+            Landing::Flies => (f64::INFINITY, None),
+        });
+    }
+
+    /// Goes along the parabola; nothing for a rock in contact.
+    pub(super) fn fly_to(&mut self, course: &Course, time_s: f64) {
+        if matches!(self.state, State::Gone(_)) {
+            return;
+        }
+        let dt = time_s - self.journey.now.time_s;
+        if self.member.flying && dt > 0.0 {
+            let flight = self.flight(course);
+            self.journey.fly(&flight, dt);
+            self.journey.now.time_s = time_s;
+        }
+        let now = self.journey.now;
+        let grip = &mut self.member.grip;
+        (grip.c, grip.v, grip.w) = (now.position_m, now.velocity_m_s, now.spin_rad_s);
+    }
+
+    /// Begins an episode of contact.
+    pub(super) fn begin(&mut self, course: &Course) {
+        if self.member.flying {
+            self.member.flying = false;
+            self.lands = None;
+            self.quiet_s = 0.0;
+            self.member.grip.holds.clear();
+            self.member.grip.stored = 0.0;
+            self.began_j = (self.total_j(course), self.journey.ledger.others_j);
+        }
+    }
+
+    /// Touches the mesh.
+    pub(super) fn land(&mut self, course: &Course) {
+        self.begin(course);
+        let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.journey.now;
+        let Member { grip, body, laws, .. } = &mut *self.member;
+        let world = World { terrain: course.terrain, body: *body, laws };
+        grip.begin(&world, c, v, w);
+        let omega =
+            grip.holds.iter().map(|hold| world.law(hold.triangle).omega).fold(0.0, f64::max);
+        if omega > 0.0 {
+            self.h = self.h.min(ONSET / omega);
+        }
+        self.announce(course);
+    }
+
+    pub(super) fn total_j(&self, course: &Course) -> f64 {
+        let now = &self.journey.now;
+        let body = &self.member.body;
+        0.5 * (body.mass * now.velocity_m_s.norm_squared()
+            + body.inertia * now.spin_rad_s.norm_squared())
+            + body.mass * course.gravity_m_s2 * now.position_m.z
+    }
+
+    /// Notes one step of its island.
+    pub(super) fn step(
+        &mut self,
+        course: &Course,
+        time_s: f64,
+        (loss, given_j): (Loss, f64),
+        slides: bool,
+    ) {
+        if matches!(self.state, State::Gone(_)) {
+            return;
+        }
+        let before_j = self.total_j(course);
+        let grip = &self.member.grip;
+        let to = Motion { time_s, position_m: grip.c, velocity_m_s: grip.v, spin_rad_s: grip.w };
+        let dt = time_s - self.journey.now.time_s;
+        let slides = slides || grip.holds.iter().any(|hold| hold.slides);
+        let was_flying = self.lands.is_some();
+        self.announce(course);
+        if was_flying && self.member.flying {
+            self.journey.step_as(to, PathState::Flight);
+            return;
+        }
+        self.journey.step(to, slides);
+        self.journey.pay(&loss, 1.0);
+        self.journey.ledger.others_j += given_j;
+        let change = self.total_j(course) - before_j + loss.sum() + given_j;
+        self.journey.ledger.remainder_j -= change;
+        self.journey.end_impact_in_time();
+        if was_flying {
+            self.lands = None;
+            self.quiet_s = 0.0;
+            self.began_j = (before_j, self.journey.ledger.others_j - given_j);
+        }
+        if self.member.flying {
+            self.end_episode(course);
+            self.look_ahead(course);
+        }
+        let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.member.body.radius);
+        self.quiet_s = if slow < course.rest.speed_m_s { self.quiet_s + dt } else { 0.0 };
+    }
+
+    /// Largest rise of energy over the contact episode that ends now.
+    pub(super) fn end_episode(&mut self, course: &Course) {
+        self.journey.end_impact();
+        let given_j = self.journey.ledger.others_j - self.began_j.1;
+        let Member { grip, body, laws, .. } = &mut *self.member;
+        let world = World { terrain: course.terrain, body: *body, laws };
+        let stored = grip.springs_j(&world);
+        self.journey.pay(&stored, -1.0);
+        let rise_j = self.total_j(course) - self.began_j.0 + given_j + stored.sum();
+        self.journey.ledger.rise_j = self.journey.ledger.rise_j.max(rise_j);
+    }
+
+    /// Notes down impacts on the mesh that have just begun.
+    pub(super) fn announce(&mut self, course: &Course) {
+        let Member { grip, body, laws, .. } = &mut *self.member;
+        let world = World { terrain: course.terrain, body: *body, laws };
+        for hold in grip.holds.iter_mut().filter(|hold| !hold.announced) {
+            hold.announced = true;
+            if !hold.captured {
+                let until_s =
+                    self.journey.now.time_s + IMPACT_TIMES * PI / world.law(hold.triangle).omega;
+                let point = grip.c - hold.n * body.radius;
+                self.journey.begin_impact(point, hold.feature.kind, hold.triangle, until_s);
+            }
+        }
+    }
+
+    pub(super) fn leave(&mut self, stop: Stop) {
+        if self.state == State::Moving {
+            self.state = State::Gone(stop);
+        }
+    }
+
+    /// The journey, complete.
+    pub(super) fn end(
+        mut self,
+        course: &Course,
+        index: usize,
+        release: &Release,
+        now_s: f64,
+    ) -> Trajectory {
+        let stop = match &self.state {
+            State::Moving => Stop::TimeUp,
+            State::Asleep => Stop::AtRest,
+            State::Gone(stop) => stop.clone(),
+        };
+        if stop == Stop::TimeUp {
+            self.fly_to(course, now_s);
+        }
+        if !self.member.flying {
+            self.end_episode(course);
+        }
+        self.journey.end_impact();
+        self.journey.end_path();
+        let journey = self.journey;
+        let start = release.motion;
+        let fallen = start.position_m.z - journey.now.position_m.z;
+        let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
+        let mut effort = journey.effort;
+        effort.triangles += self.member.grip.near.tested;
+        Trajectory {
+            index,
+            rock: release.rock,
+            start,
+            end: journey.now,
+            stop,
+            extremes: journey.extremes,
+            impact_count: journey.impact_count,
+            tree_impact_count: journey.tree_impact_count,
+            impacts: journey.impacts,
+            path: journey.path,
+            crossings: journey.crossings.into_found(),
+            visits: journey.visits.into_found(),
+            ledger: journey.ledger,
+            released_j: self.member.body.mass * course.gravity_m_s2 * fallen + kinetic,
+            effort,
+        }
+    }
+}
