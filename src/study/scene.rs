@@ -38,6 +38,8 @@ pub struct Rung {
     pub effort: Effort,
     /// Rocks that failed.
     pub failed: usize,
+    /// Largest rise of mechanical energy of a rock over one contact (J).
+    pub rise_j: f64,
     /// Values of each of [`QUANTITIES`], release by release; NaN for a failed rock.
     values: [Vec<f64>; QUANTITIES.len()],
 }
@@ -159,6 +161,7 @@ fn rung(plan: &Plan, relative: f64, ensemble: &Ensemble) -> Result<Rung> {
         seconds: 0.0,
         effort: Effort::default(),
         failed: 0,
+        rise_j: 0.0,
         values: Default::default(),
     };
     let mut totals = crate::hazard::Totals::default();
@@ -167,6 +170,7 @@ fn rung(plan: &Plan, relative: f64, ensemble: &Ensemble) -> Result<Rung> {
             let row = Row::of(&fall, plan.terrain.origin_m);
             let failed = row.stop == StopKind::Failed;
             rung.failed += usize::from(failed);
+            rung.rise_j = rung.rise_j.max(fall.ledger.rise_j);
             totals.add(&fall);
             for (values, (quantity, ..)) in rung.values.iter_mut().zip(QUANTITIES) {
                 values.push(if failed { f64::NAN } else { quantity.of(&row) });

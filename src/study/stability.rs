@@ -132,7 +132,8 @@ impl Notes {
         let again = setup.follow(terrain, &step, &mut Scratch::default());
         let failed = matches!(journey.stop, Stop::Failed(_)) || !is_finite(&journey);
         let differs = !same_bits(&journey, &again);
-        let energy = journey.released_j.abs().max(journey.extremes.total_j).max(f64::MIN_POSITIVE);
+        let lifted = setup.rock.mass_kg() * setup.gravity_m_s2 * setup.rock.radius_m;
+        let energy = journey.released_j.abs().max(journey.extremes.total_j).max(lifted);
         self.hold(
             way,
             setting,

@@ -3,8 +3,9 @@
 use super::bench::goes_by_tolerance;
 use super::stability::{Map, Verdict};
 use crate::report::axis::Axis;
-use crate::report::colour::{GREEN, GREY, INK, ORANGE, VERMILLION, WHITE};
+use crate::report::colour::{GREEN, GREY, INK, ORANGE, PURPLE, WHITE};
 use crate::report::figure::WIDTH_PX;
+use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use crate::report::svg::path::Frame;
@@ -13,13 +14,14 @@ use plotters::style::RGBColor;
 const PLOT_PX: f64 = 170.0;
 const TOP_PX: f64 = 58.0;
 const GAP_PX: f64 = 70.0;
-const ROOT_10: f64 = 3.162_277_660_168_379_5;
+/// Left edge of the frames (px).
+const LEFT_PX: f64 = 80.0;
 
 fn colour(verdict: Verdict) -> RGBColor {
     match verdict {
         Verdict::Accurate => GREEN,
         Verdict::Stable => ORANGE,
-        Verdict::Unstable => VERMILLION,
+        Verdict::Unstable => PURPLE,
     }
 }
 
@@ -36,7 +38,7 @@ pub(super) fn draw(maps: &[Map]) -> String {
                     .sized(NORMAL)
                     .bold(),
             );
-            panel.axes(paper);
+            axes(paper, &panel, map);
         }
     })
 }
@@ -45,34 +47,48 @@ pub(super) fn draw(maps: &[Map]) -> String {
 fn panel(map: &Map, row: usize) -> Panel {
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
     let name = if goes_by_tolerance(map.scheme) { "Tolerance (m/s)" } else { "Step (s)" };
-    let around = |values: &[f64], title: &str| Axis {
-        low: values[0] / ROOT_10,
-        high: values[values.len() - 1] * ROOT_10,
-        is_log: true,
-        title: title.to_owned(),
+    let around = |values: &[f64], title: &str| {
+        let end = |value: f64| value.log10().round();
+        Axis::linear(end(values[0]) - 0.5, end(values[values.len() - 1]) + 0.5, title)
     };
-    let frame = Frame { left: 80.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
-    Panel::new(
-        frame,
-        around(&map.stiffness_n_m, "Normal stiffness (N/m)"),
-        around(&map.fineness, name),
-    )
+    let frame = Frame { left: LEFT_PX, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
+    let x = around(&map.stiffness_n_m, "Normal stiffness (N/m)");
+    Panel::new(frame, x, around(&map.fineness, name))
+}
+
+/// Labels in the middle of each column and row, titles beyond.
+fn axes(paper: &Paper<'_>, panel: &Panel, map: &Map) {
+    let Frame { left, top, right, bottom } = panel.frame;
+    let label = |value: f64| format::power_of_ten(value.log10().round() as i32);
+    for &stiffness in &map.stiffness_n_m {
+        let x = panel.at(stiffness.log10().round(), panel.y.low).0;
+        paper.text(&Label::new(label(stiffness), (x, bottom + 5.0)).below().centred());
+    }
+    for &fineness in &map.fineness {
+        let y = panel.at(panel.x.low, fineness.log10().round()).1;
+        paper.text(&Label::new(label(fineness), (left - 6.0, y)).right());
+    }
+    let title = |words: &str, at: (f64, f64)| Label::new(words, at).centred().sized(NORMAL);
+    paper.text(&title(&panel.x.title, (0.5 * (left + right), bottom + 22.0)).below());
+    paper.text(&title(&panel.y.title, (left - 40.0, 0.5 * (top + bottom))).above().upwards());
+    paper.outline(&panel.frame, Pen::full(INK, 0.8));
 }
 
 fn cells(paper: &Paper<'_>, panel: &Panel, map: &Map) {
     for cell in &map.cells {
-        let (left, bottom) = panel.at(cell.stiffness_n_m / ROOT_10, cell.fineness / ROOT_10);
-        let (right, top) = panel.at(cell.stiffness_n_m * ROOT_10, cell.fineness * ROOT_10);
+        let (x, y) = (cell.stiffness_n_m.log10().round(), cell.fineness.log10().round());
+        let (left, bottom) = panel.at(x - 0.5, y - 0.5);
+        let (right, top) = panel.at(x + 0.5, y + 0.5);
         let frame = Frame { left, top, right, bottom };
         paper.fill(&frame, colour(cell.verdict), 0.75);
         paper.outline(&frame, Pen::full(WHITE, 0.8));
-        let middle = (0.5 * (left + right), 0.5 * (top + bottom));
+        let middle = panel.at(x, y);
         paper.text(&Label::new(format!("{:.2}", cell.rebound), middle).centred().coloured(INK));
     }
 }
 
 fn key(paper: &Paper<'_>) {
-    let mut x = 80.0;
+    let mut x = LEFT_PX;
     for (verdict, words) in [
         (Verdict::Accurate, "accurate: within 2 % of the approach speed"),
         (Verdict::Stable, "stable: finite, no energy gained"),
@@ -86,6 +102,6 @@ fn key(paper: &Paper<'_>) {
         paper.text(&Label::new(words, (x + 19.0, 14.0)));
         x += 19.0 + text_width(words, SMALL) + 18.0;
     }
-    let words = "Rebound over approach speed of a rock of 0.5 m at 5 m/s; exact 0.50 (less on the softest springs).";
-    paper.text(&Label::new(words, (80.0, 32.0)).coloured(GREY));
+    let words = "Rebound over approach speed of a rock of 0.5 m at 5 m/s; exact 0.50, less on soft springs (weight).";
+    paper.text(&Label::new(words, (LEFT_PX, 32.0)).coloured(GREY));
 }

@@ -1,6 +1,5 @@
 //! Meshes that are awkward: edges, corners, walls, slivers, seams, far away.
 
-use super::impacts::floor;
 use super::{Notes, Way, sprung};
 use crate::rock::{Rock, Vec3};
 use crate::step::Scheme;
@@ -50,8 +49,8 @@ pub(super) fn parallel_walls(way: &Way, notes: &mut Notes) {
         let mu = SETUP.ground.friction_angle_rad.tan();
         let held = 2.0 * mu * SETUP.ground.normal_stiffness_n_m * s / SETUP.rock.mass_kg();
         let way_m = 0.5 * (GRAVITY_M_S2 - held).max(0.0) * setup.longest_s.powi(2);
-        // while the shear springs wind up it falls by the load over two of them
-        let bound = 2e-4 + if way.scheme == Scheme::Dda { 1e-3 } else { 0.0 };
+        // friction takes up to a millisecond to build up: until then it falls freely
+        let bound = GRAVITY_M_S2 * 1e-3 * setup.longest_s;
         notes.hold(
             way,
             setting,
@@ -62,7 +61,7 @@ pub(super) fn parallel_walls(way: &Way, notes: &mut Notes) {
     }
 }
 
-/// At rest on the two borders of a groove narrower than itself: each carries `m g/(2 cos a)`, `sin a` = half width/R.
+/// At rest on the two borders of a groove narrower than itself: `sin a` = half width/R.
 pub(super) fn narrow_groove(way: &Way, notes: &mut Notes) {
     let half = 0.3;
     let plate =
@@ -71,12 +70,13 @@ pub(super) fn narrow_groove(way: &Way, notes: &mut Notes) {
     let height = (0.25f64 - half * half).sqrt();
     let setup = Setup { centre_m: Vec3::new(0.0, 0.1, height), ..SETUP };
     let end = notes.follow(way, "", &setup, &rails).end;
-    let cos = height / 0.5;
-    let sinks = if sprung(way) { setup.pressed_m(0.0) / (2.0 * cos * cos) } else { 0.0 };
+    // both springs of both contacts share the load: p_N along the normal, p_s = p_N/4 across
+    let (cos2, sin2) = (height * height / 0.25, half * half / 0.25);
+    let sinks = if sprung(way) { setup.pressed_m(0.0) / (2.0 * (cos2 + 0.25 * sin2)) } else { 0.0 };
     notes.hold(
         way,
         "",
-        "height off √(R² − b²) − m g/(2 p_N cos² a) (m)",
+        "height off √(R² − b²) less what the springs give (m)",
         (end.position_m.z - height + sinks).abs(),
         1e-6,
     );
@@ -177,5 +177,4 @@ pub(super) fn one_triangle(way: &Way, notes: &mut Notes) {
     let on_it = Setup { centre_m: Vec3::new(0.0, 0.0, 0.6), velocity_m_s: Vec3::zeros(), ..setup };
     let end = notes.follow(way, "dropped on it", &on_it, &lone).end;
     notes.hold(way, "dropped on it", "fell through (m)", 0.49 - end.position_m.z, 0.0);
-    let _ = floor;
 }

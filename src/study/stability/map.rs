@@ -1,6 +1,7 @@
 //! Stiffness against step: where an impact is accurate, stable, or neither.
 
 use super::RISE;
+use super::impacts::rebound_m_s;
 use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::rock::Vec3;
 use crate::step::Scheme;
@@ -99,9 +100,7 @@ fn cell(
         ..SETUP
     };
     let journey = setup.follow(floor, &settings(scheme, fineness, Some(0.02)), scratch);
-    // what gravity took since it left, as far as it has
-    let left = (setup.longest_s - 2.715_289_195 / omega).max(0.0);
-    let rebound = (journey.end.velocity_m_s.z + GRAVITY_M_S2 * left) / SPEED_M_S;
+    let rebound = rebound_m_s(&journey, &setup) / SPEED_M_S;
     let exact = normal_impact(SPEED_M_S, omega, damping_ratio(0.5), GRAVITY_M_S2).rebound_m_s;
     let gains = journey.ledger.rise_j > RISE * journey.extremes.total_j || rebound > 1.0 + ACCURATE;
     let verdict = if matches!(journey.stop, Stop::Failed(_)) || !rebound.is_finite() || gains {
