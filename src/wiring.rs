@@ -105,7 +105,7 @@ pub(crate) fn run(
         }
         let results = output.finish()?;
         if let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) {
-            plan.count = releases
+            plan.count = releases;
         } else {
             report::draw_run(&results, &plan.terrain)?;
             return Ok(Ended::Complete(report::headline(&results.hazard)));

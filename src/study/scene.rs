@@ -118,7 +118,7 @@ pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(&Rung)) -> Resul
         done(&rung);
         rungs.push(rung);
     }
-    let own = relatives.iter().position(|&relative| relative == 1.0).unwrap_or(0);
+    let own = relatives.iter().position(|relative| relative.total_cmp(&1.0).is_eq()).unwrap_or(0);
     let mut statistics = Vec::new();
     for quantity in 0..QUANTITIES.len() {
         let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[quantity].clone()).collect();

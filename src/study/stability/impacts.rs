@@ -41,7 +41,8 @@ fn one_impact(way: &Way, notes: &mut Notes, floor: &Terrain, [stiffness, radius,
     let (mass, omega) = (rock.mass_kg(), (stiffness / rock.mass_kg()).sqrt());
     let depth = 0.5f64.sqrt() * speed / omega + mass * GRAVITY_M_S2 / stiffness;
     // the plan refuses springs that soft, and the rigid limit has none
-    let is_meant = if sprung(way) { depth <= 0.1 * radius } else { stiffness == 1e9 };
+    let is_meant =
+        if sprung(way) { depth <= 0.1 * radius } else { (stiffness / 1e9 - 1.0).abs() < 1e-12 };
     if !is_meant {
         return;
     }
