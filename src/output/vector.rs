@@ -120,7 +120,7 @@ pub(super) fn write_vtk(
         .map_err(Error::file("write", path))
 }
 
-/// Name of a column and where its numbers come from.
+/// A column of numbers: name, and the value of a row.
 type Column = (&'static str, fn(&PathRow) -> f64);
 
 fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io::Result<()> {
