@@ -104,13 +104,11 @@ pub(crate) fn run(
             return Ok(Ended::Interrupted(done, asked.len()));
         }
         let results = output.finish()?;
-        match more(order.until.as_ref(), &results.hazard, plan.count) {
-            Some(releases) => plan.count = releases,
-            None => {
-                report::draw_run(&results, &plan.terrain)?;
-                return Ok(Ended::Complete(report::headline(&results.hazard)));
-            }
-        }
+        let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) else {
+            report::draw_run(&results, &plan.terrain)?;
+            return Ok(Ended::Complete(report::headline(&results.hazard)));
+        };
+        plan.count = releases;
         mode = Mode::Extend;
     }
 }

@@ -49,7 +49,6 @@ impl World {
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
         let course = Course {
-            watch: rockfall::plan::Watch::default(),
             terrain,
             gravity_m_s2: self.gravity_m_s2,
             step: &step,

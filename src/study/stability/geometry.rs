@@ -2,7 +2,6 @@
 
 use super::{Notes, Way, sprung};
 use crate::rock::{Rock, Vec3};
-use crate::step::Scheme;
 use crate::study::bench::{GRAVITY_M_S2, ROCK, SETUP, Setup, terrain};
 use crate::terrain::make;
 use crate::terrain::stl::Facet;

@@ -41,7 +41,8 @@ fn one_impact(way: &Way, notes: &mut Notes, floor: &Terrain, [stiffness, radius,
     let (mass, omega) = (rock.mass_kg(), (stiffness / rock.mass_kg()).sqrt());
     let depth = 0.5f64.sqrt() * speed / omega + mass * GRAVITY_M_S2 / stiffness;
     // the plan refuses springs that soft, and the rigid limit has none
-    let is_meant = if sprung(way) { depth <= 0.1 * radius } else { stiffness == 1e9 };
+    let is_meant =
+        if sprung(way) { depth <= 0.1 * radius } else { (1e8..1e10).contains(&stiffness) };
     if !is_meant {
         return;
     }
@@ -199,14 +200,13 @@ pub(super) fn restitution(way: &Way, notes: &mut Notes) {
         - 0.5)
         .max(0.0);
     let law = "change of height over ten bounces from 1 m (m)";
-    match way.scheme {
+    let allowed = match way.scheme {
         // keeps exp(−π ω Δt/4) of the speed in each of ten bounces: 0.0066 of it, twice that of the height
-        Scheme::Dda => notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 0.15),
-        Scheme::Adaptive => {
-            notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 10.0 * 4.0 * way.fineness / 4.4)
-        }
-        _ => notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 1e-3),
-    }
+        Scheme::Dda => 0.15,
+        Scheme::Adaptive => 40.0 * way.fineness / 4.4,
+        _ => 1e-3,
+    };
+    notes.hold(way, "e = 1", law, (kept - 1.0).abs(), allowed);
 }
 
 /// e = 0.9 down to rest: finitely many impacts, the time `t_f (1 + e)/(1 − e)`.
