@@ -45,7 +45,7 @@ points_m = [[0.0, 0.5], [40.0, 0.5]]
 "#;
 
 /// A rock thrown flat from 20 m above the meadow flies past the line before it lands. By hand: at 10 m/s the line 8 m
-/// away is passed after 0.8 s, 0.5 · 9.81 · 0.8² lower, at v_z = −7.848 m/s, 8 m along.
+/// away is passed after 0.8 s, 0.5 · 9.81 · 0.8² lower, at `v_z` = −7.848 m/s, 8 m along.
 #[test]
 fn a_flight_crosses_where_the_parabola_says() {
     let text =

@@ -1,4 +1,4 @@
-//! Ends and paths for GIS (GeoJSON) and for ParaView (VTK), written from the tables when a run is complete.
+//! Ends and paths for GIS (GeoJSON) and for `ParaView` (VTK), written from the tables when a run is complete.
 
 use super::PathRow;
 use crate::error::{Error, Result};
@@ -105,7 +105,7 @@ impl<'a> Features<'a> {
 }
 
 /// Writes all kept paths as straight pieces of a legacy VTK unstructured grid in ASCII, with release, time, speed and
-/// clearance at every point; ParaView, pyvista and meshio read it. Coordinates are local to `origin_m`, as programs that
+/// clearance at every point; `ParaView`, pyvista and meshio read it. Coordinates are local to `origin_m`, as programs that
 /// draw in single precision need them.
 pub(super) fn write_vtk(
     path: &Path,
@@ -119,6 +119,9 @@ pub(super) fn write_vtk(
         .and_then(|()| file.flush())
         .map_err(Error::file("write", path))
 }
+
+/// A column of numbers: name, and the value of a row.
+type Column = (&'static str, fn(&PathRow) -> f64);
 
 fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io::Result<()> {
     writeln!(to, "# vtk DataFile Version 3.0")?;
@@ -143,7 +146,7 @@ fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io:
         writeln!(to, "3")?;
     }
     writeln!(to, "POINT_DATA {}", rows.len())?;
-    let columns: [(&str, fn(&PathRow) -> f64); 4] = [
+    let columns: [Column; 4] = [
         ("release", |row| row.index as f64),
         ("time_s", |row| row.time_s),
         ("speed_m_s", |row| Vec3::from(row.velocity_m_s).norm()),

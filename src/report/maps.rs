@@ -60,8 +60,7 @@ pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
 }
 
 fn reach_keys() -> Vec<(String, RGBColor)> {
-    let name =
-        |limit: f64| format!("≤ {}", format::percent(limit, if limit < 0.01 { 1 } else { 0 }));
+    let name = |limit: f64| format!("≤ {}", format::percent(limit, usize::from(limit < 0.01)));
     let colour = |k: usize| colour::sequential(k as f64 / (REACH.len() - 1) as f64);
     REACH.iter().enumerate().map(|(k, limit)| (name(*limit), colour(k))).collect()
 }

@@ -98,14 +98,14 @@ pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
         Ok(cells)
     };
     let intensity = read(Layer::Intensity)?;
-    let of_class = |class: f64| intensity.iter().filter(|(_, found)| *found == class).count();
+    let of_class = |class: u8| intensity.iter().filter(|(_, found)| *found as u8 == class).count();
     Ok(Some(CellMap {
         west_m: frame.west_m,
         south_m: frame.south_m,
         cell_m: frame.cell_m,
         columns: frame.columns,
         reach: read(Layer::Reach)?,
-        intensity_cells: [1.0, 2.0, 3.0].map(of_class),
+        intensity_cells: [1, 2, 3].map(of_class),
         intensity,
     }))
 }

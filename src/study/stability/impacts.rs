@@ -42,7 +42,7 @@ fn one_impact(way: &Way, notes: &mut Notes, floor: &Terrain, [stiffness, radius,
     let depth = 0.5f64.sqrt() * speed / omega + mass * GRAVITY_M_S2 / stiffness;
     // the plan refuses springs that soft, and the rigid limit has none
     let is_meant =
-        if sprung(way) { depth <= 0.1 * radius } else { (1e8..1e10).contains(&stiffness) };
+        if sprung(way) { depth <= 0.1 * radius } else { (stiffness / 1e9 - 1.0).abs() < 1e-12 };
     if !is_meant {
         return;
     }
@@ -200,13 +200,14 @@ pub(super) fn restitution(way: &Way, notes: &mut Notes) {
         - 0.5)
         .max(0.0);
     let law = "change of height over ten bounces from 1 m (m)";
-    let allowed = match way.scheme {
+    match way.scheme {
         // keeps exp(−π ω Δt/4) of the speed in each of ten bounces: 0.0066 of it, twice that of the height
-        Scheme::Dda => 0.15,
-        Scheme::Adaptive => 40.0 * way.fineness / 4.4,
-        _ => 1e-3,
-    };
-    notes.hold(way, "e = 1", law, (kept - 1.0).abs(), allowed);
+        Scheme::Dda => notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 0.15),
+        Scheme::Adaptive => {
+            notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 10.0 * 4.0 * way.fineness / 4.4);
+        }
+        _ => notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 1e-3),
+    }
 }
 
 /// e = 0.9 down to rest: finitely many impacts, the time `t_f (1 + e)/(1 − e)`.
