@@ -104,12 +104,11 @@ pub(crate) fn run(
             return Ok(Ended::Interrupted(done, asked.len()));
         }
         let results = output.finish()?;
-        if let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) {
-            plan.count = releases;
-        } else {
+        let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) else {
             report::draw_run(&results, &plan.terrain)?;
             return Ok(Ended::Complete(report::headline(&results.hazard)));
-        }
+        };
+        plan.count = releases;
         mode = Mode::Extend;
     }
 }

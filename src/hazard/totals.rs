@@ -62,7 +62,7 @@ pub struct Totals {
 impl Totals {
     /// Adds one rock.
     pub fn add(&mut self, fall: &Trajectory) {
-        add_effort(&mut self.effort, &fall.effort);
+        self.effort.add(&fall.effort);
         // The ledger of a failed rock may hold anything, even no number: one such rock would blind all sums.
         if let Stop::Failed(reason) = &fall.stop {
             self.failures.entry(reason.clone()).or_default().push(fall.index);
@@ -79,7 +79,7 @@ impl Totals {
         for (reason, releases) in failures {
             self.failures.entry(reason.clone()).or_default().extend(releases);
         }
-        add_effort(&mut self.effort, effort);
+        self.effort.add(effort);
         self.ledger.join(ledger);
         self.released_j.join(released_j);
         if let Some(largest) = largest_energy_rise_j {
@@ -128,17 +128,6 @@ impl Totals {
 
 /// A rise of energy over one contact is rounding up to this share of what a rock releases on average (–).
 const RISE: f64 = 1e-6;
-
-/// Every field is named, so that a new counter does not compile until it is summed.
-fn add_effort(sum: &mut Effort, one: &Effort) {
-    let Effort { steps, rejected, leaps, sweeps, triangles, unsettled } = *one;
-    sum.steps += steps;
-    sum.rejected += rejected;
-    sum.leaps += leaps;
-    sum.sweeps += sweeps;
-    sum.triangles += triangles;
-    sum.unsettled += unsettled;
-}
 
 impl LedgerSums {
     /// Every field is named, so that a new entry does not compile until it is summed.

@@ -11,7 +11,8 @@ use crate::error::Result;
 use crate::hazard::{Percentile, Quantity, Row, StopKind};
 use crate::plan::{Part, Plan};
 use crate::step::{Scheme, Settings};
-use crate::trajectory::{self, Effort, Scratch};
+use crate::trajectory::{self, Effort, Scratch, Trajectory};
+use std::ops::Range;
 use std::time::Instant;
 
 /// Quantities of the study with what they are called and their units.
@@ -24,6 +25,8 @@ pub const QUANTITIES: [(Quantity, &str, &str); 3] = [
 pub const PERCENTS: [u8; 3] = [50, 95, 99];
 /// Fewest releases of which a sampling error is given.
 const FEWEST: usize = 100;
+/// Turns that every setting takes.
+const BLOCKS: usize = 20;
 
 /// All releases under one setting.
 #[derive(Debug, Clone)]
@@ -111,14 +114,17 @@ pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(&Rung)) -> Resul
     plan.impacts = Part::LeftOut("a study keeps no impacts");
     let own_step = plan.step;
     let (relatives, order) = ladder_of(own_step.scheme);
-    let mut rungs = Vec::new();
-    for &relative in relatives {
-        plan.step = finer(&own_step, relative);
-        let rung = rung(&plan, relative, ensemble)?;
-        done(&rung);
-        rungs.push(rung);
+    let mut rungs: Vec<Rung> =
+        relatives.iter().map(|&relative| Rung::new(&own_step, relative)).collect();
+    // All settings take turns, so that a machine that is busy for a while slows all of them alike.
+    for block in blocks(plan.count) {
+        for rung in &mut rungs {
+            plan.step = rung.step;
+            rung.run(&plan, block.clone(), ensemble)?;
+        }
     }
-    let own = relatives.iter().position(|relative| relative.total_cmp(&1.0).is_eq()).unwrap_or(0);
+    rungs.iter().for_each(done);
+    let own = relatives.iter().position(|relative| (relative - 1.0).abs() < 1e-9).unwrap_or(0);
     let mut statistics = Vec::new();
     for quantity in 0..QUANTITIES.len() {
         let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[quantity].clone()).collect();
@@ -152,34 +158,46 @@ fn finer(step: &Settings, relative: f64) -> Settings {
     finer
 }
 
-fn rung(plan: &Plan, relative: f64, ensemble: &Ensemble) -> Result<Rung> {
-    let fall = |index: usize, scratch: &mut Scratch| trajectory::fall(plan, index, None, scratch);
-    let begun = Instant::now();
-    let mut rung = Rung {
-        step: plan.step,
-        relative,
-        seconds: 0.0,
-        effort: Effort::default(),
-        failed: 0,
-        rise_j: 0.0,
-        values: Default::default(),
-    };
-    let mut totals = crate::hazard::Totals::default();
-    for falls in ensemble.in_chunks(0..plan.count, Scratch::default, fall) {
-        for fall in falls? {
-            let row = Row::of(&fall, plan.terrain.origin_m);
-            let failed = row.stop == StopKind::Failed;
-            rung.failed += usize::from(failed);
-            rung.rise_j = rung.rise_j.max(fall.ledger.rise_j);
-            totals.add(&fall);
-            for (values, (quantity, ..)) in rung.values.iter_mut().zip(QUANTITIES) {
-                values.push(if failed { f64::NAN } else { quantity.of(&row) });
-            }
+/// The releases in a few blocks.
+fn blocks(count: usize) -> impl Iterator<Item = Range<usize>> {
+    let length = count.div_ceil(BLOCKS);
+    (0..count).step_by(length).map(move |start| start..count.min(start + length))
+}
+
+impl Rung {
+    fn new(own: &Settings, relative: f64) -> Self {
+        Self {
+            step: finer(own, relative),
+            relative,
+            seconds: 0.0,
+            effort: Effort::default(),
+            failed: 0,
+            rise_j: 0.0,
+            values: Default::default(),
         }
     }
-    rung.effort = totals.effort;
-    rung.seconds = begun.elapsed().as_secs_f64();
-    Ok(rung)
+
+    /// Computes some more releases.
+    fn run(&mut self, plan: &Plan, releases: Range<usize>, ensemble: &Ensemble) -> Result<()> {
+        let fall =
+            |index: usize, scratch: &mut Scratch| trajectory::fall(plan, index, None, scratch);
+        let begun = Instant::now();
+        for falls in ensemble.in_chunks(releases, Scratch::default, fall) {
+            falls?.iter().for_each(|fall| self.add(&Row::of(fall, plan.terrain.origin_m), fall));
+        }
+        self.seconds += begun.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn add(&mut self, row: &Row, fall: &Trajectory) {
+        let failed = row.stop == StopKind::Failed;
+        self.failed += usize::from(failed);
+        self.rise_j = self.rise_j.max(fall.ledger.rise_j);
+        self.effort.add(&fall.effort);
+        for (values, (quantity, ..)) in self.values.iter_mut().zip(QUANTITIES) {
+            values.push(if failed { f64::NAN } else { quantity.of(row) });
+        }
+    }
 }
 
 fn percentile(values: &[f64], p: f64) -> Option<Percentile> {

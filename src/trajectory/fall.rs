@@ -10,9 +10,9 @@ use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::step::grip::{Grip, World};
+use crate::step::grip::{Grip, Loss, World};
 use crate::step::law::Body;
-use crate::step::{self, Settings, Stepper};
+use crate::step::{self, Scheme, Settings, Stepper};
 use crate::terrain::Terrain;
 use nalgebra::{Rotation3, Unit};
 use std::f64::consts::{PI, TAU};
@@ -195,13 +195,13 @@ impl Fall<'_> {
         let began_s = self.journey.now.time_s;
         let before_j = self.total_j();
         let lost_before_j = self.journey.lost_j();
-        let held = self.grip.stored_j(&self.world);
+        let held = self.held();
         let mut stepper = Stepper::new(self.course.step, &self.world, self.grip);
         let stop = self.steps(&mut stepper);
         let rise_j = self.total_j() - before_j;
         self.journey.ledger.remainder_j -= rise_j + self.journey.lost_j() - lost_before_j;
         // A rock that rests presses on its springs: what they hold is not lost.
-        let stored = self.grip.springs_j(&self.world);
+        let stored = self.held();
         self.journey.pay(&stored, -1.0);
         self.journey.pay(&held, 1.0);
         self.journey.ledger.rise_j =
@@ -214,6 +214,14 @@ impl Fall<'_> {
         }
         self.journey.end_impact();
         stop
+    }
+
+    /// Energy in the contact springs; the rigid limit has none, whatever the depth that rounding leaves.
+    fn held(&mut self) -> Loss {
+        if self.course.step.scheme == Scheme::Rigid {
+            return Loss::default();
+        }
+        self.grip.springs_j(&self.world)
     }
 
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {

@@ -46,6 +46,19 @@ pub struct Effort {
     pub unsettled: u64,
 }
 
+impl Effort {
+    /// Adds what another rock cost. Every field is named, so that a new counter does not compile until it is summed.
+    pub fn add(&mut self, one: &Self) {
+        let Self { steps, rejected, leaps, sweeps, triangles, unsettled } = *one;
+        self.steps += steps;
+        self.rejected += rejected;
+        self.leaps += leaps;
+        self.sweeps += sweeps;
+        self.triangles += triangles;
+        self.unsettled += unsettled;
+    }
+}
+
 /// Where the energy went (J). All entries but `others_j` and `remainder_j` are ≥ 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ledger {
