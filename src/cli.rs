@@ -11,6 +11,7 @@ use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
+use rockfall::study::aim::Aim;
 use rockfall::study::verify::Verification;
 use std::fmt::Display;
 use std::io::Write as _;
@@ -19,7 +20,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Exit status when a case does not hold.
+/// Exit status when a check failed.
 const CHECK_FAILED: u8 = 1;
 /// Exit status when the user's input is wrong.
 const WRONG_INPUT: u8 = 2;
@@ -63,16 +64,16 @@ enum Command {
         /// Folder with the results of a run
         dir: PathBuf,
     },
-    /// List the grounds that `like` knows, with their sources
-    Grounds,
-    /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
-    Calibrate(CalibrateArgs),
     /// Run the exact cases and the method paper's examples; write table and figures
     Verify {
         /// Folder for table and figures
         #[arg(long, value_name = "DIR", default_value = "reports/verification")]
         out: PathBuf,
     },
+    /// List the grounds that `like` knows, with their sources
+    Grounds,
+    /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
+    Calibrate(CalibrateArgs),
     /// Study the numerics: error against run time, stability
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -142,6 +143,9 @@ struct RunArgs {
     /// The K-th of N parts of the releases, K from 1 to N; `rockfall merge` puts them together
     #[arg(long, value_name = "K/N", value_parser = shard, conflicts_with = "only")]
     shard: Option<Part>,
+    /// Go on with more releases until a 95 % interval is narrower, as in "runout.p95 < 1.0 m"
+    #[arg(long, value_name = "AIM", conflicts_with_all = ["only", "shard"])]
+    until: Option<Aim>,
     /// Go on with an interrupted run in the same folder
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
@@ -160,9 +164,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Verify { out } => verify(&out),
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
         Command::Calibrate(args) => calibrate(&args),
-        Command::Verify { out } => verify(&out),
         Command::Study(command) => study::study(&command),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
@@ -206,23 +210,30 @@ fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
 fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
     let (terrain, health) = scene.read_terrain()?;
-    let plan = Plan::compile(&scene, terrain)?;
+    let mut plan = Plan::compile(&scene, terrain)?;
     if !args.quiet {
         say(&plan);
     }
     let order = args.order();
     let bar = args.progress(order.part.range(plan.count).len());
-    let ended =
-        wiring::run(&plan, &health, &order, stop_at_ctrl_c, |done| bar.set_position(done as u64))?;
-    if let Ended::Interrupted(done, asked) = ended {
-        bar.abandon();
-        return Ok(args.interrupted(done, asked));
+    let ended = wiring::run(&mut plan, &health, &order, stop_at_ctrl_c, |done, asked| {
+        bar.set_length(asked as u64);
+        bar.set_position(done as u64);
+    })?;
+    match ended {
+        Ended::Interrupted(done, asked) => {
+            bar.abandon();
+            Ok(args.interrupted(done, asked))
+        }
+        Ended::Complete(headline) => {
+            bar.finish();
+            if !args.quiet {
+                say(format!("\n{}\n", headline.join("\n")));
+                say(format!("{} releases, results in {}", plan.count, order.out.display()));
+            }
+            Ok(ExitCode::SUCCESS)
+        }
     }
-    bar.finish();
-    if !args.quiet {
-        say(format!("results in {}", order.out.display()));
-    }
-    Ok(ExitCode::SUCCESS)
 }
 
 impl RunArgs {
@@ -247,6 +258,10 @@ impl RunArgs {
             Part::Shard { number, of } if of > count => refuse(format!(
                 "--shard {number}/{of}: found {count} releases; write at most as many parts"
             )),
+            _ if self.until.is_some() && scene.release.together => refuse(
+                "--until: the rocks of this scene touch each other and fall together; write another [release] count"
+                    .to_owned(),
+            ),
             Part::Shard { number, of } if scene.release.together => refuse(format!(
                 "--shard {number}/{of}: the rocks of this scene touch each other and fall together; leave it out"
             )),
@@ -277,6 +292,7 @@ impl RunArgs {
             mode,
             part: self.part(),
             threads: self.threads,
+            until: self.until,
         }
     }
 

@@ -5,12 +5,13 @@ pub(crate) mod study;
 use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
-use rockfall::hazard::{Barrier, LineInfo, MapFrame, Rule, Way};
+use rockfall::hazard::{Barrier, Hazard, LineInfo, MapFrame, Rule, Way};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
 use rockfall::plan::{self, Curtain, Plan};
 use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::scene::{BarrierTable, DesignTable, Scene};
+use rockfall::study::aim::Aim;
 use rockfall::terrain::grid::Grid;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
@@ -34,6 +35,8 @@ pub(crate) struct Order {
     pub(crate) part: Part,
     /// Worker threads; `None` = all cores.
     pub(crate) threads: Option<usize>,
+    /// Go on with more releases until this is reached.
+    pub(crate) until: Option<Aim>,
 }
 
 /// What part of the releases a run computes.
@@ -67,27 +70,59 @@ impl Part {
 
 /// How a run ended.
 pub(crate) enum Ended {
-    /// All releases are written, the report is drawn.
-    Complete,
+    /// All releases are written, the report is drawn: its headline, line by line.
+    Complete(Vec<String>),
     /// Stopped after so many releases of so many; the rest can be resumed.
     Interrupted(usize, usize),
 }
 
 /// Computes and writes chunk by chunk, then summary, figures and page.
 ///
-/// `begin` gets the flag that stops after the chunk in hand; `progress` the number of releases on the disk.
+/// `begin` gets the flag that stops after the chunk in hand; `progress` the number of releases on the disk and of those
+/// asked for, which an aim may raise.
 pub(crate) fn run(
-    plan: &Plan,
+    plan: &mut Plan,
     health: &Health,
     order: &Order,
     begin: impl FnOnce(Arc<AtomicBool>) -> Result<()>,
-    progress: impl Fn(usize),
+    progress: impl Fn(usize, usize),
 ) -> Result<Ended> {
     let ensemble = Ensemble::new(order.threads)?;
-    let mut output =
-        Output::create(run_info(plan, health, order, &ensemble)?, &order.out, order.mode)?;
-    let asked = order.part.range(plan.count);
     begin(ensemble.stop_flag())?;
+    let mut mode = order.mode;
+    if order.until.is_some() && mode == Mode::Resume {
+        mode = Mode::Extend;
+        plan.count = plan.count.max(output::releases_in(&order.out)?.unwrap_or(0));
+    }
+    loop {
+        let info = run_info(plan, health, order, &ensemble)?;
+        let output = Output::create(info, &order.out, mode)?;
+        let asked = order.part.range(plan.count);
+        let output = compute(plan, &ensemble, output, order, |done| progress(done, asked.len()))?;
+        let done = output.remaining().start - asked.start;
+        if done < asked.len() {
+            return Ok(Ended::Interrupted(done, asked.len()));
+        }
+        let results = output.finish()?;
+        if let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) {
+            plan.count = releases;
+        } else {
+            report::draw_run(&results, &plan.terrain)?;
+            return Ok(Ended::Complete(report::headline(&results.hazard)));
+        }
+        mode = Mode::Extend;
+    }
+}
+
+/// Computes and writes what remains, until it is done or stopped.
+fn compute(
+    plan: &Plan,
+    ensemble: &Ensemble,
+    mut output: Output,
+    order: &Order,
+    progress: impl Fn(usize),
+) -> Result<Output> {
+    let asked = order.part.range(plan.count);
     let paths = matches!(order.part, Part::Only(_)).then(|| asked.clone());
     if plan.rock_against_rock.is_kept() {
         let stop = ensemble.stop_flag();
@@ -105,14 +140,18 @@ pub(crate) fn run(
             progress(output.remaining().start - asked.start);
         }
     }
-    let done = output.remaining().start - asked.start;
-    if done < asked.len() {
-        return Ok(Ended::Interrupted(done, asked.len()));
-    }
-    let results = output.finish()?;
-    report::draw_run(&results, &plan.terrain)?;
-    Ok(Ended::Complete)
+    Ok(output)
 }
+
+/// How many releases the aim still asks for; none when it is reached, or out of reach.
+fn more(until: Option<&Aim>, hazard: &Hazard, done: usize) -> Option<usize> {
+    let aim = until?;
+    let next = aim.next(hazard.values(aim.quantity), done)?;
+    (done < MOST_RELEASES).then(|| next.min(MOST_RELEASES))
+}
+
+/// An aim that more releases than this would not reach is given up: their values take a gigabyte.
+const MOST_RELEASES: usize = 10_000_000;
 
 fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) -> Result<RunInfo> {
     let asked = order.part.range(plan.count);

@@ -205,7 +205,7 @@ fn memory_follows_the_length_of_the_file() {
     );
     // 16 bytes for each number of two characters, doubled while the list grows
     let found = hold(40, grid, |bytes| {
-        drop(Grid::parse(&String::from_utf8_lossy(bytes), Path::new("t.asc")))
+        drop(Grid::parse(&String::from_utf8_lossy(bytes), Path::new("t.asc")));
     });
     println!("grids: {} files, at most {:.1} bytes a byte beyond the base", found.0, found.1);
     let scene = bytes_near(SCENE_WORDS, files("tests/bad", "toml"));

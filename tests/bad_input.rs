@@ -1,5 +1,8 @@
 //! Wrong scenes: each file in `tests/bad` carries in its first line the message that it must produce.
-
+#![allow(
+    clippy::case_sensitive_file_extension_comparisons,
+    reason = "the folder names its files itself"
+)]
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod program;

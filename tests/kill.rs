@@ -1,5 +1,5 @@
 //! Killed at any moment, a run can be resumed, and ends with the bytes of one that was left alone.
-
+#![allow(clippy::unwrap_used, reason = "a test that cannot run the program has failed")]
 #![cfg(unix)]
 
 mod program;

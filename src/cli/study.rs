@@ -1,17 +1,23 @@
 //! `rockfall study`.
 
-use super::{at_least_1, say};
+use super::{CHECK_FAILED, at_least_1, say};
 use crate::wiring::study::{self as wiring, SceneOrder};
 use clap::{Args, Subcommand};
 use rockfall::error::Result;
 use rockfall::study::aim::Aim;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum StudyCommand {
     /// Error against run time: of a scene's own statistics, or of the exact cases when no scene is given
     Error(ErrorArgs),
+    /// Stiff and extreme cases with every scheme; exit status 1 if one is outside its bound
+    Stability {
+        /// Folder for page, table and map
+        #[arg(long, value_name = "DIR", default_value = "reports/stability")]
+        out: PathBuf,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -36,7 +42,16 @@ pub(super) struct ErrorArgs {
 pub(super) fn study(command: &StudyCommand) -> Result<ExitCode> {
     match command {
         StudyCommand::Error(args) => error(args),
+        StudyCommand::Stability { out } => stability(out),
     }
+}
+
+fn stability(out: &Path) -> Result<ExitCode> {
+    let (words, all_hold) = wiring::stability(out, |case| {
+        say(format!("{case} done"));
+    })?;
+    say(words);
+    Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }
 
 fn error(args: &ErrorArgs) -> Result<ExitCode> {

@@ -12,6 +12,10 @@ pub const SAME_GRIP: f64 = 0.7;
 
 /// The memory of one contact.
 #[derive(Debug, Clone, Copy)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a fact of its own: none excludes another"
+)]
 pub struct Hold {
     /// What it touches.
     pub feature: Feature,

@@ -98,6 +98,37 @@ impl Totals {
     }
 }
 
+impl Totals {
+    /// What the numbers of the computation itself warn of, of so many rocks; empty when all is well.
+    pub fn warnings(&self, rocks: usize) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let failed: usize = self.failures.values().map(Vec::len).sum();
+        if failed > 0 {
+            warnings.push(format!(
+                "{failed} of {rocks} rocks failed: they are counted, but in no statistic; `--only` shows one again"
+            ));
+        }
+        let Effort { steps, unsettled, .. } = self.effort;
+        if unsettled > 0 {
+            warnings.push(format!(
+                "{unsettled} of {steps} contact steps did not settle: their contact forces do not agree with their motion; take a smaller step_s or scheme \"adaptive\""
+            ));
+        }
+        let released_j = self.released_j.value() / rocks.max(1) as f64;
+        if let Some(rise) = self.largest_energy_rise_j.filter(|rise| rise.value > RISE * released_j)
+        {
+            warnings.push(format!(
+                "release {}: its mechanical energy rose by {:.2e} J in one contact; take a smaller tolerance or step",
+                rise.release, rise.value
+            ));
+        }
+        warnings
+    }
+}
+
+/// A rise of energy over one contact is rounding up to this share of what a rock releases on average (–).
+const RISE: f64 = 1e-6;
+
 /// Every field is named, so that a new counter does not compile until it is summed.
 fn add_effort(sum: &mut Effort, one: &Effort) {
     let Effort { steps, rejected, leaps, sweeps, triangles, unsettled } = *one;

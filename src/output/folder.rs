@@ -1,6 +1,6 @@
 //! What a result folder holds already, and whether a run may use it.
 
-use super::progress::Progress;
+use super::progress::{Identity, Progress};
 use super::summary::{SUMMARY, Summary};
 use super::whole::PART;
 use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES};
@@ -43,7 +43,9 @@ fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
         return Ok(None);
     }
     let (title, old) = (&found.title, &found.identity);
-    if let Some(difference) = old.asks_otherwise(&info.identity) {
+    let asked =
+        if mode == Mode::Extend { as_long_as(old, &info.identity) } else { info.identity.clone() };
+    if let Some(difference) = old.asks_otherwise(&asked) {
         return refuse(
             dir,
             &format!("holds other results: {difference} (\"{title}\")"),
@@ -51,14 +53,14 @@ fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
         );
     }
     match mode {
-        Mode::Resume if old.version != info.identity.version => {
+        Mode::Resume | Mode::Extend if old.version != info.identity.version => {
             let both = format!(
                 "was begun with version {}, this is {}",
                 old.version, info.identity.version
             );
             refuse(dir, &both, "go on with that version or start again with --overwrite")
         }
-        Mode::Resume => Ok(Some(found)),
+        Mode::Resume | Mode::Extend => Ok(Some(found)),
         _ if finished => Ok(None),
         _ => {
             let how_far =
@@ -66,6 +68,27 @@ fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
             refuse(dir, &how_far, "go on with --resume or start again with --overwrite")
         }
     }
+}
+
+/// What is asked, cut to the releases that are there: a run may be extended, never shortened.
+fn as_long_as(old: &Identity, asked: &Identity) -> Identity {
+    if old.is_part() || old.releases > asked.releases {
+        return asked.clone();
+    }
+    Identity { releases: old.releases, of_releases: old.of_releases, ..asked.clone() }
+}
+
+/// Number of releases that the results in `dir` were asked for last; none where there are no results.
+///
+/// # Errors
+///
+/// If a file that should tell cannot be read.
+pub fn releases_in(dir: &Path) -> Result<Option<usize>> {
+    let identity = match Progress::read(dir)? {
+        Some(progress) => Some(progress.identity),
+        None => Summary::read(dir)?.map(|summary| summary.identity),
+    };
+    Ok(identity.map(|identity| identity.releases))
 }
 
 /// A finished run seen as one that has nothing left to do.

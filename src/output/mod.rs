@@ -19,6 +19,7 @@ mod whole;
 
 pub use calibration::{read_calibration, write_calibration};
 pub use claim::Claim;
+pub use folder::releases_in;
 pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
@@ -86,6 +87,8 @@ pub enum Mode {
     Fresh,
     /// Go on with them; start when there are none; nothing is left to do when they are complete.
     Resume,
+    /// The same, also where they are the first of the releases asked for.
+    Extend,
     /// Replace them.
     Overwrite,
 }

@@ -155,7 +155,7 @@ fn stop_share(hazard: &Hazard, kind: StopKind) -> StopShare {
 }
 
 /// What an engineer asks first: the middle and the far end of runout, and the design values of the rest.
-fn headline(hazard: &Hazard) -> Vec<Row> {
+pub(super) fn headline(hazard: &Hazard) -> Vec<Row> {
     use hazard::Quantity::{MaxHeight, MaxSpeed, MaxTotal, MaxTranslational, ReachAngle, Runout};
     let asked = [
         ("Runout, 50 %", Runout, 0.50, "m"),
@@ -225,7 +225,8 @@ fn text_of(results: &Results) -> Text {
         scheme: format!("Scheme in force: {}.", planned("scheme ")),
         terrain_source: planned("terrain "),
         plan: summary.plan.clone(),
-        warnings: summary.warnings.clone(),
+        warnings: [&summary.warnings[..], &summary.totals.warnings(results.hazard.rocks())]
+            .concat(),
         mesh_health: lines(&summary.mesh_health),
         seed: summary.identity.seed,
         version: summary.identity.version.clone(),

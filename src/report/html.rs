@@ -115,6 +115,28 @@ fn headline(report: &Report) -> String {
     section("Results", &body)
 }
 
+/// Each headline statistic with its interval, in columns for a terminal.
+pub fn plain_headline(rows: &[Row]) -> Vec<String> {
+    let words = |row: &Row| {
+        let (estimate, unit) = in_short_unit(row);
+        let (value, interval) = in_words(&estimate);
+        let unit = unit.to_owned();
+        let interval = match interval {
+            none if none == format::NO_NUMBER => "too few rocks for an interval".to_owned(),
+            interval => format!("95 % interval {interval}"),
+        };
+        (format!("{value} {unit}"), interval)
+    };
+    let wide = |text: &str| text.chars().count();
+    let name_width = rows.iter().map(|row| wide(&row.name)).max().unwrap_or(0);
+    let values: Vec<_> = rows.iter().map(words).collect();
+    let value_width = values.iter().map(|(value, _)| wide(value)).max().unwrap_or(0);
+    let line = |(row, (value, interval)): (&Row, &(String, String))| {
+        format!("{:<name_width$}  {value:>value_width$}  {interval}", row.name)
+    };
+    rows.iter().zip(&values).map(line).collect()
+}
+
 /// Joules as kJ or MJ where that is shorter; other units as they are.
 fn in_short_unit(row: &Row) -> (Estimate, &str) {
     if row.unit != "J" {

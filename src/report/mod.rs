@@ -34,6 +34,7 @@ mod stops;
 pub mod svg;
 
 use crate::error::{Error, Result};
+use crate::hazard::Hazard;
 use crate::output::{self, Claim, Results, write_whole};
 use crate::terrain::Terrain;
 use figure::{Drawing, FIGURES, Heading};
@@ -72,6 +73,14 @@ pub fn draw_again(dir: &Path) -> Result<()> {
     let results = output::read(dir)?;
     let _claim = Claim::on(dir)?;
     draw(&gather::gather(&results, GroundRaster::read(dir)?)?, dir)
+}
+
+/// Each headline statistic of the rocks with its 95 % interval, line by line, and what the computation warns of.
+pub fn headline(hazard: &Hazard) -> Vec<String> {
+    let warnings = hazard.totals.warnings(hazard.rocks());
+    let mut lines = html::plain_headline(&gather::headline(hazard));
+    lines.extend(warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines
 }
 
 /// Cells along the longer side of the ground that maps are drawn on: about as many as a printed figure shows.

@@ -200,8 +200,7 @@ impl Scene {
         if let Some(maps) = &self.maps {
             maps.check().map_err(|wrong| wrong.inside("maps"))?;
         }
-        self.check_together()?;
-        Ok(())
+        self.check_together()
     }
 
     fn check_meshes(&self) -> Checked {

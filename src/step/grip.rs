@@ -154,7 +154,9 @@ pub const TOUCH: f64 = 1e-9;
 
 impl Default for Grip {
     fn default() -> Self {
-        Self { near: Near::default(), ..Self::unused() }
+        // room for what is usually near, so that the first rock of a thread need not stop to make it
+        let near = Near::default();
+        Self { near, ..Self::unused() }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The exact cases: one row each, with the scene, the exact solution and where it comes from.
 
 mod closed;
+mod meshes;
 mod pivot;
 
 use super::bench::{SETUP, Setup, settings, terrain};
@@ -10,6 +11,7 @@ use crate::terrain::Terrain;
 use crate::terrain::make;
 use crate::terrain::stl::Facet;
 use crate::trajectory::{Scratch, Trajectory};
+use meshes::{angle, plane, roof, tilted};
 use nalgebra::Rotation3;
 use pivot::Lift;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -208,7 +210,6 @@ pub const CASES: [Case; 10] = [
             let z = if has_springs { 0.558_838_697_250_74 } else { rigid_bounce_m() };
             vec![Measure { what: "height (m)", exact: z, scale: 1.0, of: |j| j.end.position_m.z }]
         }),
-        ..STILL
     },
     Case {
         name: "oblique",
@@ -232,7 +233,6 @@ pub const CASES: [Case; 10] = [
                 place(x, y, z)
             }
         }),
-        ..STILL
     },
     Case {
         name: "pivot",
@@ -250,7 +250,6 @@ pub const CASES: [Case; 10] = [
             };
             tipped(setup, &rigid, has_springs)
         }),
-        ..STILL
     },
     Case {
         name: "pivot_rough",
@@ -264,7 +263,6 @@ pub const CASES: [Case; 10] = [
             let rigid = Lift::by_energy(0.5, TIPPED_RAD, 10.0 / 7.0, 0.790_441_637_957_75);
             tipped(setup, &rigid, has_springs)
         }),
-        ..STILL
     },
     Case {
         name: "pivot_smooth",
@@ -278,7 +276,6 @@ pub const CASES: [Case; 10] = [
             let rigid = Lift::by_energy(0.5, TIPPED_RAD, 2.0, 0.641_750_884_357_65);
             tipped(setup, &rigid, has_springs)
         }),
-        ..STILL
     },
     Case {
         name: "groove",
@@ -312,7 +309,6 @@ pub const CASES: [Case; 10] = [
             }
         },
         exact: None,
-        ..STILL
     },
 ];
 
@@ -327,26 +323,6 @@ const STILL: Case = Case {
     setup: |_| SETUP,
     exact: None,
 };
-
-fn angle(degrees: f64) -> f64 {
-    degrees.to_radians()
-}
-
-/// A plane through the origin that falls in +y.
-fn plane(degrees: f64) -> Vec<Facet> {
-    make::jittered_plane(16.0, 12, angle(degrees))
-}
-
-/// Turned downwards in +y about the x axis.
-fn tilted(facets: Vec<Facet>, degrees: f64) -> Vec<Facet> {
-    let down = Rotation3::from_axis_angle(&Vec3::x_axis(), -angle(degrees));
-    facets.into_iter().map(|facet| facet.map(|corner| down * corner)).collect()
-}
-
-/// A roof with its edge along y through the origin, so steep that a rock tips off without touching the flanks.
-fn roof() -> Vec<Facet> {
-    make::ridge(4.0, angle(80.0))
-}
 
 /// At rest above the origin of [`plane`], pressed in as the weight presses it.
 fn lying(degrees: f64, has_springs: bool) -> Setup {
@@ -392,7 +368,7 @@ fn in_groove(has_springs: bool) -> Setup {
     Setup { ground, centre_m: down * Vec3::new(0.0, -3.0, height), ..SETUP }
 }
 
-/// Height 1 s after a drop from 1 m with e = 0.5 in the rigid limit: two impacts, at t_f and 2 t_f, then a parabola (m).
+/// Height 1 s after a drop from 1 m with e = 0.5 in the rigid limit: two impacts, at `t_f` and 2 `t_f`, then a parabola (m).
 fn rigid_bounce_m() -> f64 {
     let g = SETUP.gravity_m_s2;
     let falls = (2.0 / g).sqrt();

@@ -5,6 +5,7 @@ use super::cases::{CASES, Case};
 use crate::step::Scheme;
 use crate::terrain::Terrain;
 use crate::trajectory::{Effort, Scratch, Trajectory};
+use std::fmt::Write as _;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -223,8 +224,9 @@ pub fn csv(studies: &[CaseStudy]) -> String {
             for Point { fineness, error, seconds, effort } in &curve.points {
                 let scheme = curve.rungs.scheme;
                 let Effort { steps, rejected, leaps, sweeps, triangles, unsettled } = effort;
-                text += &format!(
-                    "{},{},{},{fineness:e},{error:.3e},{seconds:.3e},{steps},{rejected},{leaps},{sweeps},{triangles},{unsettled}\n",
+                let _ = writeln!(
+                    text,
+                    "{},{},{},{fineness:e},{error:.3e},{seconds:.3e},{steps},{rejected},{leaps},{sweeps},{triangles},{unsettled}",
                     study.case.name,
                     scheme.name(),
                     fineness_column(scheme)

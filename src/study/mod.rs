@@ -18,11 +18,14 @@ mod scene_figure;
 mod scene_page;
 pub mod spread;
 pub mod verify;
+pub mod stability;
+mod stability_figure;
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;
 use exact::CaseStudy;
 use scene::SceneStudy;
+use stability::{Map, Outcome};
 use std::fs;
 use std::path::Path;
 
@@ -52,4 +55,15 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
     write_whole(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
     write_whole(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
     write_whole(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
+}
+
+/// Writes the page, table and map of the stiff and extreme cases into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_stability(outcomes: &[Outcome], maps: &[Map], dir: &Path) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    write_whole(&dir.join("map.svg"), stability_figure::draw(maps).as_bytes())?;
+    write_whole(&dir.join("stability.csv"), stability::csv(outcomes).as_bytes())?;
+    write_whole(&dir.join("README.md"), stability::page(outcomes).as_bytes())
 }

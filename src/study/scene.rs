@@ -38,6 +38,8 @@ pub struct Rung {
     pub effort: Effort,
     /// Rocks that failed.
     pub failed: usize,
+    /// Largest rise of mechanical energy of a rock over one contact (J).
+    pub rise_j: f64,
     /// Values of each of [`QUANTITIES`], release by release; NaN for a failed rock.
     values: [Vec<f64>; QUANTITIES.len()],
 }
@@ -116,7 +118,7 @@ pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(&Rung)) -> Resul
         done(&rung);
         rungs.push(rung);
     }
-    let own = relatives.iter().position(|&relative| relative == 1.0).unwrap_or(0);
+    let own = relatives.iter().position(|relative| relative.total_cmp(&1.0).is_eq()).unwrap_or(0);
     let mut statistics = Vec::new();
     for quantity in 0..QUANTITIES.len() {
         let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[quantity].clone()).collect();
@@ -159,6 +161,7 @@ fn rung(plan: &Plan, relative: f64, ensemble: &Ensemble) -> Result<Rung> {
         seconds: 0.0,
         effort: Effort::default(),
         failed: 0,
+        rise_j: 0.0,
         values: Default::default(),
     };
     let mut totals = crate::hazard::Totals::default();
@@ -167,6 +170,7 @@ fn rung(plan: &Plan, relative: f64, ensemble: &Ensemble) -> Result<Rung> {
             let row = Row::of(&fall, plan.terrain.origin_m);
             let failed = row.stop == StopKind::Failed;
             rung.failed += usize::from(failed);
+            rung.rise_j = rung.rise_j.max(fall.ledger.rise_j);
             totals.add(&fall);
             for (values, (quantity, ..)) in rung.values.iter_mut().zip(QUANTITIES) {
                 values.push(if failed { f64::NAN } else { quantity.of(&row) });

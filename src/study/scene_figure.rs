@@ -37,7 +37,9 @@ pub(super) fn draw(study: &SceneStudy) -> String {
             Some((last, rest)) => (Some(last), rest),
             None => (None, &[][..]),
         };
-        rest.iter().for_each(|panel| panel.axes_above_another(paper));
+        for panel in rest {
+            panel.axes_above_another(paper);
+        }
         if let Some(last) = last {
             last.axes(paper);
         }

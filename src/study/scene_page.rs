@@ -95,13 +95,15 @@ pub fn setting(step: &Settings) -> String {
 }
 
 fn settings_table(page: &mut String, study: &SceneStudy) {
-    *page += "| setting | run time (s) | contact steps per rock | passes per rock | failed | unsettled steps |\n|---|---|---|---|---|---|\n";
-    for (number, Rung { step, seconds, effort, failed, .. }) in study.rungs.iter().enumerate() {
+    *page += "| setting | run time (s) | contact steps per rock | passes per rock | failed | largest rise of energy (J) | unsettled steps |\n|---|---|---|---|---|---|---|\n";
+    for (number, Rung { step, seconds, effort, failed, rise_j, .. }) in
+        study.rungs.iter().enumerate()
+    {
         let each = |count: u64| significant(count as f64 / study.releases as f64, 4);
         let own = if number == study.own { " (the scene's own)" } else { "" };
         let _ = writeln!(
             page,
-            "| {}{own} | {} | {} | {} | {failed} | {} |",
+            "| {}{own} | {} | {} | {} | {failed} | {rise_j:.1e} | {} |",
             setting(step),
             significant(*seconds, 3),
             each(effort.steps),

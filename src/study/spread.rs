@@ -170,6 +170,6 @@ mod tests {
     #[test]
     fn failed_rocks_count_nowhere() {
         let all = [vec![1.0, f64::NAN, 3.0], vec![1.0, 9.0, 3.0]];
-        assert_eq!(Paired::new(&all).shift(0.99, 1, 1).value, 0.0);
+        assert!(Paired::new(&all).shift(0.99, 1, 1).value.abs() < f64::EPSILON);
     }
 }

@@ -93,8 +93,11 @@ pub fn follow(
         chance,
         journey: Journey::new(course.terrain, release.rock, release.motion, (keep, course.watch)),
     };
+    // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
+    let mut stop = if fall.is_pressed() { fall.touch() } else { None };
     let stop = loop {
-        if let Some(stop) = fall.fly().or_else(|| fall.touch()) {
+        stop = stop.or_else(|| fall.fly()).or_else(|| fall.touch());
+        if let Some(stop) = stop {
             break stop;
         }
     };
@@ -152,6 +155,13 @@ struct Fall<'a> {
 }
 
 impl Fall<'_> {
+    /// Whether the rock is in contact with something it is pressed into.
+    fn is_pressed(&mut self) -> bool {
+        let now = self.journey.now;
+        self.grip.begin(&self.world, now.position_m, now.velocity_m_s, now.spin_rad_s);
+        self.grip.touches.iter().any(|touch| touch.distance_m < self.world.body.radius)
+    }
+
     /// Leaps to the next touch.
     fn fly(&mut self) -> Option<Stop> {
         let now = self.journey.now;
@@ -185,6 +195,7 @@ impl Fall<'_> {
         let began_s = self.journey.now.time_s;
         let before_j = self.total_j();
         let lost_before_j = self.journey.lost_j();
+        let held = self.grip.stored_j(&self.world);
         let mut stepper = Stepper::new(self.course.step, &self.world, self.grip);
         let stop = self.steps(&mut stepper);
         let rise_j = self.total_j() - before_j;
@@ -192,7 +203,9 @@ impl Fall<'_> {
         // A rock that rests presses on its springs: what they hold is not lost.
         let stored = self.grip.springs_j(&self.world);
         self.journey.pay(&stored, -1.0);
-        self.journey.ledger.rise_j = self.journey.ledger.rise_j.max(rise_j + stored.sum());
+        self.journey.pay(&held, 1.0);
+        self.journey.ledger.rise_j =
+            self.journey.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
         let lasted = self.journey.now.time_s - began_s;
         if let Some(tilt) = tilt.filter(|_| stop.is_none() && lasted <= self.impact_time()) {
             (self.grip.v, self.grip.w) = (tilt * self.grip.v, tilt * self.grip.w);

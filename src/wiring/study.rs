@@ -6,6 +6,7 @@ use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
 use rockfall::study::scene::{PERCENTS, QUANTITIES, SceneStudy};
+use rockfall::study::stability::{self, Map, Outcome};
 use rockfall::study::{self, Wish, exact, scene};
 use std::path::{Path, PathBuf};
 
@@ -29,6 +30,32 @@ pub(crate) fn exact_cases(out: &Path, done: impl Fn(&str)) -> Result<String> {
     let studies = exact::study(done);
     study::write_exact(&studies, out)?;
     Ok(format!("page, table and figures in {}", out.display()))
+}
+
+/// Runs the stiff and extreme cases; says how many bounds are kept, and whether all are.
+pub(crate) fn stability(out: &Path, done: impl Fn(&str)) -> Result<(String, bool)> {
+    let outcomes = stability::study(&done);
+    let maps = Map::all();
+    done("map of stiffness against step");
+    study::write_stability(&outcomes, &maps, out)?;
+    let mut words: Vec<String> = outcomes
+        .iter()
+        .filter(|outcome| !outcome.holds())
+        .map(|Outcome { case, setting, scheme, law, found, bound }| {
+            format!(
+                "outside its bound: {case}, {setting}, {}: {law}: {found:.2e} > {bound:.2e}",
+                scheme.name()
+            )
+        })
+        .collect();
+    let all_hold = words.is_empty();
+    words.push(format!(
+        "{} of {} bounds kept; page, table and map in {}",
+        outcomes.len() - words.len(),
+        outcomes.len(),
+        out.display()
+    ));
+    Ok((words.join("\n"), all_hold))
 }
 
 /// Studies a scene and says what was found in a few sentences.

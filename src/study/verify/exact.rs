@@ -4,7 +4,7 @@ use super::{Row, Verification, timed};
 use crate::contact::pair::Strength;
 use crate::error::Result;
 use crate::ground::Ground;
-use crate::plan::RestRule;
+use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::step::{Scheme, Settings};
@@ -90,14 +90,8 @@ fn rocks(
         capture_speed_m_s: None,
     };
     let rest = RestRule { speed_m_s: 0.02, time_s: 1.0 };
-    let course = Course {
-        terrain: &terrain,
-        gravity_m_s2,
-        step: &step,
-        rest,
-        longest_s,
-        watch: crate::plan::Watch::default(),
-    };
+    let watch = Watch::default();
+    let course = Course { terrain: &terrain, gravity_m_s2, step: &step, rest, longest_s, watch };
     let releases: Vec<Release> = places
         .iter()
         .zip([velocity_m_s, [0.0; 3]])

@@ -159,7 +159,9 @@ impl<'a> Crowd<'a> {
             pairs.sort_unstable();
             pairs.dedup();
             islands = Islands::alone(count);
-            pairs.iter().for_each(|&(a, b)| islands.join(a, b));
+            for &(a, b) in &pairs {
+                islands.join(a, b);
+            }
             let mut most = vec![0.0f64; count];
             for (place, &k) in places.iter().zip(&present) {
                 let root = islands.of(k) as usize;

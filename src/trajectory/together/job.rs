@@ -117,7 +117,9 @@ impl<'a> Job<'a> {
             (tie.n, tie.closed) = (n, true);
             tie.captured = -n.dot(&(a.v - b.v)) < tie.law.capture_m_s;
             let h = ONSET / tie.law.omega;
-            ends.into_iter().for_each(|end| self.rovers[end].h = self.rovers[end].h.min(h));
+            for end in ends {
+                self.rovers[end].h = self.rovers[end].h.min(h);
+            }
         }
         for rover in self.rovers.iter_mut().filter(|rover| rover.member.flying) {
             let due = rover.lands.as_ref().is_some_and(|(time_s, _)| *time_s <= self.now_s);
@@ -149,7 +151,7 @@ impl<'a> Job<'a> {
             let done = match tried {
                 Ok(done) => done,
                 Err(stuck) => {
-                    self.fail(&stuck);
+                    self.fail(stuck);
                     goes_on = false;
                     break;
                 }
@@ -214,7 +216,7 @@ impl<'a> Job<'a> {
         cluster.members.iter().all(|member| member.flying)
     }
 
-    fn fail(&mut self, stuck: &Stuck) {
+    fn fail(&mut self, stuck: Stuck) {
         for rover in &mut self.rovers {
             rover.leave(Stop::Failed(stuck.to_string()));
         }

@@ -1,0 +1,180 @@
+//! Stiff and extreme cases, each held against its analytic expectation or a bound, for every scheme.
+
+mod geometry;
+mod impacts;
+mod lasting;
+mod map;
+mod page;
+
+use super::bench::{Setup, settings};
+use crate::step::{Scheme, Settings};
+use crate::terrain::Terrain;
+use crate::trajectory::{Scratch, Stop, Trajectory};
+
+pub use map::{Cell, Map, Verdict};
+pub(super) use page::{csv, page};
+
+/// One number of one case with one scheme, and the bound it must keep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The case.
+    pub case: &'static str,
+    /// The setting within the case; empty where there is only one.
+    pub setting: String,
+    /// The scheme.
+    pub scheme: Scheme,
+    /// What is held: the expectation in words.
+    pub law: &'static str,
+    /// The number found, in the unit of the bound.
+    pub found: f64,
+    /// The largest that holds.
+    pub bound: f64,
+}
+
+impl Outcome {
+    /// Whether the bound is kept; what is no number keeps none.
+    pub fn holds(&self) -> bool {
+        self.found <= self.bound
+    }
+}
+
+/// A scheme at its usual fineness.
+#[derive(Debug, Clone, Copy)]
+pub struct Way {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// Tolerance (m/s) or step (s).
+    pub fineness: f64,
+}
+
+/// Every scheme at its usual fineness.
+pub const WAYS: [Way; 4] = [
+    Way { scheme: Scheme::Dda, fineness: 1e-5 },
+    Way { scheme: Scheme::Adaptive, fineness: 0.05 },
+    Way { scheme: Scheme::Reference, fineness: 1e-6 },
+    Way { scheme: Scheme::Rigid, fineness: 0.01 },
+];
+
+/// A case: all it finds with one scheme.
+type Trial = fn(&Way, &mut Notes);
+
+/// Every case by name. To add one: a function and a row.
+const TRIALS: [(&str, Trial); 19] = [
+    ("impact", impacts::impact),
+    ("thin sheet", impacts::thin_sheet),
+    ("zero gap", impacts::zero_gap),
+    ("from behind", impacts::from_behind),
+    ("restitution 0 and 1", impacts::restitution),
+    ("bounce to rest", impacts::bounce_to_rest),
+    ("friction 0 and 89°", impacts::friction),
+    ("no gravity", impacts::no_gravity),
+    ("edge and corner", geometry::edge_and_corner),
+    ("parallel walls", geometry::parallel_walls),
+    ("narrow groove", geometry::narrow_groove),
+    ("degenerate triangles", geometry::degenerate),
+    ("flipped triangles", geometry::flipped),
+    ("conflicting sheets", geometry::conflicting_sheets),
+    ("offset of 1e6 m", geometry::offset),
+    ("small triangles", geometry::small_triangles),
+    ("one triangle", geometry::one_triangle),
+    ("rest for an hour", lasting::rest),
+    ("random releases", lasting::random_releases),
+];
+
+/// What the cases found, in order.
+#[derive(Debug, Default)]
+pub(super) struct Notes {
+    case: &'static str,
+    scratch: Scratch,
+    outcomes: Vec<Outcome>,
+}
+
+/// Mechanical energy may rise over a contact by this share of what there is (–): rounding of some thousand steps.
+const RISE: f64 = 1e-9;
+
+impl Notes {
+    /// Notes one number.
+    fn hold(
+        &mut self,
+        way: &Way,
+        setting: impl Into<String>,
+        law: &'static str,
+        found: f64,
+        bound: f64,
+    ) {
+        self.outcomes.push(Outcome {
+            case: self.case,
+            setting: setting.into(),
+            scheme: way.scheme,
+            law,
+            found,
+            bound,
+        });
+    }
+
+    /// Follows a rock, twice, and holds what must hold of every journey: it does not fail, its end is finite and the same
+    /// bits both times, its energy does not rise.
+    fn follow(&mut self, way: &Way, setting: &str, setup: &Setup, terrain: &Terrain) -> Trajectory {
+        self.follow_captured(way, setting, setup, terrain, None)
+    }
+
+    /// The same with a capture speed (m/s).
+    fn follow_captured(
+        &mut self,
+        way: &Way,
+        setting: &str,
+        setup: &Setup,
+        terrain: &Terrain,
+        capture_speed_m_s: Option<f64>,
+    ) -> Trajectory {
+        let step: Settings = settings(way.scheme, way.fineness, capture_speed_m_s);
+        let journey = setup.follow(terrain, &step, &mut self.scratch);
+        let again = setup.follow(terrain, &step, &mut Scratch::default());
+        let failed = matches!(journey.stop, Stop::Failed(_)) || !is_finite(&journey);
+        let differs = !same_bits(&journey, &again);
+        let lifted = setup.rock.mass_kg() * setup.gravity_m_s2 * setup.rock.radius_m;
+        let energy = journey.released_j.abs().max(journey.extremes.total_j).max(lifted);
+        self.hold(
+            way,
+            setting,
+            "settles, finite, same bits again",
+            f64::from(u8::from(failed) + u8::from(differs)),
+            0.0,
+        );
+        self.hold(way, setting, "energy rise over energy", journey.ledger.rise_j / energy, RISE);
+        journey
+    }
+}
+
+fn is_finite(journey: &Trajectory) -> bool {
+    let end = &journey.end;
+    [end.position_m, end.velocity_m_s, end.spin_rad_s]
+        .iter()
+        .all(|v| v.iter().all(|x| x.is_finite()))
+}
+
+fn same_bits(a: &Trajectory, b: &Trajectory) -> bool {
+    let bits = |journey: &Trajectory| {
+        let end = &journey.end;
+        [end.position_m, end.velocity_m_s, end.spin_rad_s].map(|v| v.map(f64::to_bits))
+    };
+    bits(a) == bits(b)
+}
+
+/// Runs every case with every scheme; `done` hears of each.
+pub fn study(done: impl Fn(&str)) -> Vec<Outcome> {
+    let mut notes = Notes::default();
+    for (name, trial) in TRIALS {
+        notes.case = name;
+        for way in &WAYS {
+            trial(way, &mut notes);
+        }
+        done(name);
+    }
+    notes.outcomes
+}
+
+/// Whether the ground answers with springs.
+fn sprung(way: &Way) -> bool {
+    super::cases::has_springs(way.scheme)
+}

@@ -1,0 +1,179 @@
+//! Meshes that are awkward: edges, corners, walls, slivers, seams, far away.
+
+use super::{Notes, Way, sprung};
+use crate::rock::{Rock, Vec3};
+use crate::study::bench::{GRAVITY_M_S2, ROCK, SETUP, Setup, terrain};
+use crate::terrain::make;
+use crate::terrain::stl::Facet;
+use crate::trajectory::Stop;
+
+fn square(corner: Vec3, a: Vec3, b: Vec3) -> Vec<Facet> {
+    vec![[corner, corner + a, corner + a + b], [corner, corner + a + b, corner + b]]
+}
+
+/// A rock that falls 0.5 m and drifts, from above the origin, followed for 1.5 s.
+fn dropped() -> Setup {
+    Setup {
+        centre_m: Vec3::new(0.1, 0.2, 1.0),
+        velocity_m_s: Vec3::new(0.5, 0.2, 0.0),
+        longest_s: 1.5,
+        ..SETUP
+    }
+}
+
+/// Dropped exactly onto an edge and onto a corner: it goes down a flank, and no energy comes from nowhere.
+pub(super) fn edge_and_corner(way: &Way, notes: &mut Notes) {
+    let above = Setup { centre_m: Vec3::new(0.0, 0.0, 1.0), longest_s: 0.6, ..SETUP };
+    let roof = terrain(make::ridge(4.0, 1.0));
+    let end = notes.follow(way, "edge", &above, &roof).end.position_m;
+    notes.hold(way, "edge", "deeper than the edge allows (m)", 0.5 - end.norm(), 0.01);
+    let tip = terrain(make::tetrahedron(6.0));
+    let end = notes.follow(way, "corner", &above, &tip).end.position_m;
+    notes.hold(way, "corner", "deeper than the corner allows (m)", 0.5 - end.norm(), 0.01);
+}
+
+/// Between upright walls that press it from both sides by `s`: friction `2 μ p_N s` holds it, or it slides with
+/// `g − 2 μ p_N s/m`. Springs only: for the rigid limit it must not be thrown out.
+pub(super) fn parallel_walls(way: &Way, notes: &mut Notes) {
+    for (setting, s) in [("slides", 1e-5), ("stays", 2e-5)] {
+        let half = SETUP.rock.radius_m - s;
+        let wall = |x: f64| square(Vec3::new(x, -5.0, -5.0), Vec3::y() * 10.0, Vec3::z() * 10.0);
+        let walls = terrain([wall(-half), wall(half)].concat());
+        let setup = Setup { longest_s: 0.3, ..SETUP };
+        let end = notes.follow(way, setting, &setup, &walls).end;
+        if !sprung(way) {
+            notes.hold(way, setting, "thrown sideways (m)", end.position_m.x.abs(), 2.0 * s);
+            continue;
+        }
+        let mu = SETUP.ground.friction_angle_rad.tan();
+        let held = 2.0 * mu * SETUP.ground.normal_stiffness_n_m * s / SETUP.rock.mass_kg();
+        let way_m = 0.5 * (GRAVITY_M_S2 - held).max(0.0) * setup.longest_s.powi(2);
+        // friction takes up to a millisecond to build up: until then it falls freely
+        let bound = GRAVITY_M_S2 * 1e-3 * setup.longest_s;
+        notes.hold(
+            way,
+            setting,
+            "fall off the expected one (m)",
+            (-end.position_m.z - way_m).abs(),
+            bound,
+        );
+    }
+}
+
+/// At rest on the two borders of a groove narrower than itself: `sin a` = half width/R.
+pub(super) fn narrow_groove(way: &Way, notes: &mut Notes) {
+    let half = 0.3;
+    let plate =
+        |x: f64, out: f64| square(Vec3::new(x, -5.0, 0.0), Vec3::x() * out, Vec3::y() * 10.0);
+    let rails = terrain([plate(-half, -5.0), plate(half, 5.0)].concat());
+    let height = (0.25f64 - half * half).sqrt();
+    let setup = Setup { centre_m: Vec3::new(0.0, 0.1, height), ..SETUP };
+    let end = notes.follow(way, "", &setup, &rails).end;
+    // both springs of both contacts share the load: p_N along the normal, p_s = p_N/4 across
+    let (cos2, sin2) = (height * height / 0.25, half * half / 0.25);
+    let sinks = if sprung(way) { setup.pressed_m(0.0) / (2.0 * (cos2 + 0.25 * sin2)) } else { 0.0 };
+    notes.hold(
+        way,
+        "",
+        "height off √(R² − b²) less what the springs give (m)",
+        (end.position_m.z - height + sinks).abs(),
+        1e-6,
+    );
+}
+
+/// Triangles without area, slivers, doubles: the same journey as without them.
+pub(super) fn degenerate(way: &Way, notes: &mut Notes) {
+    let clean = make::jittered_plane(10.0, 6, 0.0);
+    let mut dirty = clean.clone();
+    let [a, b, c] = clean[20];
+    dirty.extend([[a, a, b], [a, a + (b - a) * 0.5, b], [a, b, c], [c, b, a]]);
+    dirty.push([a, b, a + (b - a) * 0.5 + (c - a) * 1e-9]);
+    let [clean, dirty] = [clean, dirty].map(terrain);
+    let first = notes.follow(way, "clean", &dropped(), &clean).end;
+    let second = notes.follow(way, "with slivers and doubles", &dropped(), &dirty).end;
+    let off = (first.position_m - second.position_m).norm();
+    notes.hold(way, "", "end moved (m)", off, 1e-9);
+}
+
+/// All triangles the other way round: the same bits.
+pub(super) fn flipped(way: &Way, notes: &mut Notes) {
+    let facets = make::natural_slope(30, 40).facets;
+    let setup = Setup { centre_m: Vec3::new(150.0, 150.0, 130.0), longest_s: 8.0, ..SETUP };
+    let inside_out = facets.iter().map(|&[a, b, c]| [c, b, a]).collect();
+    let first = notes.follow(way, "as it is", &setup, &terrain(facets)).end;
+    let second = notes.follow(way, "inside out", &setup, &terrain(inside_out)).end;
+    let off = (first.position_m - second.position_m).norm();
+    // the same surface in another order of corners: rounding, grown over some impacts
+    notes.hold(way, "", "end moved (m)", off, 1e-6);
+}
+
+/// Two sheets that run through each other at 10°: a rock rolls into the wedge between them and stays above both.
+pub(super) fn conflicting_sheets(way: &Way, notes: &mut Notes) {
+    let tilt = 10f64.to_radians();
+    let both = [make::jittered_plane(8.0, 3, 0.0), make::jittered_plane(8.0, 3, tilt)].concat();
+    let setup = Setup {
+        centre_m: Vec3::new(0.1, 3.0, 0.52),
+        velocity_m_s: Vec3::new(0.0, -4.0, 0.0),
+        longest_s: 3.0,
+        ..SETUP
+    };
+    let end = notes.follow(way, "", &setup, &terrain(both)).end.position_m;
+    let over_tilted = end.z * tilt.cos() + end.y * tilt.sin();
+    notes.hold(way, "", "depth in one of the sheets (m)", 0.5 - end.z.min(over_tilted), 0.01);
+}
+
+/// A thousand kilometres away: the same journey, as far as coordinates there have digits.
+pub(super) fn offset(way: &Way, notes: &mut Notes) {
+    let here = make::jittered_plane(10.0, 6, 0.2);
+    let far = Vec3::new(1e6, -1e6, 1e3);
+    let there = here.iter().map(|facet| facet.map(|corner| corner + far)).collect();
+    let setup = dropped();
+    let moved = Setup { centre_m: setup.centre_m + far, ..setup };
+    let first = notes.follow(way, "here", &setup, &terrain(here)).end.position_m;
+    let second = notes.follow(way, "there", &moved, &terrain(there)).end.position_m;
+    // corners are off by 1e-10 m there; a few impacts multiply that
+    notes.hold(way, "", "end moved (m)", (second - far - first).norm(), 1e-8);
+}
+
+/// A boulder of 10 m on triangles of 0.1 m.
+pub(super) fn small_triangles(way: &Way, notes: &mut Notes) {
+    let ground = terrain(make::jittered_plane(12.0, 200, 0.0));
+    let rock = Rock { radius_m: 10.0, ..ROCK };
+    let mut setup = Setup { rock, centre_m: Vec3::new(0.1, 0.2, 10.5), longest_s: 0.5, ..SETUP };
+    setup.ground.normal_stiffness_n_m = 1e11;
+    setup.ground.shear_stiffness_n_m = 0.25e11;
+    let end = notes.follow(way, "", &setup, &ground).end;
+    notes.hold(
+        way,
+        "",
+        "sideways (m)",
+        end.position_m.x.hypot(end.position_m.y) - 0.1f64.hypot(0.2),
+        1e-9,
+    );
+}
+
+/// A single triangle: hit and left behind, or missed.
+pub(super) fn one_triangle(way: &Way, notes: &mut Notes) {
+    let facet = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
+    let lone = terrain(vec![facet]);
+    let setup = Setup {
+        centre_m: Vec3::new(0.0, 0.0, 1.5),
+        velocity_m_s: Vec3::new(3.0, 0.0, 0.0),
+        longest_s: 20.0,
+        ..SETUP
+    };
+    for (setting, x) in [("hit", -1.5), ("missed", 1.6)] {
+        let setup = Setup { centre_m: Vec3::new(x, 0.0, 1.0), ..setup };
+        let stop = notes.follow(way, setting, &setup, &lone).stop;
+        notes.hold(
+            way,
+            setting,
+            "leaves the terrain (0 = yes)",
+            f64::from(u8::from(stop != Stop::LeftTerrain)),
+            0.0,
+        );
+    }
+    let on_it = Setup { centre_m: Vec3::new(0.0, 0.0, 0.6), velocity_m_s: Vec3::zeros(), ..setup };
+    let end = notes.follow(way, "dropped on it", &on_it, &lone).end;
+    notes.hold(way, "dropped on it", "fell through (m)", 0.49 - end.position_m.z, 0.0);
+}

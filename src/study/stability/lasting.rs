@@ -1,0 +1,100 @@
+//! What shows only after long, or among many.
+
+use super::{Notes, RISE, Way, sprung};
+use crate::chance::{Purpose, stream, unit};
+use crate::ground::Ground;
+use crate::rock::{Rock, Vec3};
+use crate::step::Scheme;
+use crate::study::bench::{GROUND, ROCK, SETUP, Setup, settings, terrain};
+use crate::terrain::make;
+use crate::trajectory::{Scratch, Stop};
+
+/// On a slope that friction and rolling friction hold: no creep, and as good as no cost. A top spinning on the spot slows
+/// down and stays where it is.
+pub(super) fn rest(way: &Way, notes: &mut Notes) {
+    let angle = 20f64.to_radians();
+    let slope = terrain(make::jittered_plane(10.0, 6, angle));
+    let ground = Ground { rolling_friction: 0.5, ..GROUND };
+    let pressed = if sprung(way) { SETUP.pressed_m(angle) } else { 0.0 };
+    let height = SETUP.rock.radius_m - pressed;
+    // a fixed step cannot leap over rest: 10 s of it are a million steps
+    let longest_s = if way.scheme == Scheme::Dda { 10.0 } else { 3600.0 };
+    let setup = Setup {
+        ground,
+        centre_m: Vec3::new(0.0, height * angle.sin(), height * angle.cos()),
+        longest_s,
+        ..SETUP
+    };
+    let end = notes.follow(way, "on a slope of 20°", &setup, &slope).end;
+    let along = SETUP.rock.mass_kg() * SETUP.gravity_m_s2 * angle.sin();
+    // the shear spring and, by the lever R, the rolling spring 0.1 p_s R²
+    let wound = 11.0 * along / GROUND.shear_stiffness_n_m;
+    notes.hold(
+        way,
+        "on a slope of 20°",
+        "moved (m), at most what the springs wind up",
+        (end.position_m - setup.centre_m).norm(),
+        1.1 * wound,
+    );
+    notes.hold(way, "on a slope of 20°", "speed at the end (m/s)", end.velocity_m_s.norm(), 1e-6);
+    let level = terrain(make::jittered_plane(10.0, 6, 0.0));
+    let top = Setup {
+        ground,
+        centre_m: Vec3::new(0.1, 0.2, 0.5 - pressed),
+        spin_rad_s: Vec3::new(0.0, 0.0, 20.0),
+        longest_s: 4.0,
+        ..SETUP
+    };
+    let end = notes.follow(way, "spinning on the spot", &top, &level).end;
+    notes.hold(
+        way,
+        "spinning on the spot",
+        "spin left after 4 s (rad/s)",
+        end.spin_rad_s.norm(),
+        1e-3,
+    );
+    notes.hold(
+        way,
+        "spinning on the spot",
+        "moved sideways (m)",
+        (end.position_m.x - 0.1).hypot(end.position_m.y - 0.2),
+        1e-9,
+    );
+}
+
+/// Rocks of all sizes down a rough slope of 10 000 triangles: none fails, none is lost, no energy rises, and the ledger
+/// accounts for all of it.
+pub(super) fn random_releases(way: &Way, notes: &mut Notes) {
+    let slope = terrain(make::natural_slope(61, 82).facets);
+    let rocks = if way.scheme == Scheme::Dda { 2 } else { 100 };
+    let step = settings(way.scheme, way.fineness, None);
+    let (mut lost, mut rise, mut remainder) = (0u32, 0.0f64, 0.0f64);
+    let mut scratch = Scratch::default();
+    for index in 0..rocks {
+        let mut chance = stream(11, Purpose::Place, index);
+        let mut between = |low: f64, high: f64| low + (high - low) * unit(&mut chance);
+        let (x, y) = (between(60.0, 240.0), between(20.0, 60.0));
+        let rock = Rock { radius_m: between(0.15, 1.0), ..ROCK };
+        let ground = Ground { rolling_friction: 0.5, restitution: Some(0.4), ..GROUND };
+        let ground_m =
+            slope.ground_below(x - slope.origin_m.x, y - slope.origin_m.y).unwrap_or(0.0)
+                + slope.origin_m.z;
+        let setup = Setup {
+            rock,
+            ground,
+            centre_m: Vec3::new(x, y, ground_m + 3.0 * rock.radius_m + 1.0),
+            velocity_m_s: Vec3::new(between(-0.5, 0.5), between(0.0, 1.0), 0.0),
+            longest_s: 120.0,
+            rest_time_s: 0.3,
+            ..SETUP
+        };
+        let journey = setup.follow(&slope, &step, &mut scratch);
+        lost += u32::from(matches!(journey.stop, Stop::Failed(_) | Stop::TimeUp));
+        rise = rise.max(journey.ledger.rise_j / journey.released_j);
+        remainder = remainder.max(journey.energy_balance_error());
+    }
+    let setting = format!("{rocks} rocks");
+    notes.hold(way, &setting, "failed or out of time", f64::from(lost), 0.0);
+    notes.hold(way, &setting, "energy rise over energy released", rise, RISE);
+    notes.hold(way, &setting, "energy not accounted for, over energy released", remainder, 0.05);
+}
