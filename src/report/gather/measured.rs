@@ -9,13 +9,13 @@ use crate::output::{Results, read_calibration};
 
 /// Columns of both tables.
 const COLUMNS: [&str; 7] = [
-    "runout measured (m)",
-    "runout computed (m)",
+    "mean runout measured (m)",
+    "computed (m)",
     "KS distance",
-    "KS limit 5 %",
-    "area between curves (m)",
-    "side scatter measured (m)",
-    "side scatter computed (m)",
+    "KS limit",
+    "area between (m)",
+    "side measured (m)",
+    "side computed (m)",
 ];
 
 /// Measured and computed ways, if the scene names measured ones.

@@ -75,6 +75,8 @@ tbody th { font-weight: normal; }
 .wide { overflow-x: auto; }
 .dense { font-size: 12.5px; }
 .dense th, .dense td { padding-right: 8px; }
+.dense thead th { white-space: normal; overflow-wrap: normal; vertical-align: bottom; }
+.dense tbody th { min-width: 120px; }
 small { font-size: 11px; }
 figure { margin: 20px 0 28px; }
 figure svg { display: block; width: 100%; max-width: 680px; height: auto; margin: 0 auto; }
