@@ -1,7 +1,7 @@
 //! The spatial index: parry3d's bounding-volume tree, packed into one cache line a node.
 //!
 //! parry builds the tree (binned surface-area heuristic). A rock's query reads it millions of times, so it is
-//! then packed: two child boxes a node in `f32`, rounded outwards, and up to [`LEAF`] triangles a leaf. Triangles
+//! then packed: two child boxes a node in `f32`, rounded outwards, and up to four triangles a leaf. Triangles
 //! are renumbered in tree order, so that neighbours in space are neighbours in memory.
 
 use crate::rock::Vec3;
@@ -61,7 +61,7 @@ impl Pair {
     }
 }
 
-/// The packed tree. Triangle numbers are positions in [`Index::order`].
+/// The packed tree. Triangle numbers are positions in the order that [`Index::build`] returns.
 #[derive(Debug, Default)]
 pub struct Index {
     pairs: Vec<Pair>,
