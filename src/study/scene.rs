@@ -96,12 +96,13 @@ pub struct Offer {
 /// goes with `step^p'`: 2/3 for TR-BDF2, 1 for the fourth-order tableau, 1 for fixed steps.
 fn ladder_of(scheme: Scheme) -> (&'static [f64], f64) {
     match scheme {
-        Scheme::Adaptive => (&[4.0, 2.0, 1.0, 0.25, 0.0625], 2.0 / 3.0),
-        // already at the fine end
+        Scheme::Adaptive => (&[2.0, 1.0, 0.25, 0.0625, 0.015_625], 2.0 / 3.0),
+        // far above the scene's own tolerance the error no longer follows its law, below it a rung costs little more;
+        // this one is already at the fine end
         Scheme::Reference => (&[4096.0, 256.0, 16.0, 1.0], 1.0),
-        Scheme::Rigid => (&[4.0, 2.0, 1.0, 0.25, 0.0625], 1.0),
+        Scheme::Rigid => (&[2.0, 1.0, 0.5, 0.25, 0.125], 1.0),
         // each halving costs double
-        Scheme::Dda => (&[4.0, 2.0, 1.0, 0.5], 1.0),
+        Scheme::Dda => (&[2.0, 1.0, 0.5], 1.0),
     }
 }
 
