@@ -102,10 +102,6 @@ impl Distribution {
     ///
     /// # Errors
     /// Numbers that are not finite or not rising.
-    /// Even between two numbers.
-    ///
-    /// # Errors
-    /// Numbers that are not finite or not rising.
     pub fn uniform([low, high]: [f64; 2]) -> Result<Self, Flaw> {
         finite(&[low, high])?;
         if low >= high {

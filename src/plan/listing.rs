@@ -33,6 +33,7 @@ impl Plan {
             rest: RestRule { speed_m_s, time_s },
             longest_s,
             trees,
+            breaking,
             flight,
             rolling,
             roughness,
@@ -79,6 +80,9 @@ impl Plan {
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s"));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
+        list.part("breaking stems", breaking, |stems| {
+            format!("{stems}, each whole again for the next rock")
+        });
         list.line(
             "flight",
             match flight {
