@@ -1,5 +1,6 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod inputs;
 mod listing;
 mod stiffness;
 mod watch;
@@ -127,6 +128,12 @@ pub struct Plan {
     pub catalogued: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
+    /// What went in, as name and value.
+    pub inputs: Vec<(String, String)>,
+    /// Rows of the report's title block.
+    pub title_block: Vec<(String, String)>,
+    /// Where terrain and ground values come from, in words; the first may be empty.
+    pub sources: [String; 2],
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
 }
@@ -216,6 +223,12 @@ impl Plan {
                 lattice(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
             ),
+            inputs: inputs::of(scene),
+            title_block: inputs::title_block(&scene.report),
+            sources: [
+                scene.report.terrain_source.clone().unwrap_or_default(),
+                inputs::ground_source(scene, &catalogued(scene)),
+            ],
             catalogued: catalogued(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
@@ -321,8 +334,11 @@ fn catalogued(scene: &Scene) -> Vec<String> {
 fn curtains(scene: &Scene, terrain: &Terrain) -> Option<Vec<Curtain>> {
     let lines = scene.lines.iter().map(|line| (&line.name, &line.points_m));
     let barriers = scene.barriers.iter().map(|barrier| (&barrier.name, &barrier.points_m));
+    let elsewhere = scene.barriers.iter().flat_map(BarrierTable::elsewhere);
     let curtain = |(name, line): (&String, &Polyline)| Curtain::new(name, line, terrain.origin_m);
-    Some(lines.chain(barriers).map(curtain).collect()).filter(|all: &Vec<Curtain>| !all.is_empty())
+    let moved = elsewhere.map(|(_, name, line)| Curtain::new(&name, &line, terrain.origin_m));
+    Some(lines.chain(barriers).map(curtain).chain(moved).collect())
+        .filter(|all: &Vec<Curtain>| !all.is_empty())
 }
 
 fn lattice(scene: &Scene, terrain: &Terrain) -> Result<Option<Lattice>> {
