@@ -10,6 +10,7 @@
 pub mod aim;
 pub mod bench;
 pub mod cases;
+pub mod conserve;
 pub mod exact;
 mod exact_figure;
 mod exact_page;
@@ -23,6 +24,7 @@ mod stability_figure;
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;
+use conserve::Conservation;
 use exact::CaseStudy;
 use scene::SceneStudy;
 use stability::{Map, Outcome};
@@ -54,6 +56,9 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     write_whole(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
     write_whole(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
+    if !study.meshes.is_empty() {
+        write_whole(&dir.join("mesh.csv"), scene_page::mesh_csv(study).as_bytes())?;
+    }
     write_whole(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
 }
 
@@ -66,4 +71,14 @@ pub fn write_stability(outcomes: &[Outcome], maps: &[Map], dir: &Path) -> Result
     write_whole(&dir.join("map.svg"), stability_figure::draw(maps).as_bytes())?;
     write_whole(&dir.join("stability.csv"), stability::csv(outcomes).as_bytes())?;
     write_whole(&dir.join("README.md"), stability::page(outcomes).as_bytes())
+}
+
+/// Writes the page and table of a scene's conservation into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_conservation(found: &Conservation, dir: &Path) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    write_whole(&dir.join("conservation.csv"), conserve::csv(found).as_bytes())?;
+    write_whole(&dir.join("README.md"), conserve::page(found).as_bytes())
 }

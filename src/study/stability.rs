@@ -3,6 +3,7 @@
 mod geometry;
 mod impacts;
 mod lasting;
+mod many;
 mod map;
 mod page;
 
@@ -59,7 +60,7 @@ pub const WAYS: [Way; 4] = [
 type Trial = fn(&Way, &mut Notes);
 
 /// Every case by name. To add one: a function and a row.
-const TRIALS: [(&str, Trial); 19] = [
+const TRIALS: [(&str, Trial); 22] = [
     ("impact", impacts::impact),
     ("thin sheet", impacts::thin_sheet),
     ("zero gap", impacts::zero_gap),
@@ -77,6 +78,9 @@ const TRIALS: [(&str, Trial); 19] = [
     ("offset of 1e6 m", geometry::offset),
     ("small triangles", geometry::small_triangles),
     ("one triangle", geometry::one_triangle),
+    ("stack of two", many::stack),
+    ("head-on", many::head_on),
+    ("one centre for two", many::coincident),
     ("rest for an hour", lasting::rest),
     ("random releases", lasting::random_releases),
 ];
