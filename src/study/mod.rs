@@ -14,6 +14,8 @@ pub mod conserve;
 pub mod exact;
 mod exact_figure;
 mod exact_page;
+pub mod exact_values;
+pub mod order;
 pub mod scene;
 mod scene_figure;
 mod scene_page;
@@ -37,15 +39,22 @@ pub use scene_page::{Wish, sentence, setting};
 ///
 /// # Errors
 /// When a file or folder cannot be written.
-pub fn write_exact(studies: &[CaseStudy], dir: &Path) -> Result<()> {
+pub fn write_exact(
+    studies: &[CaseStudy],
+    ladders: &[order::Ladder],
+    values: &[exact_values::Value],
+    dir: &Path,
+) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
     for study in studies {
         let file = figures.join(format!("{}.svg", study.case.name));
         write_whole(&file, exact_figure::draw(study).as_bytes())?;
     }
+    write_whole(&figures.join("order.svg"), order::draw(ladders).as_bytes())?;
+    write_whole(&dir.join("order.csv"), order::csv(ladders).as_bytes())?;
     write_whole(&dir.join("exact.csv"), exact::csv(studies).as_bytes())?;
-    write_whole(&dir.join("README.md"), exact_page::page(studies).as_bytes())
+    write_whole(&dir.join("README.md"), exact_page::page(studies, ladders, values).as_bytes())
 }
 
 /// Writes a scene's page, table and figure into `dir`.

@@ -154,7 +154,9 @@ pub fn study(
             rung.run(&plan, block.clone(), ensemble)?;
         }
     }
-    rungs.iter().for_each(|rung| done(rung, 1.0));
+    for rung in &rungs {
+        done(rung, 1.0);
+    }
     let own = relatives.iter().position(|relative| (relative - 1.0).abs() < 1e-9).unwrap_or(0);
     plan.step = own_step;
     let meshes =
@@ -172,8 +174,7 @@ pub fn study(
             let Some(found) = percentile(&all[own], p) else { continue };
             let ladder = paired.ladder(p, relatives, order, plan.seed);
             let sampling = sampling(&all[own], p);
-            let meshes =
-                with_meshes.then(|| on_meshes.ladder(p, &times, MESH_ORDER, plan.seed));
+            let meshes = with_meshes.then(|| on_meshes.ladder(p, &times, MESH_ORDER, plan.seed));
             statistics.push(Statistic { quantity, percent, own: found, sampling, ladder, meshes });
         }
     }
@@ -300,7 +301,8 @@ impl Statistic {
     pub fn mesh_error_of(&self, mesh: &Mesh) -> Interval {
         let times = mesh.times.powf(MESH_ORDER);
         let own = self.meshes.as_ref().map(|meshes| meshes.own_error);
-        let Interval { value, low, high } = own.unwrap_or(Interval { value: 0.0, low: 0.0, high: 0.0 });
+        let Interval { value, low, high } =
+            own.unwrap_or(Interval { value: 0.0, low: 0.0, high: 0.0 });
         Interval { value: value * times, low: low * times, high: high * times }
     }
 

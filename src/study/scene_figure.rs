@@ -107,7 +107,8 @@ fn draw_statistic(paper: &Paper<'_>, panel: &Panel, study: &SceneStudy, statisti
     let steps = steps(study, statistic);
     let meshes = meshes(study, statistic);
     for (bars, ink) in [(&steps, VERMILLION), (&meshes, GREEN)] {
-        let middle: Vec<(f64, f64)> = bars.iter().map(|&(t, error, _)| (t, inside(error))).collect();
+        let middle: Vec<(f64, f64)> =
+            bars.iter().map(|&(t, error, _)| (t, inside(error))).collect();
         panel.line(paper, &middle, Pen::full(ink, 1.4));
         for &(t, error, most) in bars {
             let (spot, end) = (panel.at(t, inside(error)), panel.at(t, inside(most)));
@@ -132,8 +133,7 @@ fn key(paper: &Paper<'_>, first: Option<&Panel>, with_meshes: bool) {
     paper.text(&Label::new(title, (x, 12.0)).sized(NORMAL).bold());
     let own = "the scene's own setting";
     let own_x = panel.frame.right - text_width(own, SMALL);
-    let ring =
-        Frame { left: own_x - 15.0, right: own_x - 5.0, top: 7.0, bottom: 17.0 };
+    let ring = Frame { left: own_x - 15.0, right: own_x - 5.0, top: 7.0, bottom: 17.0 };
     paper.outline(&ring, Pen::full(INK, 1.0));
     paper.text(&Label::new(own, (own_x, 12.0)).coloured(GREY));
     for (ink, words, is_there) in [

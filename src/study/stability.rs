@@ -1,5 +1,6 @@
 //! Stiff and extreme cases, each held against its analytic expectation or a bound, for every scheme.
 
+mod fineness;
 mod geometry;
 mod impacts;
 mod lasting;
@@ -60,8 +61,10 @@ pub const WAYS: [Way; 4] = [
 type Trial = fn(&Way, &mut Notes);
 
 /// Every case by name. To add one: a function and a row.
-const TRIALS: [(&str, Trial); 22] = [
+const TRIALS: [(&str, Trial); 24] = [
     ("impact", impacts::impact),
+    ("step and tolerance", fineness::steps),
+    ("shear memory", fineness::memory),
     ("thin sheet", impacts::thin_sheet),
     ("zero gap", impacts::zero_gap),
     ("from behind", impacts::from_behind),

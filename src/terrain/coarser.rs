@@ -10,7 +10,7 @@ use super::edges::Edges;
 use super::weld::{Tally, Welded};
 use crate::rock::Vec3;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashSet};
+use std::collections::{BTreeSet, BinaryHeap};
 
 /// Distance along the mesh between chosen vertices over the edge length wanted (–): the distance from vertex to vertex along
 /// edges is on average this much longer than the straight one, and neighbours are chosen a little further apart than they
@@ -25,7 +25,7 @@ pub fn coarser(terrain: &Terrain, times: f64) -> Terrain {
     let apart_m = APART * times * slope_edge_m(terrain);
     let moved_to = chosen(terrain, apart_m);
     let mut coarse = empty(terrain);
-    let mut seen = HashSet::new();
+    let mut seen = BTreeSet::new();
     for (t, corners) in terrain.triangles.iter().enumerate() {
         let corners = corners.map(|v| moved_to[v as usize]);
         let mut key = corners;
@@ -103,7 +103,9 @@ fn is_on_tree(terrain: &Terrain) -> Vec<bool> {
     let mut trees = vec![false; terrain.vertices_m.len()];
     for (t, corners) in terrain.triangles.iter().enumerate() {
         if terrain.is_tree(t as u32) {
-            corners.iter().for_each(|&v| trees[v as usize] = true);
+            for &v in corners {
+                trees[v as usize] = true;
+            }
         }
     }
     trees
@@ -165,7 +167,6 @@ fn keep_used_vertices(coarse: &mut Welded, all_m: &[Vec3]) {
     }
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -183,7 +184,8 @@ mod tests {
             scale: 1.0,
             sheet: sheet as u16,
         };
-        let pieces: Vec<Piece> = (0..2).filter(|&k| !soups[k].facets.is_empty()).map(piece).collect();
+        let pieces: Vec<Piece> =
+            (0..2).filter(|&k| !soups[k].facets.is_empty()).map(piece).collect();
         let welded = weld(&pieces, Vec3::zeros(), None).unwrap();
         let sheet = |is_tree| Sheet { path: "made".into(), ground: 0, is_tree };
         Terrain::new(welded, vec![sheet(false), sheet(true)])
@@ -213,7 +215,11 @@ mod tests {
             // edges cut across the last row of triangles at most; folds would cover ground twice
             let area = plan_area_m2(&coarse) / plan_area_m2(&fine);
             assert!((area - 1.0).abs() < 0.02, "{area}");
-            assert!((rim(&fine) / rim(&coarse) / times - 1.0).abs() < 0.5, "holes: {}", rim(&coarse));
+            assert!(
+                (rim(&fine) / rim(&coarse) / times - 1.0).abs() < 0.5,
+                "holes: {}",
+                rim(&coarse)
+            );
             let is_old = |v: &Vec3| fine.vertices_m.contains(v);
             assert!(coarse.vertices_m.iter().all(is_old));
             assert_eq!(coarse.triangles, coarser(&fine, times).triangles);
@@ -229,7 +235,9 @@ mod tests {
         let stem = make::tetrahedron(1.0);
         let fine = terrain(both, stem.clone());
         let coarse = coarser(&fine, 3.0);
-        let stems = |terrain: &Terrain| (0..terrain.triangles.len() as u32).filter(|&t| terrain.is_tree(t)).count();
+        let stems = |terrain: &Terrain| {
+            (0..terrain.triangles.len() as u32).filter(|&t| terrain.is_tree(t)).count()
+        };
         assert_eq!((stems(&fine), stems(&coarse)), (stem.len(), stem.len()));
         let one = coarser(&terrain(lower, Vec::new()), 3.0);
         assert_eq!(coarse.triangles.len() - stem.len(), 2 * one.triangles.len());

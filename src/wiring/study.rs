@@ -7,7 +7,7 @@ use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
 use rockfall::study::scene::{PERCENTS, QUANTITIES, SceneStudy};
 use rockfall::study::stability::{self, Map, Outcome};
-use rockfall::study::{self, Wish, conserve, exact, scene};
+use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
@@ -30,9 +30,11 @@ pub(crate) struct SceneOrder {
 
 /// Studies the exact cases and says where the result is.
 pub(crate) fn exact_cases(out: &Path, done: impl Fn(&str)) -> Result<String> {
+    let values = exact_values::values();
+    let ladders = order::study();
     let studies = exact::study(done);
-    study::write_exact(&studies, out)?;
-    Ok(format!("page, table and figures in {}", out.display()))
+    study::write_exact(&studies, &ladders, &values, out)?;
+    Ok(format!("{}page, tables and figures in {}", exact_values::table(&values), out.display()))
 }
 
 /// Runs the stiff and extreme cases; says how many bounds are kept, and whether all are.
