@@ -215,10 +215,13 @@ impl Near {
         self.margin - (centre - self.centre).norm()
     }
 
-    /// Whether nothing but one face can touch within the margin: a certificate that geometry is a plane there.
+    /// The one face that can touch within the margin, if nothing else can: a certificate that geometry is a plane there.
     #[inline]
-    pub fn is_plane(&self) -> bool {
-        self.faces.len() == 1 && self.edges.is_empty() && self.corners.is_empty()
+    pub fn plane(&self) -> Option<u32> {
+        match &self.faces[..] {
+            [face] if self.edges.is_empty() && self.corners.is_empty() => Some(face.id),
+            _ => None,
+        }
     }
 
     /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners.
