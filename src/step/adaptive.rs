@@ -81,14 +81,14 @@ pub fn advance(
     h: &mut f64,
     h_max: f64,
 ) -> Result<Advance, Stuck> {
-    if let Some(done) = grip.step_on_plane(world, control, (h, h_max)) {
-        return done;
+    let mut done = Advance::default();
+    if let Some(settled) = grip.step_on_plane(world, control, (h, h_max), &mut done) {
+        return settled.map(|()| done);
     }
     grip.leave_plane();
     if !grip.fresh {
         grip.rates_now(world);
     }
-    let mut done = Advance::default();
     let limit = travel_limit(world, grip);
     let (omega, known) = (stiffest(world, grip), grip.holds.len());
     let mut trial = Try { world, control, grip, omega, known, end: None };
@@ -109,6 +109,23 @@ pub(crate) enum Outcome {
     Gains,
     /// A stage did not settle.
     Unsettled,
+    /// The rock has left where the trial holds.
+    Elsewhere,
+}
+
+/// Why no step was found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Halt {
+    /// No step, however short, settles.
+    Unsettled,
+    /// The trial does not hold where the rock goes.
+    Elsewhere,
+}
+
+impl From<Halt> for Stuck {
+    fn from(_: Halt) -> Self {
+        Self::Unsettled
+    }
 }
 
 /// A step that can be tried with any length.
@@ -126,7 +143,7 @@ pub(crate) fn settle(
     control: &Control,
     (h, h_max, limit): (&mut f64, f64, f64),
     rejected: &mut u64,
-) -> Result<f64, Stuck> {
+) -> Result<f64, Halt> {
     loop {
         let wished = h.min(limit);
         let dt = wished.min(h_max);
@@ -137,12 +154,13 @@ pub(crate) fn settle(
             }
             Outcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
             Outcome::Gains => 0.4,
+            Outcome::Elsewhere => return Err(Halt::Elsewhere),
             _ => 0.25,
         };
         *rejected += 1;
         *h = dt * ratio;
         if *h * trial.omega() < SHORTEST {
-            return Err(Stuck::Unsettled);
+            return Err(Halt::Unsettled);
         }
     }
 }

@@ -1,17 +1,19 @@
 //! A step of one contact on one plane, in the contact's own frame.
 //!
-//! Where the features around a rock certify that only one face can touch (`contact::near`), geometry is a plane and the
-//! normal a constant: the stages of `stage.rs` are the same sums over fourteen numbers, and nothing is looked for.
-//! Most impacts on a terrain mesh are of this kind.
+//! While only one face touches, geometry is a plane and the normal a constant: the stages of `stage.rs` are the same sums
+//! over fourteen numbers, and there is nothing to iterate. Where each stage ends it is asked whether that face is still
+//! alone; if the features around the rock certify it (`contact::near`), not even that. Most impacts are of this kind.
 
 use super::adaptive::{
-    Advance, Control, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, Stuck, TRAVEL, Trial, settle,
+    Advance, Control, Halt, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, Stuck, TRAVEL, Trial,
+    settle,
 };
-use super::grip::{Grip, Loss, World, longest_step};
+use super::grip::{Grip, Loss, World};
 use super::law::{Body, normal_force};
 use super::slide::{Along, Frame, Local, Pair, cut, cut_moment};
 use super::tableau::STAGES;
 use crate::contact::FeatureKind;
+use crate::contact::near::Near;
 use crate::ground::Law;
 use crate::rock::Vec3;
 
@@ -87,8 +89,8 @@ struct Press {
 /// A step being tried.
 struct Try<'a, 'w> {
     control: &'a Control,
-    body: &'w Body,
-    law: &'w Law,
+    world: &'a World<'w>,
+    law: &'a Law,
     flat: &'a mut Flat,
     /// Normal damping in force (N s/m).
     c_n: f64,
@@ -97,80 +99,78 @@ struct Try<'a, 'w> {
     pen: f64,
     /// Energy at the step's start, motion and springs (J).
     energy: f64,
-    /// Furthest way for which the plane is certain (m).
-    room: f64,
+    near: &'a Near,
+    /// Centre at the step's start (m).
+    start: Vec3,
+    face: u32,
     end: State,
     press: Press,
     stored: f64,
     solved: u64,
 }
 
-/// How far the plane is certain around the rock (m), if it is on one with the one contact it remembers.
-fn certain(world: &World, grip: &mut Grip) -> Option<f64> {
-    let [hold] = &grip.holds[..] else { return None };
-    let face = grip.near.plane()?;
-    if hold.feature.kind != FeatureKind::Face || hold.feature.id != face {
-        return None;
+/// Whether the rock's one contact is the face that its one memory belongs to.
+fn is_on_face(world: &World, grip: &Grip) -> bool {
+    let [hold] = &grip.holds[..] else { return false };
+    if hold.feature.kind != FeatureKind::Face || !grip.near.covers(&grip.c) {
+        return false;
     }
-    let corner = &world.terrain.features.faces[face as usize].a;
-    let height = hold.n.dot(&(grip.c - corner));
-    let along = world.terrain.features.faces[face as usize].n.dot(&hold.n).abs();
-    if height <= 0.5 * world.body.radius || along < 1.0 - 1e-12 {
-        return None;
-    }
-    let mut room = grip.near.room_m(&grip.c);
-    if room < 0.5 * TRAVEL * world.body.radius {
-        let c = grip.c;
-        grip.collect(world, &c);
-        if grip.near.plane() != Some(face) {
-            return None;
-        }
-        room = grip.near.room_m(&grip.c);
-    }
-    Some(room)
+    let face = &world.terrain.features.faces[hold.feature.id as usize];
+    // Deep inside, or with a memory from elsewhere, the side it is on must be looked up.
+    hold.n.dot(&(grip.c - face.a)) > 0.5 * world.body.radius
+        && (hold.n == face.n || hold.n == -face.n)
 }
 
 impl Grip {
-    /// One accepted step on a plane; `None` if the rock is not certain to stay on one.
+    /// One accepted step on a plane; `None` if the rock does not stay on one.
     pub(crate) fn step_on_plane(
         &mut self,
         world: &World,
         control: &Control,
         (h, h_max): (&mut f64, f64),
-    ) -> Option<Result<Advance, Stuck>> {
-        let room = certain(world, self)?;
-        let (law, captured) = (world.law(self.holds[0].triangle), self.holds[0].captured);
-        let c_n = if captured { law.c_n_captured } else { law.c_n };
+        done: &mut Advance,
+    ) -> Option<Result<(), Stuck>> {
+        if !is_on_face(world, self) {
+            return None;
+        }
+        let hold = self.holds[0];
+        let law = world.law(hold.triangle);
+        let c_n = if hold.captured { law.c_n_captured } else { law.c_n };
         let pen = self.sunk(world);
         if !self.flat.on {
             self.enter_plane(law, &world.body, (pen, c_n));
         }
+        let limit = self.longest_step(world, TRAVEL);
         let mut trial = Try {
             control,
-            body: &world.body,
+            world,
             law,
             c_n,
             gravity: self.flat.frame.local(&world.body.gravity),
             pen,
             energy: self.motion_j(&world.body) + self.stored,
-            room,
+            near: &self.near,
+            start: self.c,
+            face: hold.feature.id,
             flat: &mut self.flat,
             end: [0.0; SIZE],
             press: Press::default(),
             stored: 0.0,
             solved: 0,
         };
-        let mut rejected = 0;
-        let limit = longest_step(&world.body, self.v.norm(), room);
-        let settled = settle(&mut trial, control, (h, h_max, limit), &mut rejected);
+        let settled = settle(&mut trial, control, (h, h_max, limit), &mut done.rejected);
         let (end, press, stored) = (trial.end, trial.press, trial.stored);
         self.sweeps += trial.solved;
-        Some(settled.map(|dt| {
-            let loss = self.flat.lost(control, dt);
-            let triangle = self.holds[0].triangle;
-            self.take_plane(law, control, (end, press, stored));
-            Advance { dt, loss: loss.on(world, triangle), rejected, unsettled: false }
-        }))
+        match settled {
+            Ok(dt) => {
+                done.dt = dt;
+                done.loss = self.flat.lost(control, dt).on(world, hold.triangle);
+                self.take_plane(law, control, (end, press, stored));
+                Some(Ok(()))
+            }
+            Err(Halt::Unsettled) => Some(Err(Stuck::Unsettled)),
+            Err(Halt::Elsewhere) => None,
+        }
     }
 
     /// Penetration into the plane of the one contact (m).
@@ -341,7 +341,7 @@ impl Try<'_, '_> {
     /// Solves implicit stage `i` of a step of length `dt`.
     #[inline]
     fn stage(&mut self, i: usize, dt: f64) {
-        let (body, law, tableau) = (self.body, self.law, self.control.tableau);
+        let (body, law, tableau) = (&self.world.body, self.law, self.control.tableau);
         let hh = tableau.diagonal * dt;
         let mut base = self.flat.state;
         for (rate, a) in self.flat.rates.iter().zip(tableau.a[i]) {
@@ -389,6 +389,17 @@ impl Try<'_, '_> {
         self.solved += 1;
     }
 
+    /// Whether the stage ended on the plane, or above it, and touches nothing else.
+    #[inline]
+    fn is_alone(&self) -> bool {
+        let centre = self.start + self.flat.frame.out_local(three(&self.end, WAY));
+        self.near.covers(&centre)
+            && (self.near.plane() == Some(self.face) || {
+                let reach = self.world.body.radius;
+                self.near.is_alone(self.world.terrain, self.face, (&centre, reach))
+            })
+    }
+
     /// Local error relative to the tolerance.
     #[inline]
     fn error(&self, dt: f64) -> f64 {
@@ -402,13 +413,13 @@ impl Try<'_, '_> {
         let omega2 = self.law.omega * self.law.omega;
         let worst2 = (square(three(&off, WAY)).max(square(two(&off, SHEAR))) * omega2)
             .max(square(three(&off, SPEED)))
-            .max(square(three(&off, SPIN)) * self.body.radius.powi(2));
+            .max(square(three(&off, SPIN)) * self.world.body.radius.powi(2));
         dt * worst2.sqrt() / self.control.tolerance
     }
 
     /// Whether motion, height and springs together hold more at the end than at the start.
     fn gains(&self) -> bool {
-        let (body, end) = (self.body, &self.end);
+        let (body, end) = (&self.world.body, &self.end);
         let (speed2, spin2) = (square(three(end, SPEED)), square(three(end, SPIN)));
         let motion = 0.5 * (body.mass * speed2 + body.inertia * spin2);
         let lifted = -body.mass * dot(self.gravity, three(end, WAY));
@@ -426,13 +437,13 @@ impl Trial for Try<'_, '_> {
     fn try_step(&mut self, dt: f64) -> Outcome {
         for i in 1..self.control.tableau.stages {
             self.stage(i, dt);
+            if !self.is_alone() {
+                return Outcome::Elsewhere;
+            }
         }
         let error = self.error(dt);
         if error > 1.0 || error.is_nan() {
             return Outcome::Error(error);
-        }
-        if square(three(&self.end, WAY)) > self.room * self.room {
-            return Outcome::Unsettled;
         }
         let pen = (self.pen - self.end[WAY + 2]).max(0.0);
         self.press.closed = self.press.push > 0.0 || pen > 0.0;
