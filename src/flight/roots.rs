@@ -1,5 +1,7 @@
 //! Times at which a polynomial of degree two or four first falls through zero.
 
+use super::{least, most};
+
 /// The two roots of `a t² + b t + c`, ascending, without cancellation; `None` if there are none.
 ///
 /// A linear polynomial has its one root twice.
@@ -14,7 +16,7 @@ pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     }
     let q = -0.5 * (b + inside.sqrt().copysign(b));
     let (one, other) = (q / a, if q == 0.0 { 0.0 } else { c / q });
-    Some((one.min(other), one.max(other)))
+    Some((least(one, other), most(one, other)))
 }
 
 /// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero and that is `wanted`.

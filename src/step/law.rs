@@ -186,6 +186,9 @@ pub fn solve(
     h: f64,
     sweeps: &mut u64,
 ) -> Option<(Vec3, Vec3)> {
+    if spots.is_empty() {
+        return Some((v, w));
+    }
     if let [spot] = spots {
         *sweeps += 1;
         spot.solve(body, &v, &w, h);
