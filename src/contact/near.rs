@@ -139,22 +139,26 @@ impl Near {
     fn take(&mut self, terrain: &Terrain, t: u32) {
         let features = &terrain.features;
         let face = &features.faces[t as usize];
+        let sides = [face.e1, face.e2 - face.e1, -face.e2];
         let corners = [face.a, face.a + face.e1, face.a + face.e2];
-        let mut near =
-            NearFace { id: t, a: face.a, n: face.n, out: [Vec3::zeros(); 3], rim: [0.0; 3] };
-        let mut furthest = f64::NEG_INFINITY;
+        let out = sides.map(|side| side.cross(&face.n));
+        let near = self.margin + SLACK * self.radius;
+        let mut is_near = true;
         for k in 0..3 {
-            let along = corners[(k + 1) % 3] - corners[k];
-            near.out[k] = along.cross(&face.n).normalize();
-            near.rim[k] = near.out[k].dot(&corners[k]);
-            furthest = furthest.max(near.out[k].dot(&self.centre) - near.rim[k]);
-        }
-        if furthest > self.reach {
-            return;
+            // How far the foot is beyond the side, times the side's length: most are told apart without a root.
+            let beyond = out[k].dot(&(self.centre - corners[k]));
+            let beyond2 = beyond * beyond.max(0.0);
+            let length2 = sides[k].norm_squared();
+            if beyond2 > self.reach * self.reach * length2 {
+                return;
+            }
+            is_near &= beyond2 <= near * near * length2;
         }
         self.sheets.push(t);
-        if furthest <= self.margin + SLACK * self.radius {
-            self.faces.push(near);
+        if is_near {
+            let out = out.map(|out| out.normalize());
+            let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
+            self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
         }
         let owned = features.owned[t as usize];
         for k in 0..3 {

@@ -10,7 +10,7 @@ use super::adaptive::{
 };
 use super::grip::{Grip, Loss, World};
 use super::law::{Body, normal_force};
-use super::slide::{Along, Frame, Local, Pair, cut, cut_moment};
+use super::slide::{Along, Answers, Frame, Local, Pair, cut, cut_moment};
 use super::tableau::STAGES;
 use crate::contact::FeatureKind;
 use crate::contact::near::Near;
@@ -337,12 +337,31 @@ impl Press {
     }
 }
 
+/// What the stages of a step of one length have in common.
+struct Length {
+    /// Length of a stage (s).
+    hh: f64,
+    answers: Answers,
+    /// Reciprocals of what stretches shear and rolling spring (m/(N s), 1/(N m s)).
+    over_s: f64,
+    over_r: f64,
+}
+
+impl Length {
+    #[inline]
+    fn new(body: &Body, law: &Law, hh: f64) -> Self {
+        let answers = Answers::of(body, law, hh);
+        let over_r = if answers.kar > 0.0 { 1.0 / answers.kar } else { 0.0 };
+        Self { hh, over_s: 1.0 / answers.kap, over_r, answers }
+    }
+}
+
 impl Try<'_, '_> {
     /// Solves implicit stage `i` of a step of length `dt`.
     #[inline]
-    fn stage(&mut self, i: usize, dt: f64) {
+    fn stage(&mut self, i: usize, dt: f64, by: &Length) {
         let (body, law, tableau) = (&self.world.body, self.law, self.control.tableau);
-        let hh = tableau.diagonal * dt;
+        let hh = by.hh;
         let mut base = self.flat.state;
         for (rate, a) in self.flat.rates.iter().zip(tableau.a[i]) {
             for (base, rate) in base.iter_mut().zip(rate) {
@@ -355,11 +374,11 @@ impl Try<'_, '_> {
         let push = normal_force((law.p_n, self.c_n), pen, speed[2], body.mass, hh);
         let (mut drag, mut moment) = ([0.0; 2], [0.0; 3]);
         if push > 0.0 {
-            let (kap, kar) = (law.p_s * hh + law.c_s, law.k_r * hh + law.c_r);
-            let slip = slip(body, speed, spin);
-            let a = [0, 1].map(|k| base[SHEAR + k] * law.p_s + slip[k] * kap);
-            let d = [0, 1, 2].map(|k| base[ROLL + k] * law.k_r + spin[k] * kar);
-            (drag, moment) = Pair::of(body, law, (hh, push), (a, d)).solve();
+            let (slip, answers) = (slip(body, speed, spin), &by.answers);
+            let a = [0, 1].map(|k| base[SHEAR + k] * law.p_s + slip[k] * answers.kap);
+            let d = [0, 1, 2].map(|k| base[ROLL + k] * law.k_r + spin[k] * answers.kar);
+            let caps = (law.friction * push, law.rolling_m * push);
+            (drag, moment) = Pair { answers, a, d, caps }.solve();
         }
         let (dv, dw) = accelerations(body, push, drag, moment);
         let (rate, end) = (&mut self.flat.rates[i], &mut self.end);
@@ -369,14 +388,11 @@ impl Try<'_, '_> {
             rate[SPEED + k] = self.gravity[k] + dv[k];
             rate[SPIN + k] = dw[k];
         }
-        let over_s = 1.0 / (hh * law.p_s + law.c_s);
         for k in 0..2 {
-            rate[SHEAR + k] = (drag[k] - law.p_s * base[SHEAR + k]) * over_s;
+            rate[SHEAR + k] = (drag[k] - law.p_s * base[SHEAR + k]) * by.over_s;
         }
-        let winding = hh * law.k_r + law.c_r;
-        let over_r = if winding > 0.0 { 1.0 / winding } else { 0.0 };
         for k in 0..3 {
-            rate[ROLL + k] = (moment[k] - law.k_r * base[ROLL + k]) * over_r;
+            rate[ROLL + k] = (moment[k] - law.k_r * base[ROLL + k]) * by.over_r;
         }
         for k in 0..SIZE {
             end[k] = base[k] + rate[k] * hh;
@@ -435,8 +451,9 @@ impl Trial for Try<'_, '_> {
     }
 
     fn try_step(&mut self, dt: f64) -> Outcome {
+        let by = Length::new(&self.world.body, self.law, self.control.tableau.diagonal * dt);
         for i in 1..self.control.tableau.stages {
-            self.stage(i, dt);
+            self.stage(i, dt, &by);
             if !self.is_alone() {
                 return Outcome::Elsewhere;
             }
