@@ -249,16 +249,19 @@ impl Near {
         }
     }
 
-    /// Whether a rock at `centre` that touched `face` still does, or nothing, and nothing else is nearer than `reach` (m).
+    /// Whether the foot of `centre` is still on `face`, one of those collected.
+    #[inline]
+    pub fn is_over(&self, face: u32, centre: &Vec3) -> bool {
+        let slack = SLACK * self.radius;
+        self.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
+    }
+
+    /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`.
     #[inline]
     pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
-        self.faces.iter().all(|other| {
-            if other.id == face {
-                other.holds_foot_of(centre, SLACK * self.radius)
-            } else {
-                self.on_face(other, centre, reach).is_none()
-            }
-        }) && self.edges.iter().all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
+        let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
+        faces.all(|other| other.id == face || self.on_face(other, centre, reach).is_none())
+            && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
             && self
                 .corners
                 .iter()

@@ -5,8 +5,8 @@
 //! alone; if the features around the rock certify it (`contact::near`), not even that. Most impacts are of this kind.
 
 use super::adaptive::{
-    Advance, Control, Halt, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, Stuck, TRAVEL, Trial,
-    settle,
+    Advance, Control, Halt, ONSET, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, Stuck, TRAVEL,
+    Trial, settle,
 };
 use super::grip::{Grip, Loss, World};
 use super::law::{Body, normal_force};
@@ -405,15 +405,25 @@ impl Try<'_, '_> {
         self.solved += 1;
     }
 
-    /// Whether the stage ended on the plane, or above it, and touches nothing else.
+    /// What speaks against the stage's end, if anything: the rock must stay over the face and touch nothing else.
     #[inline]
-    fn is_alone(&self) -> bool {
+    fn objection(&self, dt: f64) -> Option<Outcome> {
         let centre = self.start + self.flat.frame.out_local(three(&self.end, WAY));
-        self.near.covers(&centre)
-            && (self.near.plane() == Some(self.face) || {
-                let reach = self.world.body.radius;
-                self.near.is_alone(self.world.terrain, self.face, (&centre, reach))
-            })
+        if !self.near.covers(&centre) {
+            return Some(Outcome::Elsewhere);
+        }
+        if self.near.plane() == Some(self.face) {
+            return None;
+        }
+        if !self.near.is_over(self.face, &centre) {
+            return Some(Outcome::Elsewhere);
+        }
+        let reach = self.world.body.radius;
+        if self.near.is_alone(self.world.terrain, self.face, (&centre, reach)) {
+            return None;
+        }
+        // It runs into something: what it meets must be resolved from the start, so come close first.
+        Some(if dt * self.law.omega > ONSET { Outcome::Unsettled } else { Outcome::Elsewhere })
     }
 
     /// Local error relative to the tolerance.
@@ -454,8 +464,8 @@ impl Trial for Try<'_, '_> {
         let by = Length::new(&self.world.body, self.law, self.control.tableau.diagonal * dt);
         for i in 1..self.control.tableau.stages {
             self.stage(i, dt, &by);
-            if !self.is_alone() {
-                return Outcome::Elsewhere;
+            if let Some(objection) = self.objection(dt) {
+                return objection;
             }
         }
         let error = self.error(dt);
