@@ -130,6 +130,8 @@ pub struct Grip {
     pub near: Near,
     /// Touches at the last place asked.
     pub touches: Touches,
+    /// That place, if they were asked for with all slack.
+    pub(crate) looked_ahead: Option<Vec3>,
     /// Rates at the stages of the step in hand; the first is that at its start.
     pub rates: [Rate; STAGES],
     /// Whether the first rate belongs to the present state.
@@ -177,6 +179,7 @@ impl Grip {
             holds: Holds::default(),
             near: Near::empty(),
             touches: Touches::default(),
+            looked_ahead: None,
             rates: [Rate::NONE; STAGES],
             fresh: false,
             stored: 0.0,
@@ -232,6 +235,7 @@ impl Grip {
     #[inline]
     pub fn look(&mut self, world: &World, c: &Vec3, reach: f64) {
         self.know(world, c);
+        self.looked_ahead = None;
         self.near.touches(world.terrain, c, reach, &mut self.touches);
     }
 
@@ -239,6 +243,15 @@ impl Grip {
     #[inline]
     pub fn look_ahead(&mut self, world: &World, c: &Vec3) {
         self.look(world, c, world.body.radius * (1.0 + SLACK));
+    }
+
+    /// The same, if it was not asked for at `c` last.
+    #[inline]
+    pub fn look_ahead_again(&mut self, world: &World, c: &Vec3) {
+        if self.looked_ahead != Some(*c) {
+            self.look_ahead(world, c);
+            self.looked_ahead = Some(*c);
+        }
     }
 
     /// The memory of touch `k` of the last look; a new one starts without stretch and without history of rates.
