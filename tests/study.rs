@@ -69,8 +69,7 @@ fn a_run_until_an_interval_is_narrow_is_the_same_everywhere() {
     assert_eq!(alone, run("one", &[&until[..], &["--resume"]].concat()));
 }
 
-/// At fixed steps every scheme has the order that its theory says, within a twentieth; the rigid scheme, which moves with
-/// the mean of two velocities, may have more than it promises.
+/// At fixed steps every scheme has the order that its theory says, within a twentieth.
 #[test]
 fn every_scheme_has_its_order_at_fixed_steps() {
     for ladder in rockfall::study::order::study() {

@@ -119,8 +119,9 @@ mod tests {
     #[test]
     fn ten_times_faster_counts_from_the_fine_end() {
         let ladder = |times: &[f64]| -> Vec<Saving> {
-            let saving = |(k, &time)| Saving { error: 0.1f64.powi(k as i32), time, sweeps: 1.0 };
-            times.iter().enumerate().map(saving).collect()
+            let errors = std::iter::successors(Some(1.0), |error| Some(0.1 * error));
+            let saving = |(error, &time)| Saving { error, time, sweeps: 1.0 };
+            errors.zip(times).map(saving).collect()
         };
         let found = |times: &[f64]| ten_times_below(&ladder(times));
         assert!((found(&[2.0, 12.0, 5.0, 11.0, 90.0]).unwrap() - 1e-3).abs() < 1e-12);

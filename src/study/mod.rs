@@ -23,6 +23,7 @@ pub mod spread;
 pub mod verify;
 pub mod stability;
 mod stability_figure;
+mod subject;
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;

@@ -8,7 +8,7 @@ use super::bench::goes_by_tolerance;
 use super::spread::{Interval, Ladder, Paired};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
-use crate::hazard::{Percentile, Quantity, Row, StopKind};
+use crate::hazard::{Percentile, Row, StopKind};
 use crate::plan::{Part, Plan};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
@@ -17,12 +17,8 @@ use crate::trajectory::{self, Effort, Scratch, Trajectory};
 use std::ops::Range;
 use std::time::Instant;
 
-/// Quantities of the study with what they are called and their units.
-pub const QUANTITIES: [(Quantity, &str, &str); 3] = [
-    (Quantity::Runout, "runout", "m"),
-    (Quantity::MaxTotal, "energy", "J"),
-    (Quantity::MaxHeight, "height", "m"),
-];
+pub use super::subject::{Of, QUANTITIES, Subject};
+
 /// Percentiles of the study (per cent).
 pub const PERCENTS: [u8; 3] = [50, 95, 99];
 /// Fewest releases of which a sampling error is given.
@@ -50,15 +46,15 @@ pub struct Rung {
     pub failed: usize,
     /// Largest rise of mechanical energy of a rock over one contact (J).
     pub rise_j: f64,
-    /// Values of each of [`QUANTITIES`], release by release; NaN for a failed rock.
-    values: [Vec<f64>; QUANTITIES.len()],
+    /// Values of each subject, release by release; NaN for a failed rock, −∞ for one that has none.
+    values: Vec<Vec<f64>>,
 }
 
 /// One percentile of one quantity.
 #[derive(Debug, Clone)]
 pub struct Statistic {
-    /// Which of [`QUANTITIES`].
-    pub quantity: usize,
+    /// Which of [`SceneStudy::subjects`].
+    pub subject: usize,
     /// Per cent.
     pub percent: u8,
     /// Under the scene's own setting.
@@ -99,7 +95,9 @@ pub struct SceneStudy {
     pub own: usize,
     /// On coarser meshes and the scene's own, from coarse to fine; empty where they were not asked for.
     pub meshes: Vec<Mesh>,
-    /// Each of [`PERCENTS`] for each of [`QUANTITIES`].
+    /// What was looked at.
+    pub subjects: Vec<Subject>,
+    /// Each of [`PERCENTS`] for each subject.
     pub statistics: Vec<Statistic>,
 }
 
@@ -148,10 +146,11 @@ pub fn study(
     let mut rungs: Vec<Rung> =
         relatives.iter().map(|&relative| Rung::new(&own_step, relative)).collect();
     // All settings take turns, so that a machine that is busy for a while slows all of them alike.
+    let subjects = Subject::all(&plan);
     for block in blocks(plan.count) {
         for rung in &mut rungs {
             plan.step = rung.step;
-            rung.run(&plan, block.clone(), ensemble)?;
+            rung.run(&plan, &subjects, block.clone(), ensemble)?;
         }
     }
     for rung in &rungs {
@@ -159,14 +158,17 @@ pub fn study(
     }
     let own = relatives.iter().position(|relative| (relative - 1.0).abs() < 1e-9).unwrap_or(0);
     plan.step = own_step;
-    let meshes =
-        if with_meshes { meshes(&mut plan, ensemble, &rungs[own], &done)? } else { Vec::new() };
+    let meshes = if with_meshes {
+        meshes(&mut plan, &subjects, ensemble, (&rungs[own], &done))?
+    } else {
+        Vec::new()
+    };
     let mut statistics = Vec::new();
-    for quantity in 0..QUANTITIES.len() {
-        let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[quantity].clone()).collect();
+    for subject in 0..subjects.len() {
+        let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[subject].clone()).collect();
         let paired = Paired::new(&all);
         let on_meshes = Paired::new(
-            &meshes.iter().map(|mesh| mesh.rung.values[quantity].clone()).collect::<Vec<_>>(),
+            &meshes.iter().map(|mesh| mesh.rung.values[subject].clone()).collect::<Vec<_>>(),
         );
         let times: Vec<f64> = meshes.iter().map(|mesh| mesh.times).collect();
         for percent in PERCENTS {
@@ -175,7 +177,7 @@ pub fn study(
             let ladder = paired.ladder(p, relatives, order, plan.seed);
             let sampling = sampling(&all[own], p);
             let meshes = with_meshes.then(|| on_meshes.ladder(p, &times, MESH_ORDER, plan.seed));
-            statistics.push(Statistic { quantity, percent, own: found, sampling, ladder, meshes });
+            statistics.push(Statistic { subject, percent, own: found, sampling, ladder, meshes });
         }
     }
     Ok(SceneStudy {
@@ -185,6 +187,7 @@ pub fn study(
         rungs,
         own,
         meshes,
+        subjects,
         statistics,
     })
 }
@@ -192,16 +195,16 @@ pub fn study(
 /// All releases on the slope with longer edges; last its own mesh, where they have been already.
 fn meshes(
     plan: &mut Plan,
+    subjects: &[Subject],
     ensemble: &Ensemble,
-    own: &Rung,
-    done: impl Fn(&Rung, f64),
+    (own, done): (&Rung, impl Fn(&Rung, f64)),
 ) -> Result<Vec<Mesh>> {
     let mut meshes = Vec::new();
     for times in COARSER {
         let coarse = coarser(&plan.terrain, times);
         let fine = std::mem::replace(&mut plan.terrain, coarse);
         let mut rung = Rung::new(&plan.step, 1.0);
-        rung.run(plan, 0..plan.count, ensemble)?;
+        rung.run(plan, subjects, 0..plan.count, ensemble)?;
         done(&rung, times);
         meshes.push(Mesh::of(&plan.terrain, times, rung));
         plan.terrain = fine;
@@ -242,29 +245,38 @@ impl Rung {
             effort: Effort::default(),
             failed: 0,
             rise_j: 0.0,
-            values: Default::default(),
+            values: Vec::new(),
         }
     }
 
     /// Computes some more releases.
-    fn run(&mut self, plan: &Plan, releases: Range<usize>, ensemble: &Ensemble) -> Result<()> {
+    fn run(
+        &mut self,
+        plan: &Plan,
+        subjects: &[Subject],
+        releases: Range<usize>,
+        ensemble: &Ensemble,
+    ) -> Result<()> {
+        self.values.resize(subjects.len(), Vec::new());
         let fall =
             |index: usize, scratch: &mut Scratch| trajectory::fall(plan, index, None, scratch);
         let begun = Instant::now();
         for falls in ensemble.in_chunks(releases, Scratch::default, fall) {
-            falls?.iter().for_each(|fall| self.add(&Row::of(fall, plan.terrain.origin_m), fall));
+            falls?
+                .iter()
+                .for_each(|fall| self.add(subjects, &Row::of(fall, plan.terrain.origin_m), fall));
         }
         self.seconds += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
-    fn add(&mut self, row: &Row, fall: &Trajectory) {
+    fn add(&mut self, subjects: &[Subject], row: &Row, fall: &Trajectory) {
         let failed = row.stop == StopKind::Failed;
         self.failed += usize::from(failed);
         self.rise_j = self.rise_j.max(fall.ledger.rise_j);
         self.effort.add(&fall.effort);
-        for (values, (quantity, ..)) in self.values.iter_mut().zip(QUANTITIES) {
-            values.push(if failed { f64::NAN } else { quantity.of(row) });
+        for (values, subject) in self.values.iter_mut().zip(subjects) {
+            values.push(if failed { f64::NAN } else { subject.value(row, fall) });
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Both errors of a scene's statistics over run time.
 
-use super::scene::{QUANTITIES, SceneStudy, Statistic};
+use super::scene::{Of, SceneStudy, Statistic};
 use crate::report::axis::Axis;
 use crate::report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::report::figure::WIDTH_PX;
@@ -17,7 +17,7 @@ const SHOWN: u8 = 95;
 /// Draws one panel a quantity.
 pub(super) fn draw(study: &SceneStudy) -> String {
     let shown: Vec<&Statistic> =
-        study.statistics.iter().filter(|statistic| statistic.percent == SHOWN).collect();
+        study.statistics.iter().filter(|statistic| is_shown(study, statistic)).collect();
     let times = shown.iter().flat_map(|statistic| points(study, statistic)).map(|point| point.0);
     let (fast, slow) = times.fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(t), b.max(t)));
     let mut panels: Vec<Panel> = (0..shown.len())
@@ -46,6 +46,12 @@ pub(super) fn draw(study: &SceneStudy) -> String {
     })
 }
 
+/// The whole journeys' quantities: those at lines are in the tables.
+fn is_shown(study: &SceneStudy, statistic: &Statistic) -> bool {
+    let is_whole = matches!(study.subjects[statistic.subject].of, Of::Rock(_));
+    is_whole && statistic.percent == SHOWN
+}
+
 fn panel(
     study: &SceneStudy,
     statistic: &Statistic,
@@ -56,7 +62,8 @@ fn panel(
     let errors = || points(study, statistic).into_iter().map(|point| point.1);
     let least = errors().filter(|error| *error > 0.0).fold(f64::INFINITY, f64::min);
     let most = errors().fold(least, f64::max);
-    let (_, name, unit) = QUANTITIES[statistic.quantity];
+    let subject = &study.subjects[statistic.subject];
+    let (name, unit) = (&subject.name, subject.unit);
     let y = Axis::log(least.max(1e-3 * most), most, format!("P{SHOWN} {name} ({unit})"));
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
     let title = if is_last { "Run time of the whole ensemble on this machine (s)" } else { "" };

@@ -1,7 +1,7 @@
 //! The page of a scene's errors: sentences, tables, CSV.
 
 use super::bench::goes_by_tolerance;
-use super::scene::{QUANTITIES, Rung, SceneStudy, Statistic};
+use super::scene::{Rung, SceneStudy, Statistic};
 use super::spread::Interval;
 use crate::report::format::{self, significant};
 use crate::step::Settings;
@@ -48,7 +48,8 @@ fn sentences(page: &mut String, study: &SceneStudy, wish: Option<Wish>) {
 
 /// What dominates, and the cheapest way to a wanted error (half the present one where none is given).
 pub fn sentence(study: &SceneStudy, statistic: &Statistic, wanted: Option<f64>) -> String {
-    let (_, name, unit) = QUANTITIES[statistic.quantity];
+    let subject = &study.subjects[statistic.subject];
+    let (name, unit) = (&subject.name, subject.unit);
     let head =
         format!("**P{} {name} {} {unit}**", statistic.percent, significant(statistic.own.value, 4));
     let (Some(sampling), Some(total)) = (statistic.sampling_error(), statistic.total_error())
@@ -142,7 +143,8 @@ fn statistics_table(page: &mut String, study: &SceneStudy) {
     }
     let _ = writeln!(page, " limit |\n|---|{}---|", "---|".repeat(study.rungs.len()));
     for statistic in &study.statistics {
-        let (_, name, unit) = QUANTITIES[statistic.quantity];
+        let subject = &study.subjects[statistic.subject];
+        let (name, unit) = (&subject.name, subject.unit);
         let _ = write!(page, "| P{} {name} ({unit}) |", statistic.percent);
         for value in &statistic.ladder.values {
             let _ = write!(page, " {} |", significant(*value, 5));
@@ -170,7 +172,8 @@ fn mesh_table(page: &mut String, study: &SceneStudy) {
     let columns = "---|".repeat(study.meshes.len());
     let _ = writeln!(page, " error of the own mesh |\n|---|{columns}---|");
     for statistic in &study.statistics {
-        let (_, name, unit) = QUANTITIES[statistic.quantity];
+        let subject = &study.subjects[statistic.subject];
+        let (name, unit) = (&subject.name, subject.unit);
         let Some(meshes) = &statistic.meshes else { continue };
         let _ = write!(page, "| P{} {name} ({unit}) |", statistic.percent);
         for value in &meshes.values {
@@ -192,7 +195,7 @@ pub(super) fn mesh_csv(study: &SceneStudy) -> String {
             let _ = writeln!(
                 text,
                 "{},{},{:.3},{},{:.3},{},{value},{error},{low},{high}",
-                QUANTITIES[statistic.quantity].0.column(),
+                study.subjects[statistic.subject].column,
                 statistic.percent,
                 mesh.edge_m,
                 mesh.triangles,
@@ -221,7 +224,7 @@ pub(super) fn csv(study: &SceneStudy) -> String {
             let _ = writeln!(
                 text,
                 "{},{},{fineness},{:.3},{},{},{},{},{},{},{},{value},{},{},{},{sampling}",
-                QUANTITIES[statistic.quantity].0.column(),
+                study.subjects[statistic.subject].column,
                 statistic.percent,
                 rung.seconds,
                 effort.steps,

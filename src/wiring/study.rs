@@ -5,7 +5,7 @@ use rockfall::error::{Error, Result};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
-use rockfall::study::scene::{PERCENTS, QUANTITIES, SceneStudy};
+use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
 use rockfall::study::stability::{self, Map, Outcome};
 use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
 use std::cell::Cell;
@@ -134,7 +134,8 @@ pub(crate) fn scene_errors(order: &SceneOrder, done: impl Fn(String)) -> Result<
 /// The error that an interval allows is half its width.
 fn wish(aim: &Aim, found: &SceneStudy) -> Option<Wish> {
     let is_it = |statistic: &scene::Statistic| {
-        QUANTITIES[statistic.quantity].0 == aim.quantity && statistic.percent == aim.percent
+        let subject = &found.subjects[statistic.subject];
+        subject.of == Of::Rock(aim.quantity) && statistic.percent == aim.percent
     };
     let statistic = found.statistics.iter().position(is_it)?;
     Some(Wish { statistic, error: 0.5 * aim.width })
