@@ -231,7 +231,7 @@ impl Flat {
     fn lost(&self, control: &Control, dt: f64) -> Loss {
         let mut sum = [0.0; 3];
         for (k, loss) in self.losses[..control.tableau.stages].iter().enumerate() {
-            let weight = dt * control.tableau.weight(k);
+            let weight = dt * control.tableau.work_weight(k);
             for (sum, loss) in sum.iter_mut().zip(loss) {
                 *sum += weight * loss;
             }

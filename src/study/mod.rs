@@ -10,9 +10,12 @@
 pub mod aim;
 pub mod bench;
 pub mod cases;
+pub mod conserve;
 pub mod exact;
 mod exact_figure;
 mod exact_page;
+pub mod exact_values;
+pub mod order;
 pub mod scene;
 mod scene_figure;
 mod scene_page;
@@ -23,6 +26,7 @@ mod stability_figure;
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;
+use conserve::Conservation;
 use exact::CaseStudy;
 use scene::SceneStudy;
 use stability::{Map, Outcome};
@@ -35,15 +39,22 @@ pub use scene_page::{Wish, sentence, setting};
 ///
 /// # Errors
 /// When a file or folder cannot be written.
-pub fn write_exact(studies: &[CaseStudy], dir: &Path) -> Result<()> {
+pub fn write_exact(
+    studies: &[CaseStudy],
+    ladders: &[order::Ladder],
+    values: &[exact_values::Value],
+    dir: &Path,
+) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
     for study in studies {
         let file = figures.join(format!("{}.svg", study.case.name));
         write_whole(&file, exact_figure::draw(study).as_bytes())?;
     }
+    write_whole(&figures.join("order.svg"), order::draw(ladders).as_bytes())?;
+    write_whole(&dir.join("order.csv"), order::csv(ladders).as_bytes())?;
     write_whole(&dir.join("exact.csv"), exact::csv(studies).as_bytes())?;
-    write_whole(&dir.join("README.md"), exact_page::page(studies).as_bytes())
+    write_whole(&dir.join("README.md"), exact_page::page(studies, ladders, values).as_bytes())
 }
 
 /// Writes a scene's page, table and figure into `dir`.
@@ -54,6 +65,9 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     write_whole(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
     write_whole(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
+    if !study.meshes.is_empty() {
+        write_whole(&dir.join("mesh.csv"), scene_page::mesh_csv(study).as_bytes())?;
+    }
     write_whole(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
 }
 
@@ -66,4 +80,14 @@ pub fn write_stability(outcomes: &[Outcome], maps: &[Map], dir: &Path) -> Result
     write_whole(&dir.join("map.svg"), stability_figure::draw(maps).as_bytes())?;
     write_whole(&dir.join("stability.csv"), stability::csv(outcomes).as_bytes())?;
     write_whole(&dir.join("README.md"), stability::page(outcomes).as_bytes())
+}
+
+/// Writes the page and table of a scene's conservation into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_conservation(found: &Conservation, dir: &Path) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    write_whole(&dir.join("conservation.csv"), conserve::csv(found).as_bytes())?;
+    write_whole(&dir.join("README.md"), conserve::page(found).as_bytes())
 }
