@@ -3,6 +3,7 @@
 use super::dda::Bench;
 use super::law::{Body, Spot};
 use super::tableau::STAGES;
+use crate::clock::{Clocks, Piece};
 use crate::contact::hold::{HOLDS, Holds};
 use crate::contact::near::Near;
 use crate::contact::{MOST, Touch, Touches};
@@ -143,6 +144,8 @@ pub struct Grip {
     pub bench: Bench,
     /// Contact sweeps done.
     pub sweeps: u64,
+    /// Where the time goes, if somebody asks.
+    pub clocks: Clocks,
 }
 
 /// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
@@ -177,6 +180,7 @@ impl Grip {
             spot_count: 0,
             bench: Bench::default(),
             sweeps: 0,
+            clocks: Clocks::default(),
         }
     }
 }
@@ -205,8 +209,10 @@ impl Grip {
     /// Asks for the touches at `c` nearer than `reach` (m).
     #[inline]
     pub fn look(&mut self, world: &World, c: &Vec3, reach: f64) {
+        let begun = self.clocks.now();
         self.know(world, c);
         self.near.touches(world.terrain, c, reach, &mut self.touches);
+        self.clocks.stop(Piece::Geometry, begun);
     }
 
     /// Asks for the touches at `c` that a stage must know.

@@ -6,6 +6,7 @@ use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
 use rockfall::study::scene::{PERCENTS, QUANTITIES, SceneStudy};
+use rockfall::study::speed::{self, Order};
 use rockfall::study::stability::{self, Map, Outcome};
 use rockfall::study::{self, Wish, exact, scene};
 use std::path::{Path, PathBuf};
@@ -56,6 +57,21 @@ pub(crate) fn stability(out: &Path, done: impl Fn(&str)) -> Result<(String, bool
         out.display()
     ));
     Ok((words.join("\n"), all_hold))
+}
+
+/// Measures speed and says where the result is.
+pub(crate) fn speed(
+    (rocks, triangles): (usize, &[usize]),
+    out: &Path,
+    done: impl FnMut(String),
+) -> Result<String> {
+    let program = std::env::current_exe().map_err(|why| {
+        Error::Request(format!("the program does not find itself to measure its memory: {why}"))
+    })?;
+    let order = Order { rocks, triangles: triangles.to_vec(), program, source: None };
+    let found = speed::study(&order, &out.join("work"), done)?;
+    study::write_speed(&found, out)?;
+    Ok(format!("page, tables and figure in {}", out.display()))
 }
 
 /// Studies a scene and says what was found in a few sentences.
