@@ -107,27 +107,25 @@ fn first_touch(terrain: &Terrain, flight: &Parabola, limit: f64, tested: &mut u6
             continue;
         }
         let pair = &pairs[id as usize];
-        let windows = [slabs.window(pair, 0, best), slabs.window(pair, 1, best)];
-        let nearer = usize::from(windows[1].0 < windows[0].0);
+        let (begins, ends) = slabs.windows(pair, best);
+        let nearer = usize::from(begins[1] < begins[0]);
         for side in [1 - nearer, nearer] {
-            let (ta, tb) = windows[side];
-            if ta > tb {
-                continue;
-            }
-            if let Child::Inner(next) = pair.child(side) {
-                stack[top] = (next, ta);
+            if begins[side] <= ends[side]
+                && let Child::Inner(next) = pair.child(side)
+            {
+                stack[top] = (next, begins[side]);
                 top += 1;
             }
         }
         for side in [nearer, 1 - nearer] {
-            let (ta, tb) = windows[side];
+            let (ta, tb) = (begins[side], ends[side]);
             if let Child::Leaf(start, count) = pair.child(side) {
                 for triangle in start..start + count {
-                    if ta > tb.min(best) {
+                    let window = (ta, least(tb, best));
+                    if window.0 > window.1 {
                         break;
                     }
                     *tested += 1;
-                    let window = (ta, tb.min(best));
                     if let Some(t) = touch::of_triangle(terrain, triangle, flight, window) {
                         best = t;
                         found = true;
@@ -143,86 +141,106 @@ fn first_touch(terrain: &Terrain, flight: &Parabola, limit: f64, tested: &mut u6
 /// plate's box, which has no thickness, must not be cut off by rounding.
 const ROUNDING: f64 = 1e-6;
 
+/// The lesser of two numbers, neither of them NaN: one instruction.
+#[inline]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers, neither of them NaN.
+#[inline]
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// Reciprocal of a horizontal speed too small to leave any box: its sign decides, it never overflows to NaN.
+const STANDING: f64 = 1e300;
+
 /// The parabola's pass through boxes: linear in x and y, quadratic in z.
 struct Slabs {
-    c: Vec3,
-    /// Reciprocal of the horizontal speeds; infinite when there is none.
+    /// Start less, and plus, the radius of the ball and a little more.
+    less: Vec3,
+    plus: Vec3,
+    /// Reciprocal of the horizontal speeds.
     inv: [f64; 2],
-    v_z: f64,
-    g: f64,
-    /// Radius of the ball and a little more.
-    radius: f64,
-    /// Time and height of the apex.
-    apex: (f64, f64),
+    rise: Rise,
 }
+
+/// Height over time.
+enum Rise {
+    /// Without gravity: reciprocal of the vertical speed.
+    Straight(f64),
+    /// Time of the apex, its height less and plus the radius, and `2/g`.
+    Parabola { apex_s: f64, less: f64, plus: f64, over: f64 },
+}
+
+/// Both children's windows of time: where they begin and where they end; empty if reversed.
+type Windows = ([f64; 2], [f64; 2]);
 
 impl Slabs {
     fn new(flight: &Parabola) -> Self {
         let (c, v, g) = (flight.start, flight.velocity, flight.gravity);
-        let inv = [1.0 / v.x, 1.0 / v.y];
-        let apex = if g > 0.0 { (v.z / g, c.z + 0.5 * v.z * v.z / g) } else { (0.0, c.z) };
-        Self { c, inv, v_z: v.z, g, radius: flight.radius * (1.0 + ROUNDING), apex }
+        let r = flight.radius * (1.0 + ROUNDING);
+        let over = |v: f64| (1.0 / v).clamp(-STANDING, STANDING);
+        let rise = if g > 0.0 {
+            let apex = c.z + 0.5 * v.z * v.z / g;
+            Rise::Parabola { apex_s: v.z / g, less: apex - r, plus: apex + r, over: 2.0 / g }
+        } else {
+            Rise::Straight(over(v.z))
+        };
+        let reach = Vec3::repeat(r);
+        Self { less: c - reach, plus: c + reach, inv: [over(v.x), over(v.y)], rise }
     }
 
-    /// Times within `0..limit` between which the centre may be in the box grown by the radius (empty if reversed).
+    /// Times within `0..limit` between which the centre may be in the boxes grown by the radius.
     #[inline]
-    fn window(&self, pair: &Pair, side: usize, limit: f64) -> (f64, f64) {
-        const NEVER: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
-        let (lo, hi) = (&pair.lo[side], &pair.hi[side]);
-        let (mut ta, mut tb) = (0.0f64, limit);
-        for k in 0..2 {
-            let (near, far) = (
-                f64::from(lo[k]) - self.radius - self.c[k],
-                f64::from(hi[k]) + self.radius - self.c[k],
-            );
-            if self.inv[k].is_finite() {
-                let (t1, t2) = (near * self.inv[k], far * self.inv[k]);
-                ta = ta.max(t1.min(t2));
-                tb = tb.min(t1.max(t2));
-            } else if near > 0.0 || far < 0.0 {
-                return NEVER;
+    fn windows(&self, pair: &Pair, limit: f64) -> Windows {
+        let mut windows = ([0.0; 2], [limit; 2]);
+        self.clip(pair, 0, self.inv[0], &mut windows);
+        self.clip(pair, 1, self.inv[1], &mut windows);
+        match self.rise {
+            Rise::Straight(inv) => self.clip(pair, 2, inv, &mut windows),
+            Rise::Parabola { apex_s, less, plus, over } => {
+                for side in 0..2 {
+                    let floor = over * (plus - f64::from(pair.lo[2][side]));
+                    let roof = over * (less - f64::from(pair.hi[2][side]));
+                    clip_height((floor, roof), apex_s, side, &mut windows);
+                }
             }
         }
-        if ta > tb {
-            return NEVER;
-        }
-        self.clip_height(f64::from(lo[2]) - self.radius, f64::from(hi[2]) + self.radius, (ta, tb))
+        windows
     }
 
-    /// Clips a window to heights between `floor` and `roof`; outside two falling-in times above the roof.
+    /// Clips both windows to the time between two planes.
     #[inline]
-    fn clip_height(&self, floor: f64, roof: f64, (mut ta, mut tb): (f64, f64)) -> (f64, f64) {
-        const NEVER: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
-        if self.g == 0.0 {
-            let times = quadratic(0.0, self.v_z, self.c.z - roof).zip(quadratic(
-                0.0,
-                self.v_z,
-                self.c.z - floor,
-            ));
-            return match times {
-                Some(((t1, _), (t2, _))) => (ta.max(t1.min(t2)), tb.min(t1.max(t2))),
-                None if self.c.z < floor || self.c.z > roof => NEVER,
-                None => (ta, tb),
-            };
+    fn clip(&self, pair: &Pair, axis: usize, inv: f64, (begins, ends): &mut Windows) {
+        let (lo, hi) = (&pair.lo[axis], &pair.hi[axis]);
+        for side in 0..2 {
+            let below = (f64::from(lo[side]) - self.plus[axis]) * inv;
+            let above = (f64::from(hi[side]) - self.less[axis]) * inv;
+            let (enter, leave) = if inv > 0.0 { (below, above) } else { (above, below) };
+            begins[side] = most(begins[side], enter);
+            ends[side] = least(ends[side], leave);
         }
-        // Heights relative to the apex: z = z_apex − g/2 (t − t_apex)².
-        let (t_apex, z_apex) = self.apex;
-        if z_apex < floor {
-            return NEVER;
-        }
-        let half_floor = (2.0 * (z_apex - floor) / self.g).sqrt();
-        ta = ta.max(t_apex - half_floor);
-        tb = tb.min(t_apex + half_floor);
-        if z_apex > roof {
-            let half_roof = (2.0 * (z_apex - roof) / self.g).sqrt();
-            // Inside on the way up or on the way down; the union's hull unless one way is already out of the window.
-            if ta > t_apex - half_roof {
-                ta = ta.max(t_apex + half_roof);
-            }
-            if tb < t_apex + half_roof {
-                tb = tb.min(t_apex - half_roof);
-            }
-        }
-        (ta, tb)
+    }
+}
+
+/// Clips a window to heights between floor and roof, given as the squares of the times that the fall from the apex takes
+/// to them.
+#[inline]
+fn clip_height((floor2, roof2): (f64, f64), apex_s: f64, side: usize, windows: &mut Windows) {
+    let (begins, ends) = (&mut windows.0[side], &mut windows.1[side]);
+    let (floor, roof) = (most(floor2, 0.0).sqrt(), most(roof2, 0.0).sqrt());
+    *begins = most(*begins, apex_s - floor);
+    *ends = least(*ends, apex_s + floor);
+    // Above the roof between two times: the window's hull, unless the way up or the way down is out of it already.
+    if *begins > apex_s - roof {
+        *begins = most(*begins, apex_s + roof);
+    }
+    if *ends < apex_s + roof {
+        *ends = least(*ends, apex_s - roof);
+    }
+    if floor2 < 0.0 {
+        *begins = f64::INFINITY;
     }
 }

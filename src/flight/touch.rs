@@ -1,8 +1,8 @@
 //! When a ball on a parabola first touches one triangle, its own edges and its own corners.
 
-use super::Parabola;
 use super::abreast::Abreast;
 use super::roots::{first_fall, quadratic};
+use super::{Parabola, least, most};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
@@ -21,7 +21,7 @@ pub(super) fn of_triangle(
     flight: &Parabola,
     window: (f64, f64),
 ) -> Option<f64> {
-    let (ta, tb) = (window.0.max(0.0), window.1);
+    let (ta, tb) = (most(window.0, 0.0), window.1);
     let face = &terrain.features.faces[t as usize];
     let height = Height {
         h0: face.n.dot(&(flight.start - face.a)),
@@ -44,10 +44,10 @@ pub(super) fn of_triangle(
         }
     }
     let owned = terrain.features.owned[t as usize];
-    if owned != 0 && slab.0 <= slab.1.min(best) {
-        let abreast = Abreast::new(face, flight, (slab.0, slab.1.min(best)));
+    if owned != 0 && slab.0 <= least(slab.1, best) {
+        let abreast = Abreast::new(face, flight, (slab.0, least(slab.1, best)));
         for k in 0..3 {
-            let window = (slab.0, slab.1.min(best));
+            let window = (slab.0, least(slab.1, best));
             let times = [
                 (owned & (1 << k) != 0 && abreast.edge(k))
                     .then(|| edge(terrain, t, k, flight, window)),
@@ -85,7 +85,7 @@ impl Height {
         let turn = -0.5 * self.h1 / self.h2;
         let ht = if turn > ta && turn < tb { at(turn) } else { ha };
         let near = radius * (1.0 + 1e-9);
-        if ha.min(hb).min(ht) > near || ha.max(hb).max(ht) < -near {
+        if least(least(ha, hb), ht) > near || most(most(ha, hb), ht) < -near {
             return None;
         }
         let (mut first, mut last) =
@@ -93,7 +93,7 @@ impl Height {
         for level in [near, -near] {
             let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
             for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
-                (first, last) = (first.min(t), last.max(t));
+                (first, last) = (least(first, t), most(last, t));
             }
         }
         Some((first, last))
@@ -113,7 +113,7 @@ impl Height {
         if touching && ta <= 0.0 && (h1 < 0.0 || h1 == 0.0 && h2 < 0.0) {
             return Some(0.0);
         }
-        let level = if touching { h0.min(radius) } else { radius };
+        let level = if touching { least(h0, radius) } else { radius };
         let (one, other) = quadratic(h2, h1, h0 - level)?;
         // A start on the level has a root at 0 that is no fall.
         [one, other]
