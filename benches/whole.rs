@@ -66,10 +66,11 @@ fn one(words: &[String]) {
 fn say(scheme: Scheme, journeys: &[Trajectory], seconds: f64) {
     let count = journeys.len();
     let mut effort = Effort::default();
-    journeys.iter().for_each(|one| effort.add(&one.effort));
-    let mean = |of: &dyn Fn(&Trajectory) -> f64| {
-        journeys.iter().map(of).sum::<f64>() / count as f64
-    };
+    for one in journeys {
+        effort.add(&one.effort);
+    }
+    let mean =
+        |of: &dyn Fn(&Trajectory) -> f64| journeys.iter().map(of).sum::<f64>() / count as f64;
     let each = |sum: u64| sum / count as u64;
     let stops = |wanted: fn(&Stop) -> bool| journeys.iter().filter(|one| wanted(&one.stop)).count();
     let mut runouts: Vec<f64> = journeys.iter().map(Trajectory::runout_m).collect();

@@ -221,7 +221,9 @@ impl Grip {
     /// Collects the features around `c`.
     pub(crate) fn collect(&mut self, world: &World, c: &Vec3) {
         let r = world.body.radius;
+        let begun = self.clocks.now();
         self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
+        self.clocks.stop(Piece::Geometry, begun);
     }
 
     /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
@@ -235,8 +237,8 @@ impl Grip {
     /// Asks for the touches at `c` nearer than `reach` (m).
     #[inline]
     pub fn look(&mut self, world: &World, c: &Vec3, reach: f64) {
-        let begun = self.clocks.now();
         self.know(world, c);
+        let begun = self.clocks.now();
         self.near.touches(world.terrain, c, reach, &mut self.touches);
         self.clocks.stop(Piece::Geometry, begun);
     }

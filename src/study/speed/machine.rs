@@ -33,10 +33,8 @@ impl Machine {
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             system: system(),
             compiler: compiler().unwrap_or_else(|| "not told by the program".to_owned()),
-            version: commit.map_or_else(
-                || version.to_owned(),
-                |commit| format!("{version}, commit {commit}"),
-            ),
+            version: commit
+                .map_or_else(|| version.to_owned(), |commit| format!("{version}, commit {commit}")),
         }
     }
 }
@@ -60,9 +58,9 @@ fn compiler() -> Option<String> {
     let mut program = Vec::new();
     fs::File::open(std::env::current_exe().ok()?).ok()?.read_to_end(&mut program).ok()?;
     // The mark itself stands among our constants: what follows there is no number.
-    let found = program.windows(MARK.len() + 1).position(|window| {
-        window.starts_with(MARK) && window[MARK.len()].is_ascii_digit()
-    })?;
+    let found = program
+        .windows(MARK.len() + 1)
+        .position(|window| window.starts_with(MARK) && window[MARK.len()].is_ascii_digit())?;
     let rest = &program[found + MARK.len()..];
     let end = rest.iter().position(|&byte| byte == b')' || byte == 0)?;
     let version = String::from_utf8_lossy(&rest[..end]);

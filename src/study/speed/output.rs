@@ -28,12 +28,14 @@ pub struct OutputCost {
 ///
 /// # Errors
 /// If the folder cannot be written.
-pub fn cost(slope: &Slope, journeys: &[Trajectory], rocks: usize, dir: &Path) -> Result<OutputCost> {
-    let mut output = Output::create(
-        info(&slope.terrain, &["slope".to_owned()], rocks),
-        dir,
-        Mode::Overwrite,
-    )?;
+pub fn cost(
+    slope: &Slope,
+    journeys: &[Trajectory],
+    rocks: usize,
+    dir: &Path,
+) -> Result<OutputCost> {
+    let mut output =
+        Output::create(info(&slope.terrain, &["slope".to_owned()], rocks), dir, Mode::Overwrite)?;
     let mut write_s = 0.0;
     for start in (0..rocks).step_by(CHUNK) {
         let chunk: Vec<Trajectory> = (start..rocks.min(start + CHUNK))

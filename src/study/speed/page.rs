@@ -35,7 +35,11 @@ pub(in crate::study) fn page(study: &SpeedStudy) -> String {
 
 fn machine(page: &mut String, study: &SpeedStudy) {
     let machine = &study.machine;
-    let _ = writeln!(page, "- machine: {}, {} cores, {}", machine.processor, machine.cores, machine.system);
+    let _ = writeln!(
+        page,
+        "- machine: {}, {} cores, {}",
+        machine.processor, machine.cores, machine.system
+    );
     let _ = writeln!(page, "- compiler: {}", machine.compiler);
     let _ = writeln!(page, "- rockfall {}", machine.version);
 }
@@ -77,7 +81,8 @@ fn shares(page: &mut String, study: &SpeedStudy) {
         rows in the files.\n\n| scheme | triangles | leap | geometry | algebra | notes | rest | output | one leap (µs) |\n|---|---|---|---|---|---|---|---|---|\n";
     for rate in &study.rates {
         let s = &rate.shares;
-        let _ = write!(page, "| `{}` | {} |", rate.scheme.name(), decimal(rate.triangles as f64, 0));
+        let _ =
+            write!(page, "| `{}` | {} |", rate.scheme.name(), decimal(rate.triangles as f64, 0));
         for share in [s.leap, s.geometry, s.algebra, s.notes, s.rest, s.output] {
             let _ = write!(page, " {} |", percent(share, 1));
         }

@@ -140,7 +140,9 @@ fn cost(part: &Part, rocks: usize, dir: &Path) -> Result<PartCost> {
     let (without, with) = (without?, with?);
     let effort = [&without, &with].map(|all| {
         let mut sum = Effort::default();
-        all.iter().for_each(|one| sum.add(&one.effort));
+        for one in all {
+            sum.add(&one.effort);
+        }
         sum
     });
     let least = |turns: &Vec<f64>| turns.iter().copied().fold(f64::INFINITY, f64::min);
@@ -226,7 +228,8 @@ const AREA_ROCKS: usize = 40;
 
 /// Places 4 m apart round the release area, as a scene has them.
 fn points() -> String {
-    let at = |k: usize| [AREA_M[0] - 10.0 + 4.0 * (k % 10) as f64, AREA_M[1] + 4.0 * (k / 10) as f64];
+    let at =
+        |k: usize| [AREA_M[0] - 10.0 + 4.0 * (k % 10) as f64, AREA_M[1] + 4.0 * (k / 10) as f64];
     format!("{:?}", (0..AREA_ROCKS).map(at).collect::<Vec<_>>())
 }
 

@@ -144,12 +144,13 @@ fn share_out(rate: &mut Rate, slope: &Slope, step: &Settings) {
     let of = |piece| clocks.seconds(piece, look_s);
     // Each span holds one look of its own, and those of the spans within it, two looks each.
     let within = 2.0 * (clocks.times(Piece::Geometry) + clocks.times(Piece::NotesInContact)) as f64;
-    let looks = 2.0 * (clocks.times(Piece::Leap) + clocks.times(Piece::Contact)
-        + clocks.times(Piece::NotesInFlight)) as f64;
+    let looks = 2.0
+        * (clocks.times(Piece::Leap)
+            + clocks.times(Piece::Contact)
+            + clocks.times(Piece::NotesInFlight)) as f64;
     let leap = of(Piece::Leap);
     let (geometry, notes) = (of(Piece::Geometry), of(Piece::NotesInContact));
-    let algebra =
-        (of(Piece::Contact) - geometry - notes - 0.5 * within * look_s).max(0.0);
+    let algebra = (of(Piece::Contact) - geometry - notes - 0.5 * within * look_s).max(0.0);
     let notes = notes + of(Piece::NotesInFlight);
     let rest = (all_s - (within + looks) * look_s - leap - geometry - algebra - notes).max(0.0);
     let sum = leap + geometry + algebra + notes + rest;
@@ -166,6 +167,7 @@ fn share_out(rate: &mut Rate, slope: &Slope, step: &Settings) {
 
 impl Rate {
     /// Adds what writing a rock's rows takes (s).
+    #[must_use]
     pub fn with_output(mut self, write_s: f64) -> Self {
         self.write_s = write_s;
         let all_s = self.rock_s + write_s;

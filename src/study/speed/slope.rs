@@ -83,7 +83,8 @@ impl Slope {
         let sheets = vec![Sheet { path: "made".into(), ground: 0, is_tree: false }];
         let terrain = Terrain::new(welded, sheets);
         let index_s = begun.elapsed().as_secs_f64();
-        let bytes = before.zip(resident_bytes()).map(|(before, after)| after.saturating_sub(before));
+        let bytes =
+            before.zip(resident_bytes()).map(|(before, after)| after.saturating_sub(before));
         Self { terrain, weld_s, index_s, bytes }
     }
 
