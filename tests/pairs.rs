@@ -370,8 +370,7 @@ fn a_stack_rests_on_fixed_steps() {
     let world = World { scheme: Scheme::Dda, gravity_m_s2: G, rest_time_s: 0.1, ..WORLD };
     let press = Rock { radius_m: 0.5, density_kg_m3: 2700.0 }.mass_kg() * G / 1e9;
     let sphere = |z: f64| (0.5, 2700.0, [0.3, 0.2, z], [0.0; 3], [0.0; 3]);
-    let falls =
-        world.run(&plane(), &[sphere(0.5 - 2.0 * press), sphere(1.5 - 3.0 * press)], 1.0);
+    let falls = world.run(&plane(), &[sphere(0.5 - 2.0 * press), sphere(1.5 - 3.0 * press)], 1.0);
     let z = [0, 1].map(|k| falls[k].end.position_m.z);
     assert!((0.5 - z[0] - 2.0 * press).abs() < 1e-2 * press, "{z:?}");
     assert!((1.0 - (z[1] - z[0]) - press).abs() < 1e-2 * press, "{z:?}");

@@ -119,7 +119,11 @@ mod tests {
     #[test]
     fn ten_times_faster_counts_from_the_fine_end() {
         let ladder = |times: &[f64]| -> Vec<Saving> {
-            let saving = |(k, &time)| Saving { error: 0.1f64.powi(k as i32), time, sweeps: 1.0 };
+            let saving = |(k, &time)| Saving {
+                error: 0.1f64.powi(i32::try_from(k).expect("small")),
+                time,
+                sweeps: 1.0,
+            };
             times.iter().enumerate().map(saving).collect()
         };
         let found = |times: &[f64]| ten_times_below(&ladder(times));
