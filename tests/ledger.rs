@@ -1,5 +1,7 @@
 //! The numerical remainder of a rock's energy ledger is what its steps lost or gained, not an error of the ledger.
 
+#![allow(clippy::unwrap_used, reason = "a closed form without an answer has failed")]
+
 use rockfall::ground::{Ground, damping_ratio, normal_impact};
 use rockfall::rock::Vec3;
 use rockfall::step::Scheme;

@@ -15,6 +15,8 @@ pub(super) enum StudyCommand {
     /// Stiff and extreme cases with every scheme, or conservation over all releases of a scene; exit status 1 if one is
     /// outside its bound
     Stability(StabilityArgs),
+    /// Rocks per second of every scheme on a made slope, where the time goes, what each part of a scene costs
+    Speed(SpeedArgs),
 }
 
 #[derive(Debug, Args)]
@@ -30,6 +32,19 @@ pub(super) struct StabilityArgs {
     /// Worker threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = at_least_1, requires = "scene")]
     threads: Option<usize>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SpeedArgs {
+    /// Folder for page, tables and figure
+    #[arg(long, value_name = "DIR", default_value = "reports/speed")]
+    out: PathBuf,
+    /// Rocks of the fast schemes; `reference` follows a tenth of them, `dda` a hundredth
+    #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
+    releases: usize,
+    /// Sizes of the slope, about
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = at_least_1, default_values_t = [10_000, 100_000, 1_000_000])]
+    triangles: Vec<usize>,
 }
 
 #[derive(Debug, Args)]
@@ -58,6 +73,12 @@ pub(super) fn study(command: &StudyCommand) -> Result<ExitCode> {
     match command {
         StudyCommand::Error(args) => error(args),
         StudyCommand::Stability(args) => stability(args),
+        StudyCommand::Speed(args) => {
+            let say_done = |piece: String| {
+                say(piece);
+            };
+            wiring::speed((args.releases, &args.triangles), &args.out, say_done).map(say)
+        }
     }
 }
 

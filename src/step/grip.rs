@@ -4,6 +4,7 @@ use super::dda::Bench;
 use super::flat::Flat;
 use super::law::{Body, Spot};
 use super::tableau::STAGES;
+use crate::clock::{Clocks, Piece};
 use crate::contact::hold::{HOLDS, Holds};
 use crate::contact::near::Near;
 use crate::contact::{MOST, Touch, Touches};
@@ -148,6 +149,8 @@ pub struct Grip {
     pub bench: Bench,
     /// Contact sweeps done.
     pub sweeps: u64,
+    /// Where the time goes, if somebody asks.
+    pub clocks: Clocks,
 }
 
 /// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
@@ -188,6 +191,7 @@ impl Grip {
             flat: Flat::default(),
             bench: Bench::default(),
             sweeps: 0,
+            clocks: Clocks::default(),
         }
     }
 }
@@ -220,7 +224,9 @@ impl Grip {
     /// Collects the features around `c`.
     pub(crate) fn collect(&mut self, world: &World, c: &Vec3) {
         let r = world.body.radius;
+        let begun = self.clocks.now();
         self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
+        self.clocks.stop(Piece::Geometry, begun);
     }
 
     /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
@@ -236,7 +242,9 @@ impl Grip {
     pub fn look(&mut self, world: &World, c: &Vec3, reach: f64) {
         self.know(world, c);
         self.looked_ahead = None;
+        let begun = self.clocks.now();
         self.near.touches(world.terrain, c, reach, &mut self.touches);
+        self.clocks.stop(Piece::Geometry, begun);
     }
 
     /// Asks for the touches at `c` that a stage must know.

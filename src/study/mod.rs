@@ -1,8 +1,9 @@
-//! What the numerics cost and what they are worth: error against run time, stability, exact cases.
+//! What the numerics cost and what they are worth: error against run time, stability, exact cases, speed.
 //!
 //! ```text
 //! cases ─┬─► exact      error of every scheme against the exact solution, over run time
 //!        └─► stability  stiff and extreme cases, each held against its bound
+//! slope ───► speed      rocks per second, where the time goes, what each part costs
 //! plan ────► scene      sampling error and error of the steps of a scene's own statistics
 //!            verify     exact cases of several rocks and the method paper's examples
 //! ```
@@ -19,6 +20,7 @@ pub mod order;
 pub mod scene;
 mod scene_figure;
 mod scene_page;
+pub mod speed;
 pub mod spread;
 pub mod verify;
 pub mod stability;
@@ -30,6 +32,7 @@ use crate::output::write_whole;
 use conserve::Conservation;
 use exact::CaseStudy;
 use scene::SceneStudy;
+use speed::SpeedStudy;
 use stability::{Map, Outcome};
 use std::fs;
 use std::path::Path;
@@ -91,4 +94,16 @@ pub fn write_conservation(found: &Conservation, dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     write_whole(&dir.join("conservation.csv"), conserve::csv(found).as_bytes())?;
     write_whole(&dir.join("README.md"), conserve::page(found).as_bytes())
+}
+
+/// Writes the page, tables and figure of the speeds into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_speed(study: &SpeedStudy, dir: &Path) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    write_whole(&dir.join("speed.svg"), speed::draw(study).as_bytes())?;
+    write_whole(&dir.join("speed.csv"), speed::csv(study).as_bytes())?;
+    write_whole(&dir.join("parts.csv"), speed::parts_csv(study).as_bytes())?;
+    write_whole(&dir.join("README.md"), speed::page(study).as_bytes())
 }

@@ -72,6 +72,13 @@ impl Terrain {
         }
     }
 
+    /// The same with no edge and no corner left out.
+    #[must_use]
+    pub fn with_every_feature(mut self) -> Self {
+        self.features = self.features.with_everything(&self.triangles);
+        self
+    }
+
     /// Whether a triangle belongs to a tree.
     #[inline]
     pub fn is_tree(&self, triangle: u32) -> bool {

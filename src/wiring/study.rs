@@ -6,6 +6,7 @@ use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
 use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
+use rockfall::study::speed::{self, Order};
 use rockfall::study::stability::{self, Map, Outcome};
 use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
 use std::cell::Cell;
@@ -96,6 +97,21 @@ pub(crate) fn conservation(
     let mut words: Vec<String> = found.bounds().iter().map(line).collect();
     words.push(format!("page and table in {}", out.display()));
     Ok((words.join("\n"), found.holds()))
+}
+
+/// Measures speed and says where the result is.
+pub(crate) fn speed(
+    (rocks, triangles): (usize, &[usize]),
+    out: &Path,
+    done: impl FnMut(String),
+) -> Result<String> {
+    let program = std::env::current_exe().map_err(|why| {
+        Error::Request(format!("the program does not find itself to measure its memory: {why}"))
+    })?;
+    let order = Order { rocks, triangles: triangles.to_vec(), program, source: None };
+    let found = speed::study(&order, &out.join("work"), done)?;
+    study::write_speed(&found, out)?;
+    Ok(format!("page, tables and figure in {}", out.display()))
 }
 
 /// Studies a scene and says what was found in a few sentences.

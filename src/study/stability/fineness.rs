@@ -47,8 +47,14 @@ pub(super) fn steps(way: &Way, notes: &mut Notes) {
                 ("rebound over speed is what the step leaves", own, 1e-9)
             }
             Scheme::Rigid => ("rebound over speed is e", 0.5, 1e-9),
+            // h³ ~ tolerance^(3/4): the rock lifts off within a step, where the law has a kink
+            Scheme::Reference => (
+                "rebound over speed is that of the closed form",
+                exact(),
+                4.0 * way.fineness.powf(0.75),
+            ),
             // as the exact cases have it: second order under a third-order local error
-            _ => (
+            Scheme::Adaptive => (
                 "rebound over speed is that of the closed form",
                 exact(),
                 0.5 * way.fineness.powf(2.0 / 3.0),
