@@ -100,6 +100,8 @@ pub struct Plan {
     pub trees: Part<usize>,
     /// Stepping through the air; always left out.
     pub flight: Part<Infallible>,
+    /// How far a rock has turned; always left out.
+    pub orientation: Part<Infallible>,
     /// Rolling friction.
     pub rolling: Part<()>,
     /// Random tilt of contact normals.
@@ -186,6 +188,9 @@ impl Plan {
             flight: Part::LeftOut(
                 "nothing but gravity acts between touches, the parabola is exact",
             ),
+            orientation: Part::LeftOut(
+                "a sphere looks the same from every side; its spin is computed, how far it has turned is not",
+            ),
             rolling: Part::when(rolls.then_some(()), "no ground has any"),
             roughness: Part::when(is_rough.then_some(()), "no ground has any"),
             rock_against_rock: Part::when(between, "releases are independent"),
@@ -243,6 +248,7 @@ impl Plan {
             roughness: Part::Kept(()),
             paths: Part::Kept(Paths { first: self.count, step_s }),
             impacts: Part::Kept(()),
+            terrain: self.terrain.with_every_feature(),
             ..self
         }
     }

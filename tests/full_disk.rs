@@ -1,6 +1,10 @@
 //! A disk that is full or may only be read: one message, and with room again the run ends with the same bytes.
 //! Disks in memory stand for real ones; they can be mounted by root alone, and without that nothing is checked.
-#![allow(clippy::unwrap_used, reason = "a test that cannot run the program has failed")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot run the program has failed"
+)]
 #![cfg(target_os = "linux")]
 
 mod program;

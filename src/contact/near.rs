@@ -139,22 +139,26 @@ impl Near {
     fn take(&mut self, terrain: &Terrain, t: u32) {
         let features = &terrain.features;
         let face = &features.faces[t as usize];
+        let sides = [face.e1, face.e2 - face.e1, -face.e2];
         let corners = [face.a, face.a + face.e1, face.a + face.e2];
-        let mut near =
-            NearFace { id: t, a: face.a, n: face.n, out: [Vec3::zeros(); 3], rim: [0.0; 3] };
-        let mut furthest = f64::NEG_INFINITY;
+        let out = sides.map(|side| side.cross(&face.n));
+        let near = self.margin + SLACK * self.radius;
+        let mut is_near = true;
         for k in 0..3 {
-            let along = corners[(k + 1) % 3] - corners[k];
-            near.out[k] = along.cross(&face.n).normalize();
-            near.rim[k] = near.out[k].dot(&corners[k]);
-            furthest = furthest.max(near.out[k].dot(&self.centre) - near.rim[k]);
-        }
-        if furthest > self.reach {
-            return;
+            // How far the foot is beyond the side, times the side's length: most are told apart without a root.
+            let beyond = out[k].dot(&(self.centre - corners[k]));
+            let beyond2 = beyond * beyond.max(0.0);
+            let length2 = sides[k].norm_squared();
+            if beyond2 > self.reach * self.reach * length2 {
+                return;
+            }
+            is_near &= beyond2 <= near * near * length2;
         }
         self.sheets.push(t);
-        if furthest <= self.margin + SLACK * self.radius {
-            self.faces.push(near);
+        if is_near {
+            let out = out.map(|out| out.normalize());
+            let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
+            self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
         }
         let owned = features.owned[t as usize];
         for k in 0..3 {
@@ -245,16 +249,19 @@ impl Near {
         }
     }
 
-    /// Whether a rock at `centre` that touched `face` still does, or nothing, and nothing else is nearer than `reach` (m).
+    /// Whether the foot of `centre` is still on `face`, one of those collected.
+    #[inline]
+    pub fn is_over(&self, face: u32, centre: &Vec3) -> bool {
+        let slack = SLACK * self.radius;
+        self.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
+    }
+
+    /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`.
     #[inline]
     pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
-        self.faces.iter().all(|other| {
-            if other.id == face {
-                other.holds_foot_of(centre, SLACK * self.radius)
-            } else {
-                self.on_face(other, centre, reach).is_none()
-            }
-        }) && self.edges.iter().all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
+        let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
+        faces.all(|other| other.id == face || self.on_face(other, centre, reach).is_none())
+            && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
             && self
                 .corners
                 .iter()

@@ -11,6 +11,7 @@ use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::index::{Child, DEPTH, Pair};
 use roots::quadratic;
+use wide::f64x2;
 
 /// A ball in free flight: `c(t) = start + velocity t − g t²/2 ẑ`.
 #[derive(Debug, Clone, Copy)]
@@ -108,6 +109,7 @@ fn first_touch(terrain: &Terrain, flight: &Parabola, limit: f64, tested: &mut u6
         }
         let pair = &pairs[id as usize];
         let (begins, ends) = slabs.windows(pair, best);
+        let (begins, ends) = (begins.to_array(), ends.to_array());
         let nearer = usize::from(begins[1] < begins[0]);
         for side in [1 - nearer, nearer] {
             if begins[side] <= ends[side]
@@ -153,94 +155,94 @@ fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Reciprocal of a horizontal speed too small to leave any box: its sign decides, it never overflows to NaN.
+/// Reciprocal of a speed too small to leave any box: its sign decides, it never overflows to NaN.
 const STANDING: f64 = 1e300;
 
-/// The parabola's pass through boxes: linear in x and y, quadratic in z.
+/// The parabola's pass through boxes: linear in x and y, quadratic in z. Both boxes of a pair are clipped at once.
 struct Slabs {
     /// Start less, and plus, the radius of the ball and a little more.
-    less: Vec3,
-    plus: Vec3,
-    /// Reciprocal of the horizontal speeds.
-    inv: [f64; 2],
-    rise: Rise,
+    less: [f64x2; 3],
+    plus: [f64x2; 3],
+    /// Reciprocal of the speeds; of the vertical one without gravity only.
+    inv: [f64x2; 3],
+    fall: Option<Fall>,
 }
 
-/// Height over time.
-enum Rise {
-    /// Without gravity: reciprocal of the vertical speed.
-    Straight(f64),
-    /// Time of the apex, its height less and plus the radius, and `2/g`.
-    Parabola { apex_s: f64, less: f64, plus: f64, over: f64 },
+/// Height over time under gravity.
+struct Fall {
+    /// Time of the apex.
+    apex_s: f64x2,
+    /// Its height less, and plus, the radius.
+    less: f64x2,
+    plus: f64x2,
+    /// `2/g`.
+    over: f64x2,
 }
-
-/// Both children's windows of time: where they begin and where they end; empty if reversed.
-type Windows = ([f64; 2], [f64; 2]);
 
 impl Slabs {
     fn new(flight: &Parabola) -> Self {
         let (c, v, g) = (flight.start, flight.velocity, flight.gravity);
         let r = flight.radius * (1.0 + ROUNDING);
-        let over = |v: f64| (1.0 / v).clamp(-STANDING, STANDING);
-        let rise = if g > 0.0 {
-            let apex = c.z + 0.5 * v.z * v.z / g;
-            Rise::Parabola { apex_s: v.z / g, less: apex - r, plus: apex + r, over: 2.0 / g }
-        } else {
-            Rise::Straight(over(v.z))
-        };
-        let reach = Vec3::repeat(r);
-        Self { less: c - reach, plus: c + reach, inv: [over(v.x), over(v.y)], rise }
+        let splat = f64x2::splat;
+        let apex = c.z + 0.5 * v.z * v.z / g;
+        let fall = (g > 0.0).then(|| Fall {
+            apex_s: splat(v.z / g),
+            less: splat(apex - r),
+            plus: splat(apex + r),
+            over: splat(2.0 / g),
+        });
+        Self {
+            less: [0, 1, 2].map(|k| splat(c[k] - r)),
+            plus: [0, 1, 2].map(|k| splat(c[k] + r)),
+            inv: [0, 1, 2].map(|k| splat((1.0 / v[k]).clamp(-STANDING, STANDING))),
+            fall,
+        }
     }
 
-    /// Times within `0..limit` between which the centre may be in the boxes grown by the radius.
+    /// Times within `0..limit` between which the centre may be in the boxes grown by the radius: where the windows begin
+    /// and where they end; empty if reversed.
     #[inline]
-    fn windows(&self, pair: &Pair, limit: f64) -> Windows {
-        let mut windows = ([0.0; 2], [limit; 2]);
-        self.clip(pair, 0, self.inv[0], &mut windows);
-        self.clip(pair, 1, self.inv[1], &mut windows);
-        match self.rise {
-            Rise::Straight(inv) => self.clip(pair, 2, inv, &mut windows),
-            Rise::Parabola { apex_s, less, plus, over } => {
-                for side in 0..2 {
-                    let floor = over * (plus - f64::from(pair.lo[2][side]));
-                    let roof = over * (less - f64::from(pair.hi[2][side]));
-                    clip_height((floor, roof), apex_s, side, &mut windows);
-                }
-            }
+    fn windows(&self, pair: &Pair, limit: f64) -> (f64x2, f64x2) {
+        let mut window = (f64x2::ZERO, f64x2::splat(limit));
+        self.clip(pair, 0, &mut window);
+        self.clip(pair, 1, &mut window);
+        match &self.fall {
+            None => self.clip(pair, 2, &mut window),
+            Some(fall) => fall.clip(pair, &mut window),
         }
-        windows
+        window
     }
 
     /// Clips both windows to the time between two planes.
     #[inline]
-    fn clip(&self, pair: &Pair, axis: usize, inv: f64, (begins, ends): &mut Windows) {
-        let (lo, hi) = (&pair.lo[axis], &pair.hi[axis]);
-        for side in 0..2 {
-            let below = (f64::from(lo[side]) - self.plus[axis]) * inv;
-            let above = (f64::from(hi[side]) - self.less[axis]) * inv;
-            let (enter, leave) = if inv > 0.0 { (below, above) } else { (above, below) };
-            begins[side] = most(begins[side], enter);
-            ends[side] = least(ends[side], leave);
-        }
+    fn clip(&self, pair: &Pair, axis: usize, (begin, end): &mut (f64x2, f64x2)) {
+        let one = (both(pair.lo[axis]) - self.plus[axis]) * self.inv[axis];
+        let other = (both(pair.hi[axis]) - self.less[axis]) * self.inv[axis];
+        *begin = begin.fast_max(one.fast_min(other));
+        *end = end.fast_min(one.fast_max(other));
     }
 }
 
-/// Clips a window to heights between floor and roof, given as the squares of the times that the fall from the apex takes
-/// to them.
+impl Fall {
+    /// Clips both windows to heights between floor and roof.
+    #[inline]
+    fn clip(&self, pair: &Pair, (begin, end): &mut (f64x2, f64x2)) {
+        // Squares of the times that the fall from the apex takes to them.
+        let floor2 = (self.plus - both(pair.lo[2])) * self.over;
+        let roof2 = (self.less - both(pair.hi[2])) * self.over;
+        let floor = floor2.fast_max(f64x2::ZERO).sqrt();
+        let roof = roof2.fast_max(f64x2::ZERO).sqrt();
+        let (up, down) = (self.apex_s - roof, self.apex_s + roof);
+        *begin = begin.fast_max(self.apex_s - floor);
+        *end = end.fast_min(self.apex_s + floor);
+        // Above the roof between two times: the window's hull, unless the way up or the way down is out of it already.
+        *begin = begin.simd_gt(up).select(begin.fast_max(down), *begin);
+        *end = end.simd_lt(down).select(end.fast_min(up), *end);
+        *begin = floor2.simd_lt(f64x2::ZERO).select(f64x2::splat(f64::INFINITY), *begin);
+    }
+}
+
 #[inline]
-fn clip_height((floor2, roof2): (f64, f64), apex_s: f64, side: usize, windows: &mut Windows) {
-    let (begins, ends) = (&mut windows.0[side], &mut windows.1[side]);
-    let (floor, roof) = (most(floor2, 0.0).sqrt(), most(roof2, 0.0).sqrt());
-    *begins = most(*begins, apex_s - floor);
-    *ends = least(*ends, apex_s + floor);
-    // Above the roof between two times: the window's hull, unless the way up or the way down is out of it already.
-    if *begins > apex_s - roof {
-        *begins = most(*begins, apex_s + roof);
-    }
-    if *ends < apex_s + roof {
-        *ends = least(*ends, apex_s - roof);
-    }
-    if floor2 < 0.0 {
-        *begins = f64::INFINITY;
-    }
+fn both([one, other]: [f32; 2]) -> f64x2 {
+    f64x2::new([f64::from(one), f64::from(other)])
 }

@@ -266,7 +266,7 @@ fn attempt(
 /// Takes over the step's end: motion, memories, losses.
 pub(crate) fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
     for k in 0..tableau.stages {
-        loss.add(&grip.rates[k].loss, dt * tableau.weight(k));
+        loss.add(&grip.rates[k].loss, dt * tableau.work_weight(k));
     }
     let last = tableau.stages - 1;
     let hh = tableau.diagonal * dt;

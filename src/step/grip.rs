@@ -4,6 +4,7 @@ use super::dda::Bench;
 use super::flat::Flat;
 use super::law::{Body, Spot};
 use super::tableau::STAGES;
+use crate::clock::{Clocks, Piece};
 use crate::contact::hold::{HOLDS, Holds};
 use crate::contact::near::Near;
 use crate::contact::{MOST, Touch, Touches};
@@ -130,6 +131,8 @@ pub struct Grip {
     pub near: Near,
     /// Touches at the last place asked.
     pub touches: Touches,
+    /// That place, if they were asked for with all slack.
+    pub(crate) looked_ahead: Option<Vec3>,
     /// Rates at the stages of the step in hand; the first is that at its start.
     pub rates: [Rate; STAGES],
     /// Whether the first rate belongs to the present state.
@@ -146,6 +149,8 @@ pub struct Grip {
     pub bench: Bench,
     /// Contact sweeps done.
     pub sweeps: u64,
+    /// Where the time goes, if somebody asks.
+    pub clocks: Clocks,
 }
 
 /// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
@@ -177,6 +182,7 @@ impl Grip {
             holds: Holds::default(),
             near: Near::empty(),
             touches: Touches::default(),
+            looked_ahead: None,
             rates: [Rate::NONE; STAGES],
             fresh: false,
             stored: 0.0,
@@ -185,6 +191,7 @@ impl Grip {
             flat: Flat::default(),
             bench: Bench::default(),
             sweeps: 0,
+            clocks: Clocks::default(),
         }
     }
 }
@@ -217,7 +224,9 @@ impl Grip {
     /// Collects the features around `c`.
     pub(crate) fn collect(&mut self, world: &World, c: &Vec3) {
         let r = world.body.radius;
+        let begun = self.clocks.now();
         self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
+        self.clocks.stop(Piece::Geometry, begun);
     }
 
     /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
@@ -232,13 +241,25 @@ impl Grip {
     #[inline]
     pub fn look(&mut self, world: &World, c: &Vec3, reach: f64) {
         self.know(world, c);
+        self.looked_ahead = None;
+        let begun = self.clocks.now();
         self.near.touches(world.terrain, c, reach, &mut self.touches);
+        self.clocks.stop(Piece::Geometry, begun);
     }
 
     /// Asks for the touches at `c` that a stage must know.
     #[inline]
     pub fn look_ahead(&mut self, world: &World, c: &Vec3) {
         self.look(world, c, world.body.radius * (1.0 + SLACK));
+    }
+
+    /// The same, if it was not asked for at `c` last.
+    #[inline]
+    pub fn look_ahead_again(&mut self, world: &World, c: &Vec3) {
+        if self.looked_ahead != Some(*c) {
+            self.look_ahead(world, c);
+            self.looked_ahead = Some(*c);
+        }
     }
 
     /// The memory of touch `k` of the last look; a new one starts without stretch and without history of rates.

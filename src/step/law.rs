@@ -6,7 +6,7 @@
 //! `reference` schemes.
 
 use super::joint;
-use super::slide::{Frame, Pair};
+use super::slide::{Answers, Frame, Pair};
 use crate::contact::Feature;
 use crate::ground::Law;
 use crate::rock::{Rock, Vec3};
@@ -106,10 +106,14 @@ impl Spot {
         }
         let law = &self.law;
         let frame = Frame::of(&self.n);
-        let (kap, kar) = (law.p_s * h + law.c_s, law.k_r * h + law.c_r);
-        let a = frame.along(&(self.shear * law.p_s + body.slip(&self.n, v, w) * kap));
-        let d = frame.local(&(self.roll * law.k_r + w * kar));
-        let pair = Pair::of(body, law, (h, self.push), (a, d));
+        let answers = Answers::of(body, law, h);
+        let slip = body.slip(&self.n, v, w);
+        let pair = Pair {
+            answers: &answers,
+            a: frame.along(&(self.shear * law.p_s + slip * answers.kap)),
+            d: frame.local(&(self.roll * law.k_r + w * answers.kar)),
+            caps: (law.friction * self.push, law.rolling_m * self.push),
+        };
         let (drag, moment) = pair.solve();
         (self.drag, self.moment) = (frame.out_along(drag), frame.out_local(moment));
     }

@@ -53,22 +53,50 @@ impl Frame {
     }
 }
 
+/// What a contact answers with over a stage of a given length: the same for all stages of a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Answers {
+    /// Shear force per slip speed (N s/m) and moment per spin (N m s) while they stick.
+    pub(crate) kap: f64,
+    pub(crate) kar: f64,
+    /// `1/(1 + B)`.
+    share_q: f64,
+    /// `C`.
+    c: f64,
+    /// `1/(1 + E)`.
+    share_m: f64,
+    /// `E R`.
+    er: f64,
+    /// `1/(1 − C E R/((1 + B)(1 + E)))`.
+    both: f64,
+}
+
+impl Answers {
+    #[inline]
+    pub(crate) fn of(body: &Body, law: &Law, h: f64) -> Self {
+        let (kap, kar) = (law.p_s * h + law.c_s, law.k_r * h + law.c_r);
+        let (turn_q, turn_m) = (kap * h / body.inertia, kar * h / body.inertia);
+        // The contact point's mass along the surface is 2/7 m.
+        Self::new((kap, kar), 3.5 * kap * h / body.mass, turn_m, (turn_q, body.radius))
+    }
+
+    #[inline]
+    fn new((kap, kar): (f64, f64), b: f64, e: f64, (turn_q, r): (f64, f64)) -> Self {
+        let (share_q, share_m, c, er) = (1.0 / (1.0 + b), 1.0 / (1.0 + e), turn_q * r, e * r);
+        let both = 1.0 / (1.0 - c * er * share_q * share_m);
+        Self { kap, kar, share_q, c, share_m, er, both }
+    }
+}
+
 /// The coupled shear force `q` and rolling moment `M` of one contact over one stage: each is the shortening to its cap of
 /// `q̂ = (a − C n × M)/(1 + B)` and `M̂ = (d + E R n × q)/(1 + E)`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pair {
+pub(crate) struct Pair<'a> {
+    pub(crate) answers: &'a Answers,
     /// What the shear spring would hold without being moved by `q` and `M` (N).
     pub(crate) a: Along,
     /// The same of the rolling spring (N m).
     pub(crate) d: Local,
-    /// `1/(1 + B)`.
-    pub(crate) share_q: f64,
-    /// `C`.
-    pub(crate) c: f64,
-    /// `1/(1 + E)`.
-    pub(crate) share_m: f64,
-    /// `E R`.
-    pub(crate) er: f64,
     /// Largest shear force (N) and rolling moment (N m).
     pub(crate) caps: (f64, f64),
 }
@@ -115,29 +143,7 @@ pub(crate) fn cut_moment(x: Local, cap: f64) -> Local {
     if size2 > cap * cap { x.map(|x| x * (cap / size2.sqrt())) } else { x }
 }
 
-impl Pair {
-    /// The pair of a contact pressed with `push` over a stage of length `h`, from what its springs would hold.
-    #[inline]
-    pub(crate) fn of(
-        body: &Body,
-        law: &Law,
-        (h, push): (f64, f64),
-        (a, d): (Along, Local),
-    ) -> Self {
-        let (kap, kar) = (law.p_s * h + law.c_s, law.k_r * h + law.c_r);
-        let (turn_q, turn_m) = (kap * h / body.inertia, kar * h / body.inertia);
-        Self {
-            a,
-            d,
-            // The contact point's mass along the surface is 2/7 m.
-            share_q: 1.0 / (1.0 + 3.5 * kap * h / body.mass),
-            c: turn_q * body.radius,
-            share_m: 1.0 / (1.0 + turn_m),
-            er: turn_m * body.radius,
-            caps: (law.friction * push, law.rolling_m * push),
-        }
-    }
-
+impl Pair<'_> {
     #[inline]
     pub(crate) fn solve(&self) -> (Along, Local) {
         let (cap_q, cap_m) = self.caps;
@@ -165,36 +171,34 @@ impl Pair {
     #[inline]
     fn shear_at(&self, moment: Local) -> Along {
         let y = turned([moment[0], moment[1]]);
-        [0, 1].map(|k| (self.a[k] - y[k] * self.c) * self.share_q)
+        [0, 1].map(|k| (self.a[k] - y[k] * self.answers.c) * self.answers.share_q)
     }
 
     /// `M̂` for a shear force.
     #[inline]
     fn moment_at(&self, q: Along) -> Local {
         let y = turned(q);
-        let along = [0, 1].map(|k| (self.d[k] + y[k] * self.er) * self.share_m);
-        [along[0], along[1], self.d[2] * self.share_m]
+        let along = [0, 1].map(|k| (self.d[k] + y[k] * self.answers.er) * self.answers.share_m);
+        [along[0], along[1], self.d[2] * self.answers.share_m]
     }
 
     /// Neither at its cap: with `y = n × M`, `(1+B) q + C y = a` and `E R q + (1+E) y = n × d`.
     #[inline]
     fn both_stick(&self) -> (Along, Local) {
-        let (b1, e1) = (self.share_q, self.share_m);
-        let coupling = self.c * self.er * b1 * e1;
+        let &Answers { share_q, c, share_m, er, both, .. } = self.answers;
         let nd = turned([self.d[0], self.d[1]]);
-        let scale = 1.0 / (1.0 - coupling);
-        let q = [0, 1].map(|k| (self.a[k] - nd[k] * (self.c * e1)) * (b1 * scale));
-        let y = [0, 1].map(|k| (nd[k] - self.a[k] * (self.er * b1)) * (e1 * scale));
-        (q, [y[1], -y[0], self.d[2] * e1])
+        let q = [0, 1].map(|k| (self.a[k] - nd[k] * (c * share_m)) * (share_q * both));
+        let y = [0, 1].map(|k| (nd[k] - self.a[k] * (er * share_q)) * (share_m * both));
+        (q, [y[1], -y[0], self.d[2] * share_m])
     }
 
     /// The moment at its cap while shear sticks: `M_t = λ G_t/(1 − λs)`, `M_n = λ G_n`, a scalar equation for `λ`.
     #[inline]
     fn rolling_alone(&self) -> Local {
         let y = turned(self.a);
-        let g = [0, 1].map(|k| self.d[k] + y[k] * (self.er * self.share_q));
+        let g = [0, 1].map(|k| self.d[k] + y[k] * (self.answers.er * self.answers.share_q));
         let (t2, n2, cap) = (size2(g), self.d[2] * self.d[2], self.caps.1);
-        let s = self.er * self.c * self.share_q;
+        let s = self.answers.er * self.answers.c * self.answers.share_q;
         // |M| grows with λ. Without a normal part the first guess is exact; with one it is below the root, from where
         // Newton on λ − cap/|G/(1 − λs)| comes up.
         let mut ratio = cap / ((t2.sqrt() + cap * s).powi(2) + n2).sqrt();
@@ -219,7 +223,7 @@ impl Pair {
     #[inline]
     fn sliding_alone(&self) -> Along {
         let y = turned([self.d[0], self.d[1]]);
-        let along = [0, 1].map(|k| self.a[k] - y[k] * (self.c * self.share_m));
+        let along = [0, 1].map(|k| self.a[k] - y[k] * (self.answers.c * self.answers.share_m));
         let share = self.caps.0 / size2(along).sqrt().max(f64::MIN_POSITIVE);
         along.map(|x| x * share)
     }
@@ -271,8 +275,8 @@ mod tests {
             // C E R = 5/7 B E, as a solid sphere has it
             let c = 5.0 / 7.0 * b / r;
             let d = [d[0] * r, d[1] * r, if spins { d[2] * r } else { 0.0 }];
-            let (share_q, share_m) = (1.0 / (1.0 + b), 1.0 / (1.0 + e));
-            let pair = Pair { a, d, share_q, c, share_m, er: e * r, caps: (caps[0], caps[1] * r) };
+            let answers = Answers::new((b, e), b, e, (c / r, r));
+            let pair = Pair { answers: &answers, a, d, caps: (caps[0], caps[1] * r) };
             let (q, moment) = pair.solve();
             let at_m = cut(pair.shear_at(moment), pair.caps.0);
             let at_q = cut_moment(pair.moment_at(q), pair.caps.1);

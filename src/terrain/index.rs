@@ -106,8 +106,7 @@ impl Index {
             (0..sides).rev().map(|side| (0, side, top[side])).collect();
         if sides == 1 {
             for k in 0..3 {
-                (self.pairs[0].lo[k][1], self.pairs[0].hi[k][1]) =
-                    (f32::INFINITY, f32::NEG_INFINITY);
+                (self.pairs[0].lo[k][1], self.pairs[0].hi[k][1]) = (f32::MAX, f32::MAX);
             }
             self.pairs[0].child[1] = LEAF_BIT;
         }
