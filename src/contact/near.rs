@@ -68,6 +68,8 @@ pub struct Near {
     rays: Vec<Vec3>,
     /// All triangles within reach; only looked at when a border is near.
     sheets: Vec<u32>,
+    /// Stems that have given way: they touch nothing any more.
+    pub gone: Vec<u32>,
     /// Triangles tested so far.
     pub tested: u64,
 }
@@ -98,6 +100,7 @@ impl Near {
             corners: Vec::new(),
             rays: Vec::new(),
             sheets: Vec::new(),
+            gone: Vec::new(),
             tested: 0,
         }
     }
@@ -128,7 +131,9 @@ impl Near {
             for t in start..start + count {
                 self.tested += 1;
                 let face = &terrain.features.faces[t as usize];
-                if face.n.dot(&(centre - face.a)).abs() <= self.reach {
+                if face.n.dot(&(centre - face.a)).abs() <= self.reach
+                    && !terrain.is_gone(t, &self.gone)
+                {
                     self.take(terrain, t);
                 }
             }
