@@ -1,5 +1,9 @@
 //! Stems that give way, and stems made from a list of trees.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    reason = "a test fails by panicking; infinite times are equal or not"
+)]
 
 mod common;
 

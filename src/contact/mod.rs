@@ -1,5 +1,6 @@
 //! Where a sphere touches the mesh, what it remembers of it, and the paper's 6×6 submatrices.
 
+pub mod closest;
 pub mod hold;
 pub mod near;
 pub mod pair;
@@ -89,6 +90,18 @@ impl Touches {
             touch.distance_m = touch.normal.dot(&(centre - corner));
         }
         true
+    }
+
+    /// Forgets those that are not nearer than `reach` (m).
+    pub fn keep_nearer(&mut self, reach: f64) {
+        let mut kept = 0;
+        for k in 0..self.len {
+            if self.list[k].distance_m < reach {
+                self.list[kept] = self.list[k];
+                kept += 1;
+            }
+        }
+        self.len = kept;
     }
 
     /// Adds one; when full, it takes the place of the shallowest if it is deeper.

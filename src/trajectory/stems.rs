@@ -137,6 +137,7 @@ impl<'a> Fall<'a> {
         self.grip.near.forget();
         self.grip.holds.retain(|hold| stems.of_triangle(hold.triangle) != Some(stem));
         self.grip.fresh = false;
+        self.grip.flat.forget();
         self.strain.pressed = None;
     }
 }
