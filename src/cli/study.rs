@@ -39,7 +39,7 @@ pub(super) struct SpeedArgs {
     /// Folder for page, tables and figure
     #[arg(long, value_name = "DIR", default_value = "reports/speed")]
     out: PathBuf,
-    /// Rocks of the fast schemes; `reference` follows a tenth of them, `dda` a hundredth
+    /// Rocks of the fast schemes; `reference` follows a tenth of them, `dda` one of 200
     #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
     releases: usize,
     /// Sizes of the slope, about

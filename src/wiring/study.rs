@@ -108,7 +108,10 @@ pub(crate) fn speed(
     let program = std::env::current_exe().map_err(|why| {
         Error::Request(format!("the program does not find itself to measure its memory: {why}"))
     })?;
-    let order = Order { rocks, triangles: triangles.to_vec(), program, source: None };
+    // run where its source code lies, it can name the commit
+    let package = std::fs::read_to_string("Cargo.toml").unwrap_or_default();
+    let source = package.contains("name = \"rockfall\"").then(|| PathBuf::from("."));
+    let order = Order { rocks, triangles: triangles.to_vec(), program, source };
     let found = speed::study(&order, &out.join("work"), done)?;
     study::write_speed(&found, out)?;
     Ok(format!("page, tables and figure in {}", out.display()))
