@@ -17,6 +17,7 @@ use crate::scene::{
 };
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
+use crate::terrain::stems::Stems;
 use std::convert::Infallible;
 use std::path::PathBuf;
 
@@ -98,6 +99,8 @@ pub struct Plan {
     pub longest_s: f64,
     /// Trees, with the number of their triangles.
     pub trees: Part<usize>,
+    /// Stems that give way, and how many; the limits stand in the terrain.
+    pub breaking: Part<usize>,
     /// Stepping through the air; always left out.
     pub flight: Part<Infallible>,
     /// How far a rock has turned; always left out.
@@ -153,9 +156,10 @@ impl Plan {
     ///
     /// # Errors
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
-    pub fn compile(scene: &Scene, terrain: Terrain) -> Result<Self> {
+    pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings(&scene.solver);
         let releases = Releases::compile(scene, &terrain)?;
+        terrain.stems = stems(scene, &terrain)?;
         let mut warnings = unused_grounds(scene, &terrain);
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
@@ -185,6 +189,10 @@ impl Plan {
             },
             longest_s: scene.solver.longest_s.unwrap_or(LONGEST_S),
             trees: Part::when(tree_triangles(&terrain), "the scene has none"),
+            breaking: Part::when(
+                terrain.stems.as_ref().map(Stems::count),
+                "no ground of trees has breaks_above_j, stems stand for good",
+            ),
             flight: Part::LeftOut(
                 "nothing but gravity acts between touches, the parabola is exact",
             ),
@@ -344,17 +352,36 @@ fn tree_triangles(terrain: &Terrain) -> Option<usize> {
     Some(trees.count()).filter(|count| *count > 0)
 }
 
+/// The stems that give way, whose ends leave nothing open.
+fn stems(scene: &Scene, terrain: &Terrain) -> Result<Option<Stems>> {
+    let limits = scene.grounds.values().map(|ground| ground.breaks_above_j.clone()).collect();
+    Stems::of(terrain, limits).map_err(|shared_m| {
+        let [x, y, z]: [f64; 3] = (shared_m + terrain.origin_m).into();
+        let found = format!("found a stem that shares a corner with what stays at ({x}, {y}, {z})");
+        let remedy = "write stems that stand in the ground without common corners, as rockfall mesh stems makes them";
+        Error::input(&scene.file, "[grounds] breaks_above_j", found, remedy)
+    })
+}
+
 fn can_exceed_0(value: Option<&Distribution>) -> bool {
     value.is_some_and(|value| value.support().1 > 0.0)
 }
 
 fn unused_grounds(scene: &Scene, terrain: &Terrain) -> Vec<String> {
     let used = |index: usize| terrain.sheets.iter().any(|sheet| usize::from(sheet.ground) == index);
-    let names = scene.grounds.keys().enumerate();
-    names
-        .filter(|(index, _)| !used(*index))
-        .map(|(_, name)| format!("[grounds.{name}] lies under no mesh"))
-        .collect()
+    let has_tree = |index: usize| {
+        terrain.sheets.iter().any(|sheet| sheet.is_tree && usize::from(sheet.ground) == index)
+    };
+    let wrong = |(index, (name, ground)): (usize, (&String, &GroundTable))| {
+        if !used(index) {
+            Some(format!("[grounds.{name}] lies under no mesh"))
+        } else if ground.breaks_above_j.is_some() && !has_tree(index) {
+            Some(format!("[grounds.{name}] has breaks_above_j, but no tree: only trees give way"))
+        } else {
+            None
+        }
+    };
+    scene.grounds.iter().enumerate().filter_map(wrong).collect()
 }
 
 /// A tolerance above twice the capture speed lets slow rocks flutter for ever.

@@ -282,12 +282,7 @@ pub(crate) fn draw(dir: &Path) -> Result<()> {
 
 /// Health of mesh files as they will be welded, in words.
 pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
-    let source = |path: &PathBuf| Source {
-        sheet: Sheet { path: path.clone(), ground: 0, is_tree: false },
-        up: Up::default(),
-        scale: 1.0,
-    };
-    let sources: Vec<Source> = files.iter().map(source).collect();
+    let sources: Vec<Source> = files.iter().map(|path| slope_source(path)).collect();
     let (_, health) = Terrain::read(&sources, Vec3::zeros(), None)?;
     Ok(health.to_string())
 }
@@ -306,6 +301,39 @@ pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
         origin_m.y,
         origin_m.z
     ))
+}
+
+/// Turns a list of trees into stems on a slope.
+pub(crate) fn mesh_of_stems(
+    (list, slope): (&Path, &Path),
+    out: &Path,
+    origin_m: Option<&[f64]>,
+) -> Result<String> {
+    let map_origin_m = match origin_m {
+        None => Vec3::zeros(),
+        Some(&[x, y, z]) if [x, y, z].iter().all(|m| m.is_finite()) => Vec3::new(x, y, z),
+        Some(_) => {
+            let wrong = "--origin-m: write three finite numbers, as in 2600000,1200000,0";
+            return Err(Error::Request(wrong.to_owned()));
+        }
+    };
+    let trees = make::read_list(list)?;
+    let (terrain, _) = Terrain::read(&[slope_source(slope)], map_origin_m, None)?;
+    let mut facets = make::plant(list, &trees, &terrain)?;
+    for corner in facets.iter_mut().flatten() {
+        *corner -= map_origin_m;
+    }
+    write_binary(out, &facets)?;
+    Ok(format!("{} stems, {} triangles written to {}", trees.len(), facets.len(), out.display()))
+}
+
+/// A mesh file as it stands.
+fn slope_source(path: &Path) -> Source {
+    Source {
+        sheet: Sheet { path: path.to_owned(), ground: 0, is_tree: false },
+        up: Up::default(),
+        scale: 1.0,
+    }
 }
 
 /// Writes one of the made slopes and shapes.

@@ -257,6 +257,11 @@ impl Scene {
                 let about = Complaint::about("roughness_deg", remedy);
                 return Err(about.inside(name).inside("grounds"));
             }
+            if ground.breaks_above_j.is_some() {
+                let remedy = "remove it: stems give way to one rock alone, and with [release] together = true others would run into what is gone";
+                let about = Complaint::about("breaks_above_j", remedy);
+                return Err(about.inside(name).inside("grounds"));
+            }
         }
         Ok(())
     }

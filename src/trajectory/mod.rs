@@ -3,6 +3,7 @@
 mod crossing;
 mod fall;
 mod journey;
+mod stems;
 mod together;
 mod visit;
 
