@@ -5,7 +5,7 @@ use crate::wiring::study::{self as wiring, SceneOrder};
 use clap::{Args, Subcommand};
 use rockfall::error::Result;
 use rockfall::study::aim::Aim;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Subcommand)]
