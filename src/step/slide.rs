@@ -80,6 +80,13 @@ impl Answers {
         Self::new((kap, kar), 3.5 * kap * h / body.mass, turn_m, (turn_q, body.radius))
     }
 
+    /// The limit of stiff springs, for impulses: `q̂ = 2/7 m slip − 5/7 n × M/R` and `M̂ = I w + R n × q`.
+    #[inline]
+    pub(crate) fn rigid(radius: f64) -> Self {
+        let (c, er) = (5.0 / 7.0 / radius, radius);
+        Self { kap: 0.0, kar: 0.0, share_q: 1.0, c, share_m: 1.0, er, both: 3.5 }
+    }
+
     #[inline]
     fn new((kap, kar): (f64, f64), b: f64, e: f64, (turn_q, r): (f64, f64)) -> Self {
         let (share_q, share_m, c, er) = (1.0 / (1.0 + b), 1.0 / (1.0 + e), turn_q * r, e * r);
@@ -224,8 +231,8 @@ impl Pair<'_> {
     fn sliding_alone(&self) -> Along {
         let y = turned([self.d[0], self.d[1]]);
         let along = [0, 1].map(|k| self.a[k] - y[k] * (self.answers.c * self.answers.share_m));
-        let share = self.caps.0 / size2(along).sqrt().max(f64::MIN_POSITIVE);
-        along.map(|x| x * share)
+        let size = size2(along).sqrt();
+        if size > 0.0 { along.map(|x| x * (self.caps.0 / size)) } else { along }
     }
 
     /// Both at their caps: only directions are sought; alternating them settles in a few passes.

@@ -77,6 +77,16 @@ impl Terrain {
         }
     }
 
+    /// Memory that it takes (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val::<[Vec3]>(&self.vertices_m)
+            + size_of_val::<[[u32; 3]]>(&self.triangles)
+            + size_of_val::<[u16]>(&self.sheet_of)
+            + size_of_val::<[u32]>(&self.facet_of)
+            + size_of_val(self.index.pairs())
+            + self.features.bytes()
+    }
+
     /// The same with no edge and no corner left out.
     #[must_use]
     pub fn with_every_feature(mut self) -> Self {

@@ -212,13 +212,6 @@ impl Fall<'_> {
 
     /// Goes on in contact until the rock is free again or stops.
     fn touch(&mut self) -> Option<Stop> {
-        let begun = self.grip.clocks.now();
-        let stop = self.impact();
-        self.grip.clocks.stop(Piece::Contact, begun);
-        stop
-    }
-
-    fn impact(&mut self) -> Option<Stop> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.journey.now;
         self.grip.begin(&self.world, c, v, w);
         self.announce();
