@@ -272,6 +272,7 @@ fn text() -> Text {
     let lines = |all: &[&str]| all.iter().map(|&line| line.to_owned()).collect();
     Text {
         title: "Made slope: cliff, talus & meadow".to_owned(),
+        title_block: vec![("Client".to_owned(), "A <client> & \"Co\"".to_owned())],
         subtitle: "A <test> scene with parabolas for rocks".to_owned(),
         scheme: "Steps are adaptive with a local error of 0.05 m/s.".to_owned(),
         inputs: vec![
