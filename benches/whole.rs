@@ -1,135 +1,103 @@
 //! Rocks per second and core on a made natural slope, with what they cost.
+//!
+//! `cargo bench --bench whole` measures everything and writes `reports/speed/`. With words behind `--` it follows rocks of
+//! one scheme on one slope and prints a line: `cargo bench --bench whole -- 300 100k adaptive 0.05`.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
-use rockfall::chance::{Purpose, stream, unit};
-use rockfall::ground::Ground;
-use rockfall::plan::RestRule;
-use rockfall::release::Release;
-use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::step::{Scheme, Settings};
-use rockfall::terrain::make::natural_slope;
-use rockfall::terrain::stl::Soup;
-use rockfall::terrain::weld::{Piece, Up, weld};
-use rockfall::terrain::{Sheet, Terrain};
-use rockfall::trajectory::{Course, Keep, Scratch, Stop, follow};
-use std::path::Path;
+use rockfall::step::Scheme;
+use rockfall::study::speed::rate::step_of;
+use rockfall::study::speed::slope::{SCHEMES, Slope};
+use rockfall::study::speed::{Order, study};
+use rockfall::study::write_speed;
+use rockfall::trajectory::{Effort, Scratch, Stop, Trajectory};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// Rocks of the fast schemes; `ROCKFALL_BENCH_ROCKS` asks for another number.
+const ROCKS: usize = 400;
+
 fn main() {
-    let args: Vec<String> = std::env::args().collect();
-    let n: usize = args.get(1).and_then(|s| s.parse().ok()).unwrap_or(300);
-    let cells = match args.get(2).map(String::as_str) {
-        Some("10k") => (61, 82),
-        Some("1M") => (612, 817),
-        _ => (193, 258),
+    let words: Vec<String> =
+        std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    if words.is_empty() { everything() } else { one(&words) }
+}
+
+fn everything() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let rocks = std::env::var("ROCKFALL_BENCH_ROCKS").map_or(ROCKS, |rocks| rocks.parse().unwrap());
+    let order = Order {
+        rocks,
+        triangles: vec![10_000, 100_000, 1_000_000],
+        program: PathBuf::from(env!("CARGO_BIN_EXE_rockfall")),
+        source: Some(source.to_owned()),
     };
-    let scheme = match args.get(3).map(String::as_str) {
-        Some("rigid") => Scheme::Rigid,
-        Some("reference") => Scheme::Reference,
-        Some("dda") => Scheme::Dda,
-        _ => Scheme::Adaptive,
+    let out = source.join("reports/speed");
+    let found = study(&order, &out.join("work"), |piece| println!("{piece}")).unwrap();
+    write_speed(&found, &out).unwrap();
+    println!("page, tables and figure in {}", out.display());
+}
+
+/// Number of rocks, size of the slope, scheme, tolerance or step.
+fn one(words: &[String]) {
+    let word = |k: usize| words.get(k).map(String::as_str);
+    let rocks: usize = word(0).and_then(|s| s.parse().ok()).unwrap_or(300);
+    let triangles = match word(1) {
+        Some("10k") => 10_000,
+        Some("1M") => 1_000_000,
+        _ => 100_000,
     };
-    let tolerance_m_s = args.get(4).and_then(|s| s.parse().ok()).unwrap_or(0.05);
-    let clock = Instant::now();
-    let soup = Soup::from(natural_slope(cells.0, cells.1).facets);
-    let piece = Piece { file: Path::new("made"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
-    let welded = weld(&[piece], Vec3::zeros(), None).unwrap();
-    println!("weld {:?}", clock.elapsed());
-    let clock = Instant::now();
-    let terrain =
-        Terrain::new(welded, vec![Sheet { path: "made".into(), ground: 0, is_tree: false }]);
-    println!("index {:?} {} triangles", clock.elapsed(), terrain.triangles.len());
-    let ground = Ground {
-        normal_stiffness_n_m: 1e9,
-        shear_stiffness_n_m: 0.25e9,
-        friction_angle_rad: 35f64.to_radians(),
-        restitution: Some(0.4),
-        rolling_friction: 0.5,
-        roughness_rad: 0.0,
-    };
-    let step = Settings {
-        scheme,
-        tolerance_m_s,
-        step_s: args.get(5).and_then(|s| s.parse().ok()).unwrap_or(0.01),
-        shear_memory: true,
-        capture_speed_m_s: None,
-    };
-    let course = Course {
-        terrain: &terrain,
-        gravity_m_s2: 9.8,
-        step: &step,
-        rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
-        longest_s: 120.0,
-        watch: rockfall::plan::Watch::default(),
-    };
-    let rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
+    let mut way = SCHEMES[0];
+    if let Some(name) = word(2) {
+        way = *SCHEMES.iter().find(|(scheme, _)| scheme.name() == name).unwrap_or(&way);
+    }
+    if let Some(fineness) = word(3).and_then(|s| s.parse().ok()) {
+        way.1 = fineness;
+    }
+    let slope = Slope::of(triangles);
+    println!("weld {:.3} s, index {:.3} s", slope.weld_s, slope.index_s);
     let mut scratch = Scratch::default();
     let clock = Instant::now();
-    let mut runouts = Vec::new();
-    let (mut effort, mut rise, mut rem, mut rel) = ([0u64; 7], 0.0f64, 0.0, 0.0);
-    let mut stops = [0; 4];
-    let (mut vmax, mut time) = (0.0, 0.0);
-    for i in 0..n {
-        let mut place = stream(7, Purpose::Place, i);
-        let (x, y) =
-            (140.0 + 20.0 * unit(&mut place) - 150.0, 10.0 - 200.0 + 10.0 * unit(&mut place));
-        let z = terrain.ground_below(x, y).unwrap() + 1.5;
-        let motion = Motion {
-            time_s: 0.0,
-            position_m: Vec3::new(x, y, z),
-            velocity_m_s: Vec3::zeros(),
-            spin_rad_s: Vec3::zeros(),
-        };
-        let release = Release { rock, motion, grounds: vec![ground] };
-        let mut chance = stream(7, Purpose::Impacts, i);
-        let f = follow(
-            &course,
-            &release,
-            Keep { path_step_s: None, impacts: false },
-            &mut chance,
-            &mut scratch,
-        );
-        runouts.push(f.runout_m());
-        for (sum, x) in effort.iter_mut().zip([
-            f.effort.steps,
-            f.effort.rejected,
-            f.effort.leaps,
-            f.effort.sweeps,
-            f.effort.triangles,
-            u64::from(f.impact_count),
-            f.effort.unsettled,
-        ]) {
-            *sum += x;
-        }
-        rise = rise.max(f.ledger.rise_j);
-        rem += f.ledger.remainder_j;
-        rel += f.released_j;
-        vmax += f.extremes.speed_m_s;
-        time += f.end.time_s;
-        stops[match f.stop {
-            Stop::AtRest => 0,
-            Stop::LeftTerrain => 1,
-            Stop::TimeUp => 2,
-            Stop::Failed(_) => 3,
-        }] += 1;
+    let step = step_of(way);
+    let journeys: Vec<Trajectory> =
+        (0..rocks).map(|index| slope.fall(&step, index, &mut scratch)).collect();
+    say(way.0, &journeys, clock.elapsed().as_secs_f64());
+}
+
+fn say(scheme: Scheme, journeys: &[Trajectory], seconds: f64) {
+    let count = journeys.len();
+    let mut effort = Effort::default();
+    for one in journeys {
+        effort.add(&one.effort);
     }
-    let s = clock.elapsed().as_secs_f64();
+    let mean =
+        |of: &dyn Fn(&Trajectory) -> f64| journeys.iter().map(of).sum::<f64>() / count as f64;
+    let each = |sum: u64| sum / count as u64;
+    let stops = |wanted: fn(&Stop) -> bool| journeys.iter().filter(|one| wanted(&one.stop)).count();
+    let mut runouts: Vec<f64> = journeys.iter().map(Trajectory::runout_m).collect();
     runouts.sort_by(f64::total_cmp);
+    let rise = journeys.iter().map(|one| one.ledger.rise_j).fold(0.0, f64::max);
+    let remainder = mean(&|one| one.ledger.remainder_j) / mean(&|one| one.released_j);
     println!(
-        "{:.0} rocks/s; per rock: steps {} rejected {} leaps {} sweeps {} triangles {} impacts {} unsettled {}; stops {stops:?} rise {rise:.2e} remainder {:.4} P50 {:.2} P95 {:.2} mean {:.2} vmax {:.2} time {:.1}",
-        n as f64 / s,
-        effort[0] / n as u64,
-        effort[1] / n as u64,
-        effort[2] / n as u64,
-        effort[3] / n as u64,
-        effort[4] / n as u64,
-        effort[5] / n as u64,
-        effort[6] / n as u64,
-        rem / rel,
-        runouts[n / 2],
-        runouts[n * 95 / 100],
-        runouts.iter().sum::<f64>() / n as f64,
-        vmax / n as f64,
-        time / n as f64
+        "{}: {:.0} rocks/s; per rock: steps {} rejected {} leaps {} sweeps {} triangles {} impacts {:.0} unsettled {}; \
+         at rest {} left {} time up {} failed {}; rise {rise:.2e} J remainder {remainder:.4} P50 {:.2} P95 {:.2} mean {:.2} m \
+         vmax {:.2} m/s time {:.1} s",
+        scheme.name(),
+        count as f64 / seconds,
+        each(effort.steps),
+        each(effort.rejected),
+        each(effort.leaps),
+        each(effort.sweeps),
+        each(effort.triangles),
+        mean(&|one| f64::from(one.impact_count)),
+        each(effort.unsettled),
+        stops(|stop| *stop == Stop::AtRest),
+        stops(|stop| *stop == Stop::LeftTerrain),
+        stops(|stop| *stop == Stop::TimeUp),
+        stops(|stop| matches!(stop, Stop::Failed(_))),
+        runouts[count / 2],
+        runouts[count * 95 / 100],
+        mean(&Trajectory::runout_m),
+        mean(&|one| one.extremes.speed_m_s),
+        mean(&|one| one.end.time_s),
     );
 }

@@ -5,10 +5,12 @@
 //! distribution, so that giving one key a distribution leaves the draws of all others alone.
 
 mod distribution;
+mod entries;
 mod normal;
 mod written;
 
-pub use distribution::Distribution;
+pub use distribution::{Distribution, LARGEST};
+pub(crate) use entries::{Entries, entries};
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;
-use rockfall::scene::Scene;
+use rockfall::scene::{MOST_RELEASES, Scene};
 use rockfall::study::aim::Aim;
 use rockfall::study::verify::Verification;
 use std::fmt::Display;
@@ -310,8 +310,8 @@ impl RunArgs {
 
     /// Says how to go on.
     fn interrupted(&self, done: usize, asked: usize) -> ExitCode {
-        let mut words: Vec<String> =
-            std::env::args().skip(1).filter(|word| word != "--overwrite").collect();
+        let given = std::env::args_os().skip(1).filter(|word| word != "--overwrite");
+        let mut words: Vec<String> = given.map(|word| quoted(&word.to_string_lossy())).collect();
         if !self.resume {
             words.push("--resume".to_owned());
         }
@@ -319,6 +319,15 @@ impl RunArgs {
         eprintln!("go on with: rockfall {}", words.join(" "));
         ExitCode::from(INTERRUPTED)
     }
+}
+
+/// A word as a shell takes it for one.
+fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_alphanumeric() || "-_./=,:+%@".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 /// Ctrl-C or SIGTERM raises the flag: the chunk in hand is finished and written before anything ends.
@@ -363,7 +372,7 @@ fn threads(text: &str) -> std::result::Result<usize, String> {
 
 fn at_least_1(text: &str) -> std::result::Result<usize, String> {
     match text.parse() {
-        Ok(0) | Err(_) => Err("write a whole number of 1 or more".to_owned()),
-        Ok(number) => Ok(number),
+        Ok(number) if (1..=MOST_RELEASES).contains(&number) => Ok(number),
+        _ => Err(format!("write a whole number from 1 to {MOST_RELEASES}")),
     }
 }

@@ -13,6 +13,7 @@
 
 // words
 pub mod error;
+pub mod clock;
 pub mod chance;
 pub mod rock;
 // world

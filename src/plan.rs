@@ -9,9 +9,9 @@ pub use watch::{Curtain, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;
 use crate::contact::pair::Strength;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ground::Ground;
-use crate::release::{Release, Releases};
+use crate::release::{self, Release, Releases};
 use crate::scene::{
     BarrierTable, GroundTable, Polyline, RecordTable, Scene, SolverTable, known_ground,
 };
@@ -100,6 +100,8 @@ pub struct Plan {
     pub trees: Part<usize>,
     /// Stepping through the air; always left out.
     pub flight: Part<Infallible>,
+    /// How far a rock has turned; always left out.
+    pub orientation: Part<Infallible>,
     /// Rolling friction.
     pub rolling: Part<()>,
     /// Random tilt of contact normals.
@@ -186,6 +188,9 @@ impl Plan {
             flight: Part::LeftOut(
                 "nothing but gravity acts between touches, the parabola is exact",
             ),
+            orientation: Part::LeftOut(
+                "a sphere looks the same from every side; its spin is computed, how far it has turned is not",
+            ),
             rolling: Part::when(rolls.then_some(()), "no ground has any"),
             roughness: Part::when(is_rough.then_some(()), "no ground has any"),
             rock_against_rock: Part::when(between, "releases are independent"),
@@ -199,7 +204,7 @@ impl Plan {
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
             ),
-            lines: Part::when(curtains(scene, &terrain), "the scene has none"),
+            lines: Part::when(curtains(scene, &terrain)?, "the scene has none"),
             barriers: Part::when(
                 Some(scene.barriers.clone()).filter(|all| !all.is_empty()),
                 "the scene has none",
@@ -243,6 +248,7 @@ impl Plan {
             roughness: Part::Kept(()),
             paths: Part::Kept(Paths { first: self.count, step_s }),
             impacts: Part::Kept(()),
+            terrain: self.terrain.with_every_feature(),
             ..self
         }
     }
@@ -310,11 +316,23 @@ fn catalogued(scene: &Scene) -> Vec<String> {
     scene.grounds.iter().filter_map(taken).collect()
 }
 
-fn curtains(scene: &Scene, terrain: &Terrain) -> Option<Vec<Curtain>> {
-    let lines = scene.lines.iter().map(|line| (&line.name, &line.points_m));
-    let barriers = scene.barriers.iter().map(|barrier| (&barrier.name, &barrier.points_m));
-    let curtain = |(name, line): (&String, &Polyline)| Curtain::new(name, line, terrain.origin_m);
-    Some(lines.chain(barriers).map(curtain).collect()).filter(|all: &Vec<Curtain>| !all.is_empty())
+fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
+    let lines = scene.lines.iter().map(|line| ("lines", &line.name, &line.points_m));
+    let barriers =
+        scene.barriers.iter().map(|barrier| ("barriers", &barrier.name, &barrier.points_m));
+    let (low, high) = terrain.index.bounds();
+    let curtain = |(table, name, line): (&str, &String, &Polyline)| {
+        let curtain = Curtain::new(name, line, terrain.origin_m);
+        if curtain.is_near([low.x, low.y], [high.x, high.y]) {
+            return Ok(curtain);
+        }
+        // A forgotten map origin, most likely: no rock would ever cross it.
+        let (place, found) =
+            (format!("[[{table}]] \"{name}\" points_m"), "found no terrain near it");
+        Err(Error::input(&scene.file, place, found, release::outside(terrain)))
+    };
+    let all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
+    Ok(Some(all).filter(|all| !all.is_empty()))
 }
 
 fn lattice(scene: &Scene, terrain: &Terrain) -> Result<Option<Lattice>> {

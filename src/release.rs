@@ -221,7 +221,7 @@ fn local(terrain: &Terrain, [x, y]: Corner) -> Corner {
 }
 
 /// What to write instead of a place outside: the box of the terrain on the map.
-fn outside(terrain: &Terrain) -> String {
+pub(crate) fn outside(terrain: &Terrain) -> String {
     let (low, high) = terrain.index.bounds();
     let (low, high) = (low + terrain.origin_m, high + terrain.origin_m);
     format!(

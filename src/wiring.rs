@@ -134,12 +134,34 @@ fn compute(
         let fall = |index: usize, scratch: &mut Scratch| {
             trajectory::fall(plan, index, paths.as_ref(), scratch)
         };
-        for falls in ensemble.in_chunks(output.remaining(), Scratch::default, fall) {
+        let chunks = ensemble.in_chunks(output.remaining(), Scratch::default, fall);
+        beside(chunks, |falls| {
             output.write(&falls?)?;
             progress(output.remaining().start - asked.start);
-        }
+            Ok(())
+        })?;
     }
     Ok(output)
+}
+
+/// Takes the chunks in order, each while the next one is being computed: the workers need not wait for the disk.
+fn beside<T: Send>(
+    chunks: impl Iterator<Item = T> + Send,
+    mut take: impl FnMut(T) -> Result<()>,
+) -> Result<()> {
+    std::thread::scope(|scope| {
+        // handed over one by one: at most two chunks are in memory
+        let (hand, taken) = std::sync::mpsc::sync_channel(0);
+        scope.spawn(move || {
+            // whoever takes no more has met an error, which it tells itself
+            for chunk in chunks {
+                if hand.send(chunk).is_err() {
+                    break;
+                }
+            }
+        });
+        taken.into_iter().try_for_each(&mut take)
+    })
 }
 
 /// How many releases the aim still asks for; none when it is reached, or out of reach.

@@ -350,3 +350,28 @@ fn threads_change_nothing() {
     };
     assert_eq!(on(1), on(4));
 }
+
+/// Scheme `dda` with the dashpots of a restitution of 0.5 between rocks: at 1e-5 s the step itself takes another hundredth
+/// (half an impact's oscillation, `ω Δt` = 0.012).
+#[test]
+fn the_fixed_step_keeps_the_restitution_between_rocks() {
+    let world = World { scheme: Scheme::Dda, ..WORLD };
+    // one above the other, the lower one first: its normal is the exact opposite of the vertical
+    let sphere = |z: f64, up: f64| (0.5, 2700.0, [0.3, 0.2, z], [0.0, 0.0, up], [0.0; 3]);
+    let falls = world.run(&space(), &[sphere(-1.0, 1.0), sphere(0.5, 0.0)], 2.0);
+    let speeds = [0, 1].map(|k| falls[k].end.velocity_m_s.z);
+    assert!((speeds[0] - 0.25).abs() < 5e-3 && (speeds[1] - 0.75).abs() < 5e-3, "{speeds:?}");
+    momentum_is_kept(&falls);
+}
+
+/// A stack under scheme `dda`: the lower rock is the first, so that the normal between them points straight down.
+#[test]
+fn a_stack_rests_on_fixed_steps() {
+    let world = World { scheme: Scheme::Dda, gravity_m_s2: G, rest_time_s: 0.1, ..WORLD };
+    let press = Rock { radius_m: 0.5, density_kg_m3: 2700.0 }.mass_kg() * G / 1e9;
+    let sphere = |z: f64| (0.5, 2700.0, [0.3, 0.2, z], [0.0; 3], [0.0; 3]);
+    let falls = world.run(&plane(), &[sphere(0.5 - 2.0 * press), sphere(1.5 - 3.0 * press)], 1.0);
+    let z = [0, 1].map(|k| falls[k].end.position_m.z);
+    assert!((0.5 - z[0] - 2.0 * press).abs() < 1e-2 * press, "{z:?}");
+    assert!((1.0 - (z[1] - z[0]) - press).abs() < 1e-2 * press, "{z:?}");
+}

@@ -1,8 +1,8 @@
-//! The exact cases over every scheme.
+//! The exact cases over every scheme, and the studies as commands.
+#![allow(clippy::unwrap_used, reason = "a test without its files has failed")]
 
 use rockfall::step::Scheme;
 use rockfall::study::cases::CASES;
-
 use rockfall::trajectory::Scratch;
 use std::fs;
 use std::process::Command;
@@ -67,4 +67,90 @@ fn a_run_until_an_interval_is_narrow_is_the_same_everywhere() {
     assert_eq!(alone, run("two", &[&until[..], &["--threads", "2"]].concat()));
     assert_eq!(alone, run("once", &["--releases", &rows.to_string()]));
     assert_eq!(alone, run("one", &[&until[..], &["--resume"]].concat()));
+}
+
+/// At fixed steps every scheme has the order that its theory says, within a twentieth.
+#[test]
+fn every_scheme_has_its_order_at_fixed_steps() {
+    for ladder in rockfall::study::order::study() {
+        let order = ladder.order();
+        println!("{} order {order:.2} {:?}", ladder.scheme.name(), ladder.errors);
+        assert!(
+            (order - ladder.theory).abs() <= 0.05 * ladder.theory,
+            "{} {order}",
+            ladder.scheme.name()
+        );
+    }
+}
+
+/// The table of the README: the fourth-order scheme is exact to a few digits more than it shows, the default's error
+/// falls with its tolerance, and a row says what it measures.
+#[test]
+fn exact_values_are_in_their_units() {
+    let values = rockfall::study::exact_values::values();
+    assert!(values.len() > 15);
+    for value in &values {
+        let off = value.found.map(|found| (found - value.exact).abs());
+        assert!(off[0] < 3e-6 && off[0] <= off[1] + 1e-7, "{value:?}");
+        assert!(off[1] < 2e-3 && off[2] < 0.2, "{value:?}");
+        assert!(value.what.contains('('), "{value:?} has no unit");
+    }
+    let table = rockfall::study::exact_values::table(&values);
+    assert_eq!(table.lines().count(), values.len() + 2);
+}
+
+fn rockfall(arguments: &[&str], out: &std::path::Path) -> (Option<i32>, String, String) {
+    let done = Command::new(env!("CARGO_BIN_EXE_rockfall"))
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .unwrap();
+    let page = fs::read_to_string(out.join("README.md")).unwrap_or_default();
+    (done.status.code(), String::from_utf8_lossy(&done.stdout).into_owned(), page)
+}
+
+/// Two hundred of the releases on the real slope keep every bound of conservation; a tolerance of some metres a second
+/// does not keep the energy, and says so with exit status 1.
+#[test]
+fn conservation_is_held_and_can_be_broken() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = |scene: &str, out: &str| {
+        rockfall(&["study", "stability", scene, "--releases", "200"], &dir.path().join(out))
+    };
+    let (code, said, page) = study("examples/tyrol.toml", "good");
+    assert_eq!(code, Some(0), "{said}");
+    assert!(page.contains("200 of 200 releases") && !page.contains("**no**"), "{page}");
+    let scene = fs::read_to_string("examples/tyrol.toml").unwrap();
+    let mesh = fs::canonicalize("terrain/tyrol.stl").unwrap();
+    let coarse = scene.replace("../terrain/tyrol.stl", mesh.to_str().unwrap())
+        + "\n[solver]\ntolerance_m_s = 5.0\n";
+    let file = dir.path().join("coarse.toml");
+    fs::write(&file, coarse).unwrap();
+    let (code, said, page) = study(file.to_str().unwrap(), "bad");
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("NOT KEPT") && page.contains("**no**"), "{page}");
+}
+
+/// A scene's study with coarser meshes says all three errors apart, which dominates, and what it would take.
+#[test]
+fn errors_of_a_scene_are_told_apart() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = ["study", "error", "examples/quick.toml", "--releases", "150", "--meshes"];
+    let (code, said, page) = rockfall(&scene, dir.path());
+    assert_eq!(code, Some(0), "{said}");
+    for words in
+        ["sampling error", "error of the steps", "error of the mesh", "dominates", "cheapest"]
+    {
+        assert!(
+            said.contains(words) || words == "cheapest" && said.contains("finer"),
+            "{words}: {said}"
+        );
+    }
+    assert!(page.contains("(the scene's own)") && page.contains(", own |"), "{page}");
+    let rows = |file: &str| fs::read_to_string(dir.path().join(file)).unwrap().lines().count() - 1;
+    // three quantities, three percentiles (two with too few rocks), five tolerances, three meshes
+    assert_eq!((rows("error.csv") % 5, rows("mesh.csv") % 3), (0, 0));
+    assert_eq!(rows("error.csv") / 5, rows("mesh.csv") / 3);
+    assert!(fs::read_to_string(dir.path().join("error.svg")).unwrap().contains("mesh"));
 }

@@ -5,6 +5,10 @@ use super::written::{Lognormal, Normal};
 use super::{Chance, unit};
 use crate::error::Flaw;
 
+/// Largest number that a scene may hold, in whatever unit: what is computed from greater ones may overflow, and nothing on
+/// a slope comes near it.
+pub const LARGEST: f64 = 1e18;
+
 /// A number, or how it is distributed; valid by construction. In the unit of the key it stands for.
 ///
 /// Written as `0.4`, `{ uniform = [0.2, 0.6] }`, `{ normal = { mean, sd, min, max } }`,
@@ -102,10 +106,6 @@ impl Distribution {
     ///
     /// # Errors
     /// Numbers that are not finite or not rising.
-    /// Even between two numbers.
-    ///
-    /// # Errors
-    /// Numbers that are not finite or not rising.
     pub fn uniform([low, high]: [f64; 2]) -> Result<Self, Flaw> {
         finite(&[low, high])?;
         if low >= high {
@@ -190,10 +190,15 @@ fn triangular([low, mode, high]: [f64; 3], p: f64) -> f64 {
 }
 
 fn finite(numbers: &[f64]) -> Result<(), Flaw> {
-    match numbers.iter().find(|number| !number.is_finite()) {
-        Some(number) => Err(Flaw::new(format!("found {number}"), "write a finite number")),
-        None => Ok(()),
-    }
+    let Some(number) = numbers.iter().find(|number| !(-LARGEST..=LARGEST).contains(*number)) else {
+        return Ok(());
+    };
+    let remedy = if number.is_finite() {
+        format!("write a number of at most {LARGEST:e}")
+    } else {
+        "write a finite number".to_owned()
+    };
+    Err(Flaw::new(format!("found {number:?}"), remedy))
 }
 
 fn positive(key: &str, value: f64) -> Result<(), Flaw> {

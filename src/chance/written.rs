@@ -1,6 +1,6 @@
 //! How a scene writes a distribution: a number or a table.
 
-use super::Distribution;
+use super::{Distribution, Entries};
 use crate::error::Flaw;
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -60,10 +60,16 @@ impl<'de> Visitor<'de> for Reader {
         let (mut values, mut weights) = (None, None);
         while let Some(key) = map.next_key()? {
             match key {
-                Key::Uniform => found.push(Distribution::uniform(map.next_value()?)),
+                Key::Uniform => {
+                    let Entries(ends) = map.next_value()?;
+                    found.push(Distribution::uniform(ends));
+                }
                 Key::Normal => found.push(Distribution::normal(&map.next_value()?)),
                 Key::Lognormal => found.push(Distribution::lognormal(&map.next_value()?)),
-                Key::Triangular => found.push(Distribution::triangular(map.next_value()?)),
+                Key::Triangular => {
+                    let Entries(ends) = map.next_value()?;
+                    found.push(Distribution::triangular(ends));
+                }
                 Key::Values => values = Some(map.next_value()?),
                 Key::Weights => weights = Some(map.next_value()?),
             }

@@ -91,6 +91,18 @@ impl Touches {
         true
     }
 
+    /// Forgets those that are not nearer than `reach` (m).
+    pub fn keep_nearer(&mut self, reach: f64) {
+        let mut kept = 0;
+        for k in 0..self.len {
+            if self.list[k].distance_m < reach {
+                self.list[kept] = self.list[k];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
     /// Adds one; when full, it takes the place of the shallowest if it is deeper.
     #[inline]
     pub fn add(&mut self, touch: Touch) {

@@ -47,6 +47,14 @@ struct NearCorner {
     rays: (u32, u32),
 }
 
+impl NearFace {
+    /// Whether the foot of `point` lies inside, or at most `slack` (m) outside.
+    #[inline]
+    fn holds_foot_of(&self, point: &Vec3, slack: f64) -> bool {
+        (0..3).all(|k| self.out[k].dot(point) <= self.rim[k] + slack)
+    }
+}
+
 /// The features a rock can touch while its centre stays within a margin of a place.
 #[derive(Debug)]
 pub struct Near {
@@ -131,22 +139,26 @@ impl Near {
     fn take(&mut self, terrain: &Terrain, t: u32) {
         let features = &terrain.features;
         let face = &features.faces[t as usize];
+        let sides = [face.e1, face.e2 - face.e1, -face.e2];
         let corners = [face.a, face.a + face.e1, face.a + face.e2];
-        let mut near =
-            NearFace { id: t, a: face.a, n: face.n, out: [Vec3::zeros(); 3], rim: [0.0; 3] };
-        let mut furthest = f64::NEG_INFINITY;
+        let out = sides.map(|side| side.cross(&face.n));
+        let near = self.margin + SLACK * self.radius;
+        let mut is_near = true;
         for k in 0..3 {
-            let along = corners[(k + 1) % 3] - corners[k];
-            near.out[k] = along.cross(&face.n).normalize();
-            near.rim[k] = near.out[k].dot(&corners[k]);
-            furthest = furthest.max(near.out[k].dot(&self.centre) - near.rim[k]);
-        }
-        if furthest > self.reach {
-            return;
+            // How far the foot is beyond the side, times the side's length: most are told apart without a root.
+            let beyond = out[k].dot(&(self.centre - corners[k]));
+            let beyond2 = beyond * beyond.max(0.0);
+            let length2 = sides[k].norm_squared();
+            if beyond2 > self.reach * self.reach * length2 {
+                return;
+            }
+            is_near &= beyond2 <= near * near * length2;
         }
         self.sheets.push(t);
-        if furthest <= self.margin + SLACK * self.radius {
-            self.faces.push(near);
+        if is_near {
+            let out = out.map(|out| out.normalize());
+            let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
+            self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
         }
         let owned = features.owned[t as usize];
         for k in 0..3 {
@@ -215,105 +227,114 @@ impl Near {
         self.margin - (centre - self.centre).norm()
     }
 
-    /// Whether nothing but one face can touch within the margin: a certificate that geometry is a plane there.
+    /// The one face that can touch within the margin, if nothing else can: a certificate that geometry is a plane there.
     #[inline]
-    pub fn is_plane(&self) -> bool {
-        self.faces.len() == 1 && self.edges.is_empty() && self.corners.is_empty()
+    pub fn plane(&self) -> Option<u32> {
+        match &self.faces[..] {
+            [face] if self.edges.is_empty() && self.corners.is_empty() => Some(face.id),
+            _ => None,
+        }
     }
 
     /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners.
     #[inline]
     pub fn touches(&self, terrain: &Terrain, centre: &Vec3, reach: f64, touches: &mut Touches) {
         touches.clear();
-        for face in &self.faces {
-            self.ask_face(face, centre, reach, touches);
+        let faces = self.faces.iter().filter_map(|face| self.on_face(face, centre, reach));
+        let edges = self.edges.iter().filter_map(|edge| self.on_edge(terrain, edge, centre, reach));
+        let corners =
+            self.corners.iter().filter_map(|corner| self.on_corner(terrain, corner, centre, reach));
+        for touch in faces.chain(edges).chain(corners) {
+            self.merge(touch, centre, touches);
         }
-        for edge in &self.edges {
-            self.ask_edge(terrain, edge, centre, reach, touches);
-        }
-        for corner in &self.corners {
-            self.ask_corner(terrain, corner, centre, reach, touches);
-        }
+    }
+
+    /// Whether the foot of `centre` is still on `face`, one of those collected.
+    #[inline]
+    pub fn is_over(&self, face: u32, centre: &Vec3) -> bool {
+        let slack = SLACK * self.radius;
+        self.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
+    }
+
+    /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`.
+    #[inline]
+    pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
+        let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
+        faces.all(|other| other.id == face || self.on_face(other, centre, reach).is_none())
+            && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
+            && self
+                .corners
+                .iter()
+                .all(|corner| self.on_corner(terrain, corner, centre, reach).is_none())
     }
 
     #[inline]
-    fn ask_face(&self, face: &NearFace, centre: &Vec3, reach: f64, touches: &mut Touches) {
+    fn on_face(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<Touch> {
         let height = face.n.dot(&(centre - face.a));
-        let slack = SLACK * self.radius;
-        if height.abs() >= reach || (0..3).any(|k| face.out[k].dot(centre) > face.rim[k] + slack) {
-            return;
+        if height.abs() >= reach || !face.holds_foot_of(centre, SLACK * self.radius) {
+            return None;
         }
         let feature = Feature { kind: FeatureKind::Face, id: face.id };
         let normal = if height < 0.0 { -face.n } else { face.n };
-        self.merge(
-            Touch { feature, triangle: face.id, normal, distance_m: height.abs() },
-            centre,
-            touches,
-        );
+        Some(Touch { feature, triangle: face.id, normal, distance_m: height.abs() })
     }
 
-    fn ask_edge(
+    #[inline]
+    fn on_edge(
         &self,
         terrain: &Terrain,
         edge: &NearEdge,
         centre: &Vec3,
         reach: f64,
-        touches: &mut Touches,
-    ) {
+    ) -> Option<Touch> {
         let to = centre - edge.a;
         let s = edge.along.dot(&to);
         let slack = SLACK * self.radius;
         if s < -slack || s > edge.length + slack {
-            return;
+            return None;
         }
         let off = to - edge.along * s.clamp(0.0, edge.length);
-        let distance = off.norm();
-        if distance >= reach || distance <= slack {
-            return;
+        let distance2 = off.norm_squared();
+        if distance2 >= reach * reach {
+            return None;
         }
+        let distance = distance2.sqrt();
         let rays = &self.rays[edge.rays.0 as usize..edge.rays.1 as usize];
-        if rays.iter().any(|out| out.dot(&off) < -SLACK * distance) {
-            return;
+        if distance <= slack || rays.iter().any(|out| out.dot(&off) < -SLACK * distance) {
+            return None;
+        }
+        if edge.at_border && self.is_covered(terrain, &(centre - off), centre, distance) {
+            return None;
         }
         let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
         let normal = off / distance;
-        if edge.at_border && self.is_covered(terrain, &(centre - off), centre, distance) {
-            return;
-        }
-        self.merge(
-            Touch { feature, triangle: edge.triangle, normal, distance_m: distance },
-            centre,
-            touches,
-        );
+        Some(Touch { feature, triangle: edge.triangle, normal, distance_m: distance })
     }
 
-    fn ask_corner(
+    #[inline]
+    fn on_corner(
         &self,
         terrain: &Terrain,
         corner: &NearCorner,
         centre: &Vec3,
         reach: f64,
-        touches: &mut Touches,
-    ) {
+    ) -> Option<Touch> {
         let off = centre - corner.p;
-        let distance = off.norm();
-        if distance >= reach || distance <= SLACK * self.radius {
-            return;
+        let distance2 = off.norm_squared();
+        if distance2 >= reach * reach {
+            return None;
         }
+        let distance = distance2.sqrt();
         let rays = &self.rays[corner.rays.0 as usize..corner.rays.1 as usize];
-        if rays.iter().any(|along| along.dot(&off) > SLACK * distance) {
-            return;
-        }
-        if self.is_covered(terrain, &corner.p, centre, distance) {
-            return;
+        if distance <= SLACK * self.radius
+            || rays.iter().any(|along| along.dot(&off) > SLACK * distance)
+            || self.is_covered(terrain, &corner.p, centre, distance)
+        {
+            return None;
         }
         let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
         let normal = off / distance;
-        self.merge(
-            Touch { feature, triangle: corner.triangle, normal, distance_m: distance },
-            centre,
-            touches,
-        );
+        Some(Touch { feature, triangle: corner.triangle, normal, distance_m: distance })
     }
 
     /// Whether another triangle runs through `foot` and comes nearer to the centre: then the border or corner at

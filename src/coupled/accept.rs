@@ -20,7 +20,7 @@ impl Cluster<'_> {
             let end = member.end;
             adaptive::accept(tableau, &mut member.grip, &end, dt, &mut loss);
             done.losses.push(loss);
-            let sums = (0..tableau.stages).map(|k| dt * tableau.weight(k) * member.given[k]);
+            let sums = (0..tableau.stages).map(|k| dt * tableau.work_weight(k) * member.given[k]);
             done.given_j.push(sums.sum());
             member.given[0] = member.given[tableau.stages - 1];
         }

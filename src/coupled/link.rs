@@ -58,8 +58,10 @@ impl Link {
         let compliance = |body: &Body| {
             0.5 * dt * dt * (1.0 / body.mass + body.radius * body.radius / body.inertia)
         };
+        // A new tie knows no normal yet, and from the opposite of `n` there is no shortest turn.
+        let from = if tie.is_held() { &tie.n } else { &n };
         let shear = Slider {
-            stretch: if memory { carry(tie.shear, &tie.n, &n) } else { Vec3::zeros() },
+            stretch: if memory { carry(tie.shear, from, &n) } else { Vec3::zeros() },
             spring: law.p_s,
             damper: if memory { law.c_s / dt } else { 0.0 },
             compliance: bodies.iter().map(|body| compliance(body)).sum(),
@@ -121,7 +123,7 @@ impl Link {
             return Vec6::zeros();
         }
         // What the dashpot has done before the touch is not its work.
-        let constant = self.p_n * self.gap - self.damper * self.inside();
+        let constant = self.p_n * self.gap + self.damper * (self.gap + self.inside());
         let drag = if self.shear.slides {
             self.shear.friction
         } else {

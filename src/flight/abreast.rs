@@ -3,7 +3,7 @@
 //! With `p₁ = e₁·(c − a)` and `p₂ = e₂·(c − a)` everything in the triangle's plane is linear in `(p₁, p₂)`, and both
 //! are quadratic in time: their range over a window costs a few products and spares most of the quartics.
 
-use super::Parabola;
+use super::{Parabola, least, most};
 use crate::terrain::features::Face;
 
 /// Feet this far on the wrong side still count (–, relative to R): rounding.
@@ -45,7 +45,7 @@ impl Abreast {
         let one = alpha * self.from.0 + beta * self.from.1;
         let other = alpha * self.to.0 + beta * self.to.1;
         let sag = alpha * self.sag.0 + beta * self.sag.1;
-        (one.min(other) - sag.max(0.0), one.max(other) - sag.min(0.0))
+        (least(one, other) - most(sag, 0.0), most(one, other) - least(sag, 0.0))
     }
 
     /// Whether the ball can meet edge `k`: abreast of it, outside of the triangle, and not too far out.

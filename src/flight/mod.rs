@@ -11,6 +11,7 @@ use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::index::{Child, DEPTH, Pair};
 use roots::quadratic;
+use wide::f64x2;
 
 /// A ball in free flight: `c(t) = start + velocity t − g t²/2 ẑ`.
 #[derive(Debug, Clone, Copy)]
@@ -107,27 +108,26 @@ fn first_touch(terrain: &Terrain, flight: &Parabola, limit: f64, tested: &mut u6
             continue;
         }
         let pair = &pairs[id as usize];
-        let windows = [slabs.window(pair, 0, best), slabs.window(pair, 1, best)];
-        let nearer = usize::from(windows[1].0 < windows[0].0);
+        let (begins, ends) = slabs.windows(pair, best);
+        let (begins, ends) = (begins.to_array(), ends.to_array());
+        let nearer = usize::from(begins[1] < begins[0]);
         for side in [1 - nearer, nearer] {
-            let (ta, tb) = windows[side];
-            if ta > tb {
-                continue;
-            }
-            if let Child::Inner(next) = pair.child(side) {
-                stack[top] = (next, ta);
+            if begins[side] <= ends[side]
+                && let Child::Inner(next) = pair.child(side)
+            {
+                stack[top] = (next, begins[side]);
                 top += 1;
             }
         }
         for side in [nearer, 1 - nearer] {
-            let (ta, tb) = windows[side];
+            let (ta, tb) = (begins[side], ends[side]);
             if let Child::Leaf(start, count) = pair.child(side) {
                 for triangle in start..start + count {
-                    if ta > tb.min(best) {
+                    let window = (ta, least(tb, best));
+                    if window.0 > window.1 {
                         break;
                     }
                     *tested += 1;
-                    let window = (ta, tb.min(best));
                     if let Some(t) = touch::of_triangle(terrain, triangle, flight, window) {
                         best = t;
                         found = true;
@@ -143,86 +143,106 @@ fn first_touch(terrain: &Terrain, flight: &Parabola, limit: f64, tested: &mut u6
 /// plate's box, which has no thickness, must not be cut off by rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The parabola's pass through boxes: linear in x and y, quadratic in z.
+/// The lesser of two numbers, neither of them NaN: one instruction.
+#[inline]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers, neither of them NaN.
+#[inline]
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// Reciprocal of a speed too small to leave any box: its sign decides, it never overflows to NaN.
+const STANDING: f64 = 1e300;
+
+/// The parabola's pass through boxes: linear in x and y, quadratic in z. Both boxes of a pair are clipped at once.
 struct Slabs {
-    c: Vec3,
-    /// Reciprocal of the horizontal speeds; infinite when there is none.
-    inv: [f64; 2],
-    v_z: f64,
-    g: f64,
-    /// Radius of the ball and a little more.
-    radius: f64,
-    /// Time and height of the apex.
-    apex: (f64, f64),
+    /// Start less, and plus, the radius of the ball and a little more.
+    less: [f64x2; 3],
+    plus: [f64x2; 3],
+    /// Reciprocal of the speeds; of the vertical one without gravity only.
+    inv: [f64x2; 3],
+    fall: Option<Fall>,
+}
+
+/// Height over time under gravity.
+struct Fall {
+    /// Time of the apex.
+    apex_s: f64x2,
+    /// Its height less, and plus, the radius.
+    less: f64x2,
+    plus: f64x2,
+    /// `2/g`.
+    over: f64x2,
 }
 
 impl Slabs {
     fn new(flight: &Parabola) -> Self {
         let (c, v, g) = (flight.start, flight.velocity, flight.gravity);
-        let inv = [1.0 / v.x, 1.0 / v.y];
-        let apex = if g > 0.0 { (v.z / g, c.z + 0.5 * v.z * v.z / g) } else { (0.0, c.z) };
-        Self { c, inv, v_z: v.z, g, radius: flight.radius * (1.0 + ROUNDING), apex }
+        let r = flight.radius * (1.0 + ROUNDING);
+        let splat = f64x2::splat;
+        let apex = c.z + 0.5 * v.z * v.z / g;
+        let fall = (g > 0.0).then(|| Fall {
+            apex_s: splat(v.z / g),
+            less: splat(apex - r),
+            plus: splat(apex + r),
+            over: splat(2.0 / g),
+        });
+        Self {
+            less: [0, 1, 2].map(|k| splat(c[k] - r)),
+            plus: [0, 1, 2].map(|k| splat(c[k] + r)),
+            inv: [0, 1, 2].map(|k| splat((1.0 / v[k]).clamp(-STANDING, STANDING))),
+            fall,
+        }
     }
 
-    /// Times within `0..limit` between which the centre may be in the box grown by the radius (empty if reversed).
+    /// Times within `0..limit` between which the centre may be in the boxes grown by the radius: where the windows begin
+    /// and where they end; empty if reversed.
     #[inline]
-    fn window(&self, pair: &Pair, side: usize, limit: f64) -> (f64, f64) {
-        const NEVER: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
-        let (lo, hi) = (&pair.lo[side], &pair.hi[side]);
-        let (mut ta, mut tb) = (0.0f64, limit);
-        for k in 0..2 {
-            let (near, far) = (
-                f64::from(lo[k]) - self.radius - self.c[k],
-                f64::from(hi[k]) + self.radius - self.c[k],
-            );
-            if self.inv[k].is_finite() {
-                let (t1, t2) = (near * self.inv[k], far * self.inv[k]);
-                ta = ta.max(t1.min(t2));
-                tb = tb.min(t1.max(t2));
-            } else if near > 0.0 || far < 0.0 {
-                return NEVER;
-            }
+    fn windows(&self, pair: &Pair, limit: f64) -> (f64x2, f64x2) {
+        let mut window = (f64x2::ZERO, f64x2::splat(limit));
+        self.clip(pair, 0, &mut window);
+        self.clip(pair, 1, &mut window);
+        match &self.fall {
+            None => self.clip(pair, 2, &mut window),
+            Some(fall) => fall.clip(pair, &mut window),
         }
-        if ta > tb {
-            return NEVER;
-        }
-        self.clip_height(f64::from(lo[2]) - self.radius, f64::from(hi[2]) + self.radius, (ta, tb))
+        window
     }
 
-    /// Clips a window to heights between `floor` and `roof`; outside two falling-in times above the roof.
+    /// Clips both windows to the time between two planes.
     #[inline]
-    fn clip_height(&self, floor: f64, roof: f64, (mut ta, mut tb): (f64, f64)) -> (f64, f64) {
-        const NEVER: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
-        if self.g == 0.0 {
-            let times = quadratic(0.0, self.v_z, self.c.z - roof).zip(quadratic(
-                0.0,
-                self.v_z,
-                self.c.z - floor,
-            ));
-            return match times {
-                Some(((t1, _), (t2, _))) => (ta.max(t1.min(t2)), tb.min(t1.max(t2))),
-                None if self.c.z < floor || self.c.z > roof => NEVER,
-                None => (ta, tb),
-            };
-        }
-        // Heights relative to the apex: z = z_apex − g/2 (t − t_apex)².
-        let (t_apex, z_apex) = self.apex;
-        if z_apex < floor {
-            return NEVER;
-        }
-        let half_floor = (2.0 * (z_apex - floor) / self.g).sqrt();
-        ta = ta.max(t_apex - half_floor);
-        tb = tb.min(t_apex + half_floor);
-        if z_apex > roof {
-            let half_roof = (2.0 * (z_apex - roof) / self.g).sqrt();
-            // Inside on the way up or on the way down; the union's hull unless one way is already out of the window.
-            if ta > t_apex - half_roof {
-                ta = ta.max(t_apex + half_roof);
-            }
-            if tb < t_apex + half_roof {
-                tb = tb.min(t_apex - half_roof);
-            }
-        }
-        (ta, tb)
+    fn clip(&self, pair: &Pair, axis: usize, (begin, end): &mut (f64x2, f64x2)) {
+        let one = (both(pair.lo[axis]) - self.plus[axis]) * self.inv[axis];
+        let other = (both(pair.hi[axis]) - self.less[axis]) * self.inv[axis];
+        *begin = begin.fast_max(one.fast_min(other));
+        *end = end.fast_min(one.fast_max(other));
     }
+}
+
+impl Fall {
+    /// Clips both windows to heights between floor and roof.
+    #[inline]
+    fn clip(&self, pair: &Pair, (begin, end): &mut (f64x2, f64x2)) {
+        // Squares of the times that the fall from the apex takes to them.
+        let floor2 = (self.plus - both(pair.lo[2])) * self.over;
+        let roof2 = (self.less - both(pair.hi[2])) * self.over;
+        let floor = floor2.fast_max(f64x2::ZERO).sqrt();
+        let roof = roof2.fast_max(f64x2::ZERO).sqrt();
+        let (up, down) = (self.apex_s - roof, self.apex_s + roof);
+        *begin = begin.fast_max(self.apex_s - floor);
+        *end = end.fast_min(self.apex_s + floor);
+        // Above the roof between two times: the window's hull, unless the way up or the way down is out of it already.
+        *begin = begin.simd_gt(up).select(begin.fast_max(down), *begin);
+        *end = end.simd_lt(down).select(end.fast_min(up), *end);
+        *begin = floor2.simd_lt(f64x2::ZERO).select(f64x2::splat(f64::INFINITY), *begin);
+    }
+}
+
+#[inline]
+fn both([one, other]: [f32; 2]) -> f64x2 {
+    f64x2::new([f64::from(one), f64::from(other)])
 }

@@ -1,5 +1,7 @@
 //! Times at which a polynomial of degree two or four first falls through zero.
 
+use super::{least, most};
+
 /// The two roots of `a t² + b t + c`, ascending, without cancellation; `None` if there are none.
 ///
 /// A linear polynomial has its one root twice.
@@ -14,7 +16,7 @@ pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     }
     let q = -0.5 * (b + inside.sqrt().copysign(b));
     let (one, other) = (q / a, if q == 0.0 { 0.0 } else { c / q });
-    Some((one.min(other), one.max(other)))
+    Some((least(one, other), most(one, other)))
 }
 
 /// First time in `t0..t1` at which the quartic `p[0] + p[1] t + … + p[4] t⁴` falls through zero and that is `wanted`.
@@ -27,7 +29,7 @@ pub(super) fn first_fall(
     wanted: &impl Fn(f64) -> bool,
 ) -> Option<f64> {
     let fall = |b: &[f64; 5], from: f64, to: f64| {
-        Some(polish(p, bisect(b, from, to), t0, t1)).filter(|&t| wanted(t))
+        Some(polish(p, cross(b, from, to), t0, t1)).filter(|&t| wanted(t))
     };
     fall_between(&bernstein(p, t0, t1), (t0, t1), 0, &fall)
 }
@@ -90,38 +92,30 @@ fn halve(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
     (left, right)
 }
 
-fn value(b: &[f64; 5], s: f64) -> f64 {
-    let mut row = *b;
-    for k in 1..5 {
-        for j in 0..5 - k {
-            row[j] += s * (row[j + 1] - row[j]);
+/// The one crossing between Bernstein coefficients of unlike sign: Newton steps, halving where one would leave the bracket.
+fn cross(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
+    // Powers of 0..1; what rounding this costs close to a double root is won back by `polish`.
+    let (d1, d2, d3) = (b[1] - b[0], b[2] - 2.0 * b[1] + b[0], b[3] - 3.0 * (b[2] - b[1]) - b[0]);
+    let d4 = b[4] - 4.0 * (b[3] + b[1]) + 6.0 * b[2] + b[0];
+    let c = [b[0], 4.0 * d1, 6.0 * d2, 4.0 * d3, d4];
+    let (mut lo, mut hi) = (0.0, 1.0);
+    let mut s = b[0] / (b[0] - b[4]);
+    for _ in 0..HALVINGS {
+        let f = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * c[4])));
+        let slope = c[1] + s * (2.0 * c[2] + s * (3.0 * c[3] + s * (4.0 * c[4])));
+        let step = f / slope;
+        if step.abs() < 1e-14 {
+            return t0 + (t1 - t0) * (s - step);
         }
-    }
-    row[0]
-}
-
-/// The one crossing, by regula falsi (Illinois) on the Bernstein form.
-fn bisect(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
-    let (mut lo, mut hi, mut f_lo, mut f_hi) = (0.0, 1.0, b[0], b[4]);
-    for _ in 0..60 {
-        let cut = (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
-        let s = if cut > lo && cut < hi { cut } else { 0.5 * (lo + hi) };
-        let f = value(b, s);
         if f > 0.0 {
-            (lo, f_lo) = (s, f);
-            f_hi *= 0.5;
+            lo = s;
         } else {
-            (hi, f_hi) = (s, f);
-            f_lo *= 0.5;
+            hi = s;
         }
-        if hi - lo < 1e-15 || f == 0.0 {
-            break;
-        }
-        if f.abs() < 1e-14 * b[0].abs() {
-            return t0 + (t1 - t0) * s;
-        }
+        let next = s - step;
+        s = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
     }
-    t0 + (t1 - t0) * hi
+    t0 + (t1 - t0) * s
 }
 
 /// Two Newton steps on the polynomial itself: the window's rounding is removed.

@@ -1,13 +1,15 @@
 //! When a ball on a parabola first touches one triangle, its own edges and its own corners.
 
-use super::Parabola;
 use super::abreast::Abreast;
 use super::roots::{first_fall, quadratic};
+use super::{Parabola, least, most};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
 /// A start nearer to touching than this counts as touching (–, relative to R²): rounding of the contact before.
 const TOUCHING: f64 = 1e-12;
+/// A range of heights ends this far beyond what was computed (–, relative to R): rounding.
+const NEAR: f64 = 1e-9;
 /// A foot this far beside a triangle still lies on it (–, relative to R): neighbours must not leave a gap.
 const BESIDE: f64 = 1e-9;
 /// A start beside a triangle but this little under its plane (–, relative to R) is on a neighbour in the same plane.
@@ -21,14 +23,18 @@ pub(super) fn of_triangle(
     flight: &Parabola,
     window: (f64, f64),
 ) -> Option<f64> {
-    let (ta, tb) = (window.0.max(0.0), window.1);
+    let (ta, tb) = (most(window.0, 0.0), window.1);
     let face = &terrain.features.faces[t as usize];
     let height = Height {
         h0: face.n.dot(&(flight.start - face.a)),
         h1: face.n.dot(&flight.velocity),
         h2: -0.5 * flight.gravity * face.n.z,
     };
-    let slab = height.within(flight.radius, (ta, tb))?;
+    let range = height.range((ta, tb));
+    let near = flight.radius * (1.0 + NEAR);
+    if range.0 > near || range.1 < -near {
+        return None;
+    }
     let mut best = tb;
     let mut found = None;
     // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
@@ -36,7 +42,7 @@ pub(super) fn of_triangle(
     let on_it =
         ta <= 0.0 && height.h0.abs() < flight.radius && face.holds_foot_of(&flight.start, slack);
     for side in [1.0, -1.0] {
-        if let Some(t) = height.falls_to(side, flight.radius, on_it, (ta, best))
+        if let Some(t) = height.falls_to(side, (flight.radius, on_it), range, (ta, best))
             && face.holds_foot_of(&flight.centre(t), slack)
         {
             best = t;
@@ -44,10 +50,11 @@ pub(super) fn of_triangle(
         }
     }
     let owned = terrain.features.owned[t as usize];
-    if owned != 0 && slab.0 <= slab.1.min(best) {
-        let abreast = Abreast::new(face, flight, (slab.0, slab.1.min(best)));
+    let slab = if owned == 0 { (ta, ta) } else { height.within(near, (ta, best)) };
+    if owned != 0 && slab.0 <= slab.1 {
+        let abreast = Abreast::new(face, flight, slab);
         for k in 0..3 {
-            let window = (slab.0, slab.1.min(best));
+            let window = (slab.0, least(slab.1, best));
             let times = [
                 (owned & (1 << k) != 0 && abreast.edge(k))
                     .then(|| edge(terrain, t, k, flight, window)),
@@ -77,26 +84,36 @@ impl Height {
         self.h1 + 2.0 * self.h2 * t
     }
 
-    /// The part of a window in which `|h| ≤ radius` may hold (its hull); `None` if nowhere.
     #[inline]
-    fn within(&self, radius: f64, (ta, tb): (f64, f64)) -> Option<(f64, f64)> {
-        let at = |t: f64| self.h0 + t * (self.h1 + t * self.h2);
-        let (ha, hb) = (at(ta), at(tb));
+    fn at(&self, t: f64) -> f64 {
+        self.h0 + t * (self.h1 + t * self.h2)
+    }
+
+    /// Lowest and highest in a window.
+    #[inline]
+    fn range(&self, (ta, tb): (f64, f64)) -> (f64, f64) {
+        let (ha, hb) = (self.at(ta), self.at(tb));
         let turn = -0.5 * self.h1 / self.h2;
-        let ht = if turn > ta && turn < tb { at(turn) } else { ha };
-        let near = radius * (1.0 + 1e-9);
-        if ha.min(hb).min(ht) > near || ha.max(hb).max(ht) < -near {
-            return None;
-        }
-        let (mut first, mut last) =
-            (if ha.abs() <= near { ta } else { tb }, if hb.abs() <= near { tb } else { ta });
-        for level in [near, -near] {
-            let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
-            for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
-                (first, last) = (first.min(t), last.max(t));
+        let ht = if turn > ta && turn < tb { self.at(turn) } else { ha };
+        (least(least(ha, hb), ht), most(most(ha, hb), ht))
+    }
+
+    /// The part of a window in which `|h| ≤ near` may hold (its hull); reversed if nowhere.
+    #[inline]
+    fn within(&self, near: f64, (ta, tb): (f64, f64)) -> (f64, f64) {
+        let (mut first, mut last) = (
+            if self.at(ta).abs() <= near { ta } else { tb },
+            if self.at(tb).abs() <= near { tb } else { ta },
+        );
+        if first > ta || last < tb {
+            for level in [near, -near] {
+                let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
+                for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
+                    (first, last) = (least(first, t), most(last, t));
+                }
             }
         }
-        Some((first, last))
+        (first, last)
     }
 
     /// First time in the window at which the ball comes down to the plane from one side (+1, −1).
@@ -105,7 +122,13 @@ impl Height {
     /// back at its starting height: it can never fall through. One that starts beside the triangle may be anywhere
     /// relative to the plane and must come down to the full radius.
     #[inline]
-    fn falls_to(&self, side: f64, radius: f64, on_it: bool, (ta, tb): (f64, f64)) -> Option<f64> {
+    fn falls_to(
+        &self,
+        side: f64,
+        (radius, on_it): (f64, bool),
+        (low, high): (f64, f64),
+        (ta, tb): (f64, f64),
+    ) -> Option<f64> {
         let (h0, h1, h2) = (side * self.h0, side * self.h1, side * self.h2);
         let touching = h0 >= 0.0
             && h0 < radius * (1.0 + TOUCHING)
@@ -113,7 +136,11 @@ impl Height {
         if touching && ta <= 0.0 && (h1 < 0.0 || h1 == 0.0 && h2 < 0.0) {
             return Some(0.0);
         }
-        let level = if touching { h0.min(radius) } else { radius };
+        let level = if touching { least(h0, radius) } else { radius };
+        let (below, above) = if side > 0.0 { (low, high) } else { (-high, -low) };
+        if level < below - NEAR * radius || level > above + NEAR * radius {
+            return None;
+        }
         let (one, other) = quadratic(h2, h1, h0 - level)?;
         // A start on the level has a root at 0 that is no fall.
         [one, other]

@@ -1,5 +1,6 @@
 //! What a result folder holds already, and whether a run may use it.
 
+use super::maps::STATE;
 use super::progress::{Identity, Progress};
 use super::summary::{SUMMARY, Summary};
 use super::whole::PART;
@@ -13,10 +14,8 @@ use std::path::Path;
 /// Result files besides `progress.json`.
 const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY];
 /// Folders of results with the endings of the files that belong to them.
-const FOLDERS: [(&str, &[&str]); 2] = [
-    ("figures", &["svg", PART]),
-    ("maps", &["asc", "prj", "tif", "state", "geojson", "vtk", PART]),
-];
+const FOLDERS: [(&str, &[&str]); 2] =
+    [("figures", &["svg", PART]), ("maps", &["asc", "prj", "tif", STATE, "geojson", "vtk", PART])];
 
 /// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from.
 pub(super) fn prepare(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
@@ -118,24 +117,27 @@ fn refuse(dir: &Path, found: &str, remedy: &str) -> Result<Option<Progress>> {
 /// Removes the results of an earlier run, and no other file: what is drawn must never mix two runs.
 fn clear(dir: &Path) -> Result<()> {
     for (folder, endings) in FOLDERS {
-        let folder = dir.join(folder);
-        let entries = match fs::read_dir(&folder) {
-            Ok(entries) => entries,
-            Err(why) if why.kind() == ErrorKind::NotFound => continue,
-            Err(why) => return Err(Error::file("read", &folder)(why)),
-        };
-        for entry in entries {
-            let path = entry.map_err(Error::file("read", &folder))?.path();
-            if path
-                .extension()
-                .and_then(OsStr::to_str)
-                .is_some_and(|ending| endings.contains(&ending))
-            {
-                remove(&path)?;
-            }
-        }
+        remove_all(&dir.join(folder), |path| {
+            let ending = path.extension().and_then(OsStr::to_str);
+            ending.is_some_and(|ending| endings.contains(&ending))
+        })?;
     }
     FILES.iter().try_for_each(|name| remove(&dir.join(name)))
+}
+
+/// Removes the files of a folder that are `unwanted`; there need be no such folder.
+pub(super) fn remove_all(folder: &Path, unwanted: impl Fn(&Path) -> bool) -> Result<()> {
+    let entries = match fs::read_dir(folder) {
+        Err(why) if why.kind() == ErrorKind::NotFound => return Ok(()),
+        entries => entries.map_err(Error::file("read", folder))?,
+    };
+    for entry in entries {
+        let path = entry.map_err(Error::file("read", folder))?.path();
+        if unwanted(&path) {
+            remove(&path)?;
+        }
+    }
+    Ok(())
 }
 
 /// Removes a file if it is there.

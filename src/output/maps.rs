@@ -1,6 +1,6 @@
 //! Rasters in plan view: ESRI ASCII grids for every editor, GeoTIFF for every GIS.
 
-use super::whole::write_whole;
+use super::whole::{PART, write_whole};
 use crate::error::{Error, Result};
 use crate::hazard::{Layer, MapFrame, MapState, Maps};
 use std::fmt::Write as _;
@@ -14,6 +14,8 @@ use tiff::tags::Tag;
 
 /// Folder of the rasters below the result folder.
 pub(super) const FOLDER: &str = "maps";
+/// Ending of the file that a resumed run begins from.
+pub(super) const STATE: &str = "state";
 /// Stands in cells where no rock came.
 const NO_DATA: f32 = -9999.0;
 
@@ -87,7 +89,7 @@ fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
 
 /// Where the maps after so many rocks wait for a resumed run.
 fn state_path(dir: &Path, done: usize) -> PathBuf {
-    dir.join(FOLDER).join(format!("{done}.state"))
+    dir.join(FOLDER).join(format!("{done}.{STATE}"))
 }
 
 /// Puts what a resumed run needs on the disk.
@@ -118,7 +120,15 @@ pub(super) fn read_state(dir: &Path, done: usize) -> Result<MapState> {
     })
 }
 
-/// Removes it when it is of no use any more.
-pub(super) fn remove_state(dir: &Path, done: usize) -> Result<()> {
-    super::folder::remove(&state_path(dir, done))
+/// Removes the states of all other moments, whole or not: a run that was killed may have left some.
+pub(super) fn keep_state(dir: &Path, done: Option<usize>) -> Result<()> {
+    let kept = done.map(|done| state_path(dir, done));
+    super::folder::remove_all(&dir.join(FOLDER), |path| {
+        let path = if has_ending(path, PART) { path.with_extension("") } else { path.to_owned() };
+        has_ending(&path, STATE) && Some(path) != kept
+    })
+}
+
+fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|found| found == ending)
 }

@@ -108,8 +108,6 @@ pub struct Output {
     /// None also when they are complete already.
     maps: Option<Maps>,
     begun: Instant,
-    /// Rocks after which the state of the maps was last put on the disk.
-    state_at: Option<usize>,
     /// Time that earlier sessions took (s).
     seconds_before: f64,
 }
@@ -160,7 +158,6 @@ impl Output {
             lines,
             maps,
             begun,
-            state_at: None,
             seconds_before,
         };
         output.mark()?;
@@ -245,7 +242,7 @@ impl Output {
         // a part keeps what putting parts together needs
         if !is_part {
             folder::remove(&results.dir.join(PROGRESS))?;
-            maps::remove_state(&results.dir, done)?;
+            maps::keep_state(&results.dir, None)?;
         }
         Ok(results)
     }
@@ -301,10 +298,8 @@ impl Output {
             seconds: self.seconds(),
         };
         progress.write(&self.dir)?;
-        match self.state_at.replace(done).filter(|before| *before != done) {
-            Some(before) => maps::remove_state(&self.dir, before),
-            None => Ok(()),
-        }
+        // The state before is of use until the progress says otherwise.
+        self.maps.as_ref().map_or(Ok(()), |_| maps::keep_state(&self.dir, Some(done)))
     }
 
     fn seconds(&self) -> f64 {

@@ -5,6 +5,8 @@ use crate::release::Where;
 use crate::scene::BarrierTable;
 use crate::step::dda::own_restitution;
 use crate::step::{Scheme, Settings};
+use crate::terrain::features::Count;
+use std::convert::Infallible;
 use std::fmt;
 
 /// Columns before the text of a line.
@@ -34,6 +36,7 @@ impl Plan {
             longest_s,
             trees,
             flight,
+            orientation,
             rolling,
             roughness,
             rock_against_rock,
@@ -79,13 +82,9 @@ impl Plan {
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s"));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
-        list.line(
-            "flight",
-            match flight {
-                Part::Kept(never) => match *never {},
-                Part::LeftOut(why) => format!("leapt over: {why}"),
-            },
-        );
+        list.line("flight", format!("leapt over: {}", never(flight)));
+        list.line("orientation", format!("left out: {}", never(orientation)));
+        list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
         list.part("rock against rock", rock_against_rock, |ground| {
@@ -174,11 +173,40 @@ impl List {
         texts.for_each(|text| self.line(label, text));
     }
 
+    /// What of the mesh can never be touched.
+    fn touchable(&mut self, count: &Count) {
+        let Count { edges, flat_edges, corners, flat_corners, saddles } = *count;
+        self.line(
+            "flat edges",
+            format!("{flat_edges} of {} left out: the faces beside them touch", edges + flat_edges),
+        );
+        self.line(
+            "hollow edges",
+            "left out around each rock: hollow on one side of a sheet is sharp on the other; on the hollow side the faces touch",
+        );
+        self.line(
+            "corners",
+            format!(
+                "{} of {} left out: {saddles} between edges that rise and edges that fall, {flat_corners} in flat ground; an edge or a face is always nearer",
+                saddles + flat_corners,
+                corners + saddles + flat_corners
+            ),
+        );
+    }
+
     fn part<T>(&mut self, label: &str, part: &Part<T>, kept: impl Fn(&T) -> String) {
         match part {
             Part::Kept(what) => self.line(label, kept(what)),
             Part::LeftOut(why) => self.line(label, format!("left out: {why}")),
         }
+    }
+}
+
+/// Why something is left out that no plan keeps.
+fn never(part: &Part<Infallible>) -> &'static str {
+    match part {
+        Part::Kept(never) => match *never {},
+        Part::LeftOut(why) => why,
     }
 }
 

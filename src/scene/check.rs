@@ -1,6 +1,6 @@
 //! What a number may be, and complaints about the one that was found.
 
-use crate::chance::Distribution;
+use crate::chance::{Distribution, LARGEST};
 use crate::error::Flaw;
 
 /// One step from the top of a scene towards a value.
@@ -72,8 +72,8 @@ pub(super) enum Allowed {
 
 impl Allowed {
     fn holds(self, low: f64, high: f64) -> bool {
-        let finite = low.is_finite() && high.is_finite();
-        finite
+        let numbers = -LARGEST <= low && high <= LARGEST;
+        numbers
             && match self {
                 Self::NotNegative => low >= 0.0,
                 Self::Positive => low > 0.0,
@@ -116,6 +116,9 @@ fn within(key: &str, (low, high): (f64, f64), allowed: Allowed, hint: &str) -> C
         (true, true) => "; every value it can give must lie there",
         (true, false) => "; give the distribution a min and a max",
     };
+    if high.is_finite() && high > LARGEST {
+        return Err(Complaint::about(key, format!("write a number of at most {LARGEST:e}")));
+    }
     let hint = if hint.is_empty() { String::new() } else { format!(" ({hint})") };
     Err(Complaint::about(key, format!("{}{hint}{bounds}", allowed.in_words())))
 }

@@ -24,16 +24,18 @@ pub use grounds::GroundTable;
 pub use meshes::{MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
 pub use record::{LineTable, MapsTable, RecordTable};
-pub use release::ReleaseTable;
+pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 
+use crate::chance::entries;
 use crate::error::{Error, Result};
 use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
 use check::{Allowed, Checked, Complaint, check_names, number};
+use places::FARTHEST_M;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use source::Lookup;
@@ -52,7 +54,7 @@ pub struct Scene {
     #[serde(default = "standard_gravity_m_s2")]
     pub gravity_m_s2: f64,
     /// Map position of the meshes' (0, 0, 0) (m).
-    #[serde(default)]
+    #[serde(default, deserialize_with = "entries")]
     pub origin_m: [f64; 3],
     /// EPSG code of the map coordinates, written into rasters.
     pub epsg: Option<u32>,
@@ -175,8 +177,9 @@ impl Scene {
 
     fn check(&self) -> Checked {
         number("gravity_m_s2", self.gravity_m_s2, Allowed::NotNegative, "9.81 on Earth")?;
-        if self.origin_m.iter().any(|coordinate| !coordinate.is_finite()) {
-            return Err(Complaint::about("origin_m", "write three finite numbers"));
+        if places::finite(&self.origin_m).is_err() {
+            let remedy = format!("write three finite numbers within {FARTHEST_M:e}");
+            return Err(Complaint::about("origin_m", remedy));
         }
         self.check_meshes()?;
         let scheme = self.solver.scheme();

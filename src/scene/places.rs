@@ -1,5 +1,6 @@
 //! Points, polylines and areas in plan view, in map coordinates; valid by construction.
 
+use crate::chance::Entries;
 use crate::error::Flaw;
 use serde::Deserialize;
 
@@ -35,7 +36,7 @@ impl TryFrom<Vec<f64>> for Point {
 
 /// A line of straight pieces, longer than zero.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(try_from = "Vec<Corner>", expecting = "a list of corners [x, y]")]
+#[serde(try_from = "Corners", expecting = "a list of corners [x, y]")]
 pub struct Polyline {
     corners_m: Vec<Corner>,
     /// Length from the start to each corner (m).
@@ -86,7 +87,7 @@ impl TryFrom<Vec<Corner>> for Polyline {
 
 /// The inside of a polygon whose sides neither cross nor touch each other, cut into triangles.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(try_from = "Vec<Corner>", expecting = "a list of corners [x, y]")]
+#[serde(try_from = "Corners", expecting = "a list of corners [x, y]")]
 pub struct Area {
     corners_m: Vec<Corner>,
     /// Its triangles, each with the area up to and including it (m²).
@@ -214,10 +215,43 @@ fn minus(a: Corner, b: Corner) -> Corner {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-fn finite(numbers: &[f64]) -> Result<(), Flaw> {
-    match numbers.iter().find(|number| !number.is_finite()) {
-        Some(number) => Err(Flaw::new(format!("found {number}"), "write finite coordinates")),
+/// Coordinates farther out than this (m) are no place on Earth, as in a mesh.
+pub(super) const FARTHEST_M: f64 = 1e8;
+
+pub(super) fn finite(numbers: &[f64]) -> Result<(), Flaw> {
+    match numbers.iter().find(|number| !(-FARTHEST_M..=FARTHEST_M).contains(*number)) {
+        Some(number) => {
+            let remedy = format!("write finite coordinates within {FARTHEST_M:e}");
+            Err(Flaw::new(format!("found {number:?}"), remedy))
+        }
         None => Ok(()),
+    }
+}
+
+/// Corners as a scene writes them, each of two coordinates and no more.
+#[derive(Deserialize)]
+#[serde(transparent)]
+struct Corners(Vec<Entries<f64, 2>>);
+
+impl From<Corners> for Vec<Corner> {
+    fn from(Corners(corners): Corners) -> Self {
+        corners.into_iter().map(|Entries(corner)| corner).collect()
+    }
+}
+
+impl TryFrom<Corners> for Polyline {
+    type Error = Flaw;
+
+    fn try_from(corners: Corners) -> Result<Self, Flaw> {
+        Vec::<Corner>::from(corners).try_into()
+    }
+}
+
+impl TryFrom<Corners> for Area {
+    type Error = Flaw;
+
+    fn try_from(corners: Corners) -> Result<Self, Flaw> {
+        Vec::<Corner>::from(corners).try_into()
     }
 }
 

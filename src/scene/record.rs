@@ -1,6 +1,6 @@
 //! `[record]`, `[[lines]]` and `[maps]`.
 
-use super::check::{Allowed, Checked, number, optional};
+use super::check::{Allowed, Checked, Complaint, number, optional};
 use super::places::Polyline;
 use serde::Deserialize;
 
@@ -34,8 +34,17 @@ pub struct MapsTable {
     pub cell_m: f64,
 }
 
+/// Shorter steps of a path (s) would fill any disk: a million points for each second of fall.
+const SHORTEST_STEP_S: f64 = 1e-6;
+
 impl RecordTable {
     pub(super) fn check(&self) -> Checked {
+        if self.path_step_s.is_some_and(|step_s| step_s > 0.0 && step_s < SHORTEST_STEP_S) {
+            return Err(Complaint::about(
+                "path_step_s",
+                format!("write {SHORTEST_STEP_S:e} or more"),
+            ));
+        }
         optional("path_step_s", self.path_step_s, Allowed::Positive, "")
     }
 }

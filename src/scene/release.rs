@@ -2,7 +2,7 @@
 
 use super::check::{Allowed, Checked, Complaint, drawn};
 use super::places::{Area, Point, Polyline};
-use crate::chance::Distribution;
+use crate::chance::{Distribution, entries};
 use serde::Deserialize;
 
 /// How rocks are released.
@@ -17,8 +17,10 @@ pub struct ReleaseTable {
     /// Vertical gap between the lowest point of the rock and the ground below (m), 0 or more.
     pub height_m: Option<Distribution>,
     /// Velocity of the centre (m/s).
+    #[serde(deserialize_with = "entries")]
     pub velocity_m_s: [Distribution; 3],
     /// Angular velocity (rad/s).
+    #[serde(deserialize_with = "entries")]
     pub spin_rad_s: [Distribution; 3],
     /// Where: points in map coordinates (m), cycled through.
     pub points_m: Option<Vec<Point>>,
@@ -28,12 +30,18 @@ pub struct ReleaseTable {
     pub polygon_m: Option<Area>,
 }
 
+/// Most releases of one run: their values take 0.1 kB each in memory.
+pub const MOST_RELEASES: usize = 1_000_000_000;
+
 const WHERE: &str = "write exactly one of points_m, line_m and polygon_m";
 
 impl ReleaseTable {
     pub(super) fn check(&self) -> Checked {
         if self.count == 0 {
             return Err(Complaint::about("count", "write 1 or more"));
+        }
+        if self.count > MOST_RELEASES {
+            return Err(Complaint::about("count", format!("write at most {MOST_RELEASES}")));
         }
         let given = [
             ("points_m", self.points_m.is_some()),

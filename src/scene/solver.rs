@@ -26,6 +26,9 @@ pub struct SolverTable {
     pub rest_time_s: Option<f64>,
 }
 
+/// Shorter steps (s) are lost in the digits of the time after a minute of fall.
+const SHORTEST_STEP_S: f64 = 1e-12;
+
 impl SolverTable {
     /// The scheme in force.
     pub fn scheme(&self) -> Scheme {
@@ -70,6 +73,10 @@ impl SolverTable {
             ("rest_time_s", self.rest_time_s, Allowed::Positive),
         ] {
             optional(key, value, allowed, "")?;
+        }
+        let too_short = |step_s: &f64| *step_s < SHORTEST_STEP_S;
+        if self.step_s.as_ref().is_some_and(too_short) {
+            return Err(Complaint::about("step_s", format!("write {SHORTEST_STEP_S:e} or more")));
         }
         Ok(())
     }

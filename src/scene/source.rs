@@ -2,7 +2,7 @@
 //! name file, table, key and line. Built only when there is something to complain about.
 
 use super::check::{Complaint, Step};
-use super::wording;
+use super::wording::{self, Said};
 use crate::error::Error;
 use std::ops::Range;
 use std::path::Path;
@@ -19,6 +19,9 @@ pub(super) struct Lookup<'a> {
 
 /// Tables that every scene must have.
 const TABLES: [&str; 3] = ["grounds", "rocks", "release"];
+
+/// Tables of which a scene may have several.
+const LISTS: [&str; 4] = ["terrain", "trees", "lines", "barriers"];
 
 /// One value of the file.
 struct Node {
@@ -54,6 +57,9 @@ impl<'a> Lookup<'a> {
         let span = error.span().unwrap_or(0..0);
         let mut trail = self.trail_at(&span);
         let mut said = wording::of(error.message());
+        if let Some(brackets) = self.wrong_brackets(&trail, &said.found) {
+            said = brackets;
+        }
         if let Some(key) = said.missing {
             if trail.is_empty() && TABLES.contains(&key.as_str()) {
                 said.remedy = format!("write the table [{key}]");
@@ -66,6 +72,31 @@ impl<'a> Lookup<'a> {
             format!("line {}", self.line(span.start))
         };
         Error::input(self.file, place, said.found, said.remedy)
+    }
+
+    /// `[terrain]` where `[[terrain]]` should stand, or `[[rocks]]` where `[rocks]` should.
+    fn wrong_brackets(&self, trail: &[Step], found: &str) -> Option<Said> {
+        let (name, is_entry) = match trail {
+            [Step::Key(name)] => (name, false),
+            [Step::Key(name), Step::Entry(_)] => (name, true),
+            _ => return None,
+        };
+        if name == "grounds" {
+            return None;
+        }
+        let is_list = LISTS.contains(&name.as_str());
+        let headed = self.node(trail).is_some_and(|node| node.headed);
+        match (headed, is_entry, is_list) {
+            (true, false, true) if found == "found map" => Some(Said::new(
+                format!("found [{name}]"),
+                format!("write [[{name}]]: there may be several"),
+            )),
+            (true, true, false) => Some(Said::new(
+                format!("found [[{name}]]"),
+                format!("write [{name}]: there is only one"),
+            )),
+            _ => None,
+        }
     }
 
     fn node(&self, trail: &[Step]) -> Option<&Node> {
@@ -123,9 +154,14 @@ impl<'a> Lookup<'a> {
 
 /// `[a.b]`, or `[[a]] #2` for an entry of an array of tables.
 fn header(trail: &[Step]) -> String {
-    match trail {
-        [before @ .., Step::Entry(index)] => format!("[[{}]] #{}", keys(before), index + 1),
-        _ => format!("[{}]", keys(trail)),
+    if let [before @ .., Step::Entry(index)] = trail {
+        return format!("[[{}]] #{}", keys(before), index + 1);
+    }
+    let is_key = |step: &&Step| matches!(step, Step::Key(_));
+    let table = keys(&trail.iter().filter(is_key).cloned().collect::<Vec<_>>());
+    match trail.iter().rfind(|step| !is_key(step)) {
+        Some(Step::Entry(index)) => format!("[{table}] of #{}", index + 1),
+        _ => format!("[{table}]"),
     }
 }
 

@@ -13,7 +13,7 @@ pub(super) struct Said {
 }
 
 impl Said {
-    fn new(found: impl Into<String>, remedy: impl Into<String>) -> Self {
+    pub(super) fn new(found: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self { missing: None, found: found.into(), remedy: remedy.into() }
     }
 }
@@ -33,6 +33,9 @@ pub(super) fn of(message: &str) -> Said {
     for kind in ["invalid type: ", "invalid value: ", "invalid length "] {
         let parts = message.strip_prefix(kind).and_then(|rest| rest.rsplit_once(", expected "));
         if let Some((found, expected)) = parts {
+            if let Some(number) = found.strip_suffix(" as i128") {
+                return Said::new(format!("found {number}"), "write a smaller whole number");
+            }
             let entries = if kind == "invalid length " { " entries" } else { "" };
             return Said::new(
                 format!("found {found}{entries}"),
@@ -53,7 +56,8 @@ pub(super) fn of(message: &str) -> Said {
 fn plain(expected: &str) -> String {
     match expected {
         "f64" => "a number".to_owned(),
-        "u64" | "usize" | "u32" => "a whole number of 0 or more".to_owned(),
+        "u32" => format!("a whole number from 0 to {}", u32::MAX),
+        "u64" | "usize" => "a whole number of 0 or more".to_owned(),
         "a boolean" => "true or false".to_owned(),
         "a string" | "path string" => "a text in quotes".to_owned(),
         "a sequence" => "a list in [ ]".to_owned(),

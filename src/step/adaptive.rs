@@ -81,40 +81,118 @@ pub fn advance(
     h: &mut f64,
     h_max: f64,
 ) -> Result<Advance, Stuck> {
+    let mut done = Advance::default();
+    if let Some(settled) = grip.step_on_plane(world, control, (h, h_max), &mut done) {
+        return settled.map(|()| done);
+    }
+    grip.leave_plane();
     if !grip.fresh {
         grip.rates_now(world);
     }
-    let mut done = Advance::default();
-    let omega = stiffest(world, grip);
-    let known = grip.holds.len();
+    let limit = travel_limit(world, grip);
+    let (omega, known) = (stiffest(world, grip), grip.holds.len());
+    let mut trial = Try { world, control, grip, omega, known, end: None };
+    done.dt = settle(&mut trial, control, (h, h_max, limit), &mut done.rejected)?;
+    if let Some(end) = trial.end {
+        accept(control.tableau, grip, &end, done.dt, &mut done.loss);
+    }
+    Ok(done)
+}
+
+/// What one try of a step came to.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Outcome {
+    /// Its local error relative to the tolerance; accepted up to 1.
+    Error(f64),
+    /// Accurate, but with more energy than before: it has met a kink of the law in an unlucky place, and a shorter one
+    /// does not.
+    Gains,
+    /// A stage did not settle.
+    Unsettled,
+    /// The rock has left where the trial holds.
+    Elsewhere,
+}
+
+/// Why no step was found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Halt {
+    /// No step, however short, settles.
+    Unsettled,
+    /// The trial does not hold where the rock goes.
+    Elsewhere,
+}
+
+impl From<Halt> for Stuck {
+    fn from(_: Halt) -> Self {
+        Self::Unsettled
+    }
+}
+
+/// A step that can be tried with any length.
+pub(crate) trait Trial {
+    /// Stiffest contact (rad/s).
+    fn omega(&self) -> f64;
+    /// Tries it with length `dt` (s).
+    fn try_step(&mut self, dt: f64) -> Outcome;
+}
+
+/// Tries steps until one is accurate and returns its length (s): at most `h_max`, and no longer than `limit`, which does
+/// not count against the step to try next.
+pub(crate) fn settle(
+    trial: &mut impl Trial,
+    control: &Control,
+    (h, h_max, limit): (&mut f64, f64, f64),
+    rejected: &mut u64,
+) -> Result<f64, Halt> {
     loop {
-        let wished = h.min(travel_limit(world, grip));
+        let wished = h.min(limit);
         let dt = wished.min(h_max);
-        grip.holds.truncate(known);
-        let tried = attempt(world, control, grip, dt, omega);
-        let ratio = match tried {
-            // A step that gains energy has met a kink of the law in an unlucky place: a shorter one does not.
-            Some((end, error))
-                if error <= 1.0
-                    && gains(world, grip, &end, control.tableau.diagonal * dt)
-                    && dt * omega > RESOLVED =>
-            {
-                0.4
-            }
-            Some((end, error)) if error <= 1.0 => {
+        let ratio = match trial.try_step(dt) {
+            Outcome::Error(error) if error <= 1.0 => {
                 *h = grown(control, dt, error).max(if dt < wished { wished } else { 0.0 });
-                done.dt = dt;
-                accept(control.tableau, grip, &end, dt, &mut done.loss);
-                return Ok(done);
+                return Ok(dt);
             }
-            Some((_, error)) if error.is_finite() => grown(control, 1.0, error),
+            Outcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
+            Outcome::Gains => 0.4,
+            Outcome::Elsewhere => return Err(Halt::Elsewhere),
             _ => 0.25,
         };
-        done.rejected += 1;
+        *rejected += 1;
         *h = dt * ratio;
-        if *h * omega < SHORTEST {
-            return Err(Stuck::Unsettled);
+        if *h * trial.omega() < SHORTEST {
+            return Err(Halt::Unsettled);
         }
+    }
+}
+
+/// A step of a rock among any features.
+struct Try<'a, 'w> {
+    world: &'a World<'w>,
+    control: &'a Control,
+    grip: &'a mut Grip,
+    omega: f64,
+    /// Memories at the step's start.
+    known: usize,
+    end: Option<End>,
+}
+
+impl Trial for Try<'_, '_> {
+    fn omega(&self) -> f64 {
+        self.omega
+    }
+
+    fn try_step(&mut self, dt: f64) -> Outcome {
+        self.grip.holds.truncate(self.known);
+        let Some((end, error)) = attempt(self.world, self.control, self.grip, dt, self.omega)
+        else {
+            return Outcome::Unsettled;
+        };
+        self.end = Some(end);
+        let hh = self.control.tableau.diagonal * dt;
+        if error <= 1.0 && dt * self.omega > RESOLVED && gains(self.world, self.grip, &end, hh) {
+            return Outcome::Gains;
+        }
+        Outcome::Error(error)
     }
 }
 
@@ -188,7 +266,7 @@ fn attempt(
 /// Takes over the step's end: motion, memories, losses.
 pub(crate) fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
     for k in 0..tableau.stages {
-        loss.add(&grip.rates[k].loss, dt * tableau.weight(k));
+        loss.add(&grip.rates[k].loss, dt * tableau.work_weight(k));
     }
     let last = tableau.stages - 1;
     let hh = tableau.diagonal * dt;

@@ -1,8 +1,10 @@
 //! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
 
 use super::dda::Bench;
+use super::flat::Flat;
 use super::law::{Body, Spot};
 use super::tableau::STAGES;
+use crate::clock::{Clocks, Piece};
 use crate::contact::hold::{HOLDS, Holds};
 use crate::contact::near::Near;
 use crate::contact::{MOST, Touch, Touches};
@@ -129,6 +131,8 @@ pub struct Grip {
     pub near: Near,
     /// Touches at the last place asked.
     pub touches: Touches,
+    /// That place, if they were asked for with all slack.
+    pub(crate) looked_ahead: Option<Vec3>,
     /// Rates at the stages of the step in hand; the first is that at its start.
     pub rates: [Rate; STAGES],
     /// Whether the first rate belongs to the present state.
@@ -139,14 +143,22 @@ pub struct Grip {
     pub spots: [Spot; MOST],
     /// How many of them.
     pub spot_count: usize,
+    /// The same of a rock on one plane.
+    pub flat: Flat,
     /// Work space of the fixed step.
     pub bench: Bench,
     /// Contact sweeps done.
     pub sweeps: u64,
+    /// Where the time goes, if somebody asks.
+    pub clocks: Clocks,
 }
 
 /// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
 const MARGIN: f64 = 0.35;
+/// … at a touch no further than this, if that is enough for the impact (–) …
+const LEAST_MARGIN: f64 = 0.06;
+/// … which goes on for about so many contact times `π/ω` (–) …
+const IMPACT_WAY: f64 = 1.3;
 /// … and asked for up to this far beyond the radius (–), so that a stage sees what it is about to run into.
 const SLACK: f64 = 0.1;
 /// A gap this small is a touch (–, relative to R): rounding of the leap.
@@ -170,13 +182,16 @@ impl Grip {
             holds: Holds::default(),
             near: Near::empty(),
             touches: Touches::default(),
+            looked_ahead: None,
             rates: [Rate::NONE; STAGES],
             fresh: false,
             stored: 0.0,
             spots: [Spot::NONE; MOST],
             spot_count: 0,
+            flat: Flat::default(),
             bench: Bench::default(),
             sweeps: 0,
+            clocks: Clocks::default(),
         }
     }
 }
@@ -187,6 +202,11 @@ impl Grip {
         (self.c, self.v, self.w) = (c, v, w);
         self.holds.clear();
         self.fresh = false;
+        self.flat.forget();
+        if !self.near.covers(&c) {
+            let (r, margin) = (world.body.radius, self.way_of_impact(world));
+            self.near.collect(world.terrain, &c, r, margin, SLACK * r);
+        }
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
         for (k, touch) in self.touches.iter().enumerate() {
             self.holds.find(touch, &self.touches, (1 << k) - 1, || world.captures(touch, &v));
@@ -197,22 +217,49 @@ impl Grip {
     #[inline]
     pub fn know(&mut self, world: &World, c: &Vec3) {
         if !self.near.covers(c) {
-            let r = world.body.radius;
-            self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
+            self.collect(world, c);
         }
+    }
+
+    /// Collects the features around `c`.
+    pub(crate) fn collect(&mut self, world: &World, c: &Vec3) {
+        let r = world.body.radius;
+        let begun = self.clocks.now();
+        self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
+        self.clocks.stop(Piece::Geometry, begun);
+    }
+
+    /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
+    /// and the more often it is one face alone.
+    fn way_of_impact(&self, world: &World) -> f64 {
+        let slowest = world.laws.iter().map(|law| law.omega).fold(f64::INFINITY, f64::min);
+        let way = IMPACT_WAY * std::f64::consts::PI / slowest * self.v.norm();
+        way.clamp(LEAST_MARGIN * world.body.radius, MARGIN * world.body.radius)
     }
 
     /// Asks for the touches at `c` nearer than `reach` (m).
     #[inline]
     pub fn look(&mut self, world: &World, c: &Vec3, reach: f64) {
         self.know(world, c);
+        self.looked_ahead = None;
+        let begun = self.clocks.now();
         self.near.touches(world.terrain, c, reach, &mut self.touches);
+        self.clocks.stop(Piece::Geometry, begun);
     }
 
     /// Asks for the touches at `c` that a stage must know.
     #[inline]
     pub fn look_ahead(&mut self, world: &World, c: &Vec3) {
         self.look(world, c, world.body.radius * (1.0 + SLACK));
+    }
+
+    /// The same, if it was not asked for at `c` last.
+    #[inline]
+    pub fn look_ahead_again(&mut self, world: &World, c: &Vec3) {
+        if self.looked_ahead != Some(*c) {
+            self.look_ahead(world, c);
+            self.looked_ahead = Some(*c);
+        }
     }
 
     /// The memory of touch `k` of the last look; a new one starts without stretch and without history of rates.
@@ -241,11 +288,10 @@ impl Grip {
     /// Longest step in which the centre stays where its features are known, or goes no further than `travel` (–,
     /// relative to R), past one plane or among several features (s).
     pub fn longest_step(&self, world: &World, travel: f64) -> f64 {
-        let (speed, way) = (self.v.norm(), travel * world.body.radius);
-        let room = if self.near.is_plane() { self.near.room_m(&self.c).max(way) } else { way };
-        // The weight may still speed it up on the way.
-        let fall = world.body.gravity.norm();
-        2.0 * room / (speed + (speed * speed + 2.0 * fall * room).sqrt())
+        let way = travel * world.body.radius;
+        let is_plane = self.near.plane().is_some();
+        let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
+        longest_step(&world.body, self.v.norm(), room)
     }
 
     /// Energy in the springs of the contacts (J), by the kind it was counted under:
@@ -273,4 +319,9 @@ impl Grip {
         }
         stored
     }
+}
+
+/// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.
+pub(crate) fn longest_step(body: &Body, speed: f64, room: f64) -> f64 {
+    2.0 * room / (speed + (speed * speed + 2.0 * body.gravity.norm() * room).sqrt())
 }

@@ -37,9 +37,10 @@ pub(super) fn solve(
     }
     let mut now = free;
     for _ in 0..JUMPS {
+        let mut calm = 0;
         for _ in 0..SWEEPS {
             *sweeps += 1;
-            if sweep(body, spots, &mut now, h) {
+            if sweep(body, spots, (&mut now, &mut calm), h) {
                 return Some(now);
             }
         }
@@ -51,9 +52,17 @@ pub(super) fn solve(
     None
 }
 
-/// One pass over the contacts; whether nothing changed.
-fn sweep(body: &Body, spots: &mut [Spot], (v, w): &mut (Vec3, Vec3), h: f64) -> bool {
-    let (mut change, mut scale) = (0.0f64, 1e-3 * body.mass * body.gravity.norm());
+/// One pass over the contacts; whether all agree. `calm` counts those that were asked since anything they answer to has
+/// changed.
+fn sweep(
+    body: &Body,
+    spots: &mut [Spot],
+    ((v, w), calm): (&mut (Vec3, Vec3), &mut usize),
+    h: f64,
+) -> bool {
+    let least = 1e-3 * body.mass * body.gravity.norm();
+    let scale = spots.iter().map(|spot| spot.push).fold(least, f64::max);
+    let count = spots.len();
     for spot in spots.iter_mut() {
         let before = (spot.push, spot.drag, spot.moment);
         let (dv, dw) = spot.effect(body, h);
@@ -61,13 +70,16 @@ fn sweep(body: &Body, spots: &mut [Spot], (v, w): &mut (Vec3, Vec3), h: f64) -> 
         spot.solve(body, &vf, &wf, h);
         let (dv, dw) = spot.effect(body, h);
         (*v, *w) = (vf + dv, wf + dw);
-        change = change
-            .max((spot.push - before.0).abs())
-            .max((spot.drag - before.1).norm())
-            .max((spot.moment - before.2).norm() / body.radius);
-        scale = scale.max(spot.push);
+        let change2 = (spot.push - before.0)
+            .powi(2)
+            .max((spot.drag - before.1).norm_squared())
+            .max((spot.moment - before.2).norm_squared() / body.radius.powi(2));
+        *calm = if change2 <= (SETTLED * scale.max(spot.push)).powi(2) { *calm + 1 } else { 1 };
+        if *calm >= count {
+            return true;
+        }
     }
-    change <= SETTLED * scale
+    false
 }
 
 /// Free motion and all contact forces together.

@@ -6,6 +6,7 @@
 //! `reference` schemes.
 
 use super::joint;
+use super::slide::{Answers, Frame, Pair};
 use crate::contact::Feature;
 use crate::ground::Law;
 use crate::rock::{Rock, Vec3};
@@ -101,42 +102,26 @@ impl Spot {
         self.push = self.normal_force(body, v, h);
         if self.push <= 0.0 {
             (self.drag, self.moment) = (Vec3::zeros(), Vec3::zeros());
-        } else if self.law.rolling_m > 0.0 {
-            self.shear_and_roll(body, v, w, h);
-        } else {
-            let law = &self.law;
-            let kap = law.p_s * h + law.c_s;
-            let trial = self.shear * law.p_s + body.slip(&self.n, v, w) * kap;
-            let free = trial / (1.0 + 3.5 * h * kap / body.mass);
-            self.drag = within(free, law.friction * self.push);
+            return;
         }
+        let law = &self.law;
+        let frame = Frame::of(&self.n);
+        let answers = Answers::of(body, law, h);
+        let slip = body.slip(&self.n, v, w);
+        let pair = Pair {
+            answers: &answers,
+            a: frame.along(&(self.shear * law.p_s + slip * answers.kap)),
+            d: frame.local(&(self.roll * law.k_r + w * answers.kar)),
+            caps: (law.friction * self.push, law.rolling_m * self.push),
+        };
+        let (drag, moment) = pair.solve();
+        (self.drag, self.moment) = (frame.out_along(drag), frame.out_local(moment));
     }
 
     /// `F = p_N pen + c_N pen'` at the stage's end, no tension, set-valued where the rock just does not get in.
     #[inline]
     fn normal_force(&self, body: &Body, v: &Vec3, h: f64) -> f64 {
         normal_force((self.law.p_n, self.c_n), self.pen, self.n.dot(v), body.mass, h)
-    }
-
-    /// Shear force and rolling moment together.
-    ///
-    /// Each is the shortening to its cap of `q̂ = (a − C n × M)/(1+B)`, `M̂ = (d + E R n × q)/(1+E)`. Both, one or none
-    /// of them may be at its cap: three of the four cases are solved in closed form.
-    fn shear_and_roll(&mut self, body: &Body, v: &Vec3, w: &Vec3, h: f64) {
-        let (law, n) = (&self.law, self.n);
-        let kap = law.p_s * h + law.c_s;
-        let kar = law.k_r * h + law.c_r;
-        let pair = Pair {
-            n,
-            a: self.shear * law.p_s + body.slip(&n, v, w) * kap,
-            d: self.roll * law.k_r + w * kar,
-            b1: 1.0 + 3.5 * kap * h / body.mass,
-            c: kap * h * body.radius / body.inertia,
-            e1: 1.0 + kar * h / body.inertia,
-            er: kar * h / body.inertia * body.radius,
-            caps: (law.friction * self.push, law.rolling_m * self.push),
-        };
-        (self.drag, self.moment) = pair.solve();
     }
 
     /// What shear and rolling springs would hold at velocity `v` and spin `w` if they did not slide.
@@ -194,122 +179,6 @@ pub(crate) fn normal_force((p_n, c_n): (f64, f64), pen: f64, vn: f64, m: f64, h:
     }
 }
 
-/// The coupled shear force and rolling moment of one contact.
-struct Pair {
-    n: Vec3,
-    a: Vec3,
-    d: Vec3,
-    /// 1 + B.
-    b1: f64,
-    c: f64,
-    /// 1 + E.
-    e1: f64,
-    /// E R.
-    er: f64,
-    /// Largest shear force (N) and rolling moment (N m).
-    caps: (f64, f64),
-}
-
-impl Pair {
-    #[inline]
-    fn solve(&self) -> (Vec3, Vec3) {
-        let (cap_q, cap_m) = self.caps;
-        let (q, moment) = self.both_stick();
-        let (q_fits, m_fits) =
-            (q.norm_squared() <= cap_q * cap_q, moment.norm_squared() <= cap_m * cap_m);
-        if q_fits && m_fits {
-            return (q, moment);
-        }
-        if !m_fits {
-            let moment = self.rolling_alone();
-            let q = self.shear_at(&moment);
-            if q.norm_squared() <= cap_q * cap_q {
-                return (q, moment);
-            }
-        }
-        let q = self.sliding_alone();
-        let moment = self.moment_at(&q);
-        if moment.norm_squared() <= cap_m * cap_m {
-            return (q, moment);
-        }
-        self.both_slip(q)
-    }
-
-    /// `q̂` for a moment.
-    #[inline]
-    fn shear_at(&self, moment: &Vec3) -> Vec3 {
-        (self.a - self.n.cross(moment) * self.c) / self.b1
-    }
-
-    /// `M̂` for a shear force.
-    #[inline]
-    fn moment_at(&self, q: &Vec3) -> Vec3 {
-        (self.d + self.n.cross(q) * self.er) / self.e1
-    }
-
-    /// Neither at its cap: with `y = n × M`, `(1+B) q + C y = a` and `E R q + (1+E) y = n × d`.
-    #[inline]
-    fn both_stick(&self) -> (Vec3, Vec3) {
-        let nd = self.n.cross(&self.d);
-        let det = self.b1 * self.e1 - self.c * self.er;
-        let q = (self.a * self.e1 - nd * self.c) / det;
-        let y = (nd * self.b1 - self.a * self.er) / det;
-        (q, self.n * (self.n.dot(&self.d) / self.e1) - self.n.cross(&y))
-    }
-
-    /// The moment at its cap while shear sticks: `M ∥ G + s M_t`, a scalar equation for their ratio.
-    #[inline]
-    fn rolling_alone(&self) -> Vec3 {
-        let g = self.d + self.n.cross(&self.a) * (self.er / self.b1);
-        let g_n = self.n * self.n.dot(&g);
-        let g_t = g - g_n;
-        let (t2, n2, cap2) = (g_t.norm_squared(), g_n.norm_squared(), self.caps.1 * self.caps.1);
-        let s = self.er * self.c / self.b1;
-        // M_t = λ G_t/(1 − λs), M_n = λ G_n; |M| grows with λ. Newton on λ − cap/|G/(1 − λs)| from the far side.
-        let mut ratio = 0.0;
-        for _ in 0..RATIO_STEPS {
-            let room = 1.0 / (1.0 - ratio * s);
-            let size2 = t2 * room * room + n2;
-            let miss = ratio - (cap2 / size2).sqrt();
-            let slope = 1.0 + (cap2 / size2).sqrt() * t2 * room * room * room * s / size2;
-            let change = miss / slope;
-            ratio -= change;
-            if change.abs() <= SETTLED * ratio {
-                break;
-            }
-        }
-        g_t * (ratio / (1.0 - ratio * s)) + g_n * ratio
-    }
-
-    /// Shear at its cap while rolling sticks: `q ∥ H`.
-    #[inline]
-    fn sliding_alone(&self) -> Vec3 {
-        let along = self.a - self.n.cross(&self.d) * (self.c / self.e1);
-        along * (self.caps.0 / along.norm().max(f64::MIN_POSITIVE))
-    }
-
-    /// Both at their caps: only directions are sought; alternating them settles in a few passes.
-    fn both_slip(&self, mut q: Vec3) -> (Vec3, Vec3) {
-        let (cap_q, cap_m) = self.caps;
-        for _ in 0..ALTERNATIONS {
-            let next = within(self.shear_at(&within(self.moment_at(&q), cap_m)), cap_q);
-            let change = (next - q).norm_squared();
-            q = next;
-            if change <= (SETTLED * cap_q).powi(2) {
-                break;
-            }
-        }
-        (q, within(self.moment_at(&q), cap_m))
-    }
-}
-
-/// Newton steps for the ratio of a rolling moment at its cap.
-const RATIO_STEPS: u32 = 30;
-/// Most alternations of shear and rolling in one contact.
-const ALTERNATIONS: u32 = 60;
-/// Change of a force, relative to its scale, below which it has settled (–).
-const SETTLED: f64 = 1e-10;
-
 /// Solves all contacts of one stage from `(v, w)`, velocity and spin without contact forces (gravity included).
 ///
 /// Returns velocity and spin at the stage's end, or `None` if the sweeps do not settle; `sweeps` counts.
@@ -321,6 +190,9 @@ pub fn solve(
     h: f64,
     sweeps: &mut u64,
 ) -> Option<(Vec3, Vec3)> {
+    if spots.is_empty() {
+        return Some((v, w));
+    }
     if let [spot] = spots {
         *sweeps += 1;
         spot.solve(body, &v, &w, h);
@@ -328,35 +200,4 @@ pub fn solve(
         return Some((v + dv, w + dw));
     }
     joint::solve(body, spots, (v, w), h, sweeps)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn vector() -> impl Strategy<Value = Vec3> {
-        prop::array::uniform3(-1.0f64..1.0).prop_map(Vec3::from)
-    }
-
-    proptest! {
-        /// Whatever case the closed forms choose, the result is the fixed point of both shortenings; 1e-8 of the caps
-        /// is what the alternation of two slipping directions leaves.
-        #[test]
-        fn shear_and_rolling_solve_their_equations(
-            a in vector(), d in vector(), caps in prop::array::uniform2(0.01f64..2.0),
-            b in 0.001f64..100.0, e in 0.001f64..100.0, r in 0.01f64..10.0,
-        ) {
-            let n = Vec3::new(0.6, 0.0, 0.8);
-            let a = a - n * n.dot(&a);
-            // C E R = 5/7 B E, as a solid sphere has it
-            let c = 5.0 / 7.0 * b / r;
-            let pair = Pair { n, a, d: d * r, b1: 1.0 + b, c, e1: 1.0 + e, er: e * r, caps: (caps[0], caps[1] * r) };
-            let (q, moment) = pair.solve();
-            let off_q = (q - within(pair.shear_at(&moment), pair.caps.0)).norm();
-            let off_m = (moment - within(pair.moment_at(&q), pair.caps.1)).norm();
-            prop_assert!(off_q <= 1e-8 * pair.caps.0 && off_m <= 1e-8 * pair.caps.1, "{off_q} {off_m}");
-            prop_assert!(q.norm() <= pair.caps.0 * (1.0 + 1e-12) && moment.norm() <= pair.caps.1 * (1.0 + 1e-12));
-        }
-    }
 }

@@ -2,10 +2,12 @@
 
 pub mod adaptive;
 pub mod dda;
+pub(crate) mod flat;
 pub mod grip;
 pub(crate) mod joint;
 pub mod law;
 pub mod rigid;
+pub(crate) mod slide;
 pub mod stage;
 pub mod tableau;
 

@@ -16,6 +16,8 @@ use crate::rock::Vec3;
 const LEAST_M_S: f64 = 1e-6;
 /// Longest way in one step (–, relative to R): less than the slack within which features are seen.
 const TRAVEL: f64 = 0.09;
+/// Touches no further away than this still hold the rock (–, relative to R).
+const HELD: f64 = 1e-4;
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
@@ -164,9 +166,9 @@ impl Blows {
 pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Result<Advance, Stuck> {
     let mut done = Advance::default();
     let c = grip.c;
-    let r = world.body.radius;
-    grip.look(world, &c, r * (1.0 + TOUCH));
+    grip.look_ahead_again(world, &c);
     if hits(world, grip) {
+        grip.look(world, &c, world.body.radius * (1.0 + TOUCH));
         impact(world, grip, &mut done);
     } else {
         step(world, grip, longest.min(h_max), &mut done);
@@ -177,7 +179,8 @@ pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Resu
 
 /// Whether a touch of the last look comes in faster than the capture speed.
 fn hits(world: &World, grip: &Grip) -> bool {
-    grip.touches.iter().any(|touch| is_fast(world, touch, &grip.v))
+    let reach = world.body.radius * (1.0 + TOUCH);
+    grip.touches.iter().any(|touch| touch.distance_m < reach && is_fast(world, touch, &grip.v))
 }
 
 /// Speed of approach up to which a contact does not rebound (m/s).
@@ -239,10 +242,9 @@ fn step(world: &World, grip: &mut Grip, longest: f64, done: &mut Advance) {
     remember(world, grip, |_| pushed);
 }
 
-/// Cuts a step where a gap closes faster than the capture speed: the impact comes at the end of the step.
-fn closing(world: &World, grip: &mut Grip, dt: f64) -> f64 {
-    let c = grip.c;
-    grip.look_ahead(world, &c);
+/// Cuts a step where a gap to a touch of the last look closes faster than the capture speed: the impact comes at the end
+/// of the step.
+fn closing(world: &World, grip: &Grip, dt: f64) -> f64 {
     let r = world.body.radius;
     grip.touches.iter().filter(|touch| is_fast(world, touch, &grip.v)).fold(dt, |dt, touch| {
         let gap = touch.distance_m - r;
@@ -255,7 +257,7 @@ fn push_out(world: &World, grip: &mut Grip) {
     let (r, before) = (world.body.radius, grip.c);
     for _ in 0..4 {
         let c = grip.c;
-        grip.look(world, &c, r);
+        grip.look_ahead_again(world, &c);
         let out = grip.touches.iter().fold(Vec3::zeros(), |sum, touch| {
             let missing = r - touch.distance_m - sum.dot(&touch.normal);
             sum + touch.normal * missing.max(0.0)
@@ -277,8 +279,9 @@ fn push_out(world: &World, grip: &mut Grip) {
 /// Keeps a memory for every touch that still holds the rock, so that impacts are counted and rest is seen.
 fn remember(world: &World, grip: &mut Grip, holds: impl Fn(&Vec3) -> bool) {
     let (c, v) = (grip.c, grip.v);
-    grip.look(world, &c, world.body.radius * (1.0 + 1e-4));
-    let touches = grip.touches;
+    grip.look_ahead_again(world, &c);
+    let mut touches = grip.touches;
+    touches.keep_nearer(world.body.radius * (1.0 + HELD));
     for hold in grip.holds.iter_mut() {
         hold.closed = false;
     }

@@ -3,6 +3,7 @@
 mod closed;
 mod meshes;
 mod pivot;
+mod starts;
 
 use super::bench::{SETUP, Setup, settings, terrain};
 use crate::rock::Vec3;
@@ -12,9 +13,11 @@ use crate::terrain::make;
 use crate::terrain::stl::Facet;
 use crate::trajectory::{Scratch, Trajectory};
 use meshes::{angle, plane, roof, tilted};
-use nalgebra::Rotation3;
 use pivot::Lift;
-use std::f64::consts::FRAC_1_SQRT_2;
+pub(super) use starts::rolling_off_an_edge;
+use starts::{
+    TIPPED_RAD, along, in_groove, lying, place, rigid_bounce_m, slippery, tipped, tipping,
+};
 
 /// One number of a case: what it should be and how large an error is large.
 #[derive(Debug, Clone, Copy)]
@@ -207,8 +210,16 @@ pub const CASES: [Case; 10] = [
         facets: || plane(0.0),
         setup: |_| Setup { centre_m: Vec3::new(0.1, 0.2, 1.5), ..SETUP },
         exact: Some(|_, has_springs| {
-            let z = if has_springs { 0.558_838_697_250_74 } else { rigid_bounce_m() };
-            vec![Measure { what: "height (m)", exact: z, scale: 1.0, of: |j| j.end.position_m.z }]
+            let (z, second) = if has_springs {
+                (0.558_838_697_250_74, 0.905_526_162_784_89)
+            } else {
+                (rigid_bounce_m(), 2.0 * (2.0 / SETUP.gravity_m_s2).sqrt())
+            };
+            let time_of = |j: &Trajectory| j.impacts.get(1).map_or(f64::NAN, |hit| hit.time_s);
+            vec![
+                Measure { what: "height (m)", exact: z, scale: 1.0, of: |j| j.end.position_m.z },
+                Measure { what: "second impact (s)", exact: second, scale: 1.0, of: time_of },
+            ]
         }),
     },
     Case {
@@ -323,70 +334,3 @@ const STILL: Case = Case {
     setup: |_| SETUP,
     exact: None,
 };
-
-/// At rest above the origin of [`plane`], pressed in as the weight presses it.
-fn lying(degrees: f64, has_springs: bool) -> Setup {
-    let pressed = if has_springs { SETUP.pressed_m(angle(degrees)) } else { 0.0 };
-    let (sin, cos) = angle(degrees).sin_cos();
-    let height = SETUP.rock.radius_m - pressed;
-    Setup { centre_m: Vec3::new(0.0, height * sin, height * cos), ..SETUP }
-}
-
-fn slippery(setup: Setup) -> Setup {
-    let ground = crate::ground::Ground { friction_angle_rad: 0.2f64.atan(), ..setup.ground };
-    Setup { ground, ..setup }
-}
-
-/// Angle from the upright at which spheres begin to tip (rad).
-const TIPPED_RAD: f64 = 0.1;
-
-/// At rest over the edge of [`roof`], friction in degrees.
-fn tipping(degrees: f64, has_springs: bool) -> Setup {
-    let ground = crate::ground::Ground { friction_angle_rad: angle(degrees), ..SETUP.ground };
-    let pressed = if has_springs { SETUP.pressed_m(TIPPED_RAD) } else { 0.0 };
-    let lever = SETUP.rock.radius_m - pressed;
-    let centre_m = Vec3::new(lever * TIPPED_RAD.sin(), 0.3, lever * TIPPED_RAD.cos());
-    Setup { ground, centre_m, ..SETUP }
-}
-
-fn tipped(setup: &Setup, rigid: &Lift, has_springs: bool) -> Vec<Measure> {
-    let (x, z) = if has_springs {
-        pivot::on_springs(setup, TIPPED_RAD, setup.longest_s)
-    } else {
-        rigid.then(setup.rock.radius_m, setup.longest_s)
-    };
-    place(x, setup.centre_m.y, z)
-}
-
-/// At rest in the middle of a right-angled groove that falls at 20°; friction 50°.
-fn in_groove(has_springs: bool) -> Setup {
-    let ground = crate::ground::Ground { friction_angle_rad: angle(50.0), ..SETUP.ground };
-    // Each wall carries N = m g cos 20°/√2; the axis sinks by √2 times what that presses.
-    let sinks = if has_springs { SETUP.pressed_m(angle(20.0)) } else { 0.0 };
-    let height = SETUP.rock.radius_m / FRAC_1_SQRT_2 - sinks;
-    let down = Rotation3::from_axis_angle(&Vec3::x_axis(), -angle(20.0));
-    Setup { ground, centre_m: down * Vec3::new(0.0, -3.0, height), ..SETUP }
-}
-
-/// Height 1 s after a drop from 1 m with e = 0.5 in the rigid limit: two impacts, at `t_f` and 2 `t_f`, then a parabola (m).
-fn rigid_bounce_m() -> f64 {
-    let g = SETUP.gravity_m_s2;
-    let falls = (2.0 / g).sqrt();
-    let (left, up) = (1.0 - 2.0 * falls, 0.25 * g * falls);
-    SETUP.rock.radius_m + up * left - 0.5 * g * left * left
-}
-
-/// The end of a way (m) down a plane that falls in +y.
-fn along(setup: &Setup, angle_rad: f64, way_m: f64) -> Vec<Measure> {
-    let end = setup.centre_m + Vec3::new(0.0, angle_rad.cos(), -angle_rad.sin()) * way_m;
-    place(end.x, end.y, end.z)
-}
-
-/// The centre at the end (m).
-fn place(x: f64, y: f64, z: f64) -> Vec<Measure> {
-    vec![
-        Measure { what: "x (m)", exact: x, scale: 1.0, of: |journey| journey.end.position_m.x },
-        Measure { what: "y (m)", exact: y, scale: 1.0, of: |journey| journey.end.position_m.y },
-        Measure { what: "z (m)", exact: z, scale: 1.0, of: |journey| journey.end.position_m.z },
-    ]
-}

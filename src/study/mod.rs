@@ -1,8 +1,9 @@
-//! What the numerics cost and what they are worth: error against run time, stability, exact cases.
+//! What the numerics cost and what they are worth: error against run time, stability, exact cases, speed.
 //!
 //! ```text
 //! cases ─┬─► exact      error of every scheme against the exact solution, over run time
 //!        └─► stability  stiff and extreme cases, each held against its bound
+//! slope ───► speed      rocks per second, where the time goes, what each part costs
 //! plan ────► scene      sampling error and error of the steps of a scene's own statistics
 //! worlds ──► scaling    cost against the number of rocks that touch each other
 //!            verify     exact cases of several rocks and the method paper's examples
@@ -11,23 +12,30 @@
 pub mod aim;
 pub mod bench;
 pub mod cases;
+pub mod conserve;
 pub mod exact;
 mod exact_figure;
 mod exact_page;
+pub mod exact_values;
+pub mod order;
 pub mod scene;
 mod scaling;
 mod scaling_page;
 mod scene_figure;
 mod scene_page;
+pub mod speed;
 pub mod spread;
 pub mod verify;
 pub mod stability;
 mod stability_figure;
+mod subject;
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;
+use conserve::Conservation;
 use exact::CaseStudy;
 use scene::SceneStudy;
+use speed::SpeedStudy;
 use stability::{Map, Outcome};
 use std::fs;
 use std::path::Path;
@@ -40,15 +48,22 @@ pub use scene_page::{Wish, sentence, setting};
 ///
 /// # Errors
 /// When a file or folder cannot be written.
-pub fn write_exact(studies: &[CaseStudy], dir: &Path) -> Result<()> {
+pub fn write_exact(
+    studies: &[CaseStudy],
+    ladders: &[order::Ladder],
+    values: &[exact_values::Value],
+    dir: &Path,
+) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
     for study in studies {
         let file = figures.join(format!("{}.svg", study.case.name));
         write_whole(&file, exact_figure::draw(study).as_bytes())?;
     }
+    write_whole(&figures.join("order.svg"), order::draw(ladders).as_bytes())?;
+    write_whole(&dir.join("order.csv"), order::csv(ladders).as_bytes())?;
     write_whole(&dir.join("exact.csv"), exact::csv(studies).as_bytes())?;
-    write_whole(&dir.join("README.md"), exact_page::page(studies).as_bytes())
+    write_whole(&dir.join("README.md"), exact_page::page(studies, ladders, values).as_bytes())
 }
 
 /// Writes a scene's page, table and figure into `dir`.
@@ -59,6 +74,9 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     write_whole(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
     write_whole(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
+    if !study.meshes.is_empty() {
+        write_whole(&dir.join("mesh.csv"), scene_page::mesh_csv(study).as_bytes())?;
+    }
     write_whole(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
 }
 
@@ -82,4 +100,26 @@ pub fn write_stability(outcomes: &[Outcome], maps: &[Map], dir: &Path) -> Result
     write_whole(&dir.join("map.svg"), stability_figure::draw(maps).as_bytes())?;
     write_whole(&dir.join("stability.csv"), stability::csv(outcomes).as_bytes())?;
     write_whole(&dir.join("README.md"), stability::page(outcomes).as_bytes())
+}
+
+/// Writes the page and table of a scene's conservation into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_conservation(found: &Conservation, dir: &Path) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    write_whole(&dir.join("conservation.csv"), conserve::csv(found).as_bytes())?;
+    write_whole(&dir.join("README.md"), conserve::page(found).as_bytes())
+}
+
+/// Writes the page, tables and figure of the speeds into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_speed(study: &SpeedStudy, dir: &Path) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    write_whole(&dir.join("speed.svg"), speed::draw(study).as_bytes())?;
+    write_whole(&dir.join("speed.csv"), speed::csv(study).as_bytes())?;
+    write_whole(&dir.join("parts.csv"), speed::parts_csv(study).as_bytes())?;
+    write_whole(&dir.join("README.md"), speed::page(study).as_bytes())
 }

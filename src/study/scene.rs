@@ -8,25 +8,28 @@ use super::bench::goes_by_tolerance;
 use super::spread::{Interval, Ladder, Paired};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
-use crate::hazard::{Percentile, Quantity, Row, StopKind};
+use crate::hazard::{Percentile, Row, StopKind};
 use crate::plan::{Part, Plan};
 use crate::step::{Scheme, Settings};
+use crate::terrain::Terrain;
+use crate::terrain::coarser::{coarser, slope_edge_m};
 use crate::trajectory::{self, Effort, Scratch, Trajectory};
 use std::ops::Range;
 use std::time::Instant;
 
-/// Quantities of the study with what they are called and their units.
-pub const QUANTITIES: [(Quantity, &str, &str); 3] = [
-    (Quantity::Runout, "runout", "m"),
-    (Quantity::MaxTotal, "energy", "J"),
-    (Quantity::MaxHeight, "height", "m"),
-];
+pub use super::subject::{Of, QUANTITIES, Subject};
+
 /// Percentiles of the study (per cent).
 pub const PERCENTS: [u8; 3] = [50, 95, 99];
 /// Fewest releases of which a sampling error is given.
 const FEWEST: usize = 100;
 /// Turns that every setting takes.
 const BLOCKS: usize = 20;
+/// How much longer the edges of the coarser meshes are than the scene's own (–).
+const COARSER: [f64; 2] = [4.0, 2.0];
+/// Order of the mesh's error against the length of its edges that is reckoned with (–): what a triangle leaves out of a
+/// rough surface goes with its length.
+const MESH_ORDER: f64 = 1.0;
 
 /// All releases under one setting.
 #[derive(Debug, Clone)]
@@ -43,15 +46,15 @@ pub struct Rung {
     pub failed: usize,
     /// Largest rise of mechanical energy of a rock over one contact (J).
     pub rise_j: f64,
-    /// Values of each of [`QUANTITIES`], release by release; NaN for a failed rock.
-    values: [Vec<f64>; QUANTITIES.len()],
+    /// Values of each subject, release by release; NaN for a failed rock, −∞ for one that has none.
+    values: Vec<Vec<f64>>,
 }
 
 /// One percentile of one quantity.
 #[derive(Debug, Clone)]
 pub struct Statistic {
-    /// Which of [`QUANTITIES`].
-    pub quantity: usize,
+    /// Which of [`SceneStudy::subjects`].
+    pub subject: usize,
     /// Per cent.
     pub percent: u8,
     /// Under the scene's own setting.
@@ -60,6 +63,21 @@ pub struct Statistic {
     pub sampling: Vec<(usize, f64)>,
     /// Over the ladder.
     pub ladder: Ladder,
+    /// Over the meshes, from coarse to the scene's own; `None` where they were not asked for.
+    pub meshes: Option<Ladder>,
+}
+
+/// All releases under the scene's own setting on a coarser mesh.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    /// Length of its edges over the scene's own (–).
+    pub times: f64,
+    /// Mean length of its edges (m).
+    pub edge_m: f64,
+    /// Its triangles.
+    pub triangles: usize,
+    /// What the releases did on it.
+    pub rung: Rung,
 }
 
 /// What the study of one scene found.
@@ -75,7 +93,11 @@ pub struct SceneStudy {
     pub rungs: Vec<Rung>,
     /// Which of them is the scene's own.
     pub own: usize,
-    /// Each of [`PERCENTS`] for each of [`QUANTITIES`].
+    /// On coarser meshes and the scene's own, from coarse to fine; empty where they were not asked for.
+    pub meshes: Vec<Mesh>,
+    /// What was looked at.
+    pub subjects: Vec<Subject>,
+    /// Each of [`PERCENTS`] for each subject.
     pub statistics: Vec<Statistic>,
 }
 
@@ -106,11 +128,17 @@ fn ladder_of(scheme: Scheme) -> (&'static [f64], f64) {
     }
 }
 
-/// Runs all releases of a plan under every setting; `done` hears of each.
+/// Runs all releases of a plan under every setting, and on coarser meshes if asked; `done` hears of each, with how much
+/// longer the edges of its mesh are.
 ///
 /// # Errors
 /// A release that cannot be made.
-pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(&Rung)) -> Result<SceneStudy> {
+pub fn study(
+    mut plan: Plan,
+    ensemble: &Ensemble,
+    with_meshes: bool,
+    done: impl Fn(&Rung, f64),
+) -> Result<SceneStudy> {
     plan.paths = Part::LeftOut("a study keeps no paths");
     plan.impacts = Part::LeftOut("a study keeps no impacts");
     let own_step = plan.step;
@@ -118,24 +146,38 @@ pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(&Rung)) -> Resul
     let mut rungs: Vec<Rung> =
         relatives.iter().map(|&relative| Rung::new(&own_step, relative)).collect();
     // All settings take turns, so that a machine that is busy for a while slows all of them alike.
+    let subjects = Subject::all(&plan);
     for block in blocks(plan.count) {
         for rung in &mut rungs {
             plan.step = rung.step;
-            rung.run(&plan, block.clone(), ensemble)?;
+            rung.run(&plan, &subjects, block.clone(), ensemble)?;
         }
     }
-    rungs.iter().for_each(done);
+    for rung in &rungs {
+        done(rung, 1.0);
+    }
     let own = relatives.iter().position(|relative| (relative - 1.0).abs() < 1e-9).unwrap_or(0);
+    plan.step = own_step;
+    let meshes = if with_meshes {
+        meshes(&mut plan, &subjects, ensemble, (&rungs[own], &done))?
+    } else {
+        Vec::new()
+    };
     let mut statistics = Vec::new();
-    for quantity in 0..QUANTITIES.len() {
-        let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[quantity].clone()).collect();
+    for subject in 0..subjects.len() {
+        let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[subject].clone()).collect();
         let paired = Paired::new(&all);
+        let on_meshes = Paired::new(
+            &meshes.iter().map(|mesh| mesh.rung.values[subject].clone()).collect::<Vec<_>>(),
+        );
+        let times: Vec<f64> = meshes.iter().map(|mesh| mesh.times).collect();
         for percent in PERCENTS {
             let p = f64::from(percent) / 100.0;
             let Some(found) = percentile(&all[own], p) else { continue };
             let ladder = paired.ladder(p, relatives, order, plan.seed);
             let sampling = sampling(&all[own], p);
-            statistics.push(Statistic { quantity, percent, own: found, sampling, ladder });
+            let meshes = with_meshes.then(|| on_meshes.ladder(p, &times, MESH_ORDER, plan.seed));
+            statistics.push(Statistic { subject, percent, own: found, sampling, ladder, meshes });
         }
     }
     Ok(SceneStudy {
@@ -144,8 +186,37 @@ pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(&Rung)) -> Resul
         threads: ensemble.threads(),
         rungs,
         own,
+        meshes,
+        subjects,
         statistics,
     })
+}
+
+/// All releases on the slope with longer edges; last its own mesh, where they have been already.
+fn meshes(
+    plan: &mut Plan,
+    subjects: &[Subject],
+    ensemble: &Ensemble,
+    (own, done): (&Rung, impl Fn(&Rung, f64)),
+) -> Result<Vec<Mesh>> {
+    let mut meshes = Vec::new();
+    for times in COARSER {
+        let coarse = coarser(&plan.terrain, times);
+        let fine = std::mem::replace(&mut plan.terrain, coarse);
+        let mut rung = Rung::new(&plan.step, 1.0);
+        rung.run(plan, subjects, 0..plan.count, ensemble)?;
+        done(&rung, times);
+        meshes.push(Mesh::of(&plan.terrain, times, rung));
+        plan.terrain = fine;
+    }
+    meshes.push(Mesh::of(&plan.terrain, 1.0, own.clone()));
+    Ok(meshes)
+}
+
+impl Mesh {
+    fn of(terrain: &Terrain, times: f64, rung: Rung) -> Self {
+        Self { times, edge_m: slope_edge_m(terrain), triangles: terrain.triangles.len(), rung }
+    }
 }
 
 /// The same setting with another tolerance or step.
@@ -174,29 +245,38 @@ impl Rung {
             effort: Effort::default(),
             failed: 0,
             rise_j: 0.0,
-            values: Default::default(),
+            values: Vec::new(),
         }
     }
 
     /// Computes some more releases.
-    fn run(&mut self, plan: &Plan, releases: Range<usize>, ensemble: &Ensemble) -> Result<()> {
+    fn run(
+        &mut self,
+        plan: &Plan,
+        subjects: &[Subject],
+        releases: Range<usize>,
+        ensemble: &Ensemble,
+    ) -> Result<()> {
+        self.values.resize(subjects.len(), Vec::new());
         let fall =
             |index: usize, scratch: &mut Scratch| trajectory::fall(plan, index, None, scratch);
         let begun = Instant::now();
         for falls in ensemble.in_chunks(releases, Scratch::default, fall) {
-            falls?.iter().for_each(|fall| self.add(&Row::of(fall, plan.terrain.origin_m), fall));
+            falls?
+                .iter()
+                .for_each(|fall| self.add(subjects, &Row::of(fall, plan.terrain.origin_m), fall));
         }
         self.seconds += begun.elapsed().as_secs_f64();
         Ok(())
     }
 
-    fn add(&mut self, row: &Row, fall: &Trajectory) {
+    fn add(&mut self, subjects: &[Subject], row: &Row, fall: &Trajectory) {
         let failed = row.stop == StopKind::Failed;
         self.failed += usize::from(failed);
         self.rise_j = self.rise_j.max(fall.ledger.rise_j);
         self.effort.add(&fall.effort);
-        for (values, (quantity, ..)) in self.values.iter_mut().zip(QUANTITIES) {
-            values.push(if failed { f64::NAN } else { quantity.of(row) });
+        for (values, subject) in self.values.iter_mut().zip(subjects) {
+            values.push(if failed { f64::NAN } else { subject.value(row, fall) });
         }
     }
 }
@@ -229,20 +309,34 @@ impl Statistic {
         Interval { value: value * times, low: low * times, high: high * times }
     }
 
-    /// Both errors of the scene's own setting together, root of the sum of squares.
+    /// Error of a mesh, signed; nothing where it is not known.
+    pub fn mesh_error_of(&self, mesh: &Mesh) -> Interval {
+        let times = mesh.times.powf(MESH_ORDER);
+        let own = self.meshes.as_ref().map(|meshes| meshes.own_error);
+        let Interval { value, low, high } =
+            own.unwrap_or(Interval { value: 0.0, low: 0.0, high: 0.0 });
+        Interval { value: value * times, low: low * times, high: high * times }
+    }
+
+    /// Error of the scene's own mesh, signed; 0 where it is not known.
+    pub fn mesh_error(&self) -> f64 {
+        self.meshes.as_ref().map_or(0.0, |meshes| meshes.own_error.value)
+    }
+
+    /// All errors of the scene's own setting that are known together, root of the sum of squares.
     pub fn total_error(&self) -> Option<f64> {
-        Some(self.sampling_error()?.hypot(self.ladder.own_error.value))
+        Some(self.sampling_error()?.hypot(self.ladder.own_error.value).hypot(self.mesh_error()))
     }
 }
 
 impl SceneStudy {
     /// The cheapest of the settings that gives a statistic with a total error of `wanted`, at as many releases as it
-    /// needs; `None` where the error of the steps alone is larger under all of them.
+    /// needs; `None` where the errors of steps and mesh alone are larger under all of them.
     pub fn cheapest(&self, statistic: &Statistic, wanted: f64) -> Option<Offer> {
         let sampling = statistic.sampling_error()?;
         let offer = |(rung, setting): (usize, &Rung)| {
             let steps = statistic.step_error(setting.relative, setting.step.scheme).value;
-            let room = wanted * wanted - steps * steps;
+            let room = wanted.powi(2) - steps.powi(2) - statistic.mesh_error().powi(2);
             let times = sampling * sampling / room;
             let releases = (self.releases as f64 * times).ceil().max(FEWEST as f64);
             let seconds = setting.seconds / self.releases as f64 * releases;

@@ -1,8 +1,8 @@
 //! Both errors of a scene's statistics over run time.
 
-use super::scene::{QUANTITIES, SceneStudy, Statistic};
+use super::scene::{Of, SceneStudy, Statistic};
 use crate::report::axis::Axis;
-use crate::report::colour::{BLUE, GREY, INK, VERMILLION};
+use crate::report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel, align};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
@@ -17,7 +17,7 @@ const SHOWN: u8 = 95;
 /// Draws one panel a quantity.
 pub(super) fn draw(study: &SceneStudy) -> String {
     let shown: Vec<&Statistic> =
-        study.statistics.iter().filter(|statistic| statistic.percent == SHOWN).collect();
+        study.statistics.iter().filter(|statistic| is_shown(study, statistic)).collect();
     let times = shown.iter().flat_map(|statistic| points(study, statistic)).map(|point| point.0);
     let (fast, slow) = times.fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(t), b.max(t)));
     let mut panels: Vec<Panel> = (0..shown.len())
@@ -28,7 +28,7 @@ pub(super) fn draw(study: &SceneStudy) -> String {
     }
     let bottom = panels.last().map_or(TOP_PX, |panel| panel.frame.bottom);
     paint("error", (WIDTH_PX, bottom + FOOT_PX), "Error over run time", |paper| {
-        key(paper, panels.first());
+        key(paper, panels.first(), !study.meshes.is_empty());
         for (panel, statistic) in panels.iter().zip(&shown) {
             panel.grid(paper);
             draw_statistic(paper, panel, study, statistic);
@@ -46,6 +46,12 @@ pub(super) fn draw(study: &SceneStudy) -> String {
     })
 }
 
+/// The whole journeys' quantities: those at lines are in the tables.
+fn is_shown(study: &SceneStudy, statistic: &Statistic) -> bool {
+    let is_whole = matches!(study.subjects[statistic.subject].of, Of::Rock(_));
+    is_whole && statistic.percent == SHOWN
+}
+
 fn panel(
     study: &SceneStudy,
     statistic: &Statistic,
@@ -56,7 +62,8 @@ fn panel(
     let errors = || points(study, statistic).into_iter().map(|point| point.1);
     let least = errors().filter(|error| *error > 0.0).fold(f64::INFINITY, f64::min);
     let most = errors().fold(least, f64::max);
-    let (_, name, unit) = QUANTITIES[statistic.quantity];
+    let subject = &study.subjects[statistic.subject];
+    let (name, unit) = (&subject.name, subject.unit);
     let y = Axis::log(least.max(1e-3 * most), most, format!("P{SHOWN} {name} ({unit})"));
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
     let title = if is_last { "Run time of the whole ensemble on this machine (s)" } else { "" };
@@ -68,9 +75,9 @@ fn panel(
 
 /// Everything that must find room: run time (s) and error.
 fn points(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64)> {
-    let steps =
-        steps(study, statistic).into_iter().flat_map(|(t, error, most)| [(t, error), (t, most)]);
-    sampling(study, statistic).into_iter().chain(steps).collect()
+    let both = steps(study, statistic).into_iter().chain(meshes(study, statistic));
+    let ends = both.flat_map(|(t, error, most)| [(t, error), (t, most)]);
+    sampling(study, statistic).into_iter().chain(ends).collect()
 }
 
 /// Sampling error of the first so many releases over the time they take.
@@ -88,6 +95,15 @@ fn steps(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64, f64)> {
     study.rungs.iter().map(one).collect()
 }
 
+/// The same of the meshes.
+fn meshes(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64, f64)> {
+    let one = |mesh: &super::scene::Mesh| {
+        let error = statistic.mesh_error_of(mesh);
+        (mesh.rung.seconds, error.value.abs(), error.at_most())
+    };
+    study.meshes.iter().map(one).collect()
+}
+
 fn draw_statistic(paper: &Paper<'_>, panel: &Panel, study: &SceneStudy, statistic: &Statistic) {
     let inside = |error: f64| error.max(panel.y.low);
     let sampled = sampling(study, statistic);
@@ -96,36 +112,46 @@ fn draw_statistic(paper: &Paper<'_>, panel: &Panel, study: &SceneStudy, statisti
         paper.disc(panel.at(t, error), 2.4, BLUE);
     }
     let steps = steps(study, statistic);
-    let middle: Vec<(f64, f64)> = steps.iter().map(|&(t, error, _)| (t, inside(error))).collect();
-    panel.line(paper, &middle, Pen::full(VERMILLION, 1.4));
-    for &(t, error, most) in &steps {
-        let (spot, end) = (panel.at(t, inside(error)), panel.at(t, inside(most)));
-        paper.line(&[spot, end], Pen::full(VERMILLION, 0.8));
-        paper.line(&[(end.0 - 3.0, end.1), (end.0 + 3.0, end.1)], Pen::full(VERMILLION, 0.8));
-        paper.disc(spot, 2.4, VERMILLION);
+    let meshes = meshes(study, statistic);
+    for (bars, ink) in [(&steps, VERMILLION), (&meshes, GREEN)] {
+        let middle: Vec<(f64, f64)> =
+            bars.iter().map(|&(t, error, _)| (t, inside(error))).collect();
+        panel.line(paper, &middle, Pen::full(ink, 1.4));
+        for &(t, error, most) in bars {
+            let (spot, end) = (panel.at(t, inside(error)), panel.at(t, inside(most)));
+            paper.line(&[spot, end], Pen::full(ink, 0.8));
+            paper.line(&[(end.0 - 3.0, end.1), (end.0 + 3.0, end.1)], Pen::full(ink, 0.8));
+            paper.disc(spot, 2.4, ink);
+        }
     }
     let own_steps = panel.at(steps[study.own].0, inside(steps[study.own].1));
+    let own_mesh = meshes.last().map(|&(t, error, _)| panel.at(t, inside(error)));
     let own_sample = sampled.last().map(|&(t, error)| panel.at(t, error));
-    for (x, y) in own_sample.into_iter().chain([own_steps]) {
+    for (x, y) in own_sample.into_iter().chain(own_mesh).chain([own_steps]) {
         let ring = Frame { left: x - 5.0, right: x + 5.0, top: y - 5.0, bottom: y + 5.0 };
         paper.outline(&ring, Pen::full(INK, 1.0));
     }
 }
 
-fn key(paper: &Paper<'_>, first: Option<&Panel>) {
+fn key(paper: &Paper<'_>, first: Option<&Panel>, with_meshes: bool) {
     let Some(panel) = first else { return };
     let mut x = panel.frame.left;
     let title = format!("Error of the {SHOWN}th percentiles over run time");
     paper.text(&Label::new(title, (x, 12.0)).sized(NORMAL).bold());
-    for (ink, words) in [
-        (BLUE, "sampling: half the 95 % interval of the first n releases"),
-        (VERMILLION, "steps: estimate and 95 % bound"),
+    let own = "the scene's own setting";
+    let own_x = panel.frame.right - text_width(own, SMALL);
+    let ring = Frame { left: own_x - 15.0, right: own_x - 5.0, top: 7.0, bottom: 17.0 };
+    paper.outline(&ring, Pen::full(INK, 1.0));
+    paper.text(&Label::new(own, (own_x, 12.0)).coloured(GREY));
+    for (ink, words, is_there) in [
+        (BLUE, "sampling: half the 95 % interval of the first n releases", true),
+        (VERMILLION, "steps: estimate and 95 % bound", true),
+        (GREEN, "mesh: the same", with_meshes),
     ] {
-        paper.line(&[(x, 30.0), (x + 18.0, 30.0)], Pen::full(ink, 1.4));
-        paper.text(&Label::new(words, (x + 23.0, 30.0)));
-        x += 23.0 + text_width(words, SMALL) + 16.0;
+        if is_there {
+            paper.line(&[(x, 30.0), (x + 18.0, 30.0)], Pen::full(ink, 1.4));
+            paper.text(&Label::new(words, (x + 23.0, 30.0)));
+            x += 23.0 + text_width(words, SMALL) + 16.0;
+        }
     }
-    paper
-        .outline(&Frame { left: x, right: x + 10.0, top: 25.0, bottom: 35.0 }, Pen::full(INK, 1.0));
-    paper.text(&Label::new("the scene's own setting", (x + 15.0, 30.0)).coloured(GREY));
 }

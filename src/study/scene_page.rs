@@ -1,7 +1,8 @@
 //! The page of a scene's errors: sentences, tables, CSV.
 
 use super::bench::goes_by_tolerance;
-use super::scene::{QUANTITIES, Rung, SceneStudy, Statistic};
+use super::scene::{Rung, SceneStudy, Statistic};
+use super::spread::Interval;
 use crate::report::format::{self, significant};
 use crate::step::Settings;
 use std::fmt::Write as _;
@@ -32,6 +33,7 @@ pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
     page += "\n![Error over run time](error.svg)\n\n";
     settings_table(&mut page, study);
     statistics_table(&mut page, study);
+    mesh_table(&mut page, study);
     page
 }
 
@@ -46,7 +48,8 @@ fn sentences(page: &mut String, study: &SceneStudy, wish: Option<Wish>) {
 
 /// What dominates, and the cheapest way to a wanted error (half the present one where none is given).
 pub fn sentence(study: &SceneStudy, statistic: &Statistic, wanted: Option<f64>) -> String {
-    let (_, name, unit) = QUANTITIES[statistic.quantity];
+    let subject = &study.subjects[statistic.subject];
+    let (name, unit) = (&subject.name, subject.unit);
     let head =
         format!("**P{} {name} {} {unit}**", statistic.percent, significant(statistic.own.value, 4));
     let (Some(sampling), Some(total)) = (statistic.sampling_error(), statistic.total_error())
@@ -58,14 +61,16 @@ pub fn sentence(study: &SceneStudy, statistic: &Statistic, wanted: Option<f64>) 
     };
     let steps = statistic.ladder.own_error;
     let small = |value: f64| significant(value, 2);
-    let certainty = if steps.is_certain() { "" } else { ", not distinguishable from 0" };
-    let dominates =
-        if sampling > steps.value.abs() { "Sampling" } else { "The error of the steps" };
+    let mesh = statistic.meshes.as_ref().map_or_else(String::new, |meshes| {
+        format!(", error of the mesh {}", with_ends(&meshes.own_error, unit))
+    });
+    let dominates = dominant(sampling, steps.value.abs(), statistic.mesh_error().abs());
     let wanted = wanted.unwrap_or(0.5 * total);
     let offer = match study.cheapest(statistic, wanted) {
         None => format!(
-            "no setting tried brings it to {} {unit}: the steps must be finer",
-            small(wanted)
+            "no setting tried brings it to {} {unit}: {} must be finer",
+            small(wanted),
+            if statistic.mesh_error().abs() >= wanted { "the mesh" } else { "the steps" }
         ),
         Some(offer) => format!(
             "cheapest for a total of {} {unit}: {} with {} releases, about {} s",
@@ -76,13 +81,30 @@ pub fn sentence(study: &SceneStudy, statistic: &Statistic, wanted: Option<f64>) 
         ),
     };
     format!(
-        "{head}: sampling error ±{} {unit}, error of the steps {} {unit} ({} to {}{certainty}), total {} {unit}. {dominates} dominates; {offer}.",
+        "{head}: sampling error ±{} {unit}, error of the steps {}{mesh}, total {} {unit}. {dominates} dominates; {offer}.",
         small(sampling),
-        small(steps.value),
-        small(steps.low),
-        small(steps.high),
+        with_ends(&steps, unit),
         small(total)
     )
+}
+
+/// Which of the three errors is the largest.
+fn dominant(sampling: f64, steps: f64, mesh: f64) -> &'static str {
+    if sampling >= steps.max(mesh) {
+        "Sampling"
+    } else if steps >= mesh {
+        "The error of the steps"
+    } else {
+        "The error of the mesh"
+    }
+}
+
+/// An error with its interval.
+fn with_ends(error: &Interval, unit: &str) -> String {
+    let small = |value: f64| significant(value, 2);
+    let certainty = if error.is_certain() { "" } else { ", not distinguishable from 0" };
+    let Interval { value, low, high } = error;
+    format!("{} {unit} ({} to {}{certainty})", small(*value), small(*low), small(*high))
 }
 
 /// A setting in words.
@@ -121,7 +143,8 @@ fn statistics_table(page: &mut String, study: &SceneStudy) {
     }
     let _ = writeln!(page, " limit |\n|---|{}---|", "---|".repeat(study.rungs.len()));
     for statistic in &study.statistics {
-        let (_, name, unit) = QUANTITIES[statistic.quantity];
+        let subject = &study.subjects[statistic.subject];
+        let (name, unit) = (&subject.name, subject.unit);
         let _ = write!(page, "| P{} {name} ({unit}) |", statistic.percent);
         for value in &statistic.ladder.values {
             let _ = write!(page, " {} |", significant(*value, 5));
@@ -130,6 +153,58 @@ fn statistics_table(page: &mut String, study: &SceneStudy) {
         let ends = [limit.low, limit.high].map(|end| significant(end, 5));
         let _ = writeln!(page, " {} ({} to {}) |", significant(limit.value, 5), ends[0], ends[1]);
     }
+}
+
+/// What coarser meshes make of the same releases.
+fn mesh_table(page: &mut String, study: &SceneStudy) {
+    if study.meshes.is_empty() {
+        *page += "\nError of the mesh: not asked for (`--meshes`).\n";
+        return;
+    }
+    *page += "\n## Error of the mesh\n\nThe same releases under the scene's own setting on coarser meshes: vertices of the slope are thinned out, the rest stay where they are \
+        (trees stay as they are). The error of the scene's own mesh is what a straight line in the length of the edges leaves at length 0, \
+        with its interval from drawing the rocks again; what the surface does below the scene's own triangles no computation knows, so it is a guide, not a bound.\n\n| statistic |";
+    for mesh in &study.meshes {
+        let own = if mesh.times > 1.0 { "" } else { ", own" };
+        let triangles = format::decimal(mesh.triangles as f64, 0);
+        let _ = write!(page, " {} m, {triangles} triangles{own} |", significant(mesh.edge_m, 2));
+    }
+    let columns = "---|".repeat(study.meshes.len());
+    let _ = writeln!(page, " error of the own mesh |\n|---|{columns}---|");
+    for statistic in &study.statistics {
+        let subject = &study.subjects[statistic.subject];
+        let (name, unit) = (&subject.name, subject.unit);
+        let Some(meshes) = &statistic.meshes else { continue };
+        let _ = write!(page, "| P{} {name} ({unit}) |", statistic.percent);
+        for value in &meshes.values {
+            let _ = write!(page, " {} |", significant(*value, 5));
+        }
+        let _ = writeln!(page, " {} |", with_ends(&meshes.own_error, unit));
+    }
+}
+
+/// What coarser meshes make of the statistics as CSV: one row a statistic and mesh.
+pub(super) fn mesh_csv(study: &SceneStudy) -> String {
+    let mut text = String::from(
+        "quantity,percent,edge_m,triangles,seconds,failed,value,mesh_error,mesh_error_low_95,mesh_error_high_95\n",
+    );
+    for statistic in &study.statistics {
+        let Some(meshes) = &statistic.meshes else { continue };
+        for (mesh, value) in study.meshes.iter().zip(&meshes.values) {
+            let Interval { value: error, low, high } = statistic.mesh_error_of(mesh);
+            let _ = writeln!(
+                text,
+                "{},{},{:.3},{},{:.3},{},{value},{error},{low},{high}",
+                study.subjects[statistic.subject].column,
+                statistic.percent,
+                mesh.edge_m,
+                mesh.triangles,
+                mesh.rung.seconds,
+                mesh.rung.failed,
+            );
+        }
+    }
+    text
 }
 
 /// All numbers as CSV: one row a statistic and setting.
@@ -149,7 +224,7 @@ pub(super) fn csv(study: &SceneStudy) -> String {
             let _ = writeln!(
                 text,
                 "{},{},{fineness},{:.3},{},{},{},{},{},{},{},{value},{},{},{},{sampling}",
-                QUANTITIES[statistic.quantity].0.column(),
+                study.subjects[statistic.subject].column,
                 statistic.percent,
                 rung.seconds,
                 effort.steps,

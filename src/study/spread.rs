@@ -39,7 +39,8 @@ pub struct Ladder {
     pub own_error: Interval,
 }
 
-/// Values of the same rocks under several settings; a rock that failed under one of them counts under none.
+/// Values of the same rocks under several settings. A rock that failed under one of them counts under none; a rock that
+/// has no value under one, because it never came there, counts under the others.
 #[derive(Debug)]
 pub struct Paired {
     /// Rocks in rising order of their values, setting by setting.
@@ -49,15 +50,16 @@ pub struct Paired {
 }
 
 impl Paired {
-    /// One vector a setting, the same rocks in the same order; NaN where a rock has no value.
+    /// One vector a setting, the same rocks in the same order; NaN where a rock failed, −∞ where it has no value.
     pub fn new(values: &[Vec<f64>]) -> Self {
         let count = values.first().map_or(0, Vec::len);
-        let is_whole = |rock: &usize| values.iter().all(|setting| setting[*rock].is_finite());
+        let is_whole = |rock: &usize| values.iter().all(|setting| !setting[*rock].is_nan());
         let whole: Vec<usize> = (0..count).filter(is_whole).collect();
         let values: Vec<Vec<f64>> =
             values.iter().map(|all| whole.iter().map(|&rock| all[rock]).collect()).collect();
         let sorted = |all: &Vec<f64>| {
-            let mut order: Vec<u32> = (0..all.len() as u32).collect();
+            let has_value = |rock: &u32| all[*rock as usize].is_finite();
+            let mut order: Vec<u32> = (0..all.len() as u32).filter(has_value).collect();
             order.sort_by(|&a, &b| all[a as usize].total_cmp(&all[b as usize]));
             order
         };
@@ -66,8 +68,8 @@ impl Paired {
 
     /// Percentile `p` (0..1) under every setting, of rocks that count so many times each.
     fn percentiles(&self, p: f64, times: &[u16]) -> Vec<f64> {
-        let wanted = p * times.iter().map(|&n| f64::from(n)).sum::<f64>();
         let one = |(order, values): (&Vec<u32>, &Vec<f64>)| {
+            let wanted = p * order.iter().map(|&rock| f64::from(times[rock as usize])).sum::<f64>();
             let mut passed = 0.0;
             let found = order.iter().find(|&&rock| {
                 passed += f64::from(times[rock as usize]);
@@ -165,6 +167,16 @@ mod tests {
         assert!((shift.value - 0.25).abs() < 1e-12 && shift.is_certain());
         assert!(shift.high - shift.low < 1e-12);
     }
+
+    /// A rock that never came there under one setting still counts under the other.
+    #[test]
+    fn rocks_without_a_value_count_elsewhere() {
+        let all = [vec![1.0, NEVER, 3.0], vec![1.0, 9.0, 3.0]];
+        let found = Paired::new(&all).percentiles(0.99, &[1, 1, 1]);
+        assert!((found[0] - 3.0).abs() < 1e-12 && (found[1] - 9.0).abs() < 1e-12, "{found:?}");
+    }
+
+    const NEVER: f64 = f64::NEG_INFINITY;
 
     /// A rock that failed once is left out everywhere.
     #[test]

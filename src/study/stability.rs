@@ -1,8 +1,10 @@
 //! Stiff and extreme cases, each held against its analytic expectation or a bound, for every scheme.
 
+mod fineness;
 mod geometry;
 mod impacts;
 mod lasting;
+mod many;
 mod map;
 mod page;
 
@@ -59,8 +61,10 @@ pub const WAYS: [Way; 4] = [
 type Trial = fn(&Way, &mut Notes);
 
 /// Every case by name. To add one: a function and a row.
-const TRIALS: [(&str, Trial); 19] = [
+const TRIALS: [(&str, Trial); 24] = [
     ("impact", impacts::impact),
+    ("step and tolerance", fineness::steps),
+    ("shear memory", fineness::memory),
     ("thin sheet", impacts::thin_sheet),
     ("zero gap", impacts::zero_gap),
     ("from behind", impacts::from_behind),
@@ -77,6 +81,9 @@ const TRIALS: [(&str, Trial); 19] = [
     ("offset of 1e6 m", geometry::offset),
     ("small triangles", geometry::small_triangles),
     ("one triangle", geometry::one_triangle),
+    ("stack of two", many::stack),
+    ("head-on", many::head_on),
+    ("one centre for two", many::coincident),
     ("rest for an hour", lasting::rest),
     ("random releases", lasting::random_releases),
 ];

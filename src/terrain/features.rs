@@ -2,13 +2,21 @@
 //!
 //! A sheet has two sides, so an edge that is hollow from the front is sharp from the back: every edge that is not
 //! flat is kept, and the contact's own test (`contact::near`) decides from where the rock stands. Flat edges, and
-//! vertices with flat edges only, never touch: the face does.
+//! vertices with flat edges only, never touch: the face does. Neither do vertices between edges that rise and edges
+//! that fall around them (saddles): from either side of the sheet an edge or a face is nearer.
 
 use super::edges::Edges;
 use crate::rock::Vec3;
 
 /// Sine of the angle between faces below which an edge is flat (–): rounding of `f64` coordinates, no more.
 const FLAT: f64 = 1e-12;
+/// A corner whose nearest edge leans towards the ball by this much can never touch it (–, cosine): far above the slack
+/// of the contact's own test, which is 1e-9.
+const LEANS: f64 = 1e-6;
+/// Sine of the angle between edges below which they say nothing of their corner (–).
+const NEEDLE: f64 = 1e-6;
+/// Corners with more edges are kept as they are: a fan of a thousand would take a billion products.
+const MOST_EDGES: usize = 16;
 
 /// A triangle ready for the hot loops.
 #[derive(Debug, Clone, Copy)]
@@ -44,6 +52,21 @@ impl Face {
     }
 }
 
+/// How many edges and corners can be touched, and how many are left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Count {
+    /// Edges that can be touched.
+    pub edges: usize,
+    /// Flat edges: the faces beside them touch.
+    pub flat_edges: usize,
+    /// Corners that can be touched.
+    pub corners: usize,
+    /// Corners with flat edges only.
+    pub flat_corners: usize,
+    /// Corners between edges that rise and edges that fall: an edge or a face is nearer, from either side.
+    pub saddles: usize,
+}
+
 /// The touchable features of a mesh.
 #[derive(Debug, Default)]
 pub struct Features {
@@ -59,6 +82,8 @@ pub struct Features {
     around: Vec<u32>,
     /// Share of the edges that are flat (–, 0..1).
     pub flat_share: f64,
+    /// How many are left out.
+    pub count: Count,
 }
 
 impl Features {
@@ -103,6 +128,26 @@ impl Features {
             corner[a as usize] = true;
             corner[b as usize] = true;
         }
+        let sharp = corner.iter().filter(|sharp| **sharp).count();
+        let mut along = Vec::new();
+        for vertex in 0..corner.len() as u32 {
+            corner[vertex as usize] &= self.is_within_reach(vertex, vertices_m, &mut along);
+        }
+        let flat = kept.iter().filter(|kept| !**kept).count();
+        let corners = corner.iter().filter(|kept| **kept).count();
+        self.flat_share = flat as f64 / kept.len().max(1) as f64;
+        self.count = Count {
+            edges: kept.len() - flat,
+            flat_edges: flat,
+            corners,
+            flat_corners: corner.len() - sharp,
+            saddles: sharp - corners,
+        };
+        self.give_away(&kept, &mut corner, triangles);
+    }
+
+    /// Gives what is kept to the first triangle on it.
+    fn give_away(&mut self, kept: &[bool], corner: &mut [bool], triangles: &[[u32; 3]]) {
         self.owned = vec![0; triangles.len()];
         for (t, (sides, corners)) in self.edges.of_triangle.iter().zip(triangles).enumerate() {
             for k in 0..3 {
@@ -115,8 +160,43 @@ impl Features {
                 }
             }
         }
-        let flat = kept.iter().filter(|kept| !**kept).count();
-        self.flat_share = flat as f64 / kept.len().max(1) as f64;
+    }
+
+    /// The same with nothing left out: leaving out changes the cost, never the answer.
+    #[must_use]
+    pub fn with_everything(mut self, triangles: &[[u32; 3]]) -> Self {
+        let mut corner = vec![false; self.starts.len() - 1];
+        triangles.iter().flatten().for_each(|&vertex| corner[vertex as usize] = true);
+        self.give_away(&vec![true; self.edges.len()], &mut corner, triangles);
+        self
+    }
+
+    /// Whether a ball can touch a corner from anywhere: some direction must stand at a right angle or more to every edge
+    /// at it.
+    ///
+    /// The extreme ones of those directions stand at a right angle to two of the edges. If none of these fits, none does:
+    /// of three edges that hold a direction back at least two enclose a good angle, so rounding stays far below
+    /// [`LEANS`]; where any two edges nearly are in line the corner is kept.
+    fn is_within_reach(&self, vertex: u32, vertices_m: &[Vec3], along: &mut Vec<Vec3>) -> bool {
+        let around = self.neighbours(vertex);
+        if around.len() > MOST_EDGES {
+            return true;
+        }
+        let place = vertices_m[vertex as usize];
+        along.clear();
+        along.extend(around.iter().map(|&other| (vertices_m[other as usize] - place).normalize()));
+        for (number, one) in along.iter().enumerate() {
+            for other in &along[number + 1..] {
+                let across = one.cross(other);
+                let size = across.norm();
+                let fits =
+                    |side: f64| along.iter().all(|edge| side * edge.dot(&across) <= LEANS * size);
+                if size < NEEDLE || fits(1.0) || fits(-1.0) {
+                    return true;
+                }
+            }
+        }
+        along.is_empty()
     }
 
     fn is_flat(&self, edge: u32, vertices_m: &[Vec3]) -> bool {

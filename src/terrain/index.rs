@@ -21,10 +21,10 @@ pub const MAX_TRIANGLES: usize = START_MASK as usize;
 /// Two child boxes (m, rounded outwards) and where the children are.
 #[derive(Debug, Clone, Copy)]
 pub struct Pair {
-    /// Lower corners of the left and the right box.
-    pub lo: [[f32; 3]; 2],
-    /// Upper corners of the left and the right box.
-    pub hi: [[f32; 3]; 2],
+    /// Lower corners, axis by axis of the left and the right box: both are clipped at once.
+    pub lo: [[f32; 2]; 3],
+    /// Upper corners.
+    pub hi: [[f32; 2]; 3],
     child: [u32; 2],
 }
 
@@ -49,15 +49,10 @@ impl Pair {
         }
     }
 
-    /// Squared distance from a point to a child's box (m²); 0 inside.
+    /// Whether a child's box and the box from `lo` to `hi` share a point.
     #[inline]
-    fn distance2(&self, side: usize, point: [f64; 3]) -> f64 {
-        let mut sum = 0.0;
-        for ((&lo, &hi), x) in self.lo[side].iter().zip(&self.hi[side]).zip(point) {
-            let out = (f64::from(lo) - x).max(x - f64::from(hi)).max(0.0);
-            sum += out * out;
-        }
-        sum
+    fn meets(&self, side: usize, (lo, hi): (&[f32; 3], &[f32; 3])) -> bool {
+        (0..3).all(|k| self.lo[k][side] <= hi[k] && lo[k] <= self.hi[k][side])
     }
 }
 
@@ -104,14 +99,15 @@ impl Index {
     fn pack(&mut self, loose: &[Loose], order: &mut Vec<u32>) {
         let whole = &loose[0];
         let top = if whole.count <= LEAF { [0, 0] } else { whole.children };
-        self.pairs.push(Pair { lo: [[0.0; 3]; 2], hi: [[0.0; 3]; 2], child: [0; 2] });
+        self.pairs.push(Pair { lo: [[0.0; 2]; 3], hi: [[0.0; 2]; 3], child: [0; 2] });
         // A tree of one leaf still gets a pair: its right box is empty.
         let sides = if whole.count <= LEAF { 1 } else { 2 };
         let mut stack: Vec<(u32, usize, u32)> =
             (0..sides).rev().map(|side| (0, side, top[side])).collect();
         if sides == 1 {
-            self.pairs[0].lo[1] = [f32::INFINITY; 3];
-            self.pairs[0].hi[1] = [f32::NEG_INFINITY; 3];
+            for k in 0..3 {
+                (self.pairs[0].lo[k][1], self.pairs[0].hi[k][1]) = (f32::MAX, f32::MAX);
+            }
             self.pairs[0].child[1] = LEAF_BIT;
         }
         while let Some((pair, side, node)) = stack.pop() {
@@ -122,15 +118,16 @@ impl Index {
                 LEAF_BIT | ((from.count - 1) << COUNT_SHIFT) | start
             } else {
                 let next = self.pairs.len() as u32;
-                self.pairs.push(Pair { lo: [[0.0; 3]; 2], hi: [[0.0; 3]; 2], child: [0; 2] });
+                self.pairs.push(Pair { lo: [[0.0; 2]; 3], hi: [[0.0; 2]; 3], child: [0; 2] });
                 stack.push((next, 1, from.children[1]));
                 stack.push((next, 0, from.children[0]));
                 next
             };
             let to = &mut self.pairs[pair as usize];
             to.child[side] = word;
-            to.lo[side] = [0, 1, 2].map(|k| below(from.lo[k]));
-            to.hi[side] = [0, 1, 2].map(|k| above(from.hi[k]));
+            for k in 0..3 {
+                (to.lo[k][side], to.hi[k][side]) = (below(from.lo[k]), above(from.hi[k]));
+            }
         }
     }
 
@@ -145,25 +142,20 @@ impl Index {
         (self.lo, self.hi)
     }
 
-    /// Calls `visit(start, count)` for every leaf whose box comes nearer than `radius` to `centre`.
+    /// Calls `visit(start, count)` for every leaf whose box comes nearer than `radius` to `centre` along every axis.
     #[inline]
     pub fn near(&self, centre: &Vec3, radius: f64, mut visit: impl FnMut(u32, u32)) {
-        let point = [centre.x, centre.y, centre.z];
-        let reach2 = radius * radius;
-        self.walk(|pair, side| pair.distance2(side, point) <= reach2, &mut visit);
+        let lo = [0, 1, 2].map(|k| below(centre[k] - radius));
+        let hi = [0, 1, 2].map(|k| above(centre[k] + radius));
+        self.walk(|pair, side| pair.meets(side, (&lo, &hi)), &mut visit);
     }
 
     /// Calls `visit(start, count)` for every leaf whose box the vertical through (x, y) meets.
     #[inline]
     pub fn along_vertical(&self, x: f64, y: f64, mut visit: impl FnMut(u32, u32)) {
-        let inside = |pair: &Pair, side: usize| {
-            let (lo, hi) = (&pair.lo[side], &pair.hi[side]);
-            f64::from(lo[0]) <= x
-                && x <= f64::from(hi[0])
-                && f64::from(lo[1]) <= y
-                && y <= f64::from(hi[1])
-        };
-        self.walk(inside, &mut visit);
+        let lo = [below(x), below(y), f32::NEG_INFINITY];
+        let hi = [above(x), above(y), f32::INFINITY];
+        self.walk(|pair, side| pair.meets(side, (&lo, &hi)), &mut visit);
     }
 
     #[inline]

@@ -1,5 +1,6 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
+pub mod coarser;
 pub mod edges;
 pub mod features;
 pub mod grid;
@@ -69,6 +70,13 @@ impl Terrain {
             features,
             index,
         }
+    }
+
+    /// The same with no edge and no corner left out.
+    #[must_use]
+    pub fn with_every_feature(mut self) -> Self {
+        self.features = self.features.with_everything(&self.triangles);
+        self
     }
 
     /// Whether a triangle belongs to a tree.

@@ -3,6 +3,7 @@
 use super::journey::{Journey, Keep};
 use super::{Stop, Trajectory};
 use crate::chance::{Chance, Purpose, stream, unit};
+use crate::clock::{Clocks, Piece};
 use crate::contact::Touch;
 use crate::error::Result;
 use crate::flight::{Landing, Parabola, leap};
@@ -45,6 +46,18 @@ pub struct Scratch {
 }
 
 impl Scratch {
+    /// With clocks that run; see [`Self::clocks`].
+    pub fn timed() -> Self {
+        let mut scratch = Self::default();
+        scratch.grip.clocks = Clocks::running();
+        scratch
+    }
+
+    /// Where the time of all journeys so far went.
+    pub fn clocks(&self) -> &Clocks {
+        &self.grip.clocks
+    }
+
     fn make_laws(&mut self, release: &Release, capture: &Capture) {
         self.damping.truncate(release.grounds.len());
         self.laws.clear();
@@ -172,19 +185,30 @@ impl Fall<'_> {
             radius: self.world.body.radius,
         };
         let left = self.course.longest_s - now.time_s;
+        let begun = self.grip.clocks.now();
         let (dt, stop) =
             match leap(self.course.terrain, &flight, left, &mut self.journey.effort.triangles) {
                 Landing::Touch(t) => (t, None),
                 Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
                 Landing::Flies => (left, Some(Stop::TimeUp)),
             };
+        self.grip.clocks.stop(Piece::Leap, begun);
         self.journey.effort.leaps += 1;
+        let begun = self.grip.clocks.now();
         self.journey.fly(&flight, dt);
+        self.grip.clocks.stop(Piece::NotesInFlight, begun);
         stop
     }
 
     /// Goes on in contact until the rock is free again or stops.
     fn touch(&mut self) -> Option<Stop> {
+        let begun = self.grip.clocks.now();
+        let stop = self.impact();
+        self.grip.clocks.stop(Piece::Contact, begun);
+        stop
+    }
+
+    fn impact(&mut self) -> Option<Stop> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.journey.now;
         self.grip.begin(&self.world, c, v, w);
         self.announce();
@@ -244,9 +268,11 @@ impl Fall<'_> {
                 spin_rad_s: self.grip.w,
             };
             let slides = self.grip.holds.iter().any(|hold| hold.slides);
+            let begun = self.grip.clocks.now();
             self.announce();
             self.journey.step(to, slides);
             self.journey.end_impact_in_time();
+            self.grip.clocks.stop(Piece::NotesInContact, begun);
             if self.grip.is_free() {
                 return None;
             }

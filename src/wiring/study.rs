@@ -6,9 +6,11 @@ use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::step::Scheme;
 use rockfall::study::aim::Aim;
-use rockfall::study::scene::{PERCENTS, QUANTITIES, SceneStudy};
+use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
+use rockfall::study::speed::{self, Order};
 use rockfall::study::stability::{self, Map, Outcome};
-use rockfall::study::{self, Wish, exact, scene};
+use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 /// How a study of a scene is asked for.
@@ -22,15 +24,19 @@ pub(crate) struct SceneOrder {
     pub(crate) releases: Option<usize>,
     /// Worker threads; `None` = all cores.
     pub(crate) threads: Option<usize>,
+    /// Whether to try coarser meshes too.
+    pub(crate) meshes: bool,
     /// What the cheapest setting shall reach.
     pub(crate) within: Option<Aim>,
 }
 
 /// Studies the exact cases and says where the result is.
 pub(crate) fn exact_cases(out: &Path, done: impl Fn(&str)) -> Result<String> {
+    let values = exact_values::values();
+    let ladders = order::study();
     let studies = exact::study(done);
-    study::write_exact(&studies, out)?;
-    Ok(format!("page, table and figures in {}", out.display()))
+    study::write_exact(&studies, &ladders, &values, out)?;
+    Ok(format!("{}page, tables and figures in {}", exact_values::table(&values), out.display()))
 }
 
 /// Runs the stiff and extreme cases; says how many bounds are kept, and whether all are.
@@ -92,6 +98,56 @@ pub(crate) fn scaling(
     Ok((words.join("\n"), found.iter().all(|(_, holds)| *holds)))
 }
 
+/// Runs so many releases of a scene on so many threads; says which bounds are kept, and whether all are.
+pub(crate) fn conservation(
+    scene: &Path,
+    out: &Path,
+    (releases, threads): (Option<usize>, Option<usize>),
+    done: impl Fn(&str),
+) -> Result<(String, bool)> {
+    let mut asked = Scene::read(scene)?;
+    asked.release.count = releases.unwrap_or(asked.release.count);
+    let (terrain, _) = asked.read_terrain()?;
+    let plan = Plan::compile(&asked, terrain)?;
+    if plan.rock_against_rock.is_kept() {
+        return Err(Error::Request(format!(
+            "{}: [release] together = true: conservation is studied rock by rock; leave together out",
+            scene.display()
+        )));
+    }
+    let count = plan.count;
+    let ensemble = Ensemble::new(threads)?;
+    let tenths = Cell::new(0);
+    let found = conserve::study(plan, &ensemble, |rocks| {
+        if 10 * rocks / count > tenths.replace(10 * rocks / count) {
+            done(&format!("{rocks} of {count} releases"));
+        }
+    })?;
+    study::write_conservation(&found, out)?;
+    let line = |bound: &conserve::Bound| {
+        let kept = if bound.holds() { "kept" } else { "NOT KEPT" };
+        format!("{kept}: {}: {:.1e} (bound {:.1e})", bound.law, bound.found, bound.bound)
+    };
+    let mut words: Vec<String> = found.bounds().iter().map(line).collect();
+    words.push(format!("page and table in {}", out.display()));
+    Ok((words.join("\n"), found.holds()))
+}
+
+/// Measures speed and says where the result is.
+pub(crate) fn speed(
+    (rocks, triangles): (usize, &[usize]),
+    out: &Path,
+    done: impl FnMut(String),
+) -> Result<String> {
+    let program = std::env::current_exe().map_err(|why| {
+        Error::Request(format!("the program does not find itself to measure its memory: {why}"))
+    })?;
+    let order = Order { rocks, triangles: triangles.to_vec(), program, source: None };
+    let found = speed::study(&order, &out.join("work"), done)?;
+    study::write_speed(&found, out)?;
+    Ok(format!("page, tables and figure in {}", out.display()))
+}
+
 /// Studies a scene and says what was found in a few sentences.
 pub(crate) fn scene_errors(order: &SceneOrder, done: impl Fn(String)) -> Result<String> {
     let mut asked = Scene::read(&order.scene)?;
@@ -102,9 +158,12 @@ pub(crate) fn scene_errors(order: &SceneOrder, done: impl Fn(String)) -> Result<
         among_studied(aim)?;
     }
     let ensemble = Ensemble::new(order.threads)?;
-    let found = scene::study(plan, &ensemble, |rung| {
+    let found = scene::study(plan, &ensemble, order.meshes, |rung, times| {
         let each = 1e3 * rung.seconds / asked.release.count as f64;
-        done(format!("{}: {:.1} s, {each:.2} ms a rock", study::setting(&rung.step), rung.seconds));
+        let setting = study::setting(&rung.step);
+        let mesh =
+            if times > 1.0 { format!(", edges {times} times as long") } else { String::new() };
+        done(format!("{setting}{mesh}: {:.1} s, {each:.2} ms a rock", rung.seconds));
     })?;
     let wish = order.within.as_ref().and_then(|aim| wish(aim, &found));
     study::write_scene(&found, wish, &order.out)?;
@@ -125,7 +184,8 @@ pub(crate) fn scene_errors(order: &SceneOrder, done: impl Fn(String)) -> Result<
 /// The error that an interval allows is half its width.
 fn wish(aim: &Aim, found: &SceneStudy) -> Option<Wish> {
     let is_it = |statistic: &scene::Statistic| {
-        QUANTITIES[statistic.quantity].0 == aim.quantity && statistic.percent == aim.percent
+        let subject = &found.subjects[statistic.subject];
+        subject.of == Of::Rock(aim.quantity) && statistic.percent == aim.percent
     };
     let statistic = found.statistics.iter().position(is_it)?;
     Some(Wish { statistic, error: 0.5 * aim.width })

@@ -86,6 +86,24 @@ impl Law {
     }
 }
 
+/// Where the centre is (x, z; m) after `t` (s) in the rigid limit as long as it neither slips nor lifts off, from rest at
+/// `angle_rad`: `θ'' = 5/7 g/R sin θ`.
+pub(super) fn rolling(radius_m: f64, angle_rad: f64, t: f64) -> (f64, f64) {
+    const STEPS: usize = 10_000;
+    let h = t / STEPS as f64;
+    let bend = |angle: f64| 5.0 / 7.0 * GRAVITY_M_S2 / radius_m * angle.sin();
+    let (mut angle, mut rate) = (angle_rad, 0.0);
+    for _ in 0..STEPS {
+        let k1 = (rate, bend(angle));
+        let k2 = (rate + 0.5 * h * k1.1, bend(angle + 0.5 * h * k1.0));
+        let k3 = (rate + 0.5 * h * k2.1, bend(angle + 0.5 * h * k2.0));
+        let k4 = (rate + h * k3.1, bend(angle + h * k3.0));
+        angle += h / 6.0 * (k1.0 + 2.0 * k2.0 + 2.0 * k3.0 + k4.0);
+        rate += h / 6.0 * (k1.1 + 2.0 * k2.1 + 2.0 * k3.1 + k4.1);
+    }
+    (radius_m * angle.sin(), radius_m * angle.cos())
+}
+
 /// The rigid limit: where the rock lifts off (angle, time, speed) from rest at 0.1 rad with R = 0.5 m.
 pub(super) struct Lift {
     /// From the upright (rad).

@@ -27,9 +27,27 @@ pub(super) fn edge_and_corner(way: &Way, notes: &mut Notes) {
     let roof = terrain(make::ridge(4.0, 1.0));
     let end = notes.follow(way, "edge", &above, &roof).end.position_m;
     notes.hold(way, "edge", "deeper than the edge allows (m)", 0.5 - end.norm(), 0.01);
+    // level: on the seam of two triangles, and on a corner where six meet
+    let planes = [false, true].map(|has_corner| terrain(level(has_corner)));
+    for (setting, plane) in ["seam of a plane", "corner in a plane"].into_iter().zip(&planes) {
+        let end = notes.follow(way, setting, &above, plane).end;
+        let sideways =
+            end.position_m.x.hypot(end.position_m.y) + end.velocity_m_s.x.hypot(end.velocity_m_s.y);
+        notes.hold(way, setting, "sideways (m, m/s)", sideways, 1e-12);
+    }
     let tip = terrain(make::tetrahedron(6.0));
     let end = notes.follow(way, "corner", &above, &tip).end.position_m;
     notes.hold(way, "corner", "deeper than the corner allows (m)", 0.5 - end.norm(), 0.01);
+}
+
+/// A level square, split along the diagonal through the origin, or four of them about it.
+fn level(has_corner: bool) -> Vec<Facet> {
+    let (x, y) = (Vec3::x() * 4.0, Vec3::y() * 4.0);
+    if !has_corner {
+        return square(-(x + y) * 0.5, x, y);
+    }
+    let squares = [-(x + y), -x, -y, Vec3::zeros()].map(|corner| square(corner, x, y));
+    squares.concat()
 }
 
 /// Between upright walls that press it from both sides by `s`: friction `2 μ p_N s` holds it, or it slides with

@@ -1,0 +1,95 @@
+//! Where the time of a journey goes: clocks that stand still unless somebody asks.
+//!
+//! A clock that is off costs one branch that is always predicted; nothing else of a journey knows of it, and nothing
+//! that it reads flows back into one.
+
+use std::time::{Duration, Instant};
+
+/// Pieces of a journey that are timed apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Piece {
+    /// Free flight: from take-off to the next touch.
+    Leap,
+    /// In contact, geometry included.
+    Contact,
+    /// Which features are near, and which of them touch.
+    Geometry,
+    /// What is noted down along a flight: largest values, heights, lines, cells, path.
+    NotesInFlight,
+    /// The same along the steps in contact.
+    NotesInContact,
+}
+
+/// Number of pieces.
+const PIECES: usize = 5;
+
+/// How long the pieces took so far.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Clocks {
+    is_on: bool,
+    took: [Duration; PIECES],
+    times: [u64; PIECES],
+}
+
+impl Clocks {
+    /// Clocks that run.
+    pub fn running() -> Self {
+        Self { is_on: true, ..Self::default() }
+    }
+
+    /// The present, if the clocks run.
+    #[inline]
+    pub fn now(&self) -> Option<Instant> {
+        self.is_on.then(Instant::now)
+    }
+
+    /// Counts a piece that began at `begun`.
+    #[inline]
+    pub fn stop(&mut self, piece: Piece, begun: Option<Instant>) {
+        if let Some(begun) = begun {
+            self.took[piece as usize] += begun.elapsed();
+            self.times[piece as usize] += 1;
+        }
+    }
+
+    /// Time of a piece (s), without what one look at the clock adds to each.
+    pub fn seconds(&self, piece: Piece, look_s: f64) -> f64 {
+        let (took, times) = (self.took[piece as usize], self.times[piece as usize]);
+        (took.as_secs_f64() - times as f64 * look_s).max(0.0)
+    }
+
+    /// How often a piece was timed.
+    pub fn times(&self, piece: Piece) -> u64 {
+        self.times[piece as usize]
+    }
+}
+
+/// Looks at the clock that tell what one of them takes.
+const LOOKS: u32 = 100_000;
+
+/// What one look at the clock takes (s).
+pub fn look_s() -> f64 {
+    let begun = Instant::now();
+    let mut last = begun;
+    for _ in 0..LOOKS {
+        last = std::hint::black_box(Instant::now());
+    }
+    last.duration_since(begun).as_secs_f64() / f64::from(LOOKS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Clocks, Piece};
+
+    #[test]
+    fn only_running_clocks_count() {
+        for (mut clocks, times) in [(Clocks::default(), 0), (Clocks::running(), 3)] {
+            for _ in 0..3 {
+                let begun = clocks.now();
+                clocks.stop(Piece::Leap, begun);
+            }
+            assert_eq!(clocks.times(Piece::Leap), times);
+            assert!(clocks.seconds(Piece::Contact, 0.0) == 0.0);
+        }
+    }
+}

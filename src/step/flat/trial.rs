@@ -1,0 +1,181 @@
+//! One step on a plane, tried with any length.
+
+use super::Flat;
+use super::state::{
+    Press, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, accelerations, dot, slip, square, stored_j,
+    three, two,
+};
+use crate::contact::near::Near;
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::step::adaptive::{Control, ONSET, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, Trial};
+use crate::step::grip::World;
+use crate::step::law::{Body, normal_force};
+use crate::step::slide::{Answers, Local, Pair};
+
+/// A step being tried.
+pub(super) struct Try<'a, 'w> {
+    pub(super) control: &'a Control,
+    pub(super) world: &'a World<'w>,
+    pub(super) law: &'a Law,
+    pub(super) flat: &'a mut Flat,
+    /// Normal damping in force (N s/m).
+    pub(super) c_n: f64,
+    pub(super) gravity: Local,
+    /// Penetration at the step's start (m).
+    pub(super) pen: f64,
+    /// Energy at the step's start, motion and springs (J).
+    pub(super) energy: f64,
+    pub(super) near: &'a Near,
+    /// Centre at the step's start (m).
+    pub(super) start: Vec3,
+    pub(super) face: u32,
+    pub(super) end: State,
+    pub(super) press: Press,
+    pub(super) stored: f64,
+    pub(super) solved: u64,
+}
+/// What the stages of a step of one length have in common.
+struct Length {
+    /// Length of a stage (s).
+    hh: f64,
+    answers: Answers,
+    /// Reciprocals of what stretches shear and rolling spring (m/(N s), 1/(N m s)).
+    over_s: f64,
+    over_r: f64,
+}
+
+impl Length {
+    #[inline]
+    fn new(body: &Body, law: &Law, hh: f64) -> Self {
+        let answers = Answers::of(body, law, hh);
+        let over_r = if answers.kar > 0.0 { 1.0 / answers.kar } else { 0.0 };
+        Self { hh, over_s: 1.0 / answers.kap, over_r, answers }
+    }
+}
+
+impl Try<'_, '_> {
+    /// Solves implicit stage `i` of a step of length `dt`.
+    #[inline]
+    fn stage(&mut self, i: usize, dt: f64, by: &Length) {
+        let (body, law, tableau) = (&self.world.body, self.law, self.control.tableau);
+        let hh = by.hh;
+        let mut base = self.flat.state;
+        for (rate, a) in self.flat.rates.iter().zip(tableau.a[i]) {
+            for (base, rate) in base.iter_mut().zip(rate) {
+                *base += rate * (dt * a);
+            }
+        }
+        let spin = three(&base, SPIN);
+        let speed = [0, 1, 2].map(|k| base[SPEED + k] + self.gravity[k] * hh);
+        let pen = self.pen - base[WAY + 2];
+        let push = normal_force((law.p_n, self.c_n), pen, speed[2], body.mass, hh);
+        let (mut drag, mut moment) = ([0.0; 2], [0.0; 3]);
+        if push > 0.0 {
+            let (slip, answers) = (slip(body, speed, spin), &by.answers);
+            let a = [0, 1].map(|k| base[SHEAR + k] * law.p_s + slip[k] * answers.kap);
+            let d = [0, 1, 2].map(|k| base[ROLL + k] * law.k_r + spin[k] * answers.kar);
+            let caps = (law.friction * push, law.rolling_m * push);
+            (drag, moment) = Pair { answers, a, d, caps }.solve();
+        }
+        let (dv, dw) = accelerations(body, push, drag, moment);
+        let (rate, end) = (&mut self.flat.rates[i], &mut self.end);
+        for k in 0..3 {
+            let v = speed[k] + dv[k] * hh;
+            rate[WAY + k] = v;
+            rate[SPEED + k] = self.gravity[k] + dv[k];
+            rate[SPIN + k] = dw[k];
+        }
+        for k in 0..2 {
+            rate[SHEAR + k] = (drag[k] - law.p_s * base[SHEAR + k]) * by.over_s;
+        }
+        for k in 0..3 {
+            rate[ROLL + k] = (moment[k] - law.k_r * base[ROLL + k]) * by.over_r;
+        }
+        for k in 0..SIZE {
+            end[k] = base[k] + rate[k] * hh;
+        }
+        let press = Press { push, drag, moment, closed: true };
+        let (speed, spin) = (three(end, SPEED), three(end, SPIN));
+        let shear_rate = two(rate, SHEAR);
+        self.flat.losses[i] = press.losses(slip(body, speed, spin), (speed[2], spin), shear_rate);
+        self.press = press;
+        self.solved += 1;
+    }
+
+    /// What speaks against the stage's end, if anything: the rock must stay over the face and touch nothing else.
+    #[inline]
+    fn objection(&self, dt: f64) -> Option<Outcome> {
+        let centre = self.start + self.flat.frame.out_local(three(&self.end, WAY));
+        if !self.near.covers(&centre) {
+            return Some(Outcome::Elsewhere);
+        }
+        if self.near.plane() == Some(self.face) {
+            return None;
+        }
+        if !self.near.is_over(self.face, &centre) {
+            return Some(Outcome::Elsewhere);
+        }
+        let reach = self.world.body.radius;
+        if self.near.is_alone(self.world.terrain, self.face, (&centre, reach)) {
+            return None;
+        }
+        // It runs into something: what it meets must be resolved from the start, so come close first.
+        Some(if dt * self.law.omega > ONSET { Outcome::Unsettled } else { Outcome::Elsewhere })
+    }
+
+    /// Local error relative to the tolerance.
+    #[inline]
+    fn error(&self, dt: f64) -> f64 {
+        let tableau = self.control.tableau;
+        let mut off = [0.0; SIZE];
+        for (rate, weight) in self.flat.rates[..tableau.stages].iter().zip(tableau.error) {
+            for (off, rate) in off.iter_mut().zip(rate) {
+                *off += rate * weight;
+            }
+        }
+        let omega2 = self.law.omega * self.law.omega;
+        let worst2 = (square(three(&off, WAY)).max(square(two(&off, SHEAR))) * omega2)
+            .max(square(three(&off, SPEED)))
+            .max(square(three(&off, SPIN)) * self.world.body.radius.powi(2));
+        dt * worst2.sqrt() / self.control.tolerance
+    }
+
+    /// Whether motion, height and springs together hold more at the end than at the start.
+    fn gains(&self) -> bool {
+        let (body, end) = (&self.world.body, &self.end);
+        let (speed2, spin2) = (square(three(end, SPEED)), square(three(end, SPIN)));
+        let motion = 0.5 * (body.mass * speed2 + body.inertia * spin2);
+        let lifted = -body.mass * dot(self.gravity, three(end, WAY));
+        let force = body.mass * body.gravity.norm() + self.press.push;
+        let unknown = ROUNDING * self.energy + PLACE_ROUNDING * body.radius * force;
+        motion + lifted + self.stored > self.energy + unknown
+    }
+}
+
+impl Trial for Try<'_, '_> {
+    fn omega(&self) -> f64 {
+        self.law.omega
+    }
+
+    fn try_step(&mut self, dt: f64) -> Outcome {
+        let by = Length::new(&self.world.body, self.law, self.control.tableau.diagonal * dt);
+        for i in 1..self.control.tableau.stages {
+            self.stage(i, dt, &by);
+            if let Some(objection) = self.objection(dt) {
+                return objection;
+            }
+        }
+        let error = self.error(dt);
+        if error > 1.0 || error.is_nan() {
+            return Outcome::Error(error);
+        }
+        let pen = (self.pen - self.end[WAY + 2]).max(0.0);
+        self.press.closed = self.press.push > 0.0 || pen > 0.0;
+        self.stored = if self.press.closed { stored_j(self.law, pen, &self.end) } else { 0.0 };
+        if dt * self.law.omega > RESOLVED && self.gains() {
+            return Outcome::Gains;
+        }
+        Outcome::Error(error)
+    }
+}

@@ -1,0 +1,158 @@
+//! Rocks that touch each other: mass ratios, one centre for two. The rigid scheme knows rocks alone.
+
+use super::{Notes, RISE, Way, is_finite, same_bits};
+use crate::contact::pair::Strength;
+use crate::plan::{RestRule, Watch};
+use crate::release::Release;
+use crate::rock::{Motion, Rock, Vec3};
+use crate::step::Scheme;
+use crate::study::bench::{GRAVITY_M_S2, GROUND, settings, terrain};
+use crate::terrain::{Terrain, make};
+use crate::trajectory::{Answer, Course, Keep, Stop, Trajectory, follow_together};
+use std::sync::atomic::AtomicBool;
+
+/// Radius of all of them (m); the density makes the mass.
+const RADIUS_M: f64 = 0.5;
+/// A sphere: density (kg/m³), height of its centre (m), upward velocity (m/s).
+type Sphere = (f64, f64, f64);
+
+/// Spheres above each other at x = 0.3 m, y = 0.2 m.
+fn together(
+    way: &Way,
+    on: &Terrain,
+    spheres: &[Sphere],
+    (gravity_m_s2, longest_s): (f64, f64),
+) -> Vec<Trajectory> {
+    let step = settings(way.scheme, way.fineness, None);
+    let rest = RestRule { speed_m_s: 0.02, time_s: f64::INFINITY };
+    let watch = Watch::default();
+    let course = Course { terrain: on, gravity_m_s2, step: &step, rest, longest_s, watch };
+    let release = |&(density_kg_m3, z, up): &Sphere| Release {
+        rock: Rock { radius_m: RADIUS_M, density_kg_m3 },
+        motion: Motion {
+            time_s: 0.0,
+            position_m: Vec3::new(0.3, 0.2, z) - on.origin_m,
+            velocity_m_s: Vec3::z() * up,
+            spin_rad_s: Vec3::zeros(),
+        },
+        grounds: vec![GROUND],
+    };
+    let releases: Vec<Release> = spheres.iter().map(release).collect();
+    let strength = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
+    let answer = Answer { ground: GROUND, strength };
+    let keep = |_| Keep { path_step_s: None, impacts: false };
+    follow_together(&course, &releases, &answer, keep, &AtomicBool::new(false)).unwrap_or_default()
+}
+
+/// The same twice: holds what must hold of every journey.
+fn follow(
+    (way, notes, setting): (&Way, &mut Notes, &str),
+    on: &Terrain,
+    spheres: &[Sphere],
+    forces: (f64, f64),
+) -> Vec<Trajectory> {
+    let falls = together(way, on, spheres, forces);
+    let again = together(way, on, spheres, forces);
+    let good = |fall: &Trajectory| is_finite(fall) && !matches!(fall.stop, Stop::Failed(_));
+    let same = falls.iter().zip(&again).all(|(a, b)| same_bits(a, b));
+    let is_well = falls.len() == spheres.len() && falls.iter().all(good) && same;
+    let law = "settles, finite, same bits again";
+    notes.hold(way, setting, law, f64::from(u8::from(!is_well)), 0.0);
+    falls
+}
+
+/// One on the other: the springs are pressed by `(m₁ + m₂) g/p_N` and `m₂ g/p_N`, whatever the ratio of the masses.
+pub(super) fn stack(way: &Way, notes: &mut Notes) {
+    if way.scheme == Scheme::Rigid {
+        return;
+    }
+    let floor = terrain(make::jittered_plane(40.0, 8, 0.0));
+    let mass = |density_kg_m3| Rock { radius_m: RADIUS_M, density_kg_m3 }.mass_kg();
+    for ratio in [1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9] {
+        // the heavier one is of stone
+        let densities =
+            if ratio > 1.0 { [2700.0 / ratio, 2700.0] } else { [2700.0, 2700.0 * ratio] };
+        let [low, high] = densities.map(mass);
+        let press = GRAVITY_M_S2 / GROUND.normal_stiffness_n_m;
+        let pens = [(low + high) * press, high * press];
+        let z = [RADIUS_M - pens[0], 3.0 * RADIUS_M - pens[0] - pens[1]];
+        let spheres = [(densities[0], z[0], 0.0), (densities[1], z[1], 0.0)];
+        let setting = format!("upper over lower mass {ratio:.0e}");
+        let falls = follow((way, notes, &setting), &floor, &spheres, (GRAVITY_M_S2, 1.0));
+        let [a, b] = &falls[..] else { continue };
+        let ends = [a, b].map(|fall| fall.end.position_m.z);
+        let found = [RADIUS_M - ends[0], 2.0 * RADIUS_M - (ends[1] - ends[0])];
+        let off = (0..2).map(|k| (found[k] - pens[k]).abs() - 0.01 * pens[k]).fold(0.0, f64::max);
+        // geometry and forces of a stage agree to 1e-9 of the radius
+        let law = "springs off weight over stiffness by more than 1 % (m)";
+        notes.hold(way, &setting, law, off, 1e-9 * RADIUS_M);
+        let fastest = [a, b].map(|fall| fall.end.velocity_m_s.norm());
+        notes.hold(way, &setting, "speed at the end (m/s)", fastest[0].max(fastest[1]), 1e-4);
+    }
+}
+
+/// Head-on without gravity: both leave as momentum and restitution say.
+pub(super) fn head_on(way: &Way, notes: &mut Notes) {
+    if way.scheme == Scheme::Rigid {
+        return;
+    }
+    let space = terrain(far());
+    for ratio in [1e-9, 1e-3, 1.0, 1e3, 1e9] {
+        let setting = format!("struck over striking mass {ratio:.0e}");
+        let densities =
+            if ratio > 1.0 { [2700.0 / ratio, 2700.0] } else { [2700.0, 2700.0 * ratio] };
+        let spheres = [(densities[0], -1.0, 1.0), (densities[1], 0.5, 0.0)];
+        let falls = follow((way, notes, &setting), &space, &spheres, (0.0, 2.0));
+        let [a, b] = &falls[..] else { continue };
+        let [m, n] = [a, b].map(|fall| fall.rock.mass_kg());
+        let v = [a, b].map(|fall| fall.end.velocity_m_s.z);
+        let expected = [(m - 0.5 * n) / (m + n), 1.5 * m / (m + n)];
+        let off = (v[0] - expected[0]).abs().max((v[1] - expected[1]).abs());
+        // the light one's oscillation decides: a dozen steps at the local error, or ω Δt of the fixed step
+        let light = m * n / (m + n);
+        let bound = match way.scheme {
+            Scheme::Dda => way.fineness * (GROUND.normal_stiffness_n_m / light).sqrt(),
+            Scheme::Reference => 100.0 * way.fineness,
+            _ => 3.0 * way.fineness,
+        };
+        // where a step does not resolve the impact, restitution is anything between none and all
+        notes.hold(
+            way,
+            &setting,
+            "velocities off momentum and restitution (m/s)",
+            off,
+            bound.min(1.0),
+        );
+        let momentum = (m * (v[0] - 1.0) + n * v[1]).abs() / m;
+        // the heavy one's velocity is a billionth of the light one's: so many of sixteen digits are left
+        notes.hold(way, &setting, "momentum lost, over momentum", momentum, 1e-10);
+        let energy = (m * v[0] * v[0] + n * v[1] * v[1]) / m - 1.0;
+        notes.hold(way, &setting, "energy rise over energy", energy, RISE);
+    }
+}
+
+/// Two spheres about one centre: no force has a direction, and nothing may come of nothing. (A scene that starts so is
+/// refused.) In flight they stay together.
+pub(super) fn coincident(way: &Way, notes: &mut Notes) {
+    if way.scheme == Scheme::Rigid {
+        return;
+    }
+    let space = terrain(far());
+    let spheres = [(2700.0, 0.0, 1.0), (2700.0, 0.0, -1.0)];
+    let falls = follow((way, notes, ""), &space, &spheres, (0.0, 0.1));
+    let [a, b] = &falls[..] else { return };
+    let sideways = |fall: &Trajectory| fall.end.velocity_m_s.x.hypot(fall.end.velocity_m_s.y);
+    notes.hold(way, "", "sideways (m/s)", sideways(a).max(sideways(b)), 0.0);
+    let (up, down) = (a.end.velocity_m_s.z, b.end.velocity_m_s.z);
+    notes.hold(way, "", "momentum, over that of one", (up + down).abs(), 1e-12);
+    notes.hold(way, "", "energy rise over energy", up * up - 1.0, RISE);
+}
+
+/// Two far triangles: room to fly in.
+fn far() -> Vec<crate::terrain::stl::Facet> {
+    let corner = |at: f64| {
+        let p = Vec3::repeat(at);
+        [p, p + Vec3::x(), p + Vec3::y()]
+    };
+    vec![corner(-50.0), corner(50.0)]
+}
