@@ -17,6 +17,21 @@ pub(super) enum StudyCommand {
     Stability(StabilityArgs),
     /// Rocks per second of every scheme on a made slope, where the time goes, what each part of a scene costs
     Speed(SpeedArgs),
+    /// Cost of more and more rocks that share one world; exit status 1 if it is not near-linear or a rock is lost
+    Scaling {
+        /// Folder for page, table and figure
+        #[arg(long, value_name = "DIR", default_value = "reports/scaling")]
+        out: PathBuf,
+        /// Numbers of spheres with scheme adaptive
+        #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,5000,20000")]
+        spheres: Vec<usize>,
+        /// Numbers of spheres with scheme dda
+        #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
+        dda: Vec<usize>,
+        /// Time to follow each world (s)
+        #[arg(long, value_name = "S", value_parser = positive, default_value = "0.5")]
+        seconds: f64,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -39,12 +54,19 @@ pub(super) struct SpeedArgs {
     /// Folder for page, tables and figure
     #[arg(long, value_name = "DIR", default_value = "reports/speed")]
     out: PathBuf,
-    /// Rocks of the fast schemes; `reference` follows a tenth of them, `dda` a hundredth
+    /// Rocks of the fast schemes; `reference` follows a tenth of them, `dda` one of 200
     #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
     releases: usize,
     /// Sizes of the slope, about
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = at_least_1, default_values_t = [10_000, 100_000, 1_000_000])]
     triangles: Vec<usize>,
+}
+
+fn positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (0.0..1e6).contains(&number) && number > 0.0 => Ok(number),
+        _ => Err("write a time in seconds above 0, as in 0.5".to_owned()),
+    }
 }
 
 #[derive(Debug, Args)]
@@ -79,7 +101,18 @@ pub(super) fn study(command: &StudyCommand) -> Result<ExitCode> {
             };
             wiring::speed((args.releases, &args.triangles), &args.out, say_done).map(say)
         }
+        StudyCommand::Scaling { out, spheres, dda, seconds } => {
+            scaling((out, *seconds), (spheres, dda))
+        }
     }
+}
+
+fn scaling(how: (&Path, f64), worlds: (&[usize], &[usize])) -> Result<ExitCode> {
+    let (words, all_hold) = wiring::scaling(how, worlds, |line| {
+        say(line);
+    })?;
+    say(words);
+    Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }
 
 fn stability(args: &StabilityArgs) -> Result<ExitCode> {

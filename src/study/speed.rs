@@ -33,7 +33,7 @@ use threads::{Speedup, speedup};
 /// How much is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Order {
-    /// Rocks of the fast schemes; `reference` gets a tenth, `dda` a hundredth.
+    /// Rocks of the fast schemes; `reference` gets a tenth, `dda` one of 200.
     pub rocks: usize,
     /// Sizes of the slope (triangles), about.
     pub triangles: Vec<usize>,
@@ -52,8 +52,8 @@ pub struct SlopeCost {
     pub weld_s: f64,
     /// Time to index and to find what can be touched (s).
     pub index_s: f64,
-    /// Memory it holds (bytes); none where the system does not tell.
-    pub bytes: Option<u64>,
+    /// Memory that rocks use of it (bytes).
+    pub bytes: usize,
 }
 
 /// All that was measured.
@@ -86,7 +86,7 @@ impl Order {
         match scheme {
             Scheme::Adaptive | Scheme::Rigid => self.rocks,
             Scheme::Reference => (self.rocks / 10).max(2),
-            Scheme::Dda => (self.rocks / 100).max(2),
+            Scheme::Dda => (self.rocks / 200).max(2),
         }
     }
 
@@ -118,7 +118,7 @@ pub fn study(order: &Order, dir: &Path, mut done: impl FnMut(String)) -> Result<
     for &triangles in &order.triangles {
         study.slope(order, triangles, dir, &mut done)?;
     }
-    study.parts = parts::costs(order.middle(), order.rocks, dir, &mut done)?;
+    study.parts = parts::costs(order.middle(), (order.rocks / 2).max(2), dir, &mut done)?;
     study.runs = program::runs(&order.program, dir, &order.triangles, order.rocks)?;
     fs::remove_dir_all(dir).map_err(Error::file("remove", dir))?;
     Ok(study)
@@ -134,7 +134,8 @@ impl SpeedStudy {
         done: &mut impl FnMut(String),
     ) -> Result<()> {
         let slope = Slope::of(triangles);
-        let Slope { weld_s, index_s, bytes, .. } = slope;
+        let (Slope { weld_s, index_s, .. }, bytes) = (&slope, slope.terrain.bytes());
+        let (weld_s, index_s) = (*weld_s, *index_s);
         let count = slope.terrain.triangles.len();
         self.slopes.push(SlopeCost { triangles: count, weld_s, index_s, bytes });
         let mut journeys = Vec::new();

@@ -87,11 +87,6 @@ fn status_bytes(file: &str, key: &str) -> Option<u64> {
     Some(kibibytes << 10)
 }
 
-/// Memory that this program holds now (bytes).
-pub fn resident_bytes() -> Option<u64> {
-    status_bytes("/proc/self/status", "VmRSS:")
-}
-
 /// The most memory that a process has held so far (bytes).
 pub(super) fn peak_bytes(process: u32) -> Option<u64> {
     status_bytes(&format!("/proc/{process}/status"), "VmHWM:")
