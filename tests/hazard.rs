@@ -263,13 +263,13 @@ fn a_line_by_hand() {
             assert!((found - scale * exact).abs() < 1e-12 * scale * exact, "{name}: {found}");
         };
         for (percent, low, high) in [(50, Some(40), Some(61)), (90, Some(84), Some(96))] {
-            let at = of.percentiles[&format!("p{percent}")];
+            let at = &of.percentiles[&format!("p{percent}")];
             near(at.value, 1.0 + 0.99 * f64::from(percent));
             let ends = [low, high].map(|rank| rank.map(|rank| scale * f64::from(rank)));
             assert_eq!([at.low_95, at.high_95], ends, "{name} {percent}");
         }
         for percent in [95, 98, 99] {
-            let at = of.percentiles[&format!("p{percent}")];
+            let at = &of.percentiles[&format!("p{percent}")];
             near(at.value, 1.0 + 0.99 * f64::from(percent));
             let (low, high, _) = ranks(100, f64::from(percent) / 100.0);
             assert_eq!(at.low_95, low.map(|rank| scale * rank as f64));
