@@ -55,7 +55,9 @@ fn rasters(maps: &Path, frame: &Value) {
     let place = [number("west_m"), cell, 0.0, north, 0.0, -cell];
     let grids = std::fs::read_dir(maps).unwrap().map(|entry| entry.unwrap().path());
     let mut seen = 0;
-    for asc in grids.filter(|path| path.extension().is_some_and(|end| end == "asc")) {
+    // ground and trees, which the figures are drawn on, are grids alone
+    let maps = grids.filter(|path| path.with_extension("tif").exists());
+    for asc in maps.filter(|path| path.extension().is_some_and(|end| end == "asc")) {
         let (Some(tif), Some(grid)) = (raster(&asc.with_extension("tif")), raster(&asc)) else {
             return;
         };
