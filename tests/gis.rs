@@ -8,7 +8,7 @@
 )]
 
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 /// Runs a program; none, with a word, where it is not installed.
@@ -55,11 +55,9 @@ fn rasters(maps: &Path, frame: &Value) {
     let place = [number("west_m"), cell, 0.0, north, 0.0, -cell];
     let grids = std::fs::read_dir(maps).unwrap().map(|entry| entry.unwrap().path());
     let mut seen = 0;
-    // the ground that the report is drawn on lies beside the maps, as a grid alone
-    let is_map = |path: &PathBuf| {
-        path.extension().is_some_and(|end| end == "asc") && path.with_extension("tif").exists()
-    };
-    for asc in grids.filter(is_map) {
+    // ground and trees, which the figures are drawn on, are grids alone
+    let maps = grids.filter(|path| path.with_extension("tif").exists());
+    for asc in maps.filter(|path| path.extension().is_some_and(|end| end == "asc")) {
         let (Some(tif), Some(grid)) = (raster(&asc.with_extension("tif")), raster(&asc)) else {
             return;
         };

@@ -5,7 +5,7 @@ use crate::wiring::study::{self as wiring, SceneOrder};
 use clap::{Args, Subcommand};
 use rockfall::error::Result;
 use rockfall::study::aim::Aim;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Subcommand)]
@@ -15,23 +15,10 @@ pub(super) enum StudyCommand {
     /// Stiff and extreme cases with every scheme, or conservation over all releases of a scene; exit status 1 if one is
     /// outside its bound
     Stability(StabilityArgs),
+    /// Cost of more and more rocks that share one world; exit status 1 if it is not near-linear or a rock is lost
+    Scaling(ScalingArgs),
     /// Rocks per second of every scheme on a made slope, where the time goes, what each part of a scene costs
     Speed(SpeedArgs),
-    /// Cost of more and more rocks that share one world; exit status 1 if it is not near-linear or a rock is lost
-    Scaling {
-        /// Folder for page, table and figure
-        #[arg(long, value_name = "DIR", default_value = "reports/scaling")]
-        out: PathBuf,
-        /// Numbers of spheres with scheme adaptive
-        #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,5000,20000")]
-        spheres: Vec<usize>,
-        /// Numbers of spheres with scheme dda
-        #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
-        dda: Vec<usize>,
-        /// Time to follow each world (s)
-        #[arg(long, value_name = "S", value_parser = positive, default_value = "0.5")]
-        seconds: f64,
-    },
 }
 
 #[derive(Debug, Args)]
@@ -62,13 +49,6 @@ pub(super) struct SpeedArgs {
     triangles: Vec<usize>,
 }
 
-fn positive(text: &str) -> std::result::Result<f64, String> {
-    match text.parse() {
-        Ok(number) if (0.0..1e6).contains(&number) && number > 0.0 => Ok(number),
-        _ => Err("write a time in seconds above 0, as in 0.5".to_owned()),
-    }
-}
-
 #[derive(Debug, Args)]
 pub(super) struct ErrorArgs {
     /// Scene file (TOML)
@@ -90,27 +70,50 @@ pub(super) struct ErrorArgs {
     within: Option<Aim>,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct ScalingArgs {
+    /// Folder for page, table and figure
+    #[arg(long, value_name = "DIR", default_value = "reports/scaling")]
+    out: PathBuf,
+    /// Numbers of spheres with scheme adaptive
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,5000,20000")]
+    spheres: Vec<usize>,
+    /// Numbers of spheres with scheme dda
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
+    dda: Vec<usize>,
+    /// Time to follow each world (s)
+    #[arg(long, value_name = "S", value_parser = positive, default_value = "0.5")]
+    seconds: f64,
+}
+
+fn positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (0.0..1e6).contains(&number) && number > 0.0 => Ok(number),
+        _ => Err("write a time in seconds above 0, as in 0.5".to_owned()),
+    }
+}
+
 /// Does what a study asks.
 pub(super) fn study(command: &StudyCommand) -> Result<ExitCode> {
     match command {
         StudyCommand::Error(args) => error(args),
         StudyCommand::Stability(args) => stability(args),
+        StudyCommand::Scaling(args) => scaling(args),
         StudyCommand::Speed(args) => {
             let say_done = |piece: String| {
                 say(piece);
             };
             wiring::speed((args.releases, &args.triangles), &args.out, say_done).map(say)
         }
-        StudyCommand::Scaling { out, spheres, dda, seconds } => {
-            scaling((out, *seconds), (spheres, dda))
-        }
     }
 }
 
-fn scaling(how: (&Path, f64), worlds: (&[usize], &[usize])) -> Result<ExitCode> {
-    let (words, all_hold) = wiring::scaling(how, worlds, |line| {
+fn scaling(args: &ScalingArgs) -> Result<ExitCode> {
+    let say_done = |line: String| {
         say(line);
-    })?;
+    };
+    let worlds = (&args.spheres[..], &args.dda[..]);
+    let (words, all_hold) = wiring::scaling((&args.out, args.seconds), worlds, say_done)?;
     say(words);
     Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }

@@ -155,3 +155,43 @@ fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
     let done = work()?;
     Ok((done, begun.elapsed().as_secs_f64()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(computed: f64) -> Row {
+        Row {
+            case: "a case",
+            scheme: "adaptive",
+            quantity: "a length (m)",
+            expected: 1.0,
+            source: "a formula",
+            computed,
+            allowed: 0.1,
+            seconds: 0.0,
+        }
+    }
+
+    /// One number off, or no number at all, fails the whole.
+    #[test]
+    fn one_row_that_fails_fails_the_verification() {
+        let of = |computed: &[f64]| Verification {
+            rows: computed.iter().map(|computed| row(*computed)).collect(),
+            ..Verification::default()
+        };
+        assert!(of(&[1.0, 1.05]).holds());
+        for wrong in [1.2, f64::NAN, f64::INFINITY] {
+            assert!(!of(&[1.0, wrong]).holds());
+            assert!(of(&[1.0, wrong]).table().contains("FAILS"));
+        }
+    }
+
+    #[test]
+    fn numbers_are_written_short() {
+        assert_eq!(written(0.0), "0");
+        assert_eq!(written(109_881.0), "109881");
+        assert_eq!(written(0.25), "0.25");
+        assert_eq!(written(2.770_884_7e-5), "2.77088e-5");
+    }
+}
