@@ -273,7 +273,6 @@ fn text() -> Text {
     Text {
         title_block: vec![("Client".to_owned(), "Road authority".to_owned())],
         title: "Made slope: cliff, talus & meadow".to_owned(),
-        title_block: vec![("Client".to_owned(), "A <client> & \"Co\"".to_owned())],
         subtitle: "A <test> scene with parabolas for rocks".to_owned(),
         scheme: "Steps are adaptive with a local error of 0.05 m/s.".to_owned(),
         inputs: vec![
