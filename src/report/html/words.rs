@@ -129,9 +129,9 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   h2, h3, .note, thead { break-after: avoid; }
   .dense { break-inside: avoid; font-size: 8pt; }
   .dense th, .dense td { padding-right: 5px; }
-  .dense tbody th { min-width: 0; }
+  .dense tbody th { min-width: 24mm; }
   .dense small { font-size: 6.8pt; }
-  figure, tr, .warnings, dt, dd { break-inside: avoid; }
+  figure, tr, .warnings, .note, dt, dd { break-inside: avoid; }
   dt { break-after: avoid; }
   .wide { overflow: visible; }
   figure { margin: 3mm 0 5mm; }
