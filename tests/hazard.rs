@@ -236,7 +236,7 @@ fn a_line_by_hand() {
             descent_deg: value,
             mass_kg: 1.0,
             radius_m: 0.5,
-            times: if k % 40 == 0 || k == 7 { 2 } else { 1 },
+            times: if k.is_multiple_of(40) || k == 7 { 2 } else { 1 },
             position_m: [0.0; 3],
         }
     };

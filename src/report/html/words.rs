@@ -90,7 +90,7 @@ pub(super) const STYLE: &str = "\
 :root { color-scheme: light; }
 * { box-sizing: border-box; }
 body { margin: 0; background: #fff; color: #222; font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', sans-serif; }
-main { max-width: 780px; margin: 0 auto; padding: 36px 24px 48px; }
+main { max-width: 900px; margin: 0 auto; padding: 36px 24px 48px; }
 h1 { font-size: 27px; line-height: 1.2; margin: 0 0 6px; overflow-wrap: anywhere; }
 h2 { font-size: 18px; margin: 34px 0 8px; padding-bottom: 3px; border-bottom: 1px solid #bbb; }
 h3 { font-size: 15px; margin: 18px 0 4px; }
@@ -127,7 +127,10 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   body { font-size: 10pt; }
   main { max-width: none; padding: 0; }
   h2, h3, .note, thead { break-after: avoid; }
-  .dense { break-inside: avoid; }
+  .dense { break-inside: avoid; font-size: 8pt; }
+  .dense th, .dense td { padding-right: 5px; }
+  .dense tbody th { min-width: 0; }
+  .dense small { font-size: 6.8pt; }
   figure, tr, .warnings, dt, dd { break-inside: avoid; }
   dt { break-after: avoid; }
   .wide { overflow: visible; }
