@@ -37,6 +37,8 @@ pub struct Order {
     pub rocks: usize,
     /// Sizes of the slope (triangles), about.
     pub triangles: Vec<usize>,
+    /// Releases whose files and report are measured.
+    pub written: usize,
     /// The program, for what it takes as a whole.
     pub program: PathBuf,
     /// Folder of the source code, if the program was compiled from there.
@@ -77,8 +79,8 @@ pub struct SpeedStudy {
     pub runs: Vec<ProgramRun>,
 }
 
-/// Releases whose files and report are measured.
-const WRITTEN: usize = 100_000;
+/// Releases whose files and report are measured, usually.
+pub const WRITTEN: usize = 100_000;
 
 impl Order {
     /// Rocks of one scheme.
@@ -144,7 +146,7 @@ impl SpeedStudy {
             journeys.push((way.0, fallen));
             self.rates.push(rate);
         }
-        let cost = output::cost(&slope, &journeys[0].1, WRITTEN, &dir.join("rows"))?;
+        let cost = output::cost(&slope, &journeys[0].1, order.written, &dir.join("rows"))?;
         let write_s = cost.write_s / cost.rocks as f64;
         let first = self.rates.len() - SCHEMES.len();
         for rate in &mut self.rates[first..] {

@@ -7,7 +7,7 @@ use rockfall::scene::Scene;
 use rockfall::step::Scheme;
 use rockfall::study::aim::Aim;
 use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
-use rockfall::study::speed::{self, Order};
+use rockfall::study::speed::{self, Order, WRITTEN};
 use rockfall::study::stability::{self, Map, Outcome};
 use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
 use std::cell::Cell;
@@ -145,7 +145,7 @@ pub(crate) fn speed(
     // run where its source code lies, it can name the commit
     let package = std::fs::read_to_string("Cargo.toml").unwrap_or_default();
     let source = package.contains("name = \"rockfall\"").then(|| PathBuf::from("."));
-    let order = Order { rocks, triangles: triangles.to_vec(), program, source };
+    let order = Order { rocks, triangles: triangles.to_vec(), written: WRITTEN, program, source };
     let found = speed::study(&order, &out.join("work"), done)?;
     study::write_speed(&found, out)?;
     Ok(format!("page, tables and figure in {}", out.display()))
