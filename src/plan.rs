@@ -1,5 +1,7 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod grounds;
+mod inputs;
 mod listing;
 mod stiffness;
 mod watch;
@@ -12,9 +14,7 @@ use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::release::{self, Release, Releases};
-use crate::scene::{
-    BarrierTable, GroundTable, Polyline, RecordTable, Scene, SolverTable, known_ground,
-};
+use crate::scene::{BarrierTable, Polyline, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -129,6 +129,12 @@ pub struct Plan {
     pub catalogued: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
+    /// What went in, as name and value.
+    pub inputs: Vec<(String, String)>,
+    /// Rows of the report's title block.
+    pub title_block: Vec<(String, String)>,
+    /// Where terrain and ground values come from, in words; the first may be empty.
+    pub sources: [String; 2],
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
 }
@@ -159,15 +165,15 @@ impl Plan {
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings(&scene.solver);
         let releases = Releases::compile(scene, &terrain)?;
-        terrain.stems = stems(scene, &terrain)?;
-        let mut warnings = unused_grounds(scene, &terrain);
+        terrain.stems = grounds::stems(scene, &terrain)?;
+        let mut warnings = grounds::unused(scene, &terrain);
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
-        let grounds = || scene.grounds.values();
+        let values = || scene.grounds.values();
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();
-        let rolls = grounds().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
-        let is_rough = grounds().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
+        let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
+        let is_rough = values().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
         Ok(Self {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
@@ -221,7 +227,13 @@ impl Plan {
                 lattice(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
             ),
-            catalogued: catalogued(scene),
+            inputs: inputs::of(scene),
+            title_block: inputs::title_block(&scene.report),
+            sources: [
+                scene.report.terrain_source.clone().unwrap_or_default(),
+                inputs::ground_source(scene, &grounds::catalogued(scene)),
+            ],
+            catalogued: grounds::catalogued(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             terrain,
@@ -311,19 +323,6 @@ fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
 }
 
-fn catalogued(scene: &Scene) -> Vec<String> {
-    let taken = |(name, ground): (&String, &GroundTable)| {
-        let known = known_ground(ground.like.as_deref()?)?;
-        Some(format!(
-            "{name} like {}: {} unless written in the scene; {}",
-            known.name,
-            known.values(),
-            known.source
-        ))
-    };
-    scene.grounds.iter().filter_map(taken).collect()
-}
-
 fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
     let lines = scene.lines.iter().map(|line| ("lines", &line.name, &line.points_m));
     let barriers =
@@ -339,7 +338,9 @@ fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
             (format!("[[{table}]] \"{name}\" points_m"), "found no terrain near it");
         Err(Error::input(&scene.file, place, found, release::outside(terrain)))
     };
-    let all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
+    let mut all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
+    let elsewhere = scene.barriers.iter().flat_map(BarrierTable::elsewhere);
+    all.extend(elsewhere.map(|(_, name, line)| Curtain::new(&name, &line, terrain.origin_m)));
     Ok(Some(all).filter(|all| !all.is_empty()))
 }
 
@@ -352,36 +353,8 @@ fn tree_triangles(terrain: &Terrain) -> Option<usize> {
     Some(trees.count()).filter(|count| *count > 0)
 }
 
-/// The stems that give way, whose ends leave nothing open.
-fn stems(scene: &Scene, terrain: &Terrain) -> Result<Option<Stems>> {
-    let limits = scene.grounds.values().map(|ground| ground.breaks_above_j.clone()).collect();
-    Stems::of(terrain, limits).map_err(|shared_m| {
-        let [x, y, z]: [f64; 3] = (shared_m + terrain.origin_m).into();
-        let found = format!("found a stem that shares a corner with what stays at ({x}, {y}, {z})");
-        let remedy = "write stems that stand in the ground without common corners, as rockfall mesh stems makes them";
-        Error::input(&scene.file, "[grounds] breaks_above_j", found, remedy)
-    })
-}
-
 fn can_exceed_0(value: Option<&Distribution>) -> bool {
     value.is_some_and(|value| value.support().1 > 0.0)
-}
-
-fn unused_grounds(scene: &Scene, terrain: &Terrain) -> Vec<String> {
-    let used = |index: usize| terrain.sheets.iter().any(|sheet| usize::from(sheet.ground) == index);
-    let has_tree = |index: usize| {
-        terrain.sheets.iter().any(|sheet| sheet.is_tree && usize::from(sheet.ground) == index)
-    };
-    let wrong = |(index, (name, ground)): (usize, (&String, &GroundTable))| {
-        if !used(index) {
-            Some(format!("[grounds.{name}] lies under no mesh"))
-        } else if ground.breaks_above_j.is_some() && !has_tree(index) {
-            Some(format!("[grounds.{name}] has breaks_above_j, but no tree: only trees give way"))
-        } else {
-            None
-        }
-    };
-    scene.grounds.iter().enumerate().filter_map(wrong).collect()
 }
 
 /// A tolerance above twice the capture speed lets slow rocks flutter for ever.

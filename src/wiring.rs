@@ -5,7 +5,7 @@ pub(crate) mod study;
 use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
-use rockfall::hazard::{Barrier, Hazard, LineInfo, MapFrame, Rule, Way};
+use rockfall::hazard::{Barrier, Elsewhere, Hazard, LineInfo, MapFrame, Rule, Way};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
 use rockfall::plan::{self, Curtain, Plan};
 use rockfall::report;
@@ -204,16 +204,28 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         keeps_impacts: plan.impacts.is_kept(),
         threads: ensemble.threads(),
         plan: plan.lines(),
+        inputs: plan.inputs.clone(),
+        title_block: plan.title_block.clone(),
+        sources: plan.sources.clone(),
         warnings: plan.warnings.clone(),
         mesh_health,
     })
 }
 
 fn line_infos(plan: &Plan) -> Vec<LineInfo> {
+    let plan::Part::Kept(tables) = &plan.barriers else { return infos(plan, &[]) };
+    let moved: Vec<String> =
+        tables.iter().flat_map(BarrierTable::elsewhere).map(|(_, name, _)| name).collect();
+    infos(plan, &moved)
+}
+
+/// All lines; the `moved` ones are other places of barriers.
+fn infos(plan: &Plan, moved: &[String]) -> Vec<LineInfo> {
     let info = |line: &Curtain| LineInfo {
         name: line.name.clone(),
         length_m: line.length_m(),
         corners_m: line.corners_m(plan.terrain.origin_m),
+        of_barrier: moved.contains(&line.name),
     };
     plan.watch().lines.iter().map(info).collect()
 }
@@ -221,17 +233,23 @@ fn line_infos(plan: &Plan) -> Vec<LineInfo> {
 fn barriers(plan: &Plan) -> Vec<Barrier> {
     let plan::Part::Kept(tables) = &plan.barriers else { return Vec::new() };
     let rule = |rule: &DesignTable| Rule {
-        percentile: rule.percentile,
-        speed_factors: rule.speed_factors.clone(),
+        standard: rule.standard().map(str::to_owned),
+        percentile: rule.percentile(),
+        speed_factors: rule.speed_factors(),
         mass_factors: rule.mass_factors.clone(),
-        height_factors: rule.height_factors.clone(),
+        height_factors: rule.height_factors(),
         free_height_m: rule.free_height_m,
+        free_distance_m: rule.free_distance_m(),
     };
     let barrier = |table: &BarrierTable| Barrier {
         name: table.name.clone(),
         height_m: table.height_m,
         capacity_j: table.capacity_j,
         design: table.design.as_ref().map(rule),
+        elsewhere: table
+            .elsewhere()
+            .map(|(offset_m, line, _)| Elsewhere { offset_m, line })
+            .collect(),
     };
     tables.iter().map(barrier).collect()
 }

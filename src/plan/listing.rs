@@ -50,6 +50,9 @@ impl Plan {
             maps,
             catalogued,
             deposits,
+            inputs: _,      // with the report
+            title_block: _, // with the report
+            sources: _,     // with the report
             warnings,
         } = self;
         let place = place(releases.place());

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""Puts the records in reports/trust together to reports/trust/README.md. A record that is not there is said to be missing.
+
+    tests/trust/kills.sh 500; tests/trust/slurm.sh target/release/rockfall; tests/trust/fuzz.sh 600
+    tests/trust/load.py target/release/rockfall CASE...; tests/trust/report.py
+"""
+
+import json
+import re
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TRUST = ROOT / "reports/trust"
+
+
+def record(name):
+    file = TRUST / name
+    return file.read_text().strip() if file.exists() else "not yet recorded"
+
+
+def bad_inputs():
+    scenes = len(list((ROOT / "tests/bad").glob("*.toml")))
+    meshes = len((ROOT / "tests/bad_meshes/messages.txt").read_text().splitlines())
+    return (
+        f"{scenes} wrong scenes (`tests/bad`) and {meshes} wrong meshes (`tests/bad_meshes`), each with the message that it must "
+        f"give: {scenes + meshes} inputs refused with exit status 2 and one line (`cargo test --test bad_input`, in every run of "
+        "the check). Folders that cannot be written, full disks and disks that may only be read: `cargo test --test full_disk`; "
+        "the full ones are resumed to the same bytes once there is room."
+    )
+
+
+def load_table(load):
+    lines = [
+        "| case | releases | triangles | peak memory (MB) | resident in tenths of the run (MB) | releases per processor second in tenths |",
+        "|---|---|---|---|---|---|",
+    ]
+    for name, case in load.items():
+        row = [name, f"{case['releases']:,}", f"{case['triangles']:,}", f"{case['peak_mb']}"]
+        row += [" ".join(map(str, case[key])) for key in ("resident_mb_in_tenths", "releases_per_cpu_s_in_tenths")]
+        lines.append("| " + " | ".join(row) + " |")
+    lines += ["", "| case | read, weld, index, plan (s) | whole run (s) | draw again (s) | releases.csv | paths.csv | report.html |", "|---|---|---|---|---|---|---|"]
+    for name, case in load.items():
+        size = lambda file: f"{case['bytes'][file] / 1e6:.1f} MB" if file in case["bytes"] else "–"
+        row = [name, case["plan_cpu_s"], case["cpu_s"], case["draw_cpu_s"], *map(size, ("releases.csv", "paths.csv", "report.html"))]
+        lines.append("| " + " | ".join(map(str, row)) + " |")
+    return "\n".join(lines)
+
+
+def main():
+    load = json.loads(record("load.json")) if (TRUST / "load.json").exists() else {}
+    rust = tomllib.loads((ROOT / "Cargo.toml").read_text())["package"]["rust-version"]
+    text = f"""# Trust: what was tried
+
+Written by `tests/trust/report.py` from the records beside it; how to make them anew stands at its head.
+
+## Bad input
+
+{bad_inputs()}
+
+Bytes that nobody thought of, fed to the readers of meshes, scenes and grids (`tests/trust/fuzz.sh`, libFuzzer with address sanitizer):
+
+```
+{record("fuzz.txt")}
+```
+
+## Interruption
+
+SIGKILL at random moments from the first instant to the last figure, several in one run, then `--resume`; the bytes are compared
+with those of a run left alone (`tests/trust/kills.sh`):
+
+```
+{record("kills.txt")}
+```
+
+## Shards
+
+The README's Slurm array, as it stands there, on a node begun for the purpose (`tests/trust/slurm.sh`):
+
+```
+{record("slurm.txt")}
+```
+
+## Load
+
+The Tyrolean slope (`examples/tyrol.toml`) without paths, lines, barriers and maps, then as it is with them, and a slope of
+two million triangles with 200 paths, a line and maps (`tests/trust/load.py`). All times are seconds of the processor, not of the
+clock on the wall: the machine did other things meanwhile.
+
+{load_table(load) if load else "not yet recorded"}
+
+## Rust
+
+The stated minimum, {rust}, is checked twice: no dependency states a newer one (`cargo test --test rust_version`), and clippy's
+`incompatible_msrv` refuses any part of the standard library that came later. There is no `unsafe` (`unsafe_code = "forbid"`).
+"""
+    (TRUST / "README.md").write_text(re.sub(r"\n{3,}", "\n\n", text))
+
+
+main()
