@@ -8,6 +8,8 @@ use std::path::PathBuf;
 /// Parts that record and change nothing.
 const RECORDS: [&str; 5] =
     ["paths, every 0.05 s", "impacts", "three lines", "a barrier", "maps, cells of 2 m"];
+/// Parts that change the way of every rock.
+const CHANGES: [&str; 2] = ["rolling friction", "roughness of 10°"];
 
 #[test]
 fn the_study_measures_every_scheme_and_every_part() {
@@ -29,10 +31,10 @@ fn the_study_measures_every_scheme_and_every_part() {
         assert!((sum - 1.0).abs() < 1e-9, "{name}: {sum}");
     }
     for part in &found.parts {
-        let records = RECORDS.contains(&part.name);
-        assert_eq!(part.same_rocks, records, "{}", part.name);
         let [without, with] = part.effort;
-        assert_eq!(without == with, records, "{}", part.name);
+        let same = part.same_rocks && without == with;
+        assert!(same || !RECORDS.contains(&part.name), "{}", part.name);
+        assert!(!same || !CHANGES.contains(&part.name), "{}", part.name);
     }
     // a triangle with its share of edges and corners, and no more
     let bytes = found.slopes.iter().map(|slope| slope.bytes / slope.triangles);
