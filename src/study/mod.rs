@@ -1,10 +1,11 @@
 //! What the numerics cost and what they are worth: error against run time, stability, exact cases, speed.
 //!
 //! ```text
-//! cases ─┬─► exact      error of every scheme against the exact solution, over run time
+//! cases ─┬─► exact      error of every scheme against the exact solution, over run time; order: at fixed steps
 //!        └─► stability  stiff and extreme cases, each held against its bound
 //! slope ───► speed      rocks per second, where the time goes, what each part costs
-//! plan ────► scene      sampling error and error of the steps of a scene's own statistics
+//! plan ─┬──► scene      errors of a scene's own statistics: of the sample, the steps, the mesh
+//!       └──► conserve   every release: no panic, no failure, no rock lost, no energy gained
 //! worlds ──► scaling    cost against the number of rocks that touch each other
 //!            verify     exact cases of several rocks and the method paper's examples
 //! ```
