@@ -82,16 +82,6 @@ pub static ESDIRK4: Tableau = Tableau {
     embedded_is_finer: false,
 };
 
-/// Backward Euler: never creates energy, however large the step; the last resort of a rock that cannot go on.
-pub static BACKWARD_EULER: Tableau = Tableau {
-    stages: 2,
-    diagonal: 1.0,
-    a: &[&[], &[0.0]],
-    error: [-0.5, 0.5, 0.0, 0.0, 0.0, 0.0],
-    exponent: 0.5,
-    embedded_is_finer: true,
-};
-
 #[cfg(test)]
 mod tests {
     use super::*;

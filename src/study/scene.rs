@@ -169,16 +169,20 @@ pub fn study(
     for subject in 0..subjects.len() {
         let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[subject].clone()).collect();
         let paired = Paired::new(&all);
-        let on_meshes = Paired::new(
-            &meshes.iter().map(|mesh| mesh.rung.values[subject].clone()).collect::<Vec<_>>(),
-        );
+        let on_mesh: Vec<_> = meshes.iter().map(|mesh| mesh.rung.values[subject].clone()).collect();
         let times: Vec<f64> = meshes.iter().map(|mesh| mesh.times).collect();
+        // The coarsest mesh may be too coarse to follow any law: the error is told by the two finest.
+        let finest = meshes.len().saturating_sub(2);
+        let (on_meshes, on_finest) = (Paired::new(&on_mesh), Paired::new(&on_mesh[finest..]));
         for percent in PERCENTS {
             let p = f64::from(percent) / 100.0;
             let Some(found) = percentile(&all[own], p) else { continue };
             let ladder = paired.ladder(p, relatives, order, plan.seed);
             let sampling = sampling(&all[own], p);
-            let meshes = with_meshes.then(|| on_meshes.ladder(p, &times, MESH_ORDER, plan.seed));
+            let meshes = with_meshes.then(|| Ladder {
+                own_error: on_finest.ladder(p, &times[finest..], MESH_ORDER, plan.seed).own_error,
+                ..on_meshes.ladder(p, &times, MESH_ORDER, plan.seed)
+            });
             statistics.push(Statistic { subject, percent, own: found, sampling, ladder, meshes });
         }
     }

@@ -162,7 +162,7 @@ fn mesh_table(page: &mut String, study: &SceneStudy) {
         return;
     }
     *page += "\n## Error of the mesh\n\nThe same releases under the scene's own setting on coarser meshes: vertices of the slope are thinned out, the rest stay where they are \
-        (trees stay as they are). The error of the scene's own mesh is what a straight line in the length of the edges leaves at length 0, \
+        (trees stay as they are). The error of the scene's own mesh is what a straight line in the length of the edges, through the two finest meshes, leaves at length 0, \
         with its interval from drawing the rocks again; what the surface does below the scene's own triangles no computation knows, so it is a guide, not a bound.\n\n| statistic |";
     for mesh in &study.meshes {
         let own = if mesh.times > 1.0 { "" } else { ", own" };
