@@ -7,7 +7,7 @@
 use rockfall::step::Scheme;
 use rockfall::study::speed::rate::step_of;
 use rockfall::study::speed::slope::{SCHEMES, Slope};
-use rockfall::study::speed::{Order, study};
+use rockfall::study::speed::{Order, WRITTEN, study};
 use rockfall::study::write_speed;
 use rockfall::trajectory::{Effort, Scratch, Stop, Trajectory};
 use std::path::{Path, PathBuf};
@@ -28,6 +28,7 @@ fn everything() {
     let order = Order {
         rocks,
         triangles: vec![10_000, 100_000, 1_000_000],
+        written: WRITTEN,
         program: PathBuf::from(env!("CARGO_BIN_EXE_rockfall")),
         source: Some(source.to_owned()),
     };

@@ -1,12 +1,13 @@
 //! Fitting a few named ground values to measured ends, and saying how well they do on ends that were kept apart.
 //!
 //! Measured rocks are dealt alternately into two halves. A grid over the ranges that the scene names, refined twice
-//! round its best place, finds the values whose runouts lie nearest those of one half; the other half judges them.
+//! round its best place, finds the values whose distribution of runouts lies nearest that of one half (Kolmogorov and
+//! Smirnov's distance, then the area between the two); the other half judges them.
 //! Both ways round are done and printed. All trials draw the same chance, so two of them differ by their values alone.
 
 use crate::chance::Distribution;
 use crate::ensemble::Ensemble;
-use crate::error::{Error, Result};
+use crate::error::{Error, Flaw, Result};
 use crate::hazard::{Agreement, Row, Way};
 use crate::plan::Plan;
 use crate::scene::{CalibrateTable, GroundTable, Scene, VaryKey, VaryTable};
@@ -15,8 +16,8 @@ use crate::trajectory::{Scratch, fall};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Values tried of each quantity in the first grid, and in each refinement.
-const GRID: [usize; 3] = [6, 5, 5];
+/// Values tried of each quantity in the first grid, and in each refinement: of one or two quantities, and of three.
+const GRID: [[usize; 3]; 2] = [[6, 5, 5], [5, 4, 4]];
 /// Most quantities that are fitted at a time: more than a hundred measured ends can tell apart.
 const MOST: usize = 3;
 
@@ -50,6 +51,9 @@ pub struct Calibration {
     pub second: Trial,
 }
 
+/// Computed ways with their release numbers.
+type Ends = Vec<(usize, Way)>;
+
 /// The search over one half after the other.
 struct Search<'a> {
     scene: Scene,
@@ -57,6 +61,8 @@ struct Search<'a> {
     measured: Vec<Way>,
     ensemble: &'a Ensemble,
     terrain: Option<Terrain>,
+    /// Ends of the values tried so far: both halves begin with the same grid.
+    known: Vec<(Vec<f64>, Ends)>,
 }
 
 /// Calibrates a scene; `tried` hears of every trial.
@@ -76,8 +82,14 @@ pub fn calibrate(
     };
     let measured = Way::read(&table.deposits)?;
     let (terrain, _) = scene.read_terrain()?;
-    let mut search =
-        Search { scene: bare(scene, releases), table, measured, ensemble, terrain: Some(terrain) };
+    let mut search = Search {
+        scene: bare(scene, releases),
+        table,
+        measured,
+        ensemble,
+        terrain: Some(terrain),
+        known: Vec::new(),
+    };
     let before: Vec<f64> = table.vary.iter().map(|vary| vary.before).collect();
     let before = search.trial(&before, 0)?;
     let (first, trials) = search.best(0, tried)?;
@@ -113,12 +125,12 @@ impl Search<'_> {
             self.table.vary.iter().map(|vary| [vary.from, vary.to]).collect();
         let mut best: Option<Trial> = None;
         let mut count = 0;
-        for steps in GRID {
+        for steps in GRID[usize::from(ranges.len() > 2)] {
             for values in grid(&ranges, steps) {
                 let trial = self.trial(&values, half)?;
                 tried(half, &trial);
                 count += 1;
-                if best.as_ref().is_none_or(|best| trial.fitted.area_m < best.fitted.area_m) {
+                if best.as_ref().is_none_or(|best| is_nearer(&trial.fitted, &best.fitted)) {
                     best = Some(trial);
                 }
             }
@@ -134,9 +146,30 @@ impl Search<'_> {
         Error::input(&self.scene.file, "[calibrate]", "found no computed end", remedy)
     }
 
-    /// Computes all releases with these values.
+    /// Compares all releases with these values with the measured ends.
     fn trial(&mut self, values: &[f64], half: usize) -> Result<Trial> {
-        for (vary, value) in self.table.vary.iter().zip(values) {
+        let known = self.known.iter().position(|(known, _)| known == values);
+        let place = known.unwrap_or(self.known.len());
+        if known.is_none() {
+            let ends = self.ends(values)?;
+            self.known.push((values.to_vec(), ends));
+        }
+        let computed = &self.known[place].1;
+        let compare = |of: Option<usize>| self.compare(computed, of).ok_or_else(|| self.nothing());
+        Ok(Trial {
+            values: values.to_vec(),
+            fitted: compare(Some(half))?,
+            kept_apart: compare(Some(1 - half))?,
+            all: compare(None)?,
+        })
+    }
+
+    /// Computes all releases with these values.
+    fn ends(&mut self, values: &[f64]) -> Result<Ends> {
+        let mut entries: Vec<(&VaryTable, &f64)> = self.table.vary.iter().zip(values).collect();
+        // a spread lies above the value that another entry may set
+        entries.sort_by_key(|(vary, _)| vary.key == VaryKey::RollingFrictionSpread);
+        for (vary, value) in entries {
             if let Some(ground) = self.scene.grounds.get_mut(&vary.ground) {
                 put(ground, vary.key, *value)?;
             }
@@ -147,7 +180,7 @@ impl Search<'_> {
         };
         let plan = Plan::compile(&self.scene, terrain)?;
         let origin_m = plan.terrain.origin_m;
-        let mut computed: Vec<(usize, Way)> = Vec::new();
+        let mut computed: Ends = Vec::new();
         let one = |index: usize, scratch: &mut Scratch| fall(&plan, index, None, scratch);
         for falls in self.ensemble.in_chunks(0..plan.count, Scratch::default, one) {
             let ways = falls?
@@ -157,13 +190,7 @@ impl Search<'_> {
             computed.extend(ways);
         }
         self.terrain = Some(plan.terrain);
-        let compare = |of: Option<usize>| self.compare(&computed, of).ok_or_else(|| self.nothing());
-        Ok(Trial {
-            values: values.to_vec(),
-            fitted: compare(Some(half))?,
-            kept_apart: compare(Some(1 - half))?,
-            all: compare(None)?,
-        })
+        Ok(computed)
     }
 
     /// Compares one half, or all. Where every measured rock has its release point, a half is computed from its own.
@@ -182,12 +209,24 @@ impl Search<'_> {
     }
 }
 
+/// Whether the distributions of one comparison lie nearer than those of another.
+fn is_nearer(one: &Agreement, other: &Agreement) -> bool {
+    one.ks.total_cmp(&other.ks).then(one.area_m.total_cmp(&other.area_m)).is_lt()
+}
+
 fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
-    let fixed = Distribution::fixed(value).map_err(|flaw| Error::Request(flaw.to_string()))?;
+    let refuse = |flaw: Flaw| Error::Request(flaw.to_string());
+    let fixed = Distribution::fixed(value).map_err(refuse)?;
     match key {
         VaryKey::FrictionAngleDeg => ground.friction_angle_deg = fixed,
         VaryKey::Restitution => ground.restitution = Some(fixed),
         VaryKey::RollingFriction => ground.rolling_friction = Some(fixed),
+        VaryKey::RollingFrictionSpread if value > 0.0 => {
+            let low = ground.rolling_friction.as_ref().map_or(0.0, |rolling| rolling.support().0);
+            let above = Distribution::triangular([low, low, low + value]).map_err(refuse)?;
+            ground.rolling_friction = Some(above);
+        }
+        VaryKey::RollingFrictionSpread => {}
         VaryKey::RoughnessDeg => ground.roughness_deg = Some(fixed),
     }
     Ok(())

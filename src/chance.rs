@@ -32,6 +32,8 @@ pub enum Purpose {
     Grounds = 4,
     /// The tilt of the contact normal at its impacts.
     Impacts = 5,
+    /// What stems that give way can take of it.
+    Stems = 7,
     /// Which rocks a statistic is computed from again, to see how far chance moves it.
     Redraw = 6,
 }
@@ -44,6 +46,15 @@ pub fn stream(seed: u64, purpose: Purpose, index: usize) -> Chance {
     let mut chance = Chance::from_seed(key);
     chance.set_stream(index as u64);
     chance
+}
+
+/// The stream of another purpose of the same release.
+pub fn beside(chance: &Chance, purpose: Purpose) -> Chance {
+    let mut key = chance.get_seed();
+    key[8] = purpose as u8;
+    let mut beside = Chance::from_seed(key);
+    beside.set_stream(chance.get_stream());
+    beside
 }
 
 /// A number drawn evenly from the open interval (0, 1), never 0 or 1, symmetric about 1/2 (–).

@@ -97,6 +97,24 @@ enum MeshCommand {
         /// STL file to write
         out: PathBuf,
     },
+    /// Turn a list of trees into stems that stand on a slope
+    Stems {
+        /// List (CSV) with the columns `x, y, dbh_m, height_m`
+        list: PathBuf,
+        /// The slope's STL file
+        terrain: PathBuf,
+        /// STL file to write, in the coordinates of the slope's file
+        out: PathBuf,
+        /// Map position of the slope file's (0, 0, 0), as `origin_m` in the scene: then the list is in map coordinates
+        #[arg(
+            long,
+            value_name = "X,Y,Z",
+            value_delimiter = ',',
+            num_args = 1,
+            allow_negative_numbers = true
+        )]
+        origin_m: Option<Vec<f64>>,
+    },
     /// Write one of the made slopes and shapes
     Make {
         /// Which one
@@ -171,6 +189,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
             wiring::mesh_from_grid(&grid, &out).map(say)
+        }
+        Command::Mesh(MeshCommand::Stems { list, terrain, out, origin_m }) => {
+            wiring::mesh_of_stems((&list, &terrain), &out, origin_m.as_deref()).map(say)
         }
         Command::Mesh(MeshCommand::Make { kind, out }) => wiring::make_mesh(&kind, &out).map(say),
     };

@@ -193,17 +193,26 @@ pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
     if deepest > 0.0 {
         return NormalImpact { lift_s: f64::INFINITY, rebound_m_s: None };
     }
+    // Newton on the force, halving where a step would leave the bracket.
     let (mut lo, mut hi) = (0.0, low / omega);
+    let mut t = 0.5 * hi;
     for _ in 0..60 {
-        let middle = 0.5 * (lo + hi);
-        let (x, speed) = state(middle);
-        if omega * omega * x + 2.0 * al * speed > 0.0 {
-            lo = middle;
+        let (x, speed) = state(t);
+        let push = omega * omega * x + 2.0 * al * speed;
+        if push > 0.0 {
+            lo = t;
         } else {
-            hi = middle;
+            hi = t;
+        }
+        let slope = omega * omega * speed + 2.0 * al * (g_n - push);
+        let next = t - push / slope;
+        let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+        let change = (next - t).abs();
+        t = next;
+        if change <= 1e-16 * low / omega {
+            break;
         }
     }
-    let t = 0.5 * (lo + hi);
     let (x, speed) = state(t);
     let out = speed * speed - 2.0 * g_n * x;
     let leaves = speed < 0.0 && out > 0.0;

@@ -1,5 +1,7 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod grounds;
+mod inputs;
 mod listing;
 mod stiffness;
 mod watch;
@@ -12,11 +14,10 @@ use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::release::{self, Release, Releases};
-use crate::scene::{
-    BarrierTable, GroundTable, Polyline, RecordTable, Scene, SolverTable, known_ground,
-};
+use crate::scene::{BarrierTable, Polyline, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
+use crate::terrain::stems::Stems;
 use std::convert::Infallible;
 use std::path::PathBuf;
 
@@ -98,6 +99,8 @@ pub struct Plan {
     pub longest_s: f64,
     /// Trees, with the number of their triangles.
     pub trees: Part<usize>,
+    /// Stems that give way, and how many; the limits stand in the terrain.
+    pub breaking: Part<usize>,
     /// Stepping through the air; always left out.
     pub flight: Part<Infallible>,
     /// How far a rock has turned; always left out.
@@ -126,6 +129,12 @@ pub struct Plan {
     pub catalogued: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
+    /// What went in, as name and value.
+    pub inputs: Vec<(String, String)>,
+    /// Rows of the report's title block.
+    pub title_block: Vec<(String, String)>,
+    /// Where terrain and ground values come from, in words; the first may be empty.
+    pub sources: [String; 2],
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
 }
@@ -153,17 +162,18 @@ impl Plan {
     ///
     /// # Errors
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
-    pub fn compile(scene: &Scene, terrain: Terrain) -> Result<Self> {
+    pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings(&scene.solver);
         let releases = Releases::compile(scene, &terrain)?;
-        let mut warnings = unused_grounds(scene, &terrain);
+        terrain.stems = grounds::stems(scene, &terrain)?;
+        let mut warnings = grounds::unused(scene, &terrain);
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
-        let grounds = || scene.grounds.values();
+        let values = || scene.grounds.values();
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();
-        let rolls = grounds().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
-        let is_rough = grounds().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
+        let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
+        let is_rough = values().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
         Ok(Self {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
@@ -185,6 +195,10 @@ impl Plan {
             },
             longest_s: scene.solver.longest_s.unwrap_or(LONGEST_S),
             trees: Part::when(tree_triangles(&terrain), "the scene has none"),
+            breaking: Part::when(
+                terrain.stems.as_ref().map(Stems::count),
+                "no ground of trees has breaks_above_j, stems stand for good",
+            ),
             flight: Part::LeftOut(
                 "nothing but gravity acts between touches, the parabola is exact",
             ),
@@ -213,7 +227,13 @@ impl Plan {
                 lattice(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
             ),
-            catalogued: catalogued(scene),
+            inputs: inputs::of(scene),
+            title_block: inputs::title_block(&scene.report),
+            sources: [
+                scene.report.terrain_source.clone().unwrap_or_default(),
+                inputs::ground_source(scene, &grounds::catalogued(scene)),
+            ],
+            catalogued: grounds::catalogued(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             terrain,
@@ -303,19 +323,6 @@ fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
 }
 
-fn catalogued(scene: &Scene) -> Vec<String> {
-    let taken = |(name, ground): (&String, &GroundTable)| {
-        let known = known_ground(ground.like.as_deref()?)?;
-        Some(format!(
-            "{name} like {}: {} unless written in the scene; {}",
-            known.name,
-            known.values(),
-            known.source
-        ))
-    };
-    scene.grounds.iter().filter_map(taken).collect()
-}
-
 fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
     let lines = scene.lines.iter().map(|line| ("lines", &line.name, &line.points_m));
     let barriers =
@@ -331,7 +338,9 @@ fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
             (format!("[[{table}]] \"{name}\" points_m"), "found no terrain near it");
         Err(Error::input(&scene.file, place, found, release::outside(terrain)))
     };
-    let all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
+    let mut all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
+    let elsewhere = scene.barriers.iter().flat_map(BarrierTable::elsewhere);
+    all.extend(elsewhere.map(|(_, name, line)| Curtain::new(&name, &line, terrain.origin_m)));
     Ok(Some(all).filter(|all| !all.is_empty()))
 }
 
@@ -346,15 +355,6 @@ fn tree_triangles(terrain: &Terrain) -> Option<usize> {
 
 fn can_exceed_0(value: Option<&Distribution>) -> bool {
     value.is_some_and(|value| value.support().1 > 0.0)
-}
-
-fn unused_grounds(scene: &Scene, terrain: &Terrain) -> Vec<String> {
-    let used = |index: usize| terrain.sheets.iter().any(|sheet| usize::from(sheet.ground) == index);
-    let names = scene.grounds.keys().enumerate();
-    names
-        .filter(|(index, _)| !used(*index))
-        .map(|(_, name)| format!("[grounds.{name}] lies under no mesh"))
-        .collect()
 }
 
 /// A tolerance above twice the capture speed lets slow rocks flutter for ever.

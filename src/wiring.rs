@@ -5,7 +5,7 @@ pub(crate) mod study;
 use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
-use rockfall::hazard::{Barrier, Hazard, LineInfo, MapFrame, Rule, Way};
+use rockfall::hazard::{Barrier, Elsewhere, Hazard, LineInfo, MapFrame, Rule, Way};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
 use rockfall::plan::{self, Curtain, Plan};
 use rockfall::report;
@@ -204,16 +204,28 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         keeps_impacts: plan.impacts.is_kept(),
         threads: ensemble.threads(),
         plan: plan.lines(),
+        inputs: plan.inputs.clone(),
+        title_block: plan.title_block.clone(),
+        sources: plan.sources.clone(),
         warnings: plan.warnings.clone(),
         mesh_health,
     })
 }
 
 fn line_infos(plan: &Plan) -> Vec<LineInfo> {
+    let plan::Part::Kept(tables) = &plan.barriers else { return infos(plan, &[]) };
+    let moved: Vec<String> =
+        tables.iter().flat_map(BarrierTable::elsewhere).map(|(_, name, _)| name).collect();
+    infos(plan, &moved)
+}
+
+/// All lines; the `moved` ones are other places of barriers.
+fn infos(plan: &Plan, moved: &[String]) -> Vec<LineInfo> {
     let info = |line: &Curtain| LineInfo {
         name: line.name.clone(),
         length_m: line.length_m(),
         corners_m: line.corners_m(plan.terrain.origin_m),
+        of_barrier: moved.contains(&line.name),
     };
     plan.watch().lines.iter().map(info).collect()
 }
@@ -221,17 +233,23 @@ fn line_infos(plan: &Plan) -> Vec<LineInfo> {
 fn barriers(plan: &Plan) -> Vec<Barrier> {
     let plan::Part::Kept(tables) = &plan.barriers else { return Vec::new() };
     let rule = |rule: &DesignTable| Rule {
-        percentile: rule.percentile,
-        speed_factors: rule.speed_factors.clone(),
+        standard: rule.standard().map(str::to_owned),
+        percentile: rule.percentile(),
+        speed_factors: rule.speed_factors(),
         mass_factors: rule.mass_factors.clone(),
-        height_factors: rule.height_factors.clone(),
+        height_factors: rule.height_factors(),
         free_height_m: rule.free_height_m,
+        free_distance_m: rule.free_distance_m(),
     };
     let barrier = |table: &BarrierTable| Barrier {
         name: table.name.clone(),
         height_m: table.height_m,
         capacity_j: table.capacity_j,
         design: table.design.as_ref().map(rule),
+        elsewhere: table
+            .elsewhere()
+            .map(|(offset_m, line, _)| Elsewhere { offset_m, line })
+            .collect(),
     };
     tables.iter().map(barrier).collect()
 }
@@ -282,12 +300,7 @@ pub(crate) fn draw(dir: &Path) -> Result<()> {
 
 /// Health of mesh files as they will be welded, in words.
 pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
-    let source = |path: &PathBuf| Source {
-        sheet: Sheet { path: path.clone(), ground: 0, is_tree: false },
-        up: Up::default(),
-        scale: 1.0,
-    };
-    let sources: Vec<Source> = files.iter().map(source).collect();
+    let sources: Vec<Source> = files.iter().map(|path| slope_source(path)).collect();
     let (_, health) = Terrain::read(&sources, Vec3::zeros(), None)?;
     Ok(health.to_string())
 }
@@ -306,6 +319,39 @@ pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
         origin_m.y,
         origin_m.z
     ))
+}
+
+/// Turns a list of trees into stems on a slope.
+pub(crate) fn mesh_of_stems(
+    (list, slope): (&Path, &Path),
+    out: &Path,
+    origin_m: Option<&[f64]>,
+) -> Result<String> {
+    let map_origin_m = match origin_m {
+        None => Vec3::zeros(),
+        Some(&[x, y, z]) if [x, y, z].iter().all(|m| m.is_finite()) => Vec3::new(x, y, z),
+        Some(_) => {
+            let wrong = "--origin-m: write three finite numbers, as in 2600000,1200000,0";
+            return Err(Error::Request(wrong.to_owned()));
+        }
+    };
+    let trees = make::read_list(list)?;
+    let (terrain, _) = Terrain::read(&[slope_source(slope)], map_origin_m, None)?;
+    let mut facets = make::plant(list, &trees, &terrain)?;
+    for corner in facets.iter_mut().flatten() {
+        *corner -= map_origin_m;
+    }
+    write_binary(out, &facets)?;
+    Ok(format!("{} stems, {} triangles written to {}", trees.len(), facets.len(), out.display()))
+}
+
+/// A mesh file as it stands.
+fn slope_source(path: &Path) -> Source {
+    Source {
+        sheet: Sheet { path: path.to_owned(), ground: 0, is_tree: false },
+        up: Up::default(),
+        scale: 1.0,
+    }
 }
 
 /// Writes one of the made slopes and shapes.

@@ -146,3 +146,22 @@ fn watching_changes_no_rock() {
         assert_eq!(format!("{one:?}"), format!("{blind:?}"));
     }
 }
+
+/// A rock thrown up the slope comes back: its first crossing counts, by hand `(45 − 40)/8` s after the throw, and it is
+/// known to have crossed again.
+#[test]
+fn a_rock_that_comes_back_crosses_twice_and_counts_once() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml"))
+            .unwrap();
+    let (physics, _) = text.split_once("[release]").unwrap();
+    let plan = plan_of(&format!(
+        "{physics}\n[release]\ncount = 1\nvelocity_m_s = [0.0, -8.0, 6.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+         points_m = [[18.0, 45.0, 6.0]]\n[[lines]]\nname = \"l\"\npoints_m = [[0.0, 40.0], [40.0, 40.0]]\n"
+    ));
+    let fall = &falls(&plan, 1)[0];
+    let crossing = fall.crossings[0];
+    assert_eq!((fall.crossings.len(), crossing.times), (1, 2), "{:?}", fall.end);
+    assert!((crossing.motion.time_s - 0.625).abs() < 1e-12);
+    assert!((crossing.along_m - 18.0).abs() < 1e-12 && crossing.motion.velocity_m_s.y < 0.0);
+}

@@ -8,7 +8,8 @@
 mod common;
 use common::zoo::*;
 use common::*;
-use rockfall::contact::near::{Near, closest_on};
+use rockfall::contact::closest::closest_on;
+use rockfall::contact::near::Near;
 use rockfall::contact::{MOST, Touches};
 use rockfall::rock::Vec3;
 use rockfall::terrain::{Terrain, make};

@@ -8,7 +8,7 @@ mod svg;
 use rockfall::report::axis::Axis;
 use rockfall::report::colour;
 use rockfall::report::figure::{FIGURES, WIDTH_PX};
-use rockfall::report::input::{Fall, Path, Point, Report};
+use rockfall::report::input::{BarrierView, Fall, Path, PlaceView, Point, Report};
 use rockfall::report::panel::{FOOT_PX, Panel};
 use rockfall::report::paper::{Label, Pen, paint};
 use rockfall::report::raster::GroundRaster;
@@ -17,15 +17,19 @@ use rockfall::report::{self, html};
 use rockfall::rock::Vec3;
 use rockfall::trajectory::{PathState, Stop};
 
+/// What is drawn is written: a file for every figure, and the page with all of them in it.
 #[test]
-#[ignore = "writes the page for looking at: cargo test --test report look -- --ignored"]
-fn look() {
-    let dir = std::env::temp_dir().join("rockfall_report");
-    for (name, report) in inputs().into_iter().chain([("large", large())]) {
-        report::draw(&report, &dir.join(name)).unwrap();
+fn every_drawing_is_on_the_disk_and_on_the_page() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, report) in inputs() {
+        let dir = dir.path().join(name);
+        report::draw(&report, &dir).unwrap();
+        let page = std::fs::read_to_string(dir.join("report.html")).unwrap();
+        for (heading, drawing) in report::drawings(&report) {
+            let file = std::fs::read_to_string(dir.join("figures").join(&heading.file)).unwrap();
+            assert!(file == drawing.svg && page.contains(&file), "{name}: {}", heading.file);
+        }
     }
-    std::fs::write(dir.join("loglog.svg"), log_log()).unwrap();
-    println!("{}", dir.display());
 }
 
 /// What a report may be fed: the common and the odd.
@@ -44,7 +48,25 @@ fn inputs() -> Vec<(&'static str, Report)> {
         ("huge", slope::filled(stretched(one, 1e7))),
         ("small", small()),
         ("all_ends", slope::filled(all_ends(slope::report(400, 20)))),
+        ("barriers", Report { barriers: vec![net(60), net(0)], ..slope::report(30, 5) }),
     ]
+}
+
+/// A barrier that so many rocks reach, some of them with no ground below, and fewer at another place.
+fn net(rocks: usize) -> BarrierView {
+    let top_m = |k: usize| if k % 7 == 6 { f64::INFINITY } else { 0.3 + 0.1 * k as f64 };
+    let place = |offset_m: f64, rocks: usize| PlaceView {
+        offset_m,
+        arriving: 0.5,
+        rocks: (0..rocks).map(|k| (top_m(k), 1e4 * k as f64)).collect(),
+    };
+    BarrierView {
+        name: "<net> & \"fence\"".to_owned(),
+        height_m: 3.0,
+        capacity_j: 4e5,
+        design: (rocks > 0).then_some((4.2, 6e5)),
+        places: vec![place(0.0, rocks), place(-10.0, rocks / 2), place(20.0, 0)],
+    }
 }
 
 /// A rock that stays where it is released.
@@ -367,19 +389,4 @@ fn a_wrong_grid_file_says_what_is_wrong() {
         let message = GroundRaster::read(dir.path()).unwrap_err().to_string();
         assert!(message.contains(expected) && message.contains("ground.asc"), "{message}");
     }
-}
-
-/// Needs no clock in the suite: run it by hand to see the time of a mesh of two million triangles.
-#[test]
-#[ignore = "measures: cargo test --release --test report large_mesh -- --ignored --nocapture"]
-fn large_mesh() {
-    let terrain = slope::terrain(0.1675, Vec3::new(2.6e6, 1.2e6, 0.0));
-    let start = std::time::Instant::now();
-    let raster = GroundRaster::from_terrain(&terrain, 600);
-    println!(
-        "{} triangles, {} cells: {:?}",
-        terrain.triangles.len(),
-        raster.height_m.len(),
-        start.elapsed()
-    );
 }

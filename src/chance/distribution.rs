@@ -58,6 +58,18 @@ impl Distribution {
         if let Shape::Fixed(value) = self.shape { Some(value) } else { None }
     }
 
+    /// The family it is drawn from, in one word.
+    pub fn family(&self) -> &'static str {
+        match self.shape {
+            Shape::Fixed(_) => "fixed",
+            Shape::Uniform { .. } => "uniform",
+            Shape::Normal(_) => "normal",
+            Shape::Lognormal { .. } => "lognormal",
+            Shape::Triangular { .. } => "triangular",
+            Shape::Values(_) => "listed values",
+        }
+    }
+
     /// Smallest and largest value it can take; infinite for a normal or lognormal without that bound.
     pub fn support(&self) -> (f64, f64) {
         match &self.shape {
@@ -141,7 +153,11 @@ impl Distribution {
         Ok(Self { shape: Shape::Lognormal { log, low, high } })
     }
 
-    pub(super) fn triangular([low, mode, high]: [f64; 3]) -> Result<Self, Flaw> {
+    /// Rising to the most frequent of three values and falling from there.
+    ///
+    /// # Errors
+    /// Numbers that are not finite or not in order.
+    pub fn triangular([low, mode, high]: [f64; 3]) -> Result<Self, Flaw> {
         finite(&[low, mode, high])?;
         if !(low <= mode && mode <= high && low < high) {
             return Err(Flaw::new(

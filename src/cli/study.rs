@@ -15,6 +15,8 @@ pub(super) enum StudyCommand {
     /// Stiff and extreme cases with every scheme, or conservation over all releases of a scene; exit status 1 if one is
     /// outside its bound
     Stability(StabilityArgs),
+    /// Cost of more and more rocks that share one world; exit status 1 if it is not near-linear or a rock is lost
+    Scaling(ScalingArgs),
     /// Rocks per second of every scheme on a made slope, where the time goes, what each part of a scene costs
     Speed(SpeedArgs),
 }
@@ -39,7 +41,7 @@ pub(super) struct SpeedArgs {
     /// Folder for page, tables and figure
     #[arg(long, value_name = "DIR", default_value = "reports/speed")]
     out: PathBuf,
-    /// Rocks of the fast schemes; `reference` follows a tenth of them, `dda` a hundredth
+    /// Rocks of the fast schemes; `reference` follows a tenth of them, `dda` one of 200
     #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
     releases: usize,
     /// Sizes of the slope, about
@@ -68,11 +70,35 @@ pub(super) struct ErrorArgs {
     within: Option<Aim>,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct ScalingArgs {
+    /// Folder for page, table and figure
+    #[arg(long, value_name = "DIR", default_value = "reports/scaling")]
+    out: PathBuf,
+    /// Numbers of spheres with scheme adaptive
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,5000,20000")]
+    spheres: Vec<usize>,
+    /// Numbers of spheres with scheme dda
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
+    dda: Vec<usize>,
+    /// Time to follow each world (s)
+    #[arg(long, value_name = "S", value_parser = positive, default_value = "0.5")]
+    seconds: f64,
+}
+
+fn positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse() {
+        Ok(number) if (0.0..1e6).contains(&number) && number > 0.0 => Ok(number),
+        _ => Err("write a time in seconds above 0, as in 0.5".to_owned()),
+    }
+}
+
 /// Does what a study asks.
 pub(super) fn study(command: &StudyCommand) -> Result<ExitCode> {
     match command {
         StudyCommand::Error(args) => error(args),
         StudyCommand::Stability(args) => stability(args),
+        StudyCommand::Scaling(args) => scaling(args),
         StudyCommand::Speed(args) => {
             let say_done = |piece: String| {
                 say(piece);
@@ -80,6 +106,16 @@ pub(super) fn study(command: &StudyCommand) -> Result<ExitCode> {
             wiring::speed((args.releases, &args.triangles), &args.out, say_done).map(say)
         }
     }
+}
+
+fn scaling(args: &ScalingArgs) -> Result<ExitCode> {
+    let say_done = |line: String| {
+        say(line);
+    };
+    let worlds = (&args.spheres[..], &args.dda[..]);
+    let (words, all_hold) = wiring::scaling((&args.out, args.seconds), worlds, say_done)?;
+    say(words);
+    Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }
 
 fn stability(args: &StabilityArgs) -> Result<ExitCode> {

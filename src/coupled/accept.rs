@@ -133,7 +133,7 @@ impl Cluster<'_> {
         else {
             return;
         };
-        for member in &mut self.members {
+        for member in self.members.iter_mut().map(|seat| &mut **seat) {
             member.grip.v += turn.cross(&(member.grip.c - c));
             if spins {
                 member.grip.w += turn;

@@ -70,7 +70,14 @@ impl Bridge {
         })
     }
 
+    /// Whether it holds any force.
+    #[inline]
+    pub(super) fn acts(&self) -> bool {
+        self.push != 0.0 || self.bond.is_some()
+    }
+
     /// Normal speed apart (m/s).
+    #[inline]
     pub(super) fn speed(&self, [a, b]: [&Motion; 2]) -> f64 {
         self.n.dot(&(a.0 - b.0))
     }
@@ -89,6 +96,13 @@ impl Bridge {
     /// Forces for motions without this contact's own effect, over a stage of length `h`.
     pub(super) fn solve(&mut self, ends: [&Motion; 2], h: f64) {
         let (springs, vn) = ((self.law.p_n, self.c_n), self.speed(ends));
+        if self.bond.is_none() {
+            self.push = normal_force(springs, self.pen, vn, 1.0 / self.inv_m, h);
+            if self.push <= 0.0 {
+                self.drag = Vec3::zeros();
+                return;
+            }
+        }
         let free = self.trial(ends, h) / (1.0 + h * (self.law.p_s * h + self.law.c_s) * self.inv_t);
         if self.bond.is_some() {
             let stiff = self.law.p_n * h + self.c_n;
@@ -96,7 +110,6 @@ impl Bridge {
             self.drag = free;
             return;
         }
-        self.push = normal_force(springs, self.pen, vn, 1.0 / self.inv_m, h);
         self.drag = within(free, self.law.friction * self.push);
     }
 

@@ -2,7 +2,8 @@
 
 use super::bridge::Bridge;
 use super::global::Global;
-use super::member::Member;
+use super::member::{Member, Seat};
+use super::sweeps::Stirred;
 use crate::contact::pair::{Tie, between};
 use crate::rock::Vec3;
 use crate::step::adaptive::{self, Control, ONSET, SHORTEST, Stuck, TRAVEL};
@@ -38,7 +39,7 @@ pub struct Cluster<'a> {
     /// The mesh.
     pub terrain: &'a Terrain,
     /// The rocks.
-    pub members: Vec<Box<Member>>,
+    pub members: Vec<Seat>,
     /// The ties, in ascending order; `a` and `b` are places in `members`.
     pub ties: Vec<Tie>,
     /// Step to try next (s).
@@ -50,6 +51,7 @@ pub struct Cluster<'a> {
     /// Whether the first rates belong to the present state.
     pub fresh: bool,
     pub(super) bridges: Vec<Bridge>,
+    pub(super) stirred: Stirred,
     pub(super) tolerance: f64,
     /// Rates of the shear springs at each stage.
     pub(super) tie_rates: Vec<[Vec3; STAGES]>,
@@ -61,7 +63,7 @@ pub struct Cluster<'a> {
 
 impl<'a> Cluster<'a> {
     /// An island of these rocks.
-    pub fn new(terrain: &'a Terrain, members: Vec<Box<Member>>, ties: Vec<Tie>) -> Self {
+    pub fn new(terrain: &'a Terrain, members: Vec<Seat>, ties: Vec<Tie>) -> Self {
         let tie_forces = ties.iter().map(|tie| (tie.push, tie.drag)).collect();
         Self {
             terrain,
@@ -71,6 +73,7 @@ impl<'a> Cluster<'a> {
             jumps: 0,
             fresh: false,
             bridges: Vec::new(),
+            stirred: Stirred::default(),
             tolerance: 0.0,
             tie_rates: vec![[Vec3::zeros(); STAGES]; ties.len()],
             tie_forces,
@@ -117,7 +120,7 @@ impl<'a> Cluster<'a> {
             };
             rejected += 1;
             self.h = dt * ratio;
-            for member in &mut self.members {
+            for member in self.members.iter_mut().map(|seat| &mut **seat) {
                 member.grip.holds.truncate(member.known);
             }
             if self.h * omega < SHORTEST {

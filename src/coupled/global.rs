@@ -3,26 +3,24 @@
 //! Rocks that no other touches have a block of their own; the rest is factorised together by sparse Cholesky, whose
 //! symbolic part is kept as long as the same rocks touch.
 
+use super::factor::{Below, Factor};
 use super::link::Link;
-use super::member::Member;
+use super::member::Seat;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
-use faer::Side;
-use faer::prelude::Solve;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{SparseColMat, Triplet};
 use nalgebra::Cholesky;
 
 /// What is kept between solves.
 #[derive(Debug, Default)]
 pub(super) struct Global {
-    /// The links of the symbolic factor: their ends.
-    pattern: Vec<[usize; 2]>,
-    symbolic: Option<SymbolicLlt<usize>>,
+    factor: Factor,
+    diagonal: Vec<Mat6>,
+    below: Vec<Below>,
+    load: Vec<f64>,
 }
 
 impl Global {
     /// Writes into every member what contacts add to its free displacement over `dt`; false if there is no solution.
-    pub(super) fn solve(&mut self, members: &mut [Box<Member>], links: &[Link], dt: f64) -> bool {
+    pub(super) fn solve(&mut self, members: &mut [Seat], links: &[Link], dt: f64) -> bool {
         let mut blocks: Vec<Mat6> = Vec::with_capacity(members.len());
         let mut loads: Vec<Vec6> = Vec::with_capacity(members.len());
         for member in members.iter() {
@@ -62,48 +60,29 @@ impl Global {
 
     fn solve_linked(
         &mut self,
-        members: &mut [Box<Member>],
+        members: &mut [Seat],
         links: &[Link],
         place: &[usize],
         (blocks, loads): (&[Mat6], &[Vec6]),
     ) -> Option<()> {
-        let rocks: Vec<usize> = (0..members.len()).filter(|&k| place[k] != usize::MAX).collect();
-        let size = 6 * rocks.len();
-        let mut triplets = Vec::with_capacity(21 * rocks.len() + 36 * links.len());
-        for &k in &rocks {
-            push_block(&mut triplets, (place[k], place[k]), &blocks[k]);
+        let linked = |k: &usize| place[*k] != usize::MAX;
+        self.diagonal.clear();
+        self.load.clear();
+        for k in (0..members.len()).filter(linked) {
+            self.diagonal.push(blocks[k]);
+            self.load.extend(loads[k].iter());
         }
-        for link in links {
-            // the lower half: rows of the later rock
-            let ends = (place[link.ends[1]], place[link.ends[0]]);
-            push_block(&mut triplets, ends, &link.stiffness(1, 0));
-        }
-        let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets).ok()?;
-        let pattern: Vec<[usize; 2]> = links.iter().map(|link| link.ends).collect();
-        if self.symbolic.is_none() || self.pattern != pattern {
-            self.symbolic = Some(SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).ok()?);
-            self.pattern = pattern;
-        }
-        let symbolic = self.symbolic.clone()?;
-        let factor = Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower).ok()?;
-        let load = faer::Col::from_fn(size, |row| loads[rocks[row / 6]][row % 6]);
-        let x = factor.solve(&load);
-        for &k in &rocks {
-            members[k].ways[1] = Vec6::from_fn(|row, _| x[6 * place[k] + row]);
+        // Ties stand in ascending order of their ends, and so do the blocks below the diagonal by column and row.
+        self.below.clear();
+        self.below.extend(
+            links
+                .iter()
+                .map(|link| (place[link.ends[1]], place[link.ends[0]], link.stiffness(1, 0))),
+        );
+        self.factor.solve(&self.diagonal, &self.below, &mut self.load)?;
+        for (k, x) in (0..members.len()).filter(linked).zip(self.load.chunks_exact(6)) {
+            members[k].ways[1] = Vec6::from_column_slice(x);
         }
         Some(())
-    }
-}
-
-/// Adds a block; of one on the diagonal the lower half.
-fn push_block(
-    triplets: &mut Vec<Triplet<usize, usize, f64>>,
-    (row, column): (usize, usize),
-    block: &Mat6,
-) {
-    for j in 0..6 {
-        for i in (if row == column { j } else { 0 })..6 {
-            triplets.push(Triplet::new(6 * row + i, 6 * column + j, block[(i, j)]));
-        }
     }
 }

@@ -27,14 +27,28 @@ impl Islands {
         self.0[a.max(b) as usize] = a.min(b);
     }
 
+    /// How many rocks each island has, at the place of the rock that stands for it; 0 elsewhere.
+    pub fn sizes(&mut self) -> Vec<u32> {
+        let count = self.0.len();
+        let mut sizes = vec![0; count];
+        for k in 0..count as u32 {
+            sizes[self.of(k) as usize] += 1;
+        }
+        sizes
+    }
+
     /// The members of every island, in ascending order.
     pub fn lists(&mut self) -> Vec<Vec<u32>> {
-        let count = self.0.len();
-        let mut lists = vec![Vec::new(); count];
-        for k in 0..count as u32 {
-            lists[self.of(k) as usize].push(k);
+        let sizes = self.sizes();
+        let mut number = vec![0; sizes.len()];
+        let mut lists = Vec::new();
+        for (k, &size) in sizes.iter().enumerate().filter(|(_, size)| **size > 0) {
+            number[k] = lists.len();
+            lists.push(Vec::with_capacity(size as usize));
         }
-        lists.retain(|list| !list.is_empty());
+        for k in 0..sizes.len() as u32 {
+            lists[number[self.of(k) as usize]].push(k);
+        }
         lists
     }
 }

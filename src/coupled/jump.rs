@@ -4,7 +4,7 @@
 //! unsymmetric; solved by sparse LU.
 
 use super::bridge::{Bridge, Motion};
-use super::member::Member;
+use super::member::{Member, Seat};
 
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::rock::Vec3;
@@ -18,11 +18,11 @@ use nalgebra::Matrix3;
 struct Linear {
     normal: Normal,
     shear: Answer,
-    /// Slip and normal speed there.
+    /// Slip and normal speed there, as far as they come from the ends that are sought.
     slip: Vec3,
     speed: f64,
     n: Vec3,
-    /// Its ends: place, sign of the first or second body, lever.
+    /// Its ends that are sought: place, sign of the first or second body, lever.
     ends: [Option<(usize, f64, f64)>; 2],
 }
 
@@ -32,24 +32,42 @@ struct System {
     load: Vec<f64>,
 }
 
-/// Motions that solve the stage of length `h` linearised around the present ones.
-pub(super) fn jump(members: &[Box<Member>], bridges: &[Bridge], h: f64) -> Option<Vec<Motion>> {
-    let size = 6 * members.len();
+/// Motions of the rocks that take part that solve the stage of length `h` linearised around the present ones, while the
+/// others go on as they do.
+pub(super) fn jump(
+    members: &[Seat],
+    bridges: &[Bridge],
+    takes_part: &[bool],
+    h: f64,
+) -> Option<Vec<Option<Motion>>> {
+    let mut rocks = 0;
+    let place: Vec<Option<usize>> = takes_part
+        .iter()
+        .map(|&part| {
+            rocks += usize::from(part);
+            part.then(|| rocks - 1)
+        })
+        .collect();
+    let size = 6 * rocks;
     let mut system = System { triplets: Vec::with_capacity(72 * size), load: vec![0.0; size] };
-    for (k, member) in members.iter().enumerate() {
+    for (member, place) in members.iter().zip(&place) {
+        let Some(k) = *place else { continue };
         system.add_inertia(k, member, h);
         for spot in member.spots().iter().filter(|spot| spot.push > 0.0) {
             system.add_spot(k, member, spot, h);
         }
     }
     for bridge in bridges.iter().filter(|bridge| bridge.push > 0.0 || bridge.bond.is_some()) {
-        system.add(&Linear::of_bridge(bridge, members, h));
+        if bridge.ends.iter().any(|&end| place[end].is_some()) {
+            system.add(&Linear::of_bridge(bridge, members, &place, h));
+        }
     }
-    system.solve()
+    let motions = system.solve()?;
+    Some(place.iter().map(|place| place.map(|k| motions[k])).collect())
 }
 
 impl Linear {
-    fn of_bridge(bridge: &Bridge, members: &[Box<Member>], h: f64) -> Self {
+    fn of_bridge(bridge: &Bridge, members: &[Seat], place: &[Option<usize>], h: f64) -> Self {
         let ends = bridge.ends.map(|k| &members[k].now);
         let (law, speed, trial) = (&bridge.law, bridge.speed(ends), bridge.trial(ends, h));
         let (normal, cap) = if bridge.bond.is_some() {
@@ -62,14 +80,19 @@ impl Linear {
         let (push, held) =
             if bridge.bond.is_some() { (1.0, 1.0) } else { (normal.at(speed), bridge.push) };
         let slider = Slider::left(cap, law.p_s * h + law.c_s, (&bridge.drag, held));
+        let still = (Vec3::zeros(), Vec3::zeros());
+        let sought = [0, 1].map(|k| if place[bridge.ends[k]].is_some() { ends[k] } else { &still });
+        let own = bridge.speed(sought);
         Self {
-            normal,
+            normal: Normal { a: normal.a - normal.b * (speed - own), ..normal },
             shear: slider.at(trial, push),
-            slip: bridge.slip(ends),
-            speed,
+            slip: bridge.slip(sought),
+            speed: own,
             n: bridge.n,
-            ends: [0, 1]
-                .map(|k| Some((bridge.ends[k], if k == 0 { 1.0 } else { -1.0 }, bridge.levers[k]))),
+            ends: [0, 1].map(|k| {
+                place[bridge.ends[k]]
+                    .map(|at| (at, if k == 0 { 1.0 } else { -1.0 }, bridge.levers[k]))
+            }),
         }
     }
 }

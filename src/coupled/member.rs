@@ -2,6 +2,7 @@
 
 use super::bridge::Motion;
 use crate::contact::Feature;
+use crate::contact::hold::Holds;
 use crate::contact::submatrix::Vec6;
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -11,6 +12,7 @@ use crate::step::law::{Body, Spot};
 use crate::step::stage::End;
 use crate::step::tableau::{STAGES, Tableau};
 use crate::terrain::Terrain;
+use std::ops::{Deref, DerefMut};
 
 /// One rock of an island.
 #[derive(Debug)]
@@ -41,11 +43,45 @@ pub struct Member {
     pub(super) ways: [Vec6; 2],
 }
 
-impl Default for Member {
-    /// A place holder.
-    fn default() -> Self {
-        let nothing = Body { mass: 1.0, inertia: 1.0, radius: 1.0, gravity: Vec3::zeros() };
-        Self::new(nothing, Vec::new(), (Vec3::zeros(), Vec3::zeros(), Vec3::zeros()))
+/// What a rock is and remembers between two steps: all that later steps depend on.
+#[derive(Debug, Clone)]
+pub struct Memory {
+    motion: (Vec3, Vec3, Vec3),
+    holds: Holds,
+    flying: bool,
+}
+
+/// Where a rock is kept. It is lent to its island while that steps; nothing but the address moves.
+#[derive(Debug, Default)]
+pub struct Seat(Option<Box<Member>>);
+
+impl Seat {
+    /// A rock in its place.
+    pub fn new(member: Member) -> Self {
+        Self(Some(Box::new(member)))
+    }
+
+    /// Lends the rock; the place stays empty until it is given back.
+    #[must_use]
+    pub fn lend(&mut self) -> Self {
+        Self(self.0.take())
+    }
+}
+
+#[expect(clippy::expect_used, reason = "a rock is away only while its island steps")]
+impl Deref for Seat {
+    type Target = Member;
+    #[inline]
+    fn deref(&self) -> &Member {
+        self.0.as_deref().expect("the rock is at home")
+    }
+}
+
+#[expect(clippy::expect_used, reason = "a rock is away only while its island steps")]
+impl DerefMut for Seat {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut Member {
+        self.0.as_deref_mut().expect("the rock is at home")
     }
 }
 
@@ -71,6 +107,22 @@ impl Member {
             joints: Vec::new(),
             ways: [Vec6::zeros(); 2],
         }
+    }
+
+    /// What the rock is and remembers between two steps.
+    pub fn memory(&self) -> Memory {
+        let grip = &self.grip;
+        Memory { motion: (grip.c, grip.v, grip.w), holds: grip.holds.clone(), flying: self.flying }
+    }
+
+    /// Goes back to what it was.
+    pub fn recall(&mut self, memory: &Memory) {
+        let grip = &mut self.grip;
+        (grip.c, grip.v, grip.w) = memory.motion;
+        grip.holds = memory.holds.clone();
+        grip.fresh = false;
+        self.flying = memory.flying;
+        self.kept.clear();
     }
 
     pub(super) fn spots(&self) -> &[Spot] {

@@ -5,6 +5,7 @@
 
 mod accept;
 mod bridge;
+mod factor;
 mod fixed;
 mod global;
 pub mod broad;
@@ -17,4 +18,4 @@ mod stage;
 mod sweeps;
 
 pub use cluster::{Cluster, Done};
-pub use member::Member;
+pub use member::{Member, Memory, Seat};

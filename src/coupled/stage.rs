@@ -125,7 +125,7 @@ impl Cluster<'_> {
             let rate = bridge.act_now([&motions[0], &motions[1]]);
             self.tie_rates[k][0] = carry(rate, &bridge.n, &tie.n);
             for end in 0..2 {
-                let member = &mut self.members[ends[end]];
+                let member = &mut *self.members[ends[end]];
                 let (force, moment) = bridge.load(end);
                 let rate = &mut member.grip.rates[0];
                 rate.v += force / member.body.mass;

@@ -1,18 +1,18 @@
 //! Force sweeps: all contacts of an island solved one after the other until none changes.
 //!
-//! Nonlinear Gauss–Seidel in the forces, with the set-valued normal law and a warm start. Where contacts oppose each
-//! other stiffly (a light rock under a heavy one, a high pile) sweeps creep; then the island is solved at once in the
-//! modes that they have found, and the sweeps judge the result.
+//! Nonlinear Gauss–Seidel in the forces, with the set-valued normal law and a warm start. A contact whose two rocks have
+//! not been stirred since it was solved is passed over, so a sweep costs what happens and not what is there. Where
+//! contacts oppose each other stiffly (a light rock under a heavy one, a high pile) sweeps creep; then the stirred part
+//! of the island is solved at once in the modes that they have found, and the sweeps judge the result.
 
 use super::bridge::Motion;
 use super::cluster::Cluster;
 use super::jump::jump;
 use super::member::Member;
-use crate::rock::Vec3;
 use crate::step::joint::Normal;
 use crate::step::law::within;
 
-/// Sweeps before the first jump, and between two of them: at least, for each rock, and at most.
+/// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most.
 const SWEEPS: (usize, usize, usize) = (6, 2, 60);
 /// Jumps after which a stage is given up; the step is then halved.
 const JUMPS: usize = 10;
@@ -21,40 +21,103 @@ const SETTLED: f64 = 1e-6;
 /// Change of a force, relative to itself, that is rounding (–).
 const ROUNDING: f64 = 1e-11;
 
+/// Which rocks have been stirred, and what every contact has seen of that.
+#[derive(Debug, Default)]
+pub(super) struct Stirred {
+    /// How often each rock was set in another motion.
+    times: Vec<u32>,
+    /// The count at which each rock's contacts with the mesh were solved …
+    spots: Vec<u32>,
+    /// … and each contact of two rocks.
+    bridges: Vec<[u32; 2]>,
+    /// Rocks whose forces changed in the last sweep.
+    pub(super) lately: Vec<bool>,
+}
+
+impl Stirred {
+    /// Nothing has been solved yet.
+    fn begin(&mut self, rocks: usize, bridges: usize) {
+        self.times.clear();
+        self.times.resize(rocks, 1);
+        self.spots.clear();
+        self.spots.resize(rocks, 0);
+        self.bridges.clear();
+        self.bridges.resize(bridges, [0; 2]);
+        self.lately.clear();
+        self.lately.resize(rocks, true);
+    }
+
+    fn stir(&mut self, k: usize) {
+        self.times[k] += 1;
+        self.lately[k] = true;
+    }
+}
+
 impl Cluster<'_> {
     /// Finds all contact forces of a stage of length `h`; whether they settled.
     pub(super) fn settle(&mut self, h: f64) -> bool {
         self.drive(h);
-        let sweeps = (SWEEPS.0 + SWEEPS.1 * self.members.len()).min(SWEEPS.2);
+        self.stirred.begin(self.members.len(), self.bridges.len());
         for round in 0..JUMPS {
-            for k in 0..sweeps {
-                self.sweeps += 1;
-                if self.sweep(h, k % 2 == 1) {
-                    return true;
-                }
+            if self.sweep_on(h) {
+                return true;
             }
             if round + 1 < JUMPS {
                 self.jumps += 1;
-                if let Some(motions) = jump(&self.members, &self.bridges, h) {
-                    self.act_on(&motions, h);
-                    self.drive(h);
-                }
+                self.jump_on(h);
             }
         }
         false
     }
 
+    /// Sweeps until nothing changes or a jump is due; whether nothing changes any more.
+    fn sweep_on(&mut self, h: f64) -> bool {
+        let mut most = SWEEPS.2;
+        let mut k = 0;
+        while k < most {
+            self.sweeps += 1;
+            self.stirred.lately.fill(false);
+            if self.sweep(h, k % 2 == 1) {
+                return true;
+            }
+            let stirred = self.stirred.lately.iter().filter(|lately| **lately).count();
+            most = (SWEEPS.0 + SWEEPS.1 * stirred).min(SWEEPS.2);
+            k += 1;
+        }
+        false
+    }
+
+    /// Solves what was stirred lately at once.
+    fn jump_on(&mut self, h: f64) {
+        self.grow_stirred();
+        if let Some(motions) = jump(&self.members, &self.bridges, &self.stirred.lately, h) {
+            self.act_on(&motions, h);
+            self.drive(h);
+            self.stirred.begin(self.members.len(), self.bridges.len());
+        }
+    }
+
+    /// The neighbours of what was stirred take part in a jump.
+    fn grow_stirred(&mut self) {
+        let core = self.stirred.lately.clone();
+        for [a, b] in self.bridges.iter().filter(|bridge| bridge.acts()).map(|bridge| bridge.ends) {
+            self.stirred.lately[a] |= core[b];
+            self.stirred.lately[b] |= core[a];
+        }
+    }
+
     /// Motions from all forces together.
     fn drive(&mut self, h: f64) {
         for member in &mut self.members {
-            member.now = member.free;
-            for spot in &member.grip.spots[..member.grip.spot_count] {
-                let (dv, dw) = spot.effect(&member.body, h);
-                member.now.0 += dv;
-                member.now.1 += dw;
+            let Member { grip, body, free, now, .. } = &mut **member;
+            *now = *free;
+            for spot in &grip.spots[..grip.spot_count] {
+                let (dv, dw) = spot.effect(body, h);
+                now.0 += dv;
+                now.1 += dw;
             }
         }
-        for bridge in &self.bridges {
+        for bridge in self.bridges.iter().filter(|bridge| bridge.acts()) {
             for k in 0..2 {
                 let Member { body, now, .. } = &mut *self.members[bridge.ends[k]];
                 bridge.act(k, body, h, now);
@@ -75,47 +138,70 @@ impl Cluster<'_> {
     }
 
     fn sweep_spots(&mut self, k: usize, h: f64) -> bool {
-        let member = &mut *self.members[k];
-        let (body, mut settled) = (&member.body, true);
-        for spot in &mut member.grip.spots[..member.grip.spot_count] {
+        if self.stirred.spots[k] == self.stirred.times[k] {
+            return true;
+        }
+        let Member { grip, body, now, .. } = &mut *self.members[k];
+        let count = grip.spot_count;
+        let mut settled = true;
+        for spot in &mut grip.spots[..count] {
             let before = (spot.push, spot.drag, spot.moment);
             let (dv, dw) = spot.effect(body, h);
-            let free = (member.now.0 - dv, member.now.1 - dw);
+            let free = (now.0 - dv, now.1 - dw);
             spot.solve(body, &free.0, &free.1, h);
             let (dv, dw) = spot.effect(body, h);
-            member.now = (free.0 + dv, free.1 + dw);
+            *now = (free.0 + dv, free.1 + dw);
             let change = (spot.push - before.0).abs().max((spot.drag - before.1).norm());
             let change = change.max((spot.moment - before.2).norm() / body.radius);
             let allowed = SETTLED * self.tolerance * body.mass / h;
             settled &= change <= allowed.max(ROUNDING * spot.push);
         }
+        let seen = self.stirred.times[k];
+        if !settled {
+            self.stirred.stir(k);
+        }
+        // One contact alone is solved exactly; several must see each other's change.
+        self.stirred.spots[k] = if count > 1 { seen } else { self.stirred.times[k] };
         settled
     }
 
     fn sweep_bridge(&mut self, k: usize, h: f64) -> bool {
         let bridge = &mut self.bridges[k];
+        let ends = bridge.ends;
+        if self.stirred.bridges[k] == ends.map(|end| self.stirred.times[end]) {
+            return true;
+        }
         let before = (bridge.push, bridge.drag);
-        let mut motions: [Motion; 2] = [(Vec3::zeros(), Vec3::zeros()); 2];
-        for (k, motion) in motions.iter_mut().enumerate() {
-            let member = &self.members[bridge.ends[k]];
-            *motion = member.now;
-            bridge.act(k, &member.body, -h, motion);
+        let mut motions: [Motion; 2] = ends.map(|end| self.members[end].now);
+        if bridge.acts() {
+            for k in 0..2 {
+                bridge.act(k, &self.members[ends[k]].body, -h, &mut motions[k]);
+            }
         }
         bridge.solve([&motions[0], &motions[1]], h);
-        for (k, motion) in motions.iter_mut().enumerate() {
-            let member = &mut self.members[bridge.ends[k]];
-            bridge.act(k, &member.body, h, motion);
-            member.now = *motion;
-        }
         let change = (bridge.push - before.0).abs().max((bridge.drag - before.1).norm());
+        if bridge.acts() || change > 0.0 {
+            for (k, motion) in motions.iter_mut().enumerate() {
+                let member = &mut *self.members[ends[k]];
+                bridge.act(k, &member.body, h, motion);
+                member.now = *motion;
+            }
+        }
         let allowed = SETTLED * self.tolerance / (h * bridge.inv_m);
-        change <= allowed.max(ROUNDING * bridge.push.abs())
+        let settled = change <= allowed.max(ROUNDING * bridge.push.abs());
+        if !settled {
+            ends.iter().for_each(|end| self.stirred.stir(*end));
+        }
+        self.stirred.bridges[k] = ends.map(|end| self.stirred.times[end]);
+        settled
     }
 
-    /// Sets every force to what its law gives at these motions.
-    fn act_on(&mut self, motions: &[Motion], h: f64) {
-        for (member, (v, w)) in self.members.iter_mut().zip(motions) {
-            let Member { grip, body, .. } = &mut **member;
+    /// Sets every force of rocks that jumped to what its law gives at their new motions.
+    fn act_on(&mut self, motions: &[Option<Motion>], h: f64) {
+        for (member, motion) in self.members.iter_mut().zip(motions) {
+            let Some((v, w)) = motion else { continue };
+            let Member { grip, body, now, .. } = &mut **member;
+            *now = (*v, *w);
             for spot in &mut grip.spots[..grip.spot_count] {
                 let law = spot.law;
                 let springs = (law.p_n, spot.c_n);
@@ -127,7 +213,10 @@ impl Cluster<'_> {
             }
         }
         for bridge in &mut self.bridges {
-            let ends = bridge.ends.map(|k| &motions[k]);
+            if bridge.ends.iter().all(|&k| motions[k].is_none()) {
+                continue;
+            }
+            let ends = bridge.ends.map(|k| &self.members[k].now);
             let (law, speed, stick) = (bridge.law, bridge.speed(ends), bridge.trial(ends, h));
             if bridge.bond.is_some() {
                 bridge.push = law.p_n * (bridge.pen - h * speed) - bridge.c_n * speed;
@@ -139,5 +228,23 @@ impl Cluster<'_> {
                 bridge.drag = within(stick, law.friction * bridge.push);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Stirred;
+
+    /// A contact is looked at again exactly when one of its rocks was stirred after it had been solved.
+    #[test]
+    fn what_is_stirred_is_solved_again() {
+        let mut stirred = Stirred::default();
+        stirred.begin(2, 1);
+        assert_ne!(stirred.bridges[0], [stirred.times[0], stirred.times[1]]);
+        stirred.bridges[0] = [stirred.times[0], stirred.times[1]];
+        stirred.stir(1);
+        assert_ne!(stirred.bridges[0], [stirred.times[0], stirred.times[1]]);
+        stirred.begin(2, 1);
+        assert_ne!(stirred.bridges[0], [stirred.times[0], stirred.times[1]]);
     }
 }

@@ -57,9 +57,20 @@ pub enum Landing {
 
 /// Follows the flight for at most `longest_s`; `tested` counts triangles.
 pub fn leap(terrain: &Terrain, flight: &Parabola, longest_s: f64, tested: &mut u64) -> Landing {
+    leap_past(terrain, flight, longest_s, &[], tested)
+}
+
+/// The same past the stems that are `gone`.
+pub fn leap_past(
+    terrain: &Terrain,
+    flight: &Parabola,
+    longest_s: f64,
+    gone: &[u32],
+    tested: &mut u64,
+) -> Landing {
     let leaves = leaves_box_after(terrain, flight);
     let limit = longest_s.min(leaves);
-    match first_touch(terrain, flight, limit, tested) {
+    match first_touch(terrain, flight, limit, (gone, tested)) {
         Some(t) => Landing::Touch(t),
         None if leaves <= longest_s => Landing::Leaves(leaves),
         None => Landing::Flies,
@@ -91,7 +102,12 @@ fn leaves_box_after(terrain: &Terrain, flight: &Parabola) -> f64 {
 }
 
 /// Time at which the ball first touches the mesh, within `limit` (s).
-fn first_touch(terrain: &Terrain, flight: &Parabola, limit: f64, tested: &mut u64) -> Option<f64> {
+fn first_touch(
+    terrain: &Terrain,
+    flight: &Parabola,
+    limit: f64,
+    (gone, tested): (&[u32], &mut u64),
+) -> Option<f64> {
     let pairs = terrain.index.pairs();
     if pairs.is_empty() {
         return None;
@@ -128,6 +144,9 @@ fn first_touch(terrain: &Terrain, flight: &Parabola, limit: f64, tested: &mut u6
                         break;
                     }
                     *tested += 1;
+                    if terrain.is_gone(triangle, gone) {
+                        continue;
+                    }
                     if let Some(t) = touch::of_triangle(terrain, triangle, flight, window) {
                         best = t;
                         found = true;

@@ -6,8 +6,11 @@
 use super::lines::CrossingRow;
 use super::proportion::Proportion;
 use super::sample::Sample;
+use super::totals::Largest;
+use super::{Statistic, statistic};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::iter;
 
 /// A barrier on one of the evaluation lines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,12 +23,27 @@ pub struct Barrier {
     pub capacity_j: f64,
     /// How a design is derived; none leaves it out.
     pub design: Option<Rule>,
+    /// Where else it might stand.
+    #[serde(default)]
+    pub elsewhere: Vec<Elsewhere>,
+}
+
+/// Another place for a barrier, beside its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Elsewhere {
+    /// Distance from its own place (m), positive on the left of its line.
+    pub offset_m: f64,
+    /// Name of the evaluation line there.
+    pub line: String,
 }
 
 /// A design rule: a percentile and factors, each by its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rule {
+    /// The standard it follows, in words; none = the scene's own.
+    #[serde(default)]
+    pub standard: Option<String>,
     /// Percentile of energy and height over the rocks that arrive (per cent), above 0 and below 100.
     pub percentile: f64,
     /// Factors on the speed (–); they enter the energy squared.
@@ -39,6 +57,9 @@ pub struct Rule {
     pub height_factors: BTreeMap<String, f64>,
     /// Free height to be kept above the design height (m).
     pub free_height_m: f64,
+    /// Distance that must be kept free behind the barrier (m), where elongation and standard are named.
+    #[serde(default)]
+    pub free_distance_m: Option<f64>,
 }
 
 /// What a rule asks of a barrier at its place.
@@ -60,6 +81,8 @@ pub struct BarrierSummary {
     /// The barrier.
     #[serde(flatten)]
     pub barrier: Barrier,
+    /// Rocks whose way crosses its line, stopped before or not.
+    pub crossing: usize,
     /// Rocks that arrive, those stopped before left out, as a share of all releases.
     pub arriving: Proportion,
     /// Rocks stopped, as a share of those that arrive.
@@ -68,20 +91,45 @@ pub struct BarrierSummary {
     pub over: usize,
     /// Rocks below its edge with more energy than it takes.
     pub through: usize,
+    /// Total energy of the rocks that arrive (J).
+    pub energy_j: Statistic,
+    /// Height of the highest point of the rocks that arrive (m).
+    pub top_m: Statistic,
     /// What the rule asks for, from the rocks that arrive; none without rule or rocks.
     pub design_values: Option<Design>,
-    /// Height (m) and share of the arriving rocks that would be stopped (–) at equal capacity.
-    pub by_height: Vec<(f64, f64)>,
+    /// At its own place first, then elsewhere.
+    pub by_place: Vec<AtPlace>,
+}
+
+/// What a barrier of the same capacity would do at a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AtPlace {
+    /// Distance from its own place (m), positive on the left of its line.
+    pub offset_m: f64,
+    /// Rocks that arrive there, as a share of all releases.
+    pub arriving: Proportion,
+    /// Height (m) and share of the arriving rocks that would be stopped.
+    pub by_height: Vec<(f64, Proportion)>,
+    /// What the rule asks for there.
+    pub design_values: Option<Design>,
 }
 
 /// Heights of the sensitivity over the barrier's own (–).
 const HEIGHTS: [f64; 7] = [0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5];
 
-#[derive(Debug, Default)]
-struct Arrivals {
-    /// Height of the highest point (m) and total energy (J).
-    rocks: Vec<(f64, f64)>,
+/// A rock that arrives at a barrier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival {
+    /// Release number.
+    pub release: usize,
+    /// Height of its highest point above the ground (m); infinite where there is no ground below.
+    pub top_m: f64,
+    /// Total energy (J).
+    pub total_j: f64,
 }
+
+/// Rocks that arrive at each place of a barrier, its own first.
+pub type Arrivals = Vec<Vec<Arrival>>;
 
 /// Judges all barriers; `rows` are first crossings, release by release.
 ///
@@ -92,82 +140,156 @@ pub fn judge<E>(
     rows: impl Iterator<Item = Result<CrossingRow, E>>,
     releases: usize,
 ) -> Result<Vec<BarrierSummary>, E> {
-    let mut arrivals: Vec<Arrivals> = barriers.iter().map(|_| Arrivals::default()).collect();
-    let mut rock: Vec<(f64, usize, CrossingRow)> = Vec::new();
-    for row in rows {
-        let row = row?;
-        if rock.first().is_some_and(|(_, _, first)| first.index != row.index) {
-            send(barriers, &mut rock, &mut arrivals);
-        }
-        if let Some(which) = barriers.iter().position(|barrier| barrier.name == row.line) {
-            rock.push((row.time_s, which, row));
-        }
-    }
-    send(barriers, &mut rock, &mut arrivals);
-    let summary = |(barrier, arrivals): (&Barrier, Arrivals)| arrivals.summary(barrier, releases);
-    Ok(barriers.iter().zip(arrivals).map(summary).collect())
+    let (arrivals, crossing) = follow(barriers, rows)?;
+    let all = barriers.iter().zip(&arrivals).zip(crossing);
+    Ok(all.map(|((barrier, places), n)| summary(barrier, places, (n, releases))).collect())
 }
 
-/// Sends one rock through the barriers on its way until one stops it.
+/// The rocks that arrive at each barrier, at its own place and elsewhere.
+///
+/// # Errors
+/// Passes on what reading a row says.
+pub fn arrivals<E>(
+    barriers: &[Barrier],
+    rows: impl Iterator<Item = Result<CrossingRow, E>>,
+) -> Result<Vec<Arrivals>, E> {
+    Ok(follow(barriers, rows)?.0)
+}
+
+fn follow<E>(
+    barriers: &[Barrier],
+    rows: impl Iterator<Item = Result<CrossingRow, E>>,
+) -> Result<(Vec<Arrivals>, Vec<usize>), E> {
+    let places = |barrier: &Barrier| vec![Vec::new(); 1 + barrier.elsewhere.len()];
+    let mut arrivals: Vec<Arrivals> = barriers.iter().map(places).collect();
+    let mut crossing = vec![0; barriers.len()];
+    let mut rock: Vec<CrossingRow> = Vec::new();
+    for row in rows {
+        let row = row?;
+        if rock.first().is_some_and(|first| first.index != row.index) {
+            send(barriers, &mut rock, (&mut arrivals, &mut crossing));
+        }
+        rock.push(row);
+    }
+    send(barriers, &mut rock, (&mut arrivals, &mut crossing));
+    Ok((arrivals, crossing))
+}
+
+/// Sends one rock through the barriers on its way until one stops it; and again for every other place of one of them.
 fn send(
     barriers: &[Barrier],
-    rock: &mut Vec<(f64, usize, CrossingRow)>,
-    arrivals: &mut [Arrivals],
+    rock: &mut Vec<CrossingRow>,
+    (arrivals, crossing): (&mut [Arrivals], &mut [usize]),
 ) {
-    rock.sort_by(|one, other| one.0.total_cmp(&other.0));
-    for (_, which, row) in rock.iter() {
-        // where there is no ground below, nothing says how high it is: it is let through
-        let top_m =
-            if row.height_m.is_nan() { f64::INFINITY } else { row.height_m + 2.0 * row.radius_m };
-        let total_j = row.total_j();
-        arrivals[*which].rocks.push((top_m, total_j));
-        if stops(&barriers[*which], top_m, total_j) {
-            break;
+    rock.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+    let way = |moved: Option<(usize, &str)>| -> Vec<(usize, Arrival)> {
+        let line = |which: usize| match moved {
+            Some((other, line)) if other == which => line,
+            _ => barriers[which].name.as_str(),
+        };
+        let barrier_at =
+            |row: &CrossingRow| (0..barriers.len()).find(|&which| line(which) == row.line);
+        rock.iter().filter_map(|row| Some((barrier_at(row)?, Arrival::of(row)))).collect()
+    };
+    let own = way(None);
+    for (which, _) in &own {
+        crossing[*which] += 1;
+    }
+    for (which, arrival) in until_stopped(barriers, &own) {
+        arrivals[*which][0].push(*arrival);
+    }
+    for (which, barrier) in barriers.iter().enumerate() {
+        for (place, elsewhere) in barrier.elsewhere.iter().enumerate() {
+            let way = way(Some((which, &elsewhere.line)));
+            let arrived = until_stopped(barriers, &way).iter().find(|(met, _)| *met == which);
+            arrivals[which][1 + place].extend(arrived.map(|(_, arrival)| *arrival));
         }
     }
     rock.clear();
 }
 
-fn stops(barrier: &Barrier, top_m: f64, total_j: f64) -> bool {
-    top_m <= barrier.height_m && total_j <= barrier.capacity_j
+/// The part of a way up to the barrier that stops the rock.
+fn until_stopped<'a>(barriers: &[Barrier], way: &'a [(usize, Arrival)]) -> &'a [(usize, Arrival)] {
+    let end = way.iter().position(|(which, arrival)| {
+        let barrier = &barriers[*which];
+        arrival.is_stopped(barrier.height_m, barrier.capacity_j)
+    });
+    &way[..end.map_or(way.len(), |last| last + 1)]
 }
 
-impl Arrivals {
-    fn summary(&self, barrier: &Barrier, releases: usize) -> BarrierSummary {
-        let count = |of: &dyn Fn(f64, f64) -> bool| {
-            self.rocks.iter().filter(|(top_m, total_j)| of(*top_m, *total_j)).count()
-        };
-        let n = self.rocks.len();
-        let stopped = count(&|top_m, total_j| stops(barrier, top_m, total_j));
-        let over = count(&|top_m, _| top_m > barrier.height_m);
-        let share = |height_m: f64| {
-            let other = Barrier { height_m, ..barrier.clone() };
-            count(&|top_m, total_j| stops(&other, top_m, total_j)) as f64 / n.max(1) as f64
-        };
-        BarrierSummary {
-            barrier: barrier.clone(),
-            arriving: Proportion::new(n, releases),
-            stopped: Proportion::new(stopped, n),
-            over,
-            through: n - stopped - over,
-            design_values: barrier.design.as_ref().and_then(|rule| self.design(rule)),
-            by_height: HEIGHTS.map(|h| h * barrier.height_m).map(|h| (h, share(h))).into(),
-        }
+impl Arrival {
+    fn of(row: &CrossingRow) -> Self {
+        // where there is no ground below, nothing says how high it is: it is let through
+        let top_m =
+            if row.height_m.is_nan() { f64::INFINITY } else { row.height_m + 2.0 * row.radius_m };
+        Self { release: row.index, top_m, total_j: row.total_j() }
     }
 
-    fn design(&self, rule: &Rule) -> Option<Design> {
-        let p = rule.percentile / 100.0;
-        let value = |of: fn(&(f64, f64)) -> f64| {
-            Some(Sample::of(self.rocks.iter().map(of)).percentile(p)?.value)
-        };
+    /// Whether a barrier of this height (m) and capacity (J) stops it.
+    pub fn is_stopped(&self, height_m: f64, capacity_j: f64) -> bool {
+        self.top_m <= height_m && self.total_j <= capacity_j
+    }
+}
+
+fn summary(
+    barrier: &Barrier,
+    places: &Arrivals,
+    (crossing, releases): (usize, usize),
+) -> BarrierSummary {
+    let rocks = &places[0];
+    let stopped = stopped_at(barrier, rocks, barrier.height_m);
+    let over = rocks.iter().filter(|rock| rock.top_m > barrier.height_m).count();
+    let statistic = |of: fn(&Arrival) -> f64| {
+        let mut largest = None;
+        for rock in rocks {
+            Largest::update(&mut largest, rock.release, of(rock));
+        }
+        statistic(&Sample::of(rocks.iter().map(of)), largest)
+    };
+    let offsets = iter::once(0.0).chain(barrier.elsewhere.iter().map(|place| place.offset_m));
+    let at_place = |(offset_m, rocks): (f64, &Vec<Arrival>)| AtPlace {
+        offset_m,
+        arriving: Proportion::new(rocks.len(), releases),
+        by_height: HEIGHTS
+            .map(|share| share * barrier.height_m)
+            .map(|height_m| (height_m, stopped_at(barrier, rocks, height_m)))
+            .into(),
+        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks)),
+    };
+    BarrierSummary {
+        barrier: barrier.clone(),
+        crossing,
+        arriving: Proportion::new(rocks.len(), releases),
+        stopped,
+        over,
+        through: rocks.len() - stopped.count - over,
+        energy_j: statistic(|rock| rock.total_j),
+        top_m: statistic(|rock| rock.top_m),
+        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks)),
+        by_place: offsets.zip(places).map(at_place).collect(),
+    }
+}
+
+/// The share of some rocks that the barrier would stop at another height (m).
+fn stopped_at(barrier: &Barrier, rocks: &[Arrival], height_m: f64) -> Proportion {
+    let stopped = rocks.iter().filter(|rock| rock.is_stopped(height_m, barrier.capacity_j));
+    Proportion::new(stopped.count(), rocks.len())
+}
+
+impl Rule {
+    /// What it asks for, from the rocks that arrive; none without rocks.
+    fn design(&self, rocks: &[Arrival]) -> Option<Design> {
+        let p = self.percentile / 100.0;
+        let value =
+            |of: fn(&Arrival) -> f64| Some(Sample::of(rocks.iter().map(of)).percentile(p)?.value);
         let product = |factors: &BTreeMap<String, f64>| factors.values().product::<f64>();
-        let (energy, height) = (value(|rock| rock.1)?, value(|rock| rock.0)?);
-        let speed = product(&rule.speed_factors);
+        let (energy, height) = (value(|rock| rock.total_j)?, value(|rock| rock.top_m)?);
+        let speed = product(&self.speed_factors);
         Some(Design {
             energy_percentile_j: energy,
-            energy_j: energy * speed * speed * product(&rule.mass_factors),
+            energy_j: energy * speed * speed * product(&self.mass_factors),
             height_percentile_m: height,
-            height_m: height * product(&rule.height_factors) + rule.free_height_m,
+            height_m: height * product(&self.height_factors) + self.free_height_m,
         })
     }
 }
@@ -178,7 +300,7 @@ mod tests {
     use std::convert::Infallible;
 
     fn barrier(name: &str, height_m: f64, capacity_j: f64) -> Barrier {
-        Barrier { name: name.to_owned(), height_m, capacity_j, design: None }
+        Barrier { name: name.to_owned(), height_m, capacity_j, design: None, elsewhere: vec![] }
     }
 
     fn row(index: usize, line: &str, time_s: f64, height_m: f64, joule: f64) -> CrossingRow {
@@ -208,12 +330,15 @@ mod tests {
         let speed_factors = [("a".to_owned(), 1.02), ("b".to_owned(), 1.1)].into();
         let (mass_factors, height_factors) = ([("c".to_owned(), 1.02)].into(), BTreeMap::new());
         upper.design = Some(Rule {
+            standard: None,
             percentile: 50.0,
             speed_factors,
             mass_factors,
             height_factors,
             free_height_m: 0.5,
+            free_distance_m: None,
         });
+        upper.elsewhere = vec![Elsewhere { offset_m: -5.0, line: "upper -5 m".to_owned() }];
         let barriers = [upper, barrier("lower", 2.0, 200.0)];
         let rows = [
             row(0, "lower", 2.0, 0.0, 10.0),
@@ -223,6 +348,9 @@ mod tests {
             row(2, "upper", 1.0, 0.0, 500.0),
             row(2, "lower", 2.0, 0.0, 400.0),
             row(3, "lower", 2.0, 0.0, 200.0),
+            row(3, "upper -5 m", 1.5, 1.5, 90.0),
+            row(4, "lower", 1.0, 0.5, 50.0),
+            row(4, "upper -5 m", 1.5, 0.0, 10.0),
         ];
         let found = judge(&barriers, rows.into_iter().map(Ok::<_, Infallible>), 8).unwrap();
         let counts = |k: usize| {
@@ -230,8 +358,21 @@ mod tests {
             [at.arriving.count, at.stopped.count, at.over, at.through]
         };
         assert_eq!(counts(0), [3, 1, 1, 1]);
-        assert_eq!(counts(1), [3, 2, 0, 1]);
+        assert_eq!(counts(1), [4, 3, 0, 1]);
         assert_eq!(found[0].arriving.of, 8);
+        // rock 0 crosses the lower line too, but the upper net has it
+        assert_eq!((found[0].crossing, found[1].crossing), (3, 5));
+        let largest = found[1].energy_j.max.unwrap();
+        assert_eq!((found[1].energy_j.rocks, largest.release), (4, 2));
+        // five metres on, rock 3 meets the upper net; rock 4 would too, but the lower one has stopped it before
+        let places: Vec<[usize; 2]> = found[0]
+            .by_place
+            .iter()
+            .map(|at| [at.arriving.count, at.by_height[3].1.count])
+            .collect();
+        assert_eq!(places, [[3, 1], [1, 1]]);
+        // lower by half: 1.5 m stop none of the tops of 3, 3.5 and 1 m but the last, which has too much energy
+        assert_eq!(found[0].by_place[0].by_height[0].1.count, 0);
         let design = found[0].design_values.as_ref().unwrap();
         assert!((design.energy_j - 100.0 * (1.02_f64 * 1.1).powi(2) * 1.02).abs() < 1e-9);
         assert!((design.height_m - 3.5).abs() < 1e-12);

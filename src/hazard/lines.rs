@@ -18,6 +18,9 @@ pub struct LineInfo {
     pub length_m: f64,
     /// Its corners in map coordinates (m).
     pub corners_m: Vec<[f64; 2]>,
+    /// Whether it is another place of a barrier: its numbers stand with that barrier.
+    #[serde(default)]
+    pub of_barrier: bool,
 }
 
 /// One row of `crossings.csv`: the first crossing of a line by a rock.

@@ -16,7 +16,9 @@ mod sample;
 mod sum;
 mod totals;
 
-pub use barriers::{Barrier, BarrierSummary, Design, Rule, judge};
+pub use barriers::{
+    Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Design, Elsewhere, Rule, arrivals, judge,
+};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{Agreement, Way};

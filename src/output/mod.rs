@@ -74,6 +74,12 @@ pub struct RunInfo {
     pub threads: usize,
     /// The lines of the plan: what is computed, what is left out and why.
     pub plan: Vec<String>,
+    /// What went in, as name and value.
+    pub inputs: Vec<(String, String)>,
+    /// Rows of the title block.
+    pub title_block: Vec<(String, String)>,
+    /// Where terrain and ground values come from, in words.
+    pub sources: [String; 2],
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Health of the meshes.

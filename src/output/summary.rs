@@ -81,6 +81,15 @@ pub struct Summary {
     pub totals: Totals,
     /// What was computed, what was left out and why.
     pub plan: Vec<String>,
+    /// What went in, as name and value.
+    #[serde(default)]
+    pub inputs: Vec<(String, String)>,
+    /// Rows of the title block.
+    #[serde(default)]
+    pub title_block: Vec<(String, String)>,
+    /// Where terrain and ground values come from, in words.
+    #[serde(default)]
+    pub sources: [String; 2],
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Health of the meshes.
@@ -118,6 +127,9 @@ impl Summary {
             totals: hazard.totals.rounded(),
             origin_m: info.origin_m.into(),
             plan: info.plan,
+            inputs: info.inputs,
+            title_block: info.title_block,
+            sources: info.sources,
             warnings: info.warnings,
             mesh_health: info.mesh_health,
             definitions: owned(&DEFINITIONS),

@@ -35,6 +35,7 @@ impl Plan {
             rest: RestRule { speed_m_s, time_s },
             longest_s,
             trees,
+            breaking,
             flight,
             orientation,
             rolling,
@@ -49,6 +50,9 @@ impl Plan {
             maps,
             catalogued,
             deposits,
+            inputs: _,      // with the report
+            title_block: _, // with the report
+            sources: _,     // with the report
             warnings,
         } = self;
         let place = place(releases.place());
@@ -82,6 +86,9 @@ impl Plan {
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s"));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
+        list.part("breaking stems", breaking, |stems| {
+            format!("{stems}, each whole again for the next rock")
+        });
         list.line("flight", format!("leapt over: {}", never(flight)));
         list.line("orientation", format!("left out: {}", never(orientation)));
         list.touchable(&terrain.features.count);

@@ -1,10 +1,10 @@
 //! A plain figure: lines over two axes, or spheres seen from the side.
 
 use super::axis::Axis;
-use super::colour::{BLUE, INK, SKY};
+use super::colour::{BLUE, GREY, INK, ORANGE, SKY};
 use super::figure::WIDTH_PX;
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Pen, paint};
+use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
 
 /// What to draw.
@@ -18,6 +18,12 @@ pub struct Curves {
     pub y: &'static str,
     /// Lines through values.
     pub lines: Vec<Vec<(f64, f64)>>,
+    /// The same by another way of computing.
+    pub others: Vec<Vec<(f64, f64)>>,
+    /// What the two are called; none where there is only one.
+    pub names: Option<[&'static str; 2]>,
+    /// The ground behind.
+    pub ground: Vec<Vec<(f64, f64)>>,
     /// Spheres: centre and radius, in the unit of both axes, which then have one scale.
     pub discs: Vec<(f64, f64, f64)>,
 }
@@ -28,33 +34,50 @@ const TOP_PX: f64 = 12.0;
 impl Curves {
     /// Nothing to draw yet.
     pub fn new(title: impl Into<String>, x: &'static str, y: &'static str) -> Self {
-        Self { title: title.into(), x, y, lines: Vec::new(), discs: Vec::new() }
+        Self {
+            title: title.into(),
+            x,
+            y,
+            lines: Vec::new(),
+            others: Vec::new(),
+            names: None,
+            ground: Vec::new(),
+            discs: Vec::new(),
+        }
     }
 
     /// The figure as an SVG file.
     pub fn draw(&self, name: &str) -> String {
         let discs = self.discs.iter().flat_map(|(x, y, r)| [(x - r, y - r), (x + r, y + r)]);
-        let all: Vec<(f64, f64)> = self.lines.iter().flatten().copied().chain(discs).collect();
+        let lines = [&self.lines, &self.others, &self.ground].into_iter().flatten().flatten();
+        let all: Vec<(f64, f64)> = lines.copied().chain(discs).collect();
         let range = |of: fn(&(f64, f64)) -> f64| {
             let values = all.iter().map(of);
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)))
         };
-        let (x, mut y) = (range(|p| p.0), range(|p| p.1));
+        let (x, y) = (range(|p| p.0), range(|p| p.1));
+        let (mut x, mut y) = (x, y);
         let frame =
             Frame { left: 60.0, top: TOP_PX, right: WIDTH_PX - 16.0, bottom: TOP_PX + HEIGHT_PX };
-        let scale = frame.width() / (x.1 - x.0);
-        if !self.discs.is_empty() {
-            let middle = 0.5 * (y.0 + y.1);
-            let half = (0.5 * frame.height() / scale).max(0.5 * (y.1 - y.0));
-            y = (middle - half, middle + half);
+        if self.is_seen_from_the_side() {
+            // one scale for both axes
+            let scale = f64::min(frame.width() / (x.1 - x.0), frame.height() / (y.1 - y.0));
+            x = around(x, frame.width() / scale);
+            y = around(y, frame.height() / scale);
         }
         let panel =
             Panel::new(frame, Axis::linear(x.0, x.1, self.x), Axis::linear(y.0, y.1, self.y));
         let size = (WIDTH_PX, TOP_PX + HEIGHT_PX + FOOT_PX);
         paint(name, size, &self.title, |paper| {
             panel.grid(paper);
+            for line in &self.ground {
+                panel.line(paper, line, Pen::full(GREY, 1.4));
+            }
             for line in &self.lines {
                 panel.line(paper, line, Pen::full(BLUE, 1.0));
+            }
+            for line in &self.others {
+                panel.line(paper, line, Pen::full(ORANGE, 1.0).dashed());
             }
             for &(x, y, radius) in &self.discs {
                 let px = radius * frame.height() / (panel.y.high - panel.y.low);
@@ -62,6 +85,27 @@ impl Curves {
                 paper.disc(panel.at(x, y), (px - 0.6).max(0.1), SKY);
             }
             panel.axes(paper);
+            self.key(paper, &panel);
         })
     }
+
+    fn is_seen_from_the_side(&self) -> bool {
+        !self.discs.is_empty() || !self.ground.is_empty()
+    }
+
+    fn key(&self, paper: &Paper<'_>, panel: &Panel) {
+        let mut x = panel.frame.left + 10.0;
+        for (name, colour) in self.names.iter().flatten().zip([BLUE, ORANGE]) {
+            let y = panel.frame.top + 12.0;
+            paper.disc((x, y), 4.0, colour);
+            paper.text(&Label::new(*name, (x + 9.0, y)));
+            x += 9.0 + text_width(name, SMALL) + 18.0;
+        }
+    }
+}
+
+/// The range of this width about the middle of another.
+fn around((low, high): (f64, f64), width: f64) -> (f64, f64) {
+    let middle = 0.5 * (low + high);
+    (middle - 0.5 * width, middle + 0.5 * width)
 }

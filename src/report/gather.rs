@@ -51,6 +51,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
             .chain(measured::tables(results)?)
             .collect(),
         lines: lines::lines(results)?,
+        barriers: barriers::views(results)?,
         maps: lines::maps(results)?,
         observed: measured::observed(results)?,
     })
@@ -183,6 +184,11 @@ fn table(hazard: &Hazard) -> Table {
     statistics_table("Statistics over all releases", note, &rows)
 }
 
+/// An estimate in a unit so many times as large.
+fn scaled_by(x: Estimate, size: f64) -> Estimate {
+    Estimate { value: x.value / size, low: x.low / size, high: x.high / size }
+}
+
 /// A table of mean, percentiles and maximum: name, the quantity whose unit it has, and the values of each row.
 fn statistics_table(title: &str, note: String, rows: &[(&str, Quantity, Sample)]) -> Table {
     let percents = PERCENTS.map(|percent| format!("{percent} %"));
@@ -190,11 +196,7 @@ fn statistics_table(title: &str, note: String, rows: &[(&str, Quantity, Sample)]
         ["mean".to_owned()].into_iter().chain(percents).chain(["maximum".to_owned()]).collect();
     let rows = rows.iter().map(|(name, like, sample)| {
         let (unit, size) = like.unit(sample.values().last().copied().unwrap_or(0.0));
-        let scaled = |x: Estimate| Estimate {
-            value: x.value / size,
-            low: x.low / size,
-            high: x.high / size,
-        };
+        let scaled = |x: Estimate| scaled_by(x, size);
         let mean = sample.mean().map(|mean| estimate(mean.value, mean.low_95, mean.high_95));
         let most = sample.values().last().map(|&most| estimate(most, None, None));
         let middle = PERCENTS.map(|percent| {
@@ -223,7 +225,14 @@ fn text_of(results: &Results) -> Text {
         title: summary.title.clone(),
         subtitle: planned("file "),
         scheme: format!("Scheme in force: {}.", planned("scheme ")),
-        terrain_source: planned("terrain "),
+        title_block: summary.title_block.clone(),
+        inputs: summary.inputs.clone(),
+        terrain_source: [summary.sources[0].clone(), planned("terrain ")]
+            .into_iter()
+            .filter(|words| !words.is_empty())
+            .collect::<Vec<_>>()
+            .join("; "),
+        parameter_source: summary.sources[1].clone(),
         plan: summary.plan.clone(),
         warnings: [&summary.warnings[..], &summary.totals.warnings(results.hazard.rocks())]
             .concat(),
@@ -233,6 +242,5 @@ fn text_of(results: &Results) -> Text {
         scene_hash: summary.identity.scene_hash.clone(),
         rate_per_s: Some(summary.run.releases_per_second),
         energy_remainder: summary.largest_energy_balance_error.map(|largest| largest.value),
-        ..Text::default()
     }
 }

@@ -75,11 +75,12 @@ fn title_block(report: &Report) -> String {
     };
     let count = format::decimal(report.releases.len() as f64, 0);
     format!(
-        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{count} releases · {} kept paths · seed {} · rockfall {}</p>\n</header>\n",
+        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{count} releases · {} kept paths · seed {} · rockfall {}</p>\n{}</header>\n",
         escape(&text.title),
         report.paths.len(),
         text.seed,
-        escape(&text.version)
+        escape(&text.version),
+        pairs(&text.title_block)
     )
 }
 
@@ -150,6 +151,10 @@ fn in_short_unit(row: &Row) -> (Estimate, &str) {
 /// Value and interval with as many digits as the interval leaves meaningful.
 fn in_words(estimate: &Estimate) -> (String, String) {
     let width = estimate.high - estimate.low;
+    if width.is_nan() && estimate.value.fract() == 0.0 && estimate.value.abs() < 1e7 {
+        // a count, or a number as it was written
+        return (format::decimal(estimate.value, 0), format::NO_NUMBER.to_owned());
+    }
     let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
         // the last digit is at most a fifth of the interval
         let leading = estimate.value.abs().log10().floor() - (0.2 * width).log10().floor();
@@ -227,7 +232,8 @@ fn inputs(report: &Report) -> String {
     let text = &report.text;
     let mut body = pairs(&text.inputs);
     if !text.mesh_health.is_empty() {
-        let _ = write!(body, "<h3>Health of the meshes</h3>\n{}", list(&text.mesh_health));
+        let lines: String = text.mesh_health.iter().map(|line| escape(line) + "\n").collect();
+        let _ = write!(body, "<h3>Health of the meshes</h3>\n<pre>{lines}</pre>\n");
     }
     section("Inputs", &body)
 }

@@ -28,6 +28,8 @@ pub struct Report {
     pub tables: Vec<Table>,
     /// Evaluation lines, in the order of the scene.
     pub lines: Vec<Line>,
+    /// Barriers, in the order of the scene.
+    pub barriers: Vec<BarrierView>,
     /// Measured ends, where the scene names some.
     pub observed: Option<Observed>,
     /// Maps, where the scene asks for them.
@@ -41,6 +43,8 @@ pub struct Text {
     pub title: String,
     /// One line below the title: place, date, file. May be empty.
     pub subtitle: String,
+    /// Title block: client, project, author, date. May be empty.
+    pub title_block: Vec<(String, String)>,
     /// How contacts were integrated, in one sentence; closes the method paragraph. May be empty.
     pub scheme: String,
     /// Inputs as name and value: rocks, release, grounds, stop rule.
@@ -184,6 +188,32 @@ pub struct Table {
     pub columns: Vec<String>,
     /// Name with unit, and one cell a column (`None` = not available).
     pub rows: Vec<(String, Vec<Option<Estimate>>)>,
+}
+
+/// One barrier and the rocks that arrive at it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BarrierView {
+    /// Its name.
+    pub name: String,
+    /// Its height (m).
+    pub height_m: f64,
+    /// Energy that it takes (J).
+    pub capacity_j: f64,
+    /// Height (m) and energy (J) that its rule asks for.
+    pub design: Option<(f64, f64)>,
+    /// Its own place first, then others.
+    pub places: Vec<PlaceView>,
+}
+
+/// The rocks that arrive at one place of a barrier.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaceView {
+    /// Distance from the barrier's own place (m), positive on the left of its line.
+    pub offset_m: f64,
+    /// Share of all releases that arrive (–).
+    pub arriving: f64,
+    /// Height of the highest point (m) and total energy (J) of each.
+    pub rocks: Vec<(f64, f64)>,
 }
 
 /// One evaluation line.

@@ -9,6 +9,7 @@
 //! bins of histograms and the envelopes along the fall line are found for display.
 
 pub mod axis;
+mod barriers;
 pub mod colour;
 pub mod contour;
 pub mod curves;
@@ -125,6 +126,11 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         let file = format!("line_{}.svg", number + 1);
         let title = format!("Evaluation line “{}”", line.name);
         drawn.push((heading(&file, &title), lines::draw(line, number + 1)));
+    }
+    for (number, barrier) in report.barriers.iter().enumerate() {
+        let file = format!("barrier_{}.svg", number + 1);
+        let title = format!("Barrier “{}”", barrier.name);
+        drawn.push((heading(&file, &title), barriers::draw(barrier, number + 1)));
     }
     drawn
 }

@@ -39,8 +39,11 @@ pub enum VaryKey {
     FrictionAngleDeg,
     /// Normal restitution (–).
     Restitution,
-    /// Rolling friction (–).
+    /// Rolling friction (–); with a spread, its smallest and most frequent value.
     RollingFriction,
+    /// How far rolling friction reaches above that (–), drawn once per rock from a triangle that falls to there: what the
+    /// shapes of blocks, which spheres have not, do to their rolling.
+    RollingFrictionSpread,
     /// Roughness (degrees).
     RoughnessDeg,
 }
@@ -52,6 +55,7 @@ impl VaryKey {
             Self::FrictionAngleDeg => "friction_angle_deg",
             Self::Restitution => "restitution",
             Self::RollingFriction => "rolling_friction",
+            Self::RollingFrictionSpread => "rolling_friction_spread",
             Self::RoughnessDeg => "roughness_deg",
         }
     }
@@ -60,7 +64,7 @@ impl VaryKey {
         match self {
             Self::FrictionAngleDeg | Self::RoughnessDeg => Allowed::Slope,
             Self::Restitution => Allowed::Share,
-            Self::RollingFriction => Allowed::NotNegative,
+            Self::RollingFriction | Self::RollingFrictionSpread => Allowed::NotNegative,
         }
     }
 }

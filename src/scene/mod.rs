@@ -17,13 +17,13 @@ mod solver;
 mod source;
 mod wording;
 
-pub use barrier::{BarrierTable, DesignTable};
+pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
 pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use grounds::GroundTable;
 pub use meshes::{MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
-pub use record::{LineTable, MapsTable, RecordTable};
+pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
@@ -87,6 +87,9 @@ pub struct Scene {
     pub barriers: Vec<BarrierTable>,
     /// Rasters.
     pub maps: Option<MapsTable>,
+    /// What stands on the report.
+    #[serde(default)]
+    pub report: ReportTable,
     /// Measured ends, and what may be fitted to them.
     pub calibrate: Option<CalibrateTable>,
     /// The scene file itself.
@@ -196,6 +199,21 @@ impl Scene {
         let lines = self.lines.iter().map(|line| line.name.as_str());
         let barriers = self.barriers.iter().map(|barrier| barrier.name.as_str());
         check_names(&[("lines", lines.collect()), ("barriers", barriers.collect())])?;
+        for (index, barrier) in self.barriers.iter().enumerate() {
+            let taken = |name: &str| {
+                let lines = self.lines.iter().map(|line| line.name.as_str());
+                lines
+                    .chain(self.barriers.iter().map(|other| other.name.as_str()))
+                    .any(|n| n == name)
+            };
+            if let Some((_, name, _)) = barrier.elsewhere().find(|(_, name, _)| taken(name)) {
+                let remedy =
+                    format!("write another name there: \"{name}\" is the line of this offset");
+                return Err(Complaint::about("offsets_m", remedy)
+                    .in_entry(index)
+                    .inside("barriers"));
+            }
+        }
         if let Some(calibrate) = &self.calibrate {
             let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
             calibrate.check(&grounds).map_err(|wrong| wrong.inside("calibrate"))?;
@@ -255,6 +273,11 @@ impl Scene {
             if ground.roughness_deg.as_ref().is_some_and(|value| value.support().1 > 0.0) {
                 let remedy = "remove it: a random tilt of an impact belongs to one rock alone, and with [release] together = true others may touch it meanwhile";
                 let about = Complaint::about("roughness_deg", remedy);
+                return Err(about.inside(name).inside("grounds"));
+            }
+            if ground.breaks_above_j.is_some() {
+                let remedy = "remove it: stems give way to one rock alone, and with [release] together = true others would run into what is gone";
+                let about = Complaint::about("breaks_above_j", remedy);
                 return Err(about.inside(name).inside("grounds"));
             }
         }

@@ -54,6 +54,28 @@ impl Polyline {
         self.along_m[self.along_m.len() - 1]
     }
 
+    /// The line at a distance beside it (m), positive on its left; none where that is no line.
+    pub fn beside(&self, offset_m: f64) -> Option<Self> {
+        let pieces = self.corners_m.windows(2).map(|pair| minus(pair[1], pair[0]));
+        let left: Vec<Corner> = pieces
+            .map(|[x, y]| {
+                let length = x.hypot(y);
+                [-y / length, x / length]
+            })
+            .collect();
+        let corner = |k: usize| {
+            let before = left[k.saturating_sub(1)];
+            let after = left[k.min(left.len() - 1)];
+            // at a corner, along the bisector, so that both pieces keep their distance
+            let (sum, share) = (
+                [before[0] + after[0], before[1] + after[1]],
+                1.0 + before[0] * after[0] + before[1] * after[1],
+            );
+            [0, 1].map(|axis| self.corners_m[k][axis] + offset_m * sum[axis] / share)
+        };
+        Self::try_from((0..self.corners_m.len()).map(corner).collect::<Vec<_>>()).ok()
+    }
+
     /// The point at the share `p` (–, 0..1) of its length.
     pub fn at(&self, p: f64) -> Corner {
         let along = p * self.length_m();

@@ -26,6 +26,24 @@ pub struct LineTable {
     pub points_m: Polyline,
 }
 
+/// What stands on the report and cannot be told from the rest of the scene; all of it may be absent.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, expecting = "a table [report]")]
+pub struct ReportTable {
+    /// For whom.
+    pub client: Option<String>,
+    /// Of what.
+    pub project: Option<String>,
+    /// By whom.
+    pub author: Option<String>,
+    /// When, as it shall be printed.
+    pub date: Option<String>,
+    /// Where the terrain comes from: survey, year, resolution.
+    pub terrain_source: Option<String>,
+    /// Where ground values come from: back-analysis, literature.
+    pub ground_source: Option<String>,
+}
+
 /// Rasters in plan view.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table [maps]")]

@@ -44,10 +44,13 @@ impl Default for Flat {
         }
     }
 }
+/// Features are collected so far ahead of the rock (–, relative to R): half of how far they are known.
+const AHEAD: f64 = 0.17;
+
 /// Whether the rock's one contact is the face that its one memory belongs to.
 fn is_on_face(world: &World, grip: &Grip) -> bool {
     let [hold] = &grip.holds[..] else { return false };
-    if hold.feature.kind != FeatureKind::Face || !grip.near.covers(&grip.c) {
+    if hold.feature.kind != FeatureKind::Face {
         return false;
     }
     let face = &world.terrain.features.faces[hold.feature.id as usize];
@@ -68,6 +71,7 @@ impl Grip {
         if !is_on_face(world, self) {
             return None;
         }
+        self.see_ahead(world, h.min(h_max));
         let hold = self.holds[0];
         let law = world.law(hold.triangle);
         let c_n = if hold.captured { law.c_n_captured } else { law.c_n };
@@ -105,6 +109,15 @@ impl Grip {
             }
             Err(Halt::Unsettled) => Some(Err(Stuck::Unsettled)),
             Err(Halt::Elsewhere) => None,
+        }
+    }
+
+    /// Sees to it that the features where a step of `dt` goes are known, and a little beyond.
+    fn see_ahead(&mut self, world: &World, dt: f64) {
+        let way = (self.v * dt).cap_magnitude(TRAVEL * world.body.radius);
+        if !(self.near.covers(&self.c) && self.near.covers(&(self.c + way))) {
+            let ahead = self.v.cap_magnitude(AHEAD * world.body.radius);
+            self.collect(world, &(self.c + ahead));
         }
     }
 

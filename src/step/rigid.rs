@@ -6,7 +6,8 @@
 
 use super::adaptive::{Advance, Stuck};
 use super::grip::{Grip, Loss, TOUCH, World};
-use super::law::{Body, within};
+use super::law::Body;
+use super::slide::{Answers, Frame, Pair};
 use crate::contact::{MOST, Touch};
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -22,14 +23,12 @@ const HELD: f64 = 1e-4;
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-12;
-/// Alternations of friction and rolling friction where one of them is at its limit; they couple by 5/7.
-const ALTERNATIONS: u32 = 90;
 
 /// One contact and its impulses.
 #[derive(Debug, Clone, Copy)]
-struct Blow {
+struct Blow<'w> {
     n: Vec3,
-    law: Law,
+    law: &'w Law,
     triangle: u32,
     /// Normal speed wanted after the impulse (m/s).
     target: f64,
@@ -41,10 +40,10 @@ struct Blow {
     turn: Vec3,
 }
 
-impl Blow {
+impl Blow<'_> {
     const NONE: Self = Self {
         n: Vec3::new(0.0, 0.0, 0.0),
-        law: Law::NONE,
+        law: &Law::NONE,
         triangle: 0,
         target: 0.0,
         push: 0.0,
@@ -56,36 +55,19 @@ impl Blow {
     fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
         let m = body.mass;
         self.push = (m * (self.target - self.n.dot(v))).max(0.0);
-        let (cap, cap_turn) = (self.law.friction * self.push, self.law.rolling_m * self.push);
-        if cap_turn == 0.0 {
-            let slip = body.slip(&self.n, v, w);
-            (self.drag, self.turn) = (within(slip * (-2.0 / 7.0 * m), cap), Vec3::zeros());
+        if self.push <= 0.0 {
+            (self.drag, self.turn) = (Vec3::zeros(), Vec3::zeros());
             return;
         }
-        // Both hold: the rock comes to a stop along the surface and does not spin.
-        self.drag = (v - self.n * self.n.dot(v)) * -m;
-        self.turn = self.stop_spin(body, w);
-        if self.drag.norm_squared() <= cap * cap && self.turn.norm_squared() <= cap_turn * cap_turn
-        {
-            return;
-        }
-        for _ in 0..ALTERNATIONS {
-            self.turn = within(self.turn, cap_turn);
-            let w_rolled = w + self.turn / body.inertia;
-            let drag = within(body.slip(&self.n, v, &w_rolled) * (-2.0 / 7.0 * m), cap);
-            let change = (drag - self.drag).norm_squared();
-            self.drag = drag;
-            self.turn = self.stop_spin(body, w);
-            if change <= (SETTLED * cap).powi(2) {
-                break;
-            }
-        }
-        self.turn = within(self.turn, cap_turn);
-    }
-
-    /// The rolling impulse that would stop spin `w` after the impulse along the surface (N m s).
-    fn stop_spin(&self, body: &Body, w: &Vec3) -> Vec3 {
-        self.n.cross(&self.drag) * body.radius - w * body.inertia
+        let frame = Frame::of(&self.n);
+        let pair = Pair {
+            answers: &Answers::rigid(body.radius),
+            a: frame.along(&(body.slip(&self.n, v, w) * (2.0 / 7.0 * m))),
+            d: frame.local(&(w * body.inertia)),
+            caps: (self.law.friction * self.push, self.law.rolling_m * self.push),
+        };
+        let (drag, turn) = pair.solve();
+        (self.drag, self.turn) = (-frame.out_along(drag), -frame.out_local(turn));
     }
 
     /// Change of velocity and spin.
@@ -108,18 +90,18 @@ impl Blow {
 }
 
 /// The contacts of one impact or step.
-struct Blows {
-    list: [Blow; MOST],
+struct Blows<'w> {
+    list: [Blow<'w>; MOST],
     len: usize,
 }
 
-impl Blows {
+impl<'w> Blows<'w> {
     /// One blow for each touch of the last look, with the target that `target` names for it.
-    fn of(world: &World, grip: &Grip, target: impl Fn(&Blow, f64) -> f64) -> Self {
+    fn of(world: &'w World, grip: &Grip, target: impl Fn(&Blow, f64) -> f64) -> Self {
         let mut blows = Self { list: [Blow::NONE; MOST], len: grip.touches.len() };
         for (blow, touch) in blows.list.iter_mut().zip(grip.touches.iter()) {
             (blow.n, blow.triangle, blow.law) =
-                (touch.normal, touch.triangle, *world.law(touch.triangle));
+                (touch.normal, touch.triangle, world.law(touch.triangle));
             blow.target = target(blow, touch.distance_m);
         }
         blows
@@ -205,7 +187,7 @@ fn impact(world: &World, grip: &mut Grip, done: &mut Advance) {
     loop {
         let mut blows = Blows::of(world, grip, |blow, _| {
             let vn = blow.n.dot(&v);
-            if -vn < capture_m_s(&blow.law) { 0.0 } else { -elastic * blow.law.restitution * vn }
+            if -vn < capture_m_s(blow.law) { 0.0 } else { -elastic * blow.law.restitution * vn }
         });
         let after = blows.solve(&world.body, v, w, &mut grip.sweeps);
         let energy = |v: &Vec3, w: &Vec3| {

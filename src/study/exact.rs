@@ -2,6 +2,7 @@
 
 use super::bench::goes_by_tolerance;
 use super::cases::{CASES, Case};
+use super::speed::machine::OwnTime;
 use crate::step::Scheme;
 use crate::terrain::Terrain;
 use crate::trajectory::{Effort, Scratch, Trajectory};
@@ -14,6 +15,8 @@ const RUNS: usize = 5;
 /// … and until this time is spent, but not more often than [`MOST_RUNS`].
 const TIMED: Duration = Duration::from_millis(20);
 const MOST_RUNS: usize = 51;
+/// A run this long is likely to wait for others on a busy machine: only its own time counts.
+const INTERRUPTED: Duration = Duration::from_millis(8);
 /// Errors below this are rounding, or the last digits of the exact value: no order shows there (–).
 const ROUNDING: f64 = 1e-8;
 /// Errors above this are no longer small: no order shows there either (–).
@@ -125,9 +128,11 @@ fn timed(mut run: impl FnMut() -> Trajectory) -> (Trajectory, f64) {
     let mut times = Vec::new();
     let begun = Instant::now();
     let journey = loop {
-        let start = Instant::now();
+        let (start, own) = (Instant::now(), OwnTime::begin());
         let journey = black_box(run());
-        times.push(start.elapsed().as_secs_f64());
+        let passed = start.elapsed();
+        // The system counts a thread's own time in ticks of some milliseconds; a short run is seldom interrupted.
+        times.push(if passed < INTERRUPTED { passed.as_secs_f64() } else { own.seconds() });
         let enough = begun.elapsed() > TIMED || times.len() >= MOST_RUNS;
         if times.len() >= RUNS && enough {
             break journey;

@@ -13,8 +13,8 @@ const INTRODUCTION: &str = "\
 
 Every scheme over a ladder of tolerances or steps, each case against its exact solution: schemes with springs against the
 solution with springs, the rigid scheme against its limit. The error is the largest of the case's measures. Run times are
-medians of repeated runs of one journey on one thread and differ from machine to machine; the counters in `exact.csv` do
-not. The order is the slope of log error over log contact steps where the error is between 1e-8 and 0.1.
+medians of repeated runs of one journey on one thread (of long runs its own processor time) and differ from machine to
+machine; the counters in `exact.csv` do not. The order is the slope of log error over log contact steps where the error is between 1e-8 and 0.1.
 
 ";
 

@@ -64,7 +64,6 @@ pub fn table(values: &[Value]) -> String {
     }
     let _ = writeln!(text, "\n|---|---|---|{}", "---|".repeat(COLUMNS.len()));
     for Value { title, what, exact, found, .. } in values {
-        let title = title.trim_end_matches(", 1 s").trim_start_matches("A ");
         let _ = write!(text, "| {title}: {what} | {exact:.10} | {:.10} |", found[0]);
         for found in found {
             let _ = write!(text, " {:.1e} |", (found - exact).abs());

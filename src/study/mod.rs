@@ -1,10 +1,12 @@
 //! What the numerics cost and what they are worth: error against run time, stability, exact cases, speed.
 //!
 //! ```text
-//! cases ─┬─► exact      error of every scheme against the exact solution, over run time
+//! cases ─┬─► exact      error of every scheme against the exact solution, over run time; order: at fixed steps
 //!        └─► stability  stiff and extreme cases, each held against its bound
 //! slope ───► speed      rocks per second, where the time goes, what each part costs
-//! plan ────► scene      sampling error and error of the steps of a scene's own statistics
+//! plan ─┬──► scene      errors of a scene's own statistics: of the sample, the steps, the mesh
+//!       └──► conserve   every release: no panic, no failure, no rock lost, no energy gained
+//! worlds ──► scaling    cost against the number of rocks that touch each other
 //!            verify     exact cases of several rocks and the method paper's examples
 //! ```
 
@@ -18,6 +20,8 @@ mod exact_page;
 pub mod exact_values;
 pub mod order;
 pub mod scene;
+mod scaling;
+mod scaling_page;
 mod scene_figure;
 mod scene_page;
 pub mod speed;
@@ -37,6 +41,8 @@ use stability::{Map, Outcome};
 use std::fs;
 use std::path::Path;
 
+pub use scaling::{World, world};
+pub use scaling_page::findings;
 pub use scene_page::{Wish, sentence, setting};
 
 /// Writes the exact cases' page, table and figures into `dir`.
@@ -73,6 +79,17 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
         write_whole(&dir.join("mesh.csv"), scene_page::mesh_csv(study).as_bytes())?;
     }
     write_whole(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
+}
+
+/// Writes the page, table and figure of the cost of many rocks in one world into `dir`.
+///
+/// # Errors
+/// When a file or folder cannot be written.
+pub fn write_scaling(worlds: &[World], dir: &Path) -> Result<()> {
+    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
+    write_whole(&dir.join("scaling.svg"), scaling_page::figure(worlds).as_bytes())?;
+    write_whole(&dir.join("scaling.csv"), scaling_page::csv(worlds).as_bytes())?;
+    write_whole(&dir.join("README.md"), scaling_page::page(worlds).as_bytes())
 }
 
 /// Writes the page, table and map of the stiff and extreme cases into `dir`.

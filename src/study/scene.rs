@@ -5,6 +5,7 @@
 //! difference; what is left is drawn again and again to say how far it can be trusted.
 
 use super::bench::goes_by_tolerance;
+use super::speed::machine::Busy;
 use super::spread::{Interval, Ladder, Paired};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
@@ -38,7 +39,8 @@ pub struct Rung {
     pub step: Settings,
     /// Its tolerance or step over the scene's own (–).
     pub relative: f64,
-    /// Run time of all releases (s).
+    /// Run time of all releases (s): processor time over the number of threads, so that what others take of the machine
+    /// stays out; clock time where the system does not tell.
     pub seconds: f64,
     /// What they cost, counted.
     pub effort: Effort,
@@ -260,13 +262,17 @@ impl Rung {
         self.values.resize(subjects.len(), Vec::new());
         let fall =
             |index: usize, scratch: &mut Scratch| trajectory::fall(plan, index, None, scratch);
-        let begun = Instant::now();
+        let (begun, before) = (Instant::now(), Busy::of_all_threads());
         for falls in ensemble.in_chunks(releases, Scratch::default, fall) {
             falls?
                 .iter()
                 .for_each(|fall| self.add(subjects, &Row::of(fall, plan.terrain.origin_m), fall));
         }
-        self.seconds += begun.elapsed().as_secs_f64();
+        let computed = before.zip(Busy::of_all_threads()).map(|(a, b)| b.computed_s - a.computed_s);
+        self.seconds += computed.map_or_else(
+            || begun.elapsed().as_secs_f64(),
+            |seconds| seconds / ensemble.threads() as f64,
+        );
         Ok(())
     }
 

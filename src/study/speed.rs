@@ -33,10 +33,12 @@ use threads::{Speedup, speedup};
 /// How much is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Order {
-    /// Rocks of the fast schemes; `reference` gets a tenth, `dda` a hundredth.
+    /// Rocks of the fast schemes; `reference` gets a tenth, `dda` one of 200.
     pub rocks: usize,
     /// Sizes of the slope (triangles), about.
     pub triangles: Vec<usize>,
+    /// Releases whose files and report are measured.
+    pub written: usize,
     /// The program, for what it takes as a whole.
     pub program: PathBuf,
     /// Folder of the source code, if the program was compiled from there.
@@ -52,8 +54,8 @@ pub struct SlopeCost {
     pub weld_s: f64,
     /// Time to index and to find what can be touched (s).
     pub index_s: f64,
-    /// Memory it holds (bytes); none where the system does not tell.
-    pub bytes: Option<u64>,
+    /// Memory that rocks use of it (bytes).
+    pub bytes: usize,
 }
 
 /// All that was measured.
@@ -77,8 +79,8 @@ pub struct SpeedStudy {
     pub runs: Vec<ProgramRun>,
 }
 
-/// Releases whose files and report are measured.
-const WRITTEN: usize = 100_000;
+/// Releases whose files and report are measured, usually.
+pub const WRITTEN: usize = 100_000;
 
 impl Order {
     /// Rocks of one scheme.
@@ -86,7 +88,7 @@ impl Order {
         match scheme {
             Scheme::Adaptive | Scheme::Rigid => self.rocks,
             Scheme::Reference => (self.rocks / 10).max(2),
-            Scheme::Dda => (self.rocks / 100).max(2),
+            Scheme::Dda => (self.rocks / 200).max(2),
         }
     }
 
@@ -118,7 +120,7 @@ pub fn study(order: &Order, dir: &Path, mut done: impl FnMut(String)) -> Result<
     for &triangles in &order.triangles {
         study.slope(order, triangles, dir, &mut done)?;
     }
-    study.parts = parts::costs(order.middle(), order.rocks, dir, &mut done)?;
+    study.parts = parts::costs(order.middle(), (order.rocks / 2).max(2), dir, &mut done)?;
     study.runs = program::runs(&order.program, dir, &order.triangles, order.rocks)?;
     fs::remove_dir_all(dir).map_err(Error::file("remove", dir))?;
     Ok(study)
@@ -134,7 +136,8 @@ impl SpeedStudy {
         done: &mut impl FnMut(String),
     ) -> Result<()> {
         let slope = Slope::of(triangles);
-        let Slope { weld_s, index_s, bytes, .. } = slope;
+        let (Slope { weld_s, index_s, .. }, bytes) = (&slope, slope.terrain.bytes());
+        let (weld_s, index_s) = (*weld_s, *index_s);
         let count = slope.terrain.triangles.len();
         self.slopes.push(SlopeCost { triangles: count, weld_s, index_s, bytes });
         let mut journeys = Vec::new();
@@ -143,7 +146,7 @@ impl SpeedStudy {
             journeys.push((way.0, fallen));
             self.rates.push(rate);
         }
-        let cost = output::cost(&slope, &journeys[0].1, WRITTEN, &dir.join("rows"))?;
+        let cost = output::cost(&slope, &journeys[0].1, order.written, &dir.join("rows"))?;
         let write_s = cost.write_s / cost.rocks as f64;
         let first = self.rates.len() - SCHEMES.len();
         for rate in &mut self.rates[first..] {

@@ -3,9 +3,12 @@
 mod exact;
 mod paper;
 
+pub use paper::{EXAMPLES, Example};
+
 use crate::error::{Error, Result};
 use crate::output::write_whole;
 use crate::report::curves::Curves;
+use crate::step::Scheme;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
@@ -15,6 +18,8 @@ use std::time::Instant;
 pub struct Row {
     /// What was run.
     pub case: &'static str,
+    /// With which scheme.
+    pub scheme: &'static str,
     /// What was looked at, with its unit.
     pub quantity: &'static str,
     /// What should come out.
@@ -50,10 +55,43 @@ impl Verification {
     /// # Errors
     /// A shipped scene that cannot be planned.
     pub fn run() -> Result<Self> {
+        let mut all = Self::exact()?;
+        for example in EXAMPLES {
+            for scheme in [Scheme::Dda, Scheme::Adaptive] {
+                example.run(&mut all, scheme)?;
+            }
+        }
+        Ok(all)
+    }
+
+    /// Runs the cases whose answers are formulas.
+    ///
+    /// # Errors
+    /// A made mesh that cannot be read.
+    pub fn exact() -> Result<Self> {
         let mut all = Self::default();
         exact::run(&mut all)?;
-        paper::run(&mut all)?;
         Ok(all)
+    }
+
+    /// Runs one of the paper's examples, with its own scheme and step or with the default scheme.
+    ///
+    /// # Errors
+    /// A shipped scene that cannot be planned.
+    pub fn of(example: Example, scheme: Scheme) -> Result<Self> {
+        let mut all = Self::default();
+        example.run(&mut all, scheme)?;
+        Ok(all)
+    }
+
+    /// Draws a figure, or into the one of that name what a second scheme makes of it.
+    fn draw(&mut self, name: &'static str, curves: Curves) {
+        if let Some((_, first)) = self.figures.iter_mut().find(|(known, _)| *known == name) {
+            first.others = curves.lines;
+            first.names = Some(["dda, 1e-5 s", "adaptive"]);
+        } else {
+            self.figures.push((name, curves));
+        }
     }
 
     /// Whether every case holds.
@@ -63,18 +101,19 @@ impl Verification {
 
     /// The table in words (Markdown).
     pub fn table(&self) -> String {
-        let mut text = "| case | quantity | expected | source | computed | error | allowed | run time (s) | |\n|---|---|---|---|---|---|---|---|---|\n".to_owned();
+        let mut text = "| case | scheme | quantity | expected | source | computed | error | allowed | run time (s) | |\n|---|---|---|---|---|---|---|---|---|---|\n".to_owned();
         for row in &self.rows {
             let error = (row.computed - row.expected).abs();
             let verdict = if row.holds() { "holds" } else { "FAILS" };
             let _ = writeln!(
                 text,
-                "| {} | {} | {} | {} | {:.9} | {error:.2e} | {:.1e} | {:.2} | {verdict} |",
+                "| {} | {} | {} | {} | {} | {} | {error:.2e} | {:.1e} | {:.2} | {verdict} |",
                 row.case,
+                row.scheme,
                 row.quantity,
-                row.expected,
+                written(row.expected),
                 row.source,
-                row.computed,
+                written(row.computed),
                 row.allowed,
                 row.seconds
             );
@@ -98,9 +137,61 @@ impl Verification {
     }
 }
 
+/// Six digits, without an exponent where that reads well.
+fn written(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e7).contains(&value.abs()) {
+        let digits = (5 - value.abs().max(1e-3).log10().floor() as i32).max(0) as usize;
+        let text = format!("{value:.digits$}");
+        let short = if text.contains('.') { text.trim_end_matches('0') } else { &text };
+        short.trim_end_matches('.').to_owned()
+    } else {
+        format!("{value:.5e}")
+    }
+}
+
 /// Does something and says how long it took (s).
 fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
     let begun = Instant::now();
     let done = work()?;
     Ok((done, begun.elapsed().as_secs_f64()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(computed: f64) -> Row {
+        Row {
+            case: "a case",
+            scheme: "adaptive",
+            quantity: "a length (m)",
+            expected: 1.0,
+            source: "a formula",
+            computed,
+            allowed: 0.1,
+            seconds: 0.0,
+        }
+    }
+
+    /// One number off, or no number at all, fails the whole.
+    #[test]
+    fn one_row_that_fails_fails_the_verification() {
+        let of = |computed: &[f64]| Verification {
+            rows: computed.iter().map(|computed| row(*computed)).collect(),
+            ..Verification::default()
+        };
+        assert!(of(&[1.0, 1.05]).holds());
+        for wrong in [1.2, f64::NAN, f64::INFINITY] {
+            assert!(!of(&[1.0, wrong]).holds());
+            assert!(of(&[1.0, wrong]).table().contains("FAILS"));
+        }
+    }
+
+    #[test]
+    fn numbers_are_written_short() {
+        assert_eq!(written(0.0), "0");
+        assert_eq!(written(109_881.0), "109881");
+        assert_eq!(written(0.25), "0.25");
+        assert_eq!(written(2.770_884_7e-5), "2.77088e-5");
+    }
 }

@@ -57,6 +57,14 @@ impl Edges {
         self.ends.len()
     }
 
+    /// Memory that they take (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val::<[[u32; 2]]>(&self.ends)
+            + size_of_val::<[[u32; 3]]>(&self.of_triangle)
+            + size_of_val::<[u32]>(&self.starts)
+            + size_of_val::<[u32]>(&self.triangles)
+    }
+
     /// Whether there is no edge.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()

@@ -162,6 +162,15 @@ impl Features {
         }
     }
 
+    /// Memory that they take (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val::<[Face]>(&self.faces)
+            + size_of_val::<[u8]>(&self.owned)
+            + size_of_val::<[u32]>(&self.starts)
+            + size_of_val::<[u32]>(&self.around)
+            + self.edges.bytes()
+    }
+
     /// The same with nothing left out: leaving out changes the cost, never the answer.
     #[must_use]
     pub fn with_everything(mut self, triangles: &[[u32; 3]]) -> Self {

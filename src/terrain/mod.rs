@@ -10,6 +10,7 @@ pub mod index;
 pub mod make;
 mod merge;
 pub mod read;
+pub mod stems;
 pub mod stl;
 pub mod t_junctions;
 pub mod weld;
@@ -18,6 +19,7 @@ use crate::rock::Vec3;
 use features::Features;
 use index::Index;
 use std::path::PathBuf;
+use stems::Stems;
 use weld::Welded;
 
 /// One mesh file of the scene.
@@ -50,6 +52,8 @@ pub struct Terrain {
     pub features: Features,
     /// The spatial index.
     pub index: Index,
+    /// Stems that can give way to a rock; none if all stand for good. The plan, which knows the limits, puts them here.
+    pub stems: Option<Stems>,
 }
 
 impl Terrain {
@@ -69,7 +73,18 @@ impl Terrain {
             sheets,
             features,
             index,
+            stems: None,
         }
+    }
+
+    /// Memory that it takes (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val::<[Vec3]>(&self.vertices_m)
+            + size_of_val::<[[u32; 3]]>(&self.triangles)
+            + size_of_val::<[u16]>(&self.sheet_of)
+            + size_of_val::<[u32]>(&self.facet_of)
+            + size_of_val(self.index.pairs())
+            + self.features.bytes()
     }
 
     /// The same with no edge and no corner left out.

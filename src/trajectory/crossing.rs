@@ -34,7 +34,7 @@ impl Crossing {
 }
 
 /// The crossings of one rock so far.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Crossings<'a> {
     lines: &'a [Curtain],
     found: Vec<Crossing>,

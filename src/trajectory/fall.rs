@@ -1,12 +1,13 @@
 //! The fall itself: leap, touch, step, stop.
 
 use super::journey::{Journey, Keep};
+use super::stems::Strain;
 use super::{Stop, Trajectory};
 use crate::chance::{Chance, Purpose, stream, unit};
 use crate::clock::{Clocks, Piece};
 use crate::contact::Touch;
 use crate::error::Result;
-use crate::flight::{Landing, Parabola, leap};
+use crate::flight::{Landing, Parabola, leap_past};
 use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
 use crate::release::Release;
@@ -40,6 +41,7 @@ pub struct Course<'a> {
 #[derive(Debug, Default)]
 pub struct Scratch {
     grip: Grip,
+    strain: Strain,
     laws: Vec<Law>,
     /// Dashpots of the grounds of the rock before: most scenes never change them.
     damping: Vec<Damping>,
@@ -94,6 +96,7 @@ pub fn follow(
     scratch.make_laws(release, &capture);
     scratch.grip.near.forget();
     (scratch.grip.near.tested, scratch.grip.sweeps) = (0, 0);
+    scratch.strain.begin(course.terrain, &mut scratch.grip.near.gone, chance);
     let world = World {
         terrain: course.terrain,
         body: Body::new(&release.rock, course.gravity_m_s2),
@@ -103,6 +106,7 @@ pub fn follow(
         course,
         world,
         grip: &mut scratch.grip,
+        strain: &mut scratch.strain,
         chance,
         journey: Journey::new(course.terrain, release.rock, release.motion, (keep, course.watch)),
     };
@@ -159,12 +163,13 @@ pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> K
     Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
-struct Fall<'a> {
-    course: &'a Course<'a>,
-    world: World<'a>,
-    grip: &'a mut Grip,
+pub(super) struct Fall<'a> {
+    pub(super) course: &'a Course<'a>,
+    pub(super) world: World<'a>,
+    pub(super) grip: &'a mut Grip,
+    pub(super) strain: &'a mut Strain,
     chance: &'a mut Chance,
-    journey: Journey<'a>,
+    pub(super) journey: Journey<'a>,
 }
 
 impl Fall<'_> {
@@ -186,12 +191,17 @@ impl Fall<'_> {
         };
         let left = self.course.longest_s - now.time_s;
         let begun = self.grip.clocks.now();
-        let (dt, stop) =
-            match leap(self.course.terrain, &flight, left, &mut self.journey.effort.triangles) {
-                Landing::Touch(t) => (t, None),
-                Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
-                Landing::Flies => (left, Some(Stop::TimeUp)),
-            };
+        let (dt, stop) = match leap_past(
+            self.course.terrain,
+            &flight,
+            left,
+            &self.grip.near.gone,
+            &mut self.journey.effort.triangles,
+        ) {
+            Landing::Touch(t) => (t, None),
+            Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
+            Landing::Flies => (left, Some(Stop::TimeUp)),
+        };
         self.grip.clocks.stop(Piece::Leap, begun);
         self.journey.effort.leaps += 1;
         let begun = self.grip.clocks.now();
@@ -202,13 +212,6 @@ impl Fall<'_> {
 
     /// Goes on in contact until the rock is free again or stops.
     fn touch(&mut self) -> Option<Stop> {
-        let begun = self.grip.clocks.now();
-        let stop = self.impact();
-        self.grip.clocks.stop(Piece::Contact, begun);
-        stop
-    }
-
-    fn impact(&mut self) -> Option<Stop> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.journey.now;
         self.grip.begin(&self.world, c, v, w);
         self.announce();
@@ -252,6 +255,7 @@ impl Fall<'_> {
         let mut quiet_s = 0.0;
         loop {
             let left = self.course.longest_s - self.journey.now.time_s;
+            self.strike();
             let done = match step::advance(stepper, &self.world, self.grip, left) {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
@@ -261,6 +265,7 @@ impl Fall<'_> {
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
             self.journey.pay(&done.loss, 1.0);
+            self.bend(done.loss.trees, stepper);
             let to = Motion {
                 time_s: self.journey.now.time_s + done.dt,
                 position_m: self.grip.c,

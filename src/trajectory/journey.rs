@@ -19,7 +19,7 @@ pub struct Keep {
 }
 
 /// Notes along the way.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Journey<'a> {
     terrain: &'a Terrain,
     rock: Rock,

@@ -3,6 +3,7 @@
 mod crossing;
 mod fall;
 mod journey;
+mod stems;
 mod together;
 mod visit;
 
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub use crossing::Crossing;
 pub use fall::{Course, Scratch, fall, follow};
 pub use journey::Keep;
-pub use together::{Answer, fall_together, follow_together};
+pub use together::{Answer, Census, fall_together, follow_counted, follow_together};
 pub use visit::Visit;
 
 /// Why a rock's journey ended.

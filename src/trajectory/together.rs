@@ -4,21 +4,25 @@
 //! it is quiet it sleeps until something comes near. Windows, islands and contacts stand in a fixed order, so the
 //! number of threads changes nothing.
 
+mod census;
 mod crowd;
 mod job;
+mod moment;
 mod rover;
+mod split;
 
 use super::fall::{Course, kept};
 use super::journey::{Journey, Keep};
 use super::{Stop, Trajectory};
 use crate::contact::pair::{Bond, Strength, Tie, between};
-use crate::coupled::Member;
 use crate::coupled::broad::{Ball, overlapping};
+use crate::coupled::{Member, Seat};
 use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::plan::{Part, Plan};
 use crate::release::Release;
 use crate::step::law::Body;
+pub use census::Census;
 use crowd::Crowd;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -38,7 +42,7 @@ const TOUCHING: f64 = 1e-4;
 
 /// One rock on its way.
 struct Rover<'a> {
-    member: Box<Member>,
+    member: Seat,
     journey: Journey<'a>,
     state: State,
     /// When its flight ends (s), and how.
@@ -47,6 +51,8 @@ struct Rover<'a> {
     quiet_s: f64,
     /// Step its last island would have tried next (s).
     h: f64,
+    /// Fastest since the window began (m/s).
+    fastest_m_s: f64,
     /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
     began_j: (f64, f64),
 }
@@ -120,14 +126,28 @@ pub fn follow_together(
     keep: impl Fn(usize) -> Keep,
     stop: &AtomicBool,
 ) -> Option<Vec<Trajectory>> {
+    follow_counted(course, releases, answer, keep, stop).map(|(falls, _)| falls)
+}
+
+/// The same, with what it took.
+pub fn follow_counted(
+    course: &Course,
+    releases: &[Release],
+    answer: &Answer,
+    keep: impl Fn(usize) -> Keep,
+    stop: &AtomicBool,
+) -> Option<(Vec<Trajectory>, Census)> {
     let rovers = releases
         .iter()
         .enumerate()
-        .map(|(k, release)| Some(rover(course, release, keep(k))))
+        .map(|(k, release)| Some(Box::new(rover(course, release, keep(k)))))
         .collect();
     let mut crowd = Crowd::new(course, answer, rovers);
     crowd.bond(answer);
-    crowd.run(stop).then(|| crowd.end(releases))
+    crowd.run(stop).then(|| {
+        let census = crowd.census;
+        (crowd.end(releases), census)
+    })
 }
 
 fn capture(course: &Course) -> Capture {
@@ -146,12 +166,13 @@ fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
     let body = Body::new(&release.rock, course.gravity_m_s2);
     let start = (motion.position_m, motion.velocity_m_s, motion.spin_rad_s);
     Rover {
-        member: Box::new(Member::new(body, laws.collect(), start)),
+        member: Seat::new(Member::new(body, laws.collect(), start)),
         journey: Journey::new(course.terrain, release.rock, motion, (keep, course.watch)),
         state: State::Moving,
         lands: None,
         quiet_s: 0.0,
         h: f64::INFINITY,
+        fastest_m_s: 0.0,
         began_j: (0.0, 0.0),
     }
 }

@@ -18,7 +18,7 @@ pub struct Visit {
 }
 
 /// The cells of one rock so far.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Visits<'a> {
     cells: Option<&'a Lattice>,
     found: Vec<Visit>,

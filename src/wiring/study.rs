@@ -4,9 +4,10 @@ use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
+use rockfall::step::Scheme;
 use rockfall::study::aim::Aim;
 use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
-use rockfall::study::speed::{self, Order};
+use rockfall::study::speed::{self, Order, WRITTEN};
 use rockfall::study::stability::{self, Map, Outcome};
 use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
 use std::cell::Cell;
@@ -64,6 +65,39 @@ pub(crate) fn stability(out: &Path, done: impl Fn(&str)) -> Result<(String, bool
     Ok((words.join("\n"), all_hold))
 }
 
+/// Follows worlds of more and more spheres; says what was found, and whether all of it is as it should be.
+pub(crate) fn scaling(
+    (out, longest_s): (&Path, f64),
+    (adaptive, dda): (&[usize], &[usize]),
+    done: impl Fn(String) + Send + Sync,
+) -> Result<(String, bool)> {
+    // One thread: processor time is that of the thread.
+    let worlds = Ensemble::new(Some(1))?.install(|| {
+        let of = |scheme, list: &[usize]| -> Vec<(Scheme, usize)> {
+            list.iter().map(|&spheres| (scheme, spheres)).collect()
+        };
+        let all = [of(Scheme::Adaptive, adaptive), of(Scheme::Dda, dda)].concat();
+        let follow = |(scheme, spheres): (Scheme, usize)| {
+            let world = study::world(scheme, spheres, longest_s);
+            done(format!(
+                "{}, {spheres} spheres: {:.2} s of processor time for {longest_s} s",
+                scheme.name(),
+                world.processor_s
+            ));
+            world
+        };
+        all.into_iter().map(follow).collect::<Vec<_>>()
+    });
+    study::write_scaling(&worlds, out)?;
+    let found = study::findings(&worlds);
+    let mut words: Vec<String> = found
+        .iter()
+        .map(|(words, holds)| format!("{}{words}", if *holds { "" } else { "outside its bound: " }))
+        .collect();
+    words.push(format!("page, table and figure in {}", out.display()));
+    Ok((words.join("\n"), found.iter().all(|(_, holds)| *holds)))
+}
+
 /// Runs so many releases of a scene on so many threads; says which bounds are kept, and whether all are.
 pub(crate) fn conservation(
     scene: &Path,
@@ -108,7 +142,10 @@ pub(crate) fn speed(
     let program = std::env::current_exe().map_err(|why| {
         Error::Request(format!("the program does not find itself to measure its memory: {why}"))
     })?;
-    let order = Order { rocks, triangles: triangles.to_vec(), program, source: None };
+    // run where its source code lies, it can name the commit
+    let package = std::fs::read_to_string("Cargo.toml").unwrap_or_default();
+    let source = package.contains("name = \"rockfall\"").then(|| PathBuf::from("."));
+    let order = Order { rocks, triangles: triangles.to_vec(), written: WRITTEN, program, source };
     let found = speed::study(&order, &out.join("work"), done)?;
     study::write_speed(&found, out)?;
     Ok(format!("page, tables and figure in {}", out.display()))

@@ -2,7 +2,7 @@
 
 use super::terrain;
 use rockfall::chance::{Chance, Purpose, stream, unit};
-use rockfall::contact::near::closest_on;
+use rockfall::contact::closest::closest_on;
 use rockfall::flight::Parabola;
 use rockfall::rock::Vec3;
 use rockfall::terrain::Terrain;

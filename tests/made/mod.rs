@@ -35,6 +35,7 @@ pub fn info(releases: usize) -> RunInfo {
                 name: name.to_owned(),
                 length_m,
                 corners_m: vec![[0.0, 0.0], [length_m, 0.0]],
+                of_barrier: false,
             })
             .into(),
         maps: Some(MapFrame {
@@ -51,6 +52,9 @@ pub fn info(releases: usize) -> RunInfo {
         keeps_impacts: true,
         threads: 2,
         plan: vec!["trees    left out: the scene has none".to_owned()],
+        inputs: vec![("Rock density".to_owned(), "2700 kg/m³".to_owned())],
+        title_block: vec![],
+        sources: [String::new(), String::new()],
         warnings: vec![],
         mesh_health: serde_json::json!({ "triangles": 2 }),
     }

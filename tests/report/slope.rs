@@ -271,6 +271,7 @@ fn line_table(report: &Report) -> Table {
 fn text() -> Text {
     let lines = |all: &[&str]| all.iter().map(|&line| line.to_owned()).collect();
     Text {
+        title_block: vec![("Client".to_owned(), "Road authority".to_owned())],
         title: "Made slope: cliff, talus & meadow".to_owned(),
         subtitle: "A <test> scene with parabolas for rocks".to_owned(),
         scheme: "Steps are adaptive with a local error of 0.05 m/s.".to_owned(),

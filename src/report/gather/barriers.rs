@@ -1,18 +1,49 @@
-//! What barriers stop and what their rule asks for, from the summary.
+//! What barriers stop and what their rule asks for, from the summary and the crossings.
 
-use super::super::input::{Estimate, Table};
-use super::estimate;
-use crate::hazard::{BarrierSummary, Proportion, Rule};
+use super::super::format;
+use super::super::input::{BarrierView, Estimate, PlaceView, Quantity, Table};
+use super::{estimate, of_percentile, scaled_by};
+use crate::error::Result;
+use crate::hazard::{
+    self, Arrival, AtPlace, BarrierSummary, PERCENTS, Proportion, Rule, Statistic,
+};
 use crate::output::Results;
 use std::collections::BTreeMap;
 
-/// One table over all barriers, and one of sensitivity.
+/// The rocks that arrive at each barrier, for its figure.
+pub(super) fn views(results: &Results) -> Result<Vec<BarrierView>> {
+    let summaries = &results.summary.barriers;
+    if summaries.is_empty() {
+        return Ok(Vec::new());
+    }
+    let barriers: Vec<hazard::Barrier> = summaries.iter().map(|one| one.barrier.clone()).collect();
+    let arrivals = hazard::arrivals(&barriers, results.crossings()?)?;
+    let view = |(one, places): (&BarrierSummary, Vec<Vec<Arrival>>)| BarrierView {
+        name: one.barrier.name.clone(),
+        height_m: one.barrier.height_m,
+        capacity_j: one.barrier.capacity_j,
+        design: one.design_values.as_ref().map(|design| (design.height_m, design.energy_j)),
+        places: one.by_place.iter().zip(places).map(place_view).collect(),
+    };
+    Ok(summaries.iter().zip(arrivals).map(view).collect())
+}
+
+fn place_view((place, rocks): (&AtPlace, Vec<Arrival>)) -> PlaceView {
+    PlaceView {
+        offset_m: place.offset_m,
+        arriving: place.arriving.share,
+        rocks: rocks.iter().map(|rock| (rock.top_m, rock.total_j)).collect(),
+    }
+}
+
+/// One table over all barriers, and two of each: what arrives, and how it would do at other heights and places.
 pub(super) fn tables(results: &Results) -> Vec<Table> {
     let barriers = &results.summary.barriers;
     if barriers.is_empty() {
         return Vec::new();
     }
-    vec![counts(barriers), sensitivity(barriers)]
+    let each = barriers.iter().flat_map(|one| [arriving(one), sensitivity(one)]);
+    [counts(barriers)].into_iter().chain(each).collect()
 }
 
 fn counts(barriers: &[BarrierSummary]) -> Table {
@@ -40,23 +71,27 @@ fn counts(barriers: &[BarrierSummary]) -> Table {
     }
 }
 
+fn plain(value: f64) -> Estimate {
+    estimate(value, None, None)
+}
+
+fn percent(share: &Proportion) -> Option<Estimate> {
+    let [value, low, high] = [share.share, share.low_95, share.high_95].map(|x| 100.0 * x);
+    (share.of > 0).then(|| estimate(value, Some(low), Some(high)))
+}
+
 fn cells(one: &BarrierSummary) -> Vec<Option<Estimate>> {
-    let plain = |value: f64| Some(estimate(value, None, None));
-    let percent = |share: &Proportion| {
-        let [value, low, high] = [share.share, share.low_95, share.high_95].map(|x| 100.0 * x);
-        Some(estimate(value, Some(low), Some(high)))
-    };
     let design = one.design_values.as_ref();
     vec![
-        plain(one.barrier.height_m),
-        plain(one.barrier.capacity_j / 1e3),
-        plain(one.arriving.count as f64),
+        Some(plain(one.barrier.height_m)),
+        Some(plain(one.barrier.capacity_j / 1e3)),
+        Some(plain(one.arriving.count as f64)),
         percent(&one.arriving),
         percent(&one.stopped),
-        plain(one.over as f64),
-        plain(one.through as f64),
-        design.and_then(|design| plain(design.height_m)),
-        design.and_then(|design| plain(design.energy_j / 1e3)),
+        Some(plain(one.over as f64)),
+        Some(plain(one.through as f64)),
+        design.map(|design| plain(design.height_m)),
+        design.map(|design| plain(design.energy_j / 1e3)),
     ]
 }
 
@@ -65,16 +100,22 @@ fn in_words(one: &BarrierSummary) -> Option<String> {
     let rule: &Rule = one.barrier.design.as_ref()?;
     let design = one.design_values.as_ref()?;
     let factors = |what: &str, list: &BTreeMap<String, f64>| {
-        let each: Vec<String> =
-            list.iter().map(|(name, factor)| format!("{name} {factor}")).collect();
+        let each: Vec<String> = list
+            .iter()
+            .map(|(name, factor)| format!("{} {factor}", name.replace('_', " ")))
+            .collect();
         if each.is_empty() {
             format!("no factor on {what}")
         } else {
             format!("on {what}: {}", each.join(", "))
         }
     };
+    let standard = rule.standard.as_deref().map_or("a rule of its own", |name| name);
+    let distance = rule.free_distance_m.map_or(String::new(), |free_m| {
+        format!(" At least {} m must stay free behind it.", format::significant(free_m, 3))
+    });
     Some(format!(
-        "Design of “{}”: P{} of energy {:.1} kJ and of the highest point {:.2} m; {}; {}; {}; free height {} m.",
+        "Design of “{}” by {standard}: P{} of total energy {:.1} kJ and of the highest point {:.2} m; {}; {}; {}; free height {} m.{distance}",
         one.barrier.name,
         rule.percentile,
         design.energy_percentile_j / 1e3,
@@ -86,20 +127,65 @@ fn in_words(one: &BarrierSummary) -> Option<String> {
     ))
 }
 
-fn sensitivity(barriers: &[BarrierSummary]) -> Table {
-    let columns = barriers[0].by_height.iter().map(|(height_m, _)| {
-        let share = height_m / barriers[0].barrier.height_m;
-        format!("{:.0} % of its height", 100.0 * share)
-    });
-    let row = |one: &BarrierSummary| {
-        let cells =
-            one.by_height.iter().map(|(_, share)| Some(estimate(100.0 * share, None, None)));
-        (format!("{}: stopped (%)", one.barrier.name), cells.collect())
+/// The population that is left for a barrier by those before it.
+fn arriving(one: &BarrierSummary) -> Table {
+    let percents = PERCENTS.map(|percent| format!("{percent} %"));
+    let columns =
+        ["mean".to_owned()].into_iter().chain(percents).chain(["maximum".to_owned()]).collect();
+    let row = |name: &str, like: Quantity, of: &Statistic| {
+        let most = of.max.map(|most| most.value);
+        let (unit, size) = like.unit(most.unwrap_or(0.0));
+        let mean = of.mean.map(|mean| estimate(mean.value, mean.low_95, mean.high_95));
+        let middle =
+            PERCENTS.map(|percent| of.percentiles.get(&format!("p{percent}")).map(of_percentile));
+        let cells = [mean].into_iter().chain(middle).chain([most.map(plain)]);
+        (format!("{name} ({unit})"), cells.map(|cell| cell.map(|x| scaled_by(x, size))).collect())
+    };
+    let before = one.crossing - one.arriving.count;
+    Table {
+        title: format!("Rocks that arrive at barrier “{}”", one.barrier.name),
+        note: format!(
+            "{} rocks cross its line, {before} of them have been stopped by a barrier before: the {} that are left.",
+            one.crossing, one.arriving.count
+        ),
+        columns,
+        rows: vec![
+            row("Total energy", Quantity::Total, &one.energy_j),
+            row("Height of the highest point", Quantity::Height, &one.top_m),
+        ],
+    }
+}
+
+fn sensitivity(one: &BarrierSummary) -> Table {
+    let heights = one.by_place.first().into_iter().flat_map(|own| &own.by_height);
+    let stopped = heights
+        .map(|(height_m, _)| format!("stopped at {} m (%)", format::significant(*height_m, 3)));
+    let mut columns: Vec<String> = ["arriving (%)".to_owned()].into_iter().chain(stopped).collect();
+    let has_design = one.design_values.is_some();
+    if has_design {
+        columns.extend(["design height (m)", "design energy (kJ)"].map(str::to_owned));
+    }
+    let row = |place: &AtPlace| {
+        let name = match place.offset_m {
+            0.0 => "at its place".to_owned(),
+            left if left > 0.0 => format!("{} m to the left", format::plain(left)),
+            right => format!("{} m to the right", format::plain(-right)),
+        };
+        let mut cells = vec![percent(&place.arriving)];
+        cells.extend(place.by_height.iter().map(|(_, share)| percent(share)));
+        if has_design {
+            let design = place.design_values.as_ref();
+            cells.push(design.map(|design| plain(design.height_m)));
+            cells.push(design.map(|design| plain(design.energy_j / 1e3)));
+        }
+        (name, cells)
     };
     Table {
-        title: "Barriers of other height".to_owned(),
-        note: "Share of the same arriving rocks that a barrier of that height and equal capacity would stop.".to_owned(),
-        columns: columns.collect(),
-        rows: barriers.iter().map(row).collect(),
+        title: format!("Barrier “{}” at other heights and places", one.barrier.name),
+        note: "Share of the rocks arriving there that a barrier of that height and the same capacity would stop. Left and right \
+               as seen from the first corner of its line to the last; the other barriers stay where they are."
+            .to_owned(),
+        columns,
+        rows: one.by_place.iter().map(row).collect(),
     }
 }

@@ -18,10 +18,15 @@ const TABLED: [(LineQuantity, &str, Quantity); 7] = [
     (LineQuantity::Descent, "Descent of the path", Quantity::ReachAngle),
 ];
 
+/// The lines of the scene: other places of barriers stand with the barriers.
+fn shown(results: &Results) -> impl Iterator<Item = &hazard::Line> {
+    results.lines.iter().filter(|line| !line.info.of_barrier)
+}
+
 /// All lines with their first crossings.
 pub(super) fn lines(results: &Results) -> Result<Vec<Line>> {
     let releases = results.hazard.rocks();
-    let mut lines: Vec<Line> = results.lines.iter().map(|line| empty(line, releases)).collect();
+    let mut lines: Vec<Line> = shown(results).map(|line| empty(line, releases)).collect();
     for row in results.crossings()? {
         let row = row?;
         if let Some(line) = lines.iter_mut().find(|line| line.name == row.line) {
@@ -78,7 +83,7 @@ pub(super) fn tables(results: &Results) -> Vec<Table> {
         let rows = TABLED.map(|(quantity, name, like)| (name, like, line.sample(quantity)));
         statistics_table(&format!("Evaluation line “{}”", line.info.name), note, &rows)
     };
-    results.lines.iter().map(table).collect()
+    shown(results).map(table).collect()
 }
 
 /// The maps, read back from their grids.

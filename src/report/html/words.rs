@@ -1,17 +1,17 @@
 //! Words that stand in every report.
 
-/// How the numbers came about, in five sentences.
-pub(super) const METHOD: [&str; 5] = [
-    "Each rock is a homogeneous sphere that falls, bounces, slides and rolls over the triangle meshes of slope and trees.",
+/// How the numbers came about, in four sentences; the fifth names the scheme in force.
+pub(super) const METHOD: [&str; 4] = [
+    "Each rock is a homogeneous sphere that falls, bounces, slides and rolls over the triangle meshes of slope and trees: flights \
+     are exact parabolas, and a contact belongs to one face, edge or corner, so that seams between triangles are not felt.",
     "Contacts follow spherical discontinuous deformation analysis: springs normal and along the surface, limited by Coulomb \
      friction, with damping that gives the stated restitution and an optional rolling friction.",
-    "A contact belongs to one face, edge or corner, so that seams between triangles are not felt.",
     "Every rock is a function of scene, seed and its number alone: the same alone, among all others, and on any number of threads.",
     "All rocks are counted, those that failed or left the terrain too, and every estimate stands beside its confidence interval.",
 ];
 
 /// What the terms mean here.
-pub(super) const GLOSSARY: [(&str, &str); 10] = [
+pub(super) const GLOSSARY: [(&str, &str); 18] = [
     (
         "Percentile",
         "Over rocks, of each rock's value: its largest along the way, or at its first crossing of a line. On maps: of each rock's \
@@ -46,6 +46,43 @@ pub(super) const GLOSSARY: [(&str, &str); 10] = [
         "At rest: slower than the rest speed for the rest time, in contact. Left the terrain: beyond the edge of the meshes. \
          Time up: still moving at the longest simulated time. Failed: the computation could not go on.",
     ),
+    (
+        "Evaluation line",
+        "A vertical curtain over a line of the map. Values are those at a rock's first crossing of it, found on the parabola or the \
+         step that crosses; a rock that comes back is counted, its later crossings are in no statistic.",
+    ),
+    (
+        "Retention",
+        "The share of releases that does not reach a line: what is missing between two lines has stopped there.",
+    ),
+    (
+        "Height normal to the slope",
+        "Distance from the plane of the triangle below to the rock, at right angles to that triangle: the height that a barrier \
+         standing at right angles to the slope must have.",
+    ),
+    (
+        "Barrier",
+        "A line with a height and an energy capacity. It stops a rock whose highest point is not above its edge and whose total \
+         energy it takes, and changes no rock's way in the computation; what it stops does not arrive at those behind it.",
+    ),
+    (
+        "Design energy, design height",
+        "A percentile over the rocks that arrive, times the partial factors that are printed one by one, and for the height plus the \
+         free height. Factors on the speed enter the energy squared.",
+    ),
+    (
+        "Intensity",
+        "Swiss classes of the largest total energy in a cell: weak below 30 kJ, medium 30 to 300 kJ, strong above 300 kJ.",
+    ),
+    (
+        "Passages and deposits",
+        "Rocks that have been in a cell, each counted once; rocks that came to rest in it.",
+    ),
+    (
+        "KS distance (Kolmogorov and Smirnov)",
+        "The largest difference between two cumulative distributions (0 to 1). Its 5 % limit is what two samples of these sizes from \
+         one and the same distribution exceed once in twenty times.",
+    ),
 ];
 
 /// The style of the page, for screen and A4.
@@ -53,7 +90,7 @@ pub(super) const STYLE: &str = "\
 :root { color-scheme: light; }
 * { box-sizing: border-box; }
 body { margin: 0; background: #fff; color: #222; font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', sans-serif; }
-main { max-width: 780px; margin: 0 auto; padding: 36px 24px 48px; }
+main { max-width: 900px; margin: 0 auto; padding: 36px 24px 48px; }
 h1 { font-size: 27px; line-height: 1.2; margin: 0 0 6px; overflow-wrap: anywhere; }
 h2 { font-size: 18px; margin: 34px 0 8px; padding-bottom: 3px; border-bottom: 1px solid #bbb; }
 h3 { font-size: 15px; margin: 18px 0 4px; }
@@ -89,8 +126,12 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
 @media print {
   body { font-size: 10pt; }
   main { max-width: none; padding: 0; }
-  h2, h3 { break-after: avoid; }
-  figure, tr, .warnings, dt, dd { break-inside: avoid; }
+  h2, h3, .note, thead { break-after: avoid; }
+  .dense { break-inside: avoid; font-size: 8pt; }
+  .dense th, .dense td { padding-right: 5px; }
+  .dense tbody th { min-width: 24mm; }
+  .dense small { font-size: 6.8pt; }
+  figure, tr, .warnings, .note, dt, dd { break-inside: avoid; }
   dt { break-after: avoid; }
   .wide { overflow: visible; }
   figure { margin: 3mm 0 5mm; }

@@ -3,11 +3,10 @@
 use super::SpeedStudy;
 use super::slope::SCHEMES;
 use crate::report::axis::Axis;
-use crate::report::colour::GREY;
 use crate::report::figure::WIDTH_PX;
 use crate::report::format::significant;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::paper::{Label, NORMAL, Pen, SMALL, paint};
+use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint};
 use crate::report::svg::path::Frame;
 use crate::study::exact_figure::colour;
 
@@ -27,8 +26,8 @@ pub(in crate::study) fn draw(study: &SpeedStudy) -> String {
     let (slow, fast) = range(super::Rate::per_second);
     let frame =
         Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
-    // Whole decades: sizes are a little beside theirs.
-    let x = Axis::log(few * 0.9, many * 0.9, "Triangles");
+    // Whole decades: a size may be a little above its own.
+    let x = Axis::log(few, many * 0.99, "Triangles");
     let mut panel = Panel::new(frame, x, Axis::log(slow, fast, "Rocks per second and core"));
     panel.frame.left = panel.room_left();
     paint("speed", (WIDTH_PX, panel.frame.bottom + FOOT_PX), TITLE, |paper| {
@@ -45,14 +44,23 @@ pub(in crate::study) fn draw(study: &SpeedStudy) -> String {
             for &(x, y) in &values {
                 paper.disc(panel.at(x, y), 2.8, ink);
             }
-            let Some(&(x, y)) = values.last() else { continue };
-            let (_, height) = panel.at(x, y);
-            let at = (panel.frame.right + 10.0, height);
-            paper.text(&Label::new(scheme.name(), at).bold().coloured(ink));
-            let words = format!("{} rocks/s", significant(y, 2));
-            let below = (at.0, at.1 + SMALL + 2.0);
-            paper.text(&Label::new(words, below).coloured(GREY));
         }
+        key(paper, &panel, study);
         panel.axes(paper);
     })
+}
+
+/// Names and rates beside the last points, the highest first, far enough from each other to be read.
+fn key(paper: &Paper<'_>, panel: &Panel, study: &SpeedStudy) {
+    let last = |scheme| study.rates.iter().rev().find(|rate| rate.scheme == scheme);
+    let mut ends: Vec<&super::Rate> = SCHEMES.iter().filter_map(|way| last(way.0)).collect();
+    ends.sort_by(|a, b| b.per_second().total_cmp(&a.per_second()));
+    let mut least = f64::NEG_INFINITY;
+    for rate in ends {
+        let (_, height) = panel.at(rate.triangles as f64, rate.per_second());
+        let at = (panel.frame.right + 10.0, height.max(least));
+        let words = format!("{}  {}", rate.scheme.name(), significant(rate.per_second(), 2));
+        paper.text(&Label::new(words, at).bold().coloured(colour(rate.scheme)));
+        least = at.1 + SMALL + 4.0;
+    }
 }

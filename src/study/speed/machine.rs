@@ -87,11 +87,6 @@ fn status_bytes(file: &str, key: &str) -> Option<u64> {
     Some(kibibytes << 10)
 }
 
-/// Memory that this program holds now (bytes).
-pub fn resident_bytes() -> Option<u64> {
-    status_bytes("/proc/self/status", "VmRSS:")
-}
-
 /// The most memory that a process has held so far (bytes).
 pub(super) fn peak_bytes(process: u32) -> Option<u64> {
     status_bytes(&format!("/proc/{process}/status"), "VmHWM:")
@@ -99,9 +94,9 @@ pub(super) fn peak_bytes(process: u32) -> Option<u64> {
 
 /// Time that threads computed and that they waited for a core that others had (s).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Busy {
-    pub(super) computed_s: f64,
-    pub(super) waited_s: f64,
+pub(in crate::study) struct Busy {
+    pub(in crate::study) computed_s: f64,
+    pub(in crate::study) waited_s: f64,
 }
 
 impl Busy {
@@ -113,7 +108,7 @@ impl Busy {
     }
 
     /// Of all threads of this program so far.
-    pub(super) fn of_all_threads() -> Option<Self> {
+    pub(in crate::study) fn of_all_threads() -> Option<Self> {
         let mut sum = Self::default();
         for thread in fs::read_dir("/proc/self/task").ok()? {
             // a thread may end while the list is read
@@ -128,18 +123,18 @@ impl Busy {
 /// A clock that runs while this thread computes, and stands still while others have its core; where the system does
 /// not tell, a common clock.
 #[derive(Debug)]
-pub(super) struct OwnTime {
+pub(in crate::study) struct OwnTime {
     computed_s: Option<f64>,
     begun: Instant,
 }
 
 impl OwnTime {
-    pub(super) fn begin() -> Self {
+    pub(in crate::study) fn begin() -> Self {
         Self { computed_s: own_seconds(), begun: Instant::now() }
     }
 
     /// Time since the beginning (s).
-    pub(super) fn seconds(&self) -> f64 {
+    pub(in crate::study) fn seconds(&self) -> f64 {
         self.computed_s
             .zip(own_seconds())
             .map_or_else(|| self.begun.elapsed().as_secs_f64(), |(before, now)| now - before)

@@ -79,6 +79,9 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         threads: 1,
         plan: Vec::new(),
         warnings: Vec::new(),
+        inputs: Vec::new(),
+        title_block: Vec::new(),
+        sources: Default::default(),
         mesh_health: serde_json::Value::Null,
     }
 }

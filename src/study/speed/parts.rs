@@ -205,6 +205,7 @@ fn info(plan: &Plan) -> RunInfo {
         name: line.name.clone(),
         length_m: line.length_m(),
         corners_m: line.corners_m(plan.terrain.origin_m),
+        of_barrier: false,
     });
     let maps = plan.watch().cells.map(|cells| MapFrame {
         west_m: cells.west_m + plan.terrain.origin_m.x,

@@ -14,12 +14,10 @@ pub struct Shares {
     pub leap: f64,
     /// Which features are near a rock in contact, and which of them touch.
     pub geometry: f64,
-    /// Everything else in contact: forces, stages, error control, energy.
+    /// Everything else in contact: forces, stages, error control, energy, and the look around a rock on one plane.
     pub algebra: f64,
     /// Largest values and heights along the way.
     pub notes: f64,
-    /// Drawing the release and the rest.
-    pub rest: f64,
     /// Writing its rows, without paths and impacts.
     pub output: f64,
 }
@@ -142,25 +140,19 @@ fn share_out(rate: &mut Rate, slope: &Slope, step: &Settings) {
     let all_s = clock.seconds();
     let clocks = scratch.clocks();
     let of = |piece| clocks.seconds(piece, look_s);
-    // Each span holds one look of its own, and those of the spans within it, two looks each.
-    let within = 2.0 * (clocks.times(Piece::Geometry) + clocks.times(Piece::NotesInContact)) as f64;
-    let looks = 2.0
-        * (clocks.times(Piece::Leap)
-            + clocks.times(Piece::Contact)
-            + clocks.times(Piece::NotesInFlight)) as f64;
-    let leap = of(Piece::Leap);
-    let (geometry, notes) = (of(Piece::Geometry), of(Piece::NotesInContact));
-    let algebra = (of(Piece::Contact) - geometry - notes - 0.5 * within * look_s).max(0.0);
-    let notes = notes + of(Piece::NotesInFlight);
-    let rest = (all_s - (within + looks) * look_s - leap - geometry - algebra - notes).max(0.0);
-    let sum = leap + geometry + algebra + notes + rest;
+    let pieces = [Piece::Leap, Piece::Geometry, Piece::NotesInFlight, Piece::NotesInContact];
+    let looks = pieces.iter().map(|&piece| 2 * clocks.times(piece)).sum::<u64>() as f64;
+    let (leap, geometry) = (of(Piece::Leap), of(Piece::Geometry));
+    let notes = of(Piece::NotesInFlight) + of(Piece::NotesInContact);
+    // what is left: nothing else is done with a rock but to draw its release
+    let algebra = (all_s - looks * look_s - leap - geometry - notes).max(0.0);
+    let sum = leap + geometry + algebra + notes;
     rate.leap_s = leap / clocks.times(Piece::Leap).max(1) as f64;
     rate.shares = Shares {
         leap: leap / sum,
         geometry: geometry / sum,
         algebra: algebra / sum,
         notes: notes / sum,
-        rest: rest / sum,
         output: 0.0,
     };
 }
@@ -172,8 +164,8 @@ impl Rate {
         self.write_s = write_s;
         let all_s = self.rock_s + write_s;
         let kept = self.rock_s / all_s;
-        let Shares { leap, geometry, algebra, notes, rest, output } = &mut self.shares;
-        for share in [leap, geometry, algebra, notes, rest] {
+        let Shares { leap, geometry, algebra, notes, output } = &mut self.shares;
+        for share in [leap, geometry, algebra, notes] {
             *share *= kept;
         }
         *output = write_s / all_s;

@@ -1,6 +1,5 @@
 //! The benchmark: a natural slope, 300 m by 400 m, with rocks released near its top.
 
-use super::machine::resident_bytes;
 use crate::chance::{Purpose, stream, unit};
 use crate::ground::Ground;
 use crate::plan::{RestRule, Watch};
@@ -62,8 +61,6 @@ pub struct Slope {
     pub weld_s: f64,
     /// Time to index it and to find what can be touched (s).
     pub index_s: f64,
-    /// Memory it holds (bytes), as the system counts it; none where the system does not tell.
-    pub bytes: Option<u64>,
 }
 
 impl Slope {
@@ -72,7 +69,6 @@ impl Slope {
     /// # Panics
     /// If a made mesh cannot be welded, which would be a mistake of the maker.
     pub fn of(triangles: usize) -> Self {
-        let before = resident_bytes();
         let soup = Soup::from(facets(triangles));
         let piece = Piece { file: Path::new("made"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
         let begun = Instant::now();
@@ -83,9 +79,7 @@ impl Slope {
         let sheets = vec![Sheet { path: "made".into(), ground: 0, is_tree: false }];
         let terrain = Terrain::new(welded, sheets);
         let index_s = begun.elapsed().as_secs_f64();
-        let bytes =
-            before.zip(resident_bytes()).map(|(before, after)| after.saturating_sub(before));
-        Self { terrain, weld_s, index_s, bytes }
+        Self { terrain, weld_s, index_s }
     }
 
     /// Release number `index`: anywhere in the area, 1 m above the ground, at rest.

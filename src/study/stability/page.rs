@@ -9,7 +9,8 @@ const INTRODUCTION: &str = "\
 
 Every case with every scheme, each number against its analytic expectation or a bound. A case outside its bound makes the
 exit status of `rockfall study stability` 1. `stability.csv` has every number; the tables below show, case by case, how
-many were held and the one nearest to its bound.
+many were held and the one nearest to its bound. `rockfall study stability SCENE` holds conservation over all releases of a
+scene.
 
 ";
 
@@ -34,7 +35,10 @@ pub(in crate::study) fn page(outcomes: &[Outcome]) -> String {
             let all = of_case().filter(|outcome| outcome.scheme == way.scheme);
             let (held, count) =
                 all.fold((0, 0), |(held, count), one| (held + usize::from(one.holds()), count + 1));
-            let _ = write!(page, " {held} of {count} |");
+            let _ = match count {
+                0 => write!(page, " – |"),
+                _ => write!(page, " {held} of {count} |"),
+            };
         }
         let tightest = of_case().max_by(|a, b| use_of(a).total_cmp(&use_of(b)));
         let words = tightest.map_or(String::new(), |one| {

@@ -33,6 +33,7 @@ pub(super) fn run(all: &mut Verification) -> Result<()> {
     let (falls, seconds) = timed(|| rocks(&near, [1.0, 0.0, 0.0], 0.0, 2.0))?;
     let row = |quantity, expected: f64, computed: f64, allowed: f64| Row {
         case: "two equal spheres head-on, e = 0.5",
+        scheme: "adaptive",
         quantity,
         expected,
         source: "momentum and restitution",
@@ -62,6 +63,7 @@ fn stack(all: &mut Verification) -> Result<()> {
     for (quantity, expected, computed) in pens {
         all.rows.push(Row {
             case: "a stack of two spheres at rest",
+            scheme: "adaptive",
             quantity,
             expected,
             source: "weight over stiffness",

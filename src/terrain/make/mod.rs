@@ -3,6 +3,7 @@
 //! The slopes use integer hashes, `+ − × /` and square roots only, which every machine rounds the same way: the files
 //! in `terrain/` come out bit for bit.
 
+mod forest;
 mod noise;
 mod shapes;
 mod slopes;
@@ -10,6 +11,7 @@ mod stems;
 #[cfg(test)]
 mod tests;
 
+pub use forest::{plant, read_list};
 pub use shapes::{containers, jittered_plane, ridge, stairs, tetrahedron, v_groove};
 pub use slopes::{Slope, natural_slope, paper_slope, quick_slope};
 pub use stems::{Stem, square_stem, stem};

@@ -23,21 +23,24 @@ pub struct Stem {
 /// An eight-sided closed stem; the corners lie on the circle of the diameter. `ground_m` is the height of the ground at
 /// the axis (m).
 pub fn stem(tree: &Stem, ground_m: f64) -> Vec<Facet> {
+    prism(tree, [ground_m - FOOT_M, ground_m + tree.height_m], &ring())
+}
+
+/// Corners of an eight-sided stem, anticlockwise, in half diameters from its axis.
+pub(super) fn ring() -> [[f64; 2]; 8] {
     let h = FRAC_1_SQRT_2;
-    let round =
-        [[1.0, 0.0], [h, h], [0.0, 1.0], [-h, h], [-1.0, 0.0], [-h, -h], [0.0, -1.0], [h, -h]];
-    prism(tree, ground_m, &round)
+    [[1.0, 0.0], [h, h], [0.0, 1.0], [-h, h], [-1.0, 0.0], [-h, -h], [0.0, -1.0], [h, -h]]
 }
 
 /// A four-sided closed stem whose sides are `dbh_m` wide and face the axes.
 pub fn square_stem(tree: &Stem, ground_m: f64) -> Vec<Facet> {
-    prism(tree, ground_m, &[[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+    let heights_m = [ground_m - FOOT_M, ground_m + tree.height_m];
+    prism(tree, heights_m, &[[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
 }
 
-/// A closed prism over the ring of corners (anticlockwise, in half diameters), facing outwards.
-fn prism(tree: &Stem, ground_m: f64, ring: &[[f64; 2]]) -> Vec<Facet> {
+/// A closed prism from the lower to the upper height (m) over the ring of corners, facing outwards.
+pub(super) fn prism(tree: &Stem, [low_m, high_m]: [f64; 2], ring: &[[f64; 2]]) -> Vec<Facet> {
     let half_m = 0.5 * tree.dbh_m;
-    let (low_m, high_m) = (ground_m - FOOT_M, ground_m + tree.height_m);
     let at = |k: usize, z_m: f64| {
         let [x, y] = ring[k % ring.len()];
         Vec3::new(tree.x_m + half_m * x, tree.y_m + half_m * y, z_m)

@@ -1,13 +1,12 @@
 //! All rocks of a world, and the windows of time they go through.
 
 use super::job::Job;
-use super::{Answer, Rover, State, TOUCHING, capture, law_between};
+use super::split::{Ahead, Meetings, Place, grown, is_busy, place_of};
+use super::{Answer, Census, Rover, State, TOUCHING, capture, law_between};
 use crate::contact::pair::Tie;
 use crate::coupled::broad::{Ball, overlapping};
-use crate::coupled::islands::Islands;
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
-use crate::rock::Vec3;
 use crate::trajectory::Trajectory;
 use crate::trajectory::fall::Course;
 use rayon::prelude::*;
@@ -23,25 +22,28 @@ const SHORTEST_S: f64 = 1e-5;
 /// Speed that a rock may have after being hit, over the fastest speed around it (–): twice for a light one under a
 /// heavy one.
 const KICK: f64 = 2.2;
-/// Passes in which islands grow by the reach of those that may be hit.
-const PASSES: usize = 3;
+/// Larger throws are not allowed for: that of a rock of a billionth of the mass along ten ever heavier ones.
+const MOST_KICK: f64 = 1e4;
+/// Windows after which a new moment is kept to go back to.
+const WINDOWS: usize = 64;
 
 /// All rocks of a world.
 pub(super) struct Crowd<'a> {
     course: &'a Course<'a>,
     answer: (Ground, Damping),
     capture: Capture,
-    rovers: Vec<Option<Rover<'a>>>,
+    pub(super) rovers: Vec<Option<Box<Rover<'a>>>>,
     /// Contacts and bonds, by the numbers of the rocks.
-    ties: BTreeMap<(u32, u32), Tie>,
-    now_s: f64,
+    pub(super) ties: BTreeMap<(u32, u32), Tie>,
+    pub(super) now_s: f64,
+    pub(super) census: Census,
 }
 
 impl<'a> Crowd<'a> {
     pub(super) fn new(
         course: &'a Course<'a>,
         answer: &Answer,
-        rovers: Vec<Option<Rover<'a>>>,
+        rovers: Vec<Option<Box<Rover<'a>>>>,
     ) -> Self {
         Self {
             course,
@@ -50,6 +52,7 @@ impl<'a> Crowd<'a> {
             rovers,
             ties: BTreeMap::new(),
             now_s: 0.0,
+            census: Census::default(),
         }
     }
 
@@ -76,7 +79,7 @@ impl<'a> Crowd<'a> {
 
     /// Pairs that touch as far as typed coordinates can say.
     pub(super) fn touching_at_start(&self) -> Vec<(u32, u32)> {
-        let ball = |rover: &Rover| Ball {
+        let ball = |rover: &Box<Rover>| Ball {
             centre: rover.member.grip.c,
             radius: rover.member.body.radius * (1.0 + TOUCHING),
         };
@@ -85,24 +88,50 @@ impl<'a> Crowd<'a> {
 
     /// Goes through windows until nothing moves or time is up; false if `stop` was raised.
     pub(super) fn run(&mut self, stop: &AtomicBool) -> bool {
+        let mut kick = KICK;
         loop {
+            let moment = self.moment();
+            let mut missed = false;
+            for _ in 0..WINDOWS {
+                let under_way =
+                    self.rovers.iter().flatten().any(|rover| rover.state == State::Moving);
+                if !under_way || self.now_s >= self.course.longest_s {
+                    break;
+                }
+                if stop.load(Ordering::Relaxed) {
+                    return false;
+                }
+                missed = self.window(kick);
+                if missed {
+                    break;
+                }
+            }
+            if missed && kick < MOST_KICK {
+                self.go_back(&moment);
+                self.census.returns += 1;
+                kick *= KICK;
+                continue;
+            }
+            kick = KICK;
             let under_way = self.rovers.iter().flatten().any(|rover| rover.state == State::Moving);
             if !under_way || self.now_s >= self.course.longest_s {
                 return true;
             }
-            if stop.load(Ordering::Relaxed) {
-                return false;
-            }
-            self.window();
         }
     }
 
-    /// One window: islands, each on its own.
-    fn window(&mut self) {
+    /// One window: islands, each on its own. Whether a rock was thrown further than `kick` allows for and may have met
+    /// one of another island.
+    fn window(&mut self, kick: f64) -> bool {
         let length = self.window_length();
         let end_s = (self.now_s + length).min(self.course.longest_s);
-        let (pairs, mut islands) = self.islands(end_s - self.now_s);
-        let jobs = self.jobs(&pairs, &mut islands, end_s);
+        self.rovers.iter_mut().flatten().for_each(|rover| rover.fastest_m_s = 0.0);
+        let present: Vec<u32> = self.present();
+        let ahead = Ahead { dt: end_s - self.now_s, kick };
+        let place = |&k: &u32| place_of(self.rover(k), self.course, (self.now_s, ahead.dt));
+        let places: Vec<Place> = present.iter().map(place).collect();
+        let mut meetings = self.meetings(&present, &places, ahead);
+        let jobs = self.jobs(&present, &mut meetings, (kick, end_s));
         let done: Vec<Job> = jobs
             .into_par_iter()
             .map(|mut job| {
@@ -110,10 +139,21 @@ impl<'a> Crowd<'a> {
                 job
             })
             .collect();
+        let mut missed = false;
         for job in done {
+            missed |= job.missed;
+            self.census.add(&job.census);
             self.take_back(job);
         }
         self.now_s = end_s;
+        self.census.windows += 1;
+        missed || meetings.missed(&places, ahead.dt, |k| self.rover(present[k]).fastest_m_s)
+    }
+
+    /// The rocks that are in the world.
+    fn present(&self) -> Vec<u32> {
+        let count = self.rovers.len() as u32;
+        (0..count).filter(|&k| !matches!(self.rover(k).state, State::Gone(_))).collect()
     }
 
     fn window_length(&self) -> f64 {
@@ -125,91 +165,58 @@ impl<'a> Crowd<'a> {
         length.max(SHORTEST_S)
     }
 
-    /// Pairs that may touch within `dt` and the islands they form.
-    fn islands(&self, dt: f64) -> (Vec<(u32, u32)>, Islands) {
-        let count = self.rovers.len();
-        let g = self.course.gravity_m_s2;
-        let present: Vec<u32> =
-            (0..count as u32).filter(|&k| !matches!(self.rover(k).state, State::Gone(_))).collect();
-        let places: Vec<(Vec3, f64, f64)> = present
-            .iter()
-            .map(|&k| {
-                let rover = self.rover(k);
-                let speed = if rover.state == State::Asleep {
-                    0.0
-                } else {
-                    rover.velocity_at(self.course, self.now_s).norm() + g * dt
-                };
-                (rover.position_at(self.course, self.now_s), rover.member.body.radius, speed)
-            })
-            .collect();
-        let mut fastest: Vec<f64> = places.iter().map(|place| place.2).collect();
-        let (mut pairs, mut islands) = (Vec::new(), Islands::alone(count));
-        for _ in 0..PASSES {
-            let ball = |((centre, radius, _), speed): (&(Vec3, f64, f64), &f64)| Ball {
-                centre: *centre,
-                radius: radius * (1.0 + 1e-6) + KICK * speed * dt,
-            };
-            let balls: Vec<Ball> = places.iter().zip(&fastest).map(ball).collect();
-            pairs = overlapping(&balls);
-            for pair in &mut pairs {
-                *pair = (present[pair.0 as usize], present[pair.1 as usize]);
+    /// Who may meet whom; numbers are places in `present`.
+    fn meetings(&self, present: &[u32], places: &[Place], ahead: Ahead) -> Meetings {
+        let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
+        let held: Vec<(u32, u32)> = self.ties.keys().map(|&(a, b)| (at(a), at(b))).collect();
+        grown(places, ahead, |reaches| {
+            let balls: Vec<Ball> = places
+                .iter()
+                .zip(reaches)
+                .map(|(place, radius)| Ball { centre: place.0, radius: *radius })
+                .collect();
+            let mut pairs = overlapping(&balls);
+            if !held.is_empty() {
+                pairs.extend(&held);
+                pairs.sort_unstable();
+                pairs.dedup();
             }
-            pairs.extend(self.ties.keys());
-            pairs.sort_unstable();
-            pairs.dedup();
-            islands = Islands::alone(count);
-            for &(a, b) in &pairs {
-                islands.join(a, b);
-            }
-            let mut most = vec![0.0f64; count];
-            for (place, &k) in places.iter().zip(&present) {
-                let root = islands.of(k) as usize;
-                most[root] = most[root].max(place.2);
-            }
-            for (speed, &k) in fastest.iter_mut().zip(&present) {
-                *speed = most[islands.of(k) as usize];
-            }
-        }
-        (pairs, islands)
+            pairs
+        })
     }
 
     /// Takes every island in which something may happen before `end_s` out of the world.
-    fn jobs(&mut self, pairs: &[(u32, u32)], islands: &mut Islands, end_s: f64) -> Vec<Job<'a>> {
-        let mut of_root: BTreeMap<u32, Vec<(u32, u32)>> = BTreeMap::new();
-        for &(a, b) in pairs {
-            of_root.entry(islands.of(a)).or_default().push((a, b));
-        }
-        let mut jobs = Vec::new();
-        for ids in islands.lists() {
-            if !self.is_busy(&ids, end_s) {
-                continue;
+    fn jobs(
+        &mut self,
+        present: &[u32],
+        meetings: &mut Meetings,
+        (kick, end_s): (f64, f64),
+    ) -> Vec<Job<'a>> {
+        let mut lists = meetings.islands.lists();
+        lists.retain(|list| is_busy(list.iter().map(|&k| self.rover(present[k as usize])), end_s));
+        let mut part = vec![(usize::MAX, 0); present.len()];
+        for (number, list) in lists.iter().enumerate() {
+            for (&k, place) in list.iter().zip(0..) {
+                part[k as usize] = (number, place);
             }
-            let pairs = of_root.remove(&ids[0]).unwrap_or_default();
-            let place = |k: u32| ids.binary_search(&k).unwrap_or_default() as u32;
-            let ties = pairs.iter().map(|&(a, b)| {
-                let known = self.ties.remove(&(a, b));
-                let tie = known.unwrap_or_else(|| Tie::new(a, b, self.law(a, b)));
-                Tie { a: place(a), b: place(b), ..tie }
-            });
-            let ties = ties.collect();
+        }
+        let mut ties: Vec<Vec<Tie>> = lists.iter().map(|_| Vec::new()).collect();
+        for &(a, b) in &meetings.pairs {
+            let (number, place) = part[a as usize];
+            if number != usize::MAX {
+                let [one, two] = [a, b].map(|k| present[k as usize]);
+                let known = self.ties.remove(&(one, two));
+                let tie = known.unwrap_or_else(|| Tie::new(one, two, self.law(one, two)));
+                ties[number].push(Tie { a: place, b: part[b as usize].1, ..tie });
+            }
+        }
+        let mut jobs = Vec::with_capacity(lists.len());
+        for (list, ties) in lists.into_iter().zip(ties) {
+            let ids: Vec<u32> = list.iter().map(|&k| present[k as usize]).collect();
             let rovers = ids.iter().filter_map(|&k| self.rovers[k as usize].take()).collect();
-            jobs.push(Job::new(self.course, ids, rovers, ties, (self.now_s, end_s)));
+            jobs.push(Job::new((self.course, kick), ids, rovers, ties, (self.now_s, end_s)));
         }
         jobs
-    }
-
-    /// Whether anything of an island moves other than along a parabola that goes on beyond `end_s`.
-    fn is_busy(&self, ids: &[u32], end_s: f64) -> bool {
-        match ids {
-            [k] => {
-                let rover = self.rover(*k);
-                let flies_on =
-                    rover.member.flying && rover.lands.as_ref().is_some_and(|(t, _)| *t > end_s);
-                rover.state == State::Moving && !flies_on
-            }
-            _ => ids.iter().any(|&k| self.rover(k).state == State::Moving),
-        }
     }
 
     fn take_back(&mut self, job: Job<'a>) {

@@ -1,6 +1,7 @@
 //! One island through one window: leap, meet, step, rest.
 
-use super::{Rover, State};
+use super::split::{Ahead, Place, is_busy, meeting_ties, place_of};
+use super::{Census, Rover, State};
 use crate::contact::pair::{Tie, meeting_s};
 use crate::coupled::islands::Islands;
 use crate::coupled::{Cluster, Done};
@@ -9,6 +10,7 @@ use crate::step::adaptive::{Control, ONSET, Stuck};
 use crate::step::tableau::{ESDIRK4, TR_BDF2};
 use crate::trajectory::Stop;
 use crate::trajectory::fall::Course;
+use rayon::prelude::*;
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
 const ROUNDING: f64 = 1e-11;
@@ -16,33 +18,147 @@ const ROUNDING: f64 = 1e-11;
 /// A time that is nothing (s): the clock cannot tell less after an hour.
 const SOON_S: f64 = 1e-12;
 
+/// An island of no more rocks than this is stepped as a whole.
+const FEW: usize = 4;
+/// In how many windows one is cut in which most of an island's rocks cannot meet.
+const CUTS: u32 = 4;
+/// Shortest of them, in radians of the stiffest contact (–): an impact should not be cut into pieces.
+const SHORTEST_PART: f64 = 6.0;
+
 /// One island and its window.
 pub(super) struct Job<'a> {
     course: &'a Course<'a>,
     ids: Vec<u32>,
-    rovers: Vec<Rover<'a>>,
+    #[expect(
+        clippy::vec_box,
+        reason = "rovers are handed on between islands; a pointer moves faster than a journey"
+    )]
+    rovers: Vec<Box<Rover<'a>>>,
     ties: Vec<Tie>,
     now_s: f64,
     end_s: f64,
+    kick: f64,
+    /// Whether a rock was thrown so far that it may have met one of another island.
+    pub(super) missed: bool,
+    pub(super) census: Census,
 }
 
 impl<'a> Job<'a> {
     pub(super) fn new(
-        course: &'a Course<'a>,
+        (course, kick): (&'a Course<'a>, f64),
         ids: Vec<u32>,
-        rovers: Vec<Rover<'a>>,
+        #[expect(
+            clippy::vec_box,
+            reason = "rovers are handed on between islands; a pointer moves faster than a journey"
+        )]
+        rovers: Vec<Box<Rover<'a>>>,
         ties: Vec<Tie>,
         (now_s, end_s): (f64, f64),
     ) -> Self {
-        Self { course, ids, rovers, ties, now_s, end_s }
+        Self {
+            course,
+            ids,
+            rovers,
+            ties,
+            now_s,
+            end_s,
+            kick,
+            missed: false,
+            census: Census::default(),
+        }
     }
 
-    pub(super) fn into_parts(self) -> (Vec<u32>, Vec<Rover<'a>>, Vec<Tie>) {
+    pub(super) fn into_parts(self) -> (Vec<u32>, Vec<Box<Rover<'a>>>, Vec<Tie>) {
         (self.ids, self.rovers, self.ties)
     }
 
     /// Takes the island to the end of its window.
     pub(super) fn run(&mut self) {
+        if !self.falls_apart() {
+            self.run_whole();
+            return;
+        }
+        let (start_s, end_s) = (self.now_s, self.end_s);
+        for k in 1..=CUTS {
+            let part = f64::from(k) / f64::from(CUTS);
+            self.end_s = if k == CUTS { end_s } else { start_s + part * (end_s - start_s) };
+            self.run_parts();
+            self.now_s = self.end_s;
+        }
+    }
+
+    /// Whether most of the island's rocks are not joined in a much shorter window: then shorter windows are cheaper than
+    /// stepping all together.
+    fn falls_apart(&self) -> bool {
+        let (count, dt) = (self.rovers.len(), (self.end_s - self.now_s) / f64::from(CUTS));
+        let stiffest = self.ties.iter().map(|tie| tie.law.omega).fold(0.0, f64::max);
+        if count <= FEW || dt * stiffest < SHORTEST_PART {
+            return false;
+        }
+        let ahead = Ahead { dt, kick: self.kick };
+        let mut meetings = meeting_ties(&self.ties, &self.places(dt), ahead);
+        let largest = meetings.islands.sizes().into_iter().max().unwrap_or(0);
+        4 * largest as usize <= 3 * count
+    }
+
+    fn places(&self, dt: f64) -> Vec<Place> {
+        let place = |rover: &Box<Rover>| place_of(rover, self.course, (self.now_s, dt));
+        self.rovers.iter().map(place).collect()
+    }
+
+    /// Takes the parts that cannot meet before the end of the window there, each on its own.
+    fn run_parts(&mut self) {
+        let dt = self.end_s - self.now_s;
+        let places = self.places(dt);
+        let mut meetings = meeting_ties(&self.ties, &places, Ahead { dt, kick: self.kick });
+        let mut lists = meetings.islands.lists();
+        lists.retain(|list| is_busy(list.iter().map(|&k| &*self.rovers[k as usize]), self.end_s));
+        let mut part = vec![(u32::MAX, 0); self.rovers.len()];
+        for (list, number) in lists.iter().zip(0..) {
+            for (&k, place) in list.iter().zip(0..) {
+                part[k as usize] = (number, place);
+            }
+        }
+        let mut ties: Vec<Vec<Tie>> = lists.iter().map(|_| Vec::new()).collect();
+        let mut pairs = meetings.pairs.iter().peekable();
+        self.ties.retain(|tie| {
+            let (number, a) = part[tie.a as usize];
+            let meets = pairs.next_if(|pair| **pair == (tie.a, tie.b)).is_some();
+            let goes = meets && number != u32::MAX;
+            if goes {
+                ties[number as usize].push(Tie { a, b: part[tie.b as usize].1, ..*tie });
+            }
+            !goes
+        });
+        let mut homes: Vec<Option<Box<Rover>>> = self.rovers.drain(..).map(Some).collect();
+        let mut jobs = Vec::with_capacity(lists.len());
+        for (list, ties) in lists.into_iter().zip(ties) {
+            let rovers = list.iter().filter_map(|&k| homes[k as usize].take()).collect();
+            let window = (self.now_s, self.end_s);
+            jobs.push(Job::new((self.course, self.kick), list, rovers, ties, window));
+        }
+        jobs.par_iter_mut().for_each(Job::run);
+        for job in jobs {
+            self.missed |= job.missed;
+            self.census.add(&job.census);
+            let (list, rovers, ties) = job.into_parts();
+            self.ties.extend(ties.into_iter().map(|tie| Tie {
+                a: list[tie.a as usize],
+                b: list[tie.b as usize],
+                ..tie
+            }));
+            for (&k, rover) in list.iter().zip(rovers) {
+                homes[k as usize] = Some(rover);
+            }
+        }
+        self.ties.sort_unstable_by_key(|tie| (tie.a, tie.b));
+        self.rovers.extend(homes.into_iter().flatten());
+        let rovers = &self.rovers;
+        self.missed |= meetings.missed(&places, dt, |k| rovers[k].fastest_m_s);
+    }
+
+    /// Takes all of the island to the end of the window together.
+    fn run_whole(&mut self) {
         for rover in &mut self.rovers {
             rover.wake(self.course, self.now_s);
         }
@@ -143,7 +259,7 @@ impl<'a> Job<'a> {
         let mut goes_on = true;
         while self.now_s < until_s {
             let room = until_s - self.now_s;
-            let sweeps = cluster.sweeps + cluster.jumps;
+            let spent = (cluster.sweeps, cluster.jumps);
             let tried = match self.course.step.scheme {
                 Scheme::Dda => cluster.advance_fixed(self.course.step, room),
                 _ => cluster.advance(&control, room),
@@ -157,7 +273,7 @@ impl<'a> Job<'a> {
                 }
             };
             self.now_s = if done.dt >= room { until_s } else { self.now_s + done.dt };
-            let all_fly = self.note(&mut cluster, &done, sweeps);
+            let all_fly = self.note(&mut cluster, &done, spent);
             if all_fly {
                 break;
             }
@@ -177,10 +293,7 @@ impl<'a> Job<'a> {
     fn cluster(&mut self) -> Cluster<'a> {
         let h = self.rovers.iter().filter(|rover| !rover.member.flying).map(|rover| rover.h);
         let h = h.fold(f64::INFINITY, f64::min);
-        let empty = || Box::new(crate::coupled::Member::default());
-        let members =
-            self.rovers.iter_mut().map(|rover| std::mem::replace(&mut rover.member, empty()));
-        let members = members.collect();
+        let members = self.rovers.iter_mut().map(|rover| rover.member.lend()).collect();
         let mut cluster =
             Cluster::new(self.course.terrain, members, std::mem::take(&mut self.ties));
         cluster.h = h;
@@ -196,8 +309,24 @@ impl<'a> Job<'a> {
     }
 
     /// Writes one step into the journeys; whether all rocks fly now.
-    fn note(&mut self, cluster: &mut Cluster<'a>, done: &Done, sweeps: u64) -> bool {
-        let swept = cluster.sweeps + cluster.jumps - sweeps;
+    fn note(
+        &mut self,
+        cluster: &mut Cluster<'a>,
+        done: &Done,
+        (swept, jumped): (u64, u64),
+    ) -> bool {
+        let (sweeps, jumps) = (cluster.sweeps - swept, cluster.jumps - jumped);
+        let rocks = self.rovers.len() as u64;
+        self.census.add(&Census {
+            steps: 1,
+            rock_steps: rocks,
+            rejected: done.rejected,
+            sweeps,
+            jumps,
+            unsettled: u64::from(done.unsettled),
+            largest: rocks,
+            ..Census::default()
+        });
         let mut slides = vec![false; self.rovers.len()];
         for tie in cluster.ties.iter().filter(|tie| tie.closed && tie.slides) {
             (slides[tie.a as usize], slides[tie.b as usize]) = (true, true);
@@ -207,7 +336,7 @@ impl<'a> Job<'a> {
             let effort = &mut rover.journey.effort;
             effort.steps += 1;
             effort.rejected += done.rejected;
-            effort.sweeps += swept;
+            effort.sweeps += sweeps + jumps;
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given_j[k]);
             rover.step(self.course, self.now_s, given, slides[k]);

@@ -133,6 +133,7 @@ impl Rover<'_> {
         let dt = time_s - self.journey.now.time_s;
         let slides = slides || grip.holds.iter().any(|hold| hold.slides);
         let was_flying = self.lands.is_some();
+        self.fastest_m_s = self.fastest_m_s.max(to.velocity_m_s.norm());
         self.announce(course);
         if was_flying && self.member.flying {
             self.journey.step_as(to, PathState::Flight);

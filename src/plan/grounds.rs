@@ -1,0 +1,49 @@
+//! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
+
+use crate::error::{Error, Result};
+use crate::scene::{GroundTable, Scene, known_ground};
+use crate::terrain::Terrain;
+use crate::terrain::stems::Stems;
+
+/// Grounds with values of the catalogue: name, what was taken, source.
+pub(super) fn catalogued(scene: &Scene) -> Vec<String> {
+    let taken = |(name, ground): (&String, &GroundTable)| {
+        let known = known_ground(ground.like.as_deref()?)?;
+        Some(format!(
+            "{name} like {}: {} unless written in the scene; {}",
+            known.name,
+            known.values(),
+            known.source
+        ))
+    };
+    scene.grounds.iter().filter_map(taken).collect()
+}
+
+/// The stems that give way, whose ends leave nothing open.
+pub(super) fn stems(scene: &Scene, terrain: &Terrain) -> Result<Option<Stems>> {
+    let limits = scene.grounds.values().map(|ground| ground.breaks_above_j.clone()).collect();
+    Stems::of(terrain, limits).map_err(|shared_m| {
+        let [x, y, z]: [f64; 3] = (shared_m + terrain.origin_m).into();
+        let found = format!("found a stem that shares a corner with what stays at ({x}, {y}, {z})");
+        let remedy = "write stems that stand in the ground without common corners, as rockfall mesh stems makes them";
+        Error::input(&scene.file, "[grounds] breaks_above_j", found, remedy)
+    })
+}
+
+/// Warnings about grounds and keys that nothing answers with.
+pub(super) fn unused(scene: &Scene, terrain: &Terrain) -> Vec<String> {
+    let used = |index: usize| terrain.sheets.iter().any(|sheet| usize::from(sheet.ground) == index);
+    let has_tree = |index: usize| {
+        terrain.sheets.iter().any(|sheet| sheet.is_tree && usize::from(sheet.ground) == index)
+    };
+    let wrong = |(index, (name, ground)): (usize, (&String, &GroundTable))| {
+        if !used(index) {
+            Some(format!("[grounds.{name}] lies under no mesh"))
+        } else if ground.breaks_above_j.is_some() && !has_tree(index) {
+            Some(format!("[grounds.{name}] has breaks_above_j, but no tree: only trees give way"))
+        } else {
+            None
+        }
+    };
+    scene.grounds.iter().enumerate().filter_map(wrong).collect()
+}

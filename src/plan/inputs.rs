@@ -1,0 +1,80 @@
+//! What went into a run, as name and value for the report.
+
+use crate::chance::Distribution;
+use crate::scene::{GroundTable, MeshFile, ReportTable, Scene, known_ground};
+
+/// The inputs of a scene, name by name.
+pub(super) fn of(scene: &Scene) -> Vec<(String, String)> {
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    let [velocity, spin] = [&scene.release.velocity_m_s, &scene.release.spin_rad_s]
+        .map(|vector| vector.each_ref().map(|one| words(one, "")).join(" | "));
+    let mut rows = vec![
+        row("Rock density", format!("{} kg/m³", scene.rocks.density_kg_m3)),
+        row("Rock radius", words(&scene.rocks.radius_m, " m")),
+        row("Velocity at release (x | y | z)", format!("{velocity} m/s")),
+        row("Spin at release (x | y | z)", format!("{spin} rad/s")),
+    ];
+    if let Some(height_m) = &scene.release.height_m {
+        rows.insert(2, row("Release above the ground", words(height_m, " m")));
+    }
+    rows.extend(scene.grounds.iter().map(|(name, ground)| ground_row(scene, name, ground)));
+    rows
+}
+
+fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, String) {
+    let lies = |meshes: &[MeshFile]| meshes.iter().any(|mesh| mesh.ground == name);
+    let what = if lies(&scene.trees) && !lies(&scene.terrain) { "Trees" } else { "Ground" };
+    let mut parts = vec![
+        format!(
+            "springs {} normal, {} along the surface",
+            words(&ground.normal_stiffness_n_m, " N/m"),
+            words(&ground.shear_stiffness_n_m, " N/m")
+        ),
+        format!("friction angle {}", words(&ground.friction_angle_deg, "°")),
+    ];
+    let mut say = |name: &str, value: Option<&Distribution>, unit: &str| {
+        parts.extend(value.map(|value| format!("{name} {}", words(value, unit))));
+    };
+    say("restitution", ground.restitution.as_ref(), "");
+    say("rolling friction", ground.rolling_friction.as_ref(), "");
+    say("roughness", ground.roughness_deg.as_ref(), "°");
+    say("gives way above", ground.breaks_above_j.as_ref(), " J");
+    if let Some(known) = ground.like.as_deref().and_then(known_ground) {
+        parts.push(format!("like {}", known.name));
+    }
+    (format!("{what} “{name}”"), parts.join("; "))
+}
+
+/// A number, or how it is drawn: its middle, where nine of ten draws lie, and the family.
+fn words(value: &Distribution, unit: &str) -> String {
+    let short = |number: f64| {
+        let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+        if rounded.abs() >= 1e5 { format!("{rounded:e}") } else { rounded.to_string() }
+    };
+    if let Some(number) = value.as_fixed() {
+        return short(number) + unit;
+    }
+    let [low, middle, high] = [0.05, 0.5, 0.95].map(|p| short(value.quantile(p)));
+    format!("{middle}{unit} ({low} to {high} in nine of ten, {})", value.family())
+}
+
+/// The rows of the title block: who, for whom, when; only what the scene says.
+pub(super) fn title_block(report: &ReportTable) -> Vec<(String, String)> {
+    let ReportTable { client, project, author, date, terrain_source: _, ground_source: _ } = report;
+    [("Client", client), ("Project", project), ("Author", author), ("Date", date)]
+        .into_iter()
+        .filter_map(|(name, value)| Some((name.to_owned(), value.clone()?)))
+        .collect()
+}
+
+/// Where ground values come from: what the scene says, else what can be told from it.
+pub(super) fn ground_source(scene: &Scene, catalogued: &[String]) -> String {
+    match (&scene.report.ground_source, catalogued, &scene.calibrate) {
+        (Some(source), ..) => source.clone(),
+        (None, [], Some(table)) if !table.vary.is_empty() => {
+            "calibrated on measured ends ([calibrate] of the scene)".to_owned()
+        }
+        (None, [], _) => "written in the scene; [report] ground_source names no source".to_owned(),
+        (None, list, _) => list.join(". "),
+    }
+}

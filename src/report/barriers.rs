@@ -1,0 +1,189 @@
+//! One barrier: what arrives against what it can take, and how many it would stop at other heights and places.
+
+use super::axis::Axis;
+use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
+use super::figure::{Drawing, WIDTH_PX};
+use super::format;
+use super::input::{BarrierView, PlaceView, energy_unit};
+use super::panel::{FOOT_PX, Panel};
+use super::paper::{Label, NORMAL, Paper, Pen, paint};
+use super::svg::path::{Frame, Spot};
+use plotters::style::RGBColor;
+
+const TOP_PX: f64 = 26.0;
+const CLOUD_PX: f64 = 210.0;
+const CURVE_PX: f64 = 160.0;
+/// Between a panel's axis title and the head of the next panel (px).
+const GAP_PX: f64 = 34.0;
+const RIGHT_PX: f64 = WIDTH_PX - 14.0;
+/// From so many rocks on, marks shrink to dots.
+const MANY: usize = 400;
+/// Colours of other places, in the order of the scene; more places share the last.
+const ELSEWHERE: [RGBColor; 4] = [ORANGE, PURPLE, SKY, GREY];
+
+/// Draws the cloud and the two curves of sensitivity.
+pub(super) fn draw(barrier: &BarrierView, number: usize) -> Drawing {
+    let rocks = barrier.places.first().map_or(&[][..], |own| &own.rocks);
+    let most_j = rocks.iter().map(|rock| rock.1).fold(barrier.capacity_j, f64::max);
+    let (unit, size) = energy_unit(most_j);
+    let cloud = cloud_panel(barrier, rocks, (unit, size));
+    let top = cloud.frame.bottom + FOOT_PX + GAP_PX;
+    let (heights, places) = lower_panels(barrier, top);
+    let bottom = heights.frame.bottom + FOOT_PX;
+    let title = format!("Barrier {}", barrier.name);
+    let svg = paint(&format!("barrier-{number}"), (WIDTH_PX, bottom), &title, |paper| {
+        head(paper, &cloud, "Rocks that arrive, and what it can take");
+        draw_cloud(paper, &cloud, (barrier, rocks), size);
+        head(paper, &heights, "Stopped by height");
+        draw_heights(paper, &heights, barrier);
+        if let Some(places) = &places {
+            head(paper, places, "Stopped by place");
+            draw_places(paper, places, barrier);
+        }
+    });
+    Drawing { svg, caption: caption(barrier, rocks.len()) }
+}
+
+fn caption(barrier: &BarrierView, arriving: usize) -> String {
+    let design = match barrier.design {
+        Some(_) => " The diamond is the design of its rule.",
+        None => "",
+    };
+    let places = if barrier.places.len() > 1 {
+        ", at its place (blue) and at the other places of the scene. Below right: the same share at its own height against its \
+         place, positive to the left of its line, with Wilson's 95 % interval."
+    } else {
+        "."
+    };
+    format!(
+        "Barrier “{}”: {} rocks arrive. Above: total energy and height of the highest point of each; inside the green frame it \
+         stops them.{design} Below: share of the arriving rocks that a barrier of another height and the same capacity \
+         would stop{places}",
+        barrier.name,
+        format::decimal(arriving as f64, 0)
+    )
+}
+
+fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
+    let at = (panel.frame.left, panel.frame.top - 10.0);
+    paper.text(&Label::new(words, at).bold().sized(NORMAL));
+}
+
+fn cloud_panel(barrier: &BarrierView, rocks: &[(f64, f64)], (unit, size): (&str, f64)) -> Panel {
+    let (design_m, design_j) = barrier.design.unwrap_or((0.0, 0.0));
+    let energies =
+        rocks.iter().map(|rock| rock.1).chain([1.05 * barrier.capacity_j, 1.05 * design_j]);
+    let tops = rocks.iter().map(|rock| rock.0).filter(|top| top.is_finite());
+    let tops = tops.chain([1.05 * barrier.height_m, 1.05 * design_m]);
+    let frame = Frame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + CLOUD_PX };
+    let mut panel = Panel::new(
+        frame,
+        Axis::from_zero(energies.map(|joule| joule / size), format!("Total energy ({unit})")),
+        Axis::from_zero(tops, "Height of the highest point (m)"),
+    );
+    panel.frame.left += panel.room_left();
+    panel
+}
+
+fn draw_cloud(
+    paper: &Paper<'_>,
+    panel: &Panel,
+    (barrier, rocks): (&BarrierView, &[(f64, f64)]),
+    size: f64,
+) {
+    panel.grid(paper);
+    let edge = panel.at(barrier.capacity_j / size, barrier.height_m);
+    let stopped =
+        Frame { left: panel.frame.left, right: edge.0, top: edge.1, bottom: panel.frame.bottom };
+    paper.fill(&stopped, GREEN, 0.12);
+    let spots: Vec<Spot> = rocks
+        .iter()
+        .map(|rock| panel.at(rock.1 / size, rock.0))
+        .filter(|&spot| panel.frame.holds(spot))
+        .collect();
+    paper.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
+    paper.outline(&stopped, Pen::full(GREEN, 1.6));
+    if let Some((height_m, joule)) = barrier.design {
+        let (x, y) = panel.at(joule / size, height_m);
+        paper.polygon(&[(x, y - 6.0), (x + 6.0, y), (x, y + 6.0), (x - 6.0, y)], VERMILLION, 1.0);
+        let label = if x > panel.frame.right - 60.0 {
+            Label::new("design", (x - 9.0, y)).right()
+        } else {
+            Label::new("design", (x + 9.0, y))
+        };
+        paper.text_on_rim(&label.coloured(INK));
+    }
+    panel.axes(paper);
+    if rocks.is_empty() {
+        panel.nothing(paper, "no rock arrives");
+    }
+}
+
+/// The panel over height, and beside it the one over places where the scene names some.
+fn lower_panels(barrier: &BarrierView, top: f64) -> (Panel, Option<Panel>) {
+    let (half, bottom) = (0.5 * WIDTH_PX, top + CURVE_PX);
+    let has_places = barrier.places.len() > 1;
+    let first = if has_places { RIGHT_PX - half + 4.0 } else { RIGHT_PX };
+    let frame = |left: f64, right: f64| Frame { left, top, right, bottom };
+    let offsets = || barrier.places.iter().map(|place| place.offset_m);
+    let reach = offsets().map(f64::abs).fold(1.0, f64::max);
+    let (low, high) = offsets().fold((-0.2 * reach, 0.2 * reach), |(low, high), x| {
+        (low.min(1.15 * x), high.max(1.15 * x))
+    });
+    let share = || Axis::linear(0.0, 100.0, "Stopped (%)");
+    let placed = |frame: Frame, x: Axis| {
+        let mut panel = Panel::new(frame, x, share());
+        panel.frame.left += panel.room_left();
+        panel
+    };
+    let heights = Axis::linear(0.0, 2.0 * barrier.height_m, "Height (m)");
+    let places = || Axis::linear(low, high, "Distance from its place (m)");
+    (
+        placed(frame(0.0, first), heights),
+        has_places.then(|| placed(frame(half, RIGHT_PX), places())),
+    )
+}
+
+/// Share (%) of the rocks at a place that a barrier of every height stops, as a staircase.
+fn staircase(barrier: &BarrierView, place: &PlaceView, most_m: f64) -> Vec<(f64, f64)> {
+    let held = place.rocks.iter().filter(|rock| rock.1 <= barrier.capacity_j && rock.0 <= most_m);
+    let mut tops: Vec<f64> = held.map(|rock| rock.0).collect();
+    tops.sort_by(f64::total_cmp);
+    let percent = |count: usize| 100.0 * count as f64 / place.rocks.len().max(1) as f64;
+    let steps =
+        tops.iter().enumerate().flat_map(|(k, &top)| [(top, percent(k)), (top, percent(k + 1))]);
+    [(0.0, 0.0)].into_iter().chain(steps).chain([(most_m, percent(tops.len()))]).collect()
+}
+
+fn draw_heights(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
+    panel.grid(paper);
+    panel.upright(paper, barrier.height_m, Pen::full(GREEN, 1.4));
+    // its own place last, on top of the others
+    for (k, place) in barrier.places.iter().enumerate().rev() {
+        let pen = match k {
+            0 => Pen::full(BLUE, 1.8),
+            _ => Pen::full(ELSEWHERE[(k - 1).min(ELSEWHERE.len() - 1)], 1.2).dashed(),
+        };
+        panel.line(paper, &staircase(barrier, place, panel.x.high), pen);
+    }
+    panel.axes(paper);
+}
+
+fn draw_places(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
+    panel.grid(paper);
+    for (k, place) in barrier.places.iter().enumerate() {
+        let stops = |rock: &&(f64, f64)| rock.0 <= barrier.height_m && rock.1 <= barrier.capacity_j;
+        let share = crate::hazard::Proportion::new(
+            place.rocks.iter().filter(stops).count(),
+            place.rocks.len(),
+        );
+        if share.of == 0 {
+            continue;
+        }
+        let colour = if k == 0 { BLUE } else { ELSEWHERE[(k - 1).min(ELSEWHERE.len() - 1)] };
+        let at = |percent: f64| panel.at(place.offset_m, percent);
+        paper.line(&[at(100.0 * share.low_95), at(100.0 * share.high_95)], Pen::full(INK, 1.2));
+        paper.disc(at(100.0 * share.share), 4.0, colour);
+    }
+    panel.axes(paper);
+}

@@ -1,0 +1,206 @@
+//! Cost against the number of rocks that share one world: spheres fall onto the ridge between two open boxes.
+
+use super::bench::{GRAVITY_M_S2, terrain};
+use crate::contact::pair::Strength;
+use crate::ground::Ground;
+use crate::plan::{RestRule, Watch};
+use crate::release::Release;
+use crate::rock::{Motion, Rock, Vec3};
+use crate::step::{Scheme, Settings};
+use crate::terrain::make::containers;
+use crate::trajectory::{Answer, Census, Course, Keep, Stop, Trajectory, follow_counted};
+use std::fs;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// The sphere of the paper's example 3.
+const ROCK: Rock = Rock { radius_m: 0.05, density_kg_m3: 2700.0 };
+/// Table 1, with a restitution of 0.5.
+const GROUND: Ground = Ground {
+    normal_stiffness_n_m: 1e9,
+    shear_stiffness_n_m: 0.25e9,
+    friction_angle_rad: std::f64::consts::FRAC_PI_6,
+    restitution: Some(0.5),
+    rolling_friction: 0.05,
+    roughness_rad: 0.0,
+};
+/// Distance of the spheres at the start (m), as in example 3.
+const SPACING_M: f64 = 0.12;
+/// Local error of the default scheme (m/s).
+const TOLERANCE_M_S: f64 = 0.05;
+/// Step of the paper (s).
+const STEP_S: f64 = 1e-5;
+
+/// One world of the study.
+#[derive(Debug, Clone)]
+pub struct World {
+    /// Scheme.
+    pub scheme: Scheme,
+    /// Number of spheres.
+    pub spheres: usize,
+    /// Time followed (s).
+    pub simulated_s: f64,
+    /// Processor time of one thread (s).
+    pub processor_s: f64,
+    /// Largest memory of the process on the way, less what it held before (byte); `None` where the system does not say.
+    pub memory_bytes: Option<u64>,
+    /// What it took.
+    pub census: Census,
+    /// Spheres that failed or left the boxes' surroundings.
+    pub lost: usize,
+    /// Spheres at rest at the end.
+    pub at_rest: usize,
+    /// Deepest overlap of two spheres at the end, over the radius (–).
+    pub overlap: f64,
+}
+
+impl World {
+    /// Processor time by simulated time (–).
+    pub fn cost(&self) -> f64 {
+        self.processor_s / self.simulated_s
+    }
+
+    /// Processor time of one step of one rock (s).
+    pub fn rock_step_s(&self) -> f64 {
+        self.processor_s / self.census.rock_steps.max(1) as f64
+    }
+}
+
+/// Example 3 with `spheres` instead of 48, boxes and heap larger alike in all directions, for `longest_s` (s).
+pub fn world(scheme: Scheme, spheres: usize, longest_s: f64) -> World {
+    let size = (spheres as f64 / 48.0).cbrt();
+    let terrain = terrain(boxes(size));
+    let step = Settings {
+        scheme,
+        tolerance_m_s: TOLERANCE_M_S,
+        step_s: STEP_S,
+        shear_memory: true,
+        capture_speed_m_s: None,
+    };
+    let course = Course {
+        terrain: &terrain,
+        gravity_m_s2: GRAVITY_M_S2,
+        step: &step,
+        rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
+        longest_s,
+        watch: Watch::default(),
+    };
+    let releases = heap(spheres, size, terrain.origin_m);
+    let answer =
+        Answer { ground: GROUND, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
+    let keep = |_| Keep { path_step_s: None, impacts: false };
+    let never = AtomicBool::new(false);
+    let before = resident_bytes("VmRSS:");
+    // Linux forgets the largest memory so far when asked to; where it cannot, the number is left out.
+    let forgot = fs::write("/proc/self/clear_refs", "5").is_ok();
+    let begun = (Instant::now(), processor_ns());
+    let (falls, census) =
+        follow_counted(&course, &releases, &answer, keep, &never).unwrap_or_default();
+    let processor_s = match (begun.1, processor_ns()) {
+        (Some(before), Some(after)) => 1e-9 * (after - before) as f64,
+        _ => begun.0.elapsed().as_secs_f64(),
+    };
+    let most = resident_bytes("VmHWM:").filter(|_| forgot);
+    let memory_bytes = most.zip(before).map(|(most, before)| most.saturating_sub(before));
+    let lost = |fall: &&Trajectory| matches!(fall.stop, Stop::Failed(_) | Stop::LeftTerrain);
+    World {
+        scheme,
+        spheres,
+        simulated_s: longest_s,
+        processor_s,
+        memory_bytes,
+        census,
+        lost: falls.iter().filter(lost).count() + spheres - falls.len(),
+        at_rest: falls.iter().filter(|fall| fall.stop == Stop::AtRest).count(),
+        overlap: deepest_overlap(&falls),
+    }
+}
+
+/// The two boxes, on a floor that catches what falls beside them.
+fn boxes(size: f64) -> Vec<crate::terrain::stl::Facet> {
+    let mut facets = containers(0.5 * size, 0.3125 * size, 0.625 * size, 0.125 * size);
+    let at = |x: f64, y: f64| Vec3::new(4.0 * size * x, 4.0 * size * y, -0.125 * size);
+    facets.push([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0)]);
+    facets.push([at(-1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
+    facets
+}
+
+/// Spheres in a grid above the ridge, each moved by up to a millimetre: columns of spheres exactly above each other
+/// would balance.
+fn heap(spheres: usize, size: f64, origin_m: Vec3) -> Vec<Release> {
+    use crate::chance::{Purpose, stream};
+    use rand::RngExt as _;
+    let wide = (4.0 * size).ceil() as usize;
+    let middle = 0.5 * (wide as f64 - 1.0);
+    let mut chance = stream(1, Purpose::Impacts, 0);
+    let release = |k: usize| {
+        let cell = [(k % wide) as f64 - middle, (k / wide % wide) as f64 - middle];
+        let grid = Vec3::new(cell[0], cell[1], (k / (wide * wide)) as f64) * SPACING_M;
+        let off = Vec3::from_fn(|_, _| chance.random_range(-1e-3..1e-3));
+        let position_m = grid + off + Vec3::z() * (0.625 * size + 0.25) - origin_m;
+        let still = Vec3::zeros();
+        let motion = Motion { time_s: 0.0, position_m, velocity_m_s: still, spin_rad_s: still };
+        Release { rock: ROCK, motion, grounds: vec![GROUND] }
+    };
+    (0..spheres).map(release).collect()
+}
+
+/// Over the radius (–).
+fn deepest_overlap(falls: &[Trajectory]) -> f64 {
+    use crate::coupled::broad::{Ball, overlapping};
+    let ball = |fall: &Trajectory| Ball { centre: fall.end.position_m, radius: fall.rock.radius_m };
+    let balls: Vec<Ball> = falls.iter().map(ball).collect();
+    let depth = |(a, b): &(u32, u32)| {
+        let [a, b] = [a, b].map(|k| &balls[*k as usize]);
+        a.radius + b.radius - (a.centre - b.centre).norm()
+    };
+    overlapping(&balls).iter().map(depth).fold(0.0, f64::max) / ROCK.radius_m
+}
+
+/// Time this thread has had on a processor (ns), where the system says: other work on the machine does not count.
+fn processor_ns() -> Option<u64> {
+    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    text.split_whitespace().next()?.parse().ok()
+}
+
+/// A line of `/proc/self/status` (byte).
+fn resident_bytes(key: &str) -> Option<u64> {
+    let text = fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(key))?;
+    let kilobytes: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
+    Some(1024 * kilobytes)
+}
+
+/// Exponent `b` of `y ~ xᵇ` by least squares over the logarithms; `None` below two points.
+pub(super) fn exponent(points: &[(f64, f64)]) -> Option<f64> {
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let count = logs.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let across: f64 = logs.iter().map(|p| (p.0 - x).powi(2)).sum();
+    let along: f64 = logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
+    (across > 0.0).then(|| along / across)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exponent_of_a_power_is_found() {
+        let points = [1.0f64, 10.0, 300.0].map(|x| (x, 7.0 * x.powf(1.25)));
+        assert!((exponent(&points).unwrap() - 1.25).abs() < 1e-12);
+        assert_eq!(exponent(&points[..1]), None);
+    }
+
+    /// A handful of spheres lands in the boxes: none is lost, every step settles, and the counts say what was done.
+    #[test]
+    fn a_small_world_is_counted() {
+        let world = world(Scheme::Adaptive, 12, 0.6);
+        assert_eq!((world.lost, world.census.unsettled), (0, 0));
+        assert!(world.census.rock_steps >= world.census.steps && world.census.windows > 0);
+        assert!(world.census.largest <= 12);
+        // the static penetration is 1.4e-8 m
+        assert!(world.overlap < 1e-4, "{:e}", world.overlap);
+    }
+}

@@ -1,0 +1,101 @@
+//! A forest from a list of trees, standing on a slope.
+
+use super::stems::{Stem, prism, ring};
+use crate::error::{Error, Result};
+use crate::terrain::Terrain;
+use crate::terrain::stl::Facet;
+use serde::Deserialize;
+use std::path::Path;
+
+/// How deep a stem's foot stays below the lowest ground under it (m).
+const FOOT_M: f64 = 0.5;
+/// What a list must look like.
+const REMEDY: &str =
+    "write comma-separated numbers with decimal points under the header x,y,dbh_m,height_m";
+
+/// One row of a list.
+#[derive(Debug, Deserialize)]
+#[expect(clippy::struct_field_names, reason = "the names are those of the columns")]
+struct Written {
+    #[serde(alias = "x")]
+    x_m: f64,
+    #[serde(alias = "y")]
+    y_m: f64,
+    dbh_m: f64,
+    height_m: f64,
+}
+
+/// Reads a list of trees: a CSV file with the columns `x, y, dbh_m, height_m` (m) in any order; it may have more.
+/// Each comes with its line in the file.
+///
+/// # Errors
+/// A file that cannot be read, a row without these numbers, a diameter or height that is not above 0, no row at all.
+pub fn read_list(path: &Path) -> Result<Vec<(u64, Stem)>> {
+    let file = std::fs::File::open(path).map_err(Error::file("read", path))?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+    let headers = reader.headers().cloned().unwrap_or_default();
+    let mut stems = Vec::new();
+    for row in reader.records() {
+        let wrong =
+            |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
+        let line_of = |position: Option<&csv::Position>| position.map_or(1, csv::Position::line);
+        let row = row.map_err(|why| wrong(line_of(why.position()), format!("found {why}")))?;
+        let line = line_of(row.position());
+        let Written { x_m, y_m, dbh_m, height_m } =
+            row.deserialize(Some(&headers)).map_err(|_| {
+                wrong(line, format!("found {}", row.iter().collect::<Vec<_>>().join(",")))
+            })?;
+        if !(x_m.is_finite() && y_m.is_finite()) {
+            return Err(wrong(line, format!("found a place ({x_m}, {y_m})")));
+        }
+        for (key, value) in [("dbh_m", dbh_m), ("height_m", height_m)] {
+            if !(value > 0.0 && value.is_finite()) {
+                let remedy = "write a number above 0, in metres";
+                return Err(Error::input(
+                    path,
+                    format!("line {line}"),
+                    format!("found {key} = {value}"),
+                    remedy,
+                ));
+            }
+        }
+        stems.push((line, Stem { x_m, y_m, dbh_m, height_m }));
+    }
+    if stems.is_empty() {
+        return Err(Error::input(path, "rows", "found no tree", REMEDY));
+    }
+    Ok(stems)
+}
+
+/// Eight-sided stems on a slope; everything in the map coordinates of `terrain`.
+///
+/// A stem's top is its height above the ground at its axis; its foot stays below the lowest ground round it, so that
+/// no gap opens on the lower side.
+///
+/// # Errors
+/// A tree with no slope below its axis; `list` names the file.
+pub fn plant(list: &Path, trees: &[(u64, Stem)], terrain: &Terrain) -> Result<Vec<Facet>> {
+    let origin_m = terrain.origin_m;
+    let ground_m =
+        |x: f64, y: f64| Some(terrain.ground_below(x - origin_m.x, y - origin_m.y)? + origin_m.z);
+    let mut facets = Vec::new();
+    for (line, tree) in trees {
+        let Some(axis_m) = ground_m(tree.x_m, tree.y_m) else {
+            let (low, high) = terrain.index.bounds();
+            let (low, high) = (low + origin_m, high + origin_m);
+            let found = format!("found no slope at ({}, {})", tree.x_m, tree.y_m);
+            let remedy = format!(
+                "write a place on the slope, its box is {}..{} east, {}..{} north; --origin-m takes map coordinates",
+                low.x, high.x, low.y, high.y
+            );
+            return Err(Error::input(list, format!("line {line}"), found, remedy));
+        };
+        let half_m = 0.5 * tree.dbh_m;
+        let around = ring().into_iter();
+        let lowest_m = around
+            .filter_map(|[x, y]| ground_m(tree.x_m + half_m * x, tree.y_m + half_m * y))
+            .fold(axis_m, f64::min);
+        facets.extend(prism(tree, [lowest_m - FOOT_M, axis_m + tree.height_m], &ring()));
+    }
+    Ok(facets)
+}

@@ -1,0 +1,50 @@
+//! What it took to follow a world, counted.
+
+/// Counters of one world (no clock: the same on every machine).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Census {
+    /// Windows of time, those gone through again included.
+    pub windows: u64,
+    /// Times that the world went back because a rock was thrown further than its island allowed for.
+    pub returns: u64,
+    /// Steps of islands.
+    pub steps: u64,
+    /// The same times the rocks of each.
+    pub rock_steps: u64,
+    /// Steps thrown away.
+    pub rejected: u64,
+    /// Sweeps over the contacts of an island, or solves of its system.
+    pub sweeps: u64,
+    /// Systems factorised because sweeps crept.
+    pub jumps: u64,
+    /// Steps whose contact states did not settle (`dda`).
+    pub unsettled: u64,
+    /// Most rocks that took a step together.
+    pub largest: u64,
+}
+
+impl Census {
+    /// Adds another's counts. Every field is named, so that a new counter does not compile until it is summed.
+    pub(super) fn add(&mut self, one: &Self) {
+        let Self {
+            windows,
+            returns,
+            steps,
+            rock_steps,
+            rejected,
+            sweeps,
+            jumps,
+            unsettled,
+            largest,
+        } = *one;
+        self.windows += windows;
+        self.returns += returns;
+        self.steps += steps;
+        self.rock_steps += rock_steps;
+        self.rejected += rejected;
+        self.sweeps += sweeps;
+        self.jumps += jumps;
+        self.unsettled += unsettled;
+        self.largest = self.largest.max(largest);
+    }
+}

@@ -1,0 +1,127 @@
+//! Other programs read the files: GDAL the grids and vectors with the right georeference, meshio the paths.
+//!
+//! Where a program is not installed its part is skipped, with a word.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test fails by panicking, and says what it leaves out"
+)]
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs a program; none, with a word, where it is not installed.
+fn output(program: &str, words: &[&str]) -> Option<Output> {
+    match Command::new(program).args(words).output() {
+        Ok(output) => Some(output),
+        Err(why) => {
+            eprintln!("skipped: {program} cannot be run ({why})");
+            None
+        }
+    }
+}
+
+fn text(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// What GDAL says of a raster.
+fn raster(path: &Path) -> Option<Value> {
+    let said = output("gdalinfo", &["-json", "-mm", path.to_str().unwrap()])?;
+    Some(serde_json::from_str(&text(&said)).unwrap())
+}
+
+#[test]
+fn gdal_and_meshio_read_what_is_written() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let scene = "examples/tyrol.toml";
+    let words = ["run", scene, "--quiet", "--releases", "24", "--out", out.to_str().unwrap()];
+    text(&output(env!("CARGO_BIN_EXE_rockfall"), &words).unwrap());
+    let summary: Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let maps = out.join("maps");
+    rasters(&maps, &summary["maps"]);
+    vectors(&maps);
+    paths(&maps);
+}
+
+/// Both formats lie where the summary says; the GeoTIFF knows its system, an ASCII grid has no place for one.
+fn rasters(maps: &Path, frame: &Value) {
+    let number = |key: &str| frame[key].as_f64().unwrap();
+    let (cell, north) = (number("cell_m"), number("south_m") + number("rows") * number("cell_m"));
+    let place = [number("west_m"), cell, 0.0, north, 0.0, -cell];
+    let grids = std::fs::read_dir(maps).unwrap().map(|entry| entry.unwrap().path());
+    let mut seen = 0;
+    // ground and trees, which the figures are drawn on, are grids alone
+    let maps = grids.filter(|path| path.with_extension("tif").exists());
+    for asc in maps.filter(|path| path.extension().is_some_and(|end| end == "asc")) {
+        let (Some(tif), Some(grid)) = (raster(&asc.with_extension("tif")), raster(&asc)) else {
+            return;
+        };
+        for found in [&tif, &grid] {
+            assert_eq!(found["size"], serde_json::json!([frame["columns"], frame["rows"]]));
+            let transform = found["geoTransform"].as_array().unwrap();
+            for (found, expected) in transform.iter().zip(place) {
+                assert!((found.as_f64().unwrap() - expected).abs() < 1e-6, "{transform:?}");
+            }
+            assert_eq!(found["bands"][0]["noDataValue"].as_f64(), Some(-9999.0));
+        }
+        let wkt = tif["coordinateSystem"]["wkt"].as_str().unwrap();
+        assert!(wkt.contains("ID[\"EPSG\",31287]"), "{wkt}");
+        for end in ["computedMin", "computedMax"] {
+            let [one, other] = [&tif, &grid].map(|found| found["bands"][0][end].as_f64().unwrap());
+            assert!((one - other).abs() <= 1e-3 * one.abs(), "{}: {one} {other}", asc.display());
+        }
+        seen += 1;
+    }
+    assert!(seen >= 8, "{seen} grids");
+}
+
+fn vectors(maps: &Path) {
+    for (file, kind, count) in [("ends", "3D Point", 24), ("paths", "3D Line String", 24)] {
+        let path = maps.join(file).with_extension("geojson");
+        let Some(said) = output("ogrinfo", &["-al", "-so", path.to_str().unwrap()]) else { return };
+        let said = text(&said);
+        assert!(said.contains(&format!("Feature Count: {count}")), "{said}");
+        assert!(said.contains(&format!("Geometry: {kind}")), "{said}");
+        assert!(said.contains("ID[\"EPSG\",31287]"), "{said}");
+        let extent = said.lines().find(|line| line.starts_with("Extent:")).unwrap();
+        let numbers: Vec<f64> = extent
+            .split(|c: char| !(c.is_ascii_digit() || c == '.'))
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        let inside = |x: f64, y: f64| {
+            (177_200.0..178_000.0).contains(&x) && (377_000.0..377_900.0).contains(&y)
+        };
+        assert!(inside(numbers[0], numbers[1]) && inside(numbers[2], numbers[3]), "{extent}");
+    }
+}
+
+/// The script prints points, cells and the releases seen; without meshio it says so.
+const READ_VTK: &str = "
+import sys
+try:
+    import meshio
+except ImportError:
+    print('none')
+    sys.exit()
+mesh = meshio.read(sys.argv[1])
+print(len(mesh.points), sum(len(cells.data) for cells in mesh.cells), len(set(mesh.point_data['release'].ravel())))
+";
+
+fn paths(maps: &Path) {
+    let vtk = maps.join("paths.vtk");
+    let Some(said) = output("python3", &["-c", READ_VTK, vtk.to_str().unwrap()]) else { return };
+    let said = text(&said);
+    if said.trim() == "none" {
+        eprintln!("skipped: python3 has no meshio");
+        return;
+    }
+    let numbers: Vec<usize> = said.split_whitespace().map(|word| word.parse().unwrap()).collect();
+    let rows = std::fs::read_to_string(maps.parent().unwrap().join("paths.csv")).unwrap();
+    let points = rows.lines().count() - 1;
+    assert_eq!(numbers, [points, points - 24, 24]);
+}
