@@ -240,7 +240,8 @@ fn overwriting_replaces_all_results_and_nothing_else() {
     let dir = folder();
     whole_run(dir.path(), info(RELEASES)).unwrap();
     fs::create_dir(dir.path().join("figures")).unwrap();
-    for name in ["figures/runout.svg", "report.html", "notes.txt", "figures/notes.txt"] {
+    let own = ["notes.txt", "figures/notes.txt", "maps/terrain.asc", "maps/1a.state"];
+    for name in ["figures/runout.svg", "report.html"].into_iter().chain(own) {
         fs::write(dir.path().join(name), "old").unwrap();
     }
     let mut other = info(RELEASES);
@@ -249,14 +250,11 @@ fn overwriting_replaces_all_results_and_nothing_else() {
     let output = Output::create(other, dir.path(), Mode::Overwrite).unwrap();
     let results = go_on(output, 1, RELEASES).unwrap().finish().unwrap();
     assert_eq!(results.paths().unwrap().count(), 0);
-    for (name, there) in [
-        ("paths.csv", false),
-        ("figures/runout.svg", false),
-        ("report.html", false),
-        ("notes.txt", true),
-        ("figures/notes.txt", true),
-    ] {
-        assert_eq!(dir.path().join(name).exists(), there, "{name}");
+    for name in ["paths.csv", "figures/runout.svg", "report.html"] {
+        assert!(!dir.path().join(name).exists(), "{name}");
+    }
+    for name in own {
+        assert!(dir.path().join(name).exists(), "{name}");
     }
 }
 
@@ -284,13 +282,17 @@ fn a_run_without_a_row_has_no_claim_on_the_folder() {
 
 #[test]
 fn unknown_tables_are_not_overwritten() {
-    let dir = folder();
-    fs::write(dir.path().join("releases.csv"), "mine").unwrap();
-    for mode in [Mode::Fresh, Mode::Resume] {
-        let said = message(Output::create(info(RELEASES), dir.path(), mode));
-        assert!(said.contains("holds releases.csv"), "{said}");
+    for name in ["releases.csv", "figures/mine.svg", "maps/deposits.tif"] {
+        let dir = folder();
+        let file = dir.path().join(name);
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(&file, "mine").unwrap();
+        for mode in [Mode::Fresh, Mode::Resume] {
+            let said = message(Output::create(info(RELEASES), dir.path(), mode));
+            assert!(said.contains(&format!("holds {name}")), "{said}");
+        }
+        assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
     }
-    assert_eq!(fs::read_to_string(dir.path().join("releases.csv")).unwrap(), "mine");
 }
 
 /// A broken table names the file, the line, the column and what was found.

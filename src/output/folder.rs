@@ -1,21 +1,18 @@
 //! What a result folder holds already, and whether a run may use it.
 
-use super::maps::STATE;
 use super::progress::{Identity, Progress};
 use super::summary::{SUMMARY, Summary};
-use super::whole::PART;
-use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES};
+use super::whole::as_whole;
+use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
-use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files besides `progress.json`.
 const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY];
-/// Folders of results with the endings of the files that belong to them.
-const FOLDERS: [(&str, &[&str]); 2] =
-    [("figures", &["svg", PART]), ("maps", &["asc", "prj", "tif", STATE, "geojson", "vtk", PART])];
+/// Folder of the figures: every SVG file in it belongs to the results.
+const FIGURES: &str = "figures";
 
 /// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from.
 pub(super) fn prepare(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
@@ -100,14 +97,25 @@ fn finished_run(dir: &Path, summary: Summary) -> Progress {
 
 /// A folder that says nothing of its results must hold none.
 fn unclaimed(dir: &Path) -> Result<Option<Progress>> {
-    match FILES.iter().find(|name| dir.join(name).exists()) {
-        None => Ok(None),
-        Some(name) => refuse(
-            dir,
-            &format!("holds {name}, but no {SUMMARY} that says of which scene"),
-            "take another --out or replace it with --overwrite",
-        ),
-    }
+    let file = FILES.iter().map(|name| dir.join(name)).find(|path| path.exists());
+    let within = |folder: &str, is_result: fn(&Path) -> bool| {
+        let entries = fs::read_dir(dir.join(folder)).into_iter().flatten().flatten();
+        entries.map(|entry| entry.path()).find(|path| is_result(path))
+    };
+    let result = file
+        .or_else(|| within(FIGURES, is_figure))
+        .or_else(|| within(maps::FOLDER, maps::is_result));
+    let Some(path) = result else { return Ok(None) };
+    let name = path.strip_prefix(dir).unwrap_or(&path).display();
+    refuse(
+        dir,
+        &format!("holds {name}, but no {SUMMARY} that says of which scene"),
+        "take another --out or replace it with --overwrite",
+    )
+}
+
+fn is_figure(path: &Path) -> bool {
+    as_whole(path).extension().is_some_and(|ending| ending == "svg")
 }
 
 fn refuse(dir: &Path, found: &str, remedy: &str) -> Result<Option<Progress>> {
@@ -116,12 +124,8 @@ fn refuse(dir: &Path, found: &str, remedy: &str) -> Result<Option<Progress>> {
 
 /// Removes the results of an earlier run, and no other file: what is drawn must never mix two runs.
 fn clear(dir: &Path) -> Result<()> {
-    for (folder, endings) in FOLDERS {
-        remove_all(&dir.join(folder), |path| {
-            let ending = path.extension().and_then(OsStr::to_str);
-            ending.is_some_and(|ending| endings.contains(&ending))
-        })?;
-    }
+    remove_all(&dir.join(FIGURES), is_figure)?;
+    remove_all(&dir.join(maps::FOLDER), maps::is_result)?;
     FILES.iter().try_for_each(|name| remove(&dir.join(name)))
 }
 

@@ -1,8 +1,9 @@
 //! Rasters in plan view: ESRI ASCII grids for every editor, GeoTIFF for every GIS.
 
-use super::whole::{PART, write_whole};
+use super::whole::{as_whole, write_whole};
 use crate::error::{Error, Result};
 use crate::hazard::{Layer, MapFrame, MapState, Maps};
+use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Cursor;
@@ -15,7 +16,7 @@ use tiff::tags::Tag;
 /// Folder of the rasters below the result folder.
 pub(super) const FOLDER: &str = "maps";
 /// Ending of the file that a resumed run begins from.
-pub(super) const STATE: &str = "state";
+const STATE: &str = "state";
 /// Stands in cells where no rock came.
 const NO_DATA: f32 = -9999.0;
 
@@ -120,15 +121,29 @@ pub(super) fn read_state(dir: &Path, done: usize) -> Result<MapState> {
     })
 }
 
+/// Whether a file in the folder of the maps, whole or not, has a name that a run writes: it may hold others, a terrain
+/// for instance.
+pub(super) fn is_result(path: &Path) -> bool {
+    let whole = as_whole(path);
+    let text = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
+    let (stem, ending) = (text(whole.file_stem()), text(whole.extension()));
+    match ending.as_str() {
+        // the ground that figures are drawn on stands beside the maps
+        "asc" if ["ground", "trees"].contains(&stem.as_str()) => true,
+        "asc" | "tif" => Layer::ALL.iter().any(|layer| layer.file() == stem),
+        "geojson" => ["ends", "paths"].contains(&stem.as_str()),
+        "vtk" => stem == "paths",
+        STATE => stem.parse::<usize>().is_ok(),
+        _ => false,
+    }
+}
+
 /// Removes the states of all other moments, whole or not: a run that was killed may have left some.
 pub(super) fn keep_state(dir: &Path, done: Option<usize>) -> Result<()> {
     let kept = done.map(|done| state_path(dir, done));
     super::folder::remove_all(&dir.join(FOLDER), |path| {
-        let path = if has_ending(path, PART) { path.with_extension("") } else { path.to_owned() };
-        has_ending(&path, STATE) && Some(path) != kept
+        let whole = as_whole(path);
+        let is_state = whole.extension().is_some_and(|ending| ending == STATE);
+        is_state && is_result(path) && Some(whole) != kept
     })
-}
-
-fn has_ending(path: &Path, ending: &str) -> bool {
-    path.extension().is_some_and(|found| found == ending)
 }

@@ -5,10 +5,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Ending of a file that is not yet whole.
-pub(super) const PART: &str = "part";
+const PART: &str = "part";
 
 /// Writes a file under a temporary name beside it, and renames it when it is on the disk.
 ///
@@ -34,6 +34,15 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<()> {
         let _ = fs::remove_file(&part);
         Error::file("write", path)(why)
     })
+}
+
+/// The path without the ending of a file that is not yet whole.
+pub(super) fn as_whole(path: &Path) -> PathBuf {
+    if path.extension().is_some_and(|ending| ending == PART) {
+        path.with_extension("")
+    } else {
+        path.to_owned()
+    }
 }
 
 /// Puts the names in a folder on the disk: a power failure must not bring an old file back.
