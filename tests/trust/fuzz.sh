@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d /tmp/rockfall_fuzz.XXXX)
 trap 'rm -rf "$work"' EXIT
 cd "$root/fuzz"
-cargo +nightly fuzz build
+[ -n "${ROCKFALL_FUZZ_BUILT:-}" ] || cargo +nightly fuzz build   # set: take what was built before
 programs=$(echo target/*/release)
 
 seeds() {
