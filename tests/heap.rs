@@ -223,6 +223,15 @@ fn a_throw_beyond_the_islands_reach_passes_through_nothing() {
         let (falls, census) = world.run(&space(), &spheres, 1.0);
         momentum_is_kept(&falls);
         println!("{light}: went back {} times", census.returns);
+        for fall in &falls {
+            println!(
+                "  v {:.6} max {:.6} rise {:e} remainder {:e}",
+                fall.end.velocity_m_s.x,
+                fall.extremes.speed_m_s,
+                fall.ledger.rise_j,
+                fall.ledger.remainder_j
+            );
+        }
         let last = &falls[radii.len() - 1];
         let block = &falls[radii.len()];
         assert!(

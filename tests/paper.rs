@@ -55,14 +55,14 @@ fn example_2_rests_on_the_apex_and_leaves_it() {
 #[test]
 fn example_3_fills_both_containers() {
     let found = verified(Example::Containers, Scheme::Adaptive);
-    assert_eq!(number(&found, "spheres at rest"), 48.0);
+    assert!((number(&found, "spheres at rest") - 48.0).abs() < 0.5);
     assert!((number(&found, "spheres on the left") - 24.0).abs() <= 4.0);
 }
 
 #[test]
 fn example_3_fills_both_containers_as_printed() {
     let found = verified(Example::Containers, Scheme::Dda);
-    assert_eq!(number(&found, "spheres at rest"), 48.0);
+    assert!((number(&found, "spheres at rest") - 48.0).abs() < 0.5);
     assert!((number(&found, "spheres on the left") - 24.0).abs() <= 4.0);
 }
 
@@ -70,6 +70,6 @@ fn example_3_fills_both_containers_as_printed() {
 fn example_4_all_ten_rocks_arrive() {
     for scheme in [Scheme::Dda, Scheme::Adaptive] {
         let found = verified(Example::Rockfall, scheme);
-        assert_eq!(number(&found, "rocks at rest or past the foot"), 10.0);
+        assert!((number(&found, "rocks at rest or past the foot") - 10.0).abs() < 0.5);
     }
 }

@@ -82,7 +82,7 @@ pub(super) struct ScalingArgs {
     #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
     dda: Vec<usize>,
     /// Time to follow each world (s)
-    #[arg(long, value_name = "S", value_parser = positive, default_value = "0.5")]
+    #[arg(long, value_name = "S", value_parser = positive, default_value = "1.0")]
     seconds: f64,
 }
 

@@ -188,14 +188,16 @@ mod tests {
         let value = |k: usize| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5;
         for joined in [vec![(1, 0), (2, 1), (3, 2)], vec![(1, 0), (3, 0), (2, 1), (3, 2)]] {
             let mut factor = Factor::default();
-            for round in 0..2 {
-                let diagonal: Vec<Mat6> =
-                    (0..4).map(|k| Mat6::identity() * (20.0 + k as f64 + round as f64)).collect();
+            for round in 0..2u32 {
+                let diagonal: Vec<Mat6> = (0..4)
+                    .map(|k| Mat6::identity() * (20.0 + f64::from(k) + f64::from(round)))
+                    .collect();
                 let below: Vec<Below> = joined
                     .iter()
                     .enumerate()
                     .map(|(n, &(row, column))| {
-                        let block = Mat6::from_fn(|i, j| value(97 * n + 6 * i + j + round));
+                        let block =
+                            Mat6::from_fn(|i, j| value(97 * n + 6 * i + j + round as usize));
                         (row, column, block)
                     })
                     .collect();

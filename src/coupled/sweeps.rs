@@ -12,12 +12,17 @@ use super::member::Member;
 use crate::step::joint::Normal;
 use crate::step::law::within;
 
-/// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most.
-const SWEEPS: (usize, usize, usize) = (6, 2, 60);
+/// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most. A jump
+/// costs as much as some hundred contacts.
+const SWEEPS: (usize, usize, usize) = (30, 4, 120);
 /// Jumps after which a stage is given up; the step is then halved.
 const JUMPS: usize = 10;
 /// Change of velocity by a change of force, relative to the step's tolerance, below which the force has settled (–).
 const SETTLED: f64 = 1e-6;
+/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
+const STIRS: f64 = 0.1;
+/// An island of no more rocks than this is swept as a whole.
+const SMALL: usize = 4;
 /// Change of a force, relative to itself, that is rounding (–).
 const ROUNDING: f64 = 1e-11;
 
@@ -137,13 +142,18 @@ impl Cluster<'_> {
         settled
     }
 
+    /// Whether contacts at rest are passed over: in a small island little is saved, and every digit counts.
+    fn passes_over(&self) -> bool {
+        self.members.len() > SMALL
+    }
+
     fn sweep_spots(&mut self, k: usize, h: f64) -> bool {
-        if self.stirred.spots[k] == self.stirred.times[k] {
+        if self.passes_over() && self.stirred.spots[k] == self.stirred.times[k] {
             return true;
         }
         let Member { grip, body, now, .. } = &mut *self.members[k];
         let count = grip.spot_count;
-        let mut settled = true;
+        let (mut settled, mut stirs) = (true, false);
         for spot in &mut grip.spots[..count] {
             let before = (spot.push, spot.drag, spot.moment);
             let (dv, dw) = spot.effect(body, h);
@@ -155,9 +165,10 @@ impl Cluster<'_> {
             let change = change.max((spot.moment - before.2).norm() / body.radius);
             let allowed = SETTLED * self.tolerance * body.mass / h;
             settled &= change <= allowed.max(ROUNDING * spot.push);
+            stirs |= change > STIRS * allowed.max(ROUNDING * spot.push);
         }
         let seen = self.stirred.times[k];
-        if !settled {
+        if stirs {
             self.stirred.stir(k);
         }
         // One contact alone is solved exactly; several must see each other's change.
@@ -166,9 +177,10 @@ impl Cluster<'_> {
     }
 
     fn sweep_bridge(&mut self, k: usize, h: f64) -> bool {
+        let passes_over = self.passes_over();
         let bridge = &mut self.bridges[k];
         let ends = bridge.ends;
-        if self.stirred.bridges[k] == ends.map(|end| self.stirred.times[end]) {
+        if passes_over && self.stirred.bridges[k] == ends.map(|end| self.stirred.times[end]) {
             return true;
         }
         let before = (bridge.push, bridge.drag);
@@ -189,8 +201,10 @@ impl Cluster<'_> {
         }
         let allowed = SETTLED * self.tolerance / (h * bridge.inv_m);
         let settled = change <= allowed.max(ROUNDING * bridge.push.abs());
-        if !settled {
-            ends.iter().for_each(|end| self.stirred.stir(*end));
+        if change > STIRS * allowed.max(ROUNDING * bridge.push.abs()) {
+            for end in ends {
+                self.stirred.stir(end);
+            }
         }
         self.stirred.bridges[k] = ends.map(|end| self.stirred.times[end]);
         settled

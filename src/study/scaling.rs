@@ -42,7 +42,7 @@ pub struct World {
     pub simulated_s: f64,
     /// Processor time of one thread (s).
     pub processor_s: f64,
-    /// Largest memory of the process on the way, less what it held before (byte); `None` where the system does not say.
+    /// Largest memory of the process on the way, less what it held before the first world (byte); `None` where the system does not say.
     pub memory_bytes: Option<u64>,
     /// What it took.
     pub census: Census,
@@ -66,9 +66,10 @@ impl World {
     }
 }
 
-/// Example 3 with `spheres` instead of 48, boxes and heap larger alike in all directions, for `longest_s` (s).
-pub fn world(scheme: Scheme, spheres: usize, longest_s: f64) -> World {
-    let size = (spheres as f64 / 48.0).cbrt();
+/// Example 3 with `spheres` instead of 48, boxes and grid larger in plan, for `longest_s` (s). Depth and layers stay: the
+/// story of a sphere is the same in all worlds.
+pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u64>)) -> World {
+    let size = (spheres as f64 / 48.0).sqrt();
     let terrain = terrain(boxes(size));
     let step = Settings {
         scheme,
@@ -90,7 +91,6 @@ pub fn world(scheme: Scheme, spheres: usize, longest_s: f64) -> World {
         Answer { ground: GROUND, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
     let keep = |_| Keep { path_step_s: None, impacts: false };
     let never = AtomicBool::new(false);
-    let before = resident_bytes("VmRSS:");
     // Linux forgets the largest memory so far when asked to; where it cannot, the number is left out.
     let forgot = fs::write("/proc/self/clear_refs", "5").is_ok();
     let begun = (Instant::now(), processor_ns());
@@ -118,8 +118,8 @@ pub fn world(scheme: Scheme, spheres: usize, longest_s: f64) -> World {
 
 /// The two boxes, on a floor that catches what falls beside them.
 fn boxes(size: f64) -> Vec<crate::terrain::stl::Facet> {
-    let mut facets = containers(0.5 * size, 0.3125 * size, 0.625 * size, 0.125 * size);
-    let at = |x: f64, y: f64| Vec3::new(4.0 * size * x, 4.0 * size * y, -0.125 * size);
+    let mut facets = containers(0.5 * size, 0.3125 * size, 0.625, 0.125);
+    let at = |x: f64, y: f64| Vec3::new(4.0 * size * x, 4.0 * size * y, -0.125);
     facets.push([at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0)]);
     facets.push([at(-1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]);
     facets
@@ -137,7 +137,7 @@ fn heap(spheres: usize, size: f64, origin_m: Vec3) -> Vec<Release> {
         let cell = [(k % wide) as f64 - middle, (k / wide % wide) as f64 - middle];
         let grid = Vec3::new(cell[0], cell[1], (k / (wide * wide)) as f64) * SPACING_M;
         let off = Vec3::from_fn(|_, _| chance.random_range(-1e-3..1e-3));
-        let position_m = grid + off + Vec3::z() * (0.625 * size + 0.25) - origin_m;
+        let position_m = grid + off + Vec3::z() * 0.875 - origin_m;
         let still = Vec3::zeros();
         let motion = Motion { time_s: 0.0, position_m, velocity_m_s: still, spin_rad_s: still };
         Release { rock: ROCK, motion, grounds: vec![GROUND] }
@@ -155,6 +155,11 @@ fn deepest_overlap(falls: &[Trajectory]) -> f64 {
         a.radius + b.radius - (a.centre - b.centre).norm()
     };
     overlapping(&balls).iter().map(depth).fold(0.0, f64::max) / ROCK.radius_m
+}
+
+/// Memory that the process holds (byte).
+pub fn resident_now() -> Option<u64> {
+    resident_bytes("VmRSS:")
 }
 
 /// Time this thread has had on a processor (ns), where the system says: other work on the machine does not count.
@@ -196,7 +201,7 @@ mod tests {
     /// A handful of spheres lands in the boxes: none is lost, every step settles, and the counts say what was done.
     #[test]
     fn a_small_world_is_counted() {
-        let world = world(Scheme::Adaptive, 12, 0.6);
+        let world = world(Scheme::Adaptive, 12, (0.6, None));
         assert_eq!((world.lost, world.census.unsettled), (0, 0));
         assert!(world.census.rock_steps >= world.census.steps && world.census.windows > 0);
         assert!(world.census.largest <= 12);

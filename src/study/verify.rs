@@ -1,5 +1,6 @@
 //! Verification: exact cases and the method paper's four examples, as a table and as the paper's figures drawn anew.
 
+mod draw;
 mod exact;
 mod paper;
 

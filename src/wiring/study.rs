@@ -73,12 +73,15 @@ pub(crate) fn scaling(
 ) -> Result<(String, bool)> {
     // One thread: processor time is that of the thread.
     let worlds = Ensemble::new(Some(1))?.install(|| {
-        let of = |scheme, list: &[usize]| -> Vec<(Scheme, usize)> {
-            list.iter().map(|&spheres| (scheme, spheres)).collect()
+        let before = study::resident_now();
+        let of = |scheme, list: &[usize]| -> Vec<(usize, Scheme)> {
+            list.iter().map(|&spheres| (spheres, scheme)).collect()
         };
-        let all = [of(Scheme::Adaptive, adaptive), of(Scheme::Dda, dda)].concat();
-        let follow = |(scheme, spheres): (Scheme, usize)| {
-            let world = study::world(scheme, spheres, longest_s);
+        let mut all = [of(Scheme::Adaptive, adaptive), of(Scheme::Dda, dda)].concat();
+        // Small worlds first: what a large one has given back to the process would hide their memory.
+        all.sort_by_key(|(spheres, _)| *spheres);
+        let follow = |(spheres, scheme): (usize, Scheme)| {
+            let world = study::world(scheme, spheres, (longest_s, before));
             done(format!(
                 "{}, {spheres} spheres: {:.2} s of processor time for {longest_s} s",
                 scheme.name(),

@@ -1,5 +1,6 @@
 //! The paper's four examples, with its scheme, step and Table 1.
 
+use super::draw::{Line, heights, outline, side, speeds};
 use super::{Row, Verification, timed};
 use crate::error::{Error, Result};
 use crate::plan::Plan;
@@ -15,7 +16,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// The paper's time step (s): steps are printed, not times.
-const STEP_S: f64 = 1e-5;
+pub(super) const STEP_S: f64 = 1e-5;
 /// Slower than this a sphere has settled (m/s), as the printed step numbers were read.
 const SETTLED_M_S: f64 = 1e-3;
 /// Share by which a printed step number may be missed: sizes are not printed, and were fitted to 3 %.
@@ -66,15 +67,16 @@ impl Example {
     pub(super) fn run(self, all: &mut Verification, scheme: Scheme) -> Result<()> {
         let printed = scheme == Scheme::Dda;
         let begun = all.rows.len();
-        match self {
+        let done = match self {
             Self::AsymmetricEdge => {
-                asymmetric_edge(all, (scene!("1a_asymmetric_edge", printed), printed))?
+                asymmetric_edge(all, (scene!("1a_asymmetric_edge", printed), printed))
             }
-            Self::SymmetricEdge => symmetric_edge(all, scene!("1b_symmetric_edge", printed))?,
-            Self::Tetrahedron => tetrahedron(all, scene!("2_tetrahedron", printed))?,
-            Self::Containers => containers(all, scene!("3_containers", printed))?,
-            Self::Rockfall => rockfall(all, scene!("4_rockfall", printed))?,
-        }
+            Self::SymmetricEdge => symmetric_edge(all, scene!("1b_symmetric_edge", printed)),
+            Self::Tetrahedron => tetrahedron(all, scene!("2_tetrahedron", printed)),
+            Self::Containers => containers(all, (scene!("3_containers", printed), printed)),
+            Self::Rockfall => rockfall(all, scene!("4_rockfall", printed)),
+        };
+        done?;
         for row in &mut all.rows[begun..] {
             row.scheme = scheme.name();
         }
@@ -85,7 +87,7 @@ impl Example {
 /// The paper's settling is its scheme's own: without shear memory a sphere creeps until it rests. A scheme that
 /// remembers is asked for the valley only.
 fn asymmetric_edge(all: &mut Verification, (text, printed): (&str, bool)) -> Result<()> {
-    let (falls, seconds) = timed(|| example(text, 0.01))?;
+    let ((falls, ground), seconds) = timed(|| example(text, 0.01))?;
     let row = |quantity, expected: f64, source, computed: f64, allowed: f64| Row {
         case: "1a sphere beside an edge",
         scheme: "",
@@ -116,12 +118,12 @@ fn asymmetric_edge(all: &mut Verification, (text, printed): (&str, bool)) -> Res
         0.016,
     ));
     all.draw("fig_09a", speeds("Example 1a: speed and step (Fig. 9a)", &falls[0].path));
-    all.draw("fig_07", side("Example 1a: way of the centre (Fig. 7)", &falls, 0));
+    all.draw("fig_07", side("Example 1a: way of the centre (Fig. 7)", (&falls, &ground), 0));
     Ok(())
 }
 
 fn symmetric_edge(all: &mut Verification, text: &str) -> Result<()> {
-    let (falls, seconds) = timed(|| example(text, 0.001))?;
+    let ((falls, ground), seconds) = timed(|| example(text, 0.001))?;
     let row = |quantity, expected: f64, source, computed: f64, allowed: f64| Row {
         case: "1b sphere on an edge",
         scheme: "",
@@ -143,14 +145,14 @@ fn symmetric_edge(all: &mut Verification, text: &str) -> Result<()> {
     ));
     all.rows.push(row("stays above the edge, off by (m)", 0.0, "symmetry", off, 1e-12));
     all.draw("fig_09b", speeds("Example 1b: speed and step (Fig. 9b)", &falls[0].path));
-    all.draw("fig_08", side("Example 1b: way of the centre (Fig. 8)", &falls, 0));
+    all.draw("fig_08", side("Example 1b: way of the centre (Fig. 8)", (&falls, &ground), 0));
     Ok(())
 }
 
 fn tetrahedron(all: &mut Verification, text: &str) -> Result<()> {
-    let (falls, seconds) = timed(|| example(text, 0.001))?;
+    let ((falls, ground), seconds) = timed(|| example(text, 0.001))?;
     let even = text.replace("3.2e-12", "0.0");
-    let (balanced, balanced_seconds) = timed(|| example(&even, 0.001))?;
+    let ((balanced, _), balanced_seconds) = timed(|| example(&even, 0.001))?;
     let path = &falls[0].path;
     let (settles, leaves) = (settles_at_step(path), leaves_at_step(path));
     let row = |quantity, expected: f64, source, computed: f64, allowed: f64, seconds| Row {
@@ -186,12 +188,12 @@ fn tetrahedron(all: &mut Verification, text: &str) -> Result<()> {
     all.rows.push(still);
     all.draw("fig_11", speeds("Example 2: speed and step (Fig. 11)", path));
     all.draw("fig_12", heights("Example 2: vertical displacement and step (Fig. 12)", path));
-    all.draw("fig_10", side("Example 2: way of the centre (Fig. 10)", &falls, 0));
+    all.draw("fig_10", side("Example 2: way of the centre (Fig. 10)", (&falls, &ground), 0));
     Ok(())
 }
 
-fn containers(all: &mut Verification, text: &str) -> Result<()> {
-    let (falls, seconds) = timed(|| example(text, 0.01))?;
+fn containers(all: &mut Verification, (text, printed): (&str, bool)) -> Result<()> {
+    let ((falls, ground), seconds) = timed(|| example(text, 0.01))?;
     let row = |quantity, expected: f64, source, computed: f64, allowed: f64| Row {
         case: "3 spheres into containers",
         scheme: "",
@@ -233,14 +235,22 @@ fn containers(all: &mut Verification, text: &str) -> Result<()> {
         unsettled / steps,
         1e-2,
     ));
-    for (name, step) in [("fig_14_a", 3_691), ("fig_14_b", 19_673), ("fig_14_end", usize::MAX)] {
-        all.draw(name, side("Example 3: the spheres from the side (Fig. 14)", &falls, step));
+    let names = if printed {
+        ["fig_14_a", "fig_14_b", "fig_14_end"]
+    } else {
+        ["fig_14_a_adaptive", "fig_14_b_adaptive", "fig_14_end_adaptive"]
+    };
+    for (name, step) in names.into_iter().zip([3_691, 19_673, usize::MAX]) {
+        all.draw(
+            name,
+            side("Example 3: the spheres from the side (Fig. 14)", (&falls, &ground), step),
+        );
     }
     Ok(())
 }
 
 fn rockfall(all: &mut Verification, text: &str) -> Result<()> {
-    let (falls, seconds) = timed(|| example(text, 0.01))?;
+    let ((falls, _), seconds) = timed(|| example(text, 0.01))?;
     let row = |quantity, computed: f64| Row {
         case: "4 rocks on a slope with trees",
         scheme: "",
@@ -264,12 +274,18 @@ fn rockfall(all: &mut Verification, text: &str) -> Result<()> {
         let way = fall.path.iter().map(|p| (p.motion.position_m.y, p.motion.position_m.z));
         ways.lines.push(way.collect());
     }
+    // the ground under the first rock
+    let under = |point: &PathPoint| {
+        let place = point.motion.position_m;
+        (place.y, place.z - point.clearance_m - falls[0].rock.radius_m)
+    };
+    ways.ground.push(falls[0].path.iter().map(under).filter(|(_, z)| z.is_finite()).collect());
     all.draw("fig_17", ways);
     Ok(())
 }
 
 /// Runs an example on its meshes as made; results in map coordinates, paths at `path_step_s`.
-fn example(text: &str, path_step_s: f64) -> Result<Vec<Trajectory>> {
+fn example(text: &str, path_step_s: f64) -> Result<(Vec<Trajectory>, Vec<Line>)> {
     let mut scene = Scene::parse(text, Path::new("examples/paper/example.toml"))?;
     scene.record.path_step_s = Some(path_step_s);
     let plan = Plan::compile(&scene, made_terrain(&scene)?)?;
@@ -286,7 +302,8 @@ fn example(text: &str, path_step_s: f64) -> Result<Vec<Trajectory>> {
             point.motion.position_m += plan.terrain.origin_m;
         }
     }
-    Ok(falls)
+    let ground = outline(&plan.terrain);
+    Ok((falls, ground))
 }
 
 /// The meshes of a scene, from the generator that also wrote the shipped files.
@@ -343,37 +360,4 @@ fn deepest_overlap(falls: &[Trajectory]) -> f64 {
         }
     }
     deepest
-}
-
-fn speeds(title: &str, path: &[PathPoint]) -> Curves {
-    let mut curves = Curves::new(title, "step", "speed (m/s)");
-    let at = |point: &PathPoint| (point.motion.time_s / STEP_S, point.motion.velocity_m_s.norm());
-    curves.lines.push(path.iter().map(at).collect());
-    curves
-}
-
-fn heights(title: &str, path: &[PathPoint]) -> Curves {
-    let mut curves = Curves::new(title, "step", "vertical displacement (m)");
-    let start = path.first().map_or(0.0, |point| point.motion.position_m.z);
-    let at = |point: &PathPoint| (point.motion.time_s / STEP_S, point.motion.position_m.z - start);
-    curves.lines.push(path.iter().map(at).collect());
-    curves
-}
-
-/// Spheres at a step as seen along the edge; at step 0 the whole way of the centres.
-fn side(title: &str, falls: &[Trajectory], step: usize) -> Curves {
-    let mut curves = Curves::new(title, "across (m)", "height (m)");
-    for fall in falls {
-        let places = fall.path.iter().map(|p| (p.motion.position_m.x, p.motion.position_m.z));
-        if step == 0 {
-            curves.lines.push(places.collect());
-            continue;
-        }
-        let before = |point: &&PathPoint| point.motion.time_s <= step as f64 * STEP_S;
-        let k = fall.path.iter().filter(before).count().saturating_sub(1);
-        if let Some((x, z)) = places.clone().nth(k) {
-            curves.discs.push((x, z, fall.rock.radius_m));
-        }
-    }
-    curves
 }

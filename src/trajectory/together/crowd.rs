@@ -79,11 +79,11 @@ impl<'a> Crowd<'a> {
 
     /// Pairs that touch as far as typed coordinates can say.
     pub(super) fn touching_at_start(&self) -> Vec<(u32, u32)> {
-        let ball = |rover: &Box<Rover>| Ball {
+        let ball = |rover: &Rover| Ball {
             centre: rover.member.grip.c,
             radius: rover.member.body.radius * (1.0 + TOUCHING),
         };
-        overlapping(&self.rovers.iter().flatten().map(ball).collect::<Vec<_>>())
+        overlapping(&self.rovers.iter().flatten().map(|rover| ball(rover)).collect::<Vec<_>>())
     }
 
     /// Goes through windows until nothing moves or time is up; false if `stop` was raised.

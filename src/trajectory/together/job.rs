@@ -25,15 +25,14 @@ const CUTS: u32 = 4;
 /// Shortest of them, in radians of the stiffest contact (–): an impact should not be cut into pieces.
 const SHORTEST_PART: f64 = 6.0;
 
+/// Rocks on their way. They are handed on between islands, and a pointer moves faster than a journey.
+type Rovers<'a> = Vec<Box<Rover<'a>>>;
+
 /// One island and its window.
 pub(super) struct Job<'a> {
     course: &'a Course<'a>,
     ids: Vec<u32>,
-    #[expect(
-        clippy::vec_box,
-        reason = "rovers are handed on between islands; a pointer moves faster than a journey"
-    )]
-    rovers: Vec<Box<Rover<'a>>>,
+    rovers: Rovers<'a>,
     ties: Vec<Tie>,
     now_s: f64,
     end_s: f64,
@@ -47,11 +46,7 @@ impl<'a> Job<'a> {
     pub(super) fn new(
         (course, kick): (&'a Course<'a>, f64),
         ids: Vec<u32>,
-        #[expect(
-            clippy::vec_box,
-            reason = "rovers are handed on between islands; a pointer moves faster than a journey"
-        )]
-        rovers: Vec<Box<Rover<'a>>>,
+        rovers: Rovers<'a>,
         ties: Vec<Tie>,
         (now_s, end_s): (f64, f64),
     ) -> Self {
@@ -68,7 +63,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    pub(super) fn into_parts(self) -> (Vec<u32>, Vec<Box<Rover<'a>>>, Vec<Tie>) {
+    pub(super) fn into_parts(self) -> (Vec<u32>, Rovers<'a>, Vec<Tie>) {
         (self.ids, self.rovers, self.ties)
     }
 
@@ -102,8 +97,8 @@ impl<'a> Job<'a> {
     }
 
     fn places(&self, dt: f64) -> Vec<Place> {
-        let place = |rover: &Box<Rover>| place_of(rover, self.course, (self.now_s, dt));
-        self.rovers.iter().map(place).collect()
+        let place = |rover: &Rover| place_of(rover, self.course, (self.now_s, dt));
+        self.rovers.iter().map(|rover| place(rover)).collect()
     }
 
     /// Takes the parts that cannot meet before the end of the window there, each on its own.

@@ -45,8 +45,8 @@ impl<'a> Rover<'a> {
         self.journey = kept.journey.clone();
         // What was tried in vain was work all the same.
         self.journey.effort = effort;
-        self.state = kept.state.clone();
-        self.lands = kept.lands.clone();
+        self.state.clone_from(&kept.state);
+        self.lands.clone_from(&kept.lands);
         (self.quiet_s, self.h, self.began_j) = (kept.quiet_s, kept.h, kept.began_j);
     }
 }

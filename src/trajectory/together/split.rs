@@ -34,6 +34,7 @@ pub(super) struct Ahead {
 
 /// Who may meet whom in a window.
 pub(super) struct Meetings {
+    /// In ascending order.
     pub(super) pairs: Vec<(u32, u32)>,
     pub(super) islands: Islands,
     /// Radius of the ball that holds each rock to the window's end (m).
@@ -41,21 +42,18 @@ pub(super) struct Meetings {
 }
 
 impl Meetings {
-    /// Whether a rock was thrown out of its ball and, as far as its speed lets one know, may have met one of another
-    /// island. `fastest` is the largest speed each rock had (m/s).
-    pub(super) fn missed(
-        &mut self,
-        places: &[Place],
-        dt: f64,
-        fastest: impl Fn(usize) -> f64,
-    ) -> bool {
+    /// Whether a rock was thrown out of its ball and, as far as its speed lets one know, may have met one that it was not
+    /// compared with. `fastest` is the largest speed each rock had (m/s).
+    pub(super) fn missed(&self, places: &[Place], dt: f64, fastest: impl Fn(usize) -> f64) -> bool {
+        let pair = |a: usize, b: usize| (a.min(b) as u32, a.max(b) as u32);
         let went = |k: usize| places[k].1 + fastest(k) * dt;
         let thrown: Vec<usize> =
             (0..places.len()).filter(|&k| went(k) > self.reaches[k] * (1.0 + ROUNDING)).collect();
         thrown.into_iter().any(|k| {
             (0..places.len()).any(|other| {
                 let reach = went(k) + self.reaches[other].max(went(other));
-                self.islands.of(k as u32) != self.islands.of(other as u32)
+                k != other
+                    && self.pairs.binary_search(&pair(k, other)).is_err()
                     && (places[k].0 - places[other].0).norm_squared() <= reach * reach
             })
         })
