@@ -147,7 +147,7 @@ pub(super) fn page(worlds: &[World]) -> String {
 }
 
 fn beside_others(worlds: &[World]) -> String {
-    let mut text = "\n## Beside other programs\n\nProcessor seconds by simulated second of like worlds, measured before this project on a like machine: LIGGGHTS at 0.05 ms, Rapier at 5 ms. Both take long steps on springs far softer than Table 1's, or on none; here an impact on 1 GN/m lasts a tenth of a millisecond and is followed.\n\n| spheres | LIGGGHTS | Rapier | adaptive | over the less of the two |\n|---|---|---|---|---|\n".to_owned();
+    let mut text = "\n## Beside other programs\n\nProcessor seconds by simulated second of like worlds, measured before this project on a like machine: LIGGGHTS at 0.05 ms, Rapier at 5 ms. The time simulated there is not known; here it is that of the table above, and in the first tenths of a second most spheres still fall: once impacts are everywhere, a simulated second of a large heap costs many times as much. Both take long steps on springs far softer than Table 1's, or on none; here an impact on 1 GN/m lasts a tenth of a millisecond and is followed.\n\n| spheres | LIGGGHTS | Rapier | adaptive | over the less of the two |\n|---|---|---|---|---|\n".to_owned();
     for (spheres, liggghts, rapier) in OTHERS {
         let Some(world) = of(worlds, Scheme::Adaptive).find(|world| world.spheres == spheres)
         else {
