@@ -30,7 +30,7 @@ const DIGITS_M: f64 = 1e-11;
 /// Numbers of steps, the finest before rounding, over which the order is taken.
 const FINEST: usize = 3;
 
-/// One scheme at every number of [`STEPS`].
+/// One scheme at every number of `STEPS`.
 #[derive(Debug, Clone)]
 pub struct Ladder {
     /// The scheme.
