@@ -79,14 +79,25 @@ def sample(pid, out):
 
 
 def tenths(samples, releases):
-    """What each tenth of the run took: releases per processor second, resident megabytes at its end."""
+    """What each tenth of the run took: releases per processor second, resident megabytes at its end.
+
+    Releases reach the disk in chunks that may be longer than a tenth: between two chunks time is shared out evenly.
+    """
+    steps = [new for old, new in zip([(-1, 0, 0)] + samples, samples) if new[0] != old[0]]
+
+    def at(done):
+        for old, new in zip(steps, steps[1:]):
+            if old[0] <= done <= new[0]:
+                share = (done - old[0]) / (new[0] - old[0])
+                return old[1] + share * (new[1] - old[1]), new[2]
+        return None
+
     rates, resident = [], []
     for part in range(PARTS):
-        within = [s for s in samples if releases * part / PARTS <= s[0] <= releases * (part + 1) / PARTS]
-        if len(within) < 2 or within[-1][1] <= within[0][1]:
-            continue
-        rates.append(round((within[-1][0] - within[0][0]) / (within[-1][1] - within[0][1])))
-        resident.append(round(within[-1][2] / 1e6, 1))
+        begin, end = at(releases * part / PARTS), at(releases * (part + 1) / PARTS)
+        if begin and end and end[0] > begin[0]:
+            rates.append(round(releases / PARTS / (end[0] - begin[0])))
+            resident.append(round(end[1] / 1e6, 1))
     return rates, resident
 
 
