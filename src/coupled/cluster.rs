@@ -6,7 +6,7 @@ use super::member::{Member, Seat};
 use super::sweeps::Stirred;
 use crate::contact::pair::{Tie, between};
 use crate::rock::Vec3;
-use crate::step::adaptive::{self, Control, ONSET, SHORTEST, Stuck, TRAVEL};
+use crate::step::adaptive::{self, Control, ONSET, Outcome, Stuck, TRAVEL, Trial};
 use crate::step::grip::{Loss, World};
 use crate::step::tableau::{STAGES, Tableau};
 use crate::terrain::Terrain;
@@ -97,36 +97,9 @@ impl<'a> Cluster<'a> {
         }
         self.members.iter_mut().for_each(|member| member.known = member.grip.holds.len());
         let mut rejected = 0;
-        loop {
-            let wished = self.h.min(self.travel_limit());
-            let dt = wished.min(h_max);
-            let ratio = match self.attempt(control, dt) {
-                // A step that gains energy has met a kink of the law in an unlucky place: a shorter one does not.
-                Some(error)
-                    if error <= 1.0
-                        && dt * omega > adaptive::RESOLVED
-                        && self.gains(control.tableau.diagonal * dt) =>
-                {
-                    0.4
-                }
-                Some(error) if error <= 1.0 => {
-                    let grown = adaptive::grown(control, dt, error);
-                    self.h = grown.max(if dt < wished { wished } else { 0.0 });
-                    let done = self.accept(control.tableau, dt);
-                    return Ok(Done { rejected, ..done });
-                }
-                Some(error) if error.is_finite() => adaptive::grown(control, 1.0, error),
-                _ => 0.25,
-            };
-            rejected += 1;
-            self.h = dt * ratio;
-            for member in self.members.iter_mut().map(|seat| &mut **seat) {
-                member.grip.holds.truncate(member.known);
-            }
-            if self.h * omega < SHORTEST {
-                return Err(Stuck::Unsettled);
-            }
-        }
+        let mut trial = Try { island: self, control, omega };
+        let dt = adaptive::settle(&mut trial, control, h_max, &mut rejected)?;
+        Ok(Done { rejected, ..self.accept(control.tableau, dt) })
     }
 
     /// Whether motion, height and springs of the whole island together hold more at the step's end than at its start.
@@ -202,14 +175,14 @@ impl<'a> Cluster<'a> {
         for i in 1..tableau.stages {
             self.stage(tableau, i, dt)?;
         }
-        if self.tears_badly(tableau.diagonal * dt) {
+        if self.tears_badly() {
             return None;
         }
         Some(dt * self.error(tableau) / control.tolerance)
     }
 
     /// Whether a bond is loaded far beyond its strength, which a shorter step would have found out.
-    fn tears_badly(&self, _hh: f64) -> bool {
+    fn tears_badly(&self) -> bool {
         self.h * self.omega() > 1e-6
             && self.bridges.iter().any(|bridge| {
                 let holds = |bond: &crate::contact::pair::Bond| {
@@ -258,5 +231,43 @@ impl<'a> Cluster<'a> {
                 .max(off[2].norm_squared() * member.body.radius.powi(2));
         }
         worst2.sqrt()
+    }
+}
+
+/// A step of the island, tried with any length.
+struct Try<'i, 'a> {
+    island: &'i mut Cluster<'a>,
+    control: &'i Control,
+    omega: f64,
+}
+
+impl Trial for Try<'_, '_> {
+    fn h(&mut self) -> &mut f64 {
+        &mut self.island.h
+    }
+
+    fn limit(&mut self) -> f64 {
+        self.island.travel_limit()
+    }
+
+    fn omega(&self) -> f64 {
+        self.omega
+    }
+
+    fn try_step(&mut self, dt: f64) -> Outcome {
+        let outcome = match self.island.attempt(self.control, dt) {
+            None => Outcome::Unsettled,
+            Some(error) if error <= 1.0 => {
+                let hh = self.control.tableau.diagonal * dt;
+                let gains = dt * self.omega > adaptive::RESOLVED && self.island.gains(hh);
+                if gains { Outcome::Gains } else { return Outcome::Error(error) }
+            }
+            Some(error) => Outcome::Error(error),
+        };
+        // Memories that came up in a step thrown away go with it.
+        for member in self.island.members.iter_mut().map(|seat| &mut **seat) {
+            member.grip.holds.truncate(member.known);
+        }
+        outcome
     }
 }

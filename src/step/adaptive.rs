@@ -14,7 +14,7 @@ const SAFETY: f64 = 0.9;
 /// Most that a step shrinks or grows at once (–).
 const RATIO: (f64, f64) = (0.2, 4.0);
 /// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
-pub(crate) const SHORTEST: f64 = 1e-9;
+const SHORTEST: f64 = 1e-9;
 
 /// A step this short, in radians of the stiffest contact, resolves everything: what it still gains is rounding (–).
 pub(crate) const RESOLVED: f64 = 1e-3;
@@ -85,14 +85,14 @@ pub fn advance(
     if let Some(settled) = grip.step_on_plane(world, control, (h, h_max), &mut done) {
         return settled.map(|()| done);
     }
-    grip.leave_plane();
+    grip.leave_plane(world);
     if !grip.fresh {
         grip.rates_now(world);
     }
     let limit = travel_limit(world, grip);
     let (omega, known) = (stiffest(world, grip), grip.holds.len());
-    let mut trial = Try { world, control, grip, omega, known, end: None };
-    done.dt = settle(&mut trial, control, (h, h_max, limit), &mut done.rejected)?;
+    let mut trial = Try { world, control, grip, h, limit, omega, known, end: None };
+    done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
     if let Some(end) = trial.end {
         accept(control.tableau, grip, &end, done.dt, &mut done.loss);
     }
@@ -130,26 +130,32 @@ impl From<Halt> for Stuck {
 
 /// A step that can be tried with any length.
 pub(crate) trait Trial {
+    /// The step to try next (s).
+    fn h(&mut self) -> &mut f64;
+    /// The longest step that cannot jump over a feature (s).
+    fn limit(&mut self) -> f64;
     /// Stiffest contact (rad/s).
     fn omega(&self) -> f64;
     /// Tries it with length `dt` (s).
     fn try_step(&mut self, dt: f64) -> Outcome;
 }
 
-/// Tries steps until one is accurate and returns its length (s): at most `h_max`, and no longer than `limit`, which does
-/// not count against the step to try next.
+/// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
+/// try next.
 pub(crate) fn settle(
     trial: &mut impl Trial,
     control: &Control,
-    (h, h_max, limit): (&mut f64, f64, f64),
+    h_max: f64,
     rejected: &mut u64,
 ) -> Result<f64, Halt> {
     loop {
-        let wished = h.min(limit);
+        let limit = trial.limit();
+        let wished = trial.h().min(limit);
         let dt = wished.min(h_max);
         let ratio = match trial.try_step(dt) {
             Outcome::Error(error) if error <= 1.0 => {
-                *h = grown(control, dt, error).max(if dt < wished { wished } else { 0.0 });
+                let least = if dt < wished { wished } else { 0.0 };
+                *trial.h() = grown(control, dt, error).max(least);
                 return Ok(dt);
             }
             Outcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
@@ -158,8 +164,8 @@ pub(crate) fn settle(
             _ => 0.25,
         };
         *rejected += 1;
-        *h = dt * ratio;
-        if *h * trial.omega() < SHORTEST {
+        *trial.h() = dt * ratio;
+        if dt * ratio * trial.omega() < SHORTEST {
             return Err(Halt::Unsettled);
         }
     }
@@ -170,6 +176,8 @@ struct Try<'a, 'w> {
     world: &'a World<'w>,
     control: &'a Control,
     grip: &'a mut Grip,
+    h: &'a mut f64,
+    limit: f64,
     omega: f64,
     /// Memories at the step's start.
     known: usize,
@@ -177,6 +185,14 @@ struct Try<'a, 'w> {
 }
 
 impl Trial for Try<'_, '_> {
+    fn h(&mut self) -> &mut f64 {
+        self.h
+    }
+
+    fn limit(&mut self) -> f64 {
+        self.limit
+    }
+
     fn omega(&self) -> f64 {
         self.omega
     }
@@ -220,7 +236,7 @@ pub(crate) fn pressed_j(grip: &Grip, end: &End, hh: f64) -> f64 {
     stored.sum()
 }
 
-pub(crate) fn grown(control: &Control, dt: f64, error: f64) -> f64 {
+fn grown(control: &Control, dt: f64, error: f64) -> f64 {
     dt * (SAFETY * error.powf(-control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
 }
 

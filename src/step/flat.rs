@@ -81,6 +81,8 @@ impl Grip {
         }
         let limit = self.longest_step(world, TRAVEL);
         let mut trial = Try {
+            h,
+            limit,
             control,
             world,
             law,
@@ -97,7 +99,7 @@ impl Grip {
             stored: 0.0,
             solved: 0,
         };
-        let settled = settle(&mut trial, control, (h, h_max, limit), &mut done.rejected);
+        let settled = settle(&mut trial, control, h_max, &mut done.rejected);
         let (end, press, stored) = (trial.end, trial.press, trial.stored);
         self.sweeps += trial.solved;
         match settled {
@@ -188,7 +190,7 @@ impl Grip {
     }
 
     /// Hands state and rates back to the frame of the terrain.
-    pub(crate) fn leave_plane(&mut self) {
+    pub(crate) fn leave_plane(&mut self, world: &World) {
         let flat = &mut self.flat;
         if !std::mem::take(&mut flat.on) {
             return;
@@ -200,7 +202,8 @@ impl Grip {
         rate.shear[0] = flat.frame.out_along(two(from, SHEAR));
         rate.roll[0] = flat.frame.out_local(three(from, ROLL));
         let [friction, damping, rolling] = flat.losses[0];
-        rate.loss = Loss { friction, damping, rolling, trees: 0.0 };
+        let loss = Loss { friction, damping, rolling, trees: 0.0 };
+        rate.loss = loss.on(world, self.holds[0].triangle);
     }
 }
 

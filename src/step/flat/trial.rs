@@ -15,6 +15,8 @@ use crate::step::slide::{Answers, Local, Pair};
 
 /// A step being tried.
 pub(super) struct Try<'a, 'w> {
+    pub(super) h: &'a mut f64,
+    pub(super) limit: f64,
     pub(super) control: &'a Control,
     pub(super) world: &'a World<'w>,
     pub(super) law: &'a Law,
@@ -154,6 +156,14 @@ impl Try<'_, '_> {
 }
 
 impl Trial for Try<'_, '_> {
+    fn h(&mut self) -> &mut f64 {
+        self.h
+    }
+
+    fn limit(&mut self) -> f64 {
+        self.limit
+    }
+
     fn omega(&self) -> f64 {
         self.law.omega
     }

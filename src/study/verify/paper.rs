@@ -84,12 +84,13 @@ impl Example {
     }
 }
 
-/// The paper's settling is its scheme's own: without shear memory a sphere creeps until it rests. A scheme that
-/// remembers is asked for the valley only.
-fn asymmetric_edge(all: &mut Verification, (text, printed): (&str, bool)) -> Result<()> {
-    let ((falls, ground), seconds) = timed(|| example(text, 0.01))?;
-    let row = |quantity, expected: f64, source, computed: f64, allowed: f64| Row {
-        case: "1a sphere beside an edge",
+/// Makes the rows of one example from what a row says: quantity, expected, source, computed, allowed.
+fn rows_of(
+    case: &'static str,
+    seconds: f64,
+) -> impl Fn(&'static str, f64, &'static str, f64, f64) -> Row {
+    move |quantity, expected, source, computed, allowed| Row {
+        case,
         scheme: "",
         quantity,
         expected,
@@ -97,7 +98,14 @@ fn asymmetric_edge(all: &mut Verification, (text, printed): (&str, bool)) -> Res
         computed,
         allowed,
         seconds,
-    };
+    }
+}
+
+/// The paper's settling is its scheme's own: without shear memory a sphere creeps until it rests. A scheme that
+/// remembers is asked for the valley only.
+fn asymmetric_edge(all: &mut Verification, (text, printed): (&str, bool)) -> Result<()> {
+    let ((falls, ground), seconds) = timed(|| example(text, 0.01))?;
+    let row = rows_of("1a sphere beside an edge", seconds);
     if printed {
         let settles = settles_at_step(&falls[0].path);
         let share = STEPS_SHARE * 1_230_000.0;
@@ -124,16 +132,7 @@ fn asymmetric_edge(all: &mut Verification, (text, printed): (&str, bool)) -> Res
 
 fn symmetric_edge(all: &mut Verification, text: &str) -> Result<()> {
     let ((falls, ground), seconds) = timed(|| example(text, 0.001))?;
-    let row = |quantity, expected: f64, source, computed: f64, allowed: f64| Row {
-        case: "1b sphere on an edge",
-        scheme: "",
-        quantity,
-        expected,
-        source,
-        computed,
-        allowed,
-        seconds,
-    };
+    let row = rows_of("1b sphere on an edge", seconds);
     let settles = settles_at_step(&falls[0].path);
     let off = falls[0].end.position_m.x;
     all.rows.push(row(
@@ -155,36 +154,13 @@ fn tetrahedron(all: &mut Verification, text: &str) -> Result<()> {
     let ((balanced, _), balanced_seconds) = timed(|| example(&even, 0.001))?;
     let path = &falls[0].path;
     let (settles, leaves) = (settles_at_step(path), leaves_at_step(path));
-    let row = |quantity, expected: f64, source, computed: f64, allowed: f64, seconds| Row {
-        case: "2 sphere on a tetrahedron",
-        scheme: "",
-        quantity,
-        expected,
-        source,
-        computed,
-        allowed,
-        seconds,
-    };
+    let case = "2 sphere on a tetrahedron";
+    let (row, row_balanced) = (rows_of(case, seconds), rows_of(case, balanced_seconds));
     let share = |step: f64| STEPS_SHARE * step;
-    all.rows.push(row(
-        "comes to rest at step",
-        107_004.0,
-        SOURCE,
-        settles,
-        share(107_004.0),
-        seconds,
-    ));
-    all.rows.push(row(
-        "begins to fall at step",
-        151_004.0,
-        SOURCE,
-        leaves,
-        share(151_004.0),
-        seconds,
-    ));
+    all.rows.push(row("comes to rest at step", 107_004.0, SOURCE, settles, share(107_004.0)));
+    all.rows.push(row("begins to fall at step", 151_004.0, SOURCE, leaves, share(151_004.0)));
     let off = balanced[0].end.position_m.x;
-    let still =
-        row("without asymmetry stays, off by (m)", 0.0, "symmetry", off, 1e-6, balanced_seconds);
+    let still = row_balanced("without asymmetry stays, off by (m)", 0.0, "symmetry", off, 1e-6);
     all.rows.push(still);
     all.draw("fig_11", speeds("Example 2: speed and step (Fig. 11)", path));
     all.draw("fig_12", heights("Example 2: vertical displacement and step (Fig. 12)", path));
@@ -194,16 +170,7 @@ fn tetrahedron(all: &mut Verification, text: &str) -> Result<()> {
 
 fn containers(all: &mut Verification, (text, printed): (&str, bool)) -> Result<()> {
     let ((falls, ground), seconds) = timed(|| example(text, 0.01))?;
-    let row = |quantity, expected: f64, source, computed: f64, allowed: f64| Row {
-        case: "3 spheres into containers",
-        scheme: "",
-        quantity,
-        expected,
-        source,
-        computed,
-        allowed,
-        seconds,
-    };
+    let row = rows_of("3 spheres into containers", seconds);
     let count =
         |of: &dyn Fn(&Trajectory) -> bool| falls.iter().filter(|fall| of(fall)).count() as f64;
     let rest = count(&|fall| fall.stop == Stop::AtRest);
@@ -251,23 +218,15 @@ fn containers(all: &mut Verification, (text, printed): (&str, bool)) -> Result<(
 
 fn rockfall(all: &mut Verification, text: &str) -> Result<()> {
     let ((falls, _), seconds) = timed(|| example(text, 0.01))?;
-    let row = |quantity, computed: f64| Row {
-        case: "4 rocks on a slope with trees",
-        scheme: "",
-        quantity,
-        expected: 10.0,
-        source: "the paper's Fig. 17; none is lost",
-        computed,
-        allowed: 0.0,
-        seconds,
-    };
+    let row = rows_of("4 rocks on a slope with trees", seconds);
     // y runs down the slope: its foot begins at 11 m
     let arrived = |fall: &&Trajectory| {
         !matches!(fall.stop, Stop::Failed(_))
             && (fall.stop == Stop::AtRest || fall.end.position_m.y > 11.0)
     };
-    all.rows
-        .push(row("rocks at rest or past the foot", falls.iter().filter(arrived).count() as f64));
+    let arrived = falls.iter().filter(arrived).count() as f64;
+    let source = "the paper's Fig. 17; none is lost";
+    all.rows.push(row("rocks at rest or past the foot", 10.0, source, arrived, 0.0));
     let mut ways =
         Curves::new("Example 4: trajectories (Fig. 17)", "down the slope (m)", "height (m)");
     for fall in &falls {
