@@ -7,7 +7,7 @@
 use super::adaptive::{Advance, Stuck};
 use super::grip::{Grip, Loss, TOUCH, World};
 use super::law::Body;
-use super::slide::{Answers, Frame, Pair};
+use super::slide::{Answers, Frame, Mode, Pair};
 use crate::contact::{MOST, Touch};
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -66,7 +66,7 @@ impl Blow<'_> {
             d: frame.local(&(w * body.inertia)),
             caps: (self.law.friction * self.push, self.law.rolling_m * self.push),
         };
-        let (drag, turn) = pair.solve();
+        let (drag, turn) = pair.solve(&mut Mode::default());
         (self.drag, self.turn) = (-frame.out_along(drag), -frame.out_local(turn));
     }
 
@@ -146,7 +146,7 @@ impl<'w> Blows<'w> {
 /// # Errors
 /// [`Stuck`] if motion is no longer finite.
 pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Result<Advance, Stuck> {
-    let mut done = Advance::default();
+    let mut done = Advance { steps: 1, ..Advance::default() };
     let c = grip.c;
     grip.look_ahead_again(world, &c);
     if hits(world, grip) {
