@@ -10,12 +10,18 @@ use super::{Feature, Touch, Touches};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use crate::terrain::brims::Brim;
+use crate::terrain::features::Face;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
 const SLACK: f64 = 1e-9;
 /// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
 /// rounding of map coordinates, which bends flat edges by 1e-9.
 const SAME: f64 = 1e-6;
+
+/// What stands out on one side of a triangle is not touched from further than this on the other (–, relative to the
+/// distance): edges turn by 1e-6 at least before they are said to stand out, and tests have a slack of 1e-9.
+const ASIDE: f64 = 0.01;
 
 #[derive(Debug, Clone, Copy)]
 struct NearFace {
@@ -166,7 +172,7 @@ impl Near {
             let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
             self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
         }
-        let owned = features.owned[t as usize];
+        let owned = self.within_sight(features.brims[t as usize], face);
         for k in 0..3 {
             if owned & (1 << k) != 0 {
                 self.take_edge(terrain, features.edges.of_triangle[t as usize][k], t);
@@ -175,6 +181,15 @@ impl Near {
                 self.take_corner(terrain, terrain.triangles[t as usize][k], t);
             }
         }
+    }
+
+    /// Those of the edges and corners on a triangle's brim that can be touched from the side on which the centre is.
+    fn within_sight(&self, brim: Brim, face: &Face) -> u8 {
+        let height = face.n.dot(&(self.centre - face.a));
+        let sure = self.margin + ASIDE * self.reach;
+        let front = if height >= -sure { brim.front } else { 0 };
+        let back = if height <= sure { brim.back } else { 0 };
+        front | back | brim.anywhere
     }
 
     fn take_edge(&mut self, terrain: &Terrain, id: u32, owner: u32) {

@@ -49,23 +49,81 @@ pub(super) fn of_triangle(
             found = Some(t);
         }
     }
-    let owned = terrain.features.owned[t as usize];
-    let slab = if owned == 0 { (ta, ta) } else { height.within(near, (ta, best)) };
-    if owned != 0 && slab.0 <= slab.1 {
-        let abreast = Abreast::new(face, flight, slab);
-        for k in 0..3 {
-            let window = (slab.0, least(slab.1, best));
-            let times = [
-                (owned & (1 << k) != 0 && abreast.edge(k))
-                    .then(|| edge(terrain, t, k, flight, window)),
-                (owned & (8 << k) != 0 && abreast.corner(k))
-                    .then(|| corner(terrain, t, k, flight, window)),
-            ];
-            for time in times.into_iter().flatten().flatten() {
-                if time <= best {
-                    best = time;
-                    found = Some(time);
-                }
+    for (owned, heights) in rims(terrain, t, flight, &height, ta) {
+        if owned == 0 || heights.0 > range.1 || heights.1 < range.0 {
+            continue;
+        }
+        let slab = height.within(heights, (ta, best));
+        if slab.0 <= slab.1
+            && let Some(t) = of_rim(terrain, (t, owned), flight, slab)
+        {
+            best = t;
+            found = Some(t);
+        }
+    }
+    found
+}
+
+/// The edges and corners that a triangle owns, with the heights of the centre over its plane at which each kind is met.
+#[inline]
+fn rims(
+    terrain: &Terrain,
+    t: u32,
+    flight: &Parabola,
+    height: &Height,
+    ta: f64,
+) -> [(u8, (f64, f64)); 3] {
+    let brim = &terrain.features.brims[t as usize];
+    let (radius, near) = (flight.radius, flight.radius * (1.0 + NEAR));
+    let all = brim.front | brim.back | brim.anywhere;
+    let anywhere = |owned: u8| (owned, (-near, near));
+    if all == 0 {
+        return [anywhere(0); 3];
+    }
+    if ta <= 0.0 && height.h0.abs() < radius && is_pressed_in(terrain, (t, all), flight) {
+        return [anywhere(all), anywhere(0), anywhere(0)];
+    }
+    let level = |least: f32| (f64::from(least) - NEAR) * radius;
+    let (front, back) = (level(brim.least_front), level(brim.least_back));
+    [(brim.front, (front, near)), (brim.back, (-near, -back)), anywhere(brim.anywhere)]
+}
+
+/// Whether the ball starts pressed into one of the edges and corners that a triangle owns: there it comes back to its
+/// starting distance, not to the radius, and may do so from where it could not touch.
+fn is_pressed_in(terrain: &Terrain, (t, owned): (u32, u8), flight: &Parabola) -> bool {
+    let corners = terrain.corners_m(t);
+    let pressed2 = flight.radius * flight.radius * (1.0 - NEAR);
+    (0..3).any(|k| {
+        let to = flight.start - corners[k];
+        if owned & (8 << k) != 0 && to.norm_squared() < pressed2 {
+            return true;
+        }
+        let side = corners[(k + 1) % 3] - corners[k];
+        let share = (side.dot(&to) / side.norm_squared()).clamp(0.0, 1.0);
+        owned & (1 << k) != 0 && (to - side * share).norm_squared() < pressed2
+    })
+}
+
+/// First touch of the edges and corners of a triangle that are `owned` and asked for.
+#[inline]
+fn of_rim(
+    terrain: &Terrain,
+    (t, owned): (u32, u8),
+    flight: &Parabola,
+    slab: (f64, f64),
+) -> Option<f64> {
+    let abreast = Abreast::new(&terrain.features.faces[t as usize], flight, slab);
+    let (mut best, mut found) = (slab.1, None);
+    for k in 0..3 {
+        let window = (slab.0, best);
+        let times = [
+            (owned & (1 << k) != 0 && abreast.edge(k)).then(|| edge(terrain, t, k, flight, window)),
+            (owned & (8 << k) != 0 && abreast.corner(k))
+                .then(|| corner(terrain, t, k, flight, window)),
+        ];
+        for time in times.into_iter().flatten().flatten() {
+            if time <= best {
+                (best, found) = (time, Some(time));
             }
         }
     }
@@ -98,15 +156,14 @@ impl Height {
         (least(least(ha, hb), ht), most(most(ha, hb), ht))
     }
 
-    /// The part of a window in which `|h| ≤ near` may hold (its hull); reversed if nowhere.
+    /// The part of a window in which the height may be between two levels (its hull); reversed if nowhere.
     #[inline]
-    fn within(&self, near: f64, (ta, tb): (f64, f64)) -> (f64, f64) {
-        let (mut first, mut last) = (
-            if self.at(ta).abs() <= near { ta } else { tb },
-            if self.at(tb).abs() <= near { tb } else { ta },
-        );
+    fn within(&self, (low, high): (f64, f64), (ta, tb): (f64, f64)) -> (f64, f64) {
+        let holds = |t: f64| (low..=high).contains(&self.at(t));
+        let (mut first, mut last) =
+            (if holds(ta) { ta } else { tb }, if holds(tb) { tb } else { ta });
         if first > ta || last < tb {
-            for level in [near, -near] {
+            for level in [high, low] {
                 let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
                 for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
                     (first, last) = (least(first, t), most(last, t));

@@ -1,5 +1,6 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
+pub mod brims;
 pub mod coarser;
 pub mod edges;
 pub mod features;
