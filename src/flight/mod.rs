@@ -117,7 +117,8 @@ fn first_touch(
     let slabs = Slabs::new(flight);
     let mut best = limit;
     let mut found = false;
-    let mut stack = [Waiting { child: 0, begins: 0.0, ends: f32::INFINITY }; WAITING];
+    let mut stack = [Waiting::default(); WAITING];
+    stack[0].ends = f32::INFINITY;
     let mut top = 1;
     while top > 0 {
         top -= 1;
@@ -153,7 +154,7 @@ fn first_touch(
 }
 
 /// A child of a node whose box the ball passes during a window of time (s).
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Waiting {
     child: u32,
     begins: f32,

@@ -94,7 +94,7 @@ pub struct Index {
 
 /// Deepest tree that a traversal can walk. Every level halves what a bin of centres spans or the triangles, and a node
 /// holds two levels or more: 2²⁸ triangles stay far below.
-const DEPTH: usize = 64;
+const DEPTH: usize = 56;
 /// Children that wait during a traversal, at most.
 pub const WAITING: usize = (WIDE - 1) * DEPTH + 1;
 
