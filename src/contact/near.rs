@@ -6,13 +6,13 @@
 //! either side of a sheet, and every contact belongs to one feature.
 
 use super::closest::closest_on;
-use super::seen::Seen;
 use super::{Feature, Touch, Touches};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::brims::Brim;
 use crate::terrain::features::Face;
+use crate::terrain::seen::Seen;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
 const SLACK: f64 = 1e-9;

@@ -11,6 +11,7 @@ pub mod index;
 pub mod make;
 mod merge;
 pub mod read;
+pub(crate) mod seen;
 pub mod stems;
 pub mod stl;
 pub mod t_junctions;
