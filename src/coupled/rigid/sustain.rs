@@ -1,0 +1,230 @@
+//! Sustained contact: impulses of all contacts of an island over one step, at velocity level.
+//!
+//! Projected Gauss–Seidel over normal impulse, friction and rolling friction with a warm start (Moreau, Jean). Velocity
+//! is stepped from its start to its end and acts with its mean, so that a resting contact stays where it is and the
+//! parabola is exact; a normal impulse never works on the rocks: what it may give back at the end of a step is at most
+//! what it took at its start.
+
+use super::Pile;
+use super::ball::{Ball, Foot, Knot};
+use crate::contact::pair::{Tie, between};
+use crate::coupled::member::Seat;
+use crate::rock::Vec3;
+use crate::step::grip::World;
+use crate::step::rigid::capture_m_s;
+use crate::terrain::Terrain;
+
+/// Sweeps over the contacts before a jump, at most.
+const SWEEPS: u32 = 100;
+/// Sweeps that judge a jump, at most.
+const SWEEPS_AFTER: u32 = 30;
+/// Jumps after which the impulses have not settled.
+const JUMPS: u32 = 4;
+/// Change of speed at a contact in one sweep, over what its weight alone gains in the step, below which it has
+/// settled (–).
+const SETTLED: f64 = 1e-3;
+/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
+const STIRS: f64 = 0.1;
+/// The same over the capture speed, where there is hardly any weight (–).
+const SETTLED_OF_CAPTURE: f64 = 1e-6;
+
+/// A contact that closes later than this is not yet one: it is caught at the end of the step (m/s, m/s², s).
+fn is_far(gap: f64, capture: f64, ball: &Ball, dt: f64) -> bool {
+    gap > dt * (capture + 2.0 * ball.body.gravity.norm() * dt)
+}
+
+/// Normal speed wanted at the end of a step of length `dt` (s) from the gap in its middle and the speed at its start: an
+/// open gap may close, and over an edge half of the turn is before the middle and half after it. A push never works.
+fn target(gap: f64, speed: f64, dt: f64) -> f64 {
+    -(gap / dt).max(speed).max(0.0)
+}
+
+impl Pile {
+    /// Takes the rocks through the step without its impacts; whether the impulses settled.
+    pub(super) fn sustain(
+        &mut self,
+        terrain: &Terrain,
+        (members, ties): (&mut [Seat], &[Tie]),
+        dt: f64,
+    ) -> bool {
+        self.stand(terrain, members, dt);
+        self.link(ties, dt);
+        for ball in &mut self.balls {
+            ball.v += ball.body.gravity * dt;
+        }
+        self.start_warm();
+        let settled = self.settle((members, ties), dt);
+        self.go_on(terrain, members, dt);
+        settled
+    }
+
+    /// Contacts with the mesh in the middle of the step.
+    fn stand(&mut self, terrain: &Terrain, members: &mut [Seat], dt: f64) {
+        self.feet.clear();
+        for (k, (member, ball)) in members.iter_mut().zip(&self.balls).enumerate() {
+            let member = &mut **member;
+            let world = World { terrain, body: member.body, laws: &member.laws };
+            let middle = ball.c + ball.v * (0.5 * dt);
+            member.grip.look_ahead(&world, &middle);
+            for touch in member.grip.touches.iter() {
+                let law = world.law(touch.triangle);
+                let (speed, capture) = (touch.normal.dot(&ball.v), capture_m_s(law));
+                let gap = touch.distance_m - ball.body.radius;
+                if -speed >= capture || is_far(gap, capture, ball, dt) {
+                    continue;
+                }
+                let place = (touch.feature, touch.triangle);
+                let mut foot = Foot::new(k, place, touch.normal, law);
+                foot.target = target(gap, speed, dt);
+                let kept = member.kept.iter().find(|kept| kept.0 == touch.feature);
+                if let Some((_, push, drag, turn)) = kept {
+                    let along = drag - foot.n * foot.n.dot(drag);
+                    (foot.push, foot.drag, foot.turn) = (push * dt, along * dt, turn * dt);
+                }
+                self.feet.push(foot);
+            }
+        }
+    }
+
+    /// Contacts of rocks with each other in the middle of the step.
+    fn link(&mut self, ties: &[Tie], dt: f64) {
+        self.knots.clear();
+        for (k, tie) in ties.iter().enumerate() {
+            let [a, b] = [tie.a, tie.b].map(|k| &self.balls[k as usize]);
+            let at = [a, b].map(|ball| ball.c + ball.v * (0.5 * dt));
+            let (n, distance) = between(&at[0], &at[1]);
+            let gap = distance - a.body.radius - b.body.radius;
+            let (speed, capture) = (n.dot(&(a.v - b.v)), capture_m_s(&tie.law));
+            if -speed >= capture || is_far(gap, capture, a, dt) {
+                continue;
+            }
+            let mut knot = Knot::new((k, tie), [a, b], [&at[0], &at[1]]);
+            knot.target = target(gap, speed, dt);
+            (knot.push, knot.drag) = (tie.push * dt, (tie.drag - n * n.dot(&tie.drag)) * dt);
+            self.knots.push(knot);
+        }
+    }
+
+    /// Acts with the impulses of the step before.
+    pub(super) fn start_warm(&mut self) {
+        for foot in &self.feet {
+            let ball = &mut self.balls[foot.ball];
+            let load = foot.load(&ball.body);
+            ball.take(&load);
+        }
+        for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
+            for k in 0..2 {
+                self.balls[knot.ends[k]].take(&knot.load(k));
+            }
+        }
+    }
+
+    /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
+    /// the sweeps nearer to rest is taken back, and no other is tried.
+    fn settle(&mut self, (members, ties): (&mut [Seat], &[Tie]), dt: f64) -> bool {
+        let weight = self.balls.iter().map(|ball| ball.body.gravity.norm()).fold(0.0, f64::max);
+        let settled = (SETTLED * weight * dt).max(SETTLED_OF_CAPTURE * self.capture_m_s);
+        self.dt = dt;
+        let mut change = self.sweep_on(SWEEPS, settled);
+        for _ in 0..JUMPS {
+            if change <= settled {
+                return true;
+            }
+            let times: Vec<u32> = self.balls.iter().map(|ball| ball.times).collect();
+            if self.sweep_on(1, settled) <= settled {
+                return true;
+            }
+            let kept = (self.balls.clone(), self.feet.clone(), self.knots.clone());
+            self.jumps += 1;
+            if !self.jump((&mut *members, ties), &times) {
+                break;
+            }
+            let after = self.sweep_on(SWEEPS_AFTER, settled);
+            if after > settled.max(0.5 * change) {
+                (self.balls, self.feet, self.knots) = kept;
+                break;
+            }
+            change = after;
+        }
+        self.sweep_on(SWEEPS, settled) <= settled
+    }
+
+    /// Sweeps until nothing changes by more than `settled` (m/s), or so many times; the largest change of the last.
+    fn sweep_on(&mut self, most: u32, settled: f64) -> f64 {
+        let mut change = f64::INFINITY;
+        for k in 0..most {
+            self.sweeps += 1;
+            change = self.sweep(k % 2 == 1, STIRS * settled);
+            if change <= settled {
+                break;
+            }
+        }
+        change
+    }
+
+    /// One pass over the contacts, onwards or backwards; the largest change of speed (m/s). A change of more than `stirs`
+    /// has the contacts beside it solved again; what has not been stirred since it was solved is passed over.
+    fn sweep(&mut self, backwards: bool, stirs: f64) -> f64 {
+        let (feet, knots) = (self.feet.len(), self.knots.len());
+        let mut change = 0.0f64;
+        for k in 0..feet + knots {
+            let k = if backwards { feet + knots - 1 - k } else { k };
+            let one =
+                if k < feet { self.sweep_foot(k, stirs) } else { self.sweep_knot(k - feet, stirs) };
+            change = change.max(one);
+        }
+        change
+    }
+
+    fn sweep_foot(&mut self, k: usize, stirs: f64) -> f64 {
+        let foot = &mut self.feet[k];
+        let ball = &mut self.balls[foot.ball];
+        if foot.seen == ball.times {
+            return 0.0;
+        }
+        let change = foot.solve(ball);
+        ball.times += u32::from(change > stirs);
+        foot.seen = ball.times;
+        change
+    }
+
+    fn sweep_knot(&mut self, k: usize, stirs: f64) -> f64 {
+        let knot = &mut self.knots[k];
+        let Ok([a, b]) = self.balls.get_disjoint_mut(knot.ends) else { return 0.0 };
+        if knot.seen == [a.times, b.times] {
+            return 0.0;
+        }
+        let change = knot.solve(a, b);
+        let stirred = u32::from(change > stirs);
+        (a.times, b.times) = (a.times + stirred, b.times + stirred);
+        knot.seen = [a.times, b.times];
+        change
+    }
+
+    /// Moves the rocks with their mean velocities and books what the impulses took.
+    fn go_on(&mut self, terrain: &Terrain, members: &[Seat], dt: f64) {
+        let mean = |ball: &Ball| -> (Vec3, Vec3) {
+            ((ball.v + ball.before.0) * 0.5, (ball.w + ball.before.1) * 0.5)
+        };
+        for foot in self.feet.iter().filter(|foot| foot.push > 0.0) {
+            let (member, ball) = (&members[foot.ball], &self.balls[foot.ball]);
+            let world = World { terrain, body: member.body, laws: &member.laws };
+            self.losses[foot.ball].add(&foot.loss(&world, &mean(ball)), 1.0);
+        }
+        for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
+            for k in 0..2 {
+                let (v, w) = mean(&self.balls[knot.ends[k]]);
+                self.given_j[knot.ends[k]] -= Ball::work_j(&knot.load(k), &v, &w);
+            }
+        }
+        for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
+            knot.ends.into_iter().for_each(|k| self.balls[k].pushed = true);
+        }
+        for foot in self.feet.iter().filter(|foot| foot.push > 0.0) {
+            self.balls[foot.ball].pushed = true;
+        }
+        for ball in &mut self.balls {
+            ball.c += mean(ball).0 * dt;
+        }
+    }
+}
