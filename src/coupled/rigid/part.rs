@@ -1,6 +1,7 @@
 //! Rocks that got into each other or into the mesh are moved out, without adding velocity.
 
 use super::Pile;
+use super::ball::Ball;
 use super::strike::Scene;
 use crate::contact::pair::between;
 use crate::coupled::member::Member;
@@ -57,17 +58,53 @@ impl Pile {
         out.norm_squared() > (TOUCH * body.radius).powi(2)
     }
 
+    /// Takes the work of lifting out of the motion: of the rock itself, and what that lacks of all that are pushed.
     fn pay_for_height(&mut self) {
-        for (ball, from) in self.balls.iter_mut().zip(&self.places) {
+        let mut owed_j = 0.0;
+        for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;
-            let lifted = -ball.body.mass * ball.body.gravity.dot(&(ball.c - from));
-            let (v2, w2) = (ball.v.norm_squared(), ball.w.norm_squared());
-            let motion = 0.5 * (ball.body.mass * v2 + ball.body.inertia * w2);
-            if lifted > 0.0 && motion > 0.0 {
-                let kept = ((motion - lifted) / motion).max(0.0).sqrt();
-                ball.v *= kept;
-                ball.w *= kept;
+            let lifted_j = -ball.body.mass * ball.body.gravity.dot(&(ball.c - from));
+            if lifted_j > 0.0 {
+                let lacking_j = (lifted_j - ball.motion_j()).max(0.0);
+                ball.slow_down(lifted_j - lacking_j);
+                self.given_j[k] -= lacking_j;
+                owed_j += lacking_j;
             }
+        }
+        if owed_j > 0.0 {
+            self.pay_together(owed_j);
+        }
+    }
+
+    /// Takes energy (J) out of the motion of all rocks that are pushed, each its share.
+    fn pay_together(&mut self, owed_j: f64) {
+        let takes_part = |ball: &Ball| ball.pushed || ball.moved;
+        let motion_j: f64 =
+            self.balls.iter().filter(|ball| takes_part(ball)).map(Ball::motion_j).sum();
+        let share = if motion_j > 0.0 { (owed_j / motion_j).min(1.0) } else { 0.0 };
+        for (ball, given_j) in self.balls.iter_mut().zip(&mut self.given_j) {
+            if takes_part(ball) {
+                let own_j = share * ball.motion_j();
+                ball.slow_down(own_j);
+                *given_j += own_j;
+            }
+        }
+    }
+}
+
+impl Ball {
+    /// Energy in motion (J).
+    fn motion_j(&self) -> f64 {
+        0.5 * (self.body.mass * self.v.norm_squared() + self.body.inertia * self.w.norm_squared())
+    }
+
+    /// Loses energy (J) of its motion, as much as it has at most.
+    fn slow_down(&mut self, lost_j: f64) {
+        let motion_j = self.motion_j();
+        if motion_j > 0.0 && lost_j > 0.0 {
+            let kept = ((motion_j - lost_j) / motion_j).max(0.0).sqrt();
+            self.v *= kept;
+            self.w *= kept;
         }
     }
 }

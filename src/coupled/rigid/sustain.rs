@@ -22,7 +22,7 @@ const SWEEPS_AFTER: u32 = 30;
 const JUMPS: u32 = 4;
 /// Change of speed at a contact in one sweep, over what its weight alone gains in the step, below which it has
 /// settled (–).
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 5e-3;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
 const STIRS: f64 = 0.1;
 /// The same over the capture speed, where there is hardly any weight (–).
