@@ -19,6 +19,8 @@ pub(super) struct Ball {
     pub(super) before: Motion,
     /// `1/m` (1/kg) and `1/I` (1/(kg m²)).
     pub(super) inv: (f64, f64),
+    /// Change of speed in a sweep that has settled (m/s).
+    pub(super) allowed_m_s: f64,
     /// How long before the end of the step its last blow was (s).
     pub(super) since_s: f64,
     /// Blows in this step.
@@ -40,6 +42,7 @@ impl Ball {
             body: *body,
             before: (v, w),
             inv,
+            allowed_m_s: 0.0,
             since_s: 0.0,
             blows: 0,
             times: 1,

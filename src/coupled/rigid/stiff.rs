@@ -17,7 +17,7 @@ use crate::step::law::{Spot, within};
 /// Impulse by speed of a spring that stands for a rigid contact, over the largest mass (–).
 const HOLD: f64 = 1e7;
 /// A jump of more rocks than this costs more than the sweeps that it may save.
-const MOST_ROCKS: usize = 400;
+const MOST_ROCKS: usize = 64;
 
 impl Pile {
     /// Solves the rocks that were stirred since `times`, and their neighbours, at once; whether that was possible.

@@ -20,13 +20,13 @@ const SWEEPS: u32 = 100;
 const SWEEPS_AFTER: u32 = 30;
 /// Jumps after which the impulses have not settled.
 const JUMPS: u32 = 4;
-/// Change of speed at a contact in one sweep, over what its weight alone gains in the step, below which it has
-/// settled (–).
-const SETTLED: f64 = 5e-3;
-/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
-const STIRS: f64 = 0.1;
+/// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
+/// over the speed of its slower rock (–).
+const SETTLED: (f64, f64) = (5e-3, 1e-3);
 /// The same over the capture speed, where there is hardly any weight (–).
 const SETTLED_OF_CAPTURE: f64 = 1e-6;
+/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
+const STIRS: f64 = 0.2;
 
 /// A contact that closes later than this is not yet one: it is caught at the end of the step (m/s, m/s², s).
 fn is_far(gap: f64, capture: f64, ball: &Ball, dt: f64) -> bool {
@@ -122,16 +122,19 @@ impl Pile {
     /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
     /// the sweeps nearer to rest is taken back, and no other is tried.
     fn settle(&mut self, (members, ties): (&mut [Seat], &[Tie]), dt: f64) -> bool {
-        let weight = self.balls.iter().map(|ball| ball.body.gravity.norm()).fold(0.0, f64::max);
-        let settled = (SETTLED * weight * dt).max(SETTLED_OF_CAPTURE * self.capture_m_s);
         self.dt = dt;
-        let mut change = self.sweep_on(SWEEPS, settled);
+        for ball in &mut self.balls {
+            let weight = SETTLED.0 * ball.body.gravity.norm() * dt;
+            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
+            ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
+        }
+        let mut change = self.sweep_on(SWEEPS);
         for _ in 0..JUMPS {
-            if change <= settled {
+            if change <= 1.0 {
                 return true;
             }
             let times: Vec<u32> = self.balls.iter().map(|ball| ball.times).collect();
-            if self.sweep_on(1, settled) <= settled {
+            if self.sweep_on(1) <= 1.0 {
                 return true;
             }
             let kept = (self.balls.clone(), self.feet.clone(), self.knots.clone());
@@ -139,63 +142,63 @@ impl Pile {
             if !self.jump((&mut *members, ties), &times) {
                 break;
             }
-            let after = self.sweep_on(SWEEPS_AFTER, settled);
-            if after > settled.max(0.5 * change) {
+            let after = self.sweep_on(SWEEPS_AFTER);
+            if after > f64::max(1.0, 0.5 * change) {
                 (self.balls, self.feet, self.knots) = kept;
                 break;
             }
             change = after;
         }
-        self.sweep_on(SWEEPS, settled) <= settled
+        self.sweep_on(SWEEPS) <= 1.0
     }
 
-    /// Sweeps until nothing changes by more than `settled` (m/s), or so many times; the largest change of the last.
-    fn sweep_on(&mut self, most: u32, settled: f64) -> f64 {
+    /// Sweeps until nothing changes by more than is allowed, or so many times; the largest change of the last, over what
+    /// is allowed (–).
+    fn sweep_on(&mut self, most: u32) -> f64 {
         let mut change = f64::INFINITY;
         for k in 0..most {
             self.sweeps += 1;
-            change = self.sweep(k % 2 == 1, STIRS * settled);
-            if change <= settled {
+            change = self.sweep(k % 2 == 1);
+            if change <= 1.0 {
                 break;
             }
         }
         change
     }
 
-    /// One pass over the contacts, onwards or backwards; the largest change of speed (m/s). A change of more than `stirs`
-    /// has the contacts beside it solved again; what has not been stirred since it was solved is passed over.
-    fn sweep(&mut self, backwards: bool, stirs: f64) -> f64 {
+    /// One pass over the contacts, onwards or backwards; the largest change of speed, over what is allowed (–). What has
+    /// not been stirred since it was solved is passed over.
+    fn sweep(&mut self, backwards: bool) -> f64 {
         let (feet, knots) = (self.feet.len(), self.knots.len());
         let mut change = 0.0f64;
         for k in 0..feet + knots {
             let k = if backwards { feet + knots - 1 - k } else { k };
-            let one =
-                if k < feet { self.sweep_foot(k, stirs) } else { self.sweep_knot(k - feet, stirs) };
+            let one = if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) };
             change = change.max(one);
         }
         change
     }
 
-    fn sweep_foot(&mut self, k: usize, stirs: f64) -> f64 {
+    fn sweep_foot(&mut self, k: usize) -> f64 {
         let foot = &mut self.feet[k];
         let ball = &mut self.balls[foot.ball];
         if foot.seen == ball.times {
             return 0.0;
         }
-        let change = foot.solve(ball);
-        ball.times += u32::from(change > stirs);
+        let change = foot.solve(ball) / ball.allowed_m_s;
+        ball.times += u32::from(change > STIRS);
         foot.seen = ball.times;
         change
     }
 
-    fn sweep_knot(&mut self, k: usize, stirs: f64) -> f64 {
+    fn sweep_knot(&mut self, k: usize) -> f64 {
         let knot = &mut self.knots[k];
         let Ok([a, b]) = self.balls.get_disjoint_mut(knot.ends) else { return 0.0 };
         if knot.seen == [a.times, b.times] {
             return 0.0;
         }
-        let change = knot.solve(a, b);
-        let stirred = u32::from(change > stirs);
+        let change = knot.solve(a, b) / a.allowed_m_s.min(b.allowed_m_s);
+        let stirred = u32::from(change > STIRS);
         (a.times, b.times) = (a.times + stirred, b.times + stirred);
         knot.seen = [a.times, b.times];
         change
