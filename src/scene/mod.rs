@@ -266,7 +266,7 @@ impl Scene {
             return Err(missing.inside("contact").inside("rocks"));
         }
         if matches!(scheme, Scheme::Rigid) && contact.has_bonds() {
-            let remedy = "write \"adaptive\", \"reference\" or \"dda\": a bond breaks by its springs, and the rigid limit has none; without tensile_strength_pa and cohesion_pa in [rocks.contact] \"rigid\" can be used";
+            let remedy = "write \"adaptive\", \"reference\" or \"dda\": a bond breaks by its springs, and the rigid limit has none; with tensile_strength_pa = 0 and cohesion_pa = 0 in [rocks.contact] \"rigid\" can be used";
             return Err(Complaint::about("scheme", remedy).inside("solver"));
         }
         for (name, ground) in &self.grounds {

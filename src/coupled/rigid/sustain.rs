@@ -14,8 +14,9 @@ use crate::step::grip::World;
 use crate::step::rigid::capture_m_s;
 use crate::terrain::Terrain;
 
-/// Sweeps over the contacts before a jump, at most.
-const SWEEPS: u32 = 100;
+/// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
+/// others have settled and are passed over.
+const SWEEPS: (u32, u32) = (300, 3000);
 /// Sweeps that judge a jump, at most.
 const SWEEPS_AFTER: u32 = 30;
 /// Jumps after which the impulses have not settled.
@@ -128,7 +129,7 @@ impl Pile {
             let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
             ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
         }
-        let mut change = self.sweep_on(SWEEPS);
+        let mut change = self.sweep_on(SWEEPS.0);
         for _ in 0..JUMPS {
             if change <= 1.0 {
                 return true;
@@ -149,7 +150,7 @@ impl Pile {
             }
             change = after;
         }
-        self.sweep_on(SWEEPS) <= 1.0
+        self.sweep_on(SWEEPS.1) <= 1.0
     }
 
     /// Sweeps until nothing changes by more than is allowed, or so many times; the largest change of the last, over what
