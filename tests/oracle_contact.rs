@@ -124,7 +124,8 @@ fn the_index_finds_every_triangle() {
                 });
                 let mut over = seen.clone();
                 over.fill(0);
-                terrain.index.along_vertical(centre.x, centre.y, |start, count| {
+                let everywhere = f64::INFINITY;
+                terrain.index.along_vertical((centre.x, centre.y), everywhere, |start, count| {
                     (start..start + count).for_each(|t| over[t as usize] += 1);
                 });
                 let mut highest = f64::NEG_INFINITY;

@@ -4,6 +4,7 @@ pub mod closest;
 pub mod hold;
 pub mod near;
 pub mod pair;
+mod seen;
 pub mod submatrix;
 
 use crate::rock::Vec3;

@@ -6,16 +6,25 @@
 //! either side of a sheet, and every contact belongs to one feature.
 
 use super::closest::closest_on;
+use super::seen::Seen;
 use super::{Feature, Touch, Touches};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use crate::terrain::brims::Brim;
+use crate::terrain::features::Face;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
 const SLACK: f64 = 1e-9;
 /// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
 /// rounding of map coordinates, which bends flat edges by 1e-9.
 const SAME: f64 = 1e-6;
+
+/// What stands out on one side of a triangle is not touched from further than this on the other (–, relative to the
+/// distance): edges turn by 1e-6 at least before they are said to stand out, and tests have a slack of 1e-9.
+const ASIDE: f64 = 0.01;
+/// Rounding of the sine of a brim's steepest direction (–).
+const ASIDE_SLACK: f32 = 1e-3;
 
 #[derive(Debug, Clone, Copy)]
 struct NearFace {
@@ -132,49 +141,60 @@ impl Near {
             for t in start..start + count {
                 self.tested += 1;
                 let face = &terrain.features.faces[t as usize];
-                if face.n.dot(&(centre - face.a)).abs() <= self.reach
-                    && !terrain.is_gone(t, &self.gone)
-                {
-                    self.take(terrain, t);
+                let to = centre - face.a;
+                let height = face.n.dot(&to);
+                if height.abs() <= self.reach && !terrain.is_gone(t, &self.gone) {
+                    self.take(terrain, t, (to, height));
                 }
             }
         });
     }
 
-    /// Takes of one triangle what may touch.
-    fn take(&mut self, terrain: &Terrain, t: u32) {
-        let features = &terrain.features;
-        let face = &features.faces[t as usize];
-        let sides = [face.e1, face.e2 - face.e1, -face.e2];
-        let corners = [face.a, face.a + face.e1, face.a + face.e2];
-        let out = sides.map(|side| side.cross(&face.n));
-        let near = self.margin + SLACK * self.radius;
-        let mut is_near = true;
-        for k in 0..3 {
-            // How far the foot is beyond the side, times the side's length: most are told apart without a root.
-            let beyond = out[k].dot(&(self.centre - corners[k]));
-            let beyond2 = beyond * beyond.max(0.0);
-            let length2 = sides[k].norm_squared();
-            if beyond2 > self.reach * self.reach * length2 {
-                return;
-            }
-            is_near &= beyond2 <= near * near * length2;
-        }
+    /// Takes of one triangle what may touch; the centre is `to` from its first corner and `height` over its plane (m).
+    fn take(&mut self, terrain: &Terrain, t: u32, (to, height): (Vec3, f64)) {
         self.sheets.push(t);
-        if is_near {
-            let out = out.map(|out| out.normalize());
-            let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
-            self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
+        let face = &terrain.features.faces[t as usize];
+        let near = self.margin + SLACK * self.radius;
+        let (owned, beside) = self.within_sight(&terrain.features.brims[t as usize], height);
+        let Some(seen) = Seen::of(face, to, (height, beside.max(near))) else { return };
+        if seen.is_within(near) {
+            self.take_face(t, face);
         }
-        let owned = features.owned[t as usize];
-        for k in 0..3 {
-            if owned & (1 << k) != 0 {
-                self.take_edge(terrain, features.edges.of_triangle[t as usize][k], t);
+        for k in (0..3).filter(|_| owned != 0) {
+            if owned & (1 << k) != 0 && seen.may_meet_edge(k, (near, self.reach)) {
+                self.take_edge(terrain, terrain.features.edges.of_triangle[t as usize][k], t);
             }
-            if owned & (8 << k) != 0 {
+            if owned & (8 << k) != 0 && seen.may_meet_corner(k, (near, self.reach)) {
                 self.take_corner(terrain, terrain.triangles[t as usize][k], t);
             }
         }
+    }
+
+    fn take_face(&mut self, t: u32, face: &Face) {
+        let corners = [face.a, face.a + face.e1, face.a + face.e2];
+        let sides = [face.e1, face.e2 - face.e1, -face.e2];
+        let out = sides.map(|side| side.cross(&face.n).normalize());
+        let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
+        self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
+    }
+
+    /// Those of the edges and corners on a triangle's brim that can be touched from the side on which the centre is, and
+    /// how far beside the triangle it can be then (m).
+    #[inline]
+    fn within_sight(&self, brim: &Brim, height: f64) -> (u8, f64) {
+        let sure = self.margin + ASIDE * self.reach;
+        let (mut owned, mut steepest) = (0, 1.0);
+        if height >= -sure && brim.front != 0 {
+            (owned, steepest) = (brim.front, brim.least_front);
+        }
+        if height <= sure && brim.back != 0 {
+            (owned, steepest) = (owned | brim.back, brim.least_back.min(steepest));
+        }
+        if brim.anywhere != 0 {
+            return (owned | brim.anywhere, self.reach);
+        }
+        let aside = (1.0 - steepest * steepest).max(0.0).sqrt() + ASIDE_SLACK;
+        (owned, self.margin + (self.reach - self.margin) * f64::from(aside))
     }
 
     fn take_edge(&mut self, terrain: &Terrain, id: u32, owner: u32) {

@@ -28,12 +28,6 @@ use strike::{Due, Scene};
 /// contact that is slid over meanwhile is off by the square of half of this.
 pub const TRAVEL: f64 = 0.2;
 
-/// Speed that weight alone gives in one step, over the capture speed (–): a rock that touches within a step and would
-/// have rebounded is hardly faster than that.
-const FALL: f64 = 2.0;
-/// Capture speeds below this do not shorten the step (m/s).
-const SLOWEST_M_S: f64 = 0.02;
-
 /// Work space of the rigid steps of an island.
 #[derive(Debug, Default)]
 pub(super) struct Pile {
@@ -183,11 +177,7 @@ impl Pile {
             let speed = ball.v.norm() + ball.body.gravity.norm() * h_max;
             TRAVEL * ball.body.radius / speed.max(f64::MIN_POSITIVE)
         };
-        let fall = |ball: &Ball| {
-            let weight = ball.body.gravity.norm().max(f64::MIN_POSITIVE);
-            FALL * self.capture_m_s.max(SLOWEST_M_S) / weight
-        };
-        let most = self.balls.iter().map(|ball| way(ball).min(fall(ball))).fold(longest, f64::min);
+        let most = self.balls.iter().map(way).fold(longest, f64::min);
         if most >= h_max { h_max } else { h_max / (h_max / most).ceil() }
     }
 }

@@ -7,7 +7,7 @@
 use super::adaptive::{Advance, Stuck};
 use super::grip::{Grip, Loss, TOUCH, World};
 use super::law::Body;
-use super::slide::{Answers, Frame, Pair};
+use super::slide::{Answers, Frame, Mode, Pair};
 use crate::contact::{MOST, Touch};
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -60,7 +60,7 @@ impl Blow<'_> {
             return;
         }
         let caps = (self.law.friction * self.push, self.law.rolling_m * self.push);
-        (self.drag, self.turn) = rub(body, &self.n, caps, (v, w));
+        (self.drag, self.turn) = rub(body, &self.n, caps, (v, w), &mut Mode::default());
     }
 
     /// Change of velocity and spin.
@@ -83,8 +83,14 @@ impl Blow<'_> {
 }
 
 /// Impulses along the surface with normal `n` (N s) and of rolling (N m s) on a rock with velocity `v` and spin `w`
-/// without them; `caps` are the largest of both.
-pub(crate) fn rub(body: &Body, n: &Vec3, caps: (f64, f64), (v, w): (&Vec3, &Vec3)) -> (Vec3, Vec3) {
+/// without them; `caps` are the largest of both. The mode found before is tried first.
+pub(crate) fn rub(
+    body: &Body,
+    n: &Vec3,
+    caps: (f64, f64),
+    (v, w): (&Vec3, &Vec3),
+    mode: &mut Mode,
+) -> (Vec3, Vec3) {
     let frame = Frame::of(n);
     let pair = Pair {
         answers: &Answers::rigid(body.radius),
@@ -92,7 +98,7 @@ pub(crate) fn rub(body: &Body, n: &Vec3, caps: (f64, f64), (v, w): (&Vec3, &Vec3
         d: frame.local(&(w * body.inertia)),
         caps,
     };
-    let (drag, turn) = pair.solve();
+    let (drag, turn) = pair.solve(mode);
     (-frame.out_along(drag), -frame.out_local(turn))
 }
 
@@ -153,7 +159,7 @@ impl<'w> Blows<'w> {
 /// # Errors
 /// [`Stuck`] if motion is no longer finite.
 pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Result<Advance, Stuck> {
-    let mut done = Advance::default();
+    let mut done = Advance { steps: 1, ..Advance::default() };
     let c = grip.c;
     grip.look_ahead_again(world, &c);
     if hits(world, grip) {

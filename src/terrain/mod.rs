@@ -1,5 +1,6 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
+pub mod brims;
 pub mod coarser;
 pub mod edges;
 pub mod features;
@@ -83,7 +84,7 @@ impl Terrain {
             + size_of_val::<[[u32; 3]]>(&self.triangles)
             + size_of_val::<[u16]>(&self.sheet_of)
             + size_of_val::<[u32]>(&self.facet_of)
-            + size_of_val(self.index.pairs())
+            + size_of_val(self.index.nodes())
             + self.features.bytes()
     }
 
@@ -119,7 +120,7 @@ impl Terrain {
     /// The highest slope surface at (x, y) that is not above `under_m`, and its unit normal (m, local).
     pub fn slope_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<(f64, Vec3)> {
         let (mut best, mut of) = (f64::NEG_INFINITY, None);
-        self.index.along_vertical(x_m, y_m, |start, count| {
+        self.index.along_vertical((x_m, y_m), under_m, |start, count| {
             for t in start..start + count {
                 let height = self.height_of(t, x_m, y_m);
                 if height > best && height <= under_m && !self.is_tree(t) {

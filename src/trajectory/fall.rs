@@ -261,7 +261,7 @@ impl Fall<'_> {
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
             let effort = &mut self.journey.effort;
-            effort.steps += 1;
+            effort.steps += done.steps;
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
             self.journey.pay(&done.loss, 1.0);

@@ -7,6 +7,7 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::step::law::{Body, within};
 use crate::step::rigid::rub;
+use crate::step::slide::Mode;
 
 /// One rock inside a step.
 #[derive(Debug, Clone, Copy)]
@@ -176,6 +177,8 @@ pub(super) struct Foot {
     pub(super) drag: Vec3,
     /// Rolling impulse on the rock (N m s).
     pub(super) turn: Vec3,
+    /// Which of friction and rolling holds.
+    mode: Mode,
     /// The count of its rock when it was solved last.
     pub(super) seen: u32,
 }
@@ -198,6 +201,7 @@ impl Foot {
             push: 0.0,
             drag: Vec3::zeros(),
             turn: Vec3::zeros(),
+            mode: Mode::default(),
             seen: 0,
         }
     }
@@ -216,7 +220,7 @@ impl Foot {
             return;
         }
         let caps = (self.caps.0 * self.push, self.caps.1 * self.push);
-        (self.drag, self.turn) = rub(body, &self.n, caps, (v, w));
+        (self.drag, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
     }
 
     /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that

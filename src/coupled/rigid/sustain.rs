@@ -29,9 +29,12 @@ const SETTLED_OF_CAPTURE: f64 = 1e-6;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
 const STIRS: f64 = 0.2;
 
-/// A contact that closes later than this is not yet one: it is caught at the end of the step (m/s, m/s², s).
-fn is_far(gap: f64, capture: f64, ball: &Ball, dt: f64) -> bool {
-    gap > dt * (capture + 2.0 * ball.body.gravity.norm() * dt)
+/// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained
+/// one: not if it would be left faster than the capture speed, or closed so under weight. That is an impact, and found
+/// at the end of the step.
+fn is_sustained((gap, speed): (f64, f64), capture: f64, (weight, dt): (f64, f64)) -> bool {
+    let fall = gap.max(0.0);
+    speed * speed + 2.0 * weight * fall < capture * capture && fall <= dt * capture
 }
 
 /// Normal speed wanted at the end of a step of length `dt` (s) from the gap in its middle and the speed at its start: an
@@ -71,7 +74,9 @@ impl Pile {
                 let law = world.law(touch.triangle);
                 let (speed, capture) = (touch.normal.dot(&ball.v), capture_m_s(law));
                 let gap = touch.distance_m - ball.body.radius;
-                if -speed >= capture || is_far(gap, capture, ball, dt) {
+                let weight = ball.body.gravity.norm();
+                let start = (gap - 0.5 * dt * speed, speed);
+                if !is_sustained(start, capture, (weight, dt)) {
                     continue;
                 }
                 let place = (touch.feature, touch.triangle);
@@ -96,7 +101,8 @@ impl Pile {
             let (n, distance) = between(&at[0], &at[1]);
             let gap = distance - a.body.radius - b.body.radius;
             let (speed, capture) = (n.dot(&(a.v - b.v)), capture_m_s(&tie.law));
-            if -speed >= capture || is_far(gap, capture, a, dt) {
+            let start = (gap - 0.5 * dt * speed, speed);
+            if !is_sustained(start, capture, (a.body.gravity.norm(), dt)) {
                 continue;
             }
             let mut knot = Knot::new((k, tie), [a, b], [&at[0], &at[1]]);
