@@ -18,7 +18,7 @@ const LEAST_M_S: f64 = 1e-6;
 /// Longest way in one step (–, relative to R): less than the slack within which features are seen.
 const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
-const HELD: f64 = 1e-4;
+pub(crate) const HELD: f64 = 1e-4;
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
@@ -59,15 +59,8 @@ impl Blow<'_> {
             (self.drag, self.turn) = (Vec3::zeros(), Vec3::zeros());
             return;
         }
-        let frame = Frame::of(&self.n);
-        let pair = Pair {
-            answers: &Answers::rigid(body.radius),
-            a: frame.along(&(body.slip(&self.n, v, w) * (2.0 / 7.0 * m))),
-            d: frame.local(&(w * body.inertia)),
-            caps: (self.law.friction * self.push, self.law.rolling_m * self.push),
-        };
-        let (drag, turn) = pair.solve(&mut Mode::default());
-        (self.drag, self.turn) = (-frame.out_along(drag), -frame.out_local(turn));
+        let caps = (self.law.friction * self.push, self.law.rolling_m * self.push);
+        (self.drag, self.turn) = rub(body, &self.n, caps, (v, w), &mut Mode::default());
     }
 
     /// Change of velocity and spin.
@@ -87,6 +80,26 @@ impl Blow<'_> {
             trees: 0.0,
         }
     }
+}
+
+/// Impulses along the surface with normal `n` (N s) and of rolling (N m s) on a rock with velocity `v` and spin `w`
+/// without them; `caps` are the largest of both. The mode found before is tried first.
+pub(crate) fn rub(
+    body: &Body,
+    n: &Vec3,
+    caps: (f64, f64),
+    (v, w): (&Vec3, &Vec3),
+    mode: &mut Mode,
+) -> (Vec3, Vec3) {
+    let frame = Frame::of(n);
+    let pair = Pair {
+        answers: &Answers::rigid(body.radius),
+        a: frame.along(&(body.slip(n, v, w) * (2.0 / 7.0 * body.mass))),
+        d: frame.local(&(w * body.inertia)),
+        caps,
+    };
+    let (drag, turn) = pair.solve(mode);
+    (-frame.out_along(drag), -frame.out_local(turn))
 }
 
 /// The contacts of one impact or step.
@@ -166,7 +179,7 @@ fn hits(world: &World, grip: &Grip) -> bool {
 }
 
 /// Speed of approach up to which a contact does not rebound (m/s).
-fn capture_m_s(law: &Law) -> f64 {
+pub(crate) fn capture_m_s(law: &Law) -> f64 {
     law.capture_m_s.max(LEAST_M_S)
 }
 
@@ -259,7 +272,7 @@ fn push_out(world: &World, grip: &mut Grip) {
 }
 
 /// Keeps a memory for every touch that still holds the rock, so that impacts are counted and rest is seen.
-fn remember(world: &World, grip: &mut Grip, holds: impl Fn(&Vec3) -> bool) {
+pub(crate) fn remember(world: &World, grip: &mut Grip, holds: impl Fn(&Vec3) -> bool) {
     let (c, v) = (grip.c, grip.v);
     grip.look_ahead_again(world, &c);
     let mut touches = grip.touches;

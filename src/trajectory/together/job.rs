@@ -1,5 +1,7 @@
 //! One island through one window: leap, meet, step, rest.
 
+mod rigid;
+
 use super::split::{Ahead, Place, is_busy, meeting_ties, place_of};
 use super::{Census, Rover, State};
 use crate::contact::pair::{Tie, meeting_s};
@@ -69,6 +71,10 @@ impl<'a> Job<'a> {
 
     /// Takes the island to the end of its window.
     pub(super) fn run(&mut self) {
+        if self.is_rigid_heap() {
+            self.run_rigid();
+            return;
+        }
         if !self.falls_apart() {
             self.run_whole();
             return;
@@ -257,6 +263,7 @@ impl<'a> Job<'a> {
             let spent = (cluster.sweeps, cluster.jumps);
             let tried = match self.course.step.scheme {
                 Scheme::Dda => cluster.advance_fixed(self.course.step, room),
+                Scheme::Rigid => cluster.advance_rigid(self.course.step.step_s, room),
                 _ => cluster.advance(&control, room),
             };
             let done = match tried {
