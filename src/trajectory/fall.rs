@@ -222,7 +222,8 @@ impl Fall<'_> {
         let began_s = self.journey.now.time_s;
         let before_j = self.total_j();
         let lost_before_j = self.journey.lost_j();
-        let held = self.held();
+        // those of the look that `begin` has just taken
+        let held = if self.is_rigid() { Loss::default() } else { self.grip.stored_j(&self.world) };
         let mut stepper = Stepper::new(self.course.step, &self.world, self.grip);
         let stop = self.steps(&mut stepper);
         let rise_j = self.total_j() - before_j;
@@ -243,12 +244,15 @@ impl Fall<'_> {
         stop
     }
 
-    /// Energy in the contact springs; the rigid limit has none, whatever the depth that rounding leaves.
+    /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
+    fn is_rigid(&self) -> bool {
+        self.course.step.scheme == Scheme::Rigid
+    }
+
+    /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
     fn held(&mut self) -> Loss {
-        if self.course.step.scheme == Scheme::Rigid {
-            return Loss::default();
-        }
-        self.grip.springs_j(&self.world)
+        let left = self.grip.is_free() && self.course.step.scheme != Scheme::Dda;
+        if left || self.is_rigid() { Loss::default() } else { self.grip.springs_j(&self.world) }
     }
 
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
@@ -313,12 +317,8 @@ impl Fall<'_> {
 
     /// The longest an impact is taken to last (s).
     fn impact_time(&self) -> f64 {
-        let slowest = self
-            .grip
-            .holds
-            .iter()
-            .map(|hold| self.world.law(hold.triangle).omega)
-            .fold(f64::INFINITY, f64::min);
+        let omegas = self.grip.holds.iter().map(|hold| self.world.law(hold.triangle).omega);
+        let slowest = omegas.fold(f64::INFINITY, f64::min);
         IMPACT_TIMES * PI / slowest
     }
 
