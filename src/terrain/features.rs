@@ -241,6 +241,16 @@ impl Features {
         self
     }
 
+    /// The same, asked for from wherever the ball is: telling by heights changes the cost, never the answer.
+    #[must_use]
+    pub fn from_anywhere(mut self) -> Self {
+        for brim in &mut self.brims {
+            brim.anywhere |= brim.front | brim.back;
+            (brim.front, brim.back) = (0, 0);
+        }
+        self
+    }
+
     /// Whether a ball can touch a corner from anywhere: some direction must stand at a right angle or more to every edge
     /// at it.
     ///
