@@ -110,6 +110,9 @@ impl Index {
     /// Builds the index over triangles given by their corners, and the order in which it wants them.
     ///
     /// `order[k]` is the number that triangle `k` of the index had in the input.
+    ///
+    /// # Panics
+    /// If the tree were deeper than a traversal can walk, which no mesh makes it.
     pub fn build(corners: impl Iterator<Item = [Vec3; 3]>) -> (Self, Vec<u32>) {
         let boxes: Vec<Aabb> = corners.map(|[a, b, c]| box_of(a, b, c)).collect();
         if boxes.is_empty() {
