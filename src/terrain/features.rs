@@ -186,13 +186,13 @@ impl Features {
     /// From where what `owned` says of triangle `t` can be touched.
     fn brim(&self, t: u32, owned: u8, (corners, vertices_m): (&[u32; 3], &[Vec3])) -> Brim {
         let mut brim = Brim::NONE;
-        for k in 0..3 {
+        let sides = self.edges.of_triangle[t as usize];
+        for (k, (&edge, &corner)) in sides.iter().zip(corners).enumerate() {
             if owned & (1 << k) != 0 {
-                let edge = self.edges.of_triangle[t as usize][k];
                 brim.add(1 << k, self.edge_cone(edge, t, vertices_m));
             }
             if owned & (8 << k) != 0 {
-                brim.add(8 << k, self.corner_cone(corners[k], t, vertices_m));
+                brim.add(8 << k, self.corner_cone(corner, t, vertices_m));
             }
         }
         brim
@@ -237,6 +237,16 @@ impl Features {
         let owned = self.give_away(&vec![true; self.edges.len()], &mut corner, triangles);
         for (brim, owned) in self.brims.iter_mut().zip(owned) {
             brim.anywhere |= owned & !(brim.front | brim.back);
+        }
+        self
+    }
+
+    /// The same, asked for from wherever the ball is: telling by heights changes the cost, never the answer.
+    #[must_use]
+    pub fn from_anywhere(mut self) -> Self {
+        for brim in &mut self.brims {
+            brim.anywhere |= brim.front | brim.back;
+            (brim.front, brim.back) = (0, 0);
         }
         self
     }

@@ -1,7 +1,7 @@
 //! The spatial index: parry3d's bounding-volume tree, packed into two cache lines a node.
 //!
 //! parry builds the tree (binned surface-area heuristic). A rock's query reads it millions of times, so it is
-//! then packed: four child boxes a node in `f32`, rounded outwards, and up to four triangles a leaf. Triangles
+//! then packed: four child boxes a node in `f32`, rounded outwards, and up to three triangles a leaf. Triangles
 //! are renumbered in tree order, so that neighbours in space are neighbours in memory.
 
 use crate::rock::Vec3;
@@ -10,8 +10,8 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use wide::f32x4;
 
-/// Most triangles in one leaf.
-const LEAF: u32 = 4;
+/// Most triangles in one leaf: four boxes at once are cheaper than the triangles that smaller ones leave out.
+const LEAF: u32 = 3;
 const LEAF_BIT: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
 const START_MASK: u32 = (1 << COUNT_SHIFT) - 1;
@@ -110,6 +110,9 @@ impl Index {
     /// Builds the index over triangles given by their corners, and the order in which it wants them.
     ///
     /// `order[k]` is the number that triangle `k` of the index had in the input.
+    ///
+    /// # Panics
+    /// If the tree were deeper than a traversal can walk, which no mesh makes it.
     pub fn build(corners: impl Iterator<Item = [Vec3; 3]>) -> (Self, Vec<u32>) {
         let boxes: Vec<Aabb> = corners.map(|[a, b, c]| box_of(a, b, c)).collect();
         if boxes.is_empty() {

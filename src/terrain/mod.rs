@@ -106,6 +106,13 @@ impl Terrain {
         self
     }
 
+    /// The same with every edge and corner looked at from wherever a ball is.
+    #[must_use]
+    pub fn from_anywhere(mut self) -> Self {
+        self.features = self.features.from_anywhere();
+        self
+    }
+
     /// Whether a triangle belongs to a tree.
     #[inline]
     pub fn is_tree(&self, triangle: u32) -> bool {
