@@ -4,7 +4,6 @@ pub mod closest;
 pub mod hold;
 pub mod near;
 pub mod pair;
-mod seen;
 pub mod submatrix;
 
 use crate::rock::Vec3;

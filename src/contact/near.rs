@@ -5,26 +5,19 @@
 //! it; a vertex where the centre stands behind every edge at it. Flat and hollow edges fail by themselves, from
 //! either side of a sheet, and every contact belongs to one feature.
 
+mod take;
+
 use super::closest::closest_on;
-use super::seen::Seen;
 use super::{Feature, Touch, Touches};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use crate::terrain::brims::Brim;
-use crate::terrain::features::Face;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
 const SLACK: f64 = 1e-9;
 /// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
 /// rounding of map coordinates, which bends flat edges by 1e-9.
 const SAME: f64 = 1e-6;
-
-/// What stands out on one side of a triangle is not touched from further than this on the other (–, relative to the
-/// distance): edges turn by 1e-6 at least before they are said to stand out, and tests have a slack of 1e-9.
-const ASIDE: f64 = 0.01;
-/// Rounding of the sine of a brim's steepest direction (–).
-const ASIDE_SLACK: f32 = 1e-3;
 
 #[derive(Debug, Clone, Copy)]
 struct NearFace {
@@ -62,6 +55,17 @@ impl NearFace {
     #[inline]
     fn holds_foot_of(&self, point: &Vec3, slack: f64) -> bool {
         (0..3).all(|k| self.out[k].dot(point) <= self.rim[k] + slack)
+    }
+
+    /// The touch of a centre at `height` (m).
+    #[inline]
+    fn touch(&self, height: f64) -> Touch {
+        Touch {
+            feature: Feature { kind: FeatureKind::Face, id: self.id },
+            triangle: self.id,
+            normal: if height < 0.0 { -self.n } else { self.n },
+            distance_m: height.abs(),
+        }
     }
 }
 
@@ -150,97 +154,6 @@ impl Near {
         });
     }
 
-    /// Takes of one triangle what may touch; the centre is `to` from its first corner and `height` over its plane (m).
-    fn take(&mut self, terrain: &Terrain, t: u32, (to, height): (Vec3, f64)) {
-        self.sheets.push(t);
-        let face = &terrain.features.faces[t as usize];
-        let near = self.margin + SLACK * self.radius;
-        let (owned, beside) = self.within_sight(&terrain.features.brims[t as usize], height);
-        let Some(seen) = Seen::of(face, to, (height, beside.max(near))) else { return };
-        if seen.is_within(near) {
-            self.take_face(t, face);
-        }
-        for k in (0..3).filter(|_| owned != 0) {
-            if owned & (1 << k) != 0 && seen.may_meet_edge(k, (near, self.reach)) {
-                self.take_edge(terrain, terrain.features.edges.of_triangle[t as usize][k], t);
-            }
-            if owned & (8 << k) != 0 && seen.may_meet_corner(k, (near, self.reach)) {
-                self.take_corner(terrain, terrain.triangles[t as usize][k], t);
-            }
-        }
-    }
-
-    fn take_face(&mut self, t: u32, face: &Face) {
-        let corners = [face.a, face.a + face.e1, face.a + face.e2];
-        let sides = [face.e1, face.e2 - face.e1, -face.e2];
-        let out = sides.map(|side| side.cross(&face.n).normalize());
-        let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
-        self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
-    }
-
-    /// Those of the edges and corners on a triangle's brim that can be touched from the side on which the centre is, and
-    /// how far beside the triangle it can be then (m).
-    #[inline]
-    fn within_sight(&self, brim: &Brim, height: f64) -> (u8, f64) {
-        let sure = self.margin + ASIDE * self.reach;
-        let (mut owned, mut steepest) = (0, 1.0);
-        if height >= -sure && brim.front != 0 {
-            (owned, steepest) = (brim.front, brim.least_front);
-        }
-        if height <= sure && brim.back != 0 {
-            (owned, steepest) = (owned | brim.back, brim.least_back.min(steepest));
-        }
-        if brim.anywhere != 0 {
-            return (owned | brim.anywhere, self.reach);
-        }
-        let aside = (1.0 - steepest * steepest).max(0.0).sqrt() + ASIDE_SLACK;
-        (owned, self.margin + (self.reach - self.margin) * f64::from(aside))
-    }
-
-    fn take_edge(&mut self, terrain: &Terrain, id: u32, owner: u32) {
-        let [a, b] =
-            terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
-        let length = (b - a).norm();
-        let along = (b - a) / length;
-        let to = self.centre - a;
-        let s = along.dot(&to);
-        if s < -self.margin || s > length + self.margin || (to - along * s).norm() > self.reach {
-            return;
-        }
-        let first = self.rays.len();
-        let faces = terrain.features.edges.triangles_on(id);
-        for &t in faces {
-            let outward = terrain.features.outward(id, t, &terrain.vertices_m);
-            if outward.dot(&to) < -self.margin - SLACK * self.radius {
-                self.rays.truncate(first);
-                return;
-            }
-            self.rays.push(outward);
-        }
-        let rays = (first as u32, self.rays.len() as u32);
-        let at_border = faces.len() == 1;
-        self.edges.push(NearEdge { id, triangle: owner, a, along, length, rays, at_border });
-    }
-
-    fn take_corner(&mut self, terrain: &Terrain, id: u32, owner: u32) {
-        let p = terrain.vertices_m[id as usize];
-        let to = self.centre - p;
-        if to.norm() > self.reach {
-            return;
-        }
-        let first = self.rays.len();
-        for &v in terrain.features.neighbours(id) {
-            let along = (terrain.vertices_m[v as usize] - p).normalize();
-            if along.dot(&to) > self.margin + SLACK * self.radius {
-                self.rays.truncate(first);
-                return;
-            }
-            self.rays.push(along);
-        }
-        let rays = (first as u32, self.rays.len() as u32);
-        self.corners.push(NearCorner { id, triangle: owner, p, rays });
-    }
-
     /// Whether what was collected holds for a rock at `centre`.
     #[inline]
     pub fn covers(&self, centre: &Vec3) -> bool {
@@ -266,12 +179,20 @@ impl Near {
     #[inline]
     pub fn touches(&self, terrain: &Terrain, centre: &Vec3, reach: f64, touches: &mut Touches) {
         touches.clear();
-        let faces = self.faces.iter().filter_map(|face| self.on_face(face, centre, reach));
-        let edges = self.edges.iter().filter_map(|edge| self.on_edge(terrain, edge, centre, reach));
-        let corners =
-            self.corners.iter().filter_map(|corner| self.on_corner(terrain, corner, centre, reach));
-        for touch in faces.chain(edges).chain(corners) {
-            self.merge(touch, centre, touches);
+        for face in &self.faces {
+            if let Some(height) = self.height_over(face, centre, reach) {
+                self.merge(face.touch(height), centre, touches);
+            }
+        }
+        for edge in &self.edges {
+            if let Some(touch) = self.on_edge(terrain, edge, centre, reach) {
+                self.merge(touch, centre, touches);
+            }
+        }
+        for corner in &self.corners {
+            if let Some(touch) = self.on_corner(terrain, corner, centre, reach) {
+                self.merge(touch, centre, touches);
+            }
         }
     }
 
@@ -286,7 +207,7 @@ impl Near {
     #[inline]
     pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
         let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
-        faces.all(|other| other.id == face || self.on_face(other, centre, reach).is_none())
+        faces.all(|other| other.id == face || self.height_over(other, centre, reach).is_none())
             && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
             && self
                 .corners
@@ -294,15 +215,12 @@ impl Near {
                 .all(|corner| self.on_corner(terrain, corner, centre, reach).is_none())
     }
 
+    /// Height over a face (m), if it is nearer than `reach` and has the foot of `centre` on it.
     #[inline]
-    fn on_face(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<Touch> {
+    fn height_over(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<f64> {
         let height = face.n.dot(&(centre - face.a));
-        if height.abs() >= reach || !face.holds_foot_of(centre, SLACK * self.radius) {
-            return None;
-        }
-        let feature = Feature { kind: FeatureKind::Face, id: face.id };
-        let normal = if height < 0.0 { -face.n } else { face.n };
-        Some(Touch { feature, triangle: face.id, normal, distance_m: height.abs() })
+        let touches = height.abs() < reach && face.holds_foot_of(centre, SLACK * self.radius);
+        touches.then_some(height)
     }
 
     #[inline]
@@ -377,6 +295,10 @@ impl Near {
     /// Adds a touch unless the same point was found on a lower feature before.
     #[inline]
     fn merge(&self, touch: Touch, centre: &Vec3, touches: &mut Touches) {
+        if touches.is_empty() {
+            touches.add(touch);
+            return;
+        }
         let near2 = (SAME * self.radius).powi(2);
         let foot = centre - touch.normal * touch.distance_m;
         let known = touches.iter().any(|other| {

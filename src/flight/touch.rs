@@ -6,6 +6,8 @@ use super::{Parabola, least, most};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::brims::Brim;
+use crate::terrain::features::Face;
+use crate::terrain::seen::Seen;
 
 /// A start nearer to touching than this counts as touching (–, relative to R²): rounding of the contact before.
 const TOUCHING: f64 = 1e-12;
@@ -42,8 +44,8 @@ pub(super) fn of_triangle(
     let mut found = None;
     // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
     let slack = BESIDE * flight.radius;
-    let on_it =
-        ta <= 0.0 && height.h0.abs() < flight.radius && face.holds_foot_of(&flight.start, slack);
+    let starts_near = ta <= 0.0 && starts_near(face, flight, height.h0);
+    let on_it = starts_near && face.holds_foot_of(&flight.start, slack);
     let level = flight.radius * (1.0 - 2.0 * NEAR);
     for (side, above) in [(1.0, range.1), (-1.0, -range.0)] {
         if (above >= level || on_it)
@@ -58,7 +60,7 @@ pub(super) fn of_triangle(
     if brim.front | brim.back | brim.anywhere == 0 {
         return found;
     }
-    for rim in rims(brim, flight.radius, is_pressed_in(terrain, t, flight, (&height, ta))) {
+    for rim in rims(brim, flight.radius, starts_near && is_pressed_in(terrain, t, flight)) {
         if rim.owned == 0 || rim.heights.0 > range.1 || rim.heights.1 < range.0 {
             continue;
         }
@@ -71,6 +73,17 @@ pub(super) fn of_triangle(
         }
     }
     found
+}
+
+/// Whether the ball may be nearer than its radius to a triangle when it starts, at a height of `h0` (m).
+#[inline]
+fn starts_near(face: &Face, flight: &Parabola, h0: f64) -> bool {
+    let aside2 = flight.radius * flight.radius - h0 * h0;
+    if aside2 <= 0.0 {
+        return false;
+    }
+    let aside = aside2.sqrt() + NEAR * flight.radius;
+    Seen::of(face, flight.start - face.a, (h0, aside)).is_some()
 }
 
 /// Edges and corners of a triangle that are met alike.
@@ -103,16 +116,7 @@ fn rims(brim: &Brim, radius: f64, pressed_in: bool) -> [Rim; 3] {
 
 /// Whether the ball starts pressed into one of the edges and corners that a triangle owns: there it comes back to its
 /// starting distance, not to the radius, and may do so from where it could not touch.
-#[inline]
-fn is_pressed_in(
-    terrain: &Terrain,
-    t: u32,
-    flight: &Parabola,
-    (height, ta): (&Height, f64),
-) -> bool {
-    if ta > 0.0 || height.h0.abs() >= flight.radius {
-        return false;
-    }
+fn is_pressed_in(terrain: &Terrain, t: u32, flight: &Parabola) -> bool {
     let brim = &terrain.features.brims[t as usize];
     let owned = brim.front | brim.back | brim.anywhere;
     let corners = terrain.corners_m(t);
@@ -136,8 +140,12 @@ fn of_rim(
     flight: &Parabola,
     (rim, slab): (&Rim, (f64, f64)),
 ) -> Option<f64> {
-    let abreast = Abreast::new(&terrain.features.faces[t as usize], flight, slab);
+    let face = &terrain.features.faces[t as usize];
     let (owned, aside) = (rim.owned, rim.aside);
+    let lasts = slab.1 - slab.0;
+    let way = (flight.velocity(slab.0).norm() + 0.5 * flight.gravity * lasts) * lasts;
+    Seen::of(face, flight.centre(slab.0) - face.a, (0.0, way + aside + NEAR * flight.radius))?;
+    let abreast = Abreast::new(face, flight, slab);
     let (mut best, mut found) = (slab.1, None);
     for k in 0..3 {
         let window = (slab.0, best);

@@ -110,10 +110,10 @@ pub(crate) struct Pair<'a> {
 
 /// Newton steps for a ratio.
 const RATIO_STEPS: u32 = 30;
+/// Least that Newton leaves of a ratio at once (–).
+const FALL: f64 = 0.2;
 /// A force below this part of its cap is held (–).
 const INSIDE: f64 = 1.0 - 1e-9;
-/// Change of a force, relative to its scale, below which it has settled (–).
-const SETTLED: f64 = 1e-10;
 /// Change of a ratio, relative to it, after which Newton's next would be less than rounding matters (–).
 const NEAR: f64 = 1e-5;
 
@@ -164,7 +164,7 @@ pub(crate) enum Mode {
     /// Neither.
     #[default]
     Stick,
-    /// The moment, with the `λ` of [`Pair::rolling_alone`] by its cap.
+    /// The moment, with the `μ` of [`Pair::rolling_alone`] by its cap.
     Roll(f64),
     /// The shear force.
     Slide,
@@ -206,9 +206,9 @@ impl Pair<'_> {
     /// The moment at its cap, if shear then sticks and the moment does not.
     #[inline]
     fn rolls(&self, ratio: Option<f64>) -> Option<(Mode, Along, Local)> {
-        let (ratio, moment) = self.rolling_alone(ratio);
+        let (ratio, share, moment) = self.rolling_alone(ratio);
         let q = self.shear_at(moment);
-        let rolls = ratio * INSIDE <= self.answers.share_m;
+        let rolls = share * INSIDE <= self.answers.share_m;
         let mode = Mode::Roll(by(ratio, self.caps.1));
         (rolls && size2(q) <= self.caps.0 * self.caps.0).then_some((mode, q, moment))
     }
@@ -228,9 +228,9 @@ impl Pair<'_> {
     fn does_both(&self, ratio: Option<f64>) -> Option<(Mode, Along, Local)> {
         let (cap_q, cap_m) = self.caps;
         let (ratio, q, moment) = self.both_slip(ratio);
-        let slip = size2(self.shear_at(moment)) >= cap_q * cap_q
-            && volume2(self.moment_at(q)) >= cap_m * cap_m;
-        slip.then_some((Mode::Both(by(ratio, cap_m)), q, moment))
+        let slips = size2(self.shear_at(moment)) >= cap_q * cap_q
+            && ratio <= self.answers.c * self.answers.share_m;
+        slips.then_some((Mode::Both(by(ratio, cap_m)), q, moment))
     }
 
     /// `q̂` for a moment.
@@ -243,9 +243,7 @@ impl Pair<'_> {
     /// `M̂` for a shear force.
     #[inline]
     fn moment_at(&self, q: Along) -> Local {
-        let y = turned(q);
-        let along = [0, 1].map(|k| (self.d[k] + y[k] * self.answers.er) * self.answers.share_m);
-        [along[0], along[1], self.d[2] * self.answers.share_m]
+        self.wound(q, self.answers.share_m)
     }
 
     /// Neither at its cap: with `y = n × M`, `(1+B) q + C y = a` and `E R q + (1+E) y = n × d`.
@@ -258,32 +256,33 @@ impl Pair<'_> {
         (q, [y[1], -y[0], self.d[2] * share_m])
     }
 
-    /// The moment at its cap while shear sticks: `M_t = λ G_t/(1 − λs)`, `M_n = λ G_n`, a scalar equation for `λ`.
+    /// The moment at its cap while shear sticks: `M_t = μ G_t`, `M_n = λ G_n` with `λ = μ/(1 + μs)`; `|M|²` grows with
+    /// `μ`, so Newton finds where it is that of the cap. Returns `μ`, `λ` and the moment.
     #[inline]
-    fn rolling_alone(&self, ratio: Option<f64>) -> (f64, Local) {
+    fn rolling_alone(&self, guess: Option<f64>) -> (f64, f64, Local) {
         let y = turned(self.a);
         let g = [0, 1].map(|k| self.d[k] + y[k] * (self.answers.er * self.answers.share_q));
         let (t2, n2, cap) = (size2(g), self.d[2] * self.d[2], self.caps.1);
         let s = self.answers.er * self.answers.c * self.answers.share_q;
-        // |M| grows with λ. Without a normal part the first guess is exact; with one it is below the root, from where
-        // Newton on λ − cap/|G/(1 − λs)| comes up.
-        let guess = ratio.filter(|ratio| 2.0 * ratio * s < 1.0);
-        let mut ratio = guess.unwrap_or_else(|| cap / ((t2.sqrt() + cap * s).powi(2) + n2).sqrt());
-        if guess.is_some() || n2 > SETTLED * SETTLED * t2 {
-            for _ in 0..RATIO_STEPS {
-                let room = 1.0 / (1.0 - ratio * s);
-                let stretched2 = t2 * room * room;
-                let size2 = stretched2 + n2;
-                let reached = cap / size2.sqrt();
-                let change = (ratio - reached) * size2 / (size2 + reached * stretched2 * room * s);
-                ratio -= change;
-                if change.abs() <= NEAR * ratio {
-                    break;
-                }
+        let guess = guess.filter(|guess| *guess > 0.0);
+        let mut ratio = guess.unwrap_or_else(|| cap / (t2 + n2).sqrt().max(f64::MIN_POSITIVE));
+        let mut room = 1.0 / (1.0 + ratio * s);
+        for _ in 0..RATIO_STEPS {
+            let spun2 = n2 * room * room;
+            let over = ratio * ratio * (t2 + spun2) - cap * cap;
+            let change = over / (2.0 * ratio * (t2 + spun2 * room)).max(f64::MIN_POSITIVE);
+            let next = (ratio - change).max(FALL * ratio);
+            if change.abs() <= NEAR * ratio {
+                // So little further on the line through it is as good.
+                room -= room * room * s * (next - ratio);
+                ratio = next;
+                break;
             }
+            ratio = next;
+            room = 1.0 / (1.0 + ratio * s);
         }
-        let along = ratio / (1.0 - ratio * s);
-        (ratio, [g[0] * along, g[1] * along, self.d[2] * ratio])
+        let spun = ratio * room;
+        (ratio, spun, [g[0] * ratio, g[1] * ratio, self.d[2] * spun])
     }
 
     /// Shear at its cap while rolling sticks: `q ∥ a − C/(1+E) n × d`.
@@ -295,34 +294,45 @@ impl Pair<'_> {
         if size > 0.0 { along.map(|x| x * (self.caps.0 / size)) } else { along }
     }
 
-    /// Both at their caps: only directions are sought. With `y = n × M = κ' (n × d − E R q)` the part along `q` turns
-    /// nothing: `q ∥ a − κ n × d`, where `κ |n × d − E R q, d_n| = C` times the moment's cap. The left side grows with
-    /// `κ`, so Newton finds it.
-    fn both_slip(&self, ratio: Option<f64>) -> (f64, Along, Local) {
+    /// Both at their caps: only directions are sought. With `M = κ/C (d + E R n × q)` what turns with `q` does not turn it:
+    /// `q ∥ a − κ n × d`, and `κ |n × d − E R q, d_n|` is `C` times the moment's cap. It grows with `κ`, so Newton finds
+    /// it. Returns `κ`, force and moment.
+    fn both_slip(&self, guess: Option<f64>) -> (f64, Along, Local) {
         let (cap_q, cap_m) = self.caps;
         let nd = turned([self.d[0], self.d[1]]);
         let lever = self.answers.er * cap_q;
         let (nd2, wanted) = (size2(nd), self.answers.c * cap_m);
         let most2 = nd2 + lever * lever + self.d[2] * self.d[2];
-        let along = |ratio: f64| {
+        let guess = guess.filter(|guess| *guess > 0.0);
+        let mut ratio = guess.unwrap_or_else(|| wanted / most2.sqrt().max(f64::MIN_POSITIVE));
+        let mut e = [0.0; 2];
+        for _ in 0..RATIO_STEPS {
             let p = [0, 1].map(|k| self.a[k] - nd[k] * ratio);
             let over = 1.0 / size2(p).sqrt().max(f64::MIN_POSITIVE);
-            (p.map(|x| x * over), over)
-        };
-        let mut ratio = ratio.unwrap_or_else(|| wanted / most2.sqrt().max(f64::MIN_POSITIVE));
-        for _ in 0..RATIO_STEPS {
-            let (e, over) = along(ratio);
+            e = p.map(|x| x * over);
             let c = nd[0] * e[0] + nd[1] * e[1];
-            let size = (most2 - 2.0 * lever * c).max(0.0).sqrt();
-            let slope = size * size + ratio * lever * (nd2 - c * c) * over;
-            let change = (ratio * size - wanted) * size / slope.max(f64::MIN_POSITIVE);
-            ratio = (ratio - change).max(0.0);
+            let size2 = most2 - 2.0 * lever * c;
+            let slope = 2.0 * ratio * (size2 + ratio * lever * (nd2 - c * c) * over);
+            let beyond = ratio * ratio * size2 - wanted * wanted;
+            let next = (ratio - beyond / slope.max(f64::MIN_POSITIVE)).max(FALL * ratio);
+            let change = next - ratio;
+            ratio = next;
             if change.abs() <= NEAR * ratio {
+                // So little further on the tangent is as good.
+                e = [0, 1].map(|k| e[k] - (nd[k] - e[k] * c) * (over * change));
                 break;
             }
         }
-        let q = along(ratio).0.map(|x| x * cap_q);
-        (ratio, q, cut_moment(self.moment_at(q), cap_m))
+        let q = e.map(|x| x * cap_q);
+        (ratio, q, self.wound(q, ratio / self.answers.c))
+    }
+
+    /// `M̂` for a shear force, `share` of it instead of `1/(1 + E)`.
+    #[inline]
+    fn wound(&self, q: Along, share: f64) -> Local {
+        let y = turned(q);
+        let along = [0, 1].map(|k| (self.d[k] + y[k] * self.answers.er) * share);
+        [along[0], along[1], self.d[2] * share]
     }
 }
 

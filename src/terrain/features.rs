@@ -56,13 +56,16 @@ impl Face {
     /// Measured as a distance: barycentric coordinates of a needle round by more than any fixed slack.
     #[inline]
     pub fn holds_foot_of(&self, point: &Vec3, slack_m: f64) -> bool {
-        let to = point - self.a;
-        let e3 = self.e2 - self.e1;
-        let beyond = |along: &Vec3, to: &Vec3| {
-            let out = along.cross(&self.n).dot(to);
-            out > 0.0 && out * out > slack_m * slack_m * along.norm_squared()
+        let is_in = |side: &Vec3, beyond: f64| {
+            beyond <= 0.0 || beyond * beyond <= slack_m * slack_m * side.norm_squared()
         };
-        !beyond(&self.e1, &to) && !beyond(&e3, &(to - self.e1)) && !beyond(&-self.e2, &to)
+        // (side × n) · to, with one cross product for the two sides at the first corner
+        let to = point - self.a;
+        let across = self.n.cross(&to);
+        let e3 = self.e2 - self.e1;
+        is_in(&self.e1, self.e1.dot(&across))
+            && is_in(&self.e2, -self.e2.dot(&across))
+            && is_in(&e3, e3.dot(&self.n.cross(&(to - self.e1))))
     }
 }
 

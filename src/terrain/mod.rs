@@ -4,6 +4,7 @@ pub mod brims;
 pub mod coarser;
 pub mod edges;
 pub mod features;
+pub mod floor;
 pub mod grid;
 mod groups;
 pub mod health;
@@ -11,6 +12,7 @@ pub mod index;
 pub mod make;
 mod merge;
 pub mod read;
+pub(crate) mod seen;
 pub mod stems;
 pub mod stl;
 pub mod t_junctions;
@@ -18,6 +20,7 @@ pub mod weld;
 
 use crate::rock::Vec3;
 use features::Features;
+use floor::Floor;
 use index::Index;
 use std::path::PathBuf;
 use stems::Stems;
@@ -53,6 +56,8 @@ pub struct Terrain {
     pub features: Features,
     /// The spatial index.
     pub index: Index,
+    /// How low the slope lies at most.
+    pub floor: Floor,
     /// Stems that can give way to a rock; none if all stand for good. The plan, which knows the limits, puts them here.
     pub stems: Option<Stems>,
 }
@@ -65,9 +70,14 @@ impl Terrain {
         let triangles: Vec<[u32; 3]> =
             order.iter().map(|&k| welded.triangles[k as usize]).collect();
         let features = Features::of(&welded.vertices_m, &triangles);
+        let sheet_of: Vec<u16> = order.iter().map(|&k| welded.sheet_of[k as usize]).collect();
+        let is_ground = |(_, sheet): &(_, &u16)| !sheets[**sheet as usize].is_tree;
+        let ground = features.faces.iter().zip(&sheet_of).filter(is_ground).map(|(face, _)| face);
+        let floor = Floor::of(ground, triangles.len(), index.bounds());
         Self {
             origin_m: welded.origin_m,
-            sheet_of: order.iter().map(|&k| welded.sheet_of[k as usize]).collect(),
+            sheet_of,
+            floor,
             facet_of: order.iter().map(|&k| welded.facet_of[k as usize]).collect(),
             vertices_m: welded.vertices_m,
             triangles,
@@ -85,6 +95,7 @@ impl Terrain {
             + size_of_val::<[u16]>(&self.sheet_of)
             + size_of_val::<[u32]>(&self.facet_of)
             + size_of_val(self.index.nodes())
+            + self.floor.bytes()
             + self.features.bytes()
     }
 

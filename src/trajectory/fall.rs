@@ -297,6 +297,9 @@ impl Fall<'_> {
 
     /// Notes down impacts that have just begun.
     fn announce(&mut self) {
+        if self.grip.holds.iter().all(|hold| hold.announced) {
+            return;
+        }
         let radius = self.world.body.radius;
         let until_s = self.journey.now.time_s + self.impact_time();
         for hold in self.grip.holds.iter_mut().filter(|hold| !hold.announced) {
