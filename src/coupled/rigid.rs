@@ -24,6 +24,7 @@ use ball::{Ball, Foot, Knot};
 use std::collections::BinaryHeap;
 pub use strike::Hit;
 use strike::{Due, Scene};
+use sweep::Asked;
 
 /// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
 /// contact that is slid over meanwhile is off by the square of half of this.
@@ -44,10 +45,8 @@ pub(super) struct Pile {
     /// Ties or contacts of every rock: where its list begins, and the lists.
     first: Vec<u32>,
     links: Vec<u32>,
-    /// Rocks that the sweep in hand has stirred; contacts of the next, if they are listed.
-    stirred: Vec<u32>,
-    listed: Vec<u32>,
-    is_listed: bool,
+    /// Contacts that one of their rocks has changed since.
+    asked: Asked,
     places: Vec<Vec3>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
@@ -134,7 +133,9 @@ fn lay(ends: &[[usize; 2]], rocks: usize, (first, links): (&mut Vec<u32>, &mut V
     let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
     first.clear();
     first.resize(rocks + 1, 0);
-    ends.iter().for_each(|&ends| of(ends).for_each(|k| first[k] += 1));
+    for &ends in ends {
+        of(ends).for_each(|k| first[k] += 1);
+    }
     let mut sum = 0;
     for first in first.iter_mut() {
         sum += *first;

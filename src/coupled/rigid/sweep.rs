@@ -19,9 +19,6 @@ const SETTLED_OF_CAPTURE: f64 = 1e-6;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
 const STIRS: f64 = 0.2;
 
-/// Contacts that are asked again, over all, below which they are listed (–).
-const FEW: f64 = 0.25;
-
 impl Pile {
     /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
     /// the sweeps nearer to rest is taken back, and no other is tried.
@@ -59,41 +56,35 @@ impl Pile {
     /// Sweeps until nothing changes by more than is allowed, or so many times; the largest change of the last, over what
     /// is allowed (–).
     fn sweep_on(&mut self, most: u32) -> f64 {
+        let count = self.feet.len() + self.knots.len();
+        self.lay_contacts();
+        self.asked.all(count);
         let mut change = f64::INFINITY;
-        let mut lists = false;
-        self.is_listed = false;
         for k in 0..most {
             self.sweeps += 1;
-            self.stirred.clear();
             change = self.sweep(k % 2 == 1);
             if change <= 1.0 {
                 break;
             }
-            if !lists {
-                self.lay_contacts();
-                lists = true;
-            }
-            self.list_stirred();
         }
         change
     }
 
-    /// One pass over the contacts, onwards or backwards; the largest change of speed, over what is allowed (–). What has
-    /// not been stirred since it was solved is passed over.
+    /// One pass over the contacts that are asked, onwards or backwards; the largest change of speed, over what is allowed
+    /// (–).
     fn sweep(&mut self, backwards: bool) -> f64 {
-        let count =
-            if self.is_listed { self.listed.len() } else { self.feet.len() + self.knots.len() };
         let mut change = 0.0f64;
-        for k in 0..count {
-            let k = if backwards { count - 1 - k } else { k };
-            let contact = if self.is_listed { self.listed[k] as usize } else { k };
-            change = change.max(self.sweep_contact(contact));
+        let mut at = if backwards { self.asked.last() } else { self.asked.from(0) };
+        while let Some(k) = at {
+            change = change.max(self.sweep_contact(k));
+            at = if backwards { self.asked.below(k) } else { self.asked.from(k + 1) };
         }
         change
     }
 
     /// Feet come first, then knots.
     fn sweep_contact(&mut self, k: usize) -> f64 {
+        self.asked.remove(k);
         let feet = self.feet.len();
         if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) }
     }
@@ -101,25 +92,16 @@ impl Pile {
     /// The contacts of every rock.
     fn lay_contacts(&mut self) {
         let feet = self.feet.iter().map(|foot| [foot.ball; 2]);
-        let ends = feet.chain(self.knots.iter().map(|knot| knot.ends));
-        let ends: Vec<[usize; 2]> = ends.collect();
+        let ends: Vec<[usize; 2]> = feet.chain(self.knots.iter().map(|knot| knot.ends)).collect();
         super::lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
     }
 
-    /// Lists the contacts of the rocks stirred in the last sweep, in order, if they are few: all others are passed over
-    /// anyway, and a sweep costs what happens and not what is there.
-    fn list_stirred(&mut self) {
-        self.stirred.sort_unstable();
-        self.stirred.dedup();
-        self.listed.clear();
-        for &ball in &self.stirred {
-            let range = self.first[ball as usize] as usize..self.first[ball as usize + 1] as usize;
-            self.listed.extend_from_slice(&self.links[range]);
+    /// Asks the contacts of a rock that was stirred: all others have seen their rocks as they are, and a sweep costs what
+    /// happens and not what is there.
+    fn ask(&mut self, ball: usize) {
+        for contact in &self.links[self.first[ball] as usize..self.first[ball + 1] as usize] {
+            self.asked.add(*contact as usize);
         }
-        self.listed.sort_unstable();
-        self.listed.dedup();
-        let all = (self.feet.len() + self.knots.len()) as f64;
-        self.is_listed = (self.listed.len() as f64) < FEW * all;
     }
 
     fn sweep_foot(&mut self, k: usize) -> f64 {
@@ -129,11 +111,12 @@ impl Pile {
             return 0.0;
         }
         let change = foot.solve(ball) / ball.allowed_m_s;
-        if change > STIRS {
-            ball.times += 1;
-            self.stirred.push(foot.ball as u32);
-        }
+        ball.times += u32::from(change > STIRS);
         foot.seen = ball.times;
+        let end = foot.ball;
+        if change > STIRS {
+            self.ask(end);
+        }
         change
     }
 
@@ -144,11 +127,85 @@ impl Pile {
             return 0.0;
         }
         let change = knot.solve(a, b) / a.allowed_m_s.min(b.allowed_m_s);
-        if change > STIRS {
-            (a.times, b.times) = (a.times + 1, b.times + 1);
-            self.stirred.extend(knot.ends.map(|end| end as u32));
-        }
+        let stirred = u32::from(change > STIRS);
+        (a.times, b.times) = (a.times + stirred, b.times + stirred);
         knot.seen = [a.times, b.times];
+        let ends = knot.ends;
+        if change > STIRS {
+            ends.into_iter().for_each(|end| self.ask(end));
+        }
         change
+    }
+}
+
+/// A set of contacts, a bit for each.
+#[derive(Debug, Default)]
+pub(super) struct Asked(Vec<u64>);
+
+impl Asked {
+    /// Every number below `count`.
+    fn all(&mut self, count: usize) {
+        self.0.clear();
+        self.0.resize(count.div_ceil(64), u64::MAX);
+        let over = 64 * self.0.len() - count;
+        if let Some(last) = self.0.last_mut() {
+            *last >>= over;
+        }
+    }
+
+    fn add(&mut self, k: usize) {
+        self.0[k / 64] |= 1 << (k % 64);
+    }
+
+    fn remove(&mut self, k: usize) {
+        self.0[k / 64] &= !(1 << (k % 64));
+    }
+
+    /// The first at or after `k`.
+    fn from(&self, k: usize) -> Option<usize> {
+        let first = *self.0.get(k / 64)? & (u64::MAX << (k % 64));
+        let rest = self.0.iter().zip(0..).skip(k / 64 + 1).map(|(word, at)| (at, *word));
+        let mut words = std::iter::once((k / 64, first)).chain(rest);
+        words
+            .find(|(_, word)| *word != 0)
+            .map(|(at, word)| 64 * at + word.trailing_zeros() as usize)
+    }
+
+    /// The last before `k`.
+    fn below(&self, k: usize) -> Option<usize> {
+        let first = self.0.get(k / 64).map_or(0, |word| word & !(u64::MAX << (k % 64)));
+        let rest = (0..k / 64).rev().map(|at| (at, self.0[at]));
+        let mut words = std::iter::once((k / 64, first)).chain(rest);
+        words
+            .find(|(_, word)| *word != 0)
+            .map(|(at, word)| 64 * at + 63 - word.leading_zeros() as usize)
+    }
+
+    fn last(&self) -> Option<usize> {
+        self.below(64 * self.0.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Asked;
+
+    /// Onwards and backwards give the same numbers, and none that was not put in.
+    #[test]
+    fn a_set_gives_back_its_numbers_in_order() {
+        let mut set = Asked::default();
+        set.all(130);
+        assert_eq!((set.from(0), set.last()), (Some(0), Some(129)));
+        (0..130).filter(|k| k % 7 != 3).for_each(|k| set.remove(k));
+        set.add(64);
+        let onwards: Vec<usize> = std::iter::successors(set.from(0), |k| set.from(k + 1)).collect();
+        let mut backwards: Vec<usize> =
+            std::iter::successors(set.last(), |k| set.below(*k)).collect();
+        backwards.reverse();
+        let expected: Vec<usize> = (0..130).filter(|k| k % 7 == 3 || *k == 64).collect();
+        assert_eq!(onwards, expected);
+        assert_eq!(backwards, expected);
+        set.all(0);
+        assert_eq!((set.from(0), set.last()), (None, None));
     }
 }
