@@ -132,7 +132,8 @@ impl Pile {
         knot.seen = [a.times, b.times];
         let ends = knot.ends;
         if change > STIRS {
-            ends.into_iter().for_each(|end| self.ask(end));
+            self.ask(ends[0]);
+            self.ask(ends[1]);
         }
         change
     }
