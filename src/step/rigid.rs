@@ -15,7 +15,8 @@ use crate::rock::Vec3;
 /// No impact is slower than this (m/s), whatever capture speed is asked for: a blow takes no time, and rounding would
 /// strike them without end.
 const LEAST_M_S: f64 = 1e-6;
-/// Longest way in one step (–, relative to R): less than the slack within which features are seen.
+/// Longest way in one step where more than one plane is near (–, relative to R): less than the slack within which features
+/// are seen.
 const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
@@ -38,6 +39,8 @@ struct Blow<'w> {
     drag: Vec3,
     /// Rolling impulse (N m s).
     turn: Vec3,
+    /// Which of the two are at their caps, as far as is known.
+    mode: Mode,
 }
 
 impl Blow<'_> {
@@ -49,6 +52,7 @@ impl Blow<'_> {
         push: 0.0,
         drag: Vec3::new(0.0, 0.0, 0.0),
         turn: Vec3::new(0.0, 0.0, 0.0),
+        mode: Mode::Stick,
     };
 
     /// Impulses for velocity `v` and spin `w` without this contact's own.
@@ -60,7 +64,7 @@ impl Blow<'_> {
             return;
         }
         let caps = (self.law.friction * self.push, self.law.rolling_m * self.push);
-        (self.drag, self.turn) = rub(body, &self.n, caps, (v, w), &mut Mode::default());
+        (self.drag, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
     }
 
     /// Change of velocity and spin.
@@ -128,13 +132,12 @@ impl<'w> Blows<'w> {
             let (mut change, mut scale) = (0.0f64, f64::MIN_POSITIVE);
             for blow in &mut self.list[..self.len] {
                 let (dv, dw) = blow.effect(body);
-                let (vf, wf, before) = (v - dv, w - dw, *blow);
+                let (vf, wf, before) = (v - dv, w - dw, (blow.push, blow.drag));
                 blow.solve(body, &vf, &wf);
                 let (dv, dw) = blow.effect(body);
                 (v, w) = (vf + dv, wf + dw);
-                change = change
-                    .max((blow.push - before.push).abs())
-                    .max((blow.drag - before.drag).norm());
+                change =
+                    change.max((blow.push - before.0).abs()).max((blow.drag - before.1).norm());
                 scale = scale.max(blow.push);
             }
             if self.len <= 1 || change <= SETTLED * scale {
@@ -161,6 +164,7 @@ impl<'w> Blows<'w> {
 pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Result<Advance, Stuck> {
     let mut done = Advance { steps: 1, ..Advance::default() };
     let c = grip.c;
+    grip.see_ahead(world, longest.min(h_max));
     grip.look_ahead_again(world, &c);
     if hits(world, grip) {
         grip.look(world, &c, world.body.radius * (1.0 + TOUCH));
@@ -220,7 +224,7 @@ fn step(world: &World, grip: &mut Grip, longest: f64, done: &mut Advance) {
     let body = &world.body;
     let r = body.radius;
     let (c, v, w) = (grip.c, grip.v, grip.w);
-    let dt = closing(world, grip, longest.min(TRAVEL * r / v.norm().max(f64::MIN_POSITIVE)));
+    let dt = closing(world, grip, longest.min(grip.longest_step(world, TRAVEL)));
     let middle = c + v * (0.5 * dt);
     grip.look_ahead(world, &middle);
     let mut blows = Blows::of(world, grip, |blow, distance| {
