@@ -25,22 +25,49 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
     let mut levels: Vec<i32> = entries.iter().map(|entry| entry.0).collect();
     levels.dedup();
     let mut pairs = Vec::with_capacity(4 * balls.len());
-    for (ball, k) in balls.iter().zip(0..) {
-        let own = level(ball);
-        for &level in levels.iter().filter(|level| **level >= own) {
+    let mut cursors = Cursors::default();
+    for &(own, home, k) in &entries {
+        let ball = &balls[k as usize];
+        let mut see = |other: u32, once: bool| {
+            let near = &balls[other as usize];
+            let reach = ball.radius + near.radius;
+            if once && (ball.centre - near.centre).norm_squared() <= reach * reach {
+                pairs.push((k.min(other), k.max(other)));
+            }
+        };
+        cursors.visit(&entries, (own, home), |other| see(other, other > k));
+        for &level in levels.iter().filter(|level| **level > own) {
             let home = entry(ball, level, k).1;
-            visit(&entries, (level, home), |other| {
-                let near = &balls[other as usize];
-                let reach = ball.radius + near.radius;
-                let once = level > own || other > k;
-                if once && (ball.centre - near.centre).norm_squared() <= reach * reach {
-                    pairs.push((k.min(other), k.max(other)));
-                }
-            });
+            visit(&entries, (level, home), |other| see(other, true));
         }
     }
     pairs.sort_unstable();
     pairs
+}
+
+/// Where the nine columns of cells around the ball in hand begin: balls come in the order of their cells, and so do
+/// their neighbours.
+#[derive(Default)]
+struct Cursors([usize; 9]);
+
+impl Cursors {
+    /// Visits all balls in the 27 cells around `home`, which comes after those visited before.
+    fn visit(
+        &mut self,
+        entries: &[Entry],
+        (level, home): (i32, [i64; 3]),
+        mut see: impl FnMut(u32),
+    ) {
+        for (cursor, column) in self.0.iter_mut().zip(0..) {
+            let (x, y) = (home[0] + column / 3 - 1, home[1] + column % 3 - 1);
+            let first = (level, [x, y, home[2] - 1], 0);
+            while entries.get(*cursor).is_some_and(|entry| *entry < first) {
+                *cursor += 1;
+            }
+            let last = (level, [x, y, home[2] + 1], u32::MAX);
+            entries[*cursor..].iter().take_while(|entry| **entry <= last).for_each(|e| see(e.2));
+        }
+    }
 }
 
 /// Octave of the cells a ball lies in: they are at least as wide as the ball.

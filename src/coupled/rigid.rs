@@ -10,6 +10,7 @@ mod part;
 mod stiff;
 mod strike;
 mod sustain;
+mod sweep;
 
 use super::cluster::{Cluster, Done};
 use super::member::{Member, Seat};
@@ -23,6 +24,7 @@ use ball::{Ball, Foot, Knot};
 use std::collections::BinaryHeap;
 pub use strike::Hit;
 use strike::{Due, Scene};
+use sweep::Asked;
 
 /// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
 /// contact that is slid over meanwhile is off by the square of half of this.
@@ -40,9 +42,11 @@ pub(super) struct Pile {
     due: BinaryHeap<Due>,
     /// Which ties had a blow.
     struck: Vec<bool>,
-    /// Ties of every rock: where its list begins, and the lists.
+    /// Ties or contacts of every rock: where its list begins, and the lists.
     first: Vec<u32>,
     links: Vec<u32>,
+    /// Contacts that one of their rocks has changed since.
+    asked: Asked,
     places: Vec<Vec3>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
@@ -120,6 +124,30 @@ impl Cluster<'_> {
             for k in [tie.a, tie.b] {
                 self.members[k as usize].flying = false;
             }
+        }
+    }
+}
+
+/// Lists for every rock the numbers of what joins it to another, or to itself alone.
+fn lay(ends: &[[usize; 2]], rocks: usize, (first, links): (&mut Vec<u32>, &mut Vec<u32>)) {
+    let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
+    first.clear();
+    first.resize(rocks + 1, 0);
+    for &ends in ends {
+        of(ends).for_each(|k| first[k] += 1);
+    }
+    let mut sum = 0;
+    for first in first.iter_mut() {
+        sum += *first;
+        *first = sum;
+    }
+    links.clear();
+    links.resize(sum as usize, 0);
+    // filled from behind, so that each list is in order and its beginning is left where it belongs
+    for place in (0..ends.len()).rev() {
+        for k in of(ends[place]) {
+            first[k] -= 1;
+            links[first[k] as usize] = place as u32;
         }
     }
 }

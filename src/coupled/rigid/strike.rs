@@ -92,24 +92,9 @@ impl Pile {
 
     /// The ties of every rock.
     fn lay_links(&mut self, ties: &[Tie]) {
-        self.first.clear();
-        self.first.resize(self.balls.len() + 1, 0);
-        for tie in ties {
-            self.first[tie.a as usize + 1] += 1;
-            self.first[tie.b as usize + 1] += 1;
-        }
-        for k in 0..self.balls.len() {
-            self.first[k + 1] += self.first[k];
-        }
-        self.links.clear();
-        self.links.resize(2 * ties.len(), 0);
-        let mut next = self.first.clone();
-        for (tie, place) in ties.iter().zip(0..) {
-            for end in [tie.a as usize, tie.b as usize] {
-                self.links[next[end] as usize] = place;
-                next[end] += 1;
-            }
-        }
+        let ends: Vec<[usize; 2]> =
+            ties.iter().map(|tie| [tie.a as usize, tie.b as usize]).collect();
+        super::lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
     }
 
     /// Looks for the blows that follow from one on these rocks.

@@ -14,21 +14,6 @@ use crate::step::grip::World;
 use crate::step::rigid::capture_m_s;
 use crate::terrain::Terrain;
 
-/// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
-/// others have settled and are passed over.
-const SWEEPS: (u32, u32) = (300, 3000);
-/// Sweeps that judge a jump, at most.
-const SWEEPS_AFTER: u32 = 30;
-/// Jumps after which the impulses have not settled.
-const JUMPS: u32 = 4;
-/// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
-/// over the speed of its slower rock (–).
-const SETTLED: (f64, f64) = (5e-3, 1e-3);
-/// The same over the capture speed, where there is hardly any weight (–).
-const SETTLED_OF_CAPTURE: f64 = 1e-6;
-/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
-const STIRS: f64 = 0.2;
-
 /// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained
 /// one: not if it would be left faster than the capture speed, or closed so under weight. That is an impact, and found
 /// at the end of the step.
@@ -124,91 +109,6 @@ impl Pile {
                 self.balls[knot.ends[k]].take(&knot.load(k));
             }
         }
-    }
-
-    /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
-    /// the sweeps nearer to rest is taken back, and no other is tried.
-    fn settle(&mut self, (members, ties): (&mut [Seat], &[Tie]), dt: f64) -> bool {
-        self.dt = dt;
-        for ball in &mut self.balls {
-            let weight = SETTLED.0 * ball.body.gravity.norm() * dt;
-            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
-            ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
-        }
-        let mut change = self.sweep_on(SWEEPS.0);
-        for _ in 0..JUMPS {
-            if change <= 1.0 {
-                return true;
-            }
-            let times: Vec<u32> = self.balls.iter().map(|ball| ball.times).collect();
-            if self.sweep_on(1) <= 1.0 {
-                return true;
-            }
-            let kept = (self.balls.clone(), self.feet.clone(), self.knots.clone());
-            self.jumps += 1;
-            if !self.jump((&mut *members, ties), &times) {
-                break;
-            }
-            let after = self.sweep_on(SWEEPS_AFTER);
-            if after > f64::max(1.0, 0.5 * change) {
-                (self.balls, self.feet, self.knots) = kept;
-                break;
-            }
-            change = after;
-        }
-        self.sweep_on(SWEEPS.1) <= 1.0
-    }
-
-    /// Sweeps until nothing changes by more than is allowed, or so many times; the largest change of the last, over what
-    /// is allowed (–).
-    fn sweep_on(&mut self, most: u32) -> f64 {
-        let mut change = f64::INFINITY;
-        for k in 0..most {
-            self.sweeps += 1;
-            change = self.sweep(k % 2 == 1);
-            if change <= 1.0 {
-                break;
-            }
-        }
-        change
-    }
-
-    /// One pass over the contacts, onwards or backwards; the largest change of speed, over what is allowed (–). What has
-    /// not been stirred since it was solved is passed over.
-    fn sweep(&mut self, backwards: bool) -> f64 {
-        let (feet, knots) = (self.feet.len(), self.knots.len());
-        let mut change = 0.0f64;
-        for k in 0..feet + knots {
-            let k = if backwards { feet + knots - 1 - k } else { k };
-            let one = if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) };
-            change = change.max(one);
-        }
-        change
-    }
-
-    fn sweep_foot(&mut self, k: usize) -> f64 {
-        let foot = &mut self.feet[k];
-        let ball = &mut self.balls[foot.ball];
-        if foot.seen == ball.times {
-            return 0.0;
-        }
-        let change = foot.solve(ball) / ball.allowed_m_s;
-        ball.times += u32::from(change > STIRS);
-        foot.seen = ball.times;
-        change
-    }
-
-    fn sweep_knot(&mut self, k: usize) -> f64 {
-        let knot = &mut self.knots[k];
-        let Ok([a, b]) = self.balls.get_disjoint_mut(knot.ends) else { return 0.0 };
-        if knot.seen == [a.times, b.times] {
-            return 0.0;
-        }
-        let change = knot.solve(a, b) / a.allowed_m_s.min(b.allowed_m_s);
-        let stirred = u32::from(change > STIRS);
-        (a.times, b.times) = (a.times + stirred, b.times + stirred);
-        knot.seen = [a.times, b.times];
-        change
     }
 
     /// Moves the rocks with their mean velocities and books what the impulses took.
