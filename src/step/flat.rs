@@ -116,7 +116,7 @@ impl Grip {
     }
 
     /// Sees to it that the features where a step of `dt` goes are known, and a little beyond.
-    pub(crate) fn see_ahead(&mut self, world: &World, dt: f64) {
+    fn see_ahead(&mut self, world: &World, dt: f64) {
         let way = (self.v * dt).cap_magnitude(TRAVEL * world.body.radius);
         if !(self.near.covers(&self.c) && self.near.covers(&(self.c + way))) {
             let ahead = self.v.cap_magnitude(AHEAD * world.body.radius);

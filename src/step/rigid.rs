@@ -15,8 +15,7 @@ use crate::rock::Vec3;
 /// No impact is slower than this (m/s), whatever capture speed is asked for: a blow takes no time, and rounding would
 /// strike them without end.
 const LEAST_M_S: f64 = 1e-6;
-/// Longest way in one step where more than one plane is near (–, relative to R): less than the slack within which features
-/// are seen.
+/// Longest way in one step (–, relative to R): less than the slack within which features are seen.
 const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
@@ -164,7 +163,6 @@ impl<'w> Blows<'w> {
 pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Result<Advance, Stuck> {
     let mut done = Advance { steps: 1, ..Advance::default() };
     let c = grip.c;
-    grip.see_ahead(world, longest.min(h_max));
     grip.look_ahead_again(world, &c);
     if hits(world, grip) {
         grip.look(world, &c, world.body.radius * (1.0 + TOUCH));
@@ -224,7 +222,7 @@ fn step(world: &World, grip: &mut Grip, longest: f64, done: &mut Advance) {
     let body = &world.body;
     let r = body.radius;
     let (c, v, w) = (grip.c, grip.v, grip.w);
-    let dt = closing(world, grip, longest.min(grip.longest_step(world, TRAVEL)));
+    let dt = closing(world, grip, longest.min(TRAVEL * r / v.norm().max(f64::MIN_POSITIVE)));
     let middle = c + v * (0.5 * dt);
     grip.look_ahead(world, &middle);
     let mut blows = Blows::of(world, grip, |blow, distance| {
