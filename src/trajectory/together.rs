@@ -8,6 +8,7 @@ mod census;
 mod crowd;
 mod job;
 mod moment;
+mod parts;
 mod rover;
 mod split;
 
@@ -21,6 +22,7 @@ use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::plan::{Part, Plan};
 use crate::release::Release;
+use crate::rock::Vec3;
 use crate::step::law::Body;
 pub use census::Census;
 use crowd::Crowd;
@@ -51,8 +53,12 @@ struct Rover<'a> {
     quiet_s: f64,
     /// Step its last island would have tried next (s).
     h: f64,
-    /// Fastest since the window began (m/s).
-    fastest_m_s: f64,
+    /// Velocity when the window began, and the largest change of it since (m/s).
+    off: (Vec3, f64),
+    /// By how much its velocity changed when these windows were gone through before (m/s).
+    foreseen_m_s: f64,
+    /// Speed that the springs which press on it may give it (m/s).
+    pressed_m_s: f64,
     /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
     began_j: (f64, f64),
 }
@@ -172,7 +178,9 @@ fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
         lands: None,
         quiet_s: 0.0,
         h: f64::INFINITY,
-        fastest_m_s: 0.0,
+        off: (Vec3::zeros(), 0.0),
+        foreseen_m_s: 0.0,
+        pressed_m_s: 0.0,
         began_j: (0.0, 0.0),
     }
 }

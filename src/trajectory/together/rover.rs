@@ -39,6 +39,18 @@ impl Rover<'_> {
         }
     }
 
+    /// Begins to watch how far its velocity changes; returns what was watched before.
+    pub(super) fn watch_from(&mut self, course: &Course, now_s: f64) -> (Vec3, f64) {
+        let velocity = self.velocity_at(course, now_s);
+        std::mem::replace(&mut self.off, (velocity, 0.0))
+    }
+
+    /// Goes on with what was watched before.
+    pub(super) fn watch_on(&mut self, (velocity, off): (Vec3, f64)) {
+        let since = (self.off.0 - velocity).norm() + self.off.1;
+        self.off = (velocity, off.max(since));
+    }
+
     /// Brings a rock that slept to the present; one that flies without knowing where looks ahead.
     pub(super) fn wake(&mut self, course: &Course, now_s: f64) {
         if self.state == State::Asleep {
@@ -133,7 +145,7 @@ impl Rover<'_> {
         let dt = time_s - self.journey.now.time_s;
         let slides = slides || grip.holds.iter().any(|hold| hold.slides);
         let was_flying = self.lands.is_some();
-        self.fastest_m_s = self.fastest_m_s.max(to.velocity_m_s.norm());
+        self.off.1 = self.off.1.max((to.velocity_m_s - self.off.0).norm());
         self.announce(course);
         if was_flying && self.member.flying {
             self.journey.step_as(to, PathState::Flight);
