@@ -11,6 +11,7 @@ mod moment;
 mod parts;
 mod rover;
 mod split;
+mod wide;
 
 use super::fall::{Course, kept};
 use super::journey::{Journey, Keep};

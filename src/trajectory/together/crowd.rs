@@ -2,6 +2,7 @@
 
 use super::job::Job;
 use super::split::{Meetings, Place, is_busy, meetings_of_islands, place_of};
+use super::wide::Wide;
 use super::{Answer, Census, Rover, State, TOUCHING, capture, law_between};
 use crate::contact::pair::Tie;
 use crate::coupled::broad::{Ball, overlapping};
@@ -189,13 +190,9 @@ impl<'a> Crowd<'a> {
     fn meetings(&self, present: &[u32], places: &[Place], dt: f64) -> Meetings {
         let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
         let held: Vec<(u32, u32)> = self.ties.keys().map(|&(a, b)| (at(a), at(b))).collect();
+        let mut wide = Wide::default();
         meetings_of_islands(places, dt, |reaches| {
-            let balls: Vec<Ball> = places
-                .iter()
-                .zip(reaches)
-                .map(|(place, radius)| Ball { centre: place.centre, radius: *radius })
-                .collect();
-            let mut pairs = overlapping(&balls);
+            let mut pairs = wide.overlapping(places, reaches);
             if !held.is_empty() {
                 pairs.extend(&held);
                 pairs.sort_unstable();

@@ -147,16 +147,21 @@ impl Meetings {
 pub(super) fn meetings_of_islands(
     places: &[Place],
     dt: f64,
-    near: impl Fn(&[f64]) -> Vec<(u32, u32)>,
+    mut near: impl FnMut(&[f64]) -> Vec<(u32, u32)>,
 ) -> Meetings {
     let mut fastest: Vec<f64> = places.iter().map(|place| KICK * place.speed()).collect();
     let (mut pairs, mut islands) = (Vec::new(), Islands::alone(places.len()));
+    let mut allowed = Vec::new();
     for _ in 0..PASSES {
-        for (speed, place) in fastest.iter_mut().zip(places) {
-            *speed = speed.max(place.velocity.norm() + place.foreseen);
-        }
-        let reach = |(place, speed): (&Place, &f64)| place.radius * (1.0 + ROUNDING) + speed * dt;
-        pairs = near(&places.iter().zip(&fastest).map(reach).collect::<Vec<_>>());
+        let thrown = |(place, speed): (&Place, &f64)| {
+            let own = place.velocity.norm();
+            speed.max(own + place.foreseen) - own
+        };
+        allowed = places.iter().zip(&fastest).map(thrown).collect();
+        let reach = |(place, thrown): (&Place, &f64)| {
+            place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + thrown) * dt
+        };
+        pairs = near(&places.iter().zip(&allowed).map(reach).collect::<Vec<_>>());
         islands = joined(&pairs, places.len());
         let mut most = vec![0.0f64; places.len()];
         for (place, k) in places.iter().zip(0..) {
@@ -167,10 +172,6 @@ pub(super) fn meetings_of_islands(
             *speed = most[islands.of(k) as usize];
         }
     }
-    let spare = |(speed, place): (&f64, &Place)| {
-        speed.max(place.velocity.norm() + place.foreseen) - place.velocity.norm()
-    };
-    let allowed = fastest.iter().zip(places).map(spare).collect();
     Meetings { pairs, islands, allowed }
 }
 
