@@ -81,9 +81,12 @@ pub(super) struct ScalingArgs {
     /// Numbers of spheres with scheme dda
     #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
     dda: Vec<usize>,
-    /// Time to follow each world (s)
-    #[arg(long, value_name = "S", value_parser = positive, default_value = "1.0")]
+    /// Time to follow each world (s): falling ends at 0.35 s, impacts at 0.6 s
+    #[arg(long, value_name = "S", value_parser = positive, default_value = "0.6")]
     seconds: f64,
+    /// Numbers of spheres with scheme adaptive that are followed to 1.8 s, when the heaps settle
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
+    settle: Vec<usize>,
 }
 
 fn positive(text: &str) -> std::result::Result<f64, String> {
@@ -112,7 +115,7 @@ fn scaling(args: &ScalingArgs) -> Result<ExitCode> {
     let say_done = |line: String| {
         say(line);
     };
-    let worlds = (&args.spheres[..], &args.dda[..]);
+    let worlds = [&args.spheres[..], &args.dda[..], &args.settle[..]];
     let (words, all_hold) = wiring::scaling((&args.out, args.seconds), worlds, say_done)?;
     say(words);
     Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })

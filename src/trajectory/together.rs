@@ -144,6 +144,18 @@ pub fn follow_counted(
     keep: impl Fn(usize) -> Keep,
     stop: &AtomicBool,
 ) -> Option<(Vec<Trajectory>, Census)> {
+    follow_watched(course, releases, answer, keep, (stop, |_, _: &Census| ()))
+}
+
+/// The same; after each window of time `see` is told its end (s) and the counts so far. The world may go back to an
+/// earlier time, and goes on from there.
+pub fn follow_watched(
+    course: &Course,
+    releases: &[Release],
+    answer: &Answer,
+    keep: impl Fn(usize) -> Keep,
+    (stop, see): (&AtomicBool, impl FnMut(f64, &Census)),
+) -> Option<(Vec<Trajectory>, Census)> {
     let rovers = releases
         .iter()
         .enumerate()
@@ -151,7 +163,7 @@ pub fn follow_counted(
         .collect();
     let mut crowd = Crowd::new(course, answer, rovers);
     crowd.bond(answer);
-    crowd.run(stop).then(|| {
+    crowd.run(stop, see).then(|| {
         let census = crowd.census;
         (crowd.end(releases), census)
     })

@@ -85,12 +85,13 @@ impl<'a> Crowd<'a> {
         overlapping(&self.rovers.iter().flatten().map(|rover| ball(rover)).collect::<Vec<_>>())
     }
 
-    /// Goes through windows until nothing moves or time is up; false if `stop` was raised.
-    pub(super) fn run(&mut self, stop: &AtomicBool) -> bool {
+    /// Goes through windows until nothing moves or time is up; false if `stop` was raised. After each window `see` is told
+    /// the time (s) and the counts so far; where the world goes back, so does the time.
+    pub(super) fn run(&mut self, stop: &AtomicBool, mut see: impl FnMut(f64, &Census)) -> bool {
         while self.is_under_way() {
             let moment = self.moment();
             for tried in 0..=RETURNS {
-                let Some(missed) = self.windows(stop) else { return false };
+                let Some(missed) = self.windows(stop, &mut see) else { return false };
                 if !missed || tried == RETURNS {
                     break;
                 }
@@ -109,7 +110,7 @@ impl<'a> Crowd<'a> {
 
     /// Goes through the next windows, up to one in which a rock may have met one that it was not compared with; whether
     /// there was such a one, `None` if `stop` was raised.
-    fn windows(&mut self, stop: &AtomicBool) -> Option<bool> {
+    fn windows(&mut self, stop: &AtomicBool, see: &mut impl FnMut(f64, &Census)) -> Option<bool> {
         for _ in 0..WINDOWS {
             if !self.is_under_way() {
                 break;
@@ -117,7 +118,9 @@ impl<'a> Crowd<'a> {
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
-            if self.window() {
+            let missed = self.window();
+            see(self.now_s, &self.census);
+            if missed {
                 return Some(true);
             }
         }
