@@ -81,7 +81,7 @@ pub(super) struct ScalingArgs {
     /// Numbers of spheres with scheme dda
     #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
     dda: Vec<usize>,
-    /// Time to follow each world (s): falling ends at 0.35 s, impacts at 0.6 s
+    /// Time to follow each world (s): falling ends at 0.25 s, impacts at 0.6 s
     #[arg(long, value_name = "S", value_parser = positive, default_value = "0.6")]
     seconds: f64,
     /// Numbers of spheres with scheme adaptive that are followed to 1.8 s, when the heaps settle

@@ -7,6 +7,7 @@ use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::step::{Scheme, Settings};
+use crate::terrain::Terrain;
 use crate::terrain::make::containers;
 use crate::trajectory::{Answer, Census, Course, Keep, Stop, Trajectory, follow_watched};
 use std::fs;
@@ -49,7 +50,7 @@ impl Phase {
     /// Begin and end (s).
     pub const fn times_s(self) -> (f64, f64) {
         match self {
-            Self::Falling => (0.0, 0.35),
+            Self::Falling => (0.0, 0.25),
             Self::Impacts => (0.4, 0.6),
             Self::Settling => (1.5, 1.8),
         }
@@ -118,6 +119,9 @@ pub struct World {
     pub at_rest: usize,
     /// Deepest overlap of two spheres at the end, over the radius (–).
     pub overlap: f64,
+    /// Fastest sphere on the way, and the speed of a free fall from the highest one to the floor (m/s): impacts between
+    /// equal spheres that lose energy make none faster.
+    pub fastest_m_s: (f64, f64),
 }
 
 impl World {
@@ -225,7 +229,21 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         lost: falls.iter().filter(lost).count() + spheres - falls.len(),
         at_rest: falls.iter().filter(|fall| fall.stop == Stop::AtRest).count(),
         overlap: deepest_overlap(&falls),
+        fastest_m_s: (fastest_m_s(&falls), fall_m_s(&releases, &terrain)),
     }
+}
+
+fn fastest_m_s(falls: &[Trajectory]) -> f64 {
+    falls.iter().map(|fall| fall.extremes.speed_m_s).fold(0.0, f64::max)
+}
+
+fn fall_m_s(releases: &[Release], terrain: &Terrain) -> f64 {
+    let highest = releases
+        .iter()
+        .map(|release| release.motion.position_m.z)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let lowest = terrain.vertices_m.iter().map(|vertex| vertex.z).fold(f64::INFINITY, f64::min);
+    (2.0 * GRAVITY_M_S2 * (highest - lowest - ROCK.radius_m)).sqrt()
 }
 
 /// The two boxes, on a floor that catches what falls beside them.
@@ -328,6 +346,9 @@ mod tests {
             assert!(cost.processor_s > 0.0 && cost.processor_s < world.processor_s);
             assert!(cost.census.steps <= world.census.steps);
         }
+        let (fastest, fall) = world.fastest_m_s;
+        // 0.95 m from the lowest layer's bottom to the floor
+        assert!(fastest > 3.0 && fastest < fall && fall < 5.0, "{fastest} {fall}");
         assert_eq!(world.cost(Phase::Falling).unwrap().census.steps, 0);
         assert!(world.cost(Phase::Impacts).unwrap().census.steps > 0);
     }
@@ -337,7 +358,7 @@ mod tests {
     fn marks_go_back_with_the_world() {
         let mut marks = Marks { clock: Clock::begin(), seen: Vec::new() };
         let counted = |windows| Census { windows, ..Census::default() };
-        for (now_s, windows) in [(0.0, 0), (0.36, 1), (0.41, 2), (0.37, 3), (0.42, 4), (0.6, 5)] {
+        for (now_s, windows) in [(0.0, 0), (0.26, 1), (0.41, 2), (0.37, 3), (0.42, 4), (0.6, 5)] {
             marks.see(now_s, &counted(windows));
         }
         let costs = marks.costs();

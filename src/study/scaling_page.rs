@@ -50,6 +50,11 @@ pub fn findings(worlds: &[World]) -> Vec<(String, bool)> {
     for world in worlds {
         let name = format!("{}, {} spheres", world.scheme.name(), world.spheres);
         found.push((format!("{name}: {} lost", world.lost), world.lost == 0));
+        let (fastest, fall) = world.fastest_m_s;
+        let words = format!(
+            "{name}: the fastest reached {fastest:.2} m/s, a free fall to the floor gives {fall:.2} m/s"
+        );
+        found.push((words, fastest <= fall));
         let unsettled = world.census.unsettled;
         let share = unsettled as f64 / world.census.steps.max(1) as f64;
         let words = format!("{name}: {unsettled} of {} steps did not settle", world.census.steps);

@@ -147,7 +147,9 @@ impl Rover<'_> {
         let was_flying = self.lands.is_some();
         self.off.1 = self.off.1.max((to.velocity_m_s - self.off.0).norm());
         self.announce(course);
-        if was_flying && self.member.flying {
+        // A rock may be hit and let go within one step: then it flies another way.
+        let is_untouched = given_j == 0.0 && loss == Loss::default();
+        if was_flying && self.member.flying && is_untouched {
             self.journey.step_as(to, PathState::Flight);
             return;
         }
