@@ -349,8 +349,8 @@ mod tests {
         let (fastest, fall) = world.fastest_m_s;
         // 0.95 m from the lowest layer's bottom to the floor
         assert!(fastest > 3.0 && fastest < fall && fall < 5.0, "{fastest} {fall}");
-        assert_eq!(world.cost(Phase::Falling).unwrap().census.steps, 0);
-        assert!(world.cost(Phase::Impacts).unwrap().census.steps > 0);
+        let steps = |phase| world.cost(phase).unwrap().census.steps;
+        assert!(10 * steps(Phase::Falling) < steps(Phase::Impacts));
     }
 
     /// Where the world goes back, what was seen of the time after that is seen again.

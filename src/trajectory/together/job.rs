@@ -79,7 +79,7 @@ impl<'a> Job<'a> {
     }
 
     /// When the next flying rock touches mesh or another flying rock (s).
-    fn next_event_s(&self) -> f64 {
+    pub(super) fn next_event_s(&self) -> f64 {
         let flying = self.rovers.iter().filter(|rover| rover.member.flying);
         let landings = flying.filter_map(|rover| rover.lands.as_ref().map(|(time_s, _)| *time_s));
         let first = landings.fold(f64::INFINITY, f64::min);

@@ -24,6 +24,9 @@ const RETURNS: usize = 6;
 impl Job<'_> {
     /// Takes the island to the end of its window.
     pub(super) fn run(&mut self) {
+        if self.flies_through() {
+            return;
+        }
         let stiffest = self.ties.iter().map(|tie| tie.law.omega).fold(0.0, f64::max);
         let Some(cuts) = self.falls_apart(stiffest) else {
             self.run_whole();
@@ -40,6 +43,15 @@ impl Job<'_> {
             }
             self.now_s = self.end_s;
         }
+    }
+
+    /// Whether all of the island flies and neither meets nor lands before the end of its window.
+    fn flies_through(&self) -> bool {
+        let flies_on = |rover: &Rover| {
+            let lands = rover.lands.as_ref();
+            rover.member.flying && lands.is_some_and(|(time_s, _)| *time_s > self.end_s)
+        };
+        self.rovers.iter().all(|rover| flies_on(rover)) && self.next_event_s() > self.end_s
     }
 
     /// In how many much shorter windows most of the island's rocks are not joined: then those are cheaper than stepping
