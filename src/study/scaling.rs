@@ -85,7 +85,7 @@ impl Cost {
         self.processor_s / self.simulated_s
     }
 
-    /// Processor time of one window of time, in which the whole world goes on: a step of the world (s).
+    /// Processor time of one window of time, in which the whole world goes on (s).
     pub fn window_s(&self) -> f64 {
         self.processor_s / self.census.windows.max(1) as f64
     }
@@ -125,6 +125,14 @@ pub struct World {
 }
 
 impl World {
+    /// Time of one step of all spheres in a part of the story (s): while they fall, of a window in which all leap; else as
+    /// many times that of one step of one sphere. Everything else that was done is in it.
+    pub fn step_s(&self, phase: Phase) -> Option<f64> {
+        let cost = self.cost(phase)?;
+        let all = self.spheres as f64 * cost.rock_step_s();
+        Some(if phase == Phase::Falling { cost.window_s() } else { all })
+    }
+
     /// One part of its story, if it was followed to its end.
     pub fn cost(&self, phase: Phase) -> Option<&Cost> {
         self.costs.iter().find(|cost| cost.phase == phase)
@@ -294,6 +302,8 @@ pub fn resident_now() -> Option<u64> {
 
 /// Time this thread has had on a processor (ns), where the system says: other work on the machine does not count.
 fn processor_ns() -> Option<u64> {
+    // Linux brings this up to date when the thread offers its place to others; else it lags by milliseconds.
+    std::thread::yield_now();
     let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split_whitespace().next()?.parse().ok()
 }
