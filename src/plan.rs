@@ -309,6 +309,9 @@ fn bonds(scene: &Scene) -> Part<Strength> {
     let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
         return Part::LeftOut("releases are independent");
     };
+    if scene.solver.scheme() == Scheme::Rigid {
+        return Part::LeftOut("a bond breaks by its springs, and the rigid limit has none");
+    }
     let strength =
         Strength { tensile_pa: contact.tensile_strength_pa, cohesion_pa: contact.cohesion_pa };
     Part::when(

@@ -4,6 +4,7 @@ use super::{CHECK_FAILED, at_least_1, say};
 use crate::wiring::study::{self as wiring, SceneOrder};
 use clap::{Args, Subcommand};
 use rockfall::error::Result;
+use rockfall::step::Scheme;
 use rockfall::study::aim::Aim;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -81,6 +82,9 @@ pub(super) struct ScalingArgs {
     /// Numbers of spheres with scheme dda
     #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,2000")]
     dda: Vec<usize>,
+    /// Numbers of spheres with scheme rigid
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,5000,20000")]
+    rigid: Vec<usize>,
     /// Time to follow each world (s): falling ends at 0.25 s, impacts at 0.6 s
     #[arg(long, value_name = "S", value_parser = positive, default_value = "0.6")]
     seconds: f64,
@@ -115,8 +119,13 @@ fn scaling(args: &ScalingArgs) -> Result<ExitCode> {
     let say_done = |line: String| {
         say(line);
     };
-    let worlds = [&args.spheres[..], &args.dda[..], &args.settle[..]];
-    let (words, all_hold) = wiring::scaling((&args.out, args.seconds), worlds, say_done)?;
+    let worlds = [
+        (Scheme::Adaptive, &args.spheres[..]),
+        (Scheme::Dda, &args.dda[..]),
+        (Scheme::Rigid, &args.rigid[..]),
+    ];
+    let times = (args.seconds, &args.settle[..]);
+    let (words, all_hold) = wiring::scaling((&args.out, times), &worlds, say_done)?;
     say(words);
     Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }

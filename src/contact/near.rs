@@ -5,6 +5,8 @@
 //! it; a vertex where the centre stands behind every edge at it. Flat and hollow edges fail by themselves, from
 //! either side of a sheet, and every contact belongs to one feature.
 
+mod take;
+
 use super::closest::closest_on;
 use super::{Feature, Touch, Touches};
 use crate::contact::FeatureKind;
@@ -53,6 +55,17 @@ impl NearFace {
     #[inline]
     fn holds_foot_of(&self, point: &Vec3, slack: f64) -> bool {
         (0..3).all(|k| self.out[k].dot(point) <= self.rim[k] + slack)
+    }
+
+    /// The touch of a centre at `height` (m).
+    #[inline]
+    fn touch(&self, height: f64) -> Touch {
+        Touch {
+            feature: Feature { kind: FeatureKind::Face, id: self.id },
+            triangle: self.id,
+            normal: if height < 0.0 { -self.n } else { self.n },
+            distance_m: height.abs(),
+        }
     }
 }
 
@@ -132,93 +145,13 @@ impl Near {
             for t in start..start + count {
                 self.tested += 1;
                 let face = &terrain.features.faces[t as usize];
-                if face.n.dot(&(centre - face.a)).abs() <= self.reach
-                    && !terrain.is_gone(t, &self.gone)
-                {
-                    self.take(terrain, t);
+                let to = centre - face.a;
+                let height = face.n.dot(&to);
+                if height.abs() <= self.reach && !terrain.is_gone(t, &self.gone) {
+                    self.take(terrain, t, (to, height));
                 }
             }
         });
-    }
-
-    /// Takes of one triangle what may touch.
-    fn take(&mut self, terrain: &Terrain, t: u32) {
-        let features = &terrain.features;
-        let face = &features.faces[t as usize];
-        let sides = [face.e1, face.e2 - face.e1, -face.e2];
-        let corners = [face.a, face.a + face.e1, face.a + face.e2];
-        let out = sides.map(|side| side.cross(&face.n));
-        let near = self.margin + SLACK * self.radius;
-        let mut is_near = true;
-        for k in 0..3 {
-            // How far the foot is beyond the side, times the side's length: most are told apart without a root.
-            let beyond = out[k].dot(&(self.centre - corners[k]));
-            let beyond2 = beyond * beyond.max(0.0);
-            let length2 = sides[k].norm_squared();
-            if beyond2 > self.reach * self.reach * length2 {
-                return;
-            }
-            is_near &= beyond2 <= near * near * length2;
-        }
-        self.sheets.push(t);
-        if is_near {
-            let out = out.map(|out| out.normalize());
-            let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
-            self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
-        }
-        let owned = features.owned[t as usize];
-        for k in 0..3 {
-            if owned & (1 << k) != 0 {
-                self.take_edge(terrain, features.edges.of_triangle[t as usize][k], t);
-            }
-            if owned & (8 << k) != 0 {
-                self.take_corner(terrain, terrain.triangles[t as usize][k], t);
-            }
-        }
-    }
-
-    fn take_edge(&mut self, terrain: &Terrain, id: u32, owner: u32) {
-        let [a, b] =
-            terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
-        let length = (b - a).norm();
-        let along = (b - a) / length;
-        let to = self.centre - a;
-        let s = along.dot(&to);
-        if s < -self.margin || s > length + self.margin || (to - along * s).norm() > self.reach {
-            return;
-        }
-        let first = self.rays.len();
-        let faces = terrain.features.edges.triangles_on(id);
-        for &t in faces {
-            let outward = terrain.features.outward(id, t, &terrain.vertices_m);
-            if outward.dot(&to) < -self.margin - SLACK * self.radius {
-                self.rays.truncate(first);
-                return;
-            }
-            self.rays.push(outward);
-        }
-        let rays = (first as u32, self.rays.len() as u32);
-        let at_border = faces.len() == 1;
-        self.edges.push(NearEdge { id, triangle: owner, a, along, length, rays, at_border });
-    }
-
-    fn take_corner(&mut self, terrain: &Terrain, id: u32, owner: u32) {
-        let p = terrain.vertices_m[id as usize];
-        let to = self.centre - p;
-        if to.norm() > self.reach {
-            return;
-        }
-        let first = self.rays.len();
-        for &v in terrain.features.neighbours(id) {
-            let along = (terrain.vertices_m[v as usize] - p).normalize();
-            if along.dot(&to) > self.margin + SLACK * self.radius {
-                self.rays.truncate(first);
-                return;
-            }
-            self.rays.push(along);
-        }
-        let rays = (first as u32, self.rays.len() as u32);
-        self.corners.push(NearCorner { id, triangle: owner, p, rays });
     }
 
     /// Whether what was collected holds for a rock at `centre`.
@@ -246,12 +179,20 @@ impl Near {
     #[inline]
     pub fn touches(&self, terrain: &Terrain, centre: &Vec3, reach: f64, touches: &mut Touches) {
         touches.clear();
-        let faces = self.faces.iter().filter_map(|face| self.on_face(face, centre, reach));
-        let edges = self.edges.iter().filter_map(|edge| self.on_edge(terrain, edge, centre, reach));
-        let corners =
-            self.corners.iter().filter_map(|corner| self.on_corner(terrain, corner, centre, reach));
-        for touch in faces.chain(edges).chain(corners) {
-            self.merge(touch, centre, touches);
+        for face in &self.faces {
+            if let Some(height) = self.height_over(face, centre, reach) {
+                self.merge(face.touch(height), centre, touches);
+            }
+        }
+        for edge in &self.edges {
+            if let Some(touch) = self.on_edge(terrain, edge, centre, reach) {
+                self.merge(touch, centre, touches);
+            }
+        }
+        for corner in &self.corners {
+            if let Some(touch) = self.on_corner(terrain, corner, centre, reach) {
+                self.merge(touch, centre, touches);
+            }
         }
     }
 
@@ -266,7 +207,7 @@ impl Near {
     #[inline]
     pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
         let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
-        faces.all(|other| other.id == face || self.on_face(other, centre, reach).is_none())
+        faces.all(|other| other.id == face || self.height_over(other, centre, reach).is_none())
             && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
             && self
                 .corners
@@ -274,15 +215,12 @@ impl Near {
                 .all(|corner| self.on_corner(terrain, corner, centre, reach).is_none())
     }
 
+    /// Height over a face (m), if it is nearer than `reach` and has the foot of `centre` on it.
     #[inline]
-    fn on_face(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<Touch> {
+    fn height_over(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<f64> {
         let height = face.n.dot(&(centre - face.a));
-        if height.abs() >= reach || !face.holds_foot_of(centre, SLACK * self.radius) {
-            return None;
-        }
-        let feature = Feature { kind: FeatureKind::Face, id: face.id };
-        let normal = if height < 0.0 { -face.n } else { face.n };
-        Some(Touch { feature, triangle: face.id, normal, distance_m: height.abs() })
+        let touches = height.abs() < reach && face.holds_foot_of(centre, SLACK * self.radius);
+        touches.then_some(height)
     }
 
     #[inline]
@@ -357,6 +295,10 @@ impl Near {
     /// Adds a touch unless the same point was found on a lower feature before.
     #[inline]
     fn merge(&self, touch: Touch, centre: &Vec3, touches: &mut Touches) {
+        if touches.is_empty() {
+            touches.add(touch);
+            return;
+        }
         let near2 = (SAME * self.radius).powi(2);
         let foot = centre - touch.normal * touch.distance_m;
         let known = touches.iter().any(|other| {

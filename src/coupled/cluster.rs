@@ -3,6 +3,7 @@
 use super::bridge::Bridge;
 use super::global::Global;
 use super::member::{Member, Seat};
+use super::rigid::{Hit, Pile};
 use super::sweeps::Stirred;
 use crate::contact::pair::{Tie, between};
 use crate::rock::Vec3;
@@ -27,7 +28,9 @@ pub struct Done {
     pub given_j: Vec<f64>,
     /// Steps tried and thrown away.
     pub rejected: u64,
-    /// Whether contact states did not settle (`dda`).
+    /// Impacts on the mesh (`rigid`; with the others the memory of a contact tells).
+    pub hits: Vec<Hit>,
+    /// Whether contact states did not settle (`dda`, `rigid`).
     pub unsettled: bool,
     /// Bonds that broke.
     pub broken: u64,
@@ -59,6 +62,8 @@ pub struct Cluster<'a> {
     pub(super) tie_forces: Vec<(f64, Vec3)>,
     /// The global system of fixed steps.
     pub(super) global: Global,
+    /// Work space of rigid steps.
+    pub(super) pile: Pile,
 }
 
 impl<'a> Cluster<'a> {
@@ -78,6 +83,7 @@ impl<'a> Cluster<'a> {
             tie_rates: vec![[Vec3::zeros(); STAGES]; ties.len()],
             tie_forces,
             global: Global::default(),
+            pile: Pile::default(),
             ties,
         }
     }

@@ -25,6 +25,10 @@ pub struct Member {
     pub laws: Vec<Law>,
     /// Whether nothing touches it.
     pub flying: bool,
+    /// Whether nothing touched it before the last step (`rigid`).
+    pub flew: bool,
+    /// Whether anything but its weight acted on it in the last step (`rigid`).
+    pub was_touched: bool,
     pub(super) base: End,
     pub(super) guess: Vec3,
     /// Velocity and spin at the stage's end without contact forces …
@@ -96,6 +100,8 @@ impl Member {
             body,
             laws,
             flying: true,
+            flew: true,
+            was_touched: false,
             base: end,
             guess: c,
             free: zero,

@@ -14,8 +14,10 @@ pub mod islands;
 mod jump;
 mod link;
 mod member;
+mod rigid;
 mod stage;
 mod sweeps;
 
 pub use cluster::{Cluster, Done};
 pub use member::{Member, Memory, Seat};
+pub use rigid::{Hit, TRAVEL};

@@ -48,8 +48,8 @@ impl Abreast {
         (least(one, other) - most(sag, 0.0), most(one, other) - least(sag, 0.0))
     }
 
-    /// Whether the ball can meet edge `k`: abreast of it, outside of the triangle, and not too far out.
-    pub(super) fn edge(&self, k: usize) -> bool {
+    /// Whether the ball can meet edge `k`: abreast of it, outside of the triangle, and at most `aside` (m) out.
+    pub(super) fn edge(&self, k: usize, aside: f64) -> bool {
         let (d11, d12, d22) = (self.d11, self.d12, self.d22);
         let det = d11 * d22 - d12 * d12;
         let d_far = d11 + d22 - 2.0 * d12;
@@ -68,7 +68,7 @@ impl Abreast {
         high >= -along
             && low <= length2 + along
             && nearest <= SLACK * self.radius * per_metre
-            && furthest >= -(1.0 + SLACK) * self.radius * per_metre
+            && furthest >= -(aside + SLACK * self.radius) * per_metre
     }
 
     /// Whether the ball can meet corner `k`: behind both sides that start there.

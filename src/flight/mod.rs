@@ -5,13 +5,15 @@
 
 mod abreast;
 mod roots;
+mod slabs;
 mod touch;
 
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use crate::terrain::index::{Child, DEPTH, Pair};
+use crate::terrain::index::{Child, Node, WAITING};
 use roots::quadratic;
-use wide::f64x2;
+use slabs::Slabs;
+use wide::f32x4;
 
 /// A ball in free flight: `c(t) = start + velocity t − g t²/2 ẑ`.
 #[derive(Debug, Clone, Copy)]
@@ -108,38 +110,31 @@ fn first_touch(
     limit: f64,
     (gone, tested): (&[u32], &mut u64),
 ) -> Option<f64> {
-    let pairs = terrain.index.pairs();
-    if pairs.is_empty() {
+    let nodes = terrain.index.nodes();
+    if nodes.is_empty() {
         return None;
     }
     let slabs = Slabs::new(flight);
     let mut best = limit;
     let mut found = false;
-    let mut stack = [(0u32, 0.0f64); DEPTH];
+    let mut stack = [Waiting::default(); WAITING];
+    stack[0].ends = f32::INFINITY;
     let mut top = 1;
     while top > 0 {
         top -= 1;
-        let (id, from) = stack[top];
+        let Waiting { child, begins, ends } = stack[top];
+        let (from, to) = (f64::from(begins), f64::from(ends));
         if from >= best && found {
             continue;
         }
-        let pair = &pairs[id as usize];
-        let (begins, ends) = slabs.windows(pair, best);
-        let (begins, ends) = (begins.to_array(), ends.to_array());
-        let nearer = usize::from(begins[1] < begins[0]);
-        for side in [1 - nearer, nearer] {
-            if begins[side] <= ends[side]
-                && let Child::Inner(next) = pair.child(side)
-            {
-                stack[top] = (next, begins[side]);
-                top += 1;
+        match Child::of(child) {
+            Child::Inner(next) => {
+                let node = &nodes[next as usize];
+                top = wait(&mut stack, top, node, slabs.windows(node, best));
             }
-        }
-        for side in [nearer, 1 - nearer] {
-            let (ta, tb) = (begins[side], ends[side]);
-            if let Child::Leaf(start, count) = pair.child(side) {
+            Child::Leaf(start, count) => {
                 for triangle in start..start + count {
-                    let window = (ta, least(tb, best));
+                    let window = (from, least(to, best));
                     if window.0 > window.1 {
                         break;
                     }
@@ -158,9 +153,38 @@ fn first_touch(
     found.then_some(best)
 }
 
-/// Boxes are grown by this much more than the radius (–, relative to it): a ball that meets a plate as it enters the
-/// plate's box, which has no thickness, must not be cut off by rounding.
-const ROUNDING: f64 = 1e-6;
+/// A child of a node whose box the ball passes during a window of time (s).
+#[derive(Clone, Copy, Default)]
+struct Waiting {
+    child: u32,
+    begins: f32,
+    ends: f32,
+}
+
+/// Puts the children with a window on the stack, the first to be passed on top; returns the stack's new height.
+#[inline]
+fn wait(
+    stack: &mut [Waiting; WAITING],
+    mut top: usize,
+    node: &Node,
+    (begins, ends): (f32x4, f32x4),
+) -> usize {
+    let bottom = top;
+    let mut passed = begins.simd_le(ends).to_bitmask();
+    let (begins, ends) = (begins.to_array(), ends.to_array());
+    while passed != 0 {
+        let side = passed.trailing_zeros() as usize % begins.len();
+        passed &= passed - 1;
+        let mut place = top;
+        while place > bottom && stack[place - 1].begins < begins[side] {
+            stack[place] = stack[place - 1];
+            place -= 1;
+        }
+        stack[place] = Waiting { child: node.word(side), begins: begins[side], ends: ends[side] };
+        top += 1;
+    }
+    top
+}
 
 /// The lesser of two numbers, neither of them NaN: one instruction.
 #[inline]
@@ -172,96 +196,4 @@ fn least(a: f64, b: f64) -> f64 {
 #[inline]
 fn most(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
-}
-
-/// Reciprocal of a speed too small to leave any box: its sign decides, it never overflows to NaN.
-const STANDING: f64 = 1e300;
-
-/// The parabola's pass through boxes: linear in x and y, quadratic in z. Both boxes of a pair are clipped at once.
-struct Slabs {
-    /// Start less, and plus, the radius of the ball and a little more.
-    less: [f64x2; 3],
-    plus: [f64x2; 3],
-    /// Reciprocal of the speeds; of the vertical one without gravity only.
-    inv: [f64x2; 3],
-    fall: Option<Fall>,
-}
-
-/// Height over time under gravity.
-struct Fall {
-    /// Time of the apex.
-    apex_s: f64x2,
-    /// Its height less, and plus, the radius.
-    less: f64x2,
-    plus: f64x2,
-    /// `2/g`.
-    over: f64x2,
-}
-
-impl Slabs {
-    fn new(flight: &Parabola) -> Self {
-        let (c, v, g) = (flight.start, flight.velocity, flight.gravity);
-        let r = flight.radius * (1.0 + ROUNDING);
-        let splat = f64x2::splat;
-        let apex = c.z + 0.5 * v.z * v.z / g;
-        let fall = (g > 0.0).then(|| Fall {
-            apex_s: splat(v.z / g),
-            less: splat(apex - r),
-            plus: splat(apex + r),
-            over: splat(2.0 / g),
-        });
-        Self {
-            less: [0, 1, 2].map(|k| splat(c[k] - r)),
-            plus: [0, 1, 2].map(|k| splat(c[k] + r)),
-            inv: [0, 1, 2].map(|k| splat((1.0 / v[k]).clamp(-STANDING, STANDING))),
-            fall,
-        }
-    }
-
-    /// Times within `0..limit` between which the centre may be in the boxes grown by the radius: where the windows begin
-    /// and where they end; empty if reversed.
-    #[inline]
-    fn windows(&self, pair: &Pair, limit: f64) -> (f64x2, f64x2) {
-        let mut window = (f64x2::ZERO, f64x2::splat(limit));
-        self.clip(pair, 0, &mut window);
-        self.clip(pair, 1, &mut window);
-        match &self.fall {
-            None => self.clip(pair, 2, &mut window),
-            Some(fall) => fall.clip(pair, &mut window),
-        }
-        window
-    }
-
-    /// Clips both windows to the time between two planes.
-    #[inline]
-    fn clip(&self, pair: &Pair, axis: usize, (begin, end): &mut (f64x2, f64x2)) {
-        let one = (both(pair.lo[axis]) - self.plus[axis]) * self.inv[axis];
-        let other = (both(pair.hi[axis]) - self.less[axis]) * self.inv[axis];
-        *begin = begin.fast_max(one.fast_min(other));
-        *end = end.fast_min(one.fast_max(other));
-    }
-}
-
-impl Fall {
-    /// Clips both windows to heights between floor and roof.
-    #[inline]
-    fn clip(&self, pair: &Pair, (begin, end): &mut (f64x2, f64x2)) {
-        // Squares of the times that the fall from the apex takes to them.
-        let floor2 = (self.plus - both(pair.lo[2])) * self.over;
-        let roof2 = (self.less - both(pair.hi[2])) * self.over;
-        let floor = floor2.fast_max(f64x2::ZERO).sqrt();
-        let roof = roof2.fast_max(f64x2::ZERO).sqrt();
-        let (up, down) = (self.apex_s - roof, self.apex_s + roof);
-        *begin = begin.fast_max(self.apex_s - floor);
-        *end = end.fast_min(self.apex_s + floor);
-        // Above the roof between two times: the window's hull, unless the way up or the way down is out of it already.
-        *begin = begin.simd_gt(up).select(begin.fast_max(down), *begin);
-        *end = end.simd_lt(down).select(end.fast_min(up), *end);
-        *begin = floor2.simd_lt(f64x2::ZERO).select(f64x2::splat(f64::INFINITY), *begin);
-    }
-}
-
-#[inline]
-fn both([one, other]: [f32; 2]) -> f64x2 {
-    f64x2::new([f64::from(one), f64::from(other)])
 }

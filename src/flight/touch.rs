@@ -5,6 +5,9 @@ use super::roots::{first_fall, quadratic};
 use super::{Parabola, least, most};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use crate::terrain::brims::Brim;
+use crate::terrain::features::Face;
+use crate::terrain::seen::Seen;
 
 /// A start nearer to touching than this counts as touching (–, relative to R²): rounding of the contact before.
 const TOUCHING: f64 = 1e-12;
@@ -12,6 +15,8 @@ const TOUCHING: f64 = 1e-12;
 const NEAR: f64 = 1e-9;
 /// A foot this far beside a triangle still lies on it (–, relative to R): neighbours must not leave a gap.
 const BESIDE: f64 = 1e-9;
+/// What rounding may add to the sine of a brim's steepest direction (–).
+const ASIDE: f64 = 1e-3;
 /// A start beside a triangle but this little under its plane (–, relative to R) is on a neighbour in the same plane.
 const ROUNDING: f64 = 1e-9;
 
@@ -39,33 +44,120 @@ pub(super) fn of_triangle(
     let mut found = None;
     // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
     let slack = BESIDE * flight.radius;
-    let on_it =
-        ta <= 0.0 && height.h0.abs() < flight.radius && face.holds_foot_of(&flight.start, slack);
-    for side in [1.0, -1.0] {
-        if let Some(t) = height.falls_to(side, (flight.radius, on_it), range, (ta, best))
+    let starts_near = ta <= 0.0 && starts_near(face, flight, height.h0);
+    let on_it = starts_near && face.holds_foot_of(&flight.start, slack);
+    let level = flight.radius * (1.0 - 2.0 * NEAR);
+    for (side, above) in [(1.0, range.1), (-1.0, -range.0)] {
+        if (above >= level || on_it)
+            && let Some(t) = height.falls_to(side, (flight.radius, on_it), range, (ta, best))
             && face.holds_foot_of(&flight.centre(t), slack)
         {
             best = t;
             found = Some(t);
         }
     }
-    let owned = terrain.features.owned[t as usize];
-    let slab = if owned == 0 { (ta, ta) } else { height.within(near, (ta, best)) };
-    if owned != 0 && slab.0 <= slab.1 {
-        let abreast = Abreast::new(face, flight, slab);
-        for k in 0..3 {
-            let window = (slab.0, least(slab.1, best));
-            let times = [
-                (owned & (1 << k) != 0 && abreast.edge(k))
-                    .then(|| edge(terrain, t, k, flight, window)),
-                (owned & (8 << k) != 0 && abreast.corner(k))
-                    .then(|| corner(terrain, t, k, flight, window)),
-            ];
-            for time in times.into_iter().flatten().flatten() {
-                if time <= best {
-                    best = time;
-                    found = Some(time);
-                }
+    let brim = &terrain.features.brims[t as usize];
+    if brim.front | brim.back | brim.anywhere == 0 {
+        return found;
+    }
+    for rim in rims(brim, flight.radius, starts_near && is_pressed_in(terrain, t, flight)) {
+        if rim.owned == 0 || rim.heights.0 > range.1 || rim.heights.1 < range.0 {
+            continue;
+        }
+        let slab = height.within(rim.heights, (ta, best));
+        if slab.0 <= slab.1
+            && let Some(t) = of_rim(terrain, t, flight, (&rim, slab))
+        {
+            best = t;
+            found = Some(t);
+        }
+    }
+    found
+}
+
+/// Whether the ball may be nearer than its radius to a triangle when it starts, at a height of `h0` (m).
+#[inline]
+fn starts_near(face: &Face, flight: &Parabola, h0: f64) -> bool {
+    let aside2 = flight.radius * flight.radius - h0 * h0;
+    if aside2 <= 0.0 {
+        return false;
+    }
+    let aside = aside2.sqrt() + NEAR * flight.radius;
+    Seen::of(face, flight.start - face.a, (h0, aside)).is_some()
+}
+
+/// Edges and corners of a triangle that are met alike.
+struct Rim {
+    /// Bits 0–2 edges, bits 3–5 corners.
+    owned: u8,
+    /// Heights of the centre over the triangle's plane (m).
+    heights: (f64, f64),
+    /// How far beside the triangle the centre can be (m).
+    aside: f64,
+}
+
+/// What a triangle owns, as it is met from in front, from behind and from anywhere; all of it from anywhere by a ball that
+/// is pressed in.
+#[inline]
+fn rims(brim: &Brim, radius: f64, pressed_in: bool) -> [Rim; 3] {
+    let near = radius * (1.0 + NEAR);
+    let anywhere = |owned: u8| Rim { owned, heights: (-near, near), aside: near };
+    if pressed_in {
+        return [anywhere(brim.front | brim.back | brim.anywhere), anywhere(0), anywhere(0)];
+    }
+    let aside = |least: f64| ((1.0 - least * least).max(0.0).sqrt() + ASIDE) * radius;
+    let [front, back] = [brim.least_front, brim.least_back].map(|least| f64::from(least) - NEAR);
+    [
+        Rim { owned: brim.front, heights: (front * radius, near), aside: aside(front) },
+        Rim { owned: brim.back, heights: (-near, -back * radius), aside: aside(back) },
+        anywhere(brim.anywhere),
+    ]
+}
+
+/// Whether the ball starts pressed into one of the edges and corners that a triangle owns: there it comes back to its
+/// starting distance, not to the radius, and may do so from where it could not touch.
+fn is_pressed_in(terrain: &Terrain, t: u32, flight: &Parabola) -> bool {
+    let brim = &terrain.features.brims[t as usize];
+    let owned = brim.front | brim.back | brim.anywhere;
+    let corners = terrain.corners_m(t);
+    let pressed2 = flight.radius * flight.radius * (1.0 - NEAR);
+    (0..3).any(|k| {
+        let to = flight.start - corners[k];
+        if owned & (8 << k) != 0 && to.norm_squared() < pressed2 {
+            return true;
+        }
+        let side = corners[(k + 1) % 3] - corners[k];
+        let share = (side.dot(&to) / side.norm_squared()).clamp(0.0, 1.0);
+        owned & (1 << k) != 0 && (to - side * share).norm_squared() < pressed2
+    })
+}
+
+/// First touch of some of the edges and corners of a triangle.
+#[inline]
+fn of_rim(
+    terrain: &Terrain,
+    t: u32,
+    flight: &Parabola,
+    (rim, slab): (&Rim, (f64, f64)),
+) -> Option<f64> {
+    let face = &terrain.features.faces[t as usize];
+    let (owned, aside) = (rim.owned, rim.aside);
+    let lasts = slab.1 - slab.0;
+    let way = (flight.velocity(slab.0).norm() + 0.5 * flight.gravity * lasts) * lasts;
+    Seen::of(face, flight.centre(slab.0) - face.a, (0.0, way + aside + NEAR * flight.radius))?;
+    let abreast = Abreast::new(face, flight, slab);
+    let (mut best, mut found) = (slab.1, None);
+    for k in 0..3 {
+        let window = (slab.0, best);
+        let times = [
+            (owned & (1 << k) != 0 && abreast.edge(k, aside))
+                .then(|| edge(terrain, t, k, flight, window)),
+            (owned & (8 << k) != 0 && abreast.corner(k))
+                .then(|| corner(terrain, t, k, flight, window)),
+        ];
+        for time in times.into_iter().flatten().flatten() {
+            if time <= best {
+                (best, found) = (time, Some(time));
             }
         }
     }
@@ -98,15 +190,14 @@ impl Height {
         (least(least(ha, hb), ht), most(most(ha, hb), ht))
     }
 
-    /// The part of a window in which `|h| ≤ near` may hold (its hull); reversed if nowhere.
+    /// The part of a window in which the height may be between two levels (its hull); reversed if nowhere.
     #[inline]
-    fn within(&self, near: f64, (ta, tb): (f64, f64)) -> (f64, f64) {
-        let (mut first, mut last) = (
-            if self.at(ta).abs() <= near { ta } else { tb },
-            if self.at(tb).abs() <= near { tb } else { ta },
-        );
+    fn within(&self, (low, high): (f64, f64), (ta, tb): (f64, f64)) -> (f64, f64) {
+        let holds = |t: f64| (low..=high).contains(&self.at(t));
+        let (mut first, mut last) =
+            (if holds(ta) { ta } else { tb }, if holds(tb) { tb } else { ta });
         if first > ta || last < tb {
-            for level in [near, -near] {
+            for level in [high, low] {
                 let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
                 for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
                     (first, last) = (least(first, t), most(last, t));

@@ -1,6 +1,7 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
 use super::{Curtain, Part, Paths, Plan, RestRule};
+use crate::ground::Ground;
 use crate::release::Where;
 use crate::scene::BarrierTable;
 use crate::step::dda::own_restitution;
@@ -94,20 +95,14 @@ impl Plan {
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
-        list.part("rock against rock", rock_against_rock, |ground| {
-            format!(
-                "one world: springs of {:e} and {:e} N/m, friction angle {:.1}°, {}",
-                ground.normal_stiffness_n_m,
-                ground.shear_stiffness_n_m,
-                ground.friction_angle_rad.to_degrees(),
-                ground.restitution.map_or_else(
-                    || "restitution of the scheme itself".to_owned(),
-                    |e| format!("restitution {e}")
-                )
-            )
-        });
+        list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
-            "islands of rocks that may touch, each with its own step".to_owned()
+            let how = if step.scheme == Scheme::Rigid {
+                "; impacts in the order of their times, sustained contact swept"
+            } else {
+                ""
+            };
+            format!("islands of rocks that may touch, each with its own step{how}")
         });
         list.part("bonds", bonds, |strength| {
             format!(
@@ -228,6 +223,22 @@ fn place(place: &Where) -> String {
 /// Enough of the hash to tell two scenes apart by eye.
 fn fingerprint(hash: &str) -> String {
     format!("sha256 {}", hash.get(..16).unwrap_or("not taken"))
+}
+
+/// How rocks answer each other.
+fn one_world(scheme: Scheme, ground: &Ground) -> String {
+    let springs = if scheme == Scheme::Rigid {
+        "springs left out: the rigid limit has none".to_owned()
+    } else {
+        let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
+        format!("springs of {p_n:e} and {p_s:e} N/m")
+    };
+    let restitution = ground.restitution.map_or_else(
+        || "restitution of the scheme itself".to_owned(),
+        |e| format!("restitution {e}"),
+    );
+    let angle_deg = ground.friction_angle_rad.to_degrees();
+    format!("one world: {springs}, friction angle {angle_deg:.1}°, {restitution}")
 }
 
 fn map([x, y, z]: [f64; 3], epsg: Option<u32>) -> String {

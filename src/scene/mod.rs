@@ -265,8 +265,8 @@ impl Scene {
             let missing = Complaint::missing("restitution", remedy);
             return Err(missing.inside("contact").inside("rocks"));
         }
-        if matches!(scheme, Scheme::Rigid) {
-            let remedy = "write \"adaptive\", \"reference\" or \"dda\": the rigid limit knows no rocks that touch, [release] together = false does without";
+        if matches!(scheme, Scheme::Rigid) && contact.has_bonds() {
+            let remedy = "write \"adaptive\", \"reference\" or \"dda\": a bond breaks by its springs, and the rigid limit has none; with tensile_strength_pa = 0 and cohesion_pa = 0 in [rocks.contact] \"rigid\" can be used";
             return Err(Complaint::about("scheme", remedy).inside("solver"));
         }
         for (name, ground) in &self.grounds {

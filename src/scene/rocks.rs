@@ -46,6 +46,11 @@ impl Rocks {
 }
 
 impl RockContact {
+    /// Whether rocks that touch at the start hold on to each other.
+    pub fn has_bonds(&self) -> bool {
+        self.tensile_strength_pa > 0.0 || self.cohesion_pa > 0.0
+    }
+
     fn check(&self) -> Checked {
         for (key, value, allowed) in [
             ("normal_stiffness_n_m", self.normal_stiffness_n_m, Allowed::Positive),

@@ -44,6 +44,8 @@ pub struct Advance {
     pub dt: f64,
     /// Energy lost by each kind of contact work (J).
     pub loss: Loss,
+    /// Steps taken: one, or those of a whole impact.
+    pub steps: u64,
     /// Steps tried and thrown away.
     pub rejected: u64,
     /// Whether the contact states did not settle (`dda`).
@@ -70,7 +72,7 @@ fn stiffest(world: &World, grip: &Grip) -> f64 {
     if omega > 0.0 { omega } else { world.laws.iter().map(|law| law.omega).fold(0.0, f64::max) }
 }
 
-/// One accepted step of at most `h_max` (s); `h` is the step to try and becomes the one to try next.
+/// One accepted step of at most `h_max` (s), or all those of an impact on one plane; `h` is the step to try and becomes the one to try next.
 ///
 /// # Errors
 /// [`Stuck`] if the step had to become too short to matter.
@@ -93,6 +95,7 @@ pub fn advance(
     let (omega, known) = (stiffest(world, grip), grip.holds.len());
     let mut trial = Try { world, control, grip, h, limit, omega, known, end: None };
     done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
+    done.steps = 1;
     if let Some(end) = trial.end {
         accept(control.tableau, grip, &end, done.dt, &mut done.loss);
     }

@@ -97,7 +97,7 @@ impl Fixed {
         meet(world, &step, grip);
         let (added, settled) = solve(world, &step, grip).ok_or(Stuck::NotFinite)?;
         let d = step.free + added;
-        let mut done = Advance { dt, unsettled: !settled, ..Advance::default() };
+        let mut done = Advance { dt, steps: 1, unsettled: !settled, ..Advance::default() };
         for contact in grip.bench.contacts() {
             if contact.depth(&d) > DEEPEST * step.radius {
                 return Err(Stuck::SankIn);

@@ -7,10 +7,10 @@
 mod state;
 mod trial;
 
-use super::adaptive::{Advance, Control, Halt, Stuck, TRAVEL, settle};
+use super::adaptive::{Advance, Control, Halt, Stuck, TRAVEL};
 use super::grip::{Grip, Loss, World};
 use super::law::Body;
-use super::slide::{Frame, Local, cut, cut_moment};
+use super::slide::{Frame, Local, Mode, cut, cut_moment};
 use super::tableau::STAGES;
 use crate::contact::FeatureKind;
 use crate::ground::Law;
@@ -60,7 +60,7 @@ fn is_on_face(world: &World, grip: &Grip) -> bool {
 }
 
 impl Grip {
-    /// One accepted step on a plane; `None` if the rock does not stay on one.
+    /// One accepted step on a plane, or all of an impact; `None` if the rock does not stay on one.
     pub(crate) fn step_on_plane(
         &mut self,
         world: &World,
@@ -79,43 +79,44 @@ impl Grip {
         if !self.flat.on {
             self.enter_plane(law, &world.body, (pen, c_n));
         }
-        let limit = self.longest_step(world, TRAVEL);
+        let gravity = self.flat.frame.local(&world.body.gravity);
         let mut trial = Try {
             h,
-            limit,
+            limit: self.longest_step(world, TRAVEL),
             control,
             world,
             law,
             c_n,
-            gravity: self.flat.frame.local(&world.body.gravity),
+            gravity,
             pen,
             energy: self.motion_j(&world.body) + self.stored,
+            room2: self.near.room_m(&self.c).max(0.0).powi(2),
             near: &self.near,
             start: self.c,
             face: hold.feature.id,
             flat: &mut self.flat,
+            mode: Mode::default(),
             end: [0.0; SIZE],
             press: Press::default(),
             stored: 0.0,
             solved: 0,
         };
-        let settled = settle(&mut trial, control, h_max, &mut done.rejected);
-        let (end, press, stored) = (trial.end, trial.press, trial.stored);
+        let halt = trial.run((h_max, world.terrain.is_tree(hold.triangle)), done);
+        let (press, stored) = (trial.press, trial.stored);
         self.sweeps += trial.solved;
-        match settled {
-            Ok(dt) => {
-                done.dt = dt;
-                done.loss = self.flat.lost(control, dt).on(world, hold.triangle);
-                self.take_plane(law, control, (end, press, stored));
-                Some(Ok(()))
-            }
-            Err(Halt::Unsettled) => Some(Err(Stuck::Unsettled)),
-            Err(Halt::Elsewhere) => None,
+        match halt {
+            Some(Halt::Unsettled) if done.steps == 0 => return Some(Err(Stuck::Unsettled)),
+            Some(Halt::Elsewhere) if done.steps == 0 => return None,
+            // What stopped it after its first step is met again, or got round, from where it is now.
+            _ => {}
         }
+        done.loss = done.loss.on(world, hold.triangle);
+        self.take_plane(law, press, stored);
+        Some(Ok(()))
     }
 
     /// Sees to it that the features where a step of `dt` goes are known, and a little beyond.
-    fn see_ahead(&mut self, world: &World, dt: f64) {
+    pub(crate) fn see_ahead(&mut self, world: &World, dt: f64) {
         let way = (self.v * dt).cap_magnitude(TRAVEL * world.body.radius);
         if !(self.near.covers(&self.c) && self.near.covers(&(self.c + way))) {
             let ahead = self.v.cap_magnitude(AHEAD * world.body.radius);
@@ -160,30 +161,22 @@ impl Grip {
         }
     }
 
-    /// Takes over the step's end: motion, memory, rates.
-    fn take_plane(
-        &mut self,
-        law: &Law,
-        control: &Control,
-        (end, press, stored): (State, Press, f64),
-    ) {
-        let flat = &mut self.flat;
-        let last = control.tableau.stages - 1;
-        (flat.rates[0], flat.losses[0]) = (flat.rates[last], flat.losses[last]);
-        self.c += flat.frame.out_local(three(&end, WAY));
-        self.v = flat.frame.out_local(three(&end, SPEED));
-        self.w = flat.frame.out_local(three(&end, SPIN));
+    /// Takes over where the steps have ended: motion and memory.
+    fn take_plane(&mut self, law: &Law, press: Press, stored: f64) {
+        let Flat { state, frame, on, .. } = &mut self.flat;
+        self.c += frame.out_local(three(state, WAY));
+        self.v = frame.out_local(three(state, SPEED));
+        self.w = frame.out_local(three(state, SPIN));
         self.stored = stored;
         let hold = &mut self.holds[0];
-        hold.shear = flat.frame.out_along(two(&end, SHEAR));
-        hold.roll = flat.frame.out_local(three(&end, ROLL));
+        hold.shear = frame.out_along(two(state, SHEAR));
+        hold.roll = frame.out_local(three(state, ROLL));
         hold.push = press.push;
         hold.slides = square(press.drag) >= (law.friction * press.push * (1.0 - 1e-9)).powi(2);
-        flat.state = end;
-        flat.state[WAY..SPEED].fill(0.0);
         hold.closed = press.closed;
+        state[WAY..SPEED].fill(0.0);
         if !press.closed {
-            flat.on = false;
+            *on = false;
             self.holds.clear();
             self.fresh = false;
         }
@@ -241,18 +234,5 @@ impl Flat {
         let press = Press { push, drag, moment, closed: true };
         self.losses[0] = press.losses(slip, (speed[2], spin), two(&self.rates[0], SHEAR));
         stored_j(law, pen, &self.state)
-    }
-
-    /// What went into friction, damping and rolling over an accepted step (J).
-    fn lost(&self, control: &Control, dt: f64) -> Loss {
-        let mut sum = [0.0; 3];
-        for (k, loss) in self.losses[..control.tableau.stages].iter().enumerate() {
-            let weight = dt * control.tableau.work_weight(k);
-            for (sum, loss) in sum.iter_mut().zip(loss) {
-                *sum += weight * loss;
-            }
-        }
-        let [friction, damping, rolling] = sum;
-        Loss { friction, damping, rolling, trees: 0.0 }
     }
 }

@@ -3,6 +3,7 @@
 use super::dda::Bench;
 use super::flat::Flat;
 use super::law::{Body, Spot};
+use super::slide::Mode;
 use super::tableau::STAGES;
 use crate::clock::{Clocks, Piece};
 use crate::contact::hold::{HOLDS, Holds};
@@ -203,6 +204,8 @@ impl Grip {
         self.holds.clear();
         self.fresh = false;
         self.flat.forget();
+        // Nothing of the rock before, not even a guess, may tell.
+        self.spots.iter_mut().for_each(|spot| spot.mode = Mode::default());
         if !self.near.covers(&c) {
             let (r, margin) = (world.body.radius, self.way_of_impact(world));
             self.near.collect(world.terrain, &c, r, margin, SLACK * r);

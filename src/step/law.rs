@@ -6,7 +6,7 @@
 //! `reference` schemes.
 
 use super::joint;
-use super::slide::{Answers, Frame, Pair};
+use super::slide::{Answers, Frame, Mode, Pair};
 use crate::contact::Feature;
 use crate::ground::Law;
 use crate::rock::{Rock, Vec3};
@@ -67,6 +67,8 @@ pub struct Spot {
     pub drag: Vec3,
     /// Rolling moment `M`; the rock feels `−M` (N m).
     pub moment: Vec3,
+    /// Which of the two are at their caps, as far as is known.
+    pub(crate) mode: Mode,
 }
 
 const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
@@ -94,6 +96,7 @@ impl Spot {
         push: 0.0,
         drag: ZERO,
         moment: ZERO,
+        mode: Mode::Stick,
     };
 
     /// Forces for a base `(v, w)` without this contact's own effect, over a stage of length `h`.
@@ -114,7 +117,7 @@ impl Spot {
             d: frame.local(&(self.roll * law.k_r + w * answers.kar)),
             caps: (law.friction * self.push, law.rolling_m * self.push),
         };
-        let (drag, moment) = pair.solve();
+        let (drag, moment) = pair.solve(&mut self.mode);
         (self.drag, self.moment) = (frame.out_along(drag), frame.out_local(moment));
     }
 

@@ -7,7 +7,7 @@
 use super::adaptive::{Advance, Stuck};
 use super::grip::{Grip, Loss, TOUCH, World};
 use super::law::Body;
-use super::slide::{Answers, Frame, Pair};
+use super::slide::{Answers, Frame, Mode, Pair};
 use crate::contact::{MOST, Touch};
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -15,10 +15,11 @@ use crate::rock::Vec3;
 /// No impact is slower than this (m/s), whatever capture speed is asked for: a blow takes no time, and rounding would
 /// strike them without end.
 const LEAST_M_S: f64 = 1e-6;
-/// Longest way in one step (–, relative to R): less than the slack within which features are seen.
+/// Longest way in one step where more than one plane is near (–, relative to R): less than the slack within which features
+/// are seen.
 const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
-const HELD: f64 = 1e-4;
+pub(crate) const HELD: f64 = 1e-4;
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
@@ -38,6 +39,8 @@ struct Blow<'w> {
     drag: Vec3,
     /// Rolling impulse (N m s).
     turn: Vec3,
+    /// Which of the two are at their caps, as far as is known.
+    mode: Mode,
 }
 
 impl Blow<'_> {
@@ -49,6 +52,7 @@ impl Blow<'_> {
         push: 0.0,
         drag: Vec3::new(0.0, 0.0, 0.0),
         turn: Vec3::new(0.0, 0.0, 0.0),
+        mode: Mode::Stick,
     };
 
     /// Impulses for velocity `v` and spin `w` without this contact's own.
@@ -59,15 +63,8 @@ impl Blow<'_> {
             (self.drag, self.turn) = (Vec3::zeros(), Vec3::zeros());
             return;
         }
-        let frame = Frame::of(&self.n);
-        let pair = Pair {
-            answers: &Answers::rigid(body.radius),
-            a: frame.along(&(body.slip(&self.n, v, w) * (2.0 / 7.0 * m))),
-            d: frame.local(&(w * body.inertia)),
-            caps: (self.law.friction * self.push, self.law.rolling_m * self.push),
-        };
-        let (drag, turn) = pair.solve();
-        (self.drag, self.turn) = (-frame.out_along(drag), -frame.out_local(turn));
+        let caps = (self.law.friction * self.push, self.law.rolling_m * self.push);
+        (self.drag, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
     }
 
     /// Change of velocity and spin.
@@ -87,6 +84,26 @@ impl Blow<'_> {
             trees: 0.0,
         }
     }
+}
+
+/// Impulses along the surface with normal `n` (N s) and of rolling (N m s) on a rock with velocity `v` and spin `w`
+/// without them; `caps` are the largest of both. The mode found before is tried first.
+pub(crate) fn rub(
+    body: &Body,
+    n: &Vec3,
+    caps: (f64, f64),
+    (v, w): (&Vec3, &Vec3),
+    mode: &mut Mode,
+) -> (Vec3, Vec3) {
+    let frame = Frame::of(n);
+    let pair = Pair {
+        answers: &Answers::rigid(body.radius),
+        a: frame.along(&(body.slip(n, v, w) * (2.0 / 7.0 * body.mass))),
+        d: frame.local(&(w * body.inertia)),
+        caps,
+    };
+    let (drag, turn) = pair.solve(mode);
+    (-frame.out_along(drag), -frame.out_local(turn))
 }
 
 /// The contacts of one impact or step.
@@ -115,13 +132,12 @@ impl<'w> Blows<'w> {
             let (mut change, mut scale) = (0.0f64, f64::MIN_POSITIVE);
             for blow in &mut self.list[..self.len] {
                 let (dv, dw) = blow.effect(body);
-                let (vf, wf, before) = (v - dv, w - dw, *blow);
+                let (vf, wf, before) = (v - dv, w - dw, (blow.push, blow.drag));
                 blow.solve(body, &vf, &wf);
                 let (dv, dw) = blow.effect(body);
                 (v, w) = (vf + dv, wf + dw);
-                change = change
-                    .max((blow.push - before.push).abs())
-                    .max((blow.drag - before.drag).norm());
+                change =
+                    change.max((blow.push - before.0).abs()).max((blow.drag - before.1).norm());
                 scale = scale.max(blow.push);
             }
             if self.len <= 1 || change <= SETTLED * scale {
@@ -146,8 +162,9 @@ impl<'w> Blows<'w> {
 /// # Errors
 /// [`Stuck`] if motion is no longer finite.
 pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Result<Advance, Stuck> {
-    let mut done = Advance::default();
+    let mut done = Advance { steps: 1, ..Advance::default() };
     let c = grip.c;
+    grip.see_ahead(world, longest.min(h_max));
     grip.look_ahead_again(world, &c);
     if hits(world, grip) {
         grip.look(world, &c, world.body.radius * (1.0 + TOUCH));
@@ -166,7 +183,7 @@ fn hits(world: &World, grip: &Grip) -> bool {
 }
 
 /// Speed of approach up to which a contact does not rebound (m/s).
-fn capture_m_s(law: &Law) -> f64 {
+pub(crate) fn capture_m_s(law: &Law) -> f64 {
     law.capture_m_s.max(LEAST_M_S)
 }
 
@@ -207,7 +224,7 @@ fn step(world: &World, grip: &mut Grip, longest: f64, done: &mut Advance) {
     let body = &world.body;
     let r = body.radius;
     let (c, v, w) = (grip.c, grip.v, grip.w);
-    let dt = closing(world, grip, longest.min(TRAVEL * r / v.norm().max(f64::MIN_POSITIVE)));
+    let dt = closing(world, grip, longest.min(grip.longest_step(world, TRAVEL)));
     let middle = c + v * (0.5 * dt);
     grip.look_ahead(world, &middle);
     let mut blows = Blows::of(world, grip, |blow, distance| {
@@ -259,7 +276,7 @@ fn push_out(world: &World, grip: &mut Grip) {
 }
 
 /// Keeps a memory for every touch that still holds the rock, so that impacts are counted and rest is seen.
-fn remember(world: &World, grip: &mut Grip, holds: impl Fn(&Vec3) -> bool) {
+pub(crate) fn remember(world: &World, grip: &mut Grip, holds: impl Fn(&Vec3) -> bool) {
     let (c, v) = (grip.c, grip.v);
     grip.look_ahead_again(world, &c);
     let mut touches = grip.touches;

@@ -1,7 +1,7 @@
 //! Shear force and rolling moment of one contact, solved in the contact's own frame.
 //!
 //! Both are springs with dashpots in series with sliders. They act on each other: shear turns the rock, the moment
-//! changes the slip. Three of the four cases (stick or slip, each) are solved in closed form.
+//! changes the slip. Of the four cases (stick or slip, each) two have closed forms and two a scalar equation for Newton.
 
 use super::law::Body;
 use crate::ground::Law;
@@ -108,12 +108,14 @@ pub(crate) struct Pair<'a> {
     pub(crate) caps: (f64, f64),
 }
 
-/// Newton steps for the ratio of a rolling moment at its cap.
+/// Newton steps for a ratio.
 const RATIO_STEPS: u32 = 30;
-/// Most double passes of shear and rolling in one contact.
-const ALTERNATIONS: u32 = 30;
-/// Change of a force, relative to its scale, below which it has settled (–).
-const SETTLED: f64 = 1e-10;
+/// Least that Newton leaves of a ratio at once (–).
+const FALL: f64 = 0.2;
+/// A force below this part of its cap is held (–).
+const INSIDE: f64 = 1.0 - 1e-9;
+/// Change of a ratio, relative to it, after which Newton's next would be less than rounding matters (–).
+const NEAR: f64 = 1e-5;
 
 /// `n × x`, along the surface.
 #[inline]
@@ -150,28 +152,85 @@ pub(crate) fn cut_moment(x: Local, cap: f64) -> Local {
     if size2 > cap * cap { x.map(|x| x * (cap / size2.sqrt())) } else { x }
 }
 
+/// A ratio by a cap that may be nothing.
+#[inline]
+fn by(ratio: f64, cap: f64) -> f64 {
+    ratio / cap.max(f64::MIN_POSITIVE)
+}
+
+/// Which of the two are at their caps.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) enum Mode {
+    /// Neither.
+    #[default]
+    Stick,
+    /// The moment, with the `μ` of [`Pair::rolling_alone`] by its cap.
+    Roll(f64),
+    /// The shear force.
+    Slide,
+    /// Both, with the `κ` of [`Pair::both_slip`] by the moment's cap.
+    Both(f64),
+}
+
 impl Pair<'_> {
+    /// Force and moment; `mode` is that of a solution nearby and becomes this one's. There is only one solution, so what
+    /// agrees with both laws is the one.
     #[inline]
-    pub(crate) fn solve(&self) -> (Along, Local) {
+    pub(crate) fn solve(&self, mode: &mut Mode) -> (Along, Local) {
+        let cap_m = self.caps.1;
+        let found = match *mode {
+            Mode::Stick => None,
+            Mode::Roll(by_cap) => self.rolls(Some(by_cap * cap_m)),
+            Mode::Slide => self.slides(),
+            Mode::Both(by_cap) => self.does_both(Some(by_cap * cap_m)),
+        };
+        let (found, q, moment) = found.unwrap_or_else(|| self.solve_anew());
+        *mode = found;
+        (q, moment)
+    }
+
+    fn solve_anew(&self) -> (Mode, Along, Local) {
         let (cap_q, cap_m) = self.caps;
         let (q, moment) = self.both_stick();
         let m_fits = volume2(moment) <= cap_m * cap_m;
         if m_fits && size2(q) <= cap_q * cap_q {
-            return (q, moment);
+            return (Mode::Stick, q, moment);
         }
-        if !m_fits {
-            let moment = self.rolling_alone();
-            let q = self.shear_at(moment);
-            if size2(q) <= cap_q * cap_q {
-                return (q, moment);
-            }
-        }
+        let one = if m_fits { None } else { self.rolls(None) };
+        one.or_else(|| self.slides()).unwrap_or_else(|| {
+            let (ratio, q, moment) = self.both_slip(None);
+            (Mode::Both(by(ratio, cap_m)), q, moment)
+        })
+    }
+
+    /// The moment at its cap, if shear then sticks and the moment does not.
+    #[inline]
+    fn rolls(&self, ratio: Option<f64>) -> Option<(Mode, Along, Local)> {
+        let (ratio, share, moment) = self.rolling_alone(ratio);
+        let q = self.shear_at(moment);
+        let rolls = share * INSIDE <= self.answers.share_m;
+        let mode = Mode::Roll(by(ratio, self.caps.1));
+        (rolls && size2(q) <= self.caps.0 * self.caps.0).then_some((mode, q, moment))
+    }
+
+    /// Shear at its cap, if the moment then sticks and shear does not.
+    #[inline]
+    fn slides(&self) -> Option<(Mode, Along, Local)> {
+        let (cap_q, cap_m) = self.caps;
         let q = self.sliding_alone();
         let moment = self.moment_at(q);
-        if volume2(moment) <= cap_m * cap_m {
-            return (q, moment);
-        }
-        self.both_slip(q)
+        let slides = size2(self.shear_at(moment)) >= (INSIDE * cap_q).powi(2);
+        (slides && volume2(moment) <= cap_m * cap_m).then_some((Mode::Slide, q, moment))
+    }
+
+    /// Both at their caps, if neither sticks.
+    #[inline]
+    fn does_both(&self, ratio: Option<f64>) -> Option<(Mode, Along, Local)> {
+        let (cap_q, cap_m) = self.caps;
+        let (ratio, q, moment) = self.both_slip(ratio);
+        let slips = size2(self.shear_at(moment)) >= cap_q * cap_q
+            && ratio <= self.answers.c * self.answers.share_m;
+        slips.then_some((Mode::Both(by(ratio, cap_m)), q, moment))
     }
 
     /// `q̂` for a moment.
@@ -184,9 +243,7 @@ impl Pair<'_> {
     /// `M̂` for a shear force.
     #[inline]
     fn moment_at(&self, q: Along) -> Local {
-        let y = turned(q);
-        let along = [0, 1].map(|k| (self.d[k] + y[k] * self.answers.er) * self.answers.share_m);
-        [along[0], along[1], self.d[2] * self.answers.share_m]
+        self.wound(q, self.answers.share_m)
     }
 
     /// Neither at its cap: with `y = n × M`, `(1+B) q + C y = a` and `E R q + (1+E) y = n × d`.
@@ -199,31 +256,33 @@ impl Pair<'_> {
         (q, [y[1], -y[0], self.d[2] * share_m])
     }
 
-    /// The moment at its cap while shear sticks: `M_t = λ G_t/(1 − λs)`, `M_n = λ G_n`, a scalar equation for `λ`.
+    /// The moment at its cap while shear sticks: `M_t = μ G_t`, `M_n = λ G_n` with `λ = μ/(1 + μs)`; `|M|²` grows with
+    /// `μ`, so Newton finds where it is that of the cap. Returns `μ`, `λ` and the moment.
     #[inline]
-    fn rolling_alone(&self) -> Local {
+    fn rolling_alone(&self, guess: Option<f64>) -> (f64, f64, Local) {
         let y = turned(self.a);
         let g = [0, 1].map(|k| self.d[k] + y[k] * (self.answers.er * self.answers.share_q));
         let (t2, n2, cap) = (size2(g), self.d[2] * self.d[2], self.caps.1);
         let s = self.answers.er * self.answers.c * self.answers.share_q;
-        // |M| grows with λ. Without a normal part the first guess is exact; with one it is below the root, from where
-        // Newton on λ − cap/|G/(1 − λs)| comes up.
-        let mut ratio = cap / ((t2.sqrt() + cap * s).powi(2) + n2).sqrt();
-        if n2 > SETTLED * SETTLED * t2 {
-            for _ in 0..RATIO_STEPS {
-                let room = 1.0 / (1.0 - ratio * s);
-                let size2 = t2 * room * room + n2;
-                let reached = cap / size2.sqrt();
-                let slope = 1.0 + reached * t2 * room * room * room * s / size2;
-                let change = (ratio - reached) / slope;
-                ratio -= change;
-                if change.abs() <= SETTLED * ratio {
-                    break;
-                }
+        let guess = guess.filter(|guess| *guess > 0.0);
+        let mut ratio = guess.unwrap_or_else(|| cap / (t2 + n2).sqrt().max(f64::MIN_POSITIVE));
+        let mut room = 1.0 / (1.0 + ratio * s);
+        for _ in 0..RATIO_STEPS {
+            let spun2 = n2 * room * room;
+            let over = ratio * ratio * (t2 + spun2) - cap * cap;
+            let change = over / (2.0 * ratio * (t2 + spun2 * room)).max(f64::MIN_POSITIVE);
+            let next = (ratio - change).max(FALL * ratio);
+            if change.abs() <= NEAR * ratio {
+                // So little further on the line through it is as good.
+                room -= room * room * s * (next - ratio);
+                ratio = next;
+                break;
             }
+            ratio = next;
+            room = 1.0 / (1.0 + ratio * s);
         }
-        let along = ratio / (1.0 - ratio * s);
-        [g[0] * along, g[1] * along, self.d[2] * ratio]
+        let spun = ratio * room;
+        (ratio, spun, [g[0] * ratio, g[1] * ratio, self.d[2] * spun])
     }
 
     /// Shear at its cap while rolling sticks: `q ∥ a − C/(1+E) n × d`.
@@ -235,25 +294,45 @@ impl Pair<'_> {
         if size > 0.0 { along.map(|x| x * (self.caps.0 / size)) } else { along }
     }
 
-    /// Both at their caps: only directions are sought. Alternating them gains a factor of up to 5/7 a pass; what two
-    /// passes gain tells where they are heading (Steffensen).
-    fn both_slip(&self, mut q: Along) -> (Along, Local) {
+    /// Both at their caps: only directions are sought. With `M = κ/C (d + E R n × q)` what turns with `q` does not turn it:
+    /// `q ∥ a − κ n × d`, and `κ |n × d − E R q, d_n|` is `C` times the moment's cap. It grows with `κ`, so Newton finds
+    /// it. Returns `κ`, force and moment.
+    fn both_slip(&self, guess: Option<f64>) -> (f64, Along, Local) {
         let (cap_q, cap_m) = self.caps;
-        let next = |q: Along| cut(self.shear_at(cut_moment(self.moment_at(q), cap_m)), cap_q);
-        for _ in 0..ALTERNATIONS {
-            let one = next(q);
-            let first = [one[0] - q[0], one[1] - q[1]];
-            if size2(first) <= (SETTLED * cap_q).powi(2) {
-                q = one;
+        let nd = turned([self.d[0], self.d[1]]);
+        let lever = self.answers.er * cap_q;
+        let (nd2, wanted) = (size2(nd), self.answers.c * cap_m);
+        let most2 = nd2 + lever * lever + self.d[2] * self.d[2];
+        let guess = guess.filter(|guess| *guess > 0.0);
+        let mut ratio = guess.unwrap_or_else(|| wanted / most2.sqrt().max(f64::MIN_POSITIVE));
+        let mut e = [0.0; 2];
+        for _ in 0..RATIO_STEPS {
+            let p = [0, 1].map(|k| self.a[k] - nd[k] * ratio);
+            let over = 1.0 / size2(p).sqrt().max(f64::MIN_POSITIVE);
+            e = p.map(|x| x * over);
+            let c = nd[0] * e[0] + nd[1] * e[1];
+            let size2 = most2 - 2.0 * lever * c;
+            let slope = 2.0 * ratio * (size2 + ratio * lever * (nd2 - c * c) * over);
+            let beyond = ratio * ratio * size2 - wanted * wanted;
+            let next = (ratio - beyond / slope.max(f64::MIN_POSITIVE)).max(FALL * ratio);
+            let change = next - ratio;
+            ratio = next;
+            if change.abs() <= NEAR * ratio {
+                // So little further on the tangent is as good.
+                e = [0, 1].map(|k| e[k] - (nd[k] - e[k] * c) * (over * change));
                 break;
             }
-            let two = next(one);
-            let second = [two[0] - one[0], two[1] - one[1]];
-            let gain = (first[0] * second[0] + first[1] * second[1]) / size2(first);
-            let ahead = if gain.abs() < 0.9 { gain / (1.0 - gain) } else { 0.0 };
-            q = cut([two[0] + second[0] * ahead, two[1] + second[1] * ahead], cap_q);
         }
-        (q, cut_moment(self.moment_at(q), cap_m))
+        let q = e.map(|x| x * cap_q);
+        (ratio, q, self.wound(q, ratio / self.answers.c))
+    }
+
+    /// `M̂` for a shear force, `share` of it instead of `1/(1 + E)`.
+    #[inline]
+    fn wound(&self, q: Along, share: f64) -> Local {
+        let y = turned(q);
+        let along = [0, 1].map(|k| (self.d[k] + y[k] * self.answers.er) * share);
+        [along[0], along[1], self.d[2] * share]
     }
 }
 
@@ -278,27 +357,28 @@ mod tests {
             }
         }
 
-        /// Whatever case the closed forms choose, the result is the fixed point of both shortenings; 1e-8 of the caps
-        /// is what the alternation of two slipping directions leaves.
+        /// Whatever case is tried first, the result is the fixed point of both shortenings, to 1e-8 of the caps.
         #[test]
         fn shear_and_rolling_solve_their_equations(
             a in prop::array::uniform2(-1.0f64..1.0), d in prop::array::uniform3(-1.0f64..1.0),
             caps in prop::array::uniform2(0.01f64..2.0), spins in prop::bool::ANY,
-            b in 0.001f64..100.0, e in 0.001f64..100.0, r in 0.01f64..10.0,
+            b in 0.001f64..100.0, e in 0.001f64..100.0, r in 0.01f64..10.0, hint in 0.0f64..100.0,
         ) {
             // C E R = 5/7 B E, as a solid sphere has it
             let c = 5.0 / 7.0 * b / r;
             let d = [d[0] * r, d[1] * r, if spins { d[2] * r } else { 0.0 }];
             let answers = Answers::new((b, e), b, e, (c / r, r));
             let pair = Pair { answers: &answers, a, d, caps: (caps[0], caps[1] * r) };
-            let (q, moment) = pair.solve();
-            let at_m = cut(pair.shear_at(moment), pair.caps.0);
-            let at_q = cut_moment(pair.moment_at(q), pair.caps.1);
-            let off_q = size2([q[0] - at_m[0], q[1] - at_m[1]]).sqrt();
-            let off_m = volume2([0, 1, 2].map(|k| moment[k] - at_q[k])).sqrt();
-            prop_assert!(off_q <= 1e-8 * pair.caps.0 && off_m <= 1e-8 * pair.caps.1, "{off_q} {off_m}");
-            let (size_q, size_m) = (size2(q).sqrt(), volume2(moment).sqrt());
-            prop_assert!(size_q <= pair.caps.0 * (1.0 + 1e-12) && size_m <= pair.caps.1 * (1.0 + 1e-12));
+            for mode in [Mode::Stick, Mode::Roll(hint), Mode::Slide, Mode::Both(hint)] {
+                let (q, moment) = pair.solve(&mut { mode });
+                let at_m = cut(pair.shear_at(moment), pair.caps.0);
+                let at_q = cut_moment(pair.moment_at(q), pair.caps.1);
+                let off_q = size2([q[0] - at_m[0], q[1] - at_m[1]]).sqrt();
+                let off_m = volume2([0, 1, 2].map(|k| moment[k] - at_q[k])).sqrt();
+                prop_assert!(off_q <= 1e-8 * pair.caps.0 && off_m <= 1e-8 * pair.caps.1, "{mode:?} {off_q} {off_m}");
+                let (size_q, size_m) = (size2(q).sqrt(), volume2(moment).sqrt());
+                prop_assert!(size_q <= pair.caps.0 * (1.0 + 1e-8) && size_m <= pair.caps.1 * (1.0 + 1e-8));
+            }
         }
     }
 }

@@ -154,6 +154,7 @@ impl Grip {
             push: memory.push,
             drag: Vec3::zeros(),
             moment: Vec3::zeros(),
+            mode: self.spots[k].mode,
             law,
         }
     }

@@ -2,7 +2,7 @@
 
 use super::scaling::{Cost, Phase, World, exponent};
 use crate::report::axis::Axis;
-use crate::report::colour::{BLUE, GREY, INK, ORANGE};
+use crate::report::colour::{BLUE, GREEN, GREY, INK, ORANGE};
 use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, paint};
@@ -20,7 +20,7 @@ pub(super) const OTHERS: [(usize, f64, f64); 3] =
 /// the number and larger caches' misses.
 pub(super) const NEAR_LINEAR: f64 = 1.2;
 
-const SCHEMES: [Scheme; 2] = [Scheme::Adaptive, Scheme::Dda];
+const SCHEMES: [Scheme; 3] = [Scheme::Adaptive, Scheme::Dda, Scheme::Rigid];
 
 fn of(worlds: &[World], scheme: Scheme) -> impl Iterator<Item = &World> {
     worlds.iter().filter(move |world| world.scheme == scheme)
@@ -243,7 +243,11 @@ const PLOT_PX: f64 = 120.0;
 const TOP_PX: f64 = 26.0;
 
 fn colour(scheme: Scheme) -> RGBColor {
-    if scheme == Scheme::Dda { ORANGE } else { BLUE }
+    match scheme {
+        Scheme::Dda => ORANGE,
+        Scheme::Rigid => GREEN,
+        Scheme::Adaptive | Scheme::Reference => BLUE,
+    }
 }
 
 /// Time of a step, memory and cost over the number of spheres.

@@ -5,18 +5,23 @@
 //! vertices with flat edges only, never touch: the face does. Neither do vertices between edges that rise and edges
 //! that fall around them (saddles): from either side of the sheet an edge or a face is nearer.
 
+use super::brims::{Brim, Cone};
 use super::edges::Edges;
 use crate::rock::Vec3;
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
 /// Sine of the angle between faces below which an edge is flat (–): rounding of `f64` coordinates, no more.
 const FLAT: f64 = 1e-12;
 /// A corner whose nearest edge leans towards the ball by this much can never touch it (–, cosine): far above the slack
 /// of the contact's own test, which is 1e-9.
-const LEANS: f64 = 1e-6;
+pub(super) const LEANS: f64 = 1e-6;
 /// Sine of the angle between edges below which they say nothing of their corner (–).
 const NEEDLE: f64 = 1e-6;
 /// Corners with more edges are kept as they are: a fan of a thousand would take a billion products.
 const MOST_EDGES: usize = 16;
+/// Twice the area of a triangle, relative to its longest side squared, below which its normal is known too badly to tell
+/// from where its edges can be touched (–).
+const SLIVER: f64 = 1e-9;
 
 /// A triangle ready for the hot loops.
 #[derive(Debug, Clone, Copy)]
@@ -37,18 +42,30 @@ impl Face {
         Self { a, e1, e2, n: e1.cross(&e2).normalize() }
     }
 
+    fn is_sliver(&self) -> bool {
+        let longest2 = self
+            .e1
+            .norm_squared()
+            .max(self.e2.norm_squared())
+            .max((self.e2 - self.e1).norm_squared());
+        self.e1.cross(&self.e2).norm() < SLIVER * longest2
+    }
+
     /// Whether the foot of `point` on the plane lies inside the triangle or at most `slack_m` (m) outside.
     ///
     /// Measured as a distance: barycentric coordinates of a needle round by more than any fixed slack.
     #[inline]
     pub fn holds_foot_of(&self, point: &Vec3, slack_m: f64) -> bool {
-        let to = point - self.a;
-        let e3 = self.e2 - self.e1;
-        let beyond = |along: &Vec3, to: &Vec3| {
-            let out = along.cross(&self.n).dot(to);
-            out > 0.0 && out * out > slack_m * slack_m * along.norm_squared()
+        let is_in = |side: &Vec3, beyond: f64| {
+            beyond <= 0.0 || beyond * beyond <= slack_m * slack_m * side.norm_squared()
         };
-        !beyond(&self.e1, &to) && !beyond(&e3, &(to - self.e1)) && !beyond(&-self.e2, &to)
+        // (side × n) · to, with one cross product for the two sides at the first corner
+        let to = point - self.a;
+        let across = self.n.cross(&to);
+        let e3 = self.e2 - self.e1;
+        is_in(&self.e1, self.e1.dot(&across))
+            && is_in(&self.e2, -self.e2.dot(&across))
+            && is_in(&e3, e3.dot(&self.n.cross(&(to - self.e1))))
     }
 }
 
@@ -74,9 +91,8 @@ pub struct Features {
     pub faces: Vec<Face>,
     /// Edges and who shares them.
     pub edges: Edges,
-    /// Bits 0–2: the triangle owns its edge `k`; bits 3–5: it owns its corner `k`. Every touchable edge and corner
-    /// has one owner.
-    pub owned: Vec<u8>,
+    /// What each triangle owns. Every touchable edge and corner has one owner.
+    pub brims: Vec<Brim>,
     /// Neighbours of vertex `v` along edges: `around[starts[v]..starts[v + 1]]`.
     starts: Vec<u32>,
     around: Vec<u32>,
@@ -143,29 +159,71 @@ impl Features {
             flat_corners: corner.len() - sharp,
             saddles: sharp - corners,
         };
-        self.give_away(&kept, &mut corner, triangles);
+        let owned = self.give_away(&kept, &mut corner, triangles);
+        let rows = owned.par_iter().zip(triangles).enumerate();
+        self.brims = rows
+            .map(|(t, (&owned, corners))| self.brim(t as u32, owned, (corners, vertices_m)))
+            .collect();
     }
 
-    /// Gives what is kept to the first triangle on it.
-    fn give_away(&mut self, kept: &[bool], corner: &mut [bool], triangles: &[[u32; 3]]) {
-        self.owned = vec![0; triangles.len()];
+    /// Gives what is kept to the first triangle on it: bits 0–2 its edges, bits 3–5 its corners.
+    fn give_away(&self, kept: &[bool], corner: &mut [bool], triangles: &[[u32; 3]]) -> Vec<u8> {
+        let mut owned = vec![0; triangles.len()];
         for (t, (sides, corners)) in self.edges.of_triangle.iter().zip(triangles).enumerate() {
             for k in 0..3 {
                 if kept[sides[k] as usize] && self.edges.triangles_on(sides[k])[0] == t as u32 {
-                    self.owned[t] |= 1 << k;
+                    owned[t] |= 1 << k;
                 }
                 // A corner is given away once: to the first triangle that asks.
                 if std::mem::take(&mut corner[corners[k] as usize]) {
-                    self.owned[t] |= 8 << k;
+                    owned[t] |= 8 << k;
                 }
             }
         }
+        owned
+    }
+
+    /// From where what `owned` says of triangle `t` can be touched.
+    fn brim(&self, t: u32, owned: u8, (corners, vertices_m): (&[u32; 3], &[Vec3])) -> Brim {
+        let mut brim = Brim::NONE;
+        for k in 0..3 {
+            if owned & (1 << k) != 0 {
+                let edge = self.edges.of_triangle[t as usize][k];
+                brim.add(1 << k, self.edge_cone(edge, t, vertices_m));
+            }
+            if owned & (8 << k) != 0 {
+                brim.add(8 << k, self.corner_cone(corners[k], t, vertices_m));
+            }
+        }
+        brim
+    }
+
+    fn edge_cone(&self, edge: u32, owner: u32, vertices_m: &[Vec3]) -> Cone {
+        let &[one, other] = self.edges.triangles_on(edge) else { return Cone::Anywhere };
+        let [face, beside] = [one, other].map(|t| &self.faces[t as usize]);
+        if one != owner || face.is_sliver() || beside.is_sliver() {
+            return Cone::Anywhere;
+        }
+        let [out, across] = [one, other].map(|t| self.outward(edge, t, vertices_m));
+        Cone::of_edge(&face.n, &out, &across)
+    }
+
+    fn corner_cone(&self, vertex: u32, owner: u32, vertices_m: &[Vec3]) -> Cone {
+        let (face, around) = (&self.faces[owner as usize], self.neighbours(vertex));
+        if around.len() > MOST_EDGES || face.is_sliver() {
+            return Cone::Anywhere;
+        }
+        let mut along = [Vec3::zeros(); MOST_EDGES];
+        for (along, &other) in along.iter_mut().zip(around) {
+            *along = (vertices_m[other as usize] - vertices_m[vertex as usize]).normalize();
+        }
+        Cone::of_corner(&face.n, &along[..around.len()])
     }
 
     /// Memory that they take (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val::<[Face]>(&self.faces)
-            + size_of_val::<[u8]>(&self.owned)
+            + size_of_val::<[Brim]>(&self.brims)
             + size_of_val::<[u32]>(&self.starts)
             + size_of_val::<[u32]>(&self.around)
             + self.edges.bytes()
@@ -176,7 +234,10 @@ impl Features {
     pub fn with_everything(mut self, triangles: &[[u32; 3]]) -> Self {
         let mut corner = vec![false; self.starts.len() - 1];
         triangles.iter().flatten().for_each(|&vertex| corner[vertex as usize] = true);
-        self.give_away(&vec![true; self.edges.len()], &mut corner, triangles);
+        let owned = self.give_away(&vec![true; self.edges.len()], &mut corner, triangles);
+        for (brim, owned) in self.brims.iter_mut().zip(owned) {
+            brim.anywhere |= owned & !(brim.front | brim.back);
+        }
         self
     }
 

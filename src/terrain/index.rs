@@ -1,13 +1,14 @@
-//! The spatial index: parry3d's bounding-volume tree, packed into one cache line a node.
+//! The spatial index: parry3d's bounding-volume tree, packed into two cache lines a node.
 //!
 //! parry builds the tree (binned surface-area heuristic). A rock's query reads it millions of times, so it is
-//! then packed: two child boxes a node in `f32`, rounded outwards, and up to four triangles a leaf. Triangles
+//! then packed: four child boxes a node in `f32`, rounded outwards, and up to four triangles a leaf. Triangles
 //! are renumbered in tree order, so that neighbours in space are neighbours in memory.
 
 use crate::rock::Vec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
+use wide::f32x4;
 
 /// Most triangles in one leaf.
 const LEAF: u32 = 4;
@@ -18,54 +19,84 @@ const START_MASK: u32 = (1 << COUNT_SHIFT) - 1;
 /// Most triangles an index can hold.
 pub const MAX_TRIANGLES: usize = START_MASK as usize;
 
-/// Two child boxes (m, rounded outwards) and where the children are.
+/// Children of a node.
+const WIDE: usize = 4;
+
+/// Up to four child boxes (m, rounded outwards) and where the children are.
 #[derive(Debug, Clone, Copy)]
-pub struct Pair {
-    /// Lower corners, axis by axis of the left and the right box: both are clipped at once.
-    pub lo: [[f32; 2]; 3],
+#[repr(C, align(64))]
+pub struct Node {
+    /// Lower corners, axis by axis: all four boxes are tested at once.
+    pub lo: [f32x4; 3],
     /// Upper corners.
-    pub hi: [[f32; 2]; 3],
-    child: [u32; 2],
+    pub hi: [f32x4; 3],
+    child: [u32; WIDE],
 }
 
 /// What a child is.
 #[derive(Debug, Clone, Copy)]
 pub enum Child {
-    /// Another pair.
+    /// Another node.
     Inner(u32),
     /// Triangles `start .. start + count`.
     Leaf(u32, u32),
 }
 
-impl Pair {
-    /// What the left (0) or right (1) child is.
+impl Child {
+    /// What the word of a child says.
     #[inline]
-    pub fn child(&self, side: usize) -> Child {
-        let word = self.child[side];
+    pub fn of(word: u32) -> Self {
         if word & LEAF_BIT == 0 {
-            Child::Inner(word)
+            Self::Inner(word)
         } else {
-            Child::Leaf(word & START_MASK, ((word & !LEAF_BIT) >> COUNT_SHIFT) + 1)
+            Self::Leaf(word & START_MASK, ((word & !LEAF_BIT) >> COUNT_SHIFT) + 1)
+        }
+    }
+}
+
+impl Node {
+    /// Without children: boxes that nothing ever meets.
+    const EMPTY: Self = Self {
+        lo: [f32x4::new([f32::MAX; WIDE]); 3],
+        hi: [f32x4::new([f32::MAX; WIDE]); 3],
+        child: [LEAF_BIT; WIDE],
+    };
+
+    /// The word of a child, see [`Child::of`].
+    #[inline]
+    pub fn word(&self, side: usize) -> u32 {
+        self.child[side]
+    }
+
+    fn put(&mut self, side: usize, word: u32, (lo, hi): (&Vec3, &Vec3)) {
+        self.child[side] = word;
+        for k in 0..3 {
+            self.lo[k].as_mut_array()[side] = below(lo[k]);
+            self.hi[k].as_mut_array()[side] = above(hi[k]);
         }
     }
 
-    /// Whether a child's box and the box from `lo` to `hi` share a point.
+    /// Bits of the children whose boxes share a point with the box from `lo` to `hi`.
     #[inline]
-    fn meets(&self, side: usize, (lo, hi): (&[f32; 3], &[f32; 3])) -> bool {
-        (0..3).all(|k| self.lo[k][side] <= hi[k] && lo[k] <= self.hi[k][side])
+    fn meets(&self, (lo, hi): (&[f32x4; 3], &[f32x4; 3])) -> u32 {
+        let apart = |k: usize| self.lo[k].simd_le(hi[k]) & lo[k].simd_le(self.hi[k]);
+        (apart(0) & apart(1) & apart(2)).to_bitmask()
     }
 }
 
 /// The packed tree. Triangle numbers are positions in the order that [`Index::build`] returns.
 #[derive(Debug, Default)]
 pub struct Index {
-    pairs: Vec<Pair>,
+    nodes: Vec<Node>,
     lo: Vec3,
     hi: Vec3,
 }
 
-/// Deepest tree that a traversal can walk; a binned tree over 2²⁸ triangles stays far below.
-pub const DEPTH: usize = 128;
+/// Deepest tree that a traversal can walk. Every level halves what a bin of centres spans or the triangles, and a node
+/// holds two levels or more: 2²⁸ triangles stay far below.
+const DEPTH: usize = 56;
+/// Children that wait during a traversal, at most.
+pub const WAITING: usize = (WIDE - 1) * DEPTH + 1;
 
 struct Loose {
     lo: Vec3,
@@ -90,51 +121,38 @@ impl Index {
         drop(tree);
         count_leaves(&mut loose);
         let root = &loose[0];
-        let mut index = Self { pairs: Vec::new(), lo: root.lo, hi: root.hi };
+        let mut index = Self { nodes: Vec::new(), lo: root.lo, hi: root.hi };
         let mut order = Vec::with_capacity(root.count as usize);
-        index.pack(&loose, &mut order);
+        let depth = index.pack(&loose, 0, &mut order);
+        assert!(depth <= DEPTH, "the index of the mesh has {depth} levels");
         (index, order)
     }
 
-    fn pack(&mut self, loose: &[Loose], order: &mut Vec<u32>) {
-        let whole = &loose[0];
-        let top = if whole.count <= LEAF { [0, 0] } else { whole.children };
-        self.pairs.push(Pair { lo: [[0.0; 2]; 3], hi: [[0.0; 2]; 3], child: [0; 2] });
-        // A tree of one leaf still gets a pair: its right box is empty.
-        let sides = if whole.count <= LEAF { 1 } else { 2 };
-        let mut stack: Vec<(u32, usize, u32)> =
-            (0..sides).rev().map(|side| (0, side, top[side])).collect();
-        if sides == 1 {
-            for k in 0..3 {
-                (self.pairs[0].lo[k][1], self.pairs[0].hi[k][1]) = (f32::MAX, f32::MAX);
-            }
-            self.pairs[0].child[1] = LEAF_BIT;
-        }
-        while let Some((pair, side, node)) = stack.pop() {
-            let from = &loose[node as usize];
+    /// Packs what is below a node, in the order of the tree; returns how deep it is.
+    fn pack(&mut self, loose: &[Loose], top: u32, order: &mut Vec<u32>) -> usize {
+        let place = self.nodes.len();
+        self.nodes.push(Node::EMPTY);
+        let mut depth = 0;
+        for (side, child) in widest(loose, top).enumerate() {
+            let from = &loose[child as usize];
             let word = if from.count <= LEAF {
                 let start = order.len() as u32;
-                gather(loose, node, order);
+                gather(loose, child, order);
                 LEAF_BIT | ((from.count - 1) << COUNT_SHIFT) | start
             } else {
-                let next = self.pairs.len() as u32;
-                self.pairs.push(Pair { lo: [[0.0; 2]; 3], hi: [[0.0; 2]; 3], child: [0; 2] });
-                stack.push((next, 1, from.children[1]));
-                stack.push((next, 0, from.children[0]));
+                let next = self.nodes.len() as u32;
+                depth = depth.max(self.pack(loose, child, order));
                 next
             };
-            let to = &mut self.pairs[pair as usize];
-            to.child[side] = word;
-            for k in 0..3 {
-                (to.lo[k][side], to.hi[k][side]) = (below(from.lo[k]), above(from.hi[k]));
-            }
+            self.nodes[place].put(side, word, (&from.lo, &from.hi));
         }
+        depth + 1
     }
 
-    /// The pairs; the first is the root. Empty when there is no triangle.
+    /// The nodes; the first is the root. Empty when there is no triangle.
     #[inline]
-    pub fn pairs(&self) -> &[Pair] {
-        &self.pairs
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
     }
 
     /// Lower and upper corner of all triangles (m).
@@ -144,43 +162,66 @@ impl Index {
 
     /// Calls `visit(start, count)` for every leaf whose box comes nearer than `radius` to `centre` along every axis.
     #[inline]
-    pub fn near(&self, centre: &Vec3, radius: f64, mut visit: impl FnMut(u32, u32)) {
+    pub fn near(&self, centre: &Vec3, radius: f64, visit: impl FnMut(u32, u32)) {
         let lo = [0, 1, 2].map(|k| below(centre[k] - radius));
         let hi = [0, 1, 2].map(|k| above(centre[k] + radius));
-        self.walk(|pair, side| pair.meets(side, (&lo, &hi)), &mut visit);
+        self.walk((lo, hi), visit);
     }
 
-    /// Calls `visit(start, count)` for every leaf whose box the vertical through (x, y) meets.
+    /// Calls `visit(start, count)` for every leaf whose box the vertical through (x, y) meets not above `under` (m).
     #[inline]
-    pub fn along_vertical(&self, x: f64, y: f64, mut visit: impl FnMut(u32, u32)) {
+    pub fn along_vertical(&self, (x, y): (f64, f64), under: f64, visit: impl FnMut(u32, u32)) {
         let lo = [below(x), below(y), f32::NEG_INFINITY];
-        let hi = [above(x), above(y), f32::INFINITY];
-        self.walk(|pair, side| pair.meets(side, (&lo, &hi)), &mut visit);
+        let hi = [above(x), above(y), above(under)];
+        self.walk((lo, hi), visit);
     }
 
     #[inline]
-    fn walk(&self, wanted: impl Fn(&Pair, usize) -> bool, visit: &mut impl FnMut(u32, u32)) {
-        if self.pairs.is_empty() {
+    fn walk(&self, (lo, hi): ([f32; 3], [f32; 3]), mut visit: impl FnMut(u32, u32)) {
+        if self.nodes.is_empty() {
             return;
         }
-        let mut stack = [0u32; DEPTH];
+        let (lo, hi) = (lo.map(f32x4::splat), hi.map(f32x4::splat));
+        let mut stack = [0u32; WAITING];
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let pair = &self.pairs[stack[top] as usize];
-            for side in [1, 0] {
-                if wanted(pair, side) {
-                    match pair.child(side) {
-                        Child::Inner(next) => {
-                            stack[top] = next;
-                            top += 1;
-                        }
-                        Child::Leaf(start, count) => visit(start, count),
+            let node = &self.nodes[stack[top] as usize];
+            let mut meets = node.meets((&lo, &hi));
+            while meets != 0 {
+                match Child::of(node.child[meets.trailing_zeros() as usize % WIDE]) {
+                    Child::Inner(next) => {
+                        stack[top] = next;
+                        top += 1;
                     }
+                    Child::Leaf(start, count) => visit(start, count),
                 }
+                meets &= meets - 1;
             }
         }
     }
+}
+
+/// The children that a packed node takes below a node of the tree, from left to right: of what it has, the largest box is
+/// opened as long as there is room.
+fn widest(loose: &[Loose], top: u32) -> impl Iterator<Item = u32> {
+    let area = |node: u32| {
+        let size = loose[node as usize].hi - loose[node as usize].lo;
+        size.x * size.y + size.y * size.z + size.z * size.x
+    };
+    let mut taken = [top; WIDE];
+    let mut count = 1;
+    while count < WIDE {
+        let open = (0..count).filter(|&k| loose[taken[k] as usize].count > LEAF);
+        let Some(largest) = open.max_by(|&a, &b| area(taken[a]).total_cmp(&area(taken[b]))) else {
+            break;
+        };
+        let children = loose[taken[largest] as usize].children;
+        taken.copy_within(largest + 1..count, largest + 2);
+        (taken[largest], taken[largest + 1]) = (children[0], children[1]);
+        count += 1;
+    }
+    taken.into_iter().take(count)
 }
 
 fn box_of(a: Vec3, b: Vec3, c: Vec3) -> Aabb {
@@ -241,13 +282,13 @@ fn gather(nodes: &[Loose], top: u32, order: &mut Vec<u32>) {
 }
 
 /// Largest `f32` not above `x`.
-fn below(x: f64) -> f32 {
+pub(crate) fn below(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) > x { near.next_down() } else { near }
 }
 
 /// Smallest `f32` not below `x`.
-fn above(x: f64) -> f32 {
+pub(crate) fn above(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) < x { near.next_up() } else { near }
 }

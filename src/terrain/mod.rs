@@ -1,8 +1,10 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
+pub mod brims;
 pub mod coarser;
 pub mod edges;
 pub mod features;
+pub mod floor;
 pub mod grid;
 mod groups;
 pub mod health;
@@ -10,6 +12,7 @@ pub mod index;
 pub mod make;
 mod merge;
 pub mod read;
+pub(crate) mod seen;
 pub mod stems;
 pub mod stl;
 pub mod t_junctions;
@@ -17,6 +20,7 @@ pub mod weld;
 
 use crate::rock::Vec3;
 use features::Features;
+use floor::Floor;
 use index::Index;
 use std::path::PathBuf;
 use stems::Stems;
@@ -52,6 +56,8 @@ pub struct Terrain {
     pub features: Features,
     /// The spatial index.
     pub index: Index,
+    /// How low the slope lies at most.
+    pub floor: Floor,
     /// Stems that can give way to a rock; none if all stand for good. The plan, which knows the limits, puts them here.
     pub stems: Option<Stems>,
 }
@@ -64,9 +70,14 @@ impl Terrain {
         let triangles: Vec<[u32; 3]> =
             order.iter().map(|&k| welded.triangles[k as usize]).collect();
         let features = Features::of(&welded.vertices_m, &triangles);
+        let sheet_of: Vec<u16> = order.iter().map(|&k| welded.sheet_of[k as usize]).collect();
+        let is_ground = |(_, sheet): &(_, &u16)| !sheets[**sheet as usize].is_tree;
+        let ground = features.faces.iter().zip(&sheet_of).filter(is_ground).map(|(face, _)| face);
+        let floor = Floor::of(ground, triangles.len(), index.bounds());
         Self {
             origin_m: welded.origin_m,
-            sheet_of: order.iter().map(|&k| welded.sheet_of[k as usize]).collect(),
+            sheet_of,
+            floor,
             facet_of: order.iter().map(|&k| welded.facet_of[k as usize]).collect(),
             vertices_m: welded.vertices_m,
             triangles,
@@ -83,7 +94,8 @@ impl Terrain {
             + size_of_val::<[[u32; 3]]>(&self.triangles)
             + size_of_val::<[u16]>(&self.sheet_of)
             + size_of_val::<[u32]>(&self.facet_of)
-            + size_of_val(self.index.pairs())
+            + size_of_val(self.index.nodes())
+            + self.floor.bytes()
             + self.features.bytes()
     }
 
@@ -119,7 +131,7 @@ impl Terrain {
     /// The highest slope surface at (x, y) that is not above `under_m`, and its unit normal (m, local).
     pub fn slope_under(&self, x_m: f64, y_m: f64, under_m: f64) -> Option<(f64, Vec3)> {
         let (mut best, mut of) = (f64::NEG_INFINITY, None);
-        self.index.along_vertical(x_m, y_m, |start, count| {
+        self.index.along_vertical((x_m, y_m), under_m, |start, count| {
             for t in start..start + count {
                 let height = self.height_of(t, x_m, y_m);
                 if height > best && height <= under_m && !self.is_tree(t) {

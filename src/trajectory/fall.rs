@@ -261,7 +261,7 @@ impl Fall<'_> {
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
             let effort = &mut self.journey.effort;
-            effort.steps += 1;
+            effort.steps += done.steps;
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
             self.journey.pay(&done.loss, 1.0);
@@ -297,6 +297,9 @@ impl Fall<'_> {
 
     /// Notes down impacts that have just begun.
     fn announce(&mut self) {
+        if self.grip.holds.iter().all(|hold| hold.announced) {
+            return;
+        }
         let radius = self.world.body.radius;
         let until_s = self.journey.now.time_s + self.impact_time();
         for hold in self.grip.holds.iter_mut().filter(|hold| !hold.announced) {

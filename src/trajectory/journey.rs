@@ -131,6 +131,10 @@ impl<'a> Journey<'a> {
     }
 
     fn note_height(&mut self, centre: &Vec3) {
+        let most_m = centre.z - self.rock.radius_m - self.terrain.floor.under(centre.x, centre.y);
+        if most_m <= self.extremes.height_m {
+            return;
+        }
         if let Some(height) = self.clearance_m(centre) {
             self.extremes.height_m = self.extremes.height_m.max(height);
         }

@@ -205,9 +205,9 @@ fn law_between(a: &Body, b: &Body, answer: &(Ground, Damping), capture: &Capture
 }
 
 impl Crowd<'_> {
-    /// Bonds the rocks that touch at the start.
+    /// Bonds the rocks that touch at the start; the rigid limit has no springs by which a bond would break, and none.
     fn bond(&mut self, answer: &Answer) {
-        if !answer.strength.is_some() {
+        if !answer.strength.is_some() || self.is_rigid() {
             return;
         }
         for (a, b) in self.touching_at_start() {

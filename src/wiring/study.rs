@@ -68,17 +68,17 @@ pub(crate) fn stability(out: &Path, done: impl Fn(&str)) -> Result<(String, bool
 /// Follows worlds of more and more spheres, those of `settle` to the end of their story; says what was found, and whether
 /// all of it is as it should be.
 pub(crate) fn scaling(
-    (out, longest_s): (&Path, f64),
-    [adaptive, dda, settle]: [&[usize]; 3],
+    (out, (longest_s, settle)): (&Path, (f64, &[usize])),
+    schemes: &[(Scheme, &[usize])],
     done: impl Fn(String) + Send + Sync,
 ) -> Result<(String, bool)> {
     // One thread: processor time is that of the thread.
     let worlds = Ensemble::new(Some(1))?.install(|| {
         let before = study::resident_now();
-        let of = |scheme, list: &[usize]| -> Vec<(usize, Scheme)> {
-            list.iter().map(|&spheres| (spheres, scheme)).collect()
-        };
-        let mut all = [of(Scheme::Adaptive, adaptive), of(Scheme::Dda, dda)].concat();
+        let mut all: Vec<(usize, Scheme)> = schemes
+            .iter()
+            .flat_map(|(scheme, list)| list.iter().map(|&spheres| (spheres, *scheme)))
+            .collect();
         // Small worlds first: what a large one has given back to the process would hide their memory.
         all.sort_by_key(|(spheres, _)| *spheres);
         let settled_s = study::Phase::Settling.times_s().1;

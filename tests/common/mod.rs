@@ -8,6 +8,7 @@
 )]
 
 pub mod episode;
+pub mod together;
 pub mod zoo;
 
 use rockfall::chance::{Purpose, stream};

@@ -8,10 +8,15 @@ use super::state::{
 use crate::contact::near::Near;
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::step::adaptive::{Control, ONSET, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, Trial};
-use crate::step::grip::World;
+use crate::step::adaptive::{
+    Advance, Control, Halt, ONSET, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, Trial, settle,
+};
+use crate::step::grip::{Loss, World};
 use crate::step::law::{Body, normal_force};
-use crate::step::slide::{Answers, Local, Pair};
+use crate::step::slide::{Answers, Local, Mode, Pair};
+
+/// An impact is over after about so many radians of its contact (–): up to there its steps are taken in one go.
+const IMPACT: f64 = 3.5;
 
 /// A step being tried.
 pub(super) struct Try<'a, 'w> {
@@ -24,14 +29,18 @@ pub(super) struct Try<'a, 'w> {
     /// Normal damping in force (N s/m).
     pub(super) c_n: f64,
     pub(super) gravity: Local,
-    /// Penetration at the step's start (m).
+    /// Penetration at `start` (m).
     pub(super) pen: f64,
-    /// Energy at the step's start, motion and springs (J).
+    /// Energy at the step's start, motion, springs and height over `start` (J).
     pub(super) energy: f64,
+    /// How far from `start` what is near is known, squared (m²).
+    pub(super) room2: f64,
     pub(super) near: &'a Near,
-    /// Centre at the step's start (m).
+    /// Centre where the ways are counted from (m).
     pub(super) start: Vec3,
     pub(super) face: u32,
+    /// How shear and rolling were when last asked.
+    pub(super) mode: Mode,
     pub(super) end: State,
     pub(super) press: Press,
     pub(super) stored: f64,
@@ -78,7 +87,7 @@ impl Try<'_, '_> {
             let a = [0, 1].map(|k| base[SHEAR + k] * law.p_s + slip[k] * answers.kap);
             let d = [0, 1, 2].map(|k| base[ROLL + k] * law.k_r + spin[k] * answers.kar);
             let caps = (law.friction * push, law.rolling_m * push);
-            (drag, moment) = Pair { answers, a, d, caps }.solve();
+            (drag, moment) = Pair { answers, a, d, caps }.solve(&mut self.mode);
         }
         let (dv, dw) = accelerations(body, push, drag, moment);
         let (rate, end) = (&mut self.flat.rates[i], &mut self.end);
@@ -108,13 +117,13 @@ impl Try<'_, '_> {
     /// What speaks against the stage's end, if anything: the rock must stay over the face and touch nothing else.
     #[inline]
     fn objection(&self, dt: f64) -> Option<Outcome> {
-        let centre = self.start + self.flat.frame.out_local(three(&self.end, WAY));
-        if !self.near.covers(&centre) {
+        if square(three(&self.end, WAY)) > self.room2 {
             return Some(Outcome::Elsewhere);
         }
         if self.near.plane() == Some(self.face) {
             return None;
         }
+        let centre = self.start + self.flat.frame.out_local(three(&self.end, WAY));
         if !self.near.is_over(self.face, &centre) {
             return Some(Outcome::Elsewhere);
         }
@@ -143,15 +152,76 @@ impl Try<'_, '_> {
         dt * worst2.sqrt() / self.control.tolerance
     }
 
-    /// Whether motion, height and springs together hold more at the end than at the start.
-    fn gains(&self) -> bool {
+    /// Motion, height and springs at the step's end (J).
+    #[inline]
+    fn energy_at_end(&self) -> f64 {
         let (body, end) = (&self.world.body, &self.end);
         let (speed2, spin2) = (square(three(end, SPEED)), square(three(end, SPIN)));
         let motion = 0.5 * (body.mass * speed2 + body.inertia * spin2);
-        let lifted = -body.mass * dot(self.gravity, three(end, WAY));
+        motion + self.stored - body.mass * dot(self.gravity, three(end, WAY))
+    }
+
+    /// Whether that is more than at the step's start.
+    #[inline]
+    fn gains(&self) -> bool {
+        let body = &self.world.body;
         let force = body.mass * body.gravity.norm() + self.press.push;
-        let unknown = ROUNDING * self.energy + PLACE_ROUNDING * body.radius * force;
-        motion + lifted + self.stored > self.energy + unknown
+        let unknown = ROUNDING * self.energy.abs() + PLACE_ROUNDING * body.radius * force;
+        self.energy_at_end() > self.energy + unknown
+    }
+
+    /// Steps until the rock is free, an impact would be over, or what is near is no longer known; why it stopped before
+    /// that, if it did.
+    pub(super) fn run(
+        &mut self,
+        (h_max, is_tree): (f64, bool),
+        done: &mut Advance,
+    ) -> Option<Halt> {
+        // A stem must be asked after every step whether it still stands.
+        let span = if is_tree { 0.0 } else { IMPACT / self.law.omega };
+        let (control, mut sum) = (self.control, [0.0; 3]);
+        let halt = loop {
+            let left = h_max - done.dt;
+            let dt = match settle(self, control, left, &mut done.rejected) {
+                Ok(dt) => dt,
+                Err(halt) => break Some(halt),
+            };
+            self.accept(dt, &mut sum);
+            done.steps += 1;
+            done.dt = if dt >= left { h_max } else { done.dt + dt };
+            if !self.press.closed || done.dt >= span.min(h_max) || !self.has_room(dt) {
+                break None;
+            }
+        };
+        let [friction, damping, rolling] = sum;
+        done.loss = Loss { friction, damping, rolling, trees: 0.0 };
+        halt
+    }
+
+    /// Goes on from the step's end; adds what went into friction, damping and rolling (J) to `sum`.
+    #[inline]
+    fn accept(&mut self, dt: f64, sum: &mut Local) {
+        let tableau = self.control.tableau;
+        for (k, losses) in self.flat.losses[..tableau.stages].iter().enumerate() {
+            let weight = dt * tableau.work_weight(k);
+            for (sum, loss) in sum.iter_mut().zip(losses) {
+                *sum += weight * loss;
+            }
+        }
+        self.energy = self.energy_at_end();
+        let last = tableau.stages - 1;
+        let flat = &mut *self.flat;
+        (flat.rates[0], flat.losses[0]) = (flat.rates[last], flat.losses[last]);
+        flat.state = self.end;
+    }
+
+    /// Whether the next step stays where what is near is known, and within the longest step that was allowed for.
+    #[inline]
+    fn has_room(&mut self, dt: f64) -> bool {
+        self.limit -= dt;
+        let (state, h) = (&self.flat.state, *self.h);
+        let ahead = [0, 1, 2].map(|k| state[WAY + k] + state[SPEED + k] * h);
+        h <= self.limit && square(ahead) < self.room2
     }
 }
 

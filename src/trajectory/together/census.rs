@@ -17,7 +17,7 @@ pub struct Census {
     pub sweeps: u64,
     /// Systems factorised because sweeps crept.
     pub jumps: u64,
-    /// Steps whose contact states did not settle (`dda`).
+    /// Steps whose contact states did not settle (`dda`, `rigid`).
     pub unsettled: u64,
     /// Most rocks that took a step together.
     pub largest: u64,

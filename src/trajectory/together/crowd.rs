@@ -5,9 +5,11 @@ use super::split::{Meetings, Place, is_busy, meetings_of_islands, place_of};
 use super::wide::Wide;
 use super::{Answer, Census, Rover, State, TOUCHING, capture, law_between};
 use crate::contact::pair::Tie;
+use crate::coupled::TRAVEL;
 use crate::coupled::broad::{Ball, overlapping};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
+use crate::step::Scheme;
 use crate::trajectory::Trajectory;
 use crate::trajectory::fall::Course;
 use rayon::prelude::*;
@@ -58,6 +60,10 @@ impl<'a> Crowd<'a> {
     #[expect(clippy::expect_used, reason = "rovers are away only while their island is computed")]
     pub(super) fn rover(&self, k: u32) -> &Rover<'a> {
         self.rovers[k as usize].as_ref().expect("a rover is at home between windows")
+    }
+
+    pub(super) fn is_rigid(&self) -> bool {
+        self.course.step.scheme == Scheme::Rigid
     }
 
     pub(super) fn law(&self, a: u32, b: u32) -> Law {
@@ -182,9 +188,11 @@ impl<'a> Crowd<'a> {
 
     fn window_length(&self) -> f64 {
         let mut length = LONGEST_S;
+        // In the rigid limit nothing happens between the steps: a window is one.
+        let way = if self.is_rigid() { TRAVEL } else { WAY };
         for rover in self.rovers.iter().flatten().filter(|rover| rover.state == State::Moving) {
             let speed = rover.velocity_at(self.course, self.now_s).norm();
-            length = length.min(WAY * rover.member.body.radius / speed.max(1e-9));
+            length = length.min(way * rover.member.body.radius / speed.max(1e-9));
         }
         length.max(SHORTEST_S)
     }

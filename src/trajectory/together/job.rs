@@ -1,5 +1,7 @@
 //! One island through one window: leap, meet, step, rest.
 
+mod rigid;
+
 use super::{Census, Rover, State};
 use crate::contact::pair::{Tie, meeting_s};
 use crate::coupled::islands::Islands;
@@ -164,6 +166,7 @@ impl<'a> Job<'a> {
             let spent = (cluster.sweeps, cluster.jumps);
             let tried = match self.course.step.scheme {
                 Scheme::Dda => cluster.advance_fixed(self.course.step, room),
+                Scheme::Rigid => cluster.advance_rigid(self.course.step.step_s, room),
                 _ => cluster.advance(&control, room),
             };
             let done = match tried {

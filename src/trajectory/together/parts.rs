@@ -24,6 +24,10 @@ const RETURNS: usize = 6;
 impl Job<'_> {
     /// Takes the island to the end of its window.
     pub(super) fn run(&mut self) {
+        if self.is_rigid_heap() {
+            self.run_rigid();
+            return;
+        }
         if self.flies_through() {
             return;
         }

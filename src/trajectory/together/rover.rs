@@ -1,10 +1,11 @@
 //! One rock of a world: flying, touching, resting, and what is noted down of it.
 
 use super::{Rover, State};
-use crate::coupled::Member;
+use crate::coupled::{Hit, Member};
 use crate::flight::{Landing, Parabola, leap};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
+use crate::step::Scheme;
 use crate::step::adaptive::ONSET;
 use crate::step::grip::{Loss, World};
 use crate::trajectory::fall::{Course, IMPACT_TIMES};
@@ -139,13 +140,8 @@ impl Rover<'_> {
         if matches!(self.state, State::Gone(_)) {
             return;
         }
-        let before_j = self.total_j(course);
-        let grip = &self.member.grip;
-        let to = Motion { time_s, position_m: grip.c, velocity_m_s: grip.v, spin_rad_s: grip.w };
-        let dt = time_s - self.journey.now.time_s;
-        let slides = slides || grip.holds.iter().any(|hold| hold.slides);
+        let to = self.motion_at(time_s);
         let was_flying = self.lands.is_some();
-        self.off.1 = self.off.1.max((to.velocity_m_s - self.off.0).norm());
         self.announce(course);
         // A rock may be hit and let go within one step: then it flies another way.
         let is_untouched = given_j == 0.0 && loss == Loss::default();
@@ -153,6 +149,61 @@ impl Rover<'_> {
             self.journey.step_as(to, PathState::Flight);
             return;
         }
+        self.touch(course, to, (loss, given_j), (slides, was_flying));
+        if self.member.flying {
+            self.look_ahead(course);
+        }
+    }
+
+    /// Notes one step of its island in the rigid limit: rocks that fly touch and fly on within a step, too.
+    pub(super) fn stride(
+        &mut self,
+        course: &Course,
+        time_s: f64,
+        given: (Loss, f64),
+        slides: bool,
+    ) {
+        if matches!(self.state, State::Gone(_)) {
+            return;
+        }
+        let to = self.motion_at(time_s);
+        self.announce(course);
+        if self.member.flew && self.member.flying && !self.member.was_touched {
+            self.journey.step_as(to, PathState::Flight);
+            return;
+        }
+        let flew = self.member.flew;
+        self.touch(course, to, given, (slides, flew));
+        if self.member.flying {
+            self.lands = None;
+        }
+    }
+
+    /// Notes an impact on the mesh in the step that ends at `time_s` (s).
+    pub(super) fn hit(&mut self, hit: &Hit, time_s: f64) {
+        if self.state == State::Moving {
+            self.journey.begin_impact(hit.point_m, hit.feature, hit.triangle, time_s);
+        }
+    }
+
+    /// What the solver has made of it (the largest change of its velocity is kept).
+    fn motion_at(&mut self, time_s: f64) -> Motion {
+        let grip = &self.member.grip;
+        self.off.1 = self.off.1.max((grip.v - self.off.0).norm());
+        Motion { time_s, position_m: grip.c, velocity_m_s: grip.v, spin_rad_s: grip.w }
+    }
+
+    /// Notes one step with contact.
+    fn touch(
+        &mut self,
+        course: &Course,
+        to: Motion,
+        (loss, given_j): (Loss, f64),
+        (slides, was_flying): (bool, bool),
+    ) {
+        let before_j = self.total_j(course);
+        let dt = to.time_s - self.journey.now.time_s;
+        let slides = slides || self.member.grip.holds.iter().any(|hold| hold.slides);
         self.journey.step(to, slides);
         self.journey.pay(&loss, 1.0);
         self.journey.ledger.others_j += given_j;
@@ -166,7 +217,6 @@ impl Rover<'_> {
         }
         if self.member.flying {
             self.end_episode(course);
-            self.look_ahead(course);
         }
         let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.member.body.radius);
         self.quiet_s = if slow < course.rest.speed_m_s { self.quiet_s + dt } else { 0.0 };
@@ -178,7 +228,9 @@ impl Rover<'_> {
         let given_j = self.journey.ledger.others_j - self.began_j.1;
         let Member { grip, body, laws, .. } = &mut *self.member;
         let world = World { terrain: course.terrain, body: *body, laws };
-        let stored = grip.springs_j(&world);
+        // The rigid limit has no springs, whatever the depth that rounding leaves.
+        let is_rigid = course.step.scheme == Scheme::Rigid;
+        let stored = if is_rigid { Loss::default() } else { grip.springs_j(&world) };
         self.journey.pay(&stored, -1.0);
         let rise_j = self.total_j(course) - self.began_j.0 + given_j + stored.sum();
         self.journey.ledger.rise_j = self.journey.ledger.rise_j.max(rise_j);

@@ -1,0 +1,110 @@
+//! Rocks that got into each other or into the mesh are moved out, without adding velocity.
+
+use super::Pile;
+use super::ball::Ball;
+use super::strike::Scene;
+use crate::contact::pair::between;
+use crate::coupled::member::Member;
+use crate::rock::Vec3;
+use crate::step::grip::{TOUCH, World};
+
+/// Overlap of two rocks that is left alone (–, relative to the smaller radius): rest that is swept to a tolerance.
+const SLACK: f64 = 1e-5;
+/// Sweeps over what overlaps.
+const SWEEPS: u32 = 8;
+
+impl Pile {
+    /// Moves apart what overlaps, each by its share of the mass; the height that a rock gains is paid by its motion.
+    pub(super) fn part(&mut self, scene: &mut Scene) {
+        self.places.clear();
+        self.places.extend(self.balls.iter().map(|ball| ball.c));
+        for _ in 0..SWEEPS {
+            let mut moved = false;
+            for tie in scene.ties {
+                let ends = [tie.a as usize, tie.b as usize];
+                let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
+                let reach = a.body.radius + b.body.radius;
+                let allowed = reach - SLACK * a.body.radius.min(b.body.radius);
+                if (a.c - b.c).norm_squared() >= allowed * allowed {
+                    continue;
+                }
+                let (n, distance) = between(&a.c, &b.c);
+                let way = n * ((reach - distance) / (a.inv.0 + b.inv.0));
+                a.c += way * a.inv.0;
+                b.c -= way * b.inv.0;
+                moved = true;
+            }
+            for k in 0..self.balls.len() {
+                moved |= self.push_out(scene, k);
+            }
+            if !moved {
+                break;
+            }
+        }
+        self.pay_for_height();
+    }
+
+    /// Moves a rock out of the mesh; whether it was in it.
+    fn push_out(&mut self, scene: &mut Scene, k: usize) -> bool {
+        let ball = &mut self.balls[k];
+        let Member { grip, body, laws, .. } = &mut *scene.members[k];
+        let world = World { terrain: scene.terrain, body: *body, laws };
+        grip.look_ahead_again(&world, &ball.c);
+        let out = grip.touches.iter().fold(Vec3::zeros(), |sum, touch| {
+            let missing = body.radius - touch.distance_m - sum.dot(&touch.normal);
+            sum + touch.normal * missing.max(0.0)
+        });
+        ball.c += out;
+        out.norm_squared() > (TOUCH * body.radius).powi(2)
+    }
+
+    /// Takes the work of lifting out of the motion: of the rock itself, and what that lacks of all that are pushed.
+    fn pay_for_height(&mut self) {
+        let mut owed_j = 0.0;
+        for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
+            ball.moved = ball.c != *from;
+            let lifted_j = -ball.body.mass * ball.body.gravity.dot(&(ball.c - from));
+            if lifted_j > 0.0 {
+                let lacking_j = (lifted_j - ball.motion_j()).max(0.0);
+                ball.slow_down(lifted_j - lacking_j);
+                self.given_j[k] -= lacking_j;
+                owed_j += lacking_j;
+            }
+        }
+        if owed_j > 0.0 {
+            self.pay_together(owed_j);
+        }
+    }
+
+    /// Takes energy (J) out of the motion of all rocks that are pushed, each its share.
+    fn pay_together(&mut self, owed_j: f64) {
+        let takes_part = |ball: &Ball| ball.pushed || ball.moved;
+        let motion_j: f64 =
+            self.balls.iter().filter(|ball| takes_part(ball)).map(Ball::motion_j).sum();
+        let share = if motion_j > 0.0 { (owed_j / motion_j).min(1.0) } else { 0.0 };
+        for (ball, given_j) in self.balls.iter_mut().zip(&mut self.given_j) {
+            if takes_part(ball) {
+                let own_j = share * ball.motion_j();
+                ball.slow_down(own_j);
+                *given_j += own_j;
+            }
+        }
+    }
+}
+
+impl Ball {
+    /// Energy in motion (J).
+    fn motion_j(&self) -> f64 {
+        0.5 * (self.body.mass * self.v.norm_squared() + self.body.inertia * self.w.norm_squared())
+    }
+
+    /// Loses energy (J) of its motion, as much as it has at most.
+    fn slow_down(&mut self, lost_j: f64) {
+        let motion_j = self.motion_j();
+        if motion_j > 0.0 && lost_j > 0.0 {
+            let kept = ((motion_j - lost_j) / motion_j).max(0.0).sqrt();
+            self.v *= kept;
+            self.w *= kept;
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Impacts within a step, in the order of their times.
+//!
+//! Rocks that came in faster than the capture speed overlap at the end of a step. When they touched is known: under the
+//! same gravity two rocks move in straight lines relative to each other, and one rock over the mesh in a parabola. Each
+//! blow is taken by itself at that time, the earliest first, and the rocks go on from there with what they got; blows
+//! that follow from it are found with the new paths. A blow between two rocks alone is therefore exact, whatever the
+//! step, and each takes energy.
+
+use super::Pile;
+use super::ball::{Ball, Foot, Knot};
+use crate::contact::pair::Tie;
+use crate::coupled::cluster::TOUCH;
+use crate::coupled::member::{Member, Seat};
+use crate::rock::Vec3;
+use crate::step::grip::World;
+use crate::step::rigid::capture_m_s;
+use crate::terrain::Terrain;
+use std::cmp::Reverse;
+
+/// Blows on one rock in one step from which on they do not rebound …
+const LIVELY: u32 = 200;
+/// … and after which the rest is left to the next step.
+const MOST: u32 = 400;
+/// A touch at the time of a blow that is no farther than this (–, relative to R): a mesh is not met on a parabola alone.
+const NEAR: f64 = 1e-3;
+
+/// A blow that is due: time before the end of the step (s, as the bits of a positive number: they keep the order), the
+/// place of its contact, the counts of its rocks.
+pub(super) type Due = (u64, Reverse<usize>, [u32; 2]);
+
+/// An impact on the mesh.
+#[derive(Debug, Clone, Copy)]
+pub struct Hit {
+    /// The rock, as a place in the island.
+    pub rock: usize,
+    /// Point that is touched (m).
+    pub point_m: Vec3,
+    /// Where on the mesh.
+    pub feature: crate::contact::FeatureKind,
+    /// Triangle whose ground answers.
+    pub triangle: u32,
+}
+
+/// What blows act on.
+pub(super) struct Scene<'s> {
+    pub(super) terrain: &'s Terrain,
+    pub(super) members: &'s mut [Seat],
+    pub(super) ties: &'s [Tie],
+}
+
+impl Scene<'_> {
+    /// The rocks of a contact: ties come first, then every rock with the mesh.
+    fn ends_of(&self, place: usize) -> [usize; 2] {
+        self.ties.get(place).map_or([place.saturating_sub(self.ties.len()); 2], |tie| {
+            [tie.a as usize, tie.b as usize]
+        })
+    }
+}
+
+impl Pile {
+    /// Takes all impacts of a step of length `dt` (s); whether none is left.
+    pub(super) fn strike(&mut self, scene: &mut Scene, dt: f64) -> bool {
+        self.due.clear();
+        for ball in &mut self.balls {
+            (ball.since_s, ball.blows) = (dt, 0);
+        }
+        for k in 0..scene.ties.len() {
+            self.expect_pair(scene, k);
+        }
+        for k in 0..self.balls.len() {
+            self.expect_ground(scene, k);
+        }
+        if self.due.is_empty() {
+            return true;
+        }
+        self.lay_links(scene.ties);
+        let mut all = true;
+        while let Some((bits, Reverse(place), counts)) = self.due.pop() {
+            let ends = scene.ends_of(place);
+            if ends.map(|k| self.balls[k].times) != counts {
+                continue;
+            }
+            if ends.iter().any(|&k| self.balls[k].blows >= MOST) {
+                all = false;
+                continue;
+            }
+            self.blow(scene, place, f64::from_bits(bits));
+            self.expect_more(scene, ends);
+        }
+        all
+    }
+
+    /// The ties of every rock.
+    fn lay_links(&mut self, ties: &[Tie]) {
+        self.first.clear();
+        self.first.resize(self.balls.len() + 1, 0);
+        for tie in ties {
+            self.first[tie.a as usize + 1] += 1;
+            self.first[tie.b as usize + 1] += 1;
+        }
+        for k in 0..self.balls.len() {
+            self.first[k + 1] += self.first[k];
+        }
+        self.links.clear();
+        self.links.resize(2 * ties.len(), 0);
+        let mut next = self.first.clone();
+        for (tie, place) in ties.iter().zip(0..) {
+            for end in [tie.a as usize, tie.b as usize] {
+                self.links[next[end] as usize] = place;
+                next[end] += 1;
+            }
+        }
+    }
+
+    /// Looks for the blows that follow from one on these rocks.
+    fn expect_more(&mut self, scene: &mut Scene, ends: [usize; 2]) {
+        let both = if ends[0] == ends[1] { &ends[..1] } else { &ends[..] };
+        for &end in both {
+            for at in self.first[end]..self.first[end + 1] {
+                let tie = self.links[at as usize] as usize;
+                self.expect_pair(scene, tie);
+            }
+            self.expect_ground(scene, end);
+        }
+    }
+
+    /// Notes the blow of a tie, if one is due.
+    fn expect_pair(&mut self, scene: &Scene, place: usize) {
+        let tie = &scene.ties[place];
+        let [a, b] = [tie.a, tie.b].map(|k| &self.balls[k as usize]);
+        let (apart, closing) = (a.c - b.c, a.v - b.v);
+        let reach = a.body.radius + b.body.radius;
+        let (distance2, widest) = (apart.norm_squared(), reach * (1.0 + TOUCH));
+        let along = apart.dot(&closing);
+        if distance2 > widest * widest || along >= 0.0 {
+            return;
+        }
+        // |d − u s| = reach with the smaller cancellation; both parts of the root are positive
+        let inside = (reach * reach - distance2).max(0.0);
+        let root = (along * along + closing.norm_squared() * inside).sqrt();
+        let s = (inside / (root - along)).min(a.since_s).min(b.since_s);
+        let (n, _) = crate::contact::pair::between(&(a.c - a.v * s), &(b.c - b.v * s));
+        if -n.dot(&closing) >= capture_m_s(&tie.law) {
+            self.due.push((s.to_bits(), Reverse(place), [a.times, b.times]));
+        }
+    }
+
+    /// Notes the blow of a rock on the mesh, if one is due.
+    fn expect_ground(&mut self, scene: &mut Scene, k: usize) {
+        let ball = &self.balls[k];
+        let Member { grip, body, laws, .. } = &mut *scene.members[k];
+        let world = World { terrain: scene.terrain, body: *body, laws };
+        grip.look_ahead_again(&world, &ball.c);
+        let mut first: Option<f64> = None;
+        for touch in grip.touches.iter() {
+            let s = time_of_touch(ball, &touch.normal, body.radius - touch.distance_m);
+            let is_fast = |s: &f64| {
+                let v = ball.v - body.gravity * *s;
+                -touch.normal.dot(&v) >= capture_m_s(world.law(touch.triangle))
+            };
+            if let Some(s) = s.filter(is_fast) {
+                first = Some(first.unwrap_or(0.0).max(s));
+            }
+        }
+        if let Some(s) = first {
+            let place = scene.ties.len() + k;
+            self.due.push((s.to_bits(), Reverse(place), [ball.times; 2]));
+        }
+    }
+
+    /// Takes the blow of a contact, `s` (s) before the end of the step.
+    fn blow(&mut self, scene: &mut Scene, place: usize, s: f64) {
+        if place < scene.ties.len() {
+            self.blow_pair(scene, place, s);
+        } else {
+            self.blow_ground(scene, place - scene.ties.len(), s);
+        }
+    }
+
+    fn blow_pair(&mut self, scene: &Scene, place: usize, s: f64) {
+        let tie = &scene.ties[place];
+        let ends = [tie.a as usize, tie.b as usize];
+        let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { return };
+        let at = [&*a, &*b].map(|ball| ball.c - ball.v * s);
+        let mut knot = Knot::new((place, tie), [a, b], [&at[0], &at[1]]);
+        let restitution = if a.blows.max(b.blows) < LIVELY { tie.law.restitution } else { 0.0 };
+        knot.target = -restitution * knot.speed(a, b);
+        let before = [(a.v, a.w), (b.v, b.w)];
+        let (mut one, mut two) = (*a, *b);
+        knot.solve(&mut one, &mut two);
+        for (k, ball) in [a, b].into_iter().enumerate() {
+            let load = knot.load(k);
+            ball.take_late(&load, s);
+            let (v, w) = mean_late(ball, &before[k], s);
+            self.given_j[ends[k]] -= Ball::work_j(&load, &v, &w);
+            ball.is_struck(s);
+        }
+        self.struck[place] = true;
+    }
+
+    fn blow_ground(&mut self, scene: &mut Scene, k: usize, s: f64) {
+        let ball = &mut self.balls[k];
+        let Member { grip, body, laws, .. } = &mut *scene.members[k];
+        let world = World { terrain: scene.terrain, body: *body, laws };
+        let v = ball.v - body.gravity * s;
+        let at = ball.c - (ball.v - body.gravity * (0.5 * s)) * s;
+        let reach = body.radius * (1.0 + NEAR);
+        grip.look(&world, &at, reach);
+        if grip.touches.iter().all(|touch| touch.normal.dot(&v) >= 0.0) {
+            grip.look(&world, &ball.c, reach);
+        }
+        let hit = grip
+            .touches
+            .iter()
+            .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))
+            .copied();
+        if let Some(touch) = hit {
+            let law = world.law(touch.triangle);
+            let mut foot = Foot::new(k, (touch.feature, touch.triangle), touch.normal, law);
+            let restitution = if ball.blows < LIVELY { law.restitution } else { 0.0 };
+            foot.target = -restitution * foot.n.dot(&v);
+            foot.strike(body, &v, &ball.w);
+            let before = (ball.v, ball.w);
+            ball.take_late(&foot.load(body), s);
+            let mean = mean_late(ball, &before, s);
+            self.losses[k].add(&foot.loss(&world, &mean), 1.0);
+            let point_m = at - foot.n * body.radius;
+            let feature = touch.feature.kind;
+            self.hits.push(Hit { rock: k, point_m, feature, triangle: touch.triangle });
+        }
+        ball.is_struck(s);
+    }
+}
+
+impl Ball {
+    /// Notes that a blow fell `s` (s) before the end of the step.
+    fn is_struck(&mut self, s: f64) {
+        self.since_s = s;
+        self.blows += 1;
+        self.pushed = true;
+        self.times += 1;
+    }
+}
+
+/// Mean motion in a blow that fell `s` (s) before the end of the step, from the motions there without and with it.
+fn mean_late(ball: &Ball, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
+    ((before.0 + ball.v) * 0.5 - ball.body.gravity * s, (before.1 + ball.w) * 0.5)
+}
+
+/// How long before the end of the step a rock that is pressed in by `pen` (m) along `n` touched (s), on its parabola.
+fn time_of_touch(ball: &Ball, n: &Vec3, pen: f64) -> Option<f64> {
+    let speed = -n.dot(&ball.v);
+    let root2 = speed * speed + 2.0 * n.dot(&ball.body.gravity) * pen.max(0.0);
+    let touches = pen >= -TOUCH * ball.body.radius && speed > 0.0 && root2 > 0.0;
+    touches.then(|| (2.0 * pen.max(0.0) / (speed + root2.sqrt())).min(ball.since_s))
+}

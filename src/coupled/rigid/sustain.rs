@@ -1,0 +1,240 @@
+//! Sustained contact: impulses of all contacts of an island over one step, at velocity level.
+//!
+//! Projected Gauss–Seidel over normal impulse, friction and rolling friction with a warm start (Moreau, Jean). Velocity
+//! is stepped from its start to its end and acts with its mean, so that a resting contact stays where it is and the
+//! parabola is exact; a normal impulse never works on the rocks: what it may give back at the end of a step is at most
+//! what it took at its start.
+
+use super::Pile;
+use super::ball::{Ball, Foot, Knot};
+use crate::contact::pair::{Tie, between};
+use crate::coupled::member::Seat;
+use crate::rock::Vec3;
+use crate::step::grip::World;
+use crate::step::rigid::capture_m_s;
+use crate::terrain::Terrain;
+
+/// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
+/// others have settled and are passed over.
+const SWEEPS: (u32, u32) = (300, 3000);
+/// Sweeps that judge a jump, at most.
+const SWEEPS_AFTER: u32 = 30;
+/// Jumps after which the impulses have not settled.
+const JUMPS: u32 = 4;
+/// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
+/// over the speed of its slower rock (–).
+const SETTLED: (f64, f64) = (5e-3, 1e-3);
+/// The same over the capture speed, where there is hardly any weight (–).
+const SETTLED_OF_CAPTURE: f64 = 1e-6;
+/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
+const STIRS: f64 = 0.2;
+
+/// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained
+/// one: not if it would be left faster than the capture speed, or closed so under weight. That is an impact, and found
+/// at the end of the step.
+fn is_sustained((gap, speed): (f64, f64), capture: f64, (weight, dt): (f64, f64)) -> bool {
+    let fall = gap.max(0.0);
+    speed * speed + 2.0 * weight * fall < capture * capture && fall <= dt * capture
+}
+
+/// Normal speed wanted at the end of a step of length `dt` (s) from the gap in its middle and the speed at its start: an
+/// open gap may close, and over an edge half of the turn is before the middle and half after it. A push never works.
+fn target(gap: f64, speed: f64, dt: f64) -> f64 {
+    -(gap / dt).max(speed).max(0.0)
+}
+
+impl Pile {
+    /// Takes the rocks through the step without its impacts; whether the impulses settled.
+    pub(super) fn sustain(
+        &mut self,
+        terrain: &Terrain,
+        (members, ties): (&mut [Seat], &[Tie]),
+        dt: f64,
+    ) -> bool {
+        self.stand(terrain, members, dt);
+        self.link(ties, dt);
+        for ball in &mut self.balls {
+            ball.v += ball.body.gravity * dt;
+        }
+        self.start_warm();
+        let settled = self.settle((members, ties), dt);
+        self.go_on(terrain, members, dt);
+        settled
+    }
+
+    /// Contacts with the mesh in the middle of the step.
+    fn stand(&mut self, terrain: &Terrain, members: &mut [Seat], dt: f64) {
+        self.feet.clear();
+        for (k, (member, ball)) in members.iter_mut().zip(&self.balls).enumerate() {
+            let member = &mut **member;
+            let world = World { terrain, body: member.body, laws: &member.laws };
+            let middle = ball.c + ball.v * (0.5 * dt);
+            member.grip.look_ahead(&world, &middle);
+            for touch in member.grip.touches.iter() {
+                let law = world.law(touch.triangle);
+                let (speed, capture) = (touch.normal.dot(&ball.v), capture_m_s(law));
+                let gap = touch.distance_m - ball.body.radius;
+                let weight = ball.body.gravity.norm();
+                let start = (gap - 0.5 * dt * speed, speed);
+                if !is_sustained(start, capture, (weight, dt)) {
+                    continue;
+                }
+                let place = (touch.feature, touch.triangle);
+                let mut foot = Foot::new(k, place, touch.normal, law);
+                foot.target = target(gap, speed, dt);
+                let kept = member.kept.iter().find(|kept| kept.0 == touch.feature);
+                if let Some((_, push, drag, turn)) = kept {
+                    let along = drag - foot.n * foot.n.dot(drag);
+                    (foot.push, foot.drag, foot.turn) = (push * dt, along * dt, turn * dt);
+                }
+                self.feet.push(foot);
+            }
+        }
+    }
+
+    /// Contacts of rocks with each other in the middle of the step.
+    fn link(&mut self, ties: &[Tie], dt: f64) {
+        self.knots.clear();
+        for (k, tie) in ties.iter().enumerate() {
+            let [a, b] = [tie.a, tie.b].map(|k| &self.balls[k as usize]);
+            let at = [a, b].map(|ball| ball.c + ball.v * (0.5 * dt));
+            let (n, distance) = between(&at[0], &at[1]);
+            let gap = distance - a.body.radius - b.body.radius;
+            let (speed, capture) = (n.dot(&(a.v - b.v)), capture_m_s(&tie.law));
+            let start = (gap - 0.5 * dt * speed, speed);
+            if !is_sustained(start, capture, (a.body.gravity.norm(), dt)) {
+                continue;
+            }
+            let mut knot = Knot::new((k, tie), [a, b], [&at[0], &at[1]]);
+            knot.target = target(gap, speed, dt);
+            (knot.push, knot.drag) = (tie.push * dt, (tie.drag - n * n.dot(&tie.drag)) * dt);
+            self.knots.push(knot);
+        }
+    }
+
+    /// Acts with the impulses of the step before.
+    pub(super) fn start_warm(&mut self) {
+        for foot in &self.feet {
+            let ball = &mut self.balls[foot.ball];
+            let load = foot.load(&ball.body);
+            ball.take(&load);
+        }
+        for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
+            for k in 0..2 {
+                self.balls[knot.ends[k]].take(&knot.load(k));
+            }
+        }
+    }
+
+    /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
+    /// the sweeps nearer to rest is taken back, and no other is tried.
+    fn settle(&mut self, (members, ties): (&mut [Seat], &[Tie]), dt: f64) -> bool {
+        self.dt = dt;
+        for ball in &mut self.balls {
+            let weight = SETTLED.0 * ball.body.gravity.norm() * dt;
+            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
+            ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
+        }
+        let mut change = self.sweep_on(SWEEPS.0);
+        for _ in 0..JUMPS {
+            if change <= 1.0 {
+                return true;
+            }
+            let times: Vec<u32> = self.balls.iter().map(|ball| ball.times).collect();
+            if self.sweep_on(1) <= 1.0 {
+                return true;
+            }
+            let kept = (self.balls.clone(), self.feet.clone(), self.knots.clone());
+            self.jumps += 1;
+            if !self.jump((&mut *members, ties), &times) {
+                break;
+            }
+            let after = self.sweep_on(SWEEPS_AFTER);
+            if after > f64::max(1.0, 0.5 * change) {
+                (self.balls, self.feet, self.knots) = kept;
+                break;
+            }
+            change = after;
+        }
+        self.sweep_on(SWEEPS.1) <= 1.0
+    }
+
+    /// Sweeps until nothing changes by more than is allowed, or so many times; the largest change of the last, over what
+    /// is allowed (–).
+    fn sweep_on(&mut self, most: u32) -> f64 {
+        let mut change = f64::INFINITY;
+        for k in 0..most {
+            self.sweeps += 1;
+            change = self.sweep(k % 2 == 1);
+            if change <= 1.0 {
+                break;
+            }
+        }
+        change
+    }
+
+    /// One pass over the contacts, onwards or backwards; the largest change of speed, over what is allowed (–). What has
+    /// not been stirred since it was solved is passed over.
+    fn sweep(&mut self, backwards: bool) -> f64 {
+        let (feet, knots) = (self.feet.len(), self.knots.len());
+        let mut change = 0.0f64;
+        for k in 0..feet + knots {
+            let k = if backwards { feet + knots - 1 - k } else { k };
+            let one = if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) };
+            change = change.max(one);
+        }
+        change
+    }
+
+    fn sweep_foot(&mut self, k: usize) -> f64 {
+        let foot = &mut self.feet[k];
+        let ball = &mut self.balls[foot.ball];
+        if foot.seen == ball.times {
+            return 0.0;
+        }
+        let change = foot.solve(ball) / ball.allowed_m_s;
+        ball.times += u32::from(change > STIRS);
+        foot.seen = ball.times;
+        change
+    }
+
+    fn sweep_knot(&mut self, k: usize) -> f64 {
+        let knot = &mut self.knots[k];
+        let Ok([a, b]) = self.balls.get_disjoint_mut(knot.ends) else { return 0.0 };
+        if knot.seen == [a.times, b.times] {
+            return 0.0;
+        }
+        let change = knot.solve(a, b) / a.allowed_m_s.min(b.allowed_m_s);
+        let stirred = u32::from(change > STIRS);
+        (a.times, b.times) = (a.times + stirred, b.times + stirred);
+        knot.seen = [a.times, b.times];
+        change
+    }
+
+    /// Moves the rocks with their mean velocities and books what the impulses took.
+    fn go_on(&mut self, terrain: &Terrain, members: &[Seat], dt: f64) {
+        let mean = |ball: &Ball| -> (Vec3, Vec3) {
+            ((ball.v + ball.before.0) * 0.5, (ball.w + ball.before.1) * 0.5)
+        };
+        for foot in self.feet.iter().filter(|foot| foot.push > 0.0) {
+            let (member, ball) = (&members[foot.ball], &self.balls[foot.ball]);
+            let world = World { terrain, body: member.body, laws: &member.laws };
+            self.losses[foot.ball].add(&foot.loss(&world, &mean(ball)), 1.0);
+        }
+        for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
+            for k in 0..2 {
+                let (v, w) = mean(&self.balls[knot.ends[k]]);
+                self.given_j[knot.ends[k]] -= Ball::work_j(&knot.load(k), &v, &w);
+            }
+        }
+        for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
+            knot.ends.into_iter().for_each(|k| self.balls[k].pushed = true);
+        }
+        for foot in self.feet.iter().filter(|foot| foot.push > 0.0) {
+            self.balls[foot.ball].pushed = true;
+        }
+        for ball in &mut self.balls {
+            ball.c += mean(ball).0 * dt;
+        }
+    }
+}

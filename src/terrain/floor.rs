@@ -1,0 +1,89 @@
+//! How low the slope lies at most, cell by cell: tells without a search that a rock flies no higher than before.
+
+use super::features::Face;
+use super::index::below;
+use crate::rock::Vec3;
+
+/// Cells a triangle, and their least and largest number.
+const CELLS: usize = 4;
+const LEAST_CELLS: usize = 64;
+const MOST_CELLS: usize = 1 << 20;
+/// Cells are taken to be wider by this (–, relative to the mesh): rounding of places.
+const WIDER: f64 = 1e-9;
+/// Planes steeper than this (–, vertical part of the normal) are left to the lowest of their corners.
+const UPRIGHT: f64 = 1e-3;
+
+/// Square cells over the map, each with a height (m, local) that no slope triangle in it lies below.
+#[derive(Debug, Default)]
+pub struct Floor {
+    west_m: f64,
+    south_m: f64,
+    per_m: f64,
+    columns: usize,
+    rows: usize,
+    low_m: Vec<f32>,
+}
+
+impl Floor {
+    /// Of the faces that are ground, in the box from `lo` to `hi`.
+    pub fn of<'a>(
+        ground: impl Iterator<Item = &'a Face>,
+        triangles: usize,
+        (lo, hi): (Vec3, Vec3),
+    ) -> Self {
+        let size = (hi - lo).xy().map(|length| length.max(f64::MIN_POSITIVE));
+        let cells = (CELLS * triangles).clamp(LEAST_CELLS, MOST_CELLS);
+        let longest = size.max();
+        let cell_m = (size.x * size.y / cells as f64).sqrt().max(longest / cells as f64);
+        let [columns, rows] = [size.x, size.y].map(|length| (length / cell_m) as usize + 1);
+        let low_m = vec![f32::INFINITY; columns * rows];
+        let mut floor =
+            Self { west_m: lo.x, south_m: lo.y, per_m: 1.0 / cell_m, columns, rows, low_m };
+        for face in ground {
+            floor.lower_to(face, WIDER * longest);
+        }
+        floor
+    }
+
+    /// A height that the slope at (x, y) is not below (m); infinite where there is none.
+    #[inline]
+    pub fn under(&self, x_m: f64, y_m: f64) -> f64 {
+        let cell = self.row(y_m) * self.columns + self.column(x_m);
+        self.low_m.get(cell).map_or(f64::INFINITY, |&low| f64::from(low))
+    }
+
+    /// Memory that it takes (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.low_m[..])
+    }
+
+    #[inline]
+    fn column(&self, x: f64) -> usize {
+        (((x - self.west_m) * self.per_m) as usize).min(self.columns.saturating_sub(1))
+    }
+
+    #[inline]
+    fn row(&self, y: f64) -> usize {
+        (((y - self.south_m) * self.per_m) as usize).min(self.rows.saturating_sub(1))
+    }
+
+    /// Lowers the cells that a face lies in.
+    fn lower_to(&mut self, face: &Face, wider: f64) {
+        let corners = [face.a, face.a + face.e1, face.a + face.e2];
+        let (lo, hi) = corners.iter().fold((face.a, face.a), |(lo, hi), c| (lo.inf(c), hi.sup(c)));
+        let half = 0.5 / self.per_m + wider;
+        let n = if face.n.z.abs() < UPRIGHT { Vec3::zeros() } else { face.n / face.n.z };
+        // How far the plane falls from the middle of a cell to its lowest corner.
+        let falls = (n.x.abs() + n.y.abs()) * half + wider;
+        for row in self.row(lo.y - wider)..=self.row(hi.y + wider) {
+            for column in self.column(lo.x - wider)..=self.column(hi.x + wider) {
+                let x = self.west_m + (column as f64 + 0.5) / self.per_m;
+                let y = self.south_m + (row as f64 + 0.5) / self.per_m;
+                let plane = face.a.z - n.x * (x - face.a.x) - n.y * (y - face.a.y) - falls;
+                let low = if n.z == 0.0 { lo.z } else { plane.max(lo.z) };
+                let known = &mut self.low_m[row * self.columns + column];
+                *known = known.min(below(low - wider));
+            }
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Spheres that share one world in the rigid limit.
+
+use super::{CASE, GROUND, terrain};
+use rockfall::contact::pair::Strength;
+use rockfall::ground::Ground;
+use rockfall::plan::{RestRule, Watch};
+use rockfall::release::Release;
+use rockfall::rock::{Motion, Rock, Vec3};
+use rockfall::step::{Scheme, Settings};
+use rockfall::terrain::Terrain;
+use rockfall::terrain::make::jittered_plane;
+use rockfall::trajectory::{Answer, Census, Course, Keep, Stop, Trajectory, follow_counted};
+use std::sync::atomic::AtomicBool;
+
+/// Spheres in one world.
+#[derive(Clone, Copy)]
+pub struct World {
+    pub gravity_m_s2: f64,
+    pub restitution: f64,
+    pub friction_angle_rad: f64,
+    pub step_s: f64,
+    pub ground: Ground,
+    pub rest_time_s: f64,
+}
+
+pub const WORLD: World = World {
+    gravity_m_s2: 0.0,
+    restitution: 0.5,
+    friction_angle_rad: std::f64::consts::FRAC_PI_6,
+    step_s: 0.01,
+    ground: GROUND,
+    rest_time_s: 0.3,
+};
+
+/// A sphere: radius, density, centre, velocity, spin.
+pub type Sphere = (f64, f64, [f64; 3], [f64; 3], [f64; 3]);
+
+impl World {
+    pub fn run(
+        &self,
+        terrain: &Terrain,
+        spheres: &[Sphere],
+        longest_s: f64,
+    ) -> (Vec<Trajectory>, Census) {
+        let step = Settings {
+            scheme: Scheme::Rigid,
+            tolerance_m_s: 0.0,
+            step_s: self.step_s,
+            shear_memory: true,
+            capture_speed_m_s: CASE.capture_speed_m_s,
+        };
+        let course = Course {
+            terrain,
+            gravity_m_s2: self.gravity_m_s2,
+            step: &step,
+            rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
+            longest_s,
+            watch: Watch::default(),
+        };
+        let release = |&(radius_m, density_kg_m3, c, v, w): &Sphere| Release {
+            rock: Rock { radius_m, density_kg_m3 },
+            motion: Motion {
+                time_s: 0.0,
+                position_m: Vec3::from(c) - terrain.origin_m,
+                velocity_m_s: v.into(),
+                spin_rad_s: w.into(),
+            },
+            grounds: vec![self.ground],
+        };
+        let releases: Vec<Release> = spheres.iter().map(release).collect();
+        let ground = Ground {
+            restitution: Some(self.restitution),
+            friction_angle_rad: self.friction_angle_rad,
+            ..GROUND
+        };
+        let answer = Answer { ground, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
+        let keep = |_| Keep { path_step_s: None, impacts: true };
+        let never = AtomicBool::new(false);
+        let (falls, census) = follow_counted(&course, &releases, &answer, keep, &never).unwrap();
+        for fall in &falls {
+            assert!(!matches!(fall.stop, Stop::Failed(_)), "{:?}", fall.stop);
+        }
+        (falls, census)
+    }
+}
+
+pub fn plane() -> Terrain {
+    terrain(jittered_plane(40.0, 8, 0.0))
+}
+
+pub fn energy_j(falls: &[Trajectory], at_end: bool, g: f64) -> f64 {
+    let energy = |fall: &Trajectory| {
+        let motion = if at_end { fall.end } else { fall.start };
+        motion.translational_j(&fall.rock)
+            + motion.rotational_j(&fall.rock)
+            + fall.rock.mass_kg() * g * motion.position_m.z
+    };
+    falls.iter().map(energy).sum()
+}
