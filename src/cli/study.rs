@@ -77,17 +77,20 @@ pub(super) struct ScalingArgs {
     #[arg(long, value_name = "DIR", default_value = "reports/scaling")]
     out: PathBuf,
     /// Numbers of spheres with scheme adaptive
-    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,5000,20000")]
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,2000,5000,20000")]
     spheres: Vec<usize>,
     /// Numbers of spheres with scheme dda
-    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500")]
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,2000")]
     dda: Vec<usize>,
     /// Numbers of spheres with scheme rigid
     #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,5000,20000")]
     rigid: Vec<usize>,
-    /// Time to follow each world (s)
-    #[arg(long, value_name = "S", value_parser = positive, default_value = "1.0")]
+    /// Time to follow each world (s): falling ends at 0.25 s, impacts at 0.6 s
+    #[arg(long, value_name = "S", value_parser = positive, default_value = "0.6")]
     seconds: f64,
+    /// Numbers of spheres with scheme adaptive that are followed to 1.8 s, when the heaps settle
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,2000")]
+    settle: Vec<usize>,
 }
 
 fn positive(text: &str) -> std::result::Result<f64, String> {
@@ -121,7 +124,8 @@ fn scaling(args: &ScalingArgs) -> Result<ExitCode> {
         (Scheme::Dda, &args.dda[..]),
         (Scheme::Rigid, &args.rigid[..]),
     ];
-    let (words, all_hold) = wiring::scaling((&args.out, args.seconds), &worlds, say_done)?;
+    let times = (args.seconds, &args.settle[..]);
+    let (words, all_hold) = wiring::scaling((&args.out, times), &worlds, say_done)?;
     say(words);
     Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }

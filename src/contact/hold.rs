@@ -83,6 +83,12 @@ impl Holds {
         self.len = 0;
     }
 
+    /// Knows these instead, no more than there is room for.
+    pub fn restore(&mut self, holds: &[Hold]) {
+        self.len = holds.len().min(HOLDS);
+        self.list[..self.len].copy_from_slice(&holds[..self.len]);
+    }
+
     /// Forgets all after the first `len`.
     pub fn truncate(&mut self, len: usize) {
         self.len = self.len.min(len);

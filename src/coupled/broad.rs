@@ -11,8 +11,12 @@ pub struct Ball {
     pub radius: f64,
 }
 
-/// One ball in its cell.
+/// One ball in its cell: the octave of the cell, the cell, the ball's number.
 type Entry = (i32, [i64; 3], u32);
+
+/// Of the columns of cells around one, those that come after it; of its own, the cells from it upwards. Two balls see each
+/// other once that way.
+const AHEAD: [[i64; 2]; 5] = [[0, 0], [0, 1], [1, -1], [1, 0], [1, 1]];
 
 /// All pairs `(a, b)`, `a < b`, of balls that overlap or touch, in ascending order.
 ///
@@ -25,49 +29,22 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
     let mut levels: Vec<i32> = entries.iter().map(|entry| entry.0).collect();
     levels.dedup();
     let mut pairs = Vec::with_capacity(4 * balls.len());
-    let mut cursors = Cursors::default();
-    for &(own, home, k) in &entries {
-        let ball = &balls[k as usize];
-        let mut see = |other: u32, once: bool| {
-            let near = &balls[other as usize];
-            let reach = ball.radius + near.radius;
-            if once && (ball.centre - near.centre).norm_squared() <= reach * reach {
-                pairs.push((k.min(other), k.max(other)));
-            }
-        };
-        cursors.visit(&entries, (own, home), |other| see(other, other > k));
+    let mut add = |a: u32, b: u32| {
+        let [one, two] = [a, b].map(|k| &balls[k as usize]);
+        let reach = one.radius + two.radius;
+        if (one.centre - two.centre).norm_squared() <= reach * reach {
+            pairs.push((a.min(b), a.max(b)));
+        }
+    };
+    visit_own(&entries, &mut add);
+    for &(own, _, k) in entries.iter().filter(|_| levels.len() > 1) {
         for &level in levels.iter().filter(|level| **level > own) {
-            let home = entry(ball, level, k).1;
-            visit(&entries, (level, home), |other| see(other, true));
+            let home = entry(&balls[k as usize], level, k).1;
+            visit_coarser(&entries, (level, home), |other| add(k, other));
         }
     }
     pairs.sort_unstable();
     pairs
-}
-
-/// Where the nine columns of cells around the ball in hand begin: balls come in the order of their cells, and so do
-/// their neighbours.
-#[derive(Default)]
-struct Cursors([usize; 9]);
-
-impl Cursors {
-    /// Visits all balls in the 27 cells around `home`, which comes after those visited before.
-    fn visit(
-        &mut self,
-        entries: &[Entry],
-        (level, home): (i32, [i64; 3]),
-        mut see: impl FnMut(u32),
-    ) {
-        for (cursor, column) in self.0.iter_mut().zip(0..) {
-            let (x, y) = (home[0] + column / 3 - 1, home[1] + column % 3 - 1);
-            let first = (level, [x, y, home[2] - 1], 0);
-            while entries.get(*cursor).is_some_and(|entry| *entry < first) {
-                *cursor += 1;
-            }
-            let last = (level, [x, y, home[2] + 1], u32::MAX);
-            entries[*cursor..].iter().take_while(|entry| **entry <= last).for_each(|e| see(e.2));
-        }
-    }
 }
 
 /// Octave of the cells a ball lies in: they are at least as wide as the ball.
@@ -81,8 +58,25 @@ fn entry(ball: &Ball, level: i32, k: u32) -> Entry {
     (level, [x.floor() as i64, y.floor() as i64, z.floor() as i64], k)
 }
 
-/// Visits all balls in the 27 cells around `home`; the three above each other are one stretch of the list.
-fn visit(entries: &[Entry], (level, home): (i32, [i64; 3]), mut see: impl FnMut(u32)) {
+/// Calls `see` with every two balls in cells of the same size next to each other. Balls are gone through in the order of
+/// their cells, and so are the first of each column beside them: nothing need be searched.
+fn visit_own(entries: &[Entry], see: &mut impl FnMut(u32, u32)) {
+    let mut first = [0; AHEAD.len()];
+    for (place, &(level, [x, y, z], k)) in entries.iter().enumerate() {
+        for (first, [dx, dy]) in first.iter_mut().zip(AHEAD) {
+            let column = |z: i64| (level, [x + dx, y + dy, z]);
+            while entries.get(*first).is_some_and(|entry| (entry.0, entry.1) < column(z - 1)) {
+                *first += 1;
+            }
+            let start = if [dx, dy] == [0, 0] { place + 1 } else { *first };
+            let near = entries[start..].iter();
+            near.take_while(|entry| (entry.0, entry.1) <= column(z + 1)).for_each(|e| see(k, e.2));
+        }
+    }
+}
+
+/// Calls `see` with all balls in the 27 cells around `home`; the three above each other are one stretch of the list.
+fn visit_coarser(entries: &[Entry], (level, home): (i32, [i64; 3]), mut see: impl FnMut(u32)) {
     for x in home[0] - 1..=home[0] + 1 {
         for y in home[1] - 1..=home[1] + 1 {
             let first = (level, [x, y, home[2] - 1], 0);

@@ -12,7 +12,10 @@ use crate::step::joint::{Answer, Normal, Slider};
 use crate::step::law::Spot;
 use faer::prelude::Solve;
 use faer::sparse::{SparseColMat, Triplet};
-use nalgebra::Matrix3;
+use nalgebra::{DMatrix, DVector, Matrix3};
+
+/// Most unknowns for which a dense matrix is cheaper: a sparse one costs as much before the first number is touched.
+const DENSE: usize = 48;
 
 /// One contact, linear around the present motion.
 struct Linear {
@@ -177,13 +180,29 @@ impl System {
 
     fn solve(self) -> Option<Vec<Motion>> {
         let size = self.load.len();
+        let x = if size <= DENSE { self.solve_dense()? } else { self.solve_sparse()? };
+        let at = |k: usize| Vec3::new(x[k], x[k + 1], x[k + 2]);
+        let finite = x.iter().all(|x| x.is_finite());
+        finite.then(|| (0..size / 6).map(|k| (at(6 * k), at(6 * k + 3))).collect())
+    }
+
+    fn solve_dense(self) -> Option<Vec<f64>> {
+        let size = self.load.len();
+        let mut matrix = DMatrix::zeros(size, size);
+        for one in &self.triplets {
+            matrix[(one.row, one.col)] += one.val;
+        }
+        let mut load = DVector::from_vec(self.load);
+        matrix.lu().solve_mut(&mut load).then(|| load.data.into())
+    }
+
+    fn solve_sparse(self) -> Option<Vec<f64>> {
+        let size = self.load.len();
         let matrix = SparseColMat::try_new_from_triplets(size, size, &self.triplets).ok()?;
         let factor = matrix.sp_lu().ok()?;
         let load = faer::Col::from_fn(size, |k| self.load[k]);
         let x = factor.solve(&load);
-        let at = |k: usize| Vec3::new(x[k], x[k + 1], x[k + 2]);
-        let finite = (0..size).all(|k| x[k].is_finite());
-        finite.then(|| (0..size / 6).map(|k| (at(6 * k), at(6 * k + 3))).collect())
+        Some((0..size).map(|k| x[k]).collect())
     }
 }
 

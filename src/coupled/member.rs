@@ -2,7 +2,7 @@
 
 use super::bridge::Motion;
 use crate::contact::Feature;
-use crate::contact::hold::Holds;
+use crate::contact::hold::Hold;
 use crate::contact::submatrix::Vec6;
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -48,10 +48,10 @@ pub struct Member {
 }
 
 /// What a rock is and remembers between two steps: all that later steps depend on.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Memory {
     motion: (Vec3, Vec3, Vec3),
-    holds: Holds,
+    holds: Vec<Hold>,
     flying: bool,
 }
 
@@ -118,14 +118,14 @@ impl Member {
     /// What the rock is and remembers between two steps.
     pub fn memory(&self) -> Memory {
         let grip = &self.grip;
-        Memory { motion: (grip.c, grip.v, grip.w), holds: grip.holds.clone(), flying: self.flying }
+        Memory { motion: (grip.c, grip.v, grip.w), holds: grip.holds.to_vec(), flying: self.flying }
     }
 
     /// Goes back to what it was.
     pub fn recall(&mut self, memory: &Memory) {
         let grip = &mut self.grip;
         (grip.c, grip.v, grip.w) = memory.motion;
-        grip.holds = memory.holds.clone();
+        grip.holds.restore(&memory.holds);
         grip.fresh = false;
         self.flying = memory.flying;
         self.kept.clear();
@@ -133,6 +133,21 @@ impl Member {
 
     pub(super) fn spots(&self) -> &[Spot] {
         &self.grip.spots[..self.grip.spot_count]
+    }
+
+    /// Speed that the springs of its contacts with the mesh may give it (m/s): `Σ F/(m ω)`.
+    pub fn pressed_m_s(&self, terrain: &Terrain) -> f64 {
+        let world = World { terrain, body: self.body, laws: &self.laws };
+        let holds = self.grip.holds.iter();
+        holds.map(|hold| hold.push / (self.body.mass * world.law(hold.triangle).omega)).sum()
+    }
+
+    /// Whether it touched the mesh, or nearly, when it last looked: its gap was less than `way` (m), at most a tenth of its
+    /// radius.
+    pub fn is_near_mesh(&self, way: f64) -> bool {
+        let reach = self.body.radius + way;
+        !self.grip.holds.is_empty()
+            || self.grip.touches.iter().any(|touch| touch.distance_m <= reach)
     }
 
     /// Stiffest contact with the mesh (rad/s), 0 if there is none.

@@ -17,10 +17,13 @@ use crate::step::law::within;
 const SWEEPS: (usize, usize, usize) = (30, 4, 120);
 /// Jumps after which a stage is given up; the step is then halved.
 const JUMPS: usize = 10;
-/// Change of velocity by a change of force, relative to the step's tolerance, below which the force has settled (–).
-const SETTLED: f64 = 1e-6;
+/// Change of velocity by a change of force that is still to come, relative to the step's tolerance, below which the force
+/// has settled (–).
+const SETTLED: f64 = 1e-2;
+/// Part of that below which a change counts as settled however fast changes die out (–).
+const SETTLED_AT_ONCE: f64 = 1e-4;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
-const STIRS: f64 = 0.1;
+const STIRS: f64 = 1e-4;
 /// An island of no more rocks than this is swept as a whole.
 const SMALL: usize = 4;
 /// Change of a force, relative to itself, that is rounding (–).
@@ -37,6 +40,8 @@ pub(super) struct Stirred {
     bridges: Vec<[u32; 2]>,
     /// Rocks whose forces changed in the last sweep.
     pub(super) lately: Vec<bool>,
+    /// Largest change in the sweep in hand and in the two before, relative to what is allowed.
+    changes: [f64; 3],
 }
 
 impl Stirred {
@@ -50,6 +55,27 @@ impl Stirred {
         self.bridges.resize(bridges, [0; 2]);
         self.lately.clear();
         self.lately.resize(rocks, true);
+        self.changes = [f64::INFINITY; 3];
+    }
+
+    /// Begins another sweep.
+    fn begin_sweep(&mut self) {
+        self.lately.fill(false);
+        self.changes = [0.0, self.changes[0], self.changes[1]];
+    }
+
+    /// Notes a change, relative to what is allowed.
+    fn note(&mut self, change: f64) {
+        self.changes[0] = self.changes[0].max(change);
+    }
+
+    /// Whether all changes still to come are small: `q + q² + …` times the last one, if each sweep leaves the share `q` of
+    /// the change before. Where sweeps creep, that is far more than the last change, and only the third sweep tells.
+    fn is_settled(&self) -> bool {
+        let [now, before, earlier] = self.changes;
+        let share = f64::max(now / before, before / earlier);
+        let knows = earlier.is_finite() && share < 1.0;
+        now <= SETTLED_AT_ONCE || knows && now <= 1.0 && now * share <= 1.0 - share
     }
 
     fn stir(&mut self, k: usize) {
@@ -81,8 +107,9 @@ impl Cluster<'_> {
         let mut k = 0;
         while k < most {
             self.sweeps += 1;
-            self.stirred.lately.fill(false);
-            if self.sweep(h, k % 2 == 1) {
+            self.stirred.begin_sweep();
+            self.sweep(h, k % 2 == 1);
+            if self.stirred.is_settled() {
                 return true;
             }
             let stirred = self.stirred.lately.iter().filter(|lately| **lately).count();
@@ -130,16 +157,17 @@ impl Cluster<'_> {
         }
     }
 
-    /// One pass over the contacts, onwards or backwards; whether nothing changed.
-    fn sweep(&mut self, h: f64, backwards: bool) -> bool {
+    /// One pass over the contacts, onwards or backwards.
+    fn sweep(&mut self, h: f64, backwards: bool) {
         let (spots, bridges) = (self.members.len(), self.bridges.len());
-        let mut settled = true;
         for k in 0..spots + bridges {
             let k = if backwards { spots + bridges - 1 - k } else { k };
-            settled &=
-                if k < spots { self.sweep_spots(k, h) } else { self.sweep_bridge(k - spots, h) };
+            if k < spots {
+                self.sweep_spots(k, h);
+            } else {
+                self.sweep_bridge(k - spots, h);
+            }
         }
-        settled
     }
 
     /// Whether contacts at rest are passed over: in a small island little is saved, and every digit counts.
@@ -147,13 +175,13 @@ impl Cluster<'_> {
         self.members.len() > SMALL
     }
 
-    fn sweep_spots(&mut self, k: usize, h: f64) -> bool {
+    fn sweep_spots(&mut self, k: usize, h: f64) {
         if self.passes_over() && self.stirred.spots[k] == self.stirred.times[k] {
-            return true;
+            return;
         }
         let Member { grip, body, now, .. } = &mut *self.members[k];
         let count = grip.spot_count;
-        let (mut settled, mut stirs) = (true, false);
+        let mut worst = 0.0f64;
         for spot in &mut grip.spots[..count] {
             let before = (spot.push, spot.drag, spot.moment);
             let (dv, dw) = spot.effect(body, h);
@@ -164,24 +192,23 @@ impl Cluster<'_> {
             let change = (spot.push - before.0).abs().max((spot.drag - before.1).norm());
             let change = change.max((spot.moment - before.2).norm() / body.radius);
             let allowed = SETTLED * self.tolerance * body.mass / h;
-            settled &= change <= allowed.max(ROUNDING * spot.push);
-            stirs |= change > STIRS * allowed.max(ROUNDING * spot.push);
+            worst = worst.max(change / allowed.max(ROUNDING / SETTLED_AT_ONCE * spot.push));
         }
+        self.stirred.note(worst);
         let seen = self.stirred.times[k];
-        if stirs {
+        if worst > STIRS {
             self.stirred.stir(k);
         }
         // One contact alone is solved exactly; several must see each other's change.
         self.stirred.spots[k] = if count > 1 { seen } else { self.stirred.times[k] };
-        settled
     }
 
-    fn sweep_bridge(&mut self, k: usize, h: f64) -> bool {
+    fn sweep_bridge(&mut self, k: usize, h: f64) {
         let passes_over = self.passes_over();
         let bridge = &mut self.bridges[k];
         let ends = bridge.ends;
         if passes_over && self.stirred.bridges[k] == ends.map(|end| self.stirred.times[end]) {
-            return true;
+            return;
         }
         let before = (bridge.push, bridge.drag);
         let mut motions: [Motion; 2] = ends.map(|end| self.members[end].now);
@@ -200,14 +227,14 @@ impl Cluster<'_> {
             }
         }
         let allowed = SETTLED * self.tolerance / (h * bridge.inv_m);
-        let settled = change <= allowed.max(ROUNDING * bridge.push.abs());
-        if change > STIRS * allowed.max(ROUNDING * bridge.push.abs()) {
+        let worst = change / allowed.max(ROUNDING / SETTLED_AT_ONCE * bridge.push.abs());
+        self.stirred.note(worst);
+        if worst > STIRS {
             for end in ends {
                 self.stirred.stir(end);
             }
         }
         self.stirred.bridges[k] = ends.map(|end| self.stirred.times[end]);
-        settled
     }
 
     /// Sets every force of rocks that jumped to what its law gives at their new motions.

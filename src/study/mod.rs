@@ -41,7 +41,7 @@ use stability::{Map, Outcome};
 use std::fs;
 use std::path::Path;
 
-pub use scaling::{World, resident_now, world};
+pub use scaling::{Cost, Phase, World, resident_now, world};
 pub use scaling_page::findings;
 pub use scene_page::{Wish, sentence, setting};
 

@@ -7,8 +7,9 @@ use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::step::{Scheme, Settings};
+use crate::terrain::Terrain;
 use crate::terrain::make::containers;
-use crate::trajectory::{Answer, Census, Course, Keep, Stop, Trajectory, follow_counted};
+use crate::trajectory::{Answer, Census, Course, Keep, Stop, Trajectory, follow_watched};
 use std::fs;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -31,6 +32,70 @@ const TOLERANCE_M_S: f64 = 0.05;
 /// Step of the paper, and longest step of `rigid` as the plan has it (s).
 const STEPS_S: (f64, f64) = (1e-5, 0.01);
 
+/// A part of the story. That of a sphere is the same in all worlds: what is compared between them is the same part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Before the first spheres arrive.
+    Falling,
+    /// Layer upon layer arrives: impacts everywhere.
+    Impacts,
+    /// The heaps in the boxes come to rest.
+    Settling,
+}
+
+impl Phase {
+    /// In the order of the story.
+    pub const ALL: [Self; 3] = [Self::Falling, Self::Impacts, Self::Settling];
+
+    /// Begin and end (s).
+    pub const fn times_s(self) -> (f64, f64) {
+        match self {
+            Self::Falling => (0.0, 0.25),
+            Self::Impacts => (0.4, 0.6),
+            Self::Settling => (1.5, 1.8),
+        }
+    }
+
+    /// In tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Falling => "falling",
+            Self::Impacts => "impacts",
+            Self::Settling => "settling",
+        }
+    }
+}
+
+/// What one part of the story took.
+#[derive(Debug, Clone, Copy)]
+pub struct Cost {
+    /// Which part.
+    pub phase: Phase,
+    /// Time followed in it (s).
+    pub simulated_s: f64,
+    /// Processor time of one thread (s).
+    pub processor_s: f64,
+    /// Counted in it.
+    pub census: Census,
+}
+
+impl Cost {
+    /// Processor time by simulated time (–).
+    pub fn rate(&self) -> f64 {
+        self.processor_s / self.simulated_s
+    }
+
+    /// Processor time of one window of time, in which the whole world goes on (s).
+    pub fn window_s(&self) -> f64 {
+        self.processor_s / self.census.windows.max(1) as f64
+    }
+
+    /// Processor time of one step of one rock in contact (s), everything else included.
+    pub fn rock_step_s(&self) -> f64 {
+        self.processor_s / self.census.rock_steps.max(1) as f64
+    }
+}
+
 /// One world of the study.
 #[derive(Debug, Clone)]
 pub struct World {
@@ -42,6 +107,8 @@ pub struct World {
     pub simulated_s: f64,
     /// Processor time of one thread (s).
     pub processor_s: f64,
+    /// Its parts, those that were followed to their end.
+    pub costs: Vec<Cost>,
     /// Largest memory of the process on the way, less what it held before the first world (byte); `None` where the system does not say.
     pub memory_bytes: Option<u64>,
     /// What it took.
@@ -52,17 +119,74 @@ pub struct World {
     pub at_rest: usize,
     /// Deepest overlap of two spheres at the end, over the radius (–).
     pub overlap: f64,
+    /// Fastest sphere on the way, and the speed of a free fall from the highest one to the floor (m/s): impacts between
+    /// equal spheres that lose energy make none faster.
+    pub fastest_m_s: (f64, f64),
 }
 
 impl World {
-    /// Processor time by simulated time (–).
-    pub fn cost(&self) -> f64 {
-        self.processor_s / self.simulated_s
+    /// Time of one step of all spheres in a part of the story (s): while they fall, of a window in which all leap; else as
+    /// many times that of one step of one sphere. Everything else that was done is in it.
+    pub fn step_s(&self, phase: Phase) -> Option<f64> {
+        let cost = self.cost(phase)?;
+        let all = self.spheres as f64 * cost.rock_step_s();
+        Some(if phase == Phase::Falling { cost.window_s() } else { all })
     }
 
-    /// Processor time of one step of one rock (s).
-    pub fn rock_step_s(&self) -> f64 {
-        self.processor_s / self.census.rock_steps.max(1) as f64
+    /// One part of its story, if it was followed to its end.
+    pub fn cost(&self, phase: Phase) -> Option<&Cost> {
+        self.costs.iter().find(|cost| cost.phase == phase)
+    }
+}
+
+/// Processor time and counts at the begins and ends of the parts.
+struct Marks {
+    clock: Clock,
+    /// Time, processor time (s) and counts at the first window's end not before each begin and end.
+    seen: Vec<(f64, f64, Census)>,
+}
+
+impl Marks {
+    fn times_s() -> impl Iterator<Item = f64> {
+        Phase::ALL.into_iter().flat_map(|phase| <[f64; 2]>::from(phase.times_s()))
+    }
+
+    fn see(&mut self, now_s: f64, census: &Census) {
+        // The world may have gone back.
+        self.seen.retain(|(time_s, ..)| *time_s <= now_s);
+        let passed = Self::times_s().take_while(|mark| *mark <= now_s).count();
+        if passed > self.seen.len() {
+            let at = (now_s, self.clock.gone_s(), *census);
+            self.seen.resize(passed, at);
+        }
+    }
+
+    fn costs(&self) -> Vec<Cost> {
+        let pairs = Phase::ALL.into_iter().zip(self.seen.chunks_exact(2));
+        let cost = |(phase, ends): (Phase, &[(f64, f64, Census)])| Cost {
+            phase,
+            simulated_s: ends[1].0 - ends[0].0,
+            processor_s: ends[1].1 - ends[0].1,
+            census: ends[1].2.since(&ends[0].2),
+        };
+        pairs.map(cost).collect()
+    }
+}
+
+/// Time of this thread on a processor since a moment, where the system says, else on the wall.
+struct Clock(Instant, Option<u64>);
+
+impl Clock {
+    fn begin() -> Self {
+        Self(Instant::now(), processor_ns())
+    }
+
+    /// Since then (s).
+    fn gone_s(&self) -> f64 {
+        match (self.1, processor_ns()) {
+            (Some(before), Some(after)) => 1e-9 * (after - before) as f64,
+            _ => self.0.elapsed().as_secs_f64(),
+        }
     }
 }
 
@@ -93,13 +217,12 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
     let never = AtomicBool::new(false);
     // Linux forgets the largest memory so far when asked to; where it cannot, the number is left out.
     let forgot = fs::write("/proc/self/clear_refs", "5").is_ok();
-    let begun = (Instant::now(), processor_ns());
+    let mut marks = Marks { clock: Clock::begin(), seen: Vec::new() };
+    marks.see(0.0, &Census::default());
+    let see = |now_s: f64, census: &Census| marks.see(now_s, census);
     let (falls, census) =
-        follow_counted(&course, &releases, &answer, keep, &never).unwrap_or_default();
-    let processor_s = match (begun.1, processor_ns()) {
-        (Some(before), Some(after)) => 1e-9 * (after - before) as f64,
-        _ => begun.0.elapsed().as_secs_f64(),
-    };
+        follow_watched(&course, &releases, &answer, keep, (&never, see)).unwrap_or_default();
+    let processor_s = marks.clock.gone_s();
     let most = resident_bytes("VmHWM:").filter(|_| forgot);
     let memory_bytes = most.zip(before).map(|(most, before)| most.saturating_sub(before));
     let lost = |fall: &&Trajectory| matches!(fall.stop, Stop::Failed(_) | Stop::LeftTerrain);
@@ -108,12 +231,27 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         spheres,
         simulated_s: longest_s,
         processor_s,
+        costs: marks.costs(),
         memory_bytes,
         census,
         lost: falls.iter().filter(lost).count() + spheres - falls.len(),
         at_rest: falls.iter().filter(|fall| fall.stop == Stop::AtRest).count(),
         overlap: deepest_overlap(&falls),
+        fastest_m_s: (fastest_m_s(&falls), fall_m_s(&releases, &terrain)),
     }
+}
+
+fn fastest_m_s(falls: &[Trajectory]) -> f64 {
+    falls.iter().map(|fall| fall.extremes.speed_m_s).fold(0.0, f64::max)
+}
+
+fn fall_m_s(releases: &[Release], terrain: &Terrain) -> f64 {
+    let highest = releases
+        .iter()
+        .map(|release| release.motion.position_m.z)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let lowest = terrain.vertices_m.iter().map(|vertex| vertex.z).fold(f64::INFINITY, f64::min);
+    (2.0 * GRAVITY_M_S2 * (highest - lowest - ROCK.radius_m)).sqrt()
 }
 
 /// The two boxes, on a floor that catches what falls beside them.
@@ -164,6 +302,8 @@ pub fn resident_now() -> Option<u64> {
 
 /// Time this thread has had on a processor (ns), where the system says: other work on the machine does not count.
 fn processor_ns() -> Option<u64> {
+    // Linux brings this up to date when the thread offers its place to others; else it lags by milliseconds.
+    std::thread::yield_now();
     let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split_whitespace().next()?.parse().ok()
 }
@@ -198,16 +338,47 @@ mod tests {
         assert_eq!(exponent(&points[..1]), None);
     }
 
-    /// A handful of spheres lands in the boxes: none is lost, every step settles, and the counts say what was done.
+    /// A handful of spheres lands in the boxes: none is lost, every step settles, and the parts are those of the whole.
     #[test]
     fn a_small_world_is_counted() {
         for scheme in [Scheme::Adaptive, Scheme::Rigid] {
-            let world = world(scheme, 12, (0.6, None));
-            assert_eq!((world.lost, world.census.unsettled), (0, 0));
-            assert!(world.census.rock_steps >= world.census.steps && world.census.windows > 0);
-            assert!(world.census.largest <= 12);
-            // the static penetration is 1.4e-8 m
-            assert!(world.overlap < 1e-4, "{:e}", world.overlap);
+            is_counted(&world(scheme, 12, (0.61, None)));
         }
+    }
+
+    fn is_counted(world: &World) {
+        assert_eq!((world.lost, world.census.unsettled), (0, 0));
+        assert!(world.census.rock_steps >= world.census.steps && world.census.windows > 0);
+        assert!(world.census.largest <= 12);
+        // the static penetration is 1.4e-8 m
+        assert!(world.overlap < 1e-4, "{:e}", world.overlap);
+        let phases: Vec<Phase> = world.costs.iter().map(|cost| cost.phase).collect();
+        assert_eq!(phases, [Phase::Falling, Phase::Impacts]);
+        for cost in &world.costs {
+            let (from, to) = cost.phase.times_s();
+            // windows are at most 0.02 s long
+            assert!((cost.simulated_s - (to - from)).abs() < 0.02, "{cost:?}");
+            assert!(cost.processor_s > 0.0 && cost.processor_s < world.processor_s);
+            assert!(cost.census.steps <= world.census.steps);
+        }
+        let (fastest, fall) = world.fastest_m_s;
+        // 0.95 m from the lowest layer's bottom to the floor
+        assert!(fastest > 3.0 && fastest < fall && fall < 5.0, "{fastest} {fall}");
+        let steps = |phase| world.cost(phase).unwrap().census.steps;
+        assert!(steps(Phase::Impacts) > 0);
+        assert!(steps(Phase::Falling) + steps(Phase::Impacts) <= world.census.steps);
+    }
+
+    /// Where the world goes back, what was seen of the time after that is seen again.
+    #[test]
+    fn marks_go_back_with_the_world() {
+        let mut marks = Marks { clock: Clock::begin(), seen: Vec::new() };
+        let counted = |windows| Census { windows, ..Census::default() };
+        for (now_s, windows) in [(0.0, 0), (0.26, 1), (0.41, 2), (0.37, 3), (0.42, 4), (0.6, 5)] {
+            marks.see(now_s, &counted(windows));
+        }
+        let costs = marks.costs();
+        assert_eq!(costs.iter().map(|cost| cost.census.windows).collect::<Vec<_>>(), [1, 1]);
+        assert!((costs[1].simulated_s - 0.18).abs() < 1e-12);
     }
 }

@@ -34,7 +34,7 @@ impl Crossing {
 }
 
 /// The crossings of one rock so far.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Crossings<'a> {
     lines: &'a [Curtain],
     found: Vec<Crossing>,
@@ -43,6 +43,17 @@ pub(super) struct Crossings<'a> {
 impl<'a> Crossings<'a> {
     pub(super) fn of(lines: &'a [Curtain]) -> Self {
         Self { lines, found: Vec::new() }
+    }
+
+    /// So far.
+    pub(super) fn found(&self) -> &[Crossing] {
+        &self.found
+    }
+
+    /// Goes back to what was found before.
+    pub(super) fn go_back(&mut self, found: &[Crossing]) {
+        self.found.clear();
+        self.found.extend_from_slice(found);
     }
 
     /// In the order of lines.

@@ -1,7 +1,7 @@
 //! What is noted down along one rock's way: largest values, path, impacts, ledger, effort.
 
-use super::crossing::Crossings;
-use super::visit::Visits;
+use super::crossing::{Crossing, Crossings};
+use super::visit::{Visit, Visits};
 use super::{Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState};
 use crate::flight::Parabola;
 use crate::plan::Watch;
@@ -19,7 +19,7 @@ pub struct Keep {
 }
 
 /// Notes along the way.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Journey<'a> {
     terrain: &'a Terrain,
     rock: Rock,
@@ -42,6 +42,21 @@ pub(super) struct Journey<'a> {
 const HEIGHT_POINTS: f64 = 8.0;
 /// Heights are measured at most this often in flight (s).
 const HEIGHT_STEP_S: f64 = 0.1;
+
+/// A moment of a journey, to go back to: lists only grow, so their lengths will do.
+#[derive(Debug)]
+pub(super) struct Mark {
+    now: Motion,
+    extremes: Extremes,
+    path: usize,
+    impacts: usize,
+    crossings: Vec<Crossing>,
+    visits: (usize, Option<Visit>),
+    counts: (u32, u32),
+    ledger: Ledger,
+    open_impact: Option<(Impact, f64)>,
+    next_point_s: f64,
+}
 
 impl<'a> Journey<'a> {
     pub(super) fn new(
@@ -70,6 +85,33 @@ impl<'a> Journey<'a> {
         journey.note_speed();
         journey.note_height(&start.position_m);
         journey
+    }
+
+    /// The present.
+    pub(super) fn mark(&self) -> Mark {
+        Mark {
+            now: self.now,
+            extremes: self.extremes,
+            path: self.path.len(),
+            impacts: self.impacts.len(),
+            crossings: self.crossings.found().to_vec(),
+            visits: self.visits.mark(),
+            counts: (self.impact_count, self.tree_impact_count),
+            ledger: self.ledger,
+            open_impact: self.open_impact,
+            next_point_s: self.next_point_s,
+        }
+    }
+
+    /// Goes back to `mark`; what was tried in vain was work all the same.
+    pub(super) fn go_back(&mut self, mark: &Mark) {
+        (self.now, self.extremes, self.ledger) = (mark.now, mark.extremes, mark.ledger);
+        self.path.truncate(mark.path);
+        self.impacts.truncate(mark.impacts);
+        self.crossings.go_back(&mark.crossings);
+        self.visits.go_back(mark.visits);
+        (self.impact_count, self.tree_impact_count) = mark.counts;
+        (self.open_impact, self.next_point_s) = (mark.open_impact, mark.next_point_s);
     }
 
     /// Notes the present speed and energies.

@@ -14,7 +14,9 @@ use serde::{Deserialize, Serialize};
 pub use crossing::Crossing;
 pub use fall::{Course, Scratch, fall, follow};
 pub use journey::Keep;
-pub use together::{Answer, Census, fall_together, follow_counted, follow_together};
+pub use together::{
+    Answer, Census, fall_together, follow_counted, follow_together, follow_watched,
+};
 pub use visit::Visit;
 
 /// Why a rock's journey ended.

@@ -8,8 +8,10 @@ mod census;
 mod crowd;
 mod job;
 mod moment;
+mod parts;
 mod rover;
 mod split;
+mod wide;
 
 use super::fall::{Course, kept};
 use super::journey::{Journey, Keep};
@@ -21,6 +23,7 @@ use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::plan::{Part, Plan};
 use crate::release::Release;
+use crate::rock::Vec3;
 use crate::step::law::Body;
 pub use census::Census;
 use crowd::Crowd;
@@ -51,8 +54,12 @@ struct Rover<'a> {
     quiet_s: f64,
     /// Step its last island would have tried next (s).
     h: f64,
-    /// Fastest since the window began (m/s).
-    fastest_m_s: f64,
+    /// Velocity when the window began, and the largest change of it since (m/s).
+    off: (Vec3, f64),
+    /// By how much its velocity changed when these windows were gone through before (m/s).
+    foreseen_m_s: f64,
+    /// Speed that the springs which press on it may give it (m/s).
+    pressed_m_s: f64,
     /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
     began_j: (f64, f64),
 }
@@ -137,6 +144,18 @@ pub fn follow_counted(
     keep: impl Fn(usize) -> Keep,
     stop: &AtomicBool,
 ) -> Option<(Vec<Trajectory>, Census)> {
+    follow_watched(course, releases, answer, keep, (stop, |_, _: &Census| ()))
+}
+
+/// The same; after each window of time `see` is told its end (s) and the counts so far. The world may go back to an
+/// earlier time, and goes on from there.
+pub fn follow_watched(
+    course: &Course,
+    releases: &[Release],
+    answer: &Answer,
+    keep: impl Fn(usize) -> Keep,
+    (stop, see): (&AtomicBool, impl FnMut(f64, &Census)),
+) -> Option<(Vec<Trajectory>, Census)> {
     let rovers = releases
         .iter()
         .enumerate()
@@ -144,7 +163,7 @@ pub fn follow_counted(
         .collect();
     let mut crowd = Crowd::new(course, answer, rovers);
     crowd.bond(answer);
-    crowd.run(stop).then(|| {
+    crowd.run(stop, see).then(|| {
         let census = crowd.census;
         (crowd.end(releases), census)
     })
@@ -172,7 +191,9 @@ fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
         lands: None,
         quiet_s: 0.0,
         h: f64::INFINITY,
-        fastest_m_s: 0.0,
+        off: (Vec3::zeros(), 0.0),
+        foreseen_m_s: 0.0,
+        pressed_m_s: 0.0,
         began_j: (0.0, 0.0),
     }
 }

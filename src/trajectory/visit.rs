@@ -18,7 +18,7 @@ pub struct Visit {
 }
 
 /// The cells of one rock so far.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Visits<'a> {
     cells: Option<&'a Lattice>,
     found: Vec<Visit>,
@@ -27,6 +27,19 @@ pub(super) struct Visits<'a> {
 impl<'a> Visits<'a> {
     pub(super) fn of(cells: Option<&'a Lattice>) -> Self {
         Self { cells, found: Vec::new() }
+    }
+
+    /// How many there are so far, and the last, which the next may join.
+    pub(super) fn mark(&self) -> (usize, Option<Visit>) {
+        (self.found.len(), self.found.last().copied())
+    }
+
+    /// Goes back to a mark.
+    pub(super) fn go_back(&mut self, (count, last): (usize, Option<Visit>)) {
+        self.found.truncate(count);
+        if let (Some(now), Some(last)) = (self.found.last_mut(), last) {
+            *now = last;
+        }
     }
 
     /// One entry a cell, in the order of cells.

@@ -65,9 +65,10 @@ pub(crate) fn stability(out: &Path, done: impl Fn(&str)) -> Result<(String, bool
     Ok((words.join("\n"), all_hold))
 }
 
-/// Follows worlds of more and more spheres; says what was found, and whether all of it is as it should be.
+/// Follows worlds of more and more spheres, those of `settle` to the end of their story; says what was found, and whether
+/// all of it is as it should be.
 pub(crate) fn scaling(
-    (out, longest_s): (&Path, f64),
+    (out, (longest_s, settle)): (&Path, (f64, &[usize])),
     schemes: &[(Scheme, &[usize])],
     done: impl Fn(String) + Send + Sync,
 ) -> Result<(String, bool)> {
@@ -80,10 +81,13 @@ pub(crate) fn scaling(
             .collect();
         // Small worlds first: what a large one has given back to the process would hide their memory.
         all.sort_by_key(|(spheres, _)| *spheres);
+        let settled_s = study::Phase::Settling.times_s().1;
         let follow = |(spheres, scheme): (usize, Scheme)| {
-            let world = study::world(scheme, spheres, (longest_s, before));
+            let settles = scheme == Scheme::Adaptive && settle.contains(&spheres);
+            let until_s = if settles { longest_s.max(settled_s) } else { longest_s };
+            let world = study::world(scheme, spheres, (until_s, before));
             done(format!(
-                "{}, {spheres} spheres: {:.2} s of processor time for {longest_s} s",
+                "{}, {spheres} spheres: {:.2} s of processor time for {until_s} s",
                 scheme.name(),
                 world.processor_s
             ));

@@ -3,9 +3,9 @@
 /// Counters of one world (no clock: the same on every machine).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Census {
-    /// Windows of time, those gone through again included.
+    /// Windows of time in which the whole world goes on, those gone through again included.
     pub windows: u64,
-    /// Times that the world went back because a rock was thrown further than its island allowed for.
+    /// Times that an island or the world went back because a rock was thrown further than was allowed for.
     pub returns: u64,
     /// Steps of islands.
     pub steps: u64,
@@ -46,5 +46,23 @@ impl Census {
         self.jumps += jumps;
         self.unsettled += unsettled;
         self.largest = self.largest.max(largest);
+    }
+}
+
+impl Census {
+    /// What was done after `before`. The largest island is that of the whole story.
+    #[must_use]
+    pub fn since(&self, before: &Self) -> Self {
+        Self {
+            windows: self.windows - before.windows,
+            returns: self.returns - before.returns,
+            steps: self.steps - before.steps,
+            rock_steps: self.rock_steps - before.rock_steps,
+            rejected: self.rejected - before.rejected,
+            sweeps: self.sweeps - before.sweeps,
+            jumps: self.jumps - before.jumps,
+            unsettled: self.unsettled - before.unsettled,
+            largest: self.largest,
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! All rocks of a world, and the windows of time they go through.
 
 use super::job::Job;
-use super::split::{Ahead, Meetings, Place, grown, is_busy, place_of};
+use super::split::{Meetings, Place, is_busy, meetings_of_islands, place_of};
+use super::wide::Wide;
 use super::{Answer, Census, Rover, State, TOUCHING, capture, law_between};
 use crate::contact::pair::Tie;
 use crate::coupled::TRAVEL;
@@ -21,11 +22,9 @@ const WAY: f64 = 0.1;
 const LONGEST_S: f64 = 0.02;
 /// Shortest window (s): one very small and fast rock must not stop the world.
 const SHORTEST_S: f64 = 1e-5;
-/// Speed that a rock may have after being hit, over the fastest speed around it (–): twice for a light one under a
-/// heavy one.
-const KICK: f64 = 2.2;
-/// Larger throws are not allowed for: that of a rock of a billionth of the mass along ten ever heavier ones.
-const MOST_KICK: f64 = 1e4;
+/// Times that the world goes back to one moment, each time knowing of throws twice as fast: enough for a rock of a
+/// billionth of the mass along ten ever heavier ones.
+const RETURNS: usize = 16;
 /// Windows after which a new moment is kept to go back to.
 const WINDOWS: usize = 64;
 
@@ -92,52 +91,63 @@ impl<'a> Crowd<'a> {
         overlapping(&self.rovers.iter().flatten().map(|rover| ball(rover)).collect::<Vec<_>>())
     }
 
-    /// Goes through windows until nothing moves or time is up; false if `stop` was raised.
-    pub(super) fn run(&mut self, stop: &AtomicBool) -> bool {
-        let mut kick = KICK;
-        loop {
+    /// Goes through windows until nothing moves or time is up; false if `stop` was raised. After each window `see` is told
+    /// the time (s) and the counts so far; where the world goes back, so does the time.
+    pub(super) fn run(&mut self, stop: &AtomicBool, mut see: impl FnMut(f64, &Census)) -> bool {
+        while self.is_under_way() {
             let moment = self.moment();
-            let mut missed = false;
-            for _ in 0..WINDOWS {
-                let under_way =
-                    self.rovers.iter().flatten().any(|rover| rover.state == State::Moving);
-                if !under_way || self.now_s >= self.course.longest_s {
+            for tried in 0..=RETURNS {
+                let Some(missed) = self.windows(stop, &mut see) else { return false };
+                if !missed || tried == RETURNS {
                     break;
                 }
-                if stop.load(Ordering::Relaxed) {
-                    return false;
-                }
-                missed = self.window(kick);
-                if missed {
-                    break;
-                }
-            }
-            if missed && kick < MOST_KICK {
                 self.go_back(&moment);
                 self.census.returns += 1;
-                kick *= KICK;
-                continue;
             }
-            kick = KICK;
-            let under_way = self.rovers.iter().flatten().any(|rover| rover.state == State::Moving);
-            if !under_way || self.now_s >= self.course.longest_s {
-                return true;
-            }
+            self.rovers.iter_mut().flatten().for_each(|rover| rover.foreseen_m_s = 0.0);
         }
+        true
     }
 
-    /// One window: islands, each on its own. Whether a rock was thrown further than `kick` allows for and may have met
+    fn is_under_way(&self) -> bool {
+        let mut rovers = self.rovers.iter().flatten();
+        self.now_s < self.course.longest_s && rovers.any(|rover| rover.state == State::Moving)
+    }
+
+    /// Goes through the next windows, up to one in which a rock may have met one that it was not compared with; whether
+    /// there was such a one, `None` if `stop` was raised.
+    fn windows(&mut self, stop: &AtomicBool, see: &mut impl FnMut(f64, &Census)) -> Option<bool> {
+        for _ in 0..WINDOWS {
+            if !self.is_under_way() {
+                break;
+            }
+            if stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            let missed = self.window();
+            see(self.now_s, &self.census);
+            if missed {
+                return Some(true);
+            }
+        }
+        Some(false)
+    }
+
+    /// One window: islands, each on its own. Whether a rock was thrown further than was allowed for and may have met
     /// one of another island.
-    fn window(&mut self, kick: f64) -> bool {
+    fn window(&mut self) -> bool {
         let length = self.window_length();
         let end_s = (self.now_s + length).min(self.course.longest_s);
-        self.rovers.iter_mut().flatten().for_each(|rover| rover.fastest_m_s = 0.0);
+        let (course, now_s) = (self.course, self.now_s);
+        self.rovers.iter_mut().flatten().for_each(|rover| {
+            rover.watch_from(course, now_s);
+        });
         let present: Vec<u32> = self.present();
-        let ahead = Ahead { dt: end_s - self.now_s, kick };
-        let place = |&k: &u32| place_of(self.rover(k), self.course, (self.now_s, ahead.dt));
+        let dt = end_s - self.now_s;
+        let place = |&k: &u32| place_of(self.rover(k), self.course, (self.now_s, dt));
         let places: Vec<Place> = present.iter().map(place).collect();
-        let mut meetings = self.meetings(&present, &places, ahead);
-        let jobs = self.jobs(&present, &mut meetings, (kick, end_s));
+        let mut meetings = self.meetings(&present, &places, dt);
+        let jobs = self.jobs(&present, &mut meetings, end_s);
         let done: Vec<Job> = jobs
             .into_par_iter()
             .map(|mut job| {
@@ -153,7 +163,21 @@ impl<'a> Crowd<'a> {
         }
         self.now_s = end_s;
         self.census.windows += 1;
-        missed || meetings.missed(&places, ahead.dt, |k| self.rover(present[k]).fastest_m_s)
+        let after = |k: usize| {
+            let rover = self.rover(present[k]);
+            (rover.position_at(self.course, end_s), rover.off.1)
+        };
+        let thrown = meetings.missed(&places, dt, after, |astray| {
+            overlapping(
+                &places.iter().zip(astray).map(|(p, off)| p.swept(*off, dt)).collect::<Vec<_>>(),
+            )
+        });
+        for &k in &thrown {
+            if let Some(rover) = &mut self.rovers[present[k] as usize] {
+                rover.foresee();
+            }
+        }
+        missed || !thrown.is_empty()
     }
 
     /// The rocks that are in the world.
@@ -174,16 +198,12 @@ impl<'a> Crowd<'a> {
     }
 
     /// Who may meet whom; numbers are places in `present`.
-    fn meetings(&self, present: &[u32], places: &[Place], ahead: Ahead) -> Meetings {
+    fn meetings(&self, present: &[u32], places: &[Place], dt: f64) -> Meetings {
         let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
         let held: Vec<(u32, u32)> = self.ties.keys().map(|&(a, b)| (at(a), at(b))).collect();
-        grown(places, ahead, |reaches| {
-            let balls: Vec<Ball> = places
-                .iter()
-                .zip(reaches)
-                .map(|(place, radius)| Ball { centre: place.0, radius: *radius })
-                .collect();
-            let mut pairs = overlapping(&balls);
+        let mut wide = Wide::default();
+        meetings_of_islands(places, dt, |reaches| {
+            let mut pairs = wide.overlapping(places, reaches);
             if !held.is_empty() {
                 pairs.extend(&held);
                 pairs.sort_unstable();
@@ -194,12 +214,7 @@ impl<'a> Crowd<'a> {
     }
 
     /// Takes every island in which something may happen before `end_s` out of the world.
-    fn jobs(
-        &mut self,
-        present: &[u32],
-        meetings: &mut Meetings,
-        (kick, end_s): (f64, f64),
-    ) -> Vec<Job<'a>> {
+    fn jobs(&mut self, present: &[u32], meetings: &mut Meetings, end_s: f64) -> Vec<Job<'a>> {
         let mut lists = meetings.islands.lists();
         lists.retain(|list| is_busy(list.iter().map(|&k| self.rover(present[k as usize])), end_s));
         let mut part = vec![(usize::MAX, 0); present.len()];
@@ -222,7 +237,7 @@ impl<'a> Crowd<'a> {
         for (list, ties) in lists.into_iter().zip(ties) {
             let ids: Vec<u32> = list.iter().map(|&k| present[k as usize]).collect();
             let rovers = ids.iter().filter_map(|&k| self.rovers[k as usize].take()).collect();
-            jobs.push(Job::new((self.course, kick), ids, rovers, ties, (self.now_s, end_s)));
+            jobs.push(Job::new(self.course, ids, rovers, ties, (self.now_s, end_s)));
         }
         jobs
     }

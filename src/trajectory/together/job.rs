@@ -2,7 +2,6 @@
 
 mod rigid;
 
-use super::split::{Ahead, Place, is_busy, meeting_ties, place_of};
 use super::{Census, Rover, State};
 use crate::contact::pair::{Tie, meeting_s};
 use crate::coupled::islands::Islands;
@@ -12,7 +11,6 @@ use crate::step::adaptive::{Control, ONSET, Stuck};
 use crate::step::tableau::{ESDIRK4, TR_BDF2};
 use crate::trajectory::Stop;
 use crate::trajectory::fall::Course;
-use rayon::prelude::*;
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
 const ROUNDING: f64 = 1e-11;
@@ -20,25 +18,19 @@ const ROUNDING: f64 = 1e-11;
 /// A time that is nothing (s): the clock cannot tell less after an hour.
 const SOON_S: f64 = 1e-12;
 
-/// An island of no more rocks than this is stepped as a whole.
-const FEW: usize = 4;
-/// In how many windows one is cut in which most of an island's rocks cannot meet.
-const CUTS: u32 = 4;
-/// Shortest of them, in radians of the stiffest contact (–): an impact should not be cut into pieces.
-const SHORTEST_PART: f64 = 6.0;
-
 /// Rocks on their way. They are handed on between islands, and a pointer moves faster than a journey.
 type Rovers<'a> = Vec<Box<Rover<'a>>>;
 
 /// One island and its window.
 pub(super) struct Job<'a> {
-    course: &'a Course<'a>,
-    ids: Vec<u32>,
-    rovers: Rovers<'a>,
-    ties: Vec<Tie>,
-    now_s: f64,
-    end_s: f64,
-    kick: f64,
+    pub(super) course: &'a Course<'a>,
+    pub(super) ids: Vec<u32>,
+    pub(super) rovers: Rovers<'a>,
+    pub(super) ties: Vec<Tie>,
+    pub(super) now_s: f64,
+    pub(super) end_s: f64,
+    /// Whether it goes back by itself where a rock was thrown further than was allowed for.
+    pub(super) goes_back: bool,
     /// Whether a rock was thrown so far that it may have met one of another island.
     pub(super) missed: bool,
     pub(super) census: Census,
@@ -46,7 +38,7 @@ pub(super) struct Job<'a> {
 
 impl<'a> Job<'a> {
     pub(super) fn new(
-        (course, kick): (&'a Course<'a>, f64),
+        course: &'a Course<'a>,
         ids: Vec<u32>,
         rovers: Rovers<'a>,
         ties: Vec<Tie>,
@@ -59,7 +51,7 @@ impl<'a> Job<'a> {
             ties,
             now_s,
             end_s,
-            kick,
+            goes_back: true,
             missed: false,
             census: Census::default(),
         }
@@ -69,97 +61,8 @@ impl<'a> Job<'a> {
         (self.ids, self.rovers, self.ties)
     }
 
-    /// Takes the island to the end of its window.
-    pub(super) fn run(&mut self) {
-        if self.is_rigid_heap() {
-            self.run_rigid();
-            return;
-        }
-        if !self.falls_apart() {
-            self.run_whole();
-            return;
-        }
-        let (start_s, end_s) = (self.now_s, self.end_s);
-        for k in 1..=CUTS {
-            let part = f64::from(k) / f64::from(CUTS);
-            self.end_s = if k == CUTS { end_s } else { start_s + part * (end_s - start_s) };
-            self.run_parts();
-            self.now_s = self.end_s;
-        }
-    }
-
-    /// Whether most of the island's rocks are not joined in a much shorter window: then shorter windows are cheaper than
-    /// stepping all together.
-    fn falls_apart(&self) -> bool {
-        let (count, dt) = (self.rovers.len(), (self.end_s - self.now_s) / f64::from(CUTS));
-        let stiffest = self.ties.iter().map(|tie| tie.law.omega).fold(0.0, f64::max);
-        if count <= FEW || dt * stiffest < SHORTEST_PART {
-            return false;
-        }
-        let ahead = Ahead { dt, kick: self.kick };
-        let mut meetings = meeting_ties(&self.ties, &self.places(dt), ahead);
-        let largest = meetings.islands.sizes().into_iter().max().unwrap_or(0);
-        4 * largest as usize <= 3 * count
-    }
-
-    fn places(&self, dt: f64) -> Vec<Place> {
-        let place = |rover: &Rover| place_of(rover, self.course, (self.now_s, dt));
-        self.rovers.iter().map(|rover| place(rover)).collect()
-    }
-
-    /// Takes the parts that cannot meet before the end of the window there, each on its own.
-    fn run_parts(&mut self) {
-        let dt = self.end_s - self.now_s;
-        let places = self.places(dt);
-        let mut meetings = meeting_ties(&self.ties, &places, Ahead { dt, kick: self.kick });
-        let mut lists = meetings.islands.lists();
-        lists.retain(|list| is_busy(list.iter().map(|&k| &*self.rovers[k as usize]), self.end_s));
-        let mut part = vec![(u32::MAX, 0); self.rovers.len()];
-        for (list, number) in lists.iter().zip(0..) {
-            for (&k, place) in list.iter().zip(0..) {
-                part[k as usize] = (number, place);
-            }
-        }
-        let mut ties: Vec<Vec<Tie>> = lists.iter().map(|_| Vec::new()).collect();
-        let mut pairs = meetings.pairs.iter().peekable();
-        self.ties.retain(|tie| {
-            let (number, a) = part[tie.a as usize];
-            let meets = pairs.next_if(|pair| **pair == (tie.a, tie.b)).is_some();
-            let goes = meets && number != u32::MAX;
-            if goes {
-                ties[number as usize].push(Tie { a, b: part[tie.b as usize].1, ..*tie });
-            }
-            !goes
-        });
-        let mut homes: Vec<Option<Box<Rover>>> = self.rovers.drain(..).map(Some).collect();
-        let mut jobs = Vec::with_capacity(lists.len());
-        for (list, ties) in lists.into_iter().zip(ties) {
-            let rovers = list.iter().filter_map(|&k| homes[k as usize].take()).collect();
-            let window = (self.now_s, self.end_s);
-            jobs.push(Job::new((self.course, self.kick), list, rovers, ties, window));
-        }
-        jobs.par_iter_mut().for_each(Job::run);
-        for job in jobs {
-            self.missed |= job.missed;
-            self.census.add(&job.census);
-            let (list, rovers, ties) = job.into_parts();
-            self.ties.extend(ties.into_iter().map(|tie| Tie {
-                a: list[tie.a as usize],
-                b: list[tie.b as usize],
-                ..tie
-            }));
-            for (&k, rover) in list.iter().zip(rovers) {
-                homes[k as usize] = Some(rover);
-            }
-        }
-        self.ties.sort_unstable_by_key(|tie| (tie.a, tie.b));
-        self.rovers.extend(homes.into_iter().flatten());
-        let rovers = &self.rovers;
-        self.missed |= meetings.missed(&places, dt, |k| rovers[k].fastest_m_s);
-    }
-
     /// Takes all of the island to the end of the window together.
-    fn run_whole(&mut self) {
+    pub(super) fn run_whole(&mut self) {
         for rover in &mut self.rovers {
             rover.wake(self.course, self.now_s);
         }
@@ -178,7 +81,7 @@ impl<'a> Job<'a> {
     }
 
     /// When the next flying rock touches mesh or another flying rock (s).
-    fn next_event_s(&self) -> f64 {
+    pub(super) fn next_event_s(&self) -> f64 {
         let flying = self.rovers.iter().filter(|rover| rover.member.flying);
         let landings = flying.filter_map(|rover| rover.lands.as_ref().map(|(time_s, _)| *time_s));
         let first = landings.fold(f64::INFINITY, f64::min);
@@ -306,7 +209,14 @@ impl<'a> Job<'a> {
         self.ties = cluster.ties;
         for (rover, member) in self.rovers.iter_mut().zip(cluster.members) {
             rover.h = if member.flying { f64::INFINITY } else { cluster.h };
+            rover.pressed_m_s = member.pressed_m_s(self.course.terrain);
             rover.member = member;
+        }
+        for tie in self.ties.iter().filter(|tie| tie.is_held()) {
+            for k in [tie.a, tie.b] {
+                let rover = &mut self.rovers[k as usize];
+                rover.pressed_m_s += tie.push.abs() / (rover.member.body.mass * tie.law.omega);
+            }
         }
     }
 

@@ -5,58 +5,62 @@ use super::crowd::Crowd;
 use super::{Rover, State, Stop};
 use crate::contact::pair::Tie;
 use crate::coupled::Memory;
-use crate::trajectory::journey::Journey;
+use crate::trajectory::journey::Mark;
 use std::collections::BTreeMap;
 
 /// All that later windows depend on.
-pub(super) struct Moment<'a> {
-    rovers: Vec<Option<Kept<'a>>>,
+pub(super) struct Moment {
+    rovers: Vec<Option<Kept>>,
     ties: BTreeMap<(u32, u32), Tie>,
     now_s: f64,
 }
 
 /// One rock of it.
-struct Kept<'a> {
+pub(super) struct Kept {
     memory: Memory,
-    journey: Journey<'a>,
+    mark: Mark,
     state: State,
     lands: Option<(f64, Option<Stop>)>,
     quiet_s: f64,
     h: f64,
+    pressed_m_s: f64,
     began_j: (f64, f64),
 }
 
-impl<'a> Rover<'a> {
-    fn keep(&self) -> Kept<'a> {
+impl Rover<'_> {
+    pub(super) fn keep(&self) -> Kept {
         Kept {
             memory: self.member.memory(),
-            journey: self.journey.clone(),
+            mark: self.journey.mark(),
             state: self.state.clone(),
             lands: self.lands.clone(),
             quiet_s: self.quiet_s,
             h: self.h,
+            pressed_m_s: self.pressed_m_s,
             began_j: self.began_j,
         }
     }
 
-    fn go_back(&mut self, kept: &Kept<'a>) {
+    pub(super) fn go_back(&mut self, kept: &Kept) {
         self.member.recall(&kept.memory);
-        let effort = self.journey.effort;
-        self.journey = kept.journey.clone();
-        // What was tried in vain was work all the same.
-        self.journey.effort = effort;
+        self.journey.go_back(&kept.mark);
         self.state.clone_from(&kept.state);
         self.lands.clone_from(&kept.lands);
         (self.quiet_s, self.h, self.began_j) = (kept.quiet_s, kept.h, kept.began_j);
+        self.pressed_m_s = kept.pressed_m_s;
+    }
+
+    /// When this is gone through again, it is known how far the rock was thrown.
+    pub(super) fn foresee(&mut self) {
+        self.foreseen_m_s = self.foreseen_m_s.max(2.0 * self.off.1);
     }
 }
 
-impl<'a> Crowd<'a> {
+impl Crowd<'_> {
     /// Keeps the present.
-    pub(super) fn moment(&self) -> Moment<'a> {
+    pub(super) fn moment(&self) -> Moment {
         // What is gone does not come back.
-        let kept =
-            |rover: &Rover<'a>| (!matches!(rover.state, State::Gone(_))).then(|| rover.keep());
+        let kept = |rover: &Rover| (!matches!(rover.state, State::Gone(_))).then(|| rover.keep());
         Moment {
             rovers: self.rovers.iter().map(|rover| rover.as_deref().and_then(kept)).collect(),
             ties: self.ties.clone(),
@@ -65,7 +69,7 @@ impl<'a> Crowd<'a> {
     }
 
     /// Goes back to a moment that was kept.
-    pub(super) fn go_back(&mut self, moment: &Moment<'a>) {
+    pub(super) fn go_back(&mut self, moment: &Moment) {
         for (rover, kept) in self.rovers.iter_mut().zip(&moment.rovers) {
             if let (Some(rover), Some(kept)) = (rover, kept) {
                 rover.go_back(kept);

@@ -40,6 +40,18 @@ impl Rover<'_> {
         }
     }
 
+    /// Begins to watch how far its velocity changes; returns what was watched before.
+    pub(super) fn watch_from(&mut self, course: &Course, now_s: f64) -> (Vec3, f64) {
+        let velocity = self.velocity_at(course, now_s);
+        std::mem::replace(&mut self.off, (velocity, 0.0))
+    }
+
+    /// Goes on with what was watched before.
+    pub(super) fn watch_on(&mut self, (velocity, off): (Vec3, f64)) {
+        let since = (self.off.0 - velocity).norm() + self.off.1;
+        self.off = (velocity, off.max(since));
+    }
+
     /// Brings a rock that slept to the present; one that flies without knowing where looks ahead.
     pub(super) fn wake(&mut self, course: &Course, now_s: f64) {
         if self.state == State::Asleep {
@@ -131,7 +143,9 @@ impl Rover<'_> {
         let to = self.motion_at(time_s);
         let was_flying = self.lands.is_some();
         self.announce(course);
-        if was_flying && self.member.flying {
+        // A rock may be hit and let go within one step: then it flies another way.
+        let is_untouched = given_j == 0.0 && loss == Loss::default();
+        if was_flying && self.member.flying && is_untouched {
             self.journey.step_as(to, PathState::Flight);
             return;
         }
@@ -172,10 +186,10 @@ impl Rover<'_> {
         }
     }
 
-    /// What the solver has made of it (the fastest of it is kept).
+    /// What the solver has made of it (the largest change of its velocity is kept).
     fn motion_at(&mut self, time_s: f64) -> Motion {
         let grip = &self.member.grip;
-        self.fastest_m_s = self.fastest_m_s.max(grip.v.norm());
+        self.off.1 = self.off.1.max((grip.v - self.off.0).norm());
         Motion { time_s, position_m: grip.c, velocity_m_s: grip.v, spin_rad_s: grip.w }
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Rover, State};
 use crate::contact::pair::Tie;
+use crate::coupled::broad::Ball;
 use crate::coupled::islands::Islands;
 use crate::rock::Vec3;
 use crate::trajectory::fall::Course;
@@ -9,27 +10,81 @@ use crate::trajectory::fall::Course;
 /// Passes in which islands grow by the reach of those that may be hit.
 const PASSES: usize = 3;
 
-/// A rock's place, radius and largest speed of its own within a window.
-pub(super) type Place = (Vec3, f64, f64);
+/// Times that a hit is handed on within a short window.
+const HANDED_ON: usize = 1;
 
-/// Where a rock is at `now_s` and how fast it may be within `dt` (s) if nothing hits it.
-pub(super) fn place_of(rover: &Rover, course: &Course, (now_s, dt): (f64, f64)) -> Place {
-    let speed = if rover.state == State::Asleep {
-        0.0
-    } else {
-        rover.velocity_at(course, now_s).norm() + course.gravity_m_s2 * dt
-    };
-    (rover.position_at(course, now_s), rover.member.body.radius, speed)
+/// A rock at a window's start.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// Centre (m).
+    pub(super) centre: Vec3,
+    /// Velocity (m/s).
+    velocity: Vec3,
+    /// Radius (m).
+    pub(super) radius: f64,
+    /// Mass (kg).
+    mass: f64,
+    /// Most that its velocity may change by weight, by what presses on it and by the mesh (m/s).
+    loose: f64,
+    /// By how much its velocity changed when this window was gone through before (m/s), 0 if it was not.
+    foreseen: f64,
 }
 
+impl Place {
+    /// Largest speed of its own (m/s).
+    fn speed(&self) -> f64 {
+        self.velocity.norm() + self.loose
+    }
+
+    /// A ball that holds the rock through `dt` (s) if it goes no further than `astray` (m) off its straight way.
+    pub(super) fn swept(&self, astray: f64, dt: f64) -> Ball {
+        let half = self.velocity * (0.5 * dt);
+        let radius = self.radius * (1.0 + ROUNDING) + half.norm() + astray;
+        Ball { centre: self.centre + half, radius }
+    }
+}
+
+/// Where a rock is at `now_s` and what it may do within `dt` (s) if no other hits it.
+pub(super) fn place_of(rover: &Rover, course: &Course, (now_s, dt): (f64, f64)) -> Place {
+    let sleeps = rover.state == State::Asleep;
+    let velocity = if sleeps { Vec3::zeros() } else { rover.velocity_at(course, now_s) };
+    let speed = velocity.norm();
+    let lands = rover.lands.as_ref().is_some_and(|(time_s, _)| *time_s <= now_s + dt);
+    let near_mesh = !rover.member.flying && rover.member.is_near_mesh(speed * dt);
+    let turned = if lands || near_mesh { 2.0 * speed } else { 0.0 };
+    let loose = rover.pressed_m_s + course.gravity_m_s2 * dt + turned;
+    Place {
+        centre: rover.position_at(course, now_s),
+        velocity,
+        radius: rover.member.body.radius,
+        mass: rover.member.body.mass,
+        loose: if sleeps { 0.0 } else { loose },
+        foreseen: rover.foreseen_m_s,
+    }
+}
+
+/// Speed that a rock may have after being hit, over the fastest speed around it (–): twice for a light one under a
+/// heavy one.
+const KICK: f64 = 2.2;
+/// Of a hit within a short window, the share that is allowed for: it takes its time (–).
+const LATE: f64 = 0.5;
 /// Share of the radius by which reaches are larger than they must be: rounding (–).
 const ROUNDING: f64 = 1e-6;
 
-/// A window ahead: its length (s), and the speed that a rock may have after being hit, over the fastest speed around it.
+/// How far a hit is handed on within a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Spread {
+    /// To all of an island.
+    Island,
+    /// To the next few rocks: the window is not much longer than a contact.
+    Neighbours,
+}
+
+/// A window ahead: its length (s), and how far a hit is handed on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ahead {
     pub(super) dt: f64,
-    pub(super) kick: f64,
+    pub(super) spread: Spread,
 }
 
 /// Who may meet whom in a window.
@@ -37,58 +92,149 @@ pub(super) struct Meetings {
     /// In ascending order.
     pub(super) pairs: Vec<(u32, u32)>,
     pub(super) islands: Islands,
-    /// Radius of the ball that holds each rock to the window's end (m).
-    reaches: Vec<f64>,
+    /// Change of each rock's velocity that was allowed for (m/s).
+    allowed: Vec<f64>,
+}
+
+/// Nearest that two rocks come to each other within `dt` (s) on straight ways, less their radii (m).
+fn nearest_gap(a: &Place, b: &Place, dt: f64) -> f64 {
+    let (apart, closing) = (a.centre - b.centre, a.velocity - b.velocity);
+    let speed2 = closing.norm_squared();
+    let t = if speed2 > 0.0 { (-apart.dot(&closing) / speed2).clamp(0.0, dt) } else { 0.0 };
+    (apart + closing * t).norm() - (a.radius + b.radius) * (1.0 + ROUNDING)
 }
 
 impl Meetings {
-    /// Whether a rock was thrown out of its ball and, as far as its speed lets one know, may have met one that it was not
-    /// compared with. `fastest` is the largest speed each rock had (m/s).
-    pub(super) fn missed(&self, places: &[Place], dt: f64, fastest: impl Fn(usize) -> f64) -> bool {
-        let pair = |a: usize, b: usize| (a.min(b) as u32, a.max(b) as u32);
-        let went = |k: usize| places[k].1 + fastest(k) * dt;
-        let thrown: Vec<usize> =
-            (0..places.len()).filter(|&k| went(k) > self.reaches[k] * (1.0 + ROUNDING)).collect();
-        thrown.into_iter().any(|k| {
-            (0..places.len()).any(|other| {
-                let reach = went(k) + self.reaches[other].max(went(other));
-                k != other
-                    && self.pairs.binary_search(&pair(k, other)).is_err()
-                    && (places[k].0 - places[other].0).norm_squared() <= reach * reach
-            })
-        })
+    /// Rocks that were thrown off their ways further than allowed and, as far as one knows, may have met one that they
+    /// were not compared with, in ascending order. `after` gives each rock's place at the window's end and the largest
+    /// change of its velocity (m/s), `near` the pairs that can come into question, given how far each was astray (m).
+    pub(super) fn missed(
+        &self,
+        places: &[Place],
+        dt: f64,
+        after: impl Fn(usize) -> (Vec3, f64),
+        near: impl FnOnce(&[f64]) -> Vec<(u32, u32)>,
+    ) -> Vec<usize> {
+        let is_thrown = |k: usize| after(k).1 > self.allowed[k] * (1.0 + ROUNDING);
+        if !(0..places.len()).any(is_thrown) {
+            return Vec::new();
+        }
+        // Off its straight way by no more than half of what it is off at the end and of what it could be.
+        let astray = |(k, place): (usize, &Place)| {
+            let (end, off) = after(k);
+            let straight = place.centre + place.velocity * dt;
+            0.5 * ((end - straight).norm() + off.max(place.loose) * dt)
+        };
+        let astray: Vec<f64> = places.iter().enumerate().map(astray).collect();
+        let mut missed = Vec::new();
+        for (a, b) in near(&astray) {
+            let ends = [a as usize, b as usize];
+            let gap = nearest_gap(&places[ends[0]], &places[ends[1]], dt);
+            if gap <= astray[ends[0]] + astray[ends[1]]
+                && self.pairs.binary_search(&(a, b)).is_err()
+            {
+                missed.extend(ends.into_iter().filter(|&k| is_thrown(k)));
+            }
+        }
+        missed.sort_unstable();
+        missed.dedup();
+        missed
     }
 }
 
-/// Pairs that may touch and the islands they form: `near` gives the pairs whose reaches (m) overlap.
-pub(super) fn grown(
+/// Pairs that may touch and the islands they form, where any rock of an island may be hit by its fastest: `near` gives the
+/// pairs that overlap if each rock may be anywhere within so far of its centre (m).
+pub(super) fn meetings_of_islands(
     places: &[Place],
-    ahead: Ahead,
-    near: impl Fn(&[f64]) -> Vec<(u32, u32)>,
+    dt: f64,
+    mut near: impl FnMut(&[f64]) -> Vec<(u32, u32)>,
 ) -> Meetings {
-    let mut fastest: Vec<f64> = places.iter().map(|place| place.2).collect();
+    let mut fastest: Vec<f64> = places.iter().map(|place| KICK * place.speed()).collect();
     let (mut pairs, mut islands) = (Vec::new(), Islands::alone(places.len()));
-    let mut reaches = Vec::new();
+    let mut allowed = Vec::new();
     for _ in 0..PASSES {
-        let reach = |((_, radius, _), speed): (&Place, &f64)| {
-            radius * (1.0 + ROUNDING) + ahead.kick * speed * ahead.dt
+        let thrown = |(place, speed): (&Place, &f64)| {
+            let own = place.velocity.norm();
+            speed.max(own + place.foreseen) - own
         };
-        reaches = places.iter().zip(&fastest).map(reach).collect();
-        pairs = near(&reaches);
-        islands = Islands::alone(places.len());
-        for &(a, b) in &pairs {
-            islands.join(a, b);
-        }
+        allowed = places.iter().zip(&fastest).map(thrown).collect();
+        let reach = |(place, thrown): (&Place, &f64)| {
+            place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + thrown) * dt
+        };
+        pairs = near(&places.iter().zip(&allowed).map(reach).collect::<Vec<_>>());
+        islands = joined(&pairs, places.len());
         let mut most = vec![0.0f64; places.len()];
         for (place, k) in places.iter().zip(0..) {
             let root = islands.of(k) as usize;
-            most[root] = most[root].max(place.2);
+            most[root] = most[root].max(KICK * place.speed());
         }
         for (speed, k) in fastest.iter_mut().zip(0..) {
             *speed = most[islands.of(k) as usize];
         }
     }
-    Meetings { pairs, islands, reaches }
+    Meetings { pairs, islands, allowed }
+}
+
+fn joined(pairs: &[(u32, u32)], count: usize) -> Islands {
+    let mut islands = Islands::alone(count);
+    for &(a, b) in pairs {
+        islands.join(a, b);
+    }
+    islands
+}
+
+/// The same among rocks that `ties` join.
+pub(super) fn meeting_ties(ties: &[Tie], places: &[Place], ahead: Ahead) -> Meetings {
+    match ahead.spread {
+        Spread::Neighbours => meetings_of_neighbours(ties, places, ahead.dt),
+        Spread::Island => meetings_of_islands(places, ahead.dt, |reaches| {
+            let meets = |tie: &&Tie| {
+                let [a, b] = [tie.a, tie.b].map(|k| k as usize);
+                let reach = reaches[a] + reaches[b];
+                tie.is_held()
+                    || (places[a].centre - places[b].centre).norm_squared() <= reach * reach
+            };
+            ties.iter().filter(meets).map(|tie| (tie.a, tie.b)).collect()
+        }),
+    }
+}
+
+/// Pairs that may touch and the islands they form in a window not much longer than a contact: rocks go straight on but
+/// for hits, which are handed on to the next few.
+fn meetings_of_neighbours(ties: &[Tie], places: &[Place], dt: f64) -> Meetings {
+    let gaps: Vec<f64> = ties
+        .iter()
+        .map(|tie| {
+            if tie.is_held() {
+                f64::NEG_INFINITY
+            } else {
+                nearest_gap(&places[tie.a as usize], &places[tie.b as usize], dt)
+            }
+        })
+        .collect();
+    let mut allowed: Vec<f64> =
+        places.iter().map(|place| place.loose.max(place.foreseen)).collect();
+    let meet = |allowed: &[f64]| -> Vec<(u32, u32)> {
+        let meets = |(tie, gap): &(&Tie, &f64)| {
+            **gap <= (allowed[tie.a as usize] + allowed[tie.b as usize]) * dt
+        };
+        ties.iter().zip(&gaps).filter(meets).map(|(tie, _)| (tie.a, tie.b)).collect()
+    };
+    for _ in 0..HANDED_ON {
+        let before = allowed.clone();
+        for (a, b) in meet(&before) {
+            for (k, other) in [(a as usize, b as usize), (b as usize, a as usize)] {
+                let (own, its) = (&places[k], &places[other]);
+                // an elastic hit: twice the velocity of the common centre of mass
+                let share = 2.0 * its.mass / (own.mass + its.mass);
+                let closing = (own.velocity - its.velocity).norm() + before[other];
+                allowed[k] = allowed[k].max(own.loose + LATE * share * closing);
+            }
+        }
+    }
+    let pairs = meet(&allowed);
+    let islands = joined(&pairs, places.len());
+    Meetings { pairs, islands, allowed }
 }
 
 /// Whether anything of an island moves other than along a parabola that goes on beyond `end_s`.
@@ -100,17 +246,5 @@ pub(super) fn is_busy<'r, 'a: 'r>(
     rovers.any(|rover| {
         let flies_on = rover.member.flying && rover.lands.as_ref().is_some_and(|(t, _)| *t > end_s);
         rover.state == State::Moving && !(alone && flies_on)
-    })
-}
-
-/// Which ties join rocks that may meet within `dt` (s).
-pub(super) fn meeting_ties(ties: &[Tie], places: &[Place], ahead: Ahead) -> Meetings {
-    grown(places, ahead, |reaches| {
-        let meets = |tie: &&Tie| {
-            let [a, b] = [tie.a, tie.b].map(|k| k as usize);
-            let reach = reaches[a] + reaches[b];
-            tie.is_held() || (places[a].0 - places[b].0).norm_squared() <= reach * reach
-        };
-        ties.iter().filter(meets).map(|tie| (tie.a, tie.b)).collect()
     })
 }

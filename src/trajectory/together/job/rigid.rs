@@ -6,13 +6,13 @@ use crate::step::Scheme;
 
 impl<'a> Job<'a> {
     /// Whether the island is stepped as a whole in the rigid limit; a rock alone leaps and steps as it always does.
-    pub(super) fn is_rigid_heap(&self) -> bool {
+    pub(in crate::trajectory::together) fn is_rigid_heap(&self) -> bool {
         self.course.step.scheme == Scheme::Rigid && self.rovers.len() > 1
     }
 
     /// Takes all of the island to the end of the window. Rocks that fly are taken along: a step costs them next to
     /// nothing, and to stop for each of their touches would cost all others a step.
-    pub(super) fn run_rigid(&mut self) {
+    pub(in crate::trajectory::together) fn run_rigid(&mut self) {
         let (course, now_s) = (self.course, self.now_s);
         for rover in &mut self.rovers {
             rover.wake(course, now_s);

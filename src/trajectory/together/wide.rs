@@ -1,0 +1,38 @@
+//! Who is near whom, asked several times with growing reaches: the answer to a somewhat larger question serves all.
+
+use super::split::Place;
+use crate::coupled::broad::{Ball, overlapping};
+
+/// Share by which the way that is asked for is larger than it must be (–).
+const SPARE: f64 = 0.5;
+
+/// The pairs that were found last.
+#[derive(Debug, Default)]
+pub(super) struct Wide {
+    /// How far each rock may be from its centre there (m).
+    reaches: Vec<f64>,
+    pairs: Vec<(u32, u32)>,
+}
+
+impl Wide {
+    /// Pairs that overlap or touch if each rock may be anywhere within so far of its centre (m), in ascending order.
+    pub(super) fn overlapping(&mut self, places: &[Place], reaches: &[f64]) -> Vec<(u32, u32)> {
+        let fits = self.reaches.len() == reaches.len()
+            && self.reaches.iter().zip(reaches).all(|(known, asked)| known >= asked);
+        if !fits {
+            let ways = places.iter().zip(reaches);
+            self.reaches =
+                ways.map(|(place, reach)| reach + SPARE * (reach - place.radius)).collect();
+            let ball =
+                |(place, reach): (&Place, &f64)| Ball { centre: place.centre, radius: *reach };
+            let balls: Vec<Ball> = places.iter().zip(&self.reaches).map(ball).collect();
+            self.pairs = overlapping(&balls);
+        }
+        let near = |&&(a, b): &&(u32, u32)| {
+            let [a, b] = [a, b].map(|k| k as usize);
+            let reach = reaches[a] + reaches[b];
+            (places[a].centre - places[b].centre).norm_squared() <= reach * reach
+        };
+        self.pairs.iter().filter(near).copied().collect()
+    }
+}
