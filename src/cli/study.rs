@@ -83,12 +83,12 @@ pub(super) struct ScalingArgs {
     #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,2000")]
     dda: Vec<usize>,
     /// Numbers of spheres with scheme rigid
-    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,5000,20000")]
+    #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,2000,5000,20000")]
     rigid: Vec<usize>,
     /// Time to follow each world (s): falling ends at 0.25 s, impacts at 0.6 s
     #[arg(long, value_name = "S", value_parser = positive, default_value = "0.6")]
     seconds: f64,
-    /// Numbers of spheres with scheme adaptive that are followed to 1.8 s, when the heaps settle
+    /// Numbers of spheres that are followed to 1.8 s with adaptive and rigid, when the heaps settle
     #[arg(long, value_name = "N,N", value_delimiter = ',', value_parser = at_least_1, default_value = "48,500,2000")]
     settle: Vec<usize>,
 }

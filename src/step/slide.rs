@@ -110,12 +110,10 @@ pub(crate) struct Pair<'a> {
 
 /// Newton steps for a ratio.
 const RATIO_STEPS: u32 = 30;
-/// Least that Newton leaves of a ratio at once (–).
-const FALL: f64 = 0.2;
 /// A force below this part of its cap is held (–).
 const INSIDE: f64 = 1.0 - 1e-9;
-/// Change of a ratio, relative to it, after which Newton's next would be less than rounding matters (–).
-const NEAR: f64 = 1e-5;
+/// Change of a ratio, relative to it, after which Newton's next would not matter (–).
+const NEAR: f64 = 3e-5;
 
 /// `n × x`, along the surface.
 #[inline]
@@ -150,6 +148,14 @@ pub(crate) fn cut(x: Along, cap: f64) -> Along {
 pub(crate) fn cut_moment(x: Local, cap: f64) -> Local {
     let size2 = volume2(x);
     if size2 > cap * cap { x.map(|x| x * (cap / size2.sqrt())) } else { x }
+}
+
+/// How much a ratio must grow (–, in logarithms) for a value to reach the one wanted, both squared; `grows` over `by` is how
+/// the value's logarithm grows with that of the ratio. Newton in logarithms, by at most a factor of
+/// 2.5 at once: a power is found in no time.
+#[inline]
+fn missing((value2, wanted2): (f64, f64), (grows, by): (f64, f64)) -> f64 {
+    ((wanted2 - value2) * by / ((wanted2 + value2) * grows).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
 }
 
 /// A ratio by a cap that may be nothing.
@@ -269,16 +275,16 @@ impl Pair<'_> {
         let mut room = 1.0 / (1.0 + ratio * s);
         for _ in 0..RATIO_STEPS {
             let spun2 = n2 * room * room;
-            let over = ratio * ratio * (t2 + spun2) - cap * cap;
-            let change = over / (2.0 * ratio * (t2 + spun2 * room)).max(f64::MIN_POSITIVE);
-            let next = (ratio - change).max(FALL * ratio);
-            if change.abs() <= NEAR * ratio {
+            let size2 = t2 + spun2;
+            let grows = (t2 + spun2 * room, size2);
+            let share = missing((ratio * ratio * size2, cap * cap), grows);
+            let change = ratio * (share + 0.5 * share * share);
+            ratio += change;
+            if share.abs() <= NEAR {
                 // So little further on the line through it is as good.
-                room -= room * room * s * (next - ratio);
-                ratio = next;
+                room -= room * room * s * change;
                 break;
             }
-            ratio = next;
             room = 1.0 / (1.0 + ratio * s);
         }
         let spun = ratio * room;
@@ -312,12 +318,11 @@ impl Pair<'_> {
             e = p.map(|x| x * over);
             let c = nd[0] * e[0] + nd[1] * e[1];
             let size2 = most2 - 2.0 * lever * c;
-            let slope = 2.0 * ratio * (size2 + ratio * lever * (nd2 - c * c) * over);
-            let beyond = ratio * ratio * size2 - wanted * wanted;
-            let next = (ratio - beyond / slope.max(f64::MIN_POSITIVE)).max(FALL * ratio);
-            let change = next - ratio;
-            ratio = next;
-            if change.abs() <= NEAR * ratio {
+            let grows = (size2 + ratio * lever * (nd2 - c * c) * over, size2);
+            let share = missing((ratio * ratio * size2, wanted * wanted), grows);
+            let change = ratio * (share + 0.5 * share * share);
+            ratio += change;
+            if share.abs() <= NEAR {
                 // So little further on the tangent is as good.
                 e = [0, 1].map(|k| e[k] - (nd[k] - e[k] * c) * (over * change));
                 break;

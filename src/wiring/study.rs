@@ -83,7 +83,7 @@ pub(crate) fn scaling(
         all.sort_by_key(|(spheres, _)| *spheres);
         let settled_s = study::Phase::Settling.times_s().1;
         let follow = |(spheres, scheme): (usize, Scheme)| {
-            let settles = scheme == Scheme::Adaptive && settle.contains(&spheres);
+            let settles = scheme != Scheme::Dda && settle.contains(&spheres);
             let until_s = if settles { longest_s.max(settled_s) } else { longest_s };
             let world = study::world(scheme, spheres, (until_s, before));
             done(format!(
