@@ -8,7 +8,7 @@ mod state;
 mod trial;
 
 use super::adaptive::{Advance, Control, Halt, Stuck, TRAVEL};
-use super::grip::{Grip, Loss, World};
+use super::grip::{Grip, Loss, World, longest_step};
 use super::law::Body;
 use super::slide::{Frame, Local, Mode, cut, cut_moment};
 use super::tableau::STAGES;
@@ -83,6 +83,7 @@ impl Grip {
         let mut trial = Try {
             h,
             limit: self.longest_step(world, TRAVEL),
+            room_s: longest_step(&world.body, self.v.norm(), TRAVEL * world.body.radius),
             control,
             world,
             law,

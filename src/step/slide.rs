@@ -112,8 +112,9 @@ pub(crate) struct Pair<'a> {
 const RATIO_STEPS: u32 = 30;
 /// A force below this part of its cap is held (–).
 const INSIDE: f64 = 1.0 - 1e-9;
-/// Change of a ratio, relative to it, after which Newton's next would not matter (–).
-const NEAR: f64 = 3e-5;
+/// Change of a ratio, relative to it, after which Newton's next would be rounding (–): sweeps over several contacts wait for
+/// each of them to say the same again.
+const NEAR: f64 = 1e-7;
 
 /// `n × x`, along the surface.
 #[inline]
@@ -362,7 +363,7 @@ mod tests {
             }
         }
 
-        /// Whatever case is tried first, the result is the fixed point of both shortenings, to 1e-8 of the caps.
+        /// Whatever case is tried first, the result is the fixed point of both shortenings, to 1e-11 of the caps.
         #[test]
         fn shear_and_rolling_solve_their_equations(
             a in prop::array::uniform2(-1.0f64..1.0), d in prop::array::uniform3(-1.0f64..1.0),
@@ -380,9 +381,9 @@ mod tests {
                 let at_q = cut_moment(pair.moment_at(q), pair.caps.1);
                 let off_q = size2([q[0] - at_m[0], q[1] - at_m[1]]).sqrt();
                 let off_m = volume2([0, 1, 2].map(|k| moment[k] - at_q[k])).sqrt();
-                prop_assert!(off_q <= 1e-8 * pair.caps.0 && off_m <= 1e-8 * pair.caps.1, "{mode:?} {off_q} {off_m}");
+                prop_assert!(off_q <= 1e-11 * pair.caps.0 && off_m <= 1e-11 * pair.caps.1, "{mode:?} {off_q} {off_m}");
                 let (size_q, size_m) = (size2(q).sqrt(), volume2(moment).sqrt());
-                prop_assert!(size_q <= pair.caps.0 * (1.0 + 1e-8) && size_m <= pair.caps.1 * (1.0 + 1e-8));
+                prop_assert!(size_q <= pair.caps.0 * (1.0 + 1e-12) && size_m <= pair.caps.1 * (1.0 + 1e-12));
             }
         }
     }

@@ -20,6 +20,8 @@ pub(super) const OTHERS: [(usize, f64, f64); 3] =
 /// the number and larger caches' misses.
 pub(super) const NEAR_LINEAR: f64 = 1.2;
 
+/// Worlds from which on the growth of what settling costs is fitted: fewer spheres lie side by side and make no heap.
+const HEAP: usize = 500;
 /// Share of steps of `rigid` that may stop before every impulse has settled (–): friction may go round in circles. They
 /// are counted.
 const RIGID_UNSETTLED: f64 = 1e-3;
@@ -72,7 +74,14 @@ pub fn findings(worlds: &[World]) -> Vec<(String, bool)> {
 /// How the time of a step of all spheres grows in one part of the story, which is bounded; and how processor time by
 /// simulated time does, which is said: the larger world has more contacts a sphere.
 fn growth(worlds: &[World], scheme: Scheme, phase: Phase) -> Vec<(String, bool)> {
-    let name = format!("{}, {}", scheme.name(), phase.name());
+    let (name, from) = match phase {
+        Phase::Settling => {
+            (format!("{}, {}, from {HEAP} spheres", scheme.name(), phase.name()), HEAP)
+        }
+        _ => (format!("{}, {}", scheme.name(), phase.name()), 0),
+    };
+    let large: Vec<World> = worlds.iter().filter(|world| world.spheres >= from).cloned().collect();
+    let worlds = &large[..];
     let step = fit(worlds, scheme, |world| world.step_s(phase)).map(|slope| {
         let words = format!("{name}: time of a step of all spheres grows as N^{slope:.2}");
         (words, slope <= NEAR_LINEAR)

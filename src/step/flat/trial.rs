@@ -22,6 +22,8 @@ const IMPACT: f64 = 3.5;
 pub(super) struct Try<'a, 'w> {
     pub(super) h: &'a mut f64,
     pub(super) limit: f64,
+    /// Time within which steps may follow each other without a look around (s): the same whatever is left out.
+    pub(super) room_s: f64,
     pub(super) control: &'a Control,
     pub(super) world: &'a World<'w>,
     pub(super) law: &'a Law,
@@ -218,10 +220,10 @@ impl Try<'_, '_> {
     /// Whether the next step stays where what is near is known, and within the longest step that was allowed for.
     #[inline]
     fn has_room(&mut self, dt: f64) -> bool {
-        self.limit -= dt;
+        self.room_s -= dt;
         let (state, h) = (&self.flat.state, *self.h);
         let ahead = [0, 1, 2].map(|k| state[WAY + k] + state[SPEED + k] * h);
-        h <= self.limit && square(ahead) < self.room2
+        h <= self.room_s && square(ahead) < self.room2
     }
 }
 
