@@ -72,7 +72,8 @@ fn stiffest(world: &World, grip: &Grip) -> f64 {
     if omega > 0.0 { omega } else { world.laws.iter().map(|law| law.omega).fold(0.0, f64::max) }
 }
 
-/// One accepted step of at most `h_max` (s), or all those of an impact on one plane; `h` is the step to try and becomes the one to try next.
+/// One accepted step of at most `h_max` (s), or all those of an impact on one plane; `h` is the step to try and becomes the
+/// one to try next.
 ///
 /// # Errors
 /// [`Stuck`] if the step had to become too short to matter.

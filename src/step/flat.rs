@@ -91,6 +91,7 @@ impl Grip {
             gravity,
             pen,
             energy: self.motion_j(&world.body) + self.stored,
+            energy_at_end: 0.0,
             room2: self.near.room_m(&self.c).max(0.0).powi(2),
             near: &self.near,
             start: self.c,

@@ -1,6 +1,7 @@
 //! Cost against the number of rocks that share one world: spheres fall onto the ridge between two open boxes.
 
 use super::bench::{GRAVITY_M_S2, terrain};
+use super::speed::machine::{OwnTime, status_bytes};
 use crate::contact::pair::Strength;
 use crate::ground::Ground;
 use crate::plan::{RestRule, Watch};
@@ -12,7 +13,6 @@ use crate::terrain::make::containers;
 use crate::trajectory::{Answer, Census, Course, Keep, Stop, Trajectory, follow_watched};
 use std::fs;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 /// The sphere of the paper's example 3.
 const ROCK: Rock = Rock { radius_m: 0.05, density_kg_m3: 2700.0 };
@@ -141,7 +141,7 @@ impl World {
 
 /// Processor time and counts at the begins and ends of the parts.
 struct Marks {
-    clock: Clock,
+    clock: OwnTime,
     /// Time, processor time (s) and counts at the first window's end not before each begin and end.
     seen: Vec<(f64, f64, Census)>,
 }
@@ -156,7 +156,7 @@ impl Marks {
         self.seen.retain(|(time_s, ..)| *time_s <= now_s);
         let passed = Self::times_s().take_while(|mark| *mark <= now_s).count();
         if passed > self.seen.len() {
-            let at = (now_s, self.clock.gone_s(), *census);
+            let at = (now_s, self.clock.seconds(), *census);
             self.seen.resize(passed, at);
         }
     }
@@ -170,23 +170,6 @@ impl Marks {
             census: ends[1].2.since(&ends[0].2),
         };
         pairs.map(cost).collect()
-    }
-}
-
-/// Time of this thread on a processor since a moment, where the system says, else on the wall.
-struct Clock(Instant, Option<u64>);
-
-impl Clock {
-    fn begin() -> Self {
-        Self(Instant::now(), processor_ns())
-    }
-
-    /// Since then (s).
-    fn gone_s(&self) -> f64 {
-        match (self.1, processor_ns()) {
-            (Some(before), Some(after)) => 1e-9 * (after - before) as f64,
-            _ => self.0.elapsed().as_secs_f64(),
-        }
     }
 }
 
@@ -217,12 +200,12 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
     let never = AtomicBool::new(false);
     // Linux forgets the largest memory so far when asked to; where it cannot, the number is left out.
     let forgot = fs::write("/proc/self/clear_refs", "5").is_ok();
-    let mut marks = Marks { clock: Clock::begin(), seen: Vec::new() };
+    let mut marks = Marks { clock: OwnTime::begin(), seen: Vec::new() };
     marks.see(0.0, &Census::default());
     let see = |now_s: f64, census: &Census| marks.see(now_s, census);
     let (falls, census) =
         follow_watched(&course, &releases, &answer, keep, (&never, see)).unwrap_or_default();
-    let processor_s = marks.clock.gone_s();
+    let processor_s = marks.clock.seconds();
     let most = resident_bytes("VmHWM:").filter(|_| forgot);
     let memory_bytes = most.zip(before).map(|(most, before)| most.saturating_sub(before));
     let lost = |fall: &&Trajectory| matches!(fall.stop, Stop::Failed(_) | Stop::LeftTerrain);
@@ -300,20 +283,9 @@ pub fn resident_now() -> Option<u64> {
     resident_bytes("VmRSS:")
 }
 
-/// Time this thread has had on a processor (ns), where the system says: other work on the machine does not count.
-fn processor_ns() -> Option<u64> {
-    // Linux brings this up to date when the thread offers its place to others; else it lags by milliseconds.
-    std::thread::yield_now();
-    let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    text.split_whitespace().next()?.parse().ok()
-}
-
 /// A line of `/proc/self/status` (byte).
 fn resident_bytes(key: &str) -> Option<u64> {
-    let text = fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix(key))?;
-    let kilobytes: u64 = line.trim().trim_end_matches("kB").trim().parse().ok()?;
-    Some(1024 * kilobytes)
+    status_bytes("/proc/self/status", key)
 }
 
 /// Exponent `b` of `y ~ xᵇ` by least squares over the logarithms; `None` below two points.
@@ -372,7 +344,7 @@ mod tests {
     /// Where the world goes back, what was seen of the time after that is seen again.
     #[test]
     fn marks_go_back_with_the_world() {
-        let mut marks = Marks { clock: Clock::begin(), seen: Vec::new() };
+        let mut marks = Marks { clock: OwnTime::begin(), seen: Vec::new() };
         let counted = |windows| Census { windows, ..Census::default() };
         for (now_s, windows) in [(0.0, 0), (0.26, 1), (0.41, 2), (0.37, 3), (0.42, 4), (0.6, 5)] {
             marks.see(now_s, &counted(windows));

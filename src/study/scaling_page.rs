@@ -80,13 +80,13 @@ fn growth(worlds: &[World], scheme: Scheme, phase: Phase) -> Vec<(String, bool)>
         }
         _ => (format!("{}, {}", scheme.name(), phase.name()), 0),
     };
-    let large: Vec<World> = worlds.iter().filter(|world| world.spheres >= from).cloned().collect();
-    let worlds = &large[..];
-    let step = fit(worlds, scheme, |world| world.step_s(phase)).map(|slope| {
+    let large = |world: &World| world.spheres >= from;
+    let step_s = |world: &World| world.step_s(phase).filter(|_| large(world));
+    let step = fit(worlds, scheme, step_s).map(|slope| {
         let words = format!("{name}: time of a step of all spheres grows as N^{slope:.2}");
         (words, slope <= NEAR_LINEAR)
     });
-    let rate = |world: &World| world.cost(phase).map(Cost::rate);
+    let rate = |world: &World| world.cost(phase).map(Cost::rate).filter(|_| large(world));
     let rate = fit(worlds, scheme, rate).map(|slope| {
         let words = format!(
             "{name}: processor time by simulated time grows as N^{slope:.2} (said, not bounded)"

@@ -20,7 +20,9 @@ const IMPACT: f64 = 3.5;
 
 /// A step being tried.
 pub(super) struct Try<'a, 'w> {
+    /// The step to try next (s).
     pub(super) h: &'a mut f64,
+    /// The longest step that cannot jump over a feature (s).
     pub(super) limit: f64,
     /// Time within which steps may follow each other without a look around (s): the same whatever is left out.
     pub(super) room_s: f64,
@@ -35,6 +37,8 @@ pub(super) struct Try<'a, 'w> {
     pub(super) pen: f64,
     /// Energy at the step's start, motion, springs and height over `start` (J).
     pub(super) energy: f64,
+    /// The same at its end.
+    pub(super) energy_at_end: f64,
     /// How far from `start` what is near is known, squared (m²).
     pub(super) room2: f64,
     pub(super) near: &'a Near,
@@ -156,7 +160,7 @@ impl Try<'_, '_> {
 
     /// Motion, height and springs at the step's end (J).
     #[inline]
-    fn energy_at_end(&self) -> f64 {
+    fn end_j(&self) -> f64 {
         let (body, end) = (&self.world.body, &self.end);
         let (speed2, spin2) = (square(three(end, SPEED)), square(three(end, SPIN)));
         let motion = 0.5 * (body.mass * speed2 + body.inertia * spin2);
@@ -169,7 +173,7 @@ impl Try<'_, '_> {
         let body = &self.world.body;
         let force = body.mass * body.gravity.norm() + self.press.push;
         let unknown = ROUNDING * self.energy.abs() + PLACE_ROUNDING * body.radius * force;
-        self.energy_at_end() > self.energy + unknown
+        self.energy_at_end > self.energy + unknown
     }
 
     /// Steps until the rock is free, an impact would be over, or what is near is no longer known; why it stopped before
@@ -210,7 +214,7 @@ impl Try<'_, '_> {
                 *sum += weight * loss;
             }
         }
-        self.energy = self.energy_at_end();
+        self.energy = self.energy_at_end;
         let last = tableau.stages - 1;
         let flat = &mut *self.flat;
         (flat.rates[0], flat.losses[0]) = (flat.rates[last], flat.losses[last]);
@@ -255,6 +259,7 @@ impl Trial for Try<'_, '_> {
         let pen = (self.pen - self.end[WAY + 2]).max(0.0);
         self.press.closed = self.press.push > 0.0 || pen > 0.0;
         self.stored = if self.press.closed { stored_j(self.law, pen, &self.end) } else { 0.0 };
+        self.energy_at_end = self.end_j();
         if dt * self.law.omega > RESOLVED && self.gains() {
             return Outcome::Gains;
         }

@@ -8,6 +8,7 @@ use crate::coupled::islands::Islands;
 use crate::coupled::{Cluster, Done};
 use crate::step::Scheme;
 use crate::step::adaptive::{Control, ONSET, Stuck};
+use crate::step::grip::Loss;
 use crate::step::tableau::{ESDIRK4, TR_BDF2};
 use crate::trajectory::Stop;
 use crate::trajectory::fall::Course;
@@ -20,6 +21,9 @@ const SOON_S: f64 = 1e-12;
 
 /// Rocks on their way. They are handed on between islands, and a pointer moves faster than a journey.
 type Rovers<'a> = Vec<Box<Rover<'a>>>;
+
+/// How a rock notes a step with its losses (J), what it gave to others (J), and whether it slides.
+type Going<'a> = fn(&mut Rover<'a>, &Course, f64, (Loss, f64), bool);
 
 /// One island and its window.
 pub(super) struct Job<'a> {
@@ -178,7 +182,7 @@ impl<'a> Job<'a> {
                 }
             };
             self.now_s = if done.dt >= room { until_s } else { self.now_s + done.dt };
-            let all_fly = self.note(&mut cluster, &done, spent);
+            let all_fly = self.note(&mut cluster, &done, (spent, Rover::step));
             if all_fly {
                 break;
             }
@@ -225,7 +229,7 @@ impl<'a> Job<'a> {
         &mut self,
         cluster: &mut Cluster<'a>,
         done: &Done,
-        (swept, jumped): (u64, u64),
+        ((swept, jumped), go): ((u64, u64), Going<'a>),
     ) -> bool {
         let (sweeps, jumps) = (cluster.sweeps - swept, cluster.jumps - jumped);
         let rocks = self.rovers.len() as u64;
@@ -239,19 +243,24 @@ impl<'a> Job<'a> {
             largest: rocks,
             ..Census::default()
         });
+        // Only the rigid limit lists hits.
+        let mut hits = done.hits.iter().peekable();
         let mut slides = vec![false; self.rovers.len()];
         for tie in cluster.ties.iter().filter(|tie| tie.closed && tie.slides) {
             (slides[tie.a as usize], slides[tie.b as usize]) = (true, true);
         }
         for (k, rover) in self.rovers.iter_mut().enumerate() {
             std::mem::swap(&mut rover.member, &mut cluster.members[k]);
+            while let Some(hit) = hits.next_if(|hit| hit.rock == k) {
+                rover.hit(hit, self.now_s);
+            }
             let effort = &mut rover.journey.effort;
             effort.steps += 1;
             effort.rejected += done.rejected;
             effort.sweeps += sweeps + jumps;
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given_j[k]);
-            rover.step(self.course, self.now_s, given, slides[k]);
+            go(rover, self.course, self.now_s, given, slides[k]);
             std::mem::swap(&mut rover.member, &mut cluster.members[k]);
         }
         cluster.members.iter().all(|member| member.flying)

@@ -1,10 +1,9 @@
 //! An island of the rigid limit through one window: steps from its start to its end, whatever happens on the way.
 
-use super::{Job, Rovers};
-use crate::coupled::{Cluster, Done};
+use super::{Job, Rover};
 use crate::step::Scheme;
 
-impl<'a> Job<'a> {
+impl Job<'_> {
     /// Whether the island is stepped as a whole in the rigid limit; a rock alone leaps and steps as it always does.
     pub(in crate::trajectory::together) fn is_rigid_heap(&self) -> bool {
         self.course.step.scheme == Scheme::Rigid && self.rovers.len() > 1
@@ -30,40 +29,11 @@ impl<'a> Job<'a> {
                 }
             };
             self.now_s = if done.dt >= room { self.end_s } else { self.now_s + done.dt };
-            self.note_rigid(&mut cluster, &done, spent);
+            self.note(&mut cluster, &done, (spent, Rover::stride));
         }
         self.dissolve(cluster);
         self.let_go();
         self.fall_asleep();
-    }
-
-    /// Writes one step into the journeys.
-    fn note_rigid(&mut self, cluster: &mut Cluster<'a>, done: &Done, spent: (u64, u64)) {
-        let (sweeps, jumps) = (cluster.sweeps - spent.0, cluster.jumps - spent.1);
-        let rocks = self.rovers.len() as u64;
-        self.census.add(&super::Census {
-            steps: 1,
-            rock_steps: rocks,
-            sweeps,
-            jumps,
-            unsettled: u64::from(done.unsettled),
-            largest: rocks,
-            ..super::Census::default()
-        });
-        let slides = sliding(&self.rovers, cluster);
-        let mut hits = done.hits.iter().peekable();
-        for (k, rover) in self.rovers.iter_mut().enumerate() {
-            std::mem::swap(&mut rover.member, &mut cluster.members[k]);
-            while let Some(hit) = hits.next_if(|hit| hit.rock == k) {
-                rover.hit(hit, self.now_s);
-            }
-            let effort = &mut rover.journey.effort;
-            effort.steps += 1;
-            effort.sweeps += sweeps + jumps;
-            effort.unsettled += u64::from(done.unsettled);
-            rover.stride(self.course, self.now_s, (done.losses[k], done.given_j[k]), slides[k]);
-            std::mem::swap(&mut rover.member, &mut cluster.members[k]);
-        }
     }
 
     /// Lets go of the rocks whose flight has left the terrain.
@@ -77,13 +47,4 @@ impl<'a> Job<'a> {
             }
         }
     }
-}
-
-/// Which rocks slide over another.
-fn sliding(rovers: &Rovers, cluster: &Cluster) -> Vec<bool> {
-    let mut slides = vec![false; rovers.len()];
-    for tie in cluster.ties.iter().filter(|tie| tie.closed && tie.slides) {
-        (slides[tie.a as usize], slides[tie.b as usize]) = (true, true);
-    }
-    slides
 }
