@@ -132,6 +132,26 @@ impl Law {
     }
 }
 
+impl Law {
+    /// The same law for a patch of stiffness `gain2 = |a|²` (–) among several that are pressed at once: its effective mass is
+    /// `m/|a|²`, so `c_N` goes with `|a|`, and parallel dashpots take `share` of theirs (–), so that the damping ratio, and
+    /// with it the restitution, does not depend on how many patches there are.
+    #[must_use]
+    #[inline]
+    pub fn of_patch(&self, gain2: f64, share: f64) -> Self {
+        if gain2 == 1.0 && share == 1.0 {
+            return *self;
+        }
+        let gain = gain2.sqrt();
+        Self {
+            p_n: self.p_n * gain2,
+            c_n: self.c_n * (gain * share),
+            c_n_captured: self.c_n_captured * (gain * share),
+            ..*self
+        }
+    }
+}
+
 /// Restitution of a no-tension spring and dashpot without gravity.
 ///
 /// `e(ζ) = exp(−2 ζ acos ζ / √(1−ζ²))`; the contact ends when the force falls to zero, not when the spring is

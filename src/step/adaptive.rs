@@ -98,7 +98,7 @@ pub fn advance(
     done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
     done.steps = 1;
     if let Some(end) = trial.end {
-        accept(control.tableau, grip, &end, done.dt, &mut done.loss);
+        accept(world, control.tableau, grip, (&end, done.dt), &mut done.loss);
     }
     Ok(done)
 }
@@ -284,7 +284,13 @@ fn attempt(
 }
 
 /// Takes over the step's end: motion, memories, losses.
-pub(crate) fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
+pub(crate) fn accept(
+    world: &World,
+    tableau: &Tableau,
+    grip: &mut Grip,
+    (end, dt): (&End, f64),
+    loss: &mut Loss,
+) {
     for k in 0..tableau.stages {
         loss.add(&grip.rates[k].loss, dt * tableau.work_weight(k));
     }
@@ -307,6 +313,8 @@ pub(crate) fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, los
         hold.slides = spot.drag.norm() >= spot.law.friction * spot.push * (1.0 - 1e-9);
         hold.closed = spot.is_closed(&end.v, hh);
     }
+    grip.fresh = !grip.merge_lost(world);
+    let next = &mut grip.rates[0];
     let mut kept = 0;
     for k in 0..grip.holds.len() {
         if grip.holds[k].closed {

@@ -32,11 +32,34 @@ impl World<'_> {
         &self.laws[self.terrain.sheets[sheet as usize].ground as usize]
     }
 
-    /// Whether a contact too slow to rebound.
+    /// Whether a contact is too slow to rebound.
     #[inline]
     pub fn captures(&self, touch: &Touch, v: &Vec3) -> bool {
         -touch.normal.dot(v) < self.law(touch.triangle).capture_m_s
     }
+
+    /// The law of touch `k` among others of the same instant.
+    #[inline]
+    pub fn law_of(&self, touches: &[Touch], k: usize) -> Law {
+        let touch = &touches[k];
+        let law = self.law(touch.triangle);
+        if touches.len() == 1 {
+            return law.of_patch(touch.gain2, 1.0);
+        }
+        law.of_patch(touch.gain2, dashpot_share(touches, k, self.body.radius))
+    }
+}
+
+/// What each dashpot takes of its own damping where several patches are pressed at once (–):
+/// `1/√(Σ_j max(0, n̂_i·n̂_j)²)` over those pressed. `n` parallel ones damp like one; at right angles nothing changes.
+fn dashpot_share(touches: &[Touch], k: usize, radius: f64) -> f64 {
+    let normal = &touches[k].normal;
+    let others = touches
+        .iter()
+        .enumerate()
+        .filter(|(j, other)| *j != k && other.distance_m < radius)
+        .map(|(_, other)| normal.dot(&other.normal).max(0.0).powi(2));
+    1.0 / (1.0 + others.sum::<f64>()).sqrt()
 }
 
 /// Power that goes into contacts (W) by kind, or energy (J) once summed over time. What springs store is counted
@@ -211,8 +234,10 @@ impl Grip {
             self.near.collect(world.terrain, &c, r, margin, SLACK * r);
         }
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        // An impact rebounds or not as a whole, by its fastest approach.
+        let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
         for (k, touch) in self.touches.iter().enumerate() {
-            self.holds.find(touch, &self.touches, (1 << k) - 1, || world.captures(touch, &v));
+            self.holds.find(touch, &self.touches, (1 << k) - 1, || captured);
         }
     }
 
@@ -269,13 +294,22 @@ impl Grip {
     #[inline]
     pub fn hold_of(&mut self, world: &World, k: usize, taken: u32, v: &Vec3) -> usize {
         let (before, touch) = (self.holds.len(), &self.touches[k]);
-        let hold = self.holds.find(touch, &self.touches, taken, || world.captures(touch, v));
+        // What is born while an impact rebounds belongs to it, however slow it is.
+        let rebounds = self.holds.iter().any(|hold| hold.closed && !hold.captured);
+        let captured = || !rebounds && world.captures(touch, v);
+        let hold = self.holds.find(touch, &self.touches, taken, captured);
         if hold >= before {
             for rate in &mut self.rates {
                 (rate.shear[hold], rate.roll[hold]) = (Vec3::zeros(), Vec3::zeros());
             }
         }
         hold
+    }
+
+    /// Hands the springs of contacts that merged into others to those; whether there were any.
+    pub(crate) fn merge_lost(&mut self, world: &World) -> bool {
+        let Self { holds, near, .. } = self;
+        holds.merge_lost(|feature| near.patch_holding(world.terrain, feature))
     }
 
     /// Whether nothing presses on the rock any more.
@@ -310,7 +344,7 @@ impl Grip {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
             let pen = (world.body.radius - touch.distance_m).max(0.0);
-            let pressed = 0.5 * world.law(touch.triangle).p_n * pen * pen;
+            let pressed = 0.5 * world.law(touch.triangle).p_n * touch.gain2 * pen * pen;
             stored
                 .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
         }

@@ -3,7 +3,6 @@
 use super::grip::{Grip, Loss, Rate, TOUCH, World};
 use super::law::{self, Spot, within};
 use super::tableau::Tableau;
-use crate::contact::FeatureKind;
 use crate::contact::hold::carry;
 use crate::rock::Vec3;
 
@@ -104,7 +103,7 @@ impl Grip {
         let spots = &self.spots[..self.spot_count];
         spots.len() == self.touches.len()
             && spots.iter().zip(self.touches.iter()).all(|(spot, touch)| {
-                touch.feature.kind == FeatureKind::Face
+                touch.is_on_plane()
                     && touch.feature == spot.feature
                     && touch.normal == spot.n
             })
@@ -140,7 +139,7 @@ impl Grip {
     /// The spot of touch `k` with the stretches of its memory and no penetration yet.
     fn spot_of(&self, world: &World, k: usize, hold: usize) -> Spot {
         let (touch, memory) = (&self.touches[k], &self.holds[hold]);
-        let law = *world.law(touch.triangle);
+        let law = world.law_of(&self.touches, k);
         Spot {
             hold,
             feature: touch.feature,
