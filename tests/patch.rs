@@ -85,7 +85,8 @@ fn elastic_impacts_on_folds_keep_their_energy() {
                 };
                 let rock = Rock { radius_m: radius, ..ROCK };
                 let x = place * f64::min(angle, 0.6) * radius;
-                let start = [[x, 0.1, radius * 1.2 + x.abs() * angle], [0.2 * speed, 0.0, -speed]];
+                let z = 1.2 * radius / (0.5 * angle).cos() + x.abs() * (0.5 * angle).tan();
+                let start = [[x, 0.1, z], [0.2 * speed, 0.0, -speed]];
                 for (k, (scheme, tolerance)) in [
                     (Scheme::Reference, 1e-8),
                     (Scheme::Adaptive, 0.05),

@@ -1,6 +1,7 @@
 //! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
 
 use super::dda::Bench;
+use super::explicit::Explicit;
 use super::flat::Flat;
 use super::law::{Body, Spot};
 use super::slide::Mode;
@@ -36,6 +37,11 @@ impl World<'_> {
     #[inline]
     pub fn captures(&self, touch: &Touch, v: &Vec3) -> bool {
         -touch.normal.dot(v) < self.law(touch.triangle).capture_m_s
+    }
+
+    /// Slowest approach that is an impact to be followed in its own time (m/s): slower than that a rock just presses.
+    fn least_impact_m_s(&self) -> f64 {
+        LEAST_IMPACT * (self.body.gravity.norm() * self.body.radius).sqrt()
     }
 
     /// The law of touch `k` among others of the same instant.
@@ -169,6 +175,8 @@ pub struct Grip {
     pub spot_count: usize,
     /// The same of a rock on one plane.
     pub flat: Flat,
+    /// An impact in its own time.
+    pub(crate) impact: Explicit,
     /// Work space of the fixed step.
     pub bench: Bench,
     /// Contact sweeps done.
@@ -187,6 +195,9 @@ const IMPACT_WAY: f64 = 1.3;
 const SLACK: f64 = 0.1;
 /// A gap this small is a touch (–, relative to R): rounding of the leap.
 pub const TOUCH: f64 = 1e-9;
+
+/// An approach slower than this is no impact (–, relative to `√(g R)`).
+const LEAST_IMPACT: f64 = 1e-3;
 
 impl Default for Grip {
     fn default() -> Self {
@@ -213,6 +224,7 @@ impl Grip {
             spots: [Spot::NONE; MOST],
             spot_count: 0,
             flat: Flat::default(),
+            impact: Explicit::default(),
             bench: Bench::default(),
             sweeps: 0,
             clocks: Clocks::default(),
@@ -227,6 +239,7 @@ impl Grip {
         self.holds.clear();
         self.fresh = false;
         self.flat.forget();
+        self.impact.forget();
         // Nothing of the rock before, not even a guess, may tell.
         self.spots.iter_mut().for_each(|spot| spot.mode = Mode::default());
         if !self.near.covers(&c) {
@@ -238,6 +251,9 @@ impl Grip {
         let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
         for (k, touch) in self.touches.iter().enumerate() {
             self.holds.find(touch, &self.touches, (1 << k) - 1, || captured);
+            if !captured {
+                self.impact.meet(-touch.normal.dot(&v), world.least_impact_m_s());
+            }
         }
     }
 
@@ -295,10 +311,13 @@ impl Grip {
     pub fn hold_of(&mut self, world: &World, k: usize, taken: u32, v: &Vec3) -> usize {
         let (before, touch) = (self.holds.len(), &self.touches[k]);
         // What is born while an impact rebounds belongs to it, however slow it is.
-        let rebounds = self.holds.iter().any(|hold| hold.closed && !hold.captured);
-        let captured = || !rebounds && world.captures(touch, v);
-        let hold = self.holds.find(touch, &self.touches, taken, captured);
+        let rebounds = self.holds.iter().any(|hold| !hold.captured);
+        let slow = world.captures(touch, v);
+        let hold = self.holds.find(touch, &self.touches, taken, || slow && !rebounds);
         if hold >= before {
+            if !slow {
+                self.impact.meet(-touch.normal.dot(v), world.least_impact_m_s());
+            }
             for rate in &mut self.rates {
                 (rate.shear[hold], rate.roll[hold]) = (Vec3::zeros(), Vec3::zeros());
             }
