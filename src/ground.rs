@@ -18,6 +18,8 @@ pub struct Ground {
     pub rolling_friction: f64,
     /// Largest random tilt of the contact normal at an impact (rad), 0 = none.
     pub roughness_rad: f64,
+    /// Way over which one tilted facet reaches (m), positive; `None` = the radius of the rock.
+    pub roughness_length_m: Option<f64>,
 }
 
 /// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.
@@ -60,6 +62,8 @@ pub struct Law {
     pub restitution: f64,
     /// Largest random tilt of the normal (rad).
     pub roughness_rad: f64,
+    /// Way over which one tilted facet reaches (m).
+    pub roughness_length_m: f64,
     /// `√(p_N/m)` (rad/s).
     pub omega: f64,
 }
@@ -90,6 +94,7 @@ impl Law {
         capture_m_s: 0.0,
         restitution: 0.0,
         roughness_rad: 0.0,
+        roughness_length_m: 0.0,
         omega: 0.0,
     };
 
@@ -127,6 +132,7 @@ impl Law {
             capture_m_s: capture.own_m_s.unwrap_or_else(|| physical.max(least)),
             restitution: ground.restitution.unwrap_or(1.0),
             roughness_rad: ground.roughness_rad,
+            roughness_length_m: ground.roughness_length_m.unwrap_or(radius),
             omega,
         }
     }

@@ -85,6 +85,11 @@ impl Explicit {
         (self.fresh, self.speed_m_s, self.left) = (false, 0.0, 0.0);
     }
 
+    /// The rock has been given another velocity.
+    pub(crate) fn restart(&mut self) {
+        self.fresh = false;
+    }
+
     /// A contact begins at `speed_m_s` that may rebound; `slowest` is the speed from which on it is followed here.
     pub(crate) fn meet(&mut self, speed_m_s: f64, slowest: f64) {
         if speed_m_s <= slowest {

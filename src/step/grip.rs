@@ -331,6 +331,14 @@ impl Grip {
         holds.merge_lost(|feature| near.patch_holding(world.terrain, feature))
     }
 
+    /// Gives the rock another velocity and spin in the middle of a contact; its springs stay as they are.
+    pub fn redirect(&mut self, world: &World, v: Vec3, w: Vec3) {
+        self.leave_plane(world);
+        (self.v, self.w) = (v, w);
+        self.fresh = false;
+        self.impact.restart();
+    }
+
     /// Whether nothing presses on the rock any more.
     pub fn is_free(&self) -> bool {
         self.holds.iter().all(|hold| !hold.closed)
