@@ -4,6 +4,7 @@ pub mod adaptive;
 pub mod dda;
 pub(crate) mod flat;
 pub mod grip;
+pub(crate) mod impact;
 pub(crate) mod joint;
 pub mod law;
 pub mod rigid;
