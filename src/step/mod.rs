@@ -5,6 +5,7 @@ pub mod dda;
 pub(crate) mod explicit;
 pub(crate) mod flat;
 pub mod grip;
+pub(crate) mod impact;
 pub(crate) mod joint;
 pub mod law;
 pub mod rigid;
