@@ -103,6 +103,14 @@ impl Holds {
         self.list[..self.len].copy_from_slice(&holds[..self.len]);
     }
 
+    /// Adds one, if there is room.
+    pub fn push(&mut self, hold: Hold) {
+        if self.len < HOLDS {
+            self.list[self.len] = hold;
+            self.len += 1;
+        }
+    }
+
     /// Forgets all after the first `len`.
     pub fn truncate(&mut self, len: usize) {
         self.len = self.len.min(len);

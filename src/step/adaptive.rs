@@ -111,6 +111,9 @@ pub fn advance(
     let mut done = Advance::default();
     if grip.is_rebounding() {
         grip.leave_plane(world);
+        if grip.bounce(world, control.impact, h_max, &mut done) {
+            return Ok(done);
+        }
         let omega = stiffest(world, grip);
         return grip.step_impact(world, (omega, control.impact), h_max, &mut done).map(|()| done);
     }

@@ -6,9 +6,11 @@
 //! wherever patches meet (`contact::patch`), and where a further contact begins the step is cut by its error.
 
 use super::adaptive::{Advance, Stuck, travel_limit};
+use super::impact::{Followed, Plane};
 use super::grip::{Grip, Loss, Rate, TOUCH, World};
 use super::stage::End;
 use crate::contact::hold::{HOLDS, carry};
+use crate::contact::{Feature, FeatureKind, Touch};
 use crate::rock::Vec3;
 
 /// Stages of the pair; the last is the first of the next step.
@@ -106,6 +108,46 @@ impl Grip {
     /// Whether an impact is going on.
     pub(crate) fn is_rebounding(&self) -> bool {
         self.impact.left > 0.0 && self.holds.iter().any(|hold| !hold.captured)
+    }
+
+    /// All of an impact on one plane, if it is one: nothing else can be touched as far as the rock gets, springs are
+    /// unstretched, and the rock comes out again within `h_max` (s). `tolerance` as in [`Self::step_impact`].
+    pub(crate) fn bounce(
+        &mut self,
+        world: &World,
+        tolerance: f64,
+        h_max: f64,
+        done: &mut Advance,
+    ) -> bool {
+        let ([hold], Some(face)) = (&self.holds[..], self.near.plane()) else { return false };
+        let begins = !hold.closed && hold.feature == Feature { kind: FeatureKind::Face, id: face };
+        // a stem that may give way is asked step by step
+        let yields = world.terrain.stems.is_some() && world.terrain.is_tree(hold.triangle);
+        if !begins || yields || self.touches.iter().any(|touch| self.is_sunk(world, touch)) {
+            return false;
+        }
+        let (n, triangle) = (hold.n, hold.triangle);
+        let plane = Plane::new(&world.body, world.law(triangle), tolerance);
+        let Followed::Left(rebound) = plane.follow(&n, &self.v, &self.w) else { return false };
+        let along = rebound.shift_m - n * n.dot(&rebound.shift_m);
+        let reached = along.norm_squared() + rebound.deepest_m.powi(2);
+        if rebound.time_s > h_max || reached > self.near.room_m(&self.c).max(0.0).powi(2) {
+            return false;
+        }
+        self.c += rebound.shift_m;
+        (self.v, self.w) = (rebound.velocity_m_s, rebound.spin_rad_s);
+        self.holds.clear();
+        self.fresh = false;
+        self.impact.forget();
+        done.dt = rebound.time_s;
+        done.steps = u64::from(rebound.effort.steps);
+        done.rejected = u64::from(rebound.effort.rejected);
+        done.loss = rebound.loss.on(world, triangle);
+        true
+    }
+
+    fn is_sunk(&self, world: &World, touch: &Touch) -> bool {
+        world.body.radius - touch.distance_m > 2.0 * TOUCH * world.body.radius
     }
 
     /// One accepted step of an impact, of at most `h_max` (s), in contacts of at most `omega` (rad/s); `tolerance` is the local

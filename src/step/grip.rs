@@ -177,6 +177,10 @@ pub struct Grip {
     pub flat: Flat,
     /// An impact in its own time.
     pub(crate) impact: Explicit,
+    /// Contacts that are about to be struck anew within an episode (`rigid`).
+    pub struck: Holds,
+    /// Whether the blow in hand has been announced (`rigid`).
+    pub(crate) is_struck: bool,
     /// Work space of the fixed step.
     pub bench: Bench,
     /// Contact sweeps done.
@@ -225,6 +229,8 @@ impl Grip {
             spot_count: 0,
             flat: Flat::default(),
             impact: Explicit::default(),
+            struck: Holds::default(),
+            is_struck: true,
             bench: Bench::default(),
             sweeps: 0,
             clocks: Clocks::default(),
@@ -240,6 +246,8 @@ impl Grip {
         self.fresh = false;
         self.flat.forget();
         self.impact.forget();
+        self.struck.clear();
+        self.is_struck = true;
         // Nothing of the rock before, not even a guess, may tell.
         self.spots.iter_mut().for_each(|spot| spot.mode = Mode::default());
         if !self.near.covers(&c) {

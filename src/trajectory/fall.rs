@@ -254,6 +254,8 @@ impl Fall<'_> {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
+            // before its losses are paid, and with the speed before
+            self.announce();
             let effort = &mut self.journey.effort;
             effort.steps += done.steps;
             effort.rejected += done.rejected;
@@ -270,7 +272,6 @@ impl Fall<'_> {
             let begun = self.grip.clocks.now();
             self.journey.step(to, slides);
             self.leave_facet_in_time();
-            self.announce();
             self.journey.end_impact_in_time();
             self.grip.clocks.stop(Piece::NotesInContact, begun);
             if self.grip.is_free() {
@@ -291,20 +292,21 @@ impl Fall<'_> {
 
     /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
     fn announce(&mut self) {
-        if self.grip.holds.iter().all(|hold| hold.announced) {
+        if self.grip.struck.is_empty() && self.grip.holds.iter().all(|hold| hold.announced) {
             return;
         }
         let radius = self.world.body.radius;
         let until_s = self.journey.now.time_s + self.impact_time();
         let mut fastest: Option<(f64, Vec3, u32)> = None;
-        for hold in self.grip.holds.iter_mut().filter(|hold| !hold.announced) {
+        let Grip { holds, struck, c, .. } = &mut *self.grip;
+        for hold in holds.iter_mut().chain(struck.iter_mut()).filter(|hold| !hold.announced) {
             hold.announced = true;
             if hold.captured {
                 continue;
             }
-            let point = self.grip.c - hold.n * radius;
+            let point = *c - hold.n * radius;
             self.journey.begin_impact(point, hold.feature.kind, hold.triangle, until_s);
-            let speed = -hold.n.dot(&self.grip.v);
+            let speed = -hold.n.dot(&self.journey.now.velocity_m_s);
             if speed > fastest.map_or(0.0, |(known, ..)| known) {
                 fastest = Some((speed, hold.n, hold.triangle));
             }

@@ -27,6 +27,18 @@ pub(crate) struct Struck<'a> {
     pub(crate) captured: bool,
 }
 
+impl Struck<'_> {
+    /// No contact.
+    pub(crate) const fn none() -> Self {
+        Self {
+            normal: Vec3::new(0.0, 0.0, 0.0),
+            law: &Law::NONE,
+            stiffness_scale: 1.0,
+            captured: true,
+        }
+    }
+}
+
 /// Motion after a frozen impact.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Thrown {
