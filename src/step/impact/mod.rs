@@ -1,5 +1,5 @@
 //! Impacts followed in their own time `τ = ω t`, `ω = √(p_N/m)`, where nothing is stiff.
-#![allow(dead_code, reason = "wired in next")]
+#![allow(dead_code, unused_imports, reason = "wired in next")]
 
 mod frozen;
 mod normal;
@@ -29,6 +29,8 @@ pub(crate) struct Effort {
 pub(crate) enum Settled {
     /// Nothing pushes and nothing comes nearer.
     Free,
+    /// Friction holds it in a wedge, its springs pressed in: it is at rest, and what they store is lost.
+    Jammed,
     /// It went on rattling: what was still coming nearer has been stopped without rebound.
     OutOfTime,
 }
