@@ -12,8 +12,8 @@ use crate::rock::Vec3;
 use crate::step::grip::Loss;
 use crate::step::law::Body;
 use contacts::Place;
-use std::f64::consts::TAU;
 use flow::{Several, W, speed_of};
+use std::f64::consts::TAU;
 
 /// One contact of a frozen impact.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +55,7 @@ const SHORTEST: f64 = 1e-9;
 const NOTHING: f64 = 1e-3;
 /// Radians of the softest contact, flights between touches apart, after which an impact is ended: rattling between walls has no other end.
 const MOST_TIME: f64 = 300.0;
-/// A rock that for a whole swing of the softest contact is no faster than so many errors allowed is jammed (–).
+/// A rock whose motion changes by no more than so many errors allowed over a swing of the softest contact is jammed (–).
 const QUIET: f64 = 3.0;
 /// Steps after which it is ended.
 const MOST_STEPS: u32 = 20_000;
@@ -272,18 +272,19 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
     }
 }
 
-/// Since when a rock has not moved.
+/// Since when the motion of a rock has not changed.
 #[derive(Default)]
 struct Quiet {
     since: f64,
-    spin: Vec3,
+    motion: (Vec3, Vec3),
 }
 
 impl Quiet {
-    /// For how long velocity has been nothing and spin the same, to `allowed`.
+    /// For how long velocity and spin have been the same, to `allowed`.
     fn stays(&mut self, (v, w): (Vec3, Vec3), time: f64, allowed: f64) -> f64 {
-        if v.norm() > allowed || (w - self.spin).norm() > allowed {
-            (self.since, self.spin) = (time, w);
+        let change2 = (v - self.motion.0).norm_squared().max((w - self.motion.1).norm_squared());
+        if change2 > allowed * allowed {
+            (self.since, self.motion) = (time, (v, w));
         }
         time - self.since
     }

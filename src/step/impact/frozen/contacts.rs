@@ -9,7 +9,7 @@ use crate::step::impact::rub::Element;
 use crate::step::law::Body;
 
 /// Sweeps of projections at the end, at most.
-const SWEEPS: u32 = 200;
+const SWEEPS: u32 = 5000;
 /// What a captured contact throws back by its own spring may be so much more than its restitution says (–).
 const ALLOWANCE: f64 = 1.05;
 
@@ -124,7 +124,7 @@ impl Contacts {
                     largest = largest.max(up.abs());
                 }
             }
-            if largest <= 1e-13 {
+            if largest <= 1e-10 {
                 break;
             }
         }

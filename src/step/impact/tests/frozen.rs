@@ -5,6 +5,7 @@ use super::{G, case, ground, motion_j, uniforms};
 use crate::contact::MOST;
 use crate::ground::{Ground, Law};
 use crate::rock::Vec3;
+use crate::step::grip::Loss;
 use crate::step::impact::{Followed, Plane, Settled, Struck, Thrown, throw};
 use crate::step::law::Body;
 use nalgebra::Rotation3;
@@ -39,7 +40,7 @@ fn apart(body: &Body, fast: &Thrown, slow: (Vec3, Vec3), v: &Vec3) -> f64 {
 fn balances(body: &Body, out: &Thrown, v: &Vec3, w: &Vec3) {
     let before = motion_j(body, v, w);
     let gone = before - motion_j(body, &out.velocity_m_s, &out.spin_rad_s);
-    let lost: f64 = out.loss.iter().map(|loss| loss.sum()).sum();
+    let lost: f64 = out.loss.iter().map(Loss::sum).sum();
     assert!((lost - gone).abs() < 1e-12 * before, "{lost} {gone} of {before}");
     assert!(gone >= -1e-14 * before);
     let parts = out.loss.iter().flat_map(|loss| [loss.friction, loss.damping, loss.rolling]);
@@ -69,7 +70,9 @@ fn the_rebound_is_the_limit_of_the_springs() {
 /// about `g t_c` to the approach, of which friction turns `m R²/I` as much into spin; without weight only the tolerance is left.
 #[test]
 fn stiff_springs_tend_to_it() {
-    for (rolling, gravity, allowed) in [(0.0, G, 1e-4), (0.3, G, 1e-4), (0.0, 0.0, 1e-8), (0.3, 0.0, 1e-8)] {
+    for (rolling, gravity, allowed) in
+        [(0.0, G, 1e-4), (0.3, G, 1e-4), (0.0, 0.0, 1e-8), (0.3, 0.0, 1e-8)]
+    {
         let (body, law) = case(&ground(1e12, 0.5, rolling), 0.5, gravity);
         for (v, w) in [
             ([5.0, 1.0, -5.0], [0.0, 0.0, 0.0]),
@@ -112,8 +115,7 @@ fn several_contacts_are_the_law_as_printed() {
                 if let Some(second) = contacts.get_mut(1) {
                     (second.law, second.stiffness_scale) = (&other, 1.5);
                 }
-                for (v, w) in
-                    [([2.0, 1.0, -6.0], [1.0, -5.0, 3.0]), ([-3.0, -5.0, -1.0], [0.0; 3])]
+                for (v, w) in [([2.0, 1.0, -6.0], [1.0, -5.0, 3.0]), ([-3.0, -5.0, -1.0], [0.0; 3])]
                 {
                     let (v, w) = (Vec3::from(v), Vec3::from(w));
                     let (slow, _) = oracle::follow(&body, &touches(&contacts), (v, w), 2000.0);

@@ -125,7 +125,7 @@ fn gravity_keeps_what_is_too_slow() {
             assert!(leaves(hi / share), "{e}");
         }
         let known = Damping::of(Some(e));
-        if e == 1.0 {
+        if known.ratio < 1e-12 {
             assert!(hi < 1e-9, "without damping every rock leaves: {hi}");
         } else if known.ratio < 0.95 {
             assert!((hi - known.capture_number).abs() < 1e-6, "{e}: {hi}");
@@ -154,7 +154,10 @@ fn it_is_the_law_as_printed() {
                 let energy = motion_j(&case.0, &v, &w);
                 for (found, printed) in loss.into_iter().zip(slow.lost) {
                     let off = (found - printed).abs() / energy;
-                    assert!(off < 5.0 * allowed, "{rolling} {e} {v:?} {w:?} {tolerance:e}: {off:e}");
+                    assert!(
+                        off < 5.0 * allowed,
+                        "{rolling} {e} {v:?} {w:?} {tolerance:e}: {off:e}"
+                    );
                 }
             }
         }
@@ -242,7 +245,7 @@ fn a_smooth_ground_touches_nothing_but_the_normal() {
     let (v, w) = (Vec3::new(5.0, 1.0, -5.0), Vec3::new(3.0, -20.0, 4.0));
     let out = hit(&case, 1e-4, v, w);
     assert_eq!(out.spin_rad_s, w);
-    assert_eq!([out.velocity_m_s.x, out.velocity_m_s.y], [v.x, v.y]);
+    assert!((out.velocity_m_s.xy() - v.xy()).norm() <= 1e-15 * v.norm());
     assert_eq!(out.effort.evaluations, 0);
     // e = 1: to rounding
     let elastic = Law { c_n: 0.0, ..case.1 };
