@@ -24,7 +24,7 @@ use ball::{Ball, Foot, Knot};
 use std::collections::BinaryHeap;
 pub use strike::Hit;
 use strike::{Due, Scene};
-use sweep::Asked;
+use sweep::{Asked, Lean};
 
 /// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
 /// contact that is slid over meanwhile is off by the square of half of this.
@@ -47,6 +47,8 @@ pub(super) struct Pile {
     links: Vec<u32>,
     /// Contacts that one of their rocks has changed since.
     asked: Asked,
+    lean: Lean,
+    taken_j: f64,
     places: Vec<Vec3>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,

@@ -18,18 +18,20 @@ impl Pile {
     pub(super) fn part(&mut self, scene: &mut Scene) {
         self.places.clear();
         self.places.extend(self.balls.iter().map(|ball| ball.c));
-        for _ in 0..SWEEPS {
+        let slack = super::sweep::tune("RF_SLACK", SLACK);
+        let edge = super::sweep::tune("RF_EDGE", 1.0) > 0.0;
+        for _ in 0..super::sweep::tune("RF_PS", f64::from(SWEEPS)) as u32 {
             let mut moved = false;
             for tie in scene.ties {
                 let ends = [tie.a as usize, tie.b as usize];
                 let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
                 let reach = a.body.radius + b.body.radius;
-                let allowed = reach - SLACK * a.body.radius.min(b.body.radius);
+                let allowed = reach - slack * a.body.radius.min(b.body.radius);
                 if (a.c - b.c).norm_squared() >= allowed * allowed {
                     continue;
                 }
                 let (n, distance) = between(&a.c, &b.c);
-                let way = n * ((reach - distance) / (a.inv.0 + b.inv.0));
+                let way = n * (((if edge { allowed } else { reach }) - distance) / (a.inv.0 + b.inv.0));
                 a.c += way * a.inv.0;
                 b.c -= way * b.inv.0;
                 moved = true;
@@ -60,6 +62,22 @@ impl Pile {
 
     /// Takes the work of lifting out of the motion: of the rock itself, and what that lacks of all that are pushed.
     fn pay_for_height(&mut self) {
+        if super::sweep::tune("RF_PAY", 1.0) > 0.0 {
+            let lift = |ball: &Ball, from: &Vec3| {
+                -ball.body.mass * ball.body.gravity.dot(&(ball.c - from))
+            };
+            let net: f64 = self.balls.iter().zip(&self.places).map(|(b, f)| lift(b, f)).sum();
+            let places = std::mem::take(&mut self.places);
+            for (k, (ball, from)) in self.balls.iter_mut().zip(&places).enumerate() {
+                ball.moved = ball.c != *from;
+                self.given_j[k] -= lift(ball, from);
+            }
+            self.places = places;
+            if net > self.taken_j.max(0.0) {
+                self.pay_together(net - self.taken_j.max(0.0));
+            }
+            return;
+        }
         let mut owed_j = 0.0;
         for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;

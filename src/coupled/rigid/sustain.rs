@@ -116,12 +116,17 @@ impl Pile {
         let mean = |ball: &Ball| -> (Vec3, Vec3) {
             ((ball.v + ball.before.0) * 0.5, (ball.w + ball.before.1) * 0.5)
         };
+        self.taken_j = 0.0;
         for foot in self.feet.iter().filter(|foot| foot.push > 0.0) {
             let (member, ball) = (&members[foot.ball], &self.balls[foot.ball]);
             let world = World { terrain, body: member.body, laws: &member.laws };
-            self.losses[foot.ball].add(&foot.loss(&world, &mean(ball)), 1.0);
+            let motion = mean(ball);
+            self.losses[foot.ball].add(&foot.loss(&world, &motion), 1.0);
+            self.taken_j -= foot.push * foot.n.dot(&motion.0);
         }
         for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
+            let [a, b] = knot.ends.map(|k| mean(&self.balls[k]).0);
+            self.taken_j -= knot.push * knot.n.dot(&(a - b));
             for k in 0..2 {
                 let (v, w) = mean(&self.balls[knot.ends[k]]);
                 self.given_j[knot.ends[k]] -= Ball::work_j(&knot.load(k), &v, &w);

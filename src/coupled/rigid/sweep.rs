@@ -1,6 +1,7 @@
 //! Sweeps over the contacts of an island until their impulses have settled.
 
 use super::Pile;
+use super::ball::Impulses;
 use crate::contact::pair::Tie;
 use crate::coupled::member::Seat;
 
@@ -19,17 +20,36 @@ const SETTLED_OF_CAPTURE: f64 = 1e-6;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
 const STIRS: f64 = 0.2;
 
+pub(super) fn tune(name: &'static str, value: f64) -> f64 {
+    use std::sync::Mutex;
+    static KNOWN: Mutex<Vec<(&'static str, f64)>> = Mutex::new(Vec::new());
+    let mut known = KNOWN.lock().unwrap();
+    if let Some(one) = known.iter().find(|one| one.0 == name) { return one.1; }
+    let value = std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(value);
+    known.push((name, value));
+    value
+}
+
 impl Pile {
     /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
     /// the sweeps nearer to rest is taken back, and no other is tried.
     pub(super) fn settle(&mut self, (members, ties): (&mut [Seat], &[Tie]), dt: f64) -> bool {
         self.dt = dt;
+        let (w, v, nb) = (tune("RF_W", SETTLED.0), tune("RF_V", SETTLED.1), tune("RF_NB", 1.0));
         for ball in &mut self.balls {
-            let weight = SETTLED.0 * ball.body.gravity.norm() * dt;
-            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
-            ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
+            ball.allowed_m_s = ball.before.0.norm();
         }
-        let mut change = self.sweep_on(SWEEPS.0);
+        let mut around: Vec<f64> = self.balls.iter().map(|ball| ball.allowed_m_s).collect();
+        for [a, b] in self.knots.iter().map(|knot| knot.ends) {
+            around[a] = around[a].max(nb * self.balls[b].allowed_m_s);
+            around[b] = around[b].max(nb * self.balls[a].allowed_m_s);
+        }
+        for (ball, speed) in self.balls.iter_mut().zip(around) {
+            let weight = w * ball.body.gravity.norm() * dt;
+            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
+            ball.allowed_m_s = least + v * speed;
+        }
+        let mut change = self.sweep_on(tune("RF_S", f64::from(SWEEPS.0)) as u32);
         for _ in 0..JUMPS {
             if change <= 1.0 {
                 return true;
@@ -60,33 +80,120 @@ impl Pile {
         self.lay_contacts();
         self.asked.all(count);
         let mut change = f64::INFINITY;
+        self.lean.begin(count);
+        let cg = tune("RF_CG", 1.0) as u32;
         for k in 0..most {
             self.sweeps += 1;
             change = self.sweep(k % 2 == 1);
             if change <= 1.0 {
                 break;
             }
+            if (k == 100 || k == 299) && tune("RF_DBG", 0.0) > 0.0 && (k == 100 || k == 299) {
+                let sp: Vec<f64> = self.balls.iter().map(|b| b.v.norm()).collect();
+                let max = sp.iter().copied().fold(0.0, f64::max);
+                let mean = sp.iter().sum::<f64>() / sp.len() as f64;
+                let slide = self.knots.iter().filter(|k| k.push > 0.0 && k.drag.norm() >= 0.999999 * k.friction * k.push).count();
+                let closed = self.knots.iter().filter(|k| k.push > 0.0).count();
+                eprintln!("k {k} balls {} feet {} knots {} closed {closed} sliding {slide} active {} change {change:.3e} dt {:.4} vmax {max:.2e} vmean {mean:.2e} vbefore {:.2e}", self.balls.len(), self.feet.len(), self.knots.len(), self.lean.list.len(), self.dt, self.balls.iter().map(|b| b.before.0.norm()).sum::<f64>() / sp.len() as f64);
+            }
+            if cg > 0 && k + 1 < most && (k + 1) % cg == 0 {
+                self.lean_on();
+            }
         }
         change
+    }
+
+    /// Goes on from a sweep's changes in the direction that the sweeps before have found.
+    fn lean_on(&mut self) {
+        let list = std::mem::take(&mut self.lean.list);
+        let mut square = 0.0;
+        for &k in &list {
+            let (now, inv) = self.impulses(k as usize);
+            let change = now.less(&self.lean.of[k as usize].start);
+            square += change.square(inv);
+        }
+        let share = square / self.lean.square;
+        let leans = share < 1.0;
+        self.lean.square = square;
+        let map = self.lean.map;
+        self.lean.map += 1;
+        for &k in &list {
+            let (now, _) = self.impulses(k as usize);
+            let one = &mut self.lean.of[k as usize];
+            let change = now.less(&one.start);
+            if leans && one.led + 1 == map {
+                let step = one.way.times(share);
+                one.way = change.plus(&step);
+                self.push_on(k as usize, &step);
+            } else {
+                one.way = change;
+            }
+            self.lean.of[k as usize].led = map;
+        }
+        self.lean.list = list;
+        self.lean.list.clear();
+    }
+
+    fn impulses(&self, k: usize) -> (Impulses, [f64; 3]) {
+        let feet = self.feet.len();
+        if k < feet {
+            let foot = &self.feet[k];
+            let ball = &self.balls[foot.ball];
+            (foot.impulses(), [ball.inv.0, 3.5 * ball.inv.0, ball.inv.1])
+        } else {
+            let knot = &self.knots[k - feet];
+            (knot.impulses(), [knot.inv.0, knot.inv.1, 0.0])
+        }
+    }
+
+    /// Adds to the impulses of a contact what its cone allows.
+    fn push_on(&mut self, k: usize, step: &Impulses) {
+        let feet = self.feet.len();
+        if k < feet {
+            let foot = &mut self.feet[k];
+            let ball = &mut self.balls[foot.ball];
+            foot.push_on(step, ball);
+            ball.times += 1;
+            let end = foot.ball;
+            self.ask(end);
+        } else {
+            let knot = &mut self.knots[k - feet];
+            let ends = knot.ends;
+            if let Ok([a, b]) = self.balls.get_disjoint_mut(ends) {
+                knot.push_on(step, a, b);
+                (a.times, b.times) = (a.times + 1, b.times + 1);
+            }
+            self.ask(ends[0]);
+            self.ask(ends[1]);
+        }
     }
 
     /// One pass over the contacts that are asked, onwards or backwards; the largest change of speed, over what is allowed
     /// (–).
     fn sweep(&mut self, backwards: bool) -> f64 {
-        let mut change = 0.0f64;
+        let (mut change, mut square) = (0.0f64, 0.0);
         let mut at = if backwards { self.asked.last() } else { self.asked.from(0) };
         while let Some(k) = at {
-            change = change.max(self.sweep_contact(k));
+            let own = self.sweep_contact(k);
+            change = change.max(own);
+            square += own * own;
             at = if backwards { self.asked.below(k) } else { self.asked.from(k + 1) };
         }
-        change
+        let count = (self.feet.len() + self.knots.len()).max(1) as f64;
+        let (tail, rms) = (tune("RF_TAIL", 1.0), tune("RF_RMS", 0.1));
+        change.min((change / tail).max((square / count).sqrt() / rms))
     }
 
     /// Feet come first, then knots.
     fn sweep_contact(&mut self, k: usize) -> f64 {
         self.asked.remove(k);
         let feet = self.feet.len();
-        if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) }
+        let start = if k < feet { self.feet[k].impulses() } else { self.knots[k - feet].impulses() };
+        let change = if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) };
+        if change > STIRS {
+            self.lean.note(k, start);
+        }
+        change
     }
 
     /// The contacts of every rock.
@@ -136,6 +243,46 @@ impl Pile {
             self.ask(ends[1]);
         }
         change
+    }
+}
+
+/// The way that sweeps go, contact by contact.
+#[derive(Debug, Default)]
+pub(super) struct Lean {
+    of: Vec<One>,
+    list: Vec<u32>,
+    /// Number of the sweep in hand.
+    map: u32,
+    /// Square of the changes of the one before.
+    square: f64,
+}
+
+/// One contact.
+#[derive(Debug, Clone, Copy)]
+struct One {
+    start: Impulses,
+    way: Impulses,
+    /// When start and way were written.
+    begun: u32,
+    led: u32,
+}
+
+impl Lean {
+    fn begin(&mut self, count: usize) {
+        let none = One { start: Impulses::NONE, way: Impulses::NONE, begun: 0, led: 0 };
+        self.of.clear();
+        self.of.resize(count, none);
+        self.list.clear();
+        self.map = 2;
+        self.square = 0.0;
+    }
+
+    fn note(&mut self, k: usize, start: Impulses) {
+        let one = &mut self.of[k];
+        if one.begun != self.map {
+            (one.begun, one.start) = (self.map, start);
+            self.list.push(k as u32);
+        }
     }
 }
 
