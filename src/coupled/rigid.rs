@@ -110,7 +110,8 @@ impl Cluster<'_> {
             let [a, b] = knot.ends.map(|k| &pile.balls[k]);
             (tie.push, tie.drag) = (knot.push / dt, knot.drag / dt);
             tie.slides = knot.drag.norm() >= knot.friction * knot.push * (1.0 - 1e-9);
-            tie.closed |= tie.captured && tie.is_slow(&(a.v - b.v));
+            // what carried in this step is where the next begins to look for what carries
+            tie.closed |= tie.is_slow(&(a.v - b.v));
         }
         let mut feet = pile.feet.iter().filter(|foot| foot.push > 0.0).peekable();
         for (k, (member, ball)) in self.members.iter_mut().zip(&pile.balls).enumerate() {

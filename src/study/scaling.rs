@@ -206,13 +206,6 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
     let (falls, census) =
         follow_watched(&course, &releases, &answer, keep, (&never, see)).unwrap_or_default();
     let processor_s = marks.clock.seconds();
-    if std::env::var("RF_DBG").is_ok() {
-        let ke = |f: &Trajectory| f.end.translational_j(&f.rock) + f.end.rotational_j(&f.rock);
-        let total: f64 = falls.iter().map(ke).sum();
-        let released: f64 = falls.iter().map(|f| f.released_j).sum();
-        let rem: f64 = falls.iter().map(|f| f.ledger.remainder_j).sum();
-        eprintln!("KE at {longest_s}: {total:.4e} J of {released:.4e}, remainder {rem:.3e}, vmax {:.3e}", falls.iter().map(|f| f.end.velocity_m_s.norm()).fold(0.0, f64::max));
-    }
     let most = resident_bytes("VmHWM:").filter(|_| forgot);
     let memory_bytes = most.zip(before).map(|(most, before)| most.saturating_sub(before));
     let lost = |fall: &&Trajectory| matches!(fall.stop, Stop::Failed(_) | Stop::LeftTerrain);

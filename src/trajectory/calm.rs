@@ -80,7 +80,8 @@ mod tests {
     /// not.
     #[test]
     fn what_speeds_up_does_not_rest() {
-        for v in [|_| 0.0, |_| 0.019, |t: f64| 0.015 * (-t).exp(), |t: f64| 0.01 * (300.0 * t).sin()]
+        for v in
+            [|_| 0.0, |_| 0.019, |t: f64| 0.015 * (-t).exp(), |t: f64| 0.01 * (300.0 * t).sin()]
         {
             assert!((rests_after(v).unwrap() - 0.3).abs() < 2e-3);
         }

@@ -7,49 +7,30 @@ use crate::coupled::member::Seat;
 
 /// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
 /// others have settled and are passed over.
-const SWEEPS: (u32, u32) = (300, 3000);
+const SWEEPS: (u32, u32) = (1000, 3000);
 /// Sweeps that judge a jump, at most.
 const SWEEPS_AFTER: u32 = 30;
 /// Jumps after which the impulses have not settled.
 const JUMPS: u32 = 4;
 /// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
 /// over the speed of its slower rock (–).
-const SETTLED: (f64, f64) = (5e-3, 1e-3);
+const SETTLED: (f64, f64) = (5e-3, 3e-2);
+/// The first of them for no more than so many rocks: there it costs next to nothing to tell friction that just holds from
+/// friction that just does not (–).
+const SETTLED_FEW: f64 = 1e-3;
+const FEW: usize = 64;
 /// The same over the capture speed, where there is hardly any weight (–).
 const SETTLED_OF_CAPTURE: f64 = 1e-6;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
 const STIRS: f64 = 0.2;
-
-pub(super) fn tune(name: &'static str, value: f64) -> f64 {
-    use std::sync::Mutex;
-    static KNOWN: Mutex<Vec<(&'static str, f64)>> = Mutex::new(Vec::new());
-    let mut known = KNOWN.lock().unwrap();
-    if let Some(one) = known.iter().find(|one| one.0 == name) { return one.1; }
-    let value = std::env::var(name).ok().and_then(|x| x.parse().ok()).unwrap_or(value);
-    known.push((name, value));
-    value
-}
 
 impl Pile {
     /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
     /// the sweeps nearer to rest is taken back, and no other is tried.
     pub(super) fn settle(&mut self, (members, ties): (&mut [Seat], &[Tie]), dt: f64) -> bool {
         self.dt = dt;
-        let (w, v, nb) = (tune("RF_W", SETTLED.0), tune("RF_V", SETTLED.1), tune("RF_NB", 1.0));
-        for ball in &mut self.balls {
-            ball.allowed_m_s = ball.before.0.norm();
-        }
-        let mut around: Vec<f64> = self.balls.iter().map(|ball| ball.allowed_m_s).collect();
-        for [a, b] in self.knots.iter().map(|knot| knot.ends) {
-            around[a] = around[a].max(nb * self.balls[b].allowed_m_s);
-            around[b] = around[b].max(nb * self.balls[a].allowed_m_s);
-        }
-        for (ball, speed) in self.balls.iter_mut().zip(around) {
-            let weight = w * ball.body.gravity.norm() * dt;
-            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
-            ball.allowed_m_s = least + v * speed;
-        }
-        let mut change = self.sweep_on(tune("RF_S", f64::from(SWEEPS.0)) as u32);
+        self.allow();
+        let mut change = self.sweep_on(SWEEPS.0);
         for _ in 0..JUMPS {
             if change <= 1.0 {
                 return true;
@@ -73,6 +54,23 @@ impl Pile {
         self.sweep_on(SWEEPS.1) <= 1.0
     }
 
+    /// What may still change at every rock: the less the slower it and its neighbours are.
+    fn allow(&mut self) {
+        let few = self.balls.len() <= FEW;
+        let of_weight = if few { SETTLED_FEW } else { SETTLED.0 };
+        for ball in &mut self.balls {
+            let weight = of_weight * ball.body.gravity.norm() * self.dt;
+            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
+            ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
+        }
+        for [a, b] in self.knots.iter().map(|knot| knot.ends) {
+            let speeds = [a, b].map(|k| SETTLED.1 * self.balls[k].before.0.norm());
+            let Ok([a, b]) = self.balls.get_disjoint_mut([a, b]) else { continue };
+            a.allowed_m_s = a.allowed_m_s.max(speeds[1]);
+            b.allowed_m_s = b.allowed_m_s.max(speeds[0]);
+        }
+    }
+
     /// Sweeps until nothing changes by more than is allowed, or so many times; the largest change of the last, over what
     /// is allowed (–).
     fn sweep_on(&mut self, most: u32) -> f64 {
@@ -81,22 +79,13 @@ impl Pile {
         self.asked.all(count);
         let mut change = f64::INFINITY;
         self.lean.begin(count);
-        let cg = tune("RF_CG", 1.0) as u32;
         for k in 0..most {
             self.sweeps += 1;
             change = self.sweep(k % 2 == 1);
             if change <= 1.0 {
                 break;
             }
-            if (k == 100 || k == 299) && tune("RF_DBG", 0.0) > 0.0 && (k == 100 || k == 299) {
-                let sp: Vec<f64> = self.balls.iter().map(|b| b.v.norm()).collect();
-                let max = sp.iter().copied().fold(0.0, f64::max);
-                let mean = sp.iter().sum::<f64>() / sp.len() as f64;
-                let slide = self.knots.iter().filter(|k| k.push > 0.0 && k.drag.norm() >= 0.999999 * k.friction * k.push).count();
-                let closed = self.knots.iter().filter(|k| k.push > 0.0).count();
-                eprintln!("k {k} balls {} feet {} knots {} closed {closed} sliding {slide} active {} change {change:.3e} dt {:.4} vmax {max:.2e} vmean {mean:.2e} vbefore {:.2e}", self.balls.len(), self.feet.len(), self.knots.len(), self.lean.list.len(), self.dt, self.balls.iter().map(|b| b.before.0.norm()).sum::<f64>() / sp.len() as f64);
-            }
-            if cg > 0 && k + 1 < most && (k + 1) % cg == 0 {
+            if k + 1 < most {
                 self.lean_on();
             }
         }
@@ -171,24 +160,21 @@ impl Pile {
     /// One pass over the contacts that are asked, onwards or backwards; the largest change of speed, over what is allowed
     /// (–).
     fn sweep(&mut self, backwards: bool) -> f64 {
-        let (mut change, mut square) = (0.0f64, 0.0);
+        let mut change = 0.0f64;
         let mut at = if backwards { self.asked.last() } else { self.asked.from(0) };
         while let Some(k) = at {
-            let own = self.sweep_contact(k);
-            change = change.max(own);
-            square += own * own;
+            change = change.max(self.sweep_contact(k));
             at = if backwards { self.asked.below(k) } else { self.asked.from(k + 1) };
         }
-        let count = (self.feet.len() + self.knots.len()).max(1) as f64;
-        let (tail, rms) = (tune("RF_TAIL", 1.0), tune("RF_RMS", 0.1));
-        change.min((change / tail).max((square / count).sqrt() / rms))
+        change
     }
 
     /// Feet come first, then knots.
     fn sweep_contact(&mut self, k: usize) -> f64 {
         self.asked.remove(k);
         let feet = self.feet.len();
-        let start = if k < feet { self.feet[k].impulses() } else { self.knots[k - feet].impulses() };
+        let start =
+            if k < feet { self.feet[k].impulses() } else { self.knots[k - feet].impulses() };
         let change = if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) };
         if change > STIRS {
             self.lean.note(k, start);

@@ -1,9 +1,7 @@
 //! All rocks of a world, and the windows of time they go through.
 
 use super::job::Job;
-use super::split::{
-    Meetings, Place, is_busy, meetings_in_passing, meetings_of_islands, place_of,
-};
+use super::split::{Meetings, Place, is_busy, meetings_in_passing, meetings_of_islands, place_of};
 use super::wide::Wide;
 use super::{Answer, Census, Rover, State, TOUCHING, capture, law_between};
 use crate::contact::pair::Tie;
@@ -212,7 +210,9 @@ impl<'a> Crowd<'a> {
         let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
         let held: Vec<(u32, u32)> = self.ties.iter().map(|tie| (at(tie.a), at(tie.b))).collect();
         if self.is_rigid() {
-            return meetings_in_passing(places, dt, &held, |reaches| wide.overlapping(places, reaches));
+            return meetings_in_passing(places, dt, &held, |reaches| {
+                wide.overlapping(places, reaches)
+            });
         }
         meetings_of_islands(places, dt, |reaches| {
             let mut pairs = wide.overlapping(places, reaches);

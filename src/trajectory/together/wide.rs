@@ -32,8 +32,9 @@ impl Wide {
             self.centres.clear();
             self.centres.extend(places.iter().map(|place| place.centre));
             let ways = places.iter().zip(reaches);
-            self.reaches =
-                ways.map(|(place, reach)| reach + SPARE * (reach - place.radius) + SKIN * place.radius).collect();
+            self.reaches = ways
+                .map(|(place, reach)| reach + SPARE * (reach - place.radius) + SKIN * place.radius)
+                .collect();
             let ball =
                 |(place, reach): (&Place, &f64)| Ball { centre: place.centre, radius: *reach };
             let balls: Vec<Ball> = places.iter().zip(&self.reaches).map(ball).collect();
