@@ -4,6 +4,8 @@ mod calm;
 mod crossing;
 mod fall;
 mod journey;
+mod rest;
+mod roughness;
 mod stems;
 mod together;
 mod visit;
