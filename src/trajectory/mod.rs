@@ -1,5 +1,6 @@
 //! One rock from release to rest: leap, touch, step, stop.
 
+mod calm;
 mod crossing;
 mod fall;
 mod journey;
