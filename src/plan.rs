@@ -13,7 +13,7 @@ use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
-use crate::release::{self, Release, Releases};
+use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, Polyline, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
@@ -167,6 +167,7 @@ impl Plan {
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
         let mut warnings = grounds::unused(scene, &terrain);
+        releases.try_out(&terrain, &mut warnings)?;
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
@@ -213,7 +214,7 @@ impl Plan {
                 "one rock has 6 unknowns, a dense factor is enough",
             ),
             bonds: bonds(scene),
-            paths: paths(&scene.record, scene.release.count),
+            paths: paths(&scene.record),
             impacts: Part::when(
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
@@ -246,6 +247,14 @@ impl Plan {
     /// No ground below the point drawn, or a rock that starts inside the ground or a tree.
     pub fn release(&self, index: usize) -> Result<Release> {
         self.releases.release(&self.terrain, index)
+    }
+
+    /// The same, or what is known of a rock that finds no place to start from.
+    ///
+    /// # Errors
+    /// As [`Self::release`].
+    pub fn try_release(&self, index: usize) -> std::result::Result<Release, Box<Lost>> {
+        self.releases.try_release(&self.terrain, index)
     }
 
     /// What every rock is watched for.
@@ -320,8 +329,9 @@ fn bonds(scene: &Scene) -> Part<Strength> {
     )
 }
 
-fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
-    let first = record.paths.unwrap_or(PATHS).min(count);
+/// Not cut to the number of releases: a run that goes on with more keeps as many paths as one that asked for them at once.
+fn paths(record: &RecordTable) -> Part<Paths> {
+    let first = record.paths.unwrap_or(PATHS);
     let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
 }

@@ -103,13 +103,15 @@ pub(crate) fn run(
         if done < asked.len() {
             return Ok(Ended::Interrupted(done, asked.len()));
         }
+        // Only the last round is finished: until then the folder keeps what the next one goes on from.
+        if let Some(releases) = more(order.until.as_ref(), output.hazard(), plan.count)? {
+            plan.count = releases;
+            mode = Mode::Extend;
+            continue;
+        }
         let results = output.finish()?;
-        let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) else {
-            report::draw_run(&results, &plan.terrain)?;
-            return Ok(Ended::Complete(report::headline(&results.hazard)));
-        };
-        plan.count = releases;
-        mode = Mode::Extend;
+        report::draw_run(&results, &plan.terrain)?;
+        return Ok(Ended::Complete(report::headline(&results.hazard)));
     }
 }
 
@@ -164,14 +166,23 @@ fn beside<T: Send>(
     })
 }
 
-/// How many releases the aim still asks for; none when it is reached, or out of reach.
-fn more(until: Option<&Aim>, hazard: &Hazard, done: usize) -> Option<usize> {
-    let aim = until?;
-    let next = aim.next(hazard.values(aim.quantity), done)?;
-    (done < MOST_RELEASES).then(|| next.min(MOST_RELEASES))
+/// How many releases the aim still asks for; none when it is reached.
+///
+/// # Errors
+/// If it is out of reach: the rounds before stay, and can be finished without the aim.
+fn more(until: Option<&Aim>, hazard: &Hazard, done: usize) -> Result<Option<usize>> {
+    let Some(aim) = until else { return Ok(None) };
+    let values = hazard.values(aim.quantity);
+    let needed = aim.needs(values, done);
+    if needed > MOST_RELEASES as f64 {
+        return Err(Error::Request(format!(
+            "--until \"{aim}\": {done} releases are written, and about {needed:.0e} would be needed; write a wider interval, or finish these with --releases {done} --resume"
+        )));
+    }
+    Ok(aim.next(values, done).map(|next| next.min(MOST_RELEASES)))
 }
 
-/// An aim that more releases than this would not reach is given up: their values take a gigabyte.
+/// An aim that needs more releases than this is given up: their values take a gigabyte.
 const MOST_RELEASES: usize = 10_000_000;
 
 fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) -> Result<RunInfo> {

@@ -5,6 +5,7 @@
 //! resumed run gives the same maps.
 
 use super::row::StopKind;
+use crate::math;
 use crate::trajectory::Visit;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -55,7 +56,7 @@ struct Counts(Vec<(u16, u32)>);
 /// Class of a value: 0 up to [`SMALLEST`], then equal ratios. 65535 classes reach beyond any f64.
 fn class_of(value: f64) -> u16 {
     if value > SMALLEST {
-        (libm::log(value / SMALLEST) / RATIO.ln()).floor().min(65_534.0) as u16 + 1
+        (math::ln(value / SMALLEST) / math::ln(RATIO)).floor().min(65_534.0) as u16 + 1
     } else {
         0
     }
@@ -63,7 +64,7 @@ fn class_of(value: f64) -> u16 {
 
 /// The value that stands for a class: the geometric middle of its ends, 0 for the first.
 fn middle_of(class: u16) -> f64 {
-    if class == 0 { 0.0 } else { SMALLEST * libm::pow(RATIO, f64::from(class) - 0.5) }
+    if class == 0 { 0.0 } else { SMALLEST * math::pow(RATIO, f64::from(class) - 0.5) }
 }
 
 impl Counts {

@@ -1,8 +1,9 @@
 //! Measured ends of rocks beside computed ones.
 
-use super::row::{Row, StopKind};
+use super::row::Row;
 use super::sample::Sample;
 use crate::error::{Error, Result};
+use crate::math;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -52,7 +53,7 @@ impl Way {
     /// Horizontal distance from release to end (m).
     pub fn runout_m(&self) -> f64 {
         let [x, y] = self.vector_m();
-        x.hypot(y)
+        math::hypot(x, y)
     }
 
     fn vector_m(&self) -> [f64; 2] {
@@ -62,8 +63,7 @@ impl Way {
     /// The way of a computed rock; a failed one has none.
     pub fn of(row: &Row) -> Option<Self> {
         let flat = |[x, y, _]: [f64; 3]| [x, y];
-        let ended = row.stop != StopKind::Failed;
-        ended.then(|| Self { start_m: flat(row.start_m), end_m: flat(row.end_m) })
+        row.stop.counts().then(|| Self { start_m: flat(row.start_m), end_m: flat(row.end_m) })
     }
 
     /// Reads measured ways from a CSV file with the columns `release_x_m`, `release_y_m`, `x_m`, `y_m`.
@@ -131,7 +131,7 @@ fn distances(one: &[f64], other: &[f64]) -> (f64, f64) {
 /// Unit vector of the mean way.
 fn mean_direction(ways: &[Way]) -> [f64; 2] {
     let sum = ways.iter().map(Way::vector_m).fold([0.0, 0.0], |s, v| [s[0] + v[0], s[1] + v[1]]);
-    let length = sum[0].hypot(sum[1]).max(f64::MIN_POSITIVE);
+    let length = math::hypot(sum[0], sum[1]).max(f64::MIN_POSITIVE);
     [sum[0] / length, sum[1] / length]
 }
 

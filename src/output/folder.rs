@@ -48,6 +48,11 @@ fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
             "take another --out or replace them with --overwrite",
         );
     }
+    let goes_on = mode == Mode::Extend && found.done < info.identity.releases;
+    if goes_on && info.maps.is_some() && !maps::has_state(dir, found.done) {
+        // A finished run has thrown away what its maps would go on from: its rocks are computed once more, the same.
+        return Ok(None);
+    }
     match mode {
         Mode::Resume | Mode::Extend if old.version != info.identity.version => {
             let both = format!(

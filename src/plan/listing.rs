@@ -85,7 +85,7 @@ impl Plan {
             );
         }
         list.lines("own dissipation", self.dissipation());
-        list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s"));
+        list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
         list.part("breaking stems", breaking, |stems| {
             format!("{stems}, each whole again for the next rock")
@@ -111,7 +111,7 @@ impl Plan {
             )
         });
         list.part("paths", paths, |Paths { first, step_s }| {
-            format!("kept for {first} of {count} releases, every {step_s} s")
+            format!("kept for {} of {count} releases, every {step_s} s", first.min(count))
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
         list.part("lines", lines, |lines| {

@@ -9,6 +9,7 @@ use crate::contact::Touch;
 use crate::error::Result;
 use crate::flight::{Landing, Parabola, leap_past};
 use crate::ground::{Capture, Damping, Law};
+use crate::math;
 use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
@@ -73,8 +74,6 @@ impl Scratch {
     }
 }
 
-/// Steps after which a rock is given up: it counts as failed.
-const MOST_STEPS: u64 = 100_000_000;
 /// An impact is over after so many contact times (–), whether the rock has left or not.
 pub(super) const IMPACT_TIMES: f64 = 3.0;
 /// Tilts drawn until the rough surface faces the rock; after that the impact is smooth.
@@ -123,15 +122,20 @@ pub fn follow(
 
 /// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
 ///
+/// A release that cannot be made (off the terrain, or inside the ground) ends where it should have begun.
+///
 /// # Errors
-/// The release cannot be made: off the terrain, or inside the ground.
+/// None today; a caller must be ready for one.
 pub fn fall(
     plan: &Plan,
     index: usize,
     paths: Option<&Range<usize>>,
     scratch: &mut Scratch,
 ) -> Result<Trajectory> {
-    let release = plan.release(index)?;
+    let release = match plan.try_release(index) {
+        Ok(release) => release,
+        Err(lost) => return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.why)),
+    };
     let mut chance = stream(plan.seed, Purpose::Impacts, index);
     let fallen =
         follow(&Course::of(plan), &release, kept(plan, index, paths), &mut chance, scratch);
@@ -202,12 +206,21 @@ impl Fall<'_> {
             Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
             Landing::Flies => (left, Some(Stop::TimeUp)),
         };
+        // a touch at the very end of the time comes too late
+        let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
         self.grip.clocks.stop(Piece::Leap, begun);
         self.journey.effort.leaps += 1;
         let begun = self.grip.clocks.now();
         self.journey.fly(&flight, dt);
         self.grip.clocks.stop(Piece::NotesInFlight, begun);
-        stop
+        // flights count too: between two plates a rock may fly without end and without getting on in time
+        stop.or_else(|| self.over_budget())
+    }
+
+    /// Whether the rock has had all the work it may have.
+    fn over_budget(&self) -> Option<Stop> {
+        let most = self.course.step.scheme.most_work();
+        (self.journey.effort.work() > most).then_some(Stop::OverBudget)
     }
 
     /// Goes on in contact until the rock is free again or stops.
@@ -282,19 +295,18 @@ impl Fall<'_> {
             self.journey.step(to, slides);
             self.journey.end_impact_in_time();
             self.grip.clocks.stop(Piece::NotesInContact, begun);
+            let time_up = (done.dt >= left).then_some(Stop::TimeUp);
+            let ends = time_up.or_else(|| self.over_budget());
             if self.grip.is_free() {
-                return None;
+                return ends;
             }
             let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.world.body.radius);
             quiet_s = if slow < self.course.rest.speed_m_s { quiet_s + done.dt } else { 0.0 };
             if quiet_s >= self.course.rest.time_s {
                 return Some(Stop::AtRest);
             }
-            if done.dt >= left {
-                return Some(Stop::TimeUp);
-            }
-            if self.journey.effort.steps > MOST_STEPS {
-                return Some(Stop::Failed(format!("no rest after {MOST_STEPS} steps")));
+            if ends.is_some() {
+                return ends;
             }
         }
     }
@@ -341,14 +353,8 @@ impl Fall<'_> {
         let beside = if touch.normal.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
         let across = touch.normal.cross(&beside);
         for _ in 0..TILTS {
-            let turn = Rotation3::from_axis_angle(
-                &Unit::new_normalize(touch.normal),
-                TAU * unit(self.chance),
-            );
-            let tilt = Rotation3::from_axis_angle(
-                &Unit::new_normalize(turn * across),
-                most * unit(self.chance),
-            );
+            let turn = math::turn(&Unit::new_normalize(touch.normal), TAU * unit(self.chance));
+            let tilt = math::turn(&Unit::new_normalize(turn * across), most * unit(self.chance));
             if (tilt * touch.normal).dot(&v) < 0.0 {
                 return Some(tilt);
             }
