@@ -13,12 +13,13 @@ use rockfall::plan::Plan;
 use rockfall::scene::{MOST_RELEASES, Scene};
 use rockfall::study::aim::Aim;
 use rockfall::study::verify::Verification;
+use signal_hook::consts::{SIGINT, SIGTERM};
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// Exit status when a check failed.
 const CHECK_FAILED: u8 = 1;
@@ -26,6 +27,9 @@ const CHECK_FAILED: u8 = 1;
 const WRONG_INPUT: u8 = 2;
 /// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
 const INTERRUPTED: u8 = 130;
+
+/// Most releases of one trial of a calibration: the ends of all trials are kept.
+const MOST_OF_A_TRIAL: usize = 100_000;
 
 /// Most worker threads: more than any machine has; a slip of the key must not start a hundred thousand.
 const MOST_THREADS: usize = 4096;
@@ -132,7 +136,7 @@ struct CalibrateArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Releases of each trial
-    #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
+    #[arg(long, value_name = "N", value_parser = of_a_trial, default_value = "400")]
     releases: usize,
     /// Worker threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = at_least_1)]
@@ -140,6 +144,7 @@ struct CalibrateArgs {
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a word of the command line")]
 struct RunArgs {
     /// Scene file (TOML)
     scene: PathBuf,
@@ -170,6 +175,9 @@ struct RunArgs {
     /// Replace the results in the folder
     #[arg(long)]
     overwrite: bool,
+    /// Run also what takes more memory or disk than the plan allows
+    #[arg(long, short)]
+    yes: bool,
     /// Print nothing but errors
     #[arg(long, short)]
     quiet: bool,
@@ -232,15 +240,24 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
     let (terrain, health) = scene.read_terrain()?;
     let mut plan = Plan::compile(&scene, terrain)?;
+    let order = args.order();
+    if !args.yes {
+        plan.cost(order.part.range(plan.count).len()).check()?;
+    }
     if !args.quiet {
         say(&plan);
     }
-    let order = args.order();
     let bar = args.progress(order.part.range(plan.count).len());
-    let ended = wiring::run(&mut plan, &health, &order, stop_at_ctrl_c, |done, asked| {
-        bar.set_length(asked as u64);
-        bar.set_position(done as u64);
-    })?;
+    let ended = wiring::run(
+        &mut plan,
+        &health,
+        &order,
+        |flag| stop_at_signals(&flag),
+        |done, asked| {
+            bar.set_length(asked as u64);
+            bar.set_position(done as u64);
+        },
+    )?;
     match ended {
         Ended::Interrupted(done, asked) => {
             bar.abandon();
@@ -353,14 +370,34 @@ fn quoted(word: &str) -> String {
 
 /// Ctrl-C or SIGTERM raises the flag: the chunk in hand is finished and written before anything ends.
 /// The second one ends at once: what is on the disk is good whenever a run is cut off.
-fn stop_at_ctrl_c(flag: Arc<AtomicBool>) -> Result<()> {
-    let stop = move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED.into());
-        }
-    };
-    ctrlc::set_handler(stop)
-        .map_err(|error| Error::Request(format!("cannot watch for Ctrl-C: {error}")))
+fn stop_at_signals(flag: &Arc<AtomicBool>) -> Result<()> {
+    for signal in signals() {
+        // in this order: the first signal finds the flag down
+        signal_hook::flag::register_conditional_shutdown(signal, INTERRUPTED.into(), flag.clone())
+            .and_then(|_| signal_hook::flag::register(signal, flag.clone()))
+            .map_err(|error| Error::Request(format!("cannot watch for Ctrl-C: {error}")))?;
+    }
+    Ok(())
+}
+
+/// The signals that end a run in good order.
+fn signals() -> Vec<i32> {
+    let mut signals = vec![SIGINT, SIGTERM];
+    #[cfg(unix)]
+    if is_hang_up_heard() {
+        signals.push(signal_hook::consts::SIGHUP);
+    }
+    signals
+}
+
+/// Whether a hang-up is not ignored, as `nohup` has it. Where the system does not tell, it is left as it was: what a run
+/// has on the disk is good whenever it is cut off.
+#[cfg(unix)]
+fn is_hang_up_heard() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_some_and(|mask| mask & 1 == 0)
 }
 
 /// Prints; a reader that has gone away (`rockfall plan … | head`) is no error.
@@ -388,6 +425,13 @@ fn threads(text: &str) -> std::result::Result<usize, String> {
     match text.parse() {
         Ok(number) if (1..=MOST_THREADS).contains(&number) => Ok(number),
         _ => Err(format!("write a whole number from 1 to {MOST_THREADS}")),
+    }
+}
+
+fn of_a_trial(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(number) if (1..=MOST_OF_A_TRIAL).contains(&number) => Ok(number),
+        _ => Err(format!("write a whole number from 1 to {MOST_OF_A_TRIAL}")),
     }
 }
 

@@ -15,6 +15,7 @@
 // words
 pub mod error;
 pub mod math;
+pub mod file;
 pub mod clock;
 pub mod chance;
 pub mod rock;

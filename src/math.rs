@@ -44,7 +44,6 @@ mod tests {
 
     /// Bits that must never change: a published run can be repeated only as long as they do not.
     #[test]
-    #[expect(clippy::float_cmp, reason = "the same bits are what is asked")]
     fn bits_are_those_of_every_machine() {
         let x = 0.737_372_1;
         let found =

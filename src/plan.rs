@@ -1,11 +1,13 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod cost;
 mod grounds;
 mod inputs;
 mod listing;
 mod stiffness;
 mod watch;
 
+pub use cost::Cost;
 pub use stiffness::OwnDissipation;
 pub use watch::{Curtain, Lattice, Piece, Watch};
 
@@ -69,7 +71,7 @@ pub struct Plan {
     pub scene_file: PathBuf,
     /// SHA-256 (hexadecimal) of the scene's text and its mesh files.
     pub scene_hash: String,
-    /// Version of this crate.
+    /// Version of this crate, and after the + the fingerprint of its sources.
     pub version: &'static str,
     /// EPSG code of the map coordinates.
     pub epsg: Option<u32>,
@@ -171,6 +173,8 @@ impl Plan {
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
+        let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
+        stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();
         let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
@@ -179,7 +183,7 @@ impl Plan {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
             scene_hash: scene.hash.clone(),
-            version: env!("CARGO_PKG_VERSION"),
+            version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
             epsg: scene.epsg,
             seed: scene.seed,
             count: scene.release.count,
@@ -194,7 +198,7 @@ impl Plan {
                 speed_m_s: scene.solver.rest_speed_m_s.unwrap_or(REST_SPEED_M_S),
                 time_s: scene.solver.rest_time_s.unwrap_or(REST_TIME_S),
             },
-            longest_s: scene.solver.longest_s.unwrap_or(LONGEST_S),
+            longest_s,
             trees: Part::when(tree_triangles(&terrain), "the scene has none"),
             breaking: Part::when(
                 terrain.stems.as_ref().map(Stems::count),

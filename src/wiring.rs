@@ -5,6 +5,7 @@ pub(crate) mod study;
 use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
+use rockfall::file;
 use rockfall::hazard::{Barrier, Elsewhere, Hazard, LineInfo, MapFrame, Rule, Way};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
 use rockfall::plan::{self, Curtain, Plan};
@@ -143,6 +144,7 @@ fn compute(
             Ok(())
         })?;
     }
+    output.keep()?;
     Ok(output)
 }
 
@@ -213,6 +215,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         observed: plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)?,
         keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
+        is_shard: matches!(order.part, Part::Shard { .. }),
         threads: ensemble.threads(),
         plan: plan.lines(),
         inputs: plan.inputs.clone(),
@@ -318,6 +321,7 @@ pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
 
 /// Turns an ESRI ASCII grid into an STL file; says what was subtracted.
 pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
+    file::keep_inputs(out, &[grid])?;
     let grid = Grid::read(grid)?;
     let origin_m = grid.map_origin_m();
     let facets = grid.facets(origin_m);
@@ -338,6 +342,7 @@ pub(crate) fn mesh_of_stems(
     out: &Path,
     origin_m: Option<&[f64]>,
 ) -> Result<String> {
+    file::keep_inputs(out, &[list, slope])?;
     let map_origin_m = match origin_m {
         None => Vec3::zeros(),
         Some(&[x, y, z]) if [x, y, z].iter().all(|m| m.is_finite()) => Vec3::new(x, y, z),

@@ -3,6 +3,7 @@
 use super::row::Row;
 use super::sample::Sample;
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_TEXT};
 use crate::math;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -76,7 +77,7 @@ impl Way {
             let remedy = "write numbers in the columns release_x_m, release_y_m, x_m, y_m";
             Error::input(path, format!("line {line}"), why.to_string(), remedy)
         };
-        let file = std::fs::File::open(path).map_err(Error::file("read", path))?;
+        let file = file::open(path, LONGEST_TEXT)?;
         let mut reader = csv::Reader::from_reader(file);
         let way = |row: Measured| Self {
             start_m: [row.release_x_m, row.release_y_m],

@@ -129,6 +129,9 @@ impl Plan {
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
         });
+        let cost = self.cost(*count);
+        let asks = if cost.is_modest() { "" } else { "; runs with --yes only" };
+        list.line("at most", format!("{cost}{asks}"));
         if let Some(file) = deposits {
             list.line("compared with", format!("measured ends in {}", file.display()));
         }

@@ -68,6 +68,8 @@ pub(super) enum Allowed {
     Share,
     /// 0..90 degrees without 90 itself.
     Slope,
+    /// Both ends included; what is beyond means nothing on a slope, and may take for ever.
+    Between(f64, f64),
 }
 
 impl Allowed {
@@ -79,15 +81,17 @@ impl Allowed {
                 Self::Positive => low > 0.0,
                 Self::Share => low >= 0.0 && high <= 1.0,
                 Self::Slope => low >= 0.0 && high < 90.0,
+                Self::Between(least, most) => least <= low && high <= most,
             }
     }
 
-    fn in_words(self) -> &'static str {
+    fn in_words(self) -> String {
         match self {
-            Self::NotNegative => "write a number of 0 or more",
-            Self::Positive => "write a number above 0",
-            Self::Share => "write a value in 0..1",
-            Self::Slope => "write a value in 0..90",
+            Self::NotNegative => "write a number of 0 or more".to_owned(),
+            Self::Positive => "write a number above 0".to_owned(),
+            Self::Share => "write a value in 0..1".to_owned(),
+            Self::Slope => "write a value in 0..90".to_owned(),
+            Self::Between(least, most) => format!("write a value in {least:?}..{most:?}"),
         }
     }
 }

@@ -30,6 +30,7 @@ pub use solver::SolverTable;
 
 use crate::chance::entries;
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_MESH};
 use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
@@ -40,6 +41,7 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use source::Lookup;
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// A scene file.
@@ -95,7 +97,7 @@ pub struct Scene {
     /// The scene file itself.
     #[serde(skip)]
     pub file: PathBuf,
-    /// SHA-256 (hexadecimal) of the scene's text and of every mesh file's bytes.
+    /// SHA-256 (hexadecimal) of the scene's text and of the bytes of every file that it names.
     #[serde(skip)]
     pub hash: String,
 }
@@ -111,7 +113,7 @@ impl Scene {
     /// # Errors
     /// Whatever is wrong with the scene, with file, table, key and line; a mesh file that is not there.
     pub fn read(file: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(file).map_err(Error::file("read", file))?;
+        let text = crate::file::read_text(file)?;
         let mut scene = Self::parse(&text, file)?;
         scene.hash =
             scene.fingerprint(&text).map_err(|wrong| Lookup::of(file, &text).refuse(wrong))?;
@@ -284,26 +286,33 @@ impl Scene {
         Ok(())
     }
 
-    /// Hash over text and mesh files, each followed by its length so that no two scenes run together.
+    /// Hash over text, mesh files and measured ends, each followed by its length so that no two scenes run together.
     fn fingerprint(&self, text: &str) -> std::result::Result<String, Complaint> {
         let mut hash = Sha256::new();
         hash.update(text);
         hash.update((text.len() as u64).to_le_bytes());
         self.each_mesh(|mesh| {
-            let read = std::fs::File::open(&mesh.mesh)
-                .and_then(|mut file| std::io::copy(&mut file, &mut hash));
-            match read {
-                Ok(length) => hash.update(length.to_le_bytes()),
-                Err(error) => {
-                    let path = mesh.mesh.display();
-                    let remedy = format!(
-                        "write the path of an STL file as seen from the scene file; {path}: {error}"
-                    );
-                    return Err(Complaint::about("mesh", remedy));
-                }
-            }
-            Ok(())
+            let remedy = "write the path of an STL file as seen from the scene file";
+            take_in(&mut hash, "mesh", &mesh.mesh, remedy)
         })?;
+        if let Some(calibrate) = &self.calibrate {
+            let remedy = "write the path of a CSV file as seen from the scene file";
+            take_in(&mut hash, "deposits", &calibrate.deposits, remedy)
+                .map_err(|wrong| wrong.inside("calibrate"))?;
+        }
         Ok(format!("{:x}", hash.finalize()))
     }
+}
+
+/// Adds a file and its length to a hash.
+fn take_in(hash: &mut Sha256, key: &str, path: &Path, remedy: &str) -> Checked {
+    let wrong = |why: String| Complaint::about(key, format!("{remedy}; {why}"));
+    let file = file::open(path, LONGEST_MESH).map_err(|error| match error {
+        Error::File { file, source, .. } => wrong(format!("{}: {source}", file.display())),
+        other => wrong(other.to_string()),
+    })?;
+    let length = std::io::copy(&mut file.take(LONGEST_MESH), hash)
+        .map_err(|error| wrong(format!("{}: {error}", path.display())))?;
+    hash.update(length.to_le_bytes());
+    Ok(())
 }

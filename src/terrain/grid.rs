@@ -1,6 +1,7 @@
 //! ESRI ASCII grids, and triangles from grids of heights.
 
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_MESH};
 use crate::rock::Vec3;
 use crate::terrain::stl::Facet;
 use std::fmt::Write;
@@ -66,7 +67,7 @@ impl Grid {
     /// # Errors
     /// A missing or unknown keyword, or a number that is missing, superfluous or unreadable, with its line.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
+        let bytes = file::read(path, LONGEST_MESH)?;
         Self::parse(&String::from_utf8_lossy(&bytes), path)
     }
 
