@@ -1,8 +1,8 @@
 //! The command line: what is asked, what is said, and the exit status. Only this file prints.
 
-#![expect(clippy::print_stderr, reason = "this is the face of the program")]
-
+mod signals;
 mod study;
+mod words;
 
 use crate::wiring::{self, Ended, Order, Part};
 use clap::{Args, Parser, Subcommand};
@@ -10,16 +10,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;
-use rockfall::scene::{MOST_RELEASES, Scene};
+use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
 use rockfall::study::verify::Verification;
-use signal_hook::consts::{SIGINT, SIGTERM};
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Exit status when a check failed.
 const CHECK_FAILED: u8 = 1;
@@ -27,12 +24,6 @@ const CHECK_FAILED: u8 = 1;
 const WRONG_INPUT: u8 = 2;
 /// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
 const INTERRUPTED: u8 = 130;
-
-/// Most releases of one trial of a calibration: the ends of all trials are kept.
-const MOST_OF_A_TRIAL: usize = 100_000;
-
-/// Most worker threads: more than any machine has; a slip of the key must not start a hundred thousand.
-const MOST_THREADS: usize = 4096;
 
 /// Rockfall hazard on triangle meshes, with the numerical error beside every number.
 #[derive(Debug, Parser)]
@@ -136,10 +127,10 @@ struct CalibrateArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Releases of each trial
-    #[arg(long, value_name = "N", value_parser = of_a_trial, default_value = "400")]
+    #[arg(long, value_name = "N", value_parser = words::of_a_trial, default_value = "400")]
     releases: usize,
     /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    #[arg(long, value_name = "N", value_parser = words::at_least_1)]
     threads: Option<usize>,
 }
 
@@ -152,19 +143,19 @@ struct RunArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Number of releases, instead of the scene's
-    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    #[arg(long, value_name = "N", value_parser = words::at_least_1)]
     releases: Option<usize>,
     /// Seed, instead of the scene's
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = threads)]
+    #[arg(long, value_name = "N", value_parser = words::threads)]
     threads: Option<usize>,
     /// One release alone, with its full path recorded
     #[arg(long, value_name = "I", conflicts_with = "resume")]
     only: Option<usize>,
     /// The K-th of N parts of the releases, K from 1 to N; `rockfall merge` puts them together
-    #[arg(long, value_name = "K/N", value_parser = shard, conflicts_with = "only")]
+    #[arg(long, value_name = "K/N", value_parser = words::shard, conflicts_with = "only")]
     shard: Option<Part>,
     /// Go on with more releases until a 95 % interval is narrower, as in "runout.p95 < 1.0 m"
     #[arg(long, value_name = "AIM", conflicts_with_all = ["only", "shard"])]
@@ -185,6 +176,7 @@ struct RunArgs {
 
 /// Reads the command line, does what it asks and answers with the exit status.
 pub(crate) fn main() -> ExitCode {
+    signals::outlive_file_limits();
     let done = match Asked::parse().command {
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
@@ -204,7 +196,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Mesh(MeshCommand::Make { kind, out }) => wiring::make_mesh(&kind, &out).map(say),
     };
     done.unwrap_or_else(|error| {
-        eprintln!("error: {error}");
+        complain(format_args!("error: {error}"));
         ExitCode::from(WRONG_INPUT)
     })
 }
@@ -252,7 +244,7 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
         &mut plan,
         &health,
         &order,
-        |flag| stop_at_signals(&flag),
+        |flag| signals::stop_at(&flag),
         |done, asked| {
             bar.set_length(asked as u64);
             bar.set_position(done as u64);
@@ -353,8 +345,8 @@ impl RunArgs {
         if !self.resume {
             words.push("--resume".to_owned());
         }
-        eprintln!("interrupted: {done} of {asked} releases are written");
-        eprintln!("go on with: rockfall {}", words.join(" "));
+        complain(format_args!("interrupted: {done} of {asked} releases are written"));
+        complain(format_args!("go on with: rockfall {}", words.join(" ")));
         ExitCode::from(INTERRUPTED)
     }
 }
@@ -368,36 +360,9 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-/// Ctrl-C or SIGTERM raises the flag: the chunk in hand is finished and written before anything ends.
-/// The second one ends at once: what is on the disk is good whenever a run is cut off.
-fn stop_at_signals(flag: &Arc<AtomicBool>) -> Result<()> {
-    for signal in signals() {
-        // in this order: the first signal finds the flag down
-        signal_hook::flag::register_conditional_shutdown(signal, INTERRUPTED.into(), flag.clone())
-            .and_then(|_| signal_hook::flag::register(signal, flag.clone()))
-            .map_err(|error| Error::Request(format!("cannot watch for Ctrl-C: {error}")))?;
-    }
-    Ok(())
-}
-
-/// The signals that end a run in good order.
-fn signals() -> Vec<i32> {
-    let mut signals = vec![SIGINT, SIGTERM];
-    #[cfg(unix)]
-    if is_hang_up_heard() {
-        signals.push(signal_hook::consts::SIGHUP);
-    }
-    signals
-}
-
-/// Whether a hang-up is not ignored, as `nohup` has it. Where the system does not tell, it is left as it was: what a run
-/// has on the disk is good whenever it is cut off.
-#[cfg(unix)]
-fn is_hang_up_heard() -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-    ignored.is_some_and(|mask| mask & 1 == 0)
+/// Says what is wrong; where even that cannot be written (a full disk, nobody there) the status must do.
+fn complain(text: impl Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Prints; a reader that has gone away (`rockfall plan … | head`) is no error.
@@ -406,38 +371,9 @@ fn say(text: impl Display) -> ExitCode {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            eprintln!("error: cannot print: {error}");
+            complain(format_args!("error: cannot print: {error}"));
             ExitCode::from(WRONG_INPUT)
         }
         _ => ExitCode::SUCCESS,
-    }
-}
-
-fn shard(text: &str) -> std::result::Result<Part, String> {
-    let numbers = text.split_once('/').map(|(number, of)| (number.parse(), of.parse()));
-    match numbers {
-        Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Part::Shard { number, of }),
-        _ => Err("write K/N, K from 1 to N: 3/16 is the third of 16 parts".to_owned()),
-    }
-}
-
-fn threads(text: &str) -> std::result::Result<usize, String> {
-    match text.parse() {
-        Ok(number) if (1..=MOST_THREADS).contains(&number) => Ok(number),
-        _ => Err(format!("write a whole number from 1 to {MOST_THREADS}")),
-    }
-}
-
-fn of_a_trial(text: &str) -> std::result::Result<usize, String> {
-    match text.parse() {
-        Ok(number) if (1..=MOST_OF_A_TRIAL).contains(&number) => Ok(number),
-        _ => Err(format!("write a whole number from 1 to {MOST_OF_A_TRIAL}")),
-    }
-}
-
-fn at_least_1(text: &str) -> std::result::Result<usize, String> {
-    match text.parse() {
-        Ok(number) if (1..=MOST_RELEASES).contains(&number) => Ok(number),
-        _ => Err(format!("write a whole number from 1 to {MOST_RELEASES}")),
     }
 }

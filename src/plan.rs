@@ -166,6 +166,7 @@ impl Plan {
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings(&scene.solver);
+        grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
         let mut warnings = grounds::unused(scene, &terrain);

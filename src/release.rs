@@ -1,5 +1,7 @@
 //! Rock number i: drawn from the scene, the seed and i, and put on the terrain.
 
+mod tried;
+
 use crate::chance::{Chance, Distribution, Purpose, stream, unit};
 use crate::error::{Error, Result};
 use crate::flight::{Landing, Parabola, leap};
@@ -18,8 +20,8 @@ const TYPED_DEPTH: f64 = 1e-6;
 /// Places drawn for one release on a line or in an area before it is given up: where a tenth of the zone can be used, one
 /// release in 40 000 is.
 const MOST_DRAWS: usize = 100;
-/// Releases tried out before a run.
-const TRIED: usize = 1000;
+/// Narrower in plan view than this (m), meshes are walls or dust, no ground.
+pub(crate) const NO_WIDTH_M: f64 = 1e-3;
 /// Why a release cannot be made.
 const NO_GROUND: &str = "no ground below";
 /// Why a release cannot be made.
@@ -197,46 +199,6 @@ impl Releases {
         (lost.map_or(Ok(release), Err), draws)
     }
 
-    /// Tries the first releases out before a run: says which share of the zone has no ground or no room.
-    ///
-    /// # Errors
-    /// If none of them can be made.
-    pub fn try_out(&self, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<()> {
-        let (mut places, mut made, mut first) = (0, 0, None);
-        for index in 0..TRIED {
-            let (release, drawn) = self.place_rock(terrain, index);
-            places += drawn;
-            match release {
-                Ok(_) => made += 1,
-                Err(lost) => _ = first.get_or_insert(lost),
-            }
-        }
-        let Some(lost) = first.filter(|_| made == 0) else {
-            warnings.extend(self.lost_places((places, made)));
-            return Ok(());
-        };
-        Err(lost.error)
-    }
-
-    /// What to say of places drawn in vain, and of releases that found none.
-    fn lost_places(&self, (places, made): (usize, usize)) -> Vec<String> {
-        let mut warnings = Vec::new();
-        let in_vain = places - made;
-        if in_vain > 0 && !matches!(self.place, Where::Points(_)) {
-            warnings.push(format!(
-                "{:.1} % of the places drawn for {TRIED} releases have no ground or no room for the rock (a hole, a tree, the edge of the terrain): such a place is drawn again",
-                100.0 * in_vain as f64 / places as f64
-            ));
-        }
-        if made < TRIED {
-            warnings.push(format!(
-                "{} of {TRIED} releases tried out find no place to start from: each has a row with the stop reason not_released and counts in no statistic",
-                TRIED - made
-            ));
-        }
-        warnings
-    }
-
     /// Everything of a release but its place.
     fn unplaced(&self, index: usize) -> Release {
         let grounds = self.draw_grounds(index);
@@ -375,6 +337,14 @@ fn local(terrain: &Terrain, [x, y]: Corner) -> Corner {
 /// What to write instead of a place outside: the box of the terrain on the map.
 pub(crate) fn outside(terrain: &Terrain) -> String {
     let (low, high) = terrain.index.bounds();
+    let narrowest_m = (high.x - low.x).min(high.y - low.y);
+    if narrowest_m < NO_WIDTH_M {
+        return format!(
+            "the meshes cover no ground in plan view (their box is {:.3e} x {:.3e} m): add a slope below, or look at up and scale",
+            high.x - low.x,
+            high.y - low.y
+        );
+    }
     let (low, high) = (low + terrain.origin_m, high + terrain.origin_m);
     format!(
         "write map coordinates on the slope; its box is {}..{} east, {}..{} north",

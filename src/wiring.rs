@@ -322,7 +322,9 @@ pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
 /// Turns an ESRI ASCII grid into an STL file; says what was subtracted.
 pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
     file::keep_inputs(out, &[grid])?;
-    let grid = Grid::read(grid)?;
+    let read = Grid::read(grid)?;
+    read.check_slope(grid)?;
+    let grid = read;
     let origin_m = grid.map_origin_m();
     let facets = grid.facets(origin_m);
     write_binary(out, &facets)?;

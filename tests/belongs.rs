@@ -90,7 +90,7 @@ fn a_finished_folder_is_never_cut() {
         let path = dir.path().join(table);
         let whole = fs::read_to_string(&path).unwrap();
         for spoilt in [
-            whole[..whole.trim_end().rfind('\n').unwrap() + 1].to_owned(),
+            whole[..=whole.trim_end().rfind('\n').unwrap()].to_owned(),
             whole.clone() + &whole[whole.find('\n').unwrap() + 1..],
         ] {
             fs::write(&path, &spoilt).unwrap();
@@ -192,7 +192,7 @@ fn results_know_their_measured_ends_and_their_build() {
         fs::write(&ends, text).unwrap();
         rockfall::scene::Scene::read(&file).unwrap().hash
     };
-    assert_ne!(hash(&measured), hash(&measured[..measured.trim_end().rfind('\n').unwrap() + 1]));
+    assert_ne!(hash(&measured), hash(&measured[..=measured.trim_end().rfind('\n').unwrap()]));
     fs::remove_file(&ends).unwrap();
     let said = rockfall(&["plan", word(&file)]);
     let stderr = String::from_utf8(said.stderr).unwrap();

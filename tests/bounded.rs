@@ -43,7 +43,7 @@ fn closed_box() -> Vec<Facet> {
         })
     };
     let sides =
-        [side(|u, v, w| p(u, v, w)), side(|u, v, w| p(w, u, v)), side(|u, v, w| p(v, w, u))];
+        [side(p), side(|u, v, w| p(w, u, v)), side(|u, v, w| p(v, w, u))];
     sides.as_flattened().as_flattened().to_vec()
 }
 

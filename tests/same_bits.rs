@@ -58,7 +58,7 @@ fn digests_hold_on_every_machine() {
         let files = run(scene, releases, &dir.path().join(name), "");
         for table in ["releases.csv", "paths.csv", "crossings.csv"] {
             if let Some(bytes) = files.get(table) {
-                found.push_str(&format!("{:x}  {name}/{table}\n", Sha256::digest(bytes)));
+                found += &format!("{:x}  {name}/{table}\n", Sha256::digest(bytes));
             }
         }
     }

@@ -9,6 +9,7 @@ mod claim;
 mod folder;
 mod maps;
 mod merge;
+mod opened;
 mod progress;
 mod read;
 mod rows;
@@ -29,11 +30,10 @@ pub use whole::write_whole;
 
 use crate::error::{Error, Result};
 use crate::hazard;
-use crate::hazard::{
-    Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, MapState, Maps, Row, Way,
-};
+use crate::hazard::{Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way};
 use crate::rock::Vec3;
 use crate::trajectory::Trajectory;
+use opened::{open, open_maps};
 use progress::{PROGRESS, Progress};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -364,40 +364,5 @@ impl Output {
 
     fn seconds(&self) -> f64 {
         self.seconds_before + self.begun.elapsed().as_secs_f64()
-    }
-}
-
-/// The maps so far; none when they are not asked for or complete.
-fn open_maps(dir: &Path, info: &RunInfo, found: Option<&Progress>) -> Result<Option<Maps>> {
-    let Some(frame) = info.maps else { return Ok(None) };
-    let state = match found {
-        None => MapState::default(),
-        Some(found)
-            if found.done == found.identity.releases && !maps::has_state(dir, found.done) =>
-        {
-            return Ok(None);
-        }
-        Some(found) => maps::read_state(dir, found.done)?,
-    };
-    Ok(Some(Maps::new(frame, state)))
-}
-
-/// Opens one table: new, or behind the rows that are known to be good.
-fn open(
-    dir: &Path,
-    name: &str,
-    columns: &[&str],
-    bytes: Option<&BTreeMap<String, u64>>,
-) -> Result<Table> {
-    let path = dir.join(name);
-    match bytes.map(|bytes| bytes.get(name)) {
-        None => Table::create(path, columns),
-        Some(Some(&bytes)) => Table::go_on(path, bytes),
-        Some(None) => Err(Error::input(
-            &dir.join(PROGRESS),
-            "bytes",
-            format!("no length of {name}"),
-            "restore the file as it was written, or start again with --overwrite",
-        )),
     }
 }

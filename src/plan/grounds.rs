@@ -1,6 +1,7 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
 use crate::error::{Error, Result};
+use crate::release::NO_WIDTH_M;
 use crate::scene::{GroundTable, Scene, known_ground};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -28,6 +29,18 @@ pub(super) fn stems(scene: &Scene, terrain: &Terrain) -> Result<Option<Stems>> {
         let remedy = "write stems that stand in the ground without common corners, as rockfall mesh stems makes them";
         Error::input(&scene.file, "[grounds] breaks_above_j", found, remedy)
     })
+}
+
+/// Refuses meshes so small that nothing can fall on them: their unit is another, most likely.
+pub(super) fn check_size(scene: &Scene, terrain: &Terrain) -> Result<()> {
+    let (low, high) = terrain.index.bounds();
+    let size_m = (high - low).max();
+    if size_m >= NO_WIDTH_M {
+        return Ok(());
+    }
+    let found = format!("found meshes of {size_m:.1e} m in all");
+    let remedy = "write scale = metres in one unit of the file";
+    Err(Error::input(&scene.file, "[[terrain]] scale", found, remedy))
 }
 
 /// Warnings about grounds and keys that nothing answers with.

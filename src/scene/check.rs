@@ -136,6 +136,8 @@ pub(super) fn check_names(tables: &[(&str, Vec<&str>)]) -> Checked {
                 "write a name; it stands in tables and files"
             } else if known.contains(&name) {
                 "write another name: an entry before has the same"
+            } else if is_formula(name) {
+                FORMULA
             } else {
                 known.push(name);
                 continue;
@@ -144,6 +146,15 @@ pub(super) fn check_names(tables: &[(&str, Vec<&str>)]) -> Checked {
         }
     }
     Ok(())
+}
+
+/// What to do about a name that a spreadsheet takes for a formula: it stands in CSV files.
+pub(super) const FORMULA: &str =
+    "write a name that does not begin with =, +, - or @: spreadsheets take that for a formula";
+
+/// Whether a spreadsheet takes a name for a formula.
+pub(super) fn is_formula(name: &str) -> bool {
+    name.starts_with(['=', '+', '-', '@', '\t', '\r'])
 }
 
 /// The known word that looks most like the one written, if any is near.

@@ -35,7 +35,7 @@ use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
-use check::{Allowed, Checked, Complaint, check_names, number};
+use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
 use places::FARTHEST_M;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -189,6 +189,11 @@ impl Scene {
         self.check_meshes()?;
         let scheme = self.solver.scheme();
         for (name, ground) in &self.grounds {
+            if is_formula(name) {
+                return Err(Complaint::about(name, FORMULA)
+                    .finding(format!("found the name {name}"))
+                    .inside("grounds"));
+            }
             ground.check(scheme).map_err(|wrong| wrong.inside(name).inside("grounds"))?;
         }
         self.rocks.check().map_err(|wrong| wrong.inside("rocks"))?;
