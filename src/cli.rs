@@ -13,6 +13,7 @@ use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
 use rockfall::study::verify::Verification;
+use rockfall::terrain::weld::Up;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -84,6 +85,9 @@ enum MeshCommand {
         /// STL files
         #[arg(required = true)]
         files: Vec<PathBuf>,
+        /// Which axis of the files points up, as `up` in the scene: with y, (x, y, z) becomes (x, -z, y)
+        #[arg(long, value_name = "z|y", value_parser = words::up, default_value = "z")]
+        up: Up,
     },
     /// Turn an ESRI ASCII grid into STL; subtract the map origin and print it
     FromGrid {
@@ -186,7 +190,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
         Command::Calibrate(args) => calibrate(&args),
         Command::Study(command) => study::study(&command),
-        Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
+        Command::Mesh(MeshCommand::Check { files, up }) => {
+            wiring::check_meshes(&files, up).map(say)
+        }
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
             wiring::mesh_from_grid(&grid, &out).map(say)
         }
@@ -212,6 +218,7 @@ fn plan(scene: &Path) -> Result<ExitCode> {
     let scene = Scene::read(scene)?;
     let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
+    wiring::read_measured(&plan)?;
     Ok(say(format!("{health}\n{plan}")))
 }
 

@@ -129,6 +129,8 @@ pub struct Plan {
     pub maps: Part<Lattice>,
     /// Grounds with values of the catalogue: name, what was taken, source.
     pub catalogued: Vec<String>,
+    /// Up to which slope each ground stops a rolling sphere, in words.
+    pub rolling_stops: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
     /// What went in, as name and value.
@@ -240,6 +242,7 @@ impl Plan {
                 inputs::ground_source(scene, &grounds::catalogued(scene)),
             ],
             catalogued: grounds::catalogued(scene),
+            rolling_stops: grounds::rolling_stops(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             terrain,

@@ -73,6 +73,8 @@ pub struct Releases {
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
     radius_m: Distribution,
+    /// Radii of a table's blocks, taken in turn with their places (m); empty if they are drawn.
+    radii_m: Vec<f64>,
     density_kg_m3: f64,
     grounds: Vec<GroundTable>,
 }
@@ -86,19 +88,10 @@ impl Releases {
     /// coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
         let asked = &scene.release;
-        let place = match (&asked.points_m, &asked.line_m, &asked.polygon_m) {
-            (Some(points), None, None) => Where::Points(points.clone()),
-            (None, Some(line), None) => Where::Line(line.clone()),
-            (None, None, Some(area)) => Where::Area(area.clone()),
-            _ => {
-                let remedy = "write exactly one of points_m, line_m and polygon_m";
-                return Err(Error::input(
-                    &scene.file,
-                    "[release]",
-                    "found none or several",
-                    remedy,
-                ));
-            }
+        let place = if asked.blocks.is_empty() {
+            Self::place_asked(scene)?
+        } else {
+            Where::Points(asked.blocks.iter().map(Point::of_block).collect())
         };
         let releases = Self {
             file: scene.file.clone(),
@@ -109,6 +102,7 @@ impl Releases {
             velocity_m_s: asked.velocity_m_s.clone(),
             spin_rad_s: asked.spin_rad_s.clone(),
             radius_m: scene.rocks.radius_m.clone(),
+            radii_m: asked.blocks.iter().map_while(|block| block.radius_m).collect(),
             density_kg_m3: scene.rocks.density_kg_m3,
             grounds: scene.grounds.values().cloned().collect(),
         };
@@ -123,6 +117,19 @@ impl Releases {
             }
         }
         Ok(releases)
+    }
+
+    fn place_asked(scene: &Scene) -> Result<Where> {
+        let asked = &scene.release;
+        match (&asked.points_m, &asked.line_m, &asked.polygon_m) {
+            (Some(points), None, None) => Ok(Where::Points(points.clone())),
+            (None, Some(line), None) => Ok(Where::Line(line.clone())),
+            (None, None, Some(area)) => Ok(Where::Area(area.clone())),
+            _ => {
+                let remedy = "write exactly one of points_m, line_m and polygon_m";
+                Err(Error::input(&scene.file, "[release]", "found none or several", remedy))
+            }
+        }
     }
 
     /// Where rocks are released.
@@ -202,10 +209,12 @@ impl Releases {
     /// Everything of a release but its place.
     fn unplaced(&self, index: usize) -> Release {
         let grounds = self.draw_grounds(index);
-        let rock = Rock {
-            radius_m: self.radius_m.draw(&mut stream(self.seed, Purpose::Size, index)),
-            density_kg_m3: self.density_kg_m3,
+        let radius_m = if self.radii_m.is_empty() {
+            self.radius_m.draw(&mut stream(self.seed, Purpose::Size, index))
+        } else {
+            self.radii_m[index % self.radii_m.len()]
         };
+        let rock = Rock { radius_m, density_kg_m3: self.density_kg_m3 };
         let mut chance = stream(self.seed, Purpose::Start, index);
         let mut vector = |from: &[Distribution; 3]| {
             let [x, y, z] = from;
@@ -301,14 +310,22 @@ impl Releases {
 
     fn draw_grounds(&self, index: usize) -> Vec<Ground> {
         let mut chance = stream(self.seed, Purpose::Grounds, index);
-        let mut draw = |from: &Distribution| from.draw(&mut chance);
+        // How a block rolls is its shape, which it keeps: the same quantile on every ground.
+        let mut character = None;
         let draw_ground = |table: &GroundTable| Ground {
-            normal_stiffness_n_m: draw(&table.normal_stiffness_n_m),
-            shear_stiffness_n_m: draw(&table.shear_stiffness_n_m),
-            friction_angle_rad: draw(&table.friction_angle_deg).to_radians(),
-            restitution: table.restitution.as_ref().map(&mut draw),
-            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, &mut draw),
-            roughness_rad: table.roughness_deg.as_ref().map_or(0.0, &mut draw).to_radians(),
+            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut chance),
+            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut chance),
+            friction_angle_rad: table.friction_angle_deg.draw(&mut chance).to_radians(),
+            restitution: table.restitution.as_ref().map(|e| e.draw(&mut chance)),
+            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
+                let drawn = unit(&mut chance);
+                rolling.quantile(*character.get_or_insert(drawn))
+            }),
+            roughness_rad: table
+                .roughness_deg
+                .as_ref()
+                .map_or(0.0, |angle| angle.draw(&mut chance))
+                .to_radians(),
         };
         self.grounds.iter().map(draw_ground).collect()
     }

@@ -212,7 +212,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         lines: line_infos(plan),
         maps: map_frame(plan),
         barriers: barriers(plan),
-        observed: plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)?,
+        observed: read_measured(plan)?,
         keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
         is_shard: matches!(order.part, Part::Shard { .. }),
@@ -224,6 +224,11 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         warnings: plan.warnings.clone(),
         mesh_health,
     })
+}
+
+/// The measured ends that a plan compares with; none if it names none.
+pub(crate) fn read_measured(plan: &Plan) -> Result<Vec<Way>> {
+    plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)
 }
 
 fn line_infos(plan: &Plan) -> Vec<LineInfo> {
@@ -313,8 +318,9 @@ pub(crate) fn draw(dir: &Path) -> Result<()> {
 }
 
 /// Health of mesh files as they will be welded, in words.
-pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
-    let sources: Vec<Source> = files.iter().map(|path| slope_source(path)).collect();
+pub(crate) fn check_meshes(files: &[PathBuf], up: Up) -> Result<String> {
+    let source = |path: &PathBuf| Source { up, ..slope_source(path) };
+    let sources: Vec<Source> = files.iter().map(source).collect();
     let (_, health) = Terrain::read(&sources, Vec3::zeros(), None)?;
     Ok(health.to_string())
 }

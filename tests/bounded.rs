@@ -42,8 +42,7 @@ fn closed_box() -> Vec<Facet> {
             quad([turn(0.0, 0.0, w), turn(2.0, 0.0, w), turn(2.0, 2.0, w), turn(0.0, 2.0, w)])
         })
     };
-    let sides =
-        [side(p), side(|u, v, w| p(w, u, v)), side(|u, v, w| p(v, w, u))];
+    let sides = [side(p), side(|u, v, w| p(w, u, v)), side(|u, v, w| p(v, w, u))];
     sides.as_flattened().as_flattened().to_vec()
 }
 

@@ -169,6 +169,14 @@ impl Distribution {
         Ok(Self { shape: Shape::Triangular { low, mode, high } })
     }
 
+    /// One of the values, each as often as any other.
+    ///
+    /// # Errors
+    /// No value, or one that is not finite.
+    pub fn listed(values: Vec<f64>) -> Result<Self, Flaw> {
+        Self::values(values, None)
+    }
+
     pub(super) fn values(values: Vec<f64>, weights: Option<Vec<f64>>) -> Result<Self, Flaw> {
         let weights = weights.unwrap_or_else(|| vec![1.0; values.len()]);
         finite(&values)?;
@@ -188,7 +196,10 @@ impl Distribution {
         }
         let mut sum = 0.0;
         let weighted = values.into_iter().zip(weights).filter(|(_, weight)| *weight > 0.0);
-        let summed = weighted.map(|(value, weight)| {
+        let mut weighted: Vec<(f64, f64)> = weighted.collect();
+        // rising, so that a quantile is one; stable, so that the same list gives the same draws
+        weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let summed = weighted.into_iter().map(|(value, weight)| {
             sum += weight;
             (value, sum)
         });

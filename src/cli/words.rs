@@ -2,6 +2,7 @@
 
 use crate::wiring::Part;
 use rockfall::scene::MOST_RELEASES;
+use rockfall::terrain::weld::Up;
 
 /// Most releases of one trial of a calibration: the ends of all trials are kept.
 const MOST_OF_A_TRIAL: usize = 100_000;
@@ -35,5 +36,13 @@ pub(super) fn at_least_1(text: &str) -> std::result::Result<usize, String> {
     match text.parse() {
         Ok(number) if (1..=MOST_RELEASES).contains(&number) => Ok(number),
         _ => Err(format!("write a whole number from 1 to {MOST_RELEASES}")),
+    }
+}
+
+pub(super) fn up(text: &str) -> std::result::Result<Up, String> {
+    match text {
+        "z" => Ok(Up::Z),
+        "y" => Ok(Up::Y),
+        _ => Err("write z or y".to_owned()),
     }
 }

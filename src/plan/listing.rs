@@ -50,6 +50,7 @@ impl Plan {
             barriers,
             maps,
             catalogued,
+            rolling_stops,
             deposits,
             inputs: _,      // with the report
             title_block: _, // with the report
@@ -94,6 +95,7 @@ impl Plan {
         list.line("orientation", format!("left out: {}", never(orientation)));
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
+        list.lines("rolling stops", rolling_stops.iter().cloned());
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {

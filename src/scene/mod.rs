@@ -4,6 +4,7 @@
 //! here is either numerics, filled in and printed by the plan, or an error.
 
 mod barrier;
+mod blocks;
 mod calibrate;
 mod catalogue;
 mod check;
@@ -18,6 +19,7 @@ mod source;
 mod wording;
 
 pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
+pub use blocks::Block;
 pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use grounds::GroundTable;
@@ -28,7 +30,7 @@ pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 
-use crate::chance::entries;
+use crate::chance::{Distribution, entries};
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
 use crate::step::Scheme;
@@ -115,6 +117,7 @@ impl Scene {
     pub fn read(file: &Path) -> Result<Self> {
         let text = crate::file::read_text(file)?;
         let mut scene = Self::parse(&text, file)?;
+        scene.read_blocks()?;
         scene.hash =
             scene.fingerprint(&text).map_err(|wrong| Lookup::of(file, &text).refuse(wrong))?;
         Ok(scene)
@@ -136,11 +139,36 @@ impl Scene {
         for mesh in scene.terrain.iter_mut().chain(&mut scene.trees) {
             mesh.mesh = folder.join(&mesh.mesh);
         }
+        if let Some(table) = &mut scene.release.table {
+            *table = folder.join(&*table);
+        }
         if let Some(calibrate) = &mut scene.calibrate {
             calibrate.deposits = folder.join(&calibrate.deposits);
         }
         file.clone_into(&mut scene.file);
         Ok(scene)
+    }
+
+    /// Reads the blocks of the release table; their radii, where they are there, are those of the scene.
+    fn read_blocks(&mut self) -> Result<()> {
+        let Some(table) = &self.release.table else { return Ok(()) };
+        let has_height = self.release.height_m.is_some();
+        let blocks = blocks::read(table, has_height, self.rocks.density_kg_m3)?;
+        let radii_m: Vec<f64> = blocks.iter().filter_map(|block| block.radius_m).collect();
+        if !radii_m.is_empty() {
+            let refuse = |flaw: crate::error::Flaw| {
+                Error::input(table, "radius_m or mass_kg", flaw.found, flaw.remedy)
+            };
+            let radius_m = Distribution::listed(radii_m).map_err(refuse)?;
+            self.rocks.radius_m = radius_m;
+            let wrong = |wrong: Complaint| {
+                let found = wrong.found.unwrap_or_else(|| "found another".to_owned());
+                Error::input(table, "radius_m or mass_kg", found, wrong.remedy)
+            };
+            self.rocks.check().map_err(wrong)?;
+        }
+        self.release.blocks = blocks;
+        Ok(())
     }
 
     /// Position of a ground in the scene's list of grounds.
@@ -300,6 +328,10 @@ impl Scene {
             let remedy = "write the path of an STL file as seen from the scene file";
             take_in(&mut hash, "mesh", &mesh.mesh, remedy)
         })?;
+        if let Some(table) = &self.release.table {
+            let remedy = "write the path of a CSV file as seen from the scene file";
+            take_in(&mut hash, "table", table, remedy).map_err(|wrong| wrong.inside("release"))?;
+        }
         if let Some(calibrate) = &self.calibrate {
             let remedy = "write the path of a CSV file as seen from the scene file";
             take_in(&mut hash, "deposits", &calibrate.deposits, remedy)

@@ -1,5 +1,6 @@
 //! Points, polylines and areas in plan view, in map coordinates; valid by construction.
 
+use super::blocks::Block;
 use crate::chance::Entries;
 use crate::error::Flaw;
 use crate::math;
@@ -16,6 +17,13 @@ pub struct Point {
     pub at_m: Corner,
     /// Height of the rock's centre (m), map coordinates; absent = reckoned from the ground below.
     pub height_m: Option<f64>,
+}
+
+impl Point {
+    /// The place of a block of a table.
+    pub fn of_block(block: &Block) -> Self {
+        Self { at_m: block.at_m, height_m: block.height_m }
+    }
 }
 
 impl TryFrom<Vec<f64>> for Point {
