@@ -125,9 +125,10 @@ enum MeshCommand {
 
 #[derive(Debug, Args)]
 struct CalibrateArgs {
-    /// Scene file (TOML) with a table [calibrate]
-    scene: PathBuf,
-    /// Folder for calibration.csv and calibration.json [default: reports/<scene name>]
+    /// Scene files (TOML) with a table [calibrate]; several are fitted together, the first says what is varied
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Folder for trials, result and fitted scenes [default: reports/<first scene's name>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Releases of each trial
@@ -208,10 +209,14 @@ pub(crate) fn main() -> ExitCode {
 }
 
 fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
-    let scene = Scene::read(&args.scene)?;
-    let name = args.scene.file_stem().unwrap_or_default();
+    let scenes = args.scenes.iter().map(|scene| Scene::read(scene));
+    let scenes = scenes.collect::<Result<Vec<_>>>()?;
+    let name = args.scenes[0].file_stem().unwrap_or_default();
     let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
-    wiring::calibrate(&scene, (args.releases, args.threads), &out).map(say)
+    let bar = bar(rockfall::calibrate::planned(&scenes[0]), "trials");
+    let said = wiring::calibrate(&scenes, (args.releases, args.threads), &out, || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(say(said))
 }
 
 fn plan(scene: &Path) -> Result<ExitCode> {
@@ -338,11 +343,7 @@ impl RunArgs {
         if self.quiet {
             return ProgressBar::hidden();
         }
-        let bar = ProgressBar::new(asked as u64);
-        match ProgressStyle::with_template("{bar:40} {pos}/{len} rocks, {per_sec}, {eta} left") {
-            Ok(style) => bar.with_style(style),
-            Err(_) => bar,
-        }
+        bar(asked, "rocks")
     }
 
     /// Says how to go on.
@@ -355,6 +356,16 @@ impl RunArgs {
         complain(format_args!("interrupted: {done} of {asked} releases are written"));
         complain(format_args!("go on with: rockfall {}", words.join(" ")));
         ExitCode::from(INTERRUPTED)
+    }
+}
+
+/// A bar over so many things.
+fn bar(asked: usize, what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(asked as u64);
+    let looks = format!("{{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
+    match ProgressStyle::with_template(&looks) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
     }
 }
 

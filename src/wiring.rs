@@ -2,7 +2,7 @@
 
 pub(crate) mod study;
 
-use rockfall::calibrate::{self, Trial};
+use rockfall::calibrate::{self, Ends, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::file;
@@ -287,23 +287,28 @@ fn map_frame(plan: &Plan) -> Option<MapFrame> {
     })
 }
 
-/// Calibrates a scene, writes all trials into `out` and says what was found.
+/// Calibrates scenes together, writes all trials and the fitted scenes into `out` and says what was found.
 pub(crate) fn calibrate(
-    scene: &Scene,
+    scenes: &[Scene],
     (releases, threads): (usize, Option<usize>),
     out: &Path,
+    progress: impl Fn(),
 ) -> Result<String> {
     let ensemble = Ensemble::new(threads)?;
-    let mut trials: Vec<(usize, Trial)> = Vec::new();
-    let found = calibrate::calibrate(scene, &ensemble, releases, &mut |half, trial| {
-        trials.push((half, trial.clone()));
+    let mut trials: Vec<(Ends, Trial)> = Vec::new();
+    let found = calibrate::calibrate(scenes, &ensemble, releases, &mut |ends, trial| {
+        trials.push((ends, trial.clone()));
+        progress();
     })?;
-    output::write_calibration(out, &found, &trials)?;
-    Ok(format!(
-        "{found}
-all trials in {}",
-        out.join("calibration.csv").display()
-    ))
+    let vary = scenes[0].calibrate.as_ref().map_or(&[][..], |table| &table.vary);
+    let mut fitted = Vec::new();
+    for scene in scenes {
+        let name = scene.file.file_stem().unwrap_or_default().to_string_lossy();
+        fitted.push((format!("{name}_fitted.toml"), calibrate::fitted_scene(scene, vary, &found)?));
+    }
+    output::write_calibration(out, &found, (&trials, &fitted))?;
+    let out = out.display();
+    Ok(format!("{found}all trials in {out}/calibration.csv, fitted scenes beside it"))
 }
 
 /// Puts the shards of a run together, and draws the report.

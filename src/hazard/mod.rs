@@ -21,7 +21,7 @@ pub use barriers::{
 };
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
-pub use observed::{Agreement, Way};
+pub use observed::{Agreement, Spread, Way, effective};
 pub use proportion::Proportion;
 pub use quantile::{Percentile, Ranks};
 pub use quantity::Quantity;

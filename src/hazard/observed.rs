@@ -1,5 +1,9 @@
 //! Measured ends of rocks beside computed ones.
 
+mod spread;
+
+pub use spread::{Spread, effective};
+
 use super::row::Row;
 use super::sample::Sample;
 use crate::error::{Error, Result};
@@ -94,7 +98,51 @@ impl Way {
     }
 }
 
+/// The column that tells which throws are of one block.
+#[derive(Debug, Deserialize)]
+struct Thrown {
+    #[serde(alias = "block_id")]
+    block: String,
+}
+
+impl Way {
+    /// The block of each measured end, from the column `block` or `block_id`; empty where there is none.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn read_blocks(path: &Path) -> Result<Vec<String>> {
+        let file = file::open(path, LONGEST_TEXT)?;
+        let rows = csv::Reader::from_reader(file).into_deserialize();
+        let blocks = rows.map(|row: csv::Result<Thrown>| row.ok().map(|thrown| thrown.block));
+        Ok(blocks.collect::<Option<_>>().unwrap_or_default())
+    }
+}
+
 impl Agreement {
+    /// Agreements on several slopes as one: means by the number of measured rocks; none of none.
+    pub fn joined(each: &[Self]) -> Option<Self> {
+        let [first, rest @ ..] = each else { return None };
+        if rest.is_empty() {
+            return Some(*first);
+        }
+        let measured: usize = each.iter().map(|one| one.measured).sum();
+        let mean = |of: fn(&Self) -> f64| {
+            let weighted = each.iter().map(|one| one.measured as f64 * of(one));
+            weighted.sum::<f64>() / measured as f64
+        };
+        Some(Self {
+            measured,
+            computed: each.iter().map(|one| one.computed).sum(),
+            measured_mean_m: mean(|one| one.measured_mean_m),
+            computed_mean_m: mean(|one| one.computed_mean_m),
+            ks: mean(|one| one.ks),
+            ks_limit: mean(|one| one.ks_limit),
+            area_m: mean(|one| one.area_m),
+            measured_side_m: mean(|one| one.measured_side_m),
+            computed_side_m: mean(|one| one.computed_side_m),
+        })
+    }
+
     /// Compares measured and computed ways; none if either is empty.
     pub fn of(measured: &[Way], computed: &[Way]) -> Option<Self> {
         let runouts = |ways: &[Way]| Sample::of(ways.iter().map(Way::runout_m));

@@ -13,6 +13,7 @@ mod meshes;
 mod places;
 mod record;
 mod release;
+mod rewrite;
 mod rocks;
 mod solver;
 mod source;
@@ -27,6 +28,7 @@ pub use meshes::{MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
 pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
+pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 
