@@ -73,7 +73,7 @@ const IMPACT: (f64, f64) = (4e-3, 2e-4);
 const IMPACT_OF_REFERENCE: f64 = 1e-10;
 /// Local error allowed in lasting contact, whatever is asked for (–, relative to √(g R), the speed of a rock that tips over
 /// an edge).
-const PIVOT: f64 = 0.01;
+const PIVOT: f64 = 0.02;
 
 impl Control {
     /// The control of a rock in `world`.

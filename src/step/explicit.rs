@@ -39,11 +39,11 @@ const ERROR: [f64; STAGES] = [
 ];
 
 /// First step of an impact (rad of its oscillation).
-const FIRST: f64 = 0.4;
-/// Longest step (rad): beyond about 3 an explicit step is not stable.
-const LONGEST: f64 = 1.5;
+const FIRST: f64 = 0.3;
+/// Longest step (rad): where friction begins to slip or to hold within a longer one, its error estimate may not see it.
+const LONGEST: f64 = 0.4;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
-const KINKED: f64 = 0.25;
+const KINKED: f64 = 0.1;
 /// Largest error of energy that is balanced (–, relative to motion).
 const BALANCED: f64 = 0.1;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
@@ -68,6 +68,10 @@ pub(crate) struct Explicit {
     speed_m_s: f64,
     /// How much longer it is followed in its own time (rad).
     left: f64,
+    /// Power that goes into the normal springs at each stage (W) …
+    stores: [Loss; STAGES],
+    /// … and the energy in them at the present state (J), if all of them push.
+    stored: Option<Loss>,
     /// Energy that the steps have gained (J).
     gained: f64,
 }
@@ -80,6 +84,8 @@ impl Default for Explicit {
             h: 0.0,
             speed_m_s: 0.0,
             left: 0.0,
+            stores: [Loss::default(); STAGES],
+            stored: None,
             gained: 0.0,
         }
     }
@@ -109,10 +115,12 @@ impl Explicit {
 }
 
 /// What the contacts of one stage do to the rock.
+#[derive(Default)]
 struct Motions {
     v: Vec3,
     w: Vec3,
     loss: Loss,
+    stores: Loss,
 }
 
 impl Grip {
@@ -179,6 +187,7 @@ impl Grip {
         if !self.impact.fresh {
             let now = End { c: self.c, v: self.v, w: self.w };
             self.rate_at(world, &now, 0, 0.0);
+            self.impact.stored = self.pressed_springs_j(world);
             self.impact.fresh = true;
         }
         if self.impact.h == 0.0 {
@@ -248,7 +257,7 @@ impl Grip {
     fn rate_at(&mut self, world: &World, at: &End, i: usize, dt: f64) {
         let body = &world.body;
         self.look(world, &at.c, body.radius * (1.0 + TOUCH));
-        let mut total = Motions { v: body.gravity, w: Vec3::zeros(), loss: Loss::default() };
+        let mut total = Motions { v: body.gravity, ..Motions::default() };
         self.impact.rates[i].clear(HOLDS.min(self.holds.len() + self.touches.len()));
         let mut taken = 0;
         self.spot_count = self.touches.len();
@@ -276,10 +285,27 @@ impl Grip {
             let rate = &mut self.impact.rates[i];
             (rate.shear[hold], rate.roll[hold]) = (carry(shear_rate, &spot.n, &back), roll_rate);
             total.loss.add(&spot.loss(world, &at.v, &at.w, &shear_rate), 1.0);
+            let stores = -spot.law.p_n * spot.pen * spot.n.dot(&at.v);
+            total.stores.add(&normal_spring(stores).on(world, spot.triangle), 1.0);
             self.spots[k] = spot;
         }
         let rate = &mut self.impact.rates[i];
         (rate.c, rate.v, rate.w, rate.loss) = (at.v, total.v, total.w, total.loss);
+        self.impact.stores[i] = total.stores;
+    }
+
+    /// Energy in the normal springs of the last stage (J), if all of them push.
+    fn pressed_springs_j(&self, world: &World) -> Option<Loss> {
+        let spots = &self.spots[..self.spot_count];
+        if spots.is_empty() || spots.iter().any(|spot| spot.push <= 0.0) {
+            return None;
+        }
+        let mut stored = Loss::default();
+        for spot in spots {
+            let joule = 0.5 * spot.law.p_n * spot.pen * spot.pen;
+            stored.add(&normal_spring(joule).on(world, spot.triangle), 1.0);
+        }
+        Some(stored)
     }
 
     /// Takes over the step's end: motion, memories, losses. The last stage was there.
@@ -290,6 +316,16 @@ impl Grip {
         for (rate, weight) in self.impact.rates.iter().zip(A[STAGES - 1]) {
             loss.add(&rate.loss, dt * weight);
         }
+        // Where springs push from the step's start to its end, what they store is known exactly.
+        let stored = self.pressed_springs_j(world);
+        if let (Some(before), Some(after)) = (self.impact.stored, stored) {
+            for (stores, weight) in self.impact.stores.iter().zip(A[STAGES - 1]) {
+                loss.add(stores, -dt * weight);
+            }
+            loss.add(&after, 1.0);
+            loss.add(&before, -1.0);
+        }
+        self.impact.stored = stored;
         let lifted = -body.mass * body.gravity.dot(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);
         self.remember_spots();
@@ -339,6 +375,7 @@ impl Grip {
         let merged = self.merge_lost(world);
         let (first, last) = self.impact.rates.split_at_mut(STAGES - 1);
         let (next, last) = (&mut first[0], &last[0]);
+        self.impact.stores[0] = self.impact.stores[STAGES - 1];
         (next.c, next.v, next.w, next.loss) = (last.c, last.v, last.w, last.loss);
         let mut kept = 0;
         for k in 0..self.holds.len() {
@@ -350,6 +387,11 @@ impl Grip {
         self.holds.retain(|hold| hold.closed);
         self.impact.fresh = !merged;
     }
+}
+
+/// Energy or power of a normal spring, as it is booked.
+fn normal_spring(damping: f64) -> Loss {
+    Loss { damping, ..Loss::default() }
 }
 
 fn growth(error: f64) -> f64 {
