@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 /// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
 /// six or seven digits, and so deep a spring holds no energy worth naming.
-const TYPED_DEPTH: f64 = 1e-6;
+pub(crate) const TYPED_DEPTH: f64 = 1e-6;
 
 /// One release, drawn: a pure function of scene, seed and index.
 #[derive(Debug, Clone, PartialEq)]

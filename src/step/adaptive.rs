@@ -2,8 +2,8 @@
 
 use super::grip::{Grip, Loss, World};
 use super::stage::End;
-use super::{Scheme, Settings};
 use super::tableau::Tableau;
+use super::{Scheme, Settings};
 use crate::contact::hold::carry;
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.

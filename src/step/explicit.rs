@@ -6,8 +6,8 @@
 //! wherever patches meet (`contact::patch`), and where a further contact begins the step is cut by its error.
 
 use super::adaptive::{Advance, Stuck, travel_limit};
-use super::impact::{Followed, Plane};
 use super::grip::{Grip, Loss, Rate, TOUCH, World};
+use super::impact::{Followed, Plane};
 use super::stage::End;
 use crate::contact::hold::{HOLDS, carry};
 use crate::contact::{Feature, FeatureKind, Touch};
@@ -331,9 +331,5 @@ impl Grip {
 }
 
 fn growth(error: f64) -> f64 {
-    if error.is_finite() {
-        (SAFETY * error.powf(-0.2)).clamp(RATIO.0, RATIO.1)
-    } else {
-        RATIO.0
-    }
+    if error.is_finite() { (SAFETY * error.powf(-0.2)).clamp(RATIO.0, RATIO.1) } else { RATIO.0 }
 }

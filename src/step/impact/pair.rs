@@ -6,8 +6,7 @@ pub(super) const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 const A2: [f64; 1] = [0.2];
 const A3: [f64; 2] = [3.0 / 40.0, 9.0 / 40.0];
 const A4: [f64; 3] = [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0];
-const A5: [f64; 4] =
-    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0];
+const A5: [f64; 4] = [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0];
 const A6: [f64; 5] =
     [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0];
 /// Weights of the first, third … sixth stage in the step.
@@ -116,9 +115,7 @@ impl<const N: usize, const Q: usize> Tried<N, Q> {
     pub(super) fn kink(&self) -> Option<(f64, f64)> {
         let slips = |[asked2, cap]: [f64; 2]| asked2 > cap * cap;
         let first = self.kinks[0].map(slips);
-        let turns = |k: usize| {
-            self.kinks[1..].iter().any(|kinks| slips(kinks[k]) != first[k])
-        };
+        let turns = |k: usize| self.kinks[1..].iter().any(|kinks| slips(kinks[k]) != first[k]);
         let (shear, rolling) = (turns(0), turns(1));
         if !shear && !rolling {
             return None;

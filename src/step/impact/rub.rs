@@ -81,12 +81,7 @@ impl Pressed<4, 3> for Shear {
         let push = self.lightness * damping;
         let g = self.gravity;
         Rates {
-            y: [
-                g[0] - push * p[0],
-                g[1] - push * p[1],
-                rate * (p[0] - y[2]),
-                rate * (p[1] - y[3]),
-            ],
+            y: [g[0] - push * p[0], g[1] - push * p[1], rate * (p[0] - y[2]), rate * (p[1] - y[3])],
             q: [damping * cap * slips, y[0], y[1]],
             kinks: [[asked2, cap], [0.0; 2]],
         }

@@ -78,10 +78,11 @@ impl<'a> Crowd<'a> {
         self.ties.insert(place, tie);
     }
 
-    /// A bonded rock does not fly.
+    /// A bonded rock does not fly: its contacts begin with the world.
     pub(super) fn hold(&mut self, k: u32) {
-        if let Some(rover) = &mut self.rovers[k as usize] {
-            rover.member.flying = false;
+        let course = self.course;
+        if let Some(rover) = self.rovers[k as usize].as_mut().filter(|rover| rover.member.flying) {
+            rover.land(course);
         }
     }
 

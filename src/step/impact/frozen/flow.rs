@@ -39,7 +39,8 @@ pub(super) struct Several<const K: usize> {
 impl<const K: usize> Several<K> {
     pub(super) fn new(body: &Body, struck: &[Struck], allowed: f64) -> Self {
         let contacts = Contacts::new(body, struck);
-        let fastest = contacts.list().iter().fold(1.0f64, |rate, contact| rate.max(contact.damping));
+        let fastest =
+            contacts.list().iter().fold(1.0f64, |rate, contact| rate.max(contact.damping));
         Self {
             contacts,
             // All of them at penetration zero: those that come nearer press at once.
@@ -110,7 +111,8 @@ impl<const K: usize> Several<K> {
         let nothing = self.nothing() * self.nothing();
         (0..self.contacts.list().len()).all(|k| {
             let [x, rate] = self.depth(k, y);
-            !self.pressed[k] || (self.push(k, y) <= nothing && rate <= 0.0)
+            !self.pressed[k]
+                || (self.push(k, y) <= nothing && rate <= 0.0)
                 || (x.abs() <= self.nothing() && rate.abs() <= self.nothing())
         })
     }

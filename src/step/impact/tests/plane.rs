@@ -51,7 +51,13 @@ fn it_is_the_law_as_printed() {
                 let dl = [0, 1, 2].map(|k| (dl[k] - slow.lost[k]) / e);
                 println!(
                     "{rolling} {tolerance:e} v {:?} w {:?}: dv {dv:.1e} dw {dw:.1e} dx {dx:.1e} dt {:.1e} loss {:.1e} {:.1e} {:.1e} {:?}",
-                    v.data.0[0], w.data.0[0], fast.time_s - t, dl[0], dl[1], dl[2], fast.effort
+                    v.data.0[0],
+                    w.data.0[0],
+                    fast.time_s - t,
+                    dl[0],
+                    dl[1],
+                    dl[2],
+                    fast.effort
                 );
                 let _ = allowed;
             }
@@ -100,7 +106,11 @@ fn measured() {
             let at = |p: f64| errors[(p * (errors.len() - 1) as f64) as usize];
             println!(
                 "rolling {rolling} tol {tolerance:e}: error/tol P50 {:.2} P90 {:.2} P99 {:.2} max {:.2}, evaluations {:.1}, {ns:.0} ns {sum:.1e}",
-                at(0.5), at(0.9), at(0.99), at(1.0), f64::from(evaluations) / 2000.0
+                at(0.5),
+                at(0.9),
+                at(0.99),
+                at(1.0),
+                f64::from(evaluations) / 2000.0
             );
         }
     }
