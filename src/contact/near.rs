@@ -199,6 +199,19 @@ impl Near {
         }
     }
 
+    /// Whether all that can touch within the margin lies in the plane of `face`, however many triangles that is.
+    pub fn is_one_plane(&self, face: u32) -> bool {
+        let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
+        let (near, flat) = (SLACK * self.radius, SLACK * SLACK);
+        self.edges.is_empty()
+            && self.corners.is_empty()
+            && self.saddles.is_empty()
+            && self.faces.iter().all(|other| {
+                let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
+                turned <= flat && own.n.dot(&(other.a - own.a)).abs() <= near
+            })
+    }
+
     /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners; where a
     /// saddle is inside the ball, the patches that it presses into after those that it does not reach yet.
     #[inline]

@@ -3,7 +3,7 @@
 use super::Effort;
 use super::normal::{Exit, Swing};
 use super::rub::{Both, Element, Shear};
-use super::run::{Span, run};
+use super::run::{Pressed, Span, run};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::step::grip::Loss;
@@ -217,7 +217,7 @@ impl Plane {
     }
 
     #[inline]
-    fn run<P: super::run::Pressed<N, Q>, const N: usize, const Q: usize>(
+    fn run<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize>(
         &self,
         flow: &P,
         begin: [f64; N],
@@ -227,9 +227,9 @@ impl Plane {
     ) -> ([f64; N], [f64; Q]) {
         let span = self.span(start, t);
         if start.allowed >= COARSE {
-            run::<P, N, Q, 9>(flow, begin, &span, effort)
+            run::<P, N, Q, K, 9>(flow, begin, &span, effort)
         } else {
-            run::<P, N, Q, 17>(flow, begin, &span, effort)
+            run::<P, N, Q, K, 17>(flow, begin, &span, effort)
         }
     }
 
