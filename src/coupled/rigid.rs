@@ -232,12 +232,13 @@ impl Member {
 }
 
 impl Foot {
-    /// Energy that the impulses take (J), at a mean velocity and spin.
+    /// Energy that the impulses take (J), at a mean velocity and spin. Friction that turns round within a step may seem to
+    /// work: that is the step's error.
     fn loss(&self, world: &World, (v, w): &(Vec3, Vec3)) -> Loss {
         let loss = Loss {
-            friction: -self.drag.dot(&world.body.slip(&self.n, v, w)),
+            friction: (-self.drag.dot(&world.body.slip(&self.n, v, w))).max(0.0),
             damping: -self.push * self.n.dot(v),
-            rolling: -self.turn.dot(w),
+            rolling: (-self.turn.dot(w)).max(0.0),
             trees: 0.0,
         };
         loss.on(world, self.triangle)

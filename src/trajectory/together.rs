@@ -11,7 +11,6 @@ mod moment;
 mod parts;
 mod rover;
 mod split;
-mod start;
 mod wide;
 
 use super::calm::Calm;
@@ -92,9 +91,7 @@ pub fn fall_together(
     let Part::Kept(ground) = &plan.rock_against_rock else {
         return Err(Error::Request("the rocks of this plan do not share one world".to_owned()));
     };
-    let releases =
-        (0..plan.count).map(|index| plan.release(index)).collect::<Result<Vec<Release>>>()?;
-    start::check_apart(plan, ground, &releases)?;
+    let releases = plan.world()?;
     let none = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let strength = if let Part::Kept(strength) = plan.bonds { strength } else { none };
     let answer = Answer { ground: *ground, strength };

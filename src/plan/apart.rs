@@ -1,17 +1,32 @@
 //! What rocks that share one world may do at the start: touch, and press on each other with their weight.
 
+use super::{Part, Plan};
 use crate::coupled::broad::{Ball, overlapping};
 use crate::error::{Error, Result};
 use crate::ground::Ground;
-use crate::plan::Plan;
 use crate::release::{Release, TYPED_DEPTH};
 
 /// Overlap allowed over that which the weight above presses in (–): a wedge presses more than a column.
 const PRESSED: f64 = 2.0;
 
+impl Plan {
+    /// All releases, in order, of a plan whose rocks share one world.
+    ///
+    /// # Errors
+    /// As for [`Plan::release`], and rocks that overlap deeper than the weight on them would press them together.
+    pub fn world(&self) -> Result<Vec<Release>> {
+        let releases =
+            (0..self.count).map(|index| self.release(index)).collect::<Result<Vec<_>>>()?;
+        if let Part::Kept(ground) = &self.rock_against_rock {
+            check_apart(self, ground, &releases)?;
+        }
+        Ok(releases)
+    }
+}
+
 /// Refuses rocks that overlap deeper than the weight of those above would press them together: their springs would shoot
 /// them apart.
-pub(super) fn check_apart(plan: &Plan, ground: &Ground, releases: &[Release]) -> Result<()> {
+fn check_apart(plan: &Plan, ground: &Ground, releases: &[Release]) -> Result<()> {
     let ball = |release: &Release| Ball {
         centre: release.motion.position_m,
         radius: release.rock.radius_m,
@@ -35,7 +50,7 @@ pub(super) fn check_apart(plan: &Plan, ground: &Ground, releases: &[Release]) ->
                 &plan.scene_file,
                 "[release]",
                 format!(
-                    "found releases {a} at {a_m:?} and {b} at {b_m:?} to overlap by {overlap_m:.2e} m at the start, where the weight on them presses {pressed_m:.2e} m"
+                    "found releases {a} at {a_m:?} and {b} at {b_m:?} to overlap by {overlap_m:.2e} m at the start, where twice what their weight presses in, {pressed_m:.2e} m, is allowed"
                 ),
                 format!("write points that are at least {} m apart", one.radius + two.radius),
             ));
