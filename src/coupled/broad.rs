@@ -1,5 +1,6 @@
 //! Which rocks are near each other: grids of several sizes, one for each octave of radii.
 
+use crate::math;
 use crate::rock::Vec3;
 
 /// A ball that holds a rock wherever it may go for a while.
@@ -50,7 +51,7 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
 
 /// Octave of the cells a ball lies in: they are at least as wide as the ball.
 fn level(ball: &Ball) -> i32 {
-    (2.0 * ball.radius).log2().ceil() as i32
+    math::log2(2.0 * ball.radius).ceil() as i32
 }
 
 /// A grid in which fewer than this share of the balls of the next coarser one lie is worth more than it costs (–).
