@@ -48,6 +48,7 @@ pub(super) struct Pile {
     /// Contacts that one of their rocks has changed since.
     asked: Asked,
     lean: Lean,
+    /// What the normal impulses of sustained contacts took in this step (J).
     taken_j: f64,
     places: Vec<Vec3>,
     /// Smallest capture speed (m/s).
