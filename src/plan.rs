@@ -1,5 +1,6 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod apart;
 mod cost;
 mod grounds;
 mod inputs;
@@ -182,7 +183,7 @@ impl Plan {
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();
         let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
         let is_rough = values().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
-        Ok(Self {
+        let plan = Self {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
             scene_hash: scene.hash.clone(),
@@ -246,7 +247,11 @@ impl Plan {
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             terrain,
-        })
+        };
+        if plan.rock_against_rock.is_kept() {
+            plan.world()?;
+        }
+        Ok(plan)
     }
 
     /// Draws release `index`, a pure function of scene, seed and index.

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 /// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
 /// six or seven digits, and so deep a spring holds no energy worth naming.
-const TYPED_DEPTH: f64 = 1e-6;
+pub(crate) const TYPED_DEPTH: f64 = 1e-6;
 
 /// Places drawn for one release on a line or in an area before it is given up: where a tenth of the zone can be used, one
 /// release in 40 000 is.

@@ -1,6 +1,6 @@
 //! The end of an accepted step: memories, bonds, angular momentum.
 
-use super::cluster::{Cluster, Done};
+use super::cluster::{Cluster, Done, Given};
 use super::member::Member;
 use crate::contact::hold::carry;
 use crate::contact::pair::{Bond, Tie, between};
@@ -26,8 +26,11 @@ impl Cluster<'_> {
             // a merged contact acts otherwise than its rates say
             self.fresh &= grip.fresh;
             done.losses.push(loss);
-            let sums = (0..tableau.stages).map(|k| dt * tableau.work_weight(k) * member.given[k]);
-            done.given_j.push(sums.sum());
+            let mut given = Given::default();
+            for k in 0..tableau.stages {
+                given.add(&member.given[k], dt * tableau.work_weight(k));
+            }
+            done.given.push(given);
             member.given[0] = member.given[tableau.stages - 1];
         }
         done.broken = self.accept_ties(tableau, dt);

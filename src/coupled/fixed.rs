@@ -1,6 +1,6 @@
 //! Scheme `dda` for an island: the paper's step at a fixed time step, open–close iteration over all contacts.
 
-use super::cluster::{Cluster, Done};
+use super::cluster::{Cluster, Done, Given};
 use super::link::Link;
 use super::member::Member;
 use crate::contact::Touch;
@@ -30,7 +30,7 @@ impl Cluster<'_> {
         let mut done = Done { dt, unsettled: !settled, ..Done::default() };
         for (member, before) in self.members.iter_mut().zip(before) {
             done.losses.push(member.carry_on(terrain, dt, &before)?);
-            done.given_j.push(0.0);
+            done.given.push(Given::default());
         }
         self.remember(&links, &mut done)?;
         Ok(done)
@@ -132,8 +132,9 @@ impl Cluster<'_> {
             if link.depth(d) > DEEPEST * least[0].min(least[1]) {
                 return Err(Stuck::SankIn);
             }
-            for k in 0..2 {
-                done.given_j[link.ends[k]] -= link.work(k, d);
+            let given = Given::of_ends([-link.work(0, d), -link.work(1, d)]);
+            for (end, given) in link.ends.into_iter().zip(given) {
+                done.given[end].add(&given, 1.0);
             }
             done.broken += u64::from(link.remember(d, &mut self.ties[link.tie]));
         }

@@ -12,7 +12,7 @@ mod strike;
 mod sustain;
 mod sweep;
 
-use super::cluster::{Cluster, Done};
+use super::cluster::{Cluster, Done, Given};
 use super::member::{Member, Seat};
 use crate::contact::pair::{Tie, between};
 use crate::rock::Vec3;
@@ -37,7 +37,7 @@ pub(super) struct Pile {
     feet: Vec<Foot>,
     knots: Vec<Knot>,
     losses: Vec<Loss>,
-    given_j: Vec<f64>,
+    given: Vec<Given>,
     hits: Vec<Hit>,
     due: BinaryHeap<Due>,
     /// Which ties had a blow.
@@ -48,6 +48,7 @@ pub(super) struct Pile {
     /// Contacts that one of their rocks has changed since.
     asked: Asked,
     lean: Lean,
+    /// What the normal impulses of sustained contacts took in this step (J).
     taken_j: f64,
     places: Vec<Vec3>,
     /// Smallest capture speed (m/s).
@@ -82,7 +83,7 @@ impl Cluster<'_> {
         let done = Done {
             dt,
             losses: std::mem::take(&mut pile.losses),
-            given_j: std::mem::take(&mut pile.given_j),
+            given: std::mem::take(&mut pile.given),
             hits: std::mem::take(&mut pile.hits),
             unsettled: !(settled && struck),
             ..Done::default()
@@ -166,7 +167,12 @@ fn alone(
     let world = World { terrain, body: member.body, laws: &member.laws };
     let done = crate::step::rigid::advance(&world, &mut member.grip, longest, h_max)?;
     member.flying = member.grip.is_free();
-    Ok(Done { dt: done.dt, losses: vec![done.loss], given_j: vec![0.0], ..Done::default() })
+    Ok(Done {
+        dt: done.dt,
+        losses: vec![done.loss],
+        given: vec![Given::default()],
+        ..Done::default()
+    })
 }
 
 impl Tie {
@@ -193,8 +199,8 @@ impl Pile {
         self.balls.extend(members.iter().map(ball));
         self.losses.clear();
         self.losses.resize(members.len(), Loss::default());
-        self.given_j.clear();
-        self.given_j.resize(members.len(), 0.0);
+        self.given.clear();
+        self.given.resize(members.len(), Given::default());
         self.struck.clear();
         self.struck.resize(ties.len(), false);
         self.hits.clear();
@@ -227,12 +233,13 @@ impl Member {
 }
 
 impl Foot {
-    /// Energy that the impulses take (J), at a mean velocity and spin.
+    /// Energy that the impulses take (J), at a mean velocity and spin. Friction that turns round within a step may seem to
+    /// work: that is the step's error.
     fn loss(&self, world: &World, (v, w): &(Vec3, Vec3)) -> Loss {
         let loss = Loss {
-            friction: -self.drag.dot(&world.body.slip(&self.n, v, w)),
+            friction: (-self.drag.dot(&world.body.slip(&self.n, v, w))).max(0.0),
             damping: -self.push * self.n.dot(v),
-            rolling: -self.turn.dot(w),
+            rolling: (-self.turn.dot(w)).max(0.0),
             trees: 0.0,
         };
         loss.on(world, self.triangle)

@@ -63,6 +63,10 @@ pub struct Row {
     pub trees_j: f64,
     /// What the numerics lost (positive) or gained (negative) beside the rest (J).
     pub remainder_j: f64,
+    /// Energy lost in contacts with other rocks, half of what each takes (J).
+    pub others_j: f64,
+    /// Energy handed on to other rocks, negative if received (J).
+    pub passed_on_j: f64,
 }
 
 /// [`Stop`] without the reason of a failure.
@@ -132,7 +136,7 @@ impl From<&Stop> for StopKind {
 
 impl Row {
     /// Columns of `releases.csv`, in order; a vector takes three.
-    pub const COLUMNS: [&'static str; 36] = [
+    pub const COLUMNS: [&'static str; 38] = [
         "index",
         "stop",
         "time_s",
@@ -169,6 +173,8 @@ impl Row {
         "rolling_j",
         "trees_j",
         "remainder_j",
+        "others_j",
+        "passed_on_j",
     ];
 
     /// The row of one journey; `origin_m` is the map position of the local (0, 0, 0).
@@ -203,6 +209,8 @@ impl Row {
             rolling_j: fall.ledger.rolling_j,
             trees_j: fall.ledger.trees_j,
             remainder_j: fall.ledger.remainder_j,
+            others_j: fall.ledger.others_j,
+            passed_on_j: fall.ledger.passed_on_j,
         }
     }
 }

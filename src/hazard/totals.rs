@@ -34,9 +34,12 @@ pub struct LedgerSums {
     pub rolling_j: Sum,
     /// Everything lost in contacts with trees.
     pub trees_j: Sum,
-    /// Given to other rocks and to the springs between them.
+    /// Lost in contacts with other rocks.
     #[serde(default)]
     pub others_j: Sum,
+    /// Handed on to other rocks.
+    #[serde(default)]
+    pub passed_on_j: Sum,
     /// What the numerics lost (positive) or gained (negative).
     pub remainder_j: Sum,
     /// The largest [`Ledger::rise_j`]; no sum.
@@ -180,25 +183,43 @@ const RISE: f64 = 1e-6;
 impl LedgerSums {
     /// Every field is named, so that a new entry does not compile until it is summed.
     fn add(&mut self, one: &Ledger) {
-        let Ledger { friction_j, damping_j, rolling_j, trees_j, others_j, remainder_j, rise_j } =
-            *one;
+        let Ledger {
+            friction_j,
+            damping_j,
+            rolling_j,
+            trees_j,
+            others_j,
+            passed_on_j,
+            remainder_j,
+            rise_j,
+        } = *one;
         self.friction_j.add(friction_j);
         self.damping_j.add(damping_j);
         self.rolling_j.add(rolling_j);
         self.trees_j.add(trees_j);
         self.others_j.add(others_j);
+        self.passed_on_j.add(passed_on_j);
         self.remainder_j.add(remainder_j);
         self.rise_j = self.rise_j.max(rise_j);
     }
 
     fn join(&mut self, other: &Self) {
-        let Self { friction_j, damping_j, rolling_j, trees_j, others_j, remainder_j, rise_j } =
-            other;
+        let Self {
+            friction_j,
+            damping_j,
+            rolling_j,
+            trees_j,
+            others_j,
+            passed_on_j,
+            remainder_j,
+            rise_j,
+        } = other;
         self.friction_j.join(friction_j);
         self.damping_j.join(damping_j);
         self.rolling_j.join(rolling_j);
         self.trees_j.join(trees_j);
         self.others_j.join(others_j);
+        self.passed_on_j.join(passed_on_j);
         self.remainder_j.join(remainder_j);
         self.rise_j = self.rise_j.max(*rise_j);
     }
@@ -210,6 +231,7 @@ impl LedgerSums {
             rolling_j: self.rolling_j.rounded(),
             trees_j: self.trees_j.rounded(),
             others_j: self.others_j.rounded(),
+            passed_on_j: self.passed_on_j.rounded(),
             remainder_j: self.remainder_j.rounded(),
             rise_j: self.rise_j,
         }

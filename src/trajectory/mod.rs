@@ -74,7 +74,8 @@ impl Effort {
     }
 }
 
-/// Where the energy went (J). All entries but `others_j` and `remainder_j` are ≥ 0.
+/// Where the energy went (J): all but `rise_j` add up to what the rock lost. All entries but `passed_on_j` and
+/// `remainder_j` are ≥ 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ledger {
     /// Sliding friction against the slope.
@@ -85,9 +86,12 @@ pub struct Ledger {
     pub rolling_j: f64,
     /// Everything lost in contacts with trees.
     pub trees_j: f64,
-    /// Given to other rocks and to the springs between them, negative if received; 0 for a rock alone.
+    /// Lost in contacts with other rocks, half of what each takes; 0 for a rock alone.
     #[serde(default)]
     pub others_j: f64,
+    /// Handed on to other rocks, negative if received; 0 for a rock alone, and in sum over a world.
+    #[serde(default)]
+    pub passed_on_j: f64,
     /// What the numerics lost (positive) or gained (negative).
     pub remainder_j: f64,
     /// Largest rise of mechanical energy seen over one contact episode (J), ≥ 0; 0 in exact arithmetic.

@@ -18,7 +18,6 @@ use super::fall::{Course, kept};
 use super::journey::{Journey, Keep};
 use super::{Stop, Trajectory};
 use crate::contact::pair::{Bond, Strength, Tie, between};
-use crate::coupled::broad::{Ball, overlapping};
 use crate::coupled::{Member, Seat};
 use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
@@ -79,10 +78,6 @@ enum State {
     Gone(Stop),
 }
 
-/// Deepest overlap of two rocks at the start (–, relative to the smaller radius): deeper, their springs would shoot them
-/// apart.
-const DEEPEST_START: f64 = 0.01;
-
 /// All releases of a plan whose rocks share one world, in order; `None` if `stop` was raised before the end. A path is
 /// kept for the plan's first releases and for `paths`.
 ///
@@ -96,35 +91,12 @@ pub fn fall_together(
     let Part::Kept(ground) = &plan.rock_against_rock else {
         return Err(Error::Request("the rocks of this plan do not share one world".to_owned()));
     };
-    let releases =
-        (0..plan.count).map(|index| plan.release(index)).collect::<Result<Vec<Release>>>()?;
-    check_apart(plan, &releases)?;
+    let releases = plan.world()?;
     let none = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let strength = if let Part::Kept(strength) = plan.bonds { strength } else { none };
     let answer = Answer { ground: *ground, strength };
     let keep = |index| kept(plan, index, paths);
     Ok(follow_together(&Course::of(plan), &releases, &answer, keep, stop))
-}
-
-fn check_apart(plan: &Plan, releases: &[Release]) -> Result<()> {
-    let ball = |release: &Release| Ball {
-        centre: release.motion.position_m,
-        radius: release.rock.radius_m,
-    };
-    let balls: Vec<Ball> = releases.iter().map(ball).collect();
-    for (a, b) in overlapping(&balls) {
-        let [one, two] = [&balls[a as usize], &balls[b as usize]];
-        let overlap_m = one.radius + two.radius - (one.centre - two.centre).norm();
-        if overlap_m > DEEPEST_START * one.radius.min(two.radius) {
-            return Err(Error::input(
-                &plan.scene_file,
-                "[release]",
-                format!("found releases {a} and {b} to overlap by {overlap_m} m at the start"),
-                "write points that are at least the sum of two radii apart",
-            ));
-        }
-    }
-    Ok(())
 }
 
 /// Follows all rocks of one world to their stops, in the order of the releases; `None` if `stop` was raised.

@@ -1,4 +1,4 @@
-//! Spheres that share one world in the rigid limit.
+//! Spheres that share one world.
 
 use super::{CASE, GROUND, terrain};
 use rockfall::contact::pair::Strength;
@@ -23,6 +23,7 @@ pub struct World {
     pub step_s: f64,
     pub ground: Ground,
     pub rest_time_s: f64,
+    pub strength: Strength,
 }
 
 pub const WORLD: World = World {
@@ -34,6 +35,7 @@ pub const WORLD: World = World {
     step_s: 0.01,
     ground: GROUND,
     rest_time_s: 0.3,
+    strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 },
 };
 
 /// A sphere: radius, density, centre, velocity, spin.
@@ -78,7 +80,7 @@ impl World {
             friction_angle_rad: self.friction_angle_rad,
             ..GROUND
         };
-        let answer = Answer { ground, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
+        let answer = Answer { ground, strength: self.strength };
         let keep = |_| Keep { path_step_s: None, impacts: true };
         let never = AtomicBool::new(false);
         let (falls, census) = follow_counted(&course, &releases, &answer, keep, &never).unwrap();

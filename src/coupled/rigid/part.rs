@@ -11,6 +11,8 @@ use crate::step::grip::{TOUCH, World};
 /// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller
 /// radius).
 const SLACK: (f64, f64) = (1e-8, 1e-5);
+/// Layers of rocks that press there (–).
+const LAYERS: f64 = 4.0;
 /// Sweeps over what overlaps, at most.
 const SWEEPS: u32 = 30;
 
@@ -19,7 +21,7 @@ impl Tie {
     fn slack_m(&self, balls: [&Ball; 2]) -> f64 {
         let weight = |ball: &Ball| ball.body.mass * ball.body.gravity.norm();
         let radius = balls[0].body.radius.min(balls[1].body.radius);
-        let pressed = (weight(balls[0]) + weight(balls[1])) / self.law.p_n;
+        let pressed = LAYERS * (weight(balls[0]) + weight(balls[1])) / self.law.p_n;
         pressed.clamp(SLACK.0 * radius, SLACK.1 * radius)
     }
 }
@@ -77,7 +79,7 @@ impl Pile {
         for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;
             let lifted_j = -ball.body.mass * ball.body.gravity.dot(&(ball.c - from));
-            self.given_j[k] -= lifted_j;
+            self.given[k].passed_on -= lifted_j;
             net_j += lifted_j;
         }
         let owed_j = net_j - self.taken_j.max(0.0);
@@ -92,11 +94,11 @@ impl Pile {
         let motion_j: f64 =
             self.balls.iter().filter(|ball| takes_part(ball)).map(Ball::motion_j).sum();
         let share = if motion_j > 0.0 { (owed_j / motion_j).min(1.0) } else { 0.0 };
-        for (ball, given_j) in self.balls.iter_mut().zip(&mut self.given_j) {
+        for (ball, given) in self.balls.iter_mut().zip(&mut self.given) {
             if takes_part(ball) {
                 let own_j = share * ball.motion_j();
                 ball.slow_down(own_j);
-                *given_j += own_j;
+                given.passed_on += own_j;
             }
         }
     }

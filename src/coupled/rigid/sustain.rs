@@ -8,6 +8,7 @@
 use super::Pile;
 use super::ball::{Ball, Foot, Knot};
 use crate::contact::pair::{Tie, between};
+use crate::coupled::cluster::Given;
 use crate::coupled::member::Seat;
 use crate::rock::Vec3;
 use crate::step::grip::World;
@@ -127,9 +128,12 @@ impl Pile {
         for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
             let [a, b] = knot.ends.map(|k| mean(&self.balls[k]).0);
             self.taken_j -= knot.push * knot.n.dot(&(a - b));
-            for k in 0..2 {
+            let given = [0, 1].map(|k| {
                 let (v, w) = mean(&self.balls[knot.ends[k]]);
-                self.given_j[knot.ends[k]] -= Ball::work_j(&knot.load(k), &v, &w);
+                -Ball::work_j(&knot.load(k), &v, &w)
+            });
+            for (end, given) in knot.ends.into_iter().zip(Given::of_impulses(given)) {
+                self.given[end].add(&given, 1.0);
             }
         }
         for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {

@@ -1,4 +1,9 @@
 //! Sweeps over the contacts of an island until their impulses have settled.
+//!
+//! A sweep hands a load on from rock to rock; alone it would take as many as the square of the heap's height. From one sweep
+//! to the next the impulses therefore go on in a conjugate direction: `x ← S(x) + β p`, `p ← S(x) − x + β p`, with `β` the
+//! ratio of the squares of the last two sweeps' changes, and anew where that is no less than 1 (nonsmooth nonlinear
+//! conjugate gradients, Silcowitz, Niebe and Erleben 2010). The last word is a sweep's.
 
 use super::Pile;
 use super::ball::Impulses;
@@ -13,11 +18,12 @@ const SWEEPS_AFTER: u32 = 30;
 /// Jumps after which the impulses have not settled.
 const JUMPS: u32 = 4;
 /// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
-/// over the speed of its slower rock (–).
+/// over the speed of the fastest of its rocks and their neighbours (–).
 const SETTLED: (f64, f64) = (5e-3, 3e-2);
-/// The first of them for no more than so many rocks: there it costs next to nothing to tell friction that just holds from
-/// friction that just does not (–).
+/// The first of them where an island is small: there it costs next to nothing to tell friction that just holds from friction
+/// that just does not (–).
 const SETTLED_FEW: f64 = 1e-3;
+/// Rocks of a small island, at most.
 const FEW: usize = 64;
 /// The same over the capture speed, where there is hardly any weight (–).
 const SETTLED_OF_CAPTURE: f64 = 1e-6;
@@ -92,7 +98,7 @@ impl Pile {
         change
     }
 
-    /// Goes on from a sweep's changes in the direction that the sweeps before have found.
+    /// Goes on from a sweep's changes in the conjugate direction.
     fn lean_on(&mut self) {
         let list = std::mem::take(&mut self.lean.list);
         let mut square = 0.0;
@@ -123,6 +129,7 @@ impl Pile {
         self.lean.list.clear();
     }
 
+    /// The impulses of a contact, and the weights that make their squares energies.
     fn impulses(&self, k: usize) -> (Impulses, [f64; 3]) {
         let feet = self.feet.len();
         if k < feet {
@@ -232,7 +239,7 @@ impl Pile {
     }
 }
 
-/// The way that sweeps go, contact by contact.
+/// The conjugate direction, contact by contact.
 #[derive(Debug, Default)]
 pub(super) struct Lean {
     of: Vec<One>,
@@ -243,12 +250,14 @@ pub(super) struct Lean {
     square: f64,
 }
 
-/// One contact.
+/// One contact's part of it.
 #[derive(Debug, Clone, Copy)]
 struct One {
+    /// Impulses before the sweep in hand.
     start: Impulses,
+    /// The direction.
     way: Impulses,
-    /// When start and way were written.
+    /// Sweep of which `start` is, and after which `way` was found.
     begun: u32,
     led: u32,
 }

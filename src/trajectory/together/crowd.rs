@@ -26,6 +26,8 @@ const SHORTEST_S: f64 = 1e-5;
 const RETURNS: usize = 16;
 /// Windows after which a new moment is kept to go back to.
 const WINDOWS: usize = 64;
+/// The same in the rigid limit, where a window is dear and a moment cheap beside it.
+const WINDOWS_RIGID: usize = 8;
 
 /// All rocks of a world.
 pub(super) struct Crowd<'a> {
@@ -78,10 +80,11 @@ impl<'a> Crowd<'a> {
         self.ties.insert(place, tie);
     }
 
-    /// A bonded rock does not fly.
+    /// A bonded rock does not fly: its contacts begin with the world.
     pub(super) fn hold(&mut self, k: u32) {
-        if let Some(rover) = &mut self.rovers[k as usize] {
-            rover.member.flying = false;
+        let course = self.course;
+        if let Some(rover) = self.rovers[k as usize].as_mut().filter(|rover| rover.member.flying) {
+            rover.land(course);
         }
     }
 
@@ -120,7 +123,7 @@ impl<'a> Crowd<'a> {
     /// Goes through the next windows, up to one in which a rock may have met one that it was not compared with; whether
     /// there was such a one, `None` if `stop` was raised.
     fn windows(&mut self, stop: &AtomicBool, see: &mut impl FnMut(f64, &Census)) -> Option<bool> {
-        for _ in 0..WINDOWS {
+        for _ in 0..if self.is_rigid() { WINDOWS_RIGID } else { WINDOWS } {
             if !self.is_under_way() {
                 break;
             }

@@ -5,7 +5,7 @@ mod rigid;
 use super::{Census, Rover, State};
 use crate::contact::pair::{Tie, meeting_s};
 use crate::coupled::islands::Islands;
-use crate::coupled::{Cluster, Done};
+use crate::coupled::{Cluster, Done, Given};
 use crate::step::Scheme;
 use crate::step::adaptive::{Control, ONSET, Stuck};
 use crate::step::grip::Loss;
@@ -23,7 +23,7 @@ const SOON_S: f64 = 1e-12;
 type Rovers<'a> = Vec<Box<Rover<'a>>>;
 
 /// How a rock notes a step with its losses (J), what it gave to others (J), and whether it slides.
-type Going<'a> = fn(&mut Rover<'a>, &Course, f64, (Loss, f64), bool);
+type Going<'a> = fn(&mut Rover<'a>, &Course, f64, (Loss, Given), bool);
 
 /// One island and its window.
 pub(super) struct Job<'a> {
@@ -261,7 +261,7 @@ impl<'a> Job<'a> {
             effort.rejected += done.rejected;
             effort.sweeps += sweeps + jumps;
             effort.unsettled += u64::from(done.unsettled);
-            let given = (done.losses[k], done.given_j[k]);
+            let given = (done.losses[k], done.given[k]);
             go(rover, self.course, self.now_s, given, slides[k]);
             std::mem::swap(&mut rover.member, &mut cluster.members[k]);
         }
