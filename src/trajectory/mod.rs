@@ -1,8 +1,11 @@
 //! One rock from release to rest: leap, touch, step, stop.
 
+mod calm;
 mod crossing;
 mod fall;
 mod journey;
+mod rest;
+mod roughness;
 mod stems;
 mod together;
 mod visit;
