@@ -9,6 +9,7 @@ use super::adaptive::{Advance, Stuck, travel_limit};
 use super::impact::{Followed, Plane};
 use super::grip::{Grip, Loss, Rate, TOUCH, World};
 use super::stage::End;
+use crate::math;
 use crate::contact::hold::{HOLDS, carry};
 use crate::contact::{FeatureKind, Touch};
 use crate::rock::Vec3;
@@ -335,7 +336,7 @@ impl Grip {
 
 fn growth(error: f64) -> f64 {
     if error.is_finite() {
-        (SAFETY * error.powf(-0.2)).clamp(RATIO.0, RATIO.1)
+        (SAFETY * math::pow(error, -0.2)).clamp(RATIO.0, RATIO.1)
     } else {
         RATIO.0
     }
