@@ -7,8 +7,8 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 pub use libm::{
-    acos, acosh, asin, atan, atan2, atanh, cbrt, cos, erfc, exp, hypot, log as ln, log2, log10, pow, sin,
-    tan,
+    acos, acosh, asin, atan, atan2, atanh, cbrt, cos, erfc, exp, hypot, log as ln, log2, log10,
+    pow, sin, tan,
 };
 
 /// Sine and cosine of an angle (rad).

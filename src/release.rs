@@ -325,10 +325,7 @@ impl Releases {
                 .as_ref()
                 .map_or(0.0, |angle| angle.draw(&mut chance))
                 .to_radians(),
-            roughness_length_m: table
-                .roughness_length_m
-                .as_ref()
-                .map(|length| length.draw(&mut chance)),
+            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut chance)),
         };
         self.grounds.iter().map(draw_ground).collect()
     }

@@ -4,8 +4,8 @@ mod common;
 use common::*;
 use nalgebra::Rotation3;
 use rockfall::ground::Ground;
-use rockfall::step::Scheme;
 use rockfall::rock::Vec3;
+use rockfall::step::Scheme;
 use rockfall::terrain::{Terrain, make};
 use rockfall::trajectory::{Stop, Trajectory};
 

@@ -191,9 +191,7 @@ impl Near {
     pub fn plane(&self) -> Option<u32> {
         match &self.faces[..] {
             [face]
-                if self.edges.is_empty()
-                    && self.corners.is_empty()
-                    && self.saddles.is_empty() =>
+                if self.edges.is_empty() && self.corners.is_empty() && self.saddles.is_empty() =>
             {
                 Some(face.id)
             }
@@ -283,8 +281,7 @@ impl Near {
                 FeatureKind::Edge => features.edges.triangles_on(touch.feature.id).len() == 1,
                 FeatureKind::Vertex => features.is_border_vertex(touch.feature.id),
             };
-            let covered = at_border
-                && self.is_covered(terrain, &foot, centre, touch.distance_m);
+            let covered = at_border && self.is_covered(terrain, &foot, centre, touch.distance_m);
             if !covered {
                 self.merge(touch, centre, touches);
             }
@@ -349,7 +346,8 @@ impl Near {
         }
         let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
         let normal = off / distance;
-        let touch = Touch { feature, triangle: edge.triangle, normal, distance_m: distance, gain2: 1.0 };
+        let touch =
+            Touch { feature, triangle: edge.triangle, normal, distance_m: distance, gain2: 1.0 };
         Some(touch)
     }
 

@@ -6,12 +6,12 @@
 //! wherever patches meet (`contact::patch`), and where a further contact begins the step is cut by its error.
 
 use super::adaptive::{Advance, Stuck, travel_limit};
-use super::impact::{Followed, Plane};
 use super::grip::{Grip, Loss, Rate, TOUCH, World};
+use super::impact::{Followed, Plane};
 use super::stage::End;
-use crate::math;
 use crate::contact::hold::{HOLDS, carry};
 use crate::contact::{FeatureKind, Touch};
+use crate::math;
 use crate::rock::Vec3;
 
 /// Stages of the pair; the last is the first of the next step.

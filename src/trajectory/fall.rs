@@ -1,7 +1,7 @@
 //! The fall itself: leap, touch, step, stop.
 
+use super::calm::Calm;
 use super::journey::{Journey, Keep};
-use super::rest::Rest;
 use super::roughness::Roughness;
 use super::stems::Strain;
 use super::{Stop, Trajectory};
@@ -258,7 +258,7 @@ impl Fall<'_> {
     }
 
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
-        let mut rest = Rest::default();
+        let mut calm = Calm::from(self.grip.c);
         loop {
             let left = self.course.longest_s - self.journey.now.time_s;
             self.strike();
@@ -291,8 +291,8 @@ impl Fall<'_> {
             if self.grip.is_free() {
                 return ends;
             }
-            let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.world.body.radius);
-            if rest.is_reached(&self.course.rest, done.dt, slow) {
+            calm.note(done.dt, &to, self.world.body.radius, &self.course.rest);
+            if calm.rests() {
                 return Some(Stop::AtRest);
             }
             if ends.is_some() {

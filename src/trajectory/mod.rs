@@ -4,7 +4,6 @@ mod calm;
 mod crossing;
 mod fall;
 mod journey;
-mod rest;
 mod roughness;
 mod stems;
 mod together;

@@ -10,8 +10,8 @@
 //! Without gravity that is at `t_c`, where `f' = −e`; gravity moves it by about `γ (1 + e)/e`. From there a Taylor series, whose
 //! terms follow from the equation itself, gives it to rounding without another sine (numerics 2.1, 2.2).
 
-use crate::math;
 use crate::ground::restitution;
+use crate::math;
 use std::f64::consts::TAU;
 
 /// Terms of the Taylor series about the end of contact.
