@@ -111,6 +111,8 @@ impl Default for Near {
             faces: Vec::with_capacity(64),
             edges: Vec::with_capacity(64),
             corners: Vec::with_capacity(64),
+            saddles: Vec::with_capacity(64),
+            patches: Patches::with_room(),
             rays: Vec::with_capacity(512),
             sheets: Vec::with_capacity(256),
             ..Self::empty()
@@ -245,10 +247,14 @@ impl Near {
             NearSaddle::Edge { a, along, length, rays } => {
                 let to = centre - a;
                 let s = along.dot(&to);
-                let off = to - along * s.clamp(0.0, *length);
+                let off = to - along * s;
+                let slack = SLACK * self.radius;
                 let outward = &self.rays[rays.0 as usize..rays.1 as usize];
-                off.norm_squared() < self.radius * self.radius
-                    && outward.iter().all(|out| out.dot(&off) <= SLACK * self.radius)
+                // beyond its ends the edge is as near as its vertices, and those are asked by themselves
+                s >= -slack
+                    && s <= length + slack
+                    && off.norm_squared() < self.radius * self.radius
+                    && outward.iter().all(|out| out.dot(&off) <= slack)
             }
             NearSaddle::Vertex { id, p } => {
                 let off = centre - p;

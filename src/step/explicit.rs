@@ -5,8 +5,8 @@
 //! impact, so that restitution is as right for a pebble as for a block. Geometry is that of every stage; force is continuous
 //! wherever patches meet (`contact::patch`), and where a further contact begins the step is cut by its error.
 
-use super::adaptive::{Advance, Stuck, travel_limit};
-use super::grip::{Grip, Loss, Rate, TOUCH, World};
+use super::adaptive::{Advance, Stuck, TRAVEL};
+use super::grip::{Grip, Loss, Rate, TOUCH, World, longest_step};
 use super::impact::{Followed, Plane};
 use super::stage::End;
 use crate::contact::hold::{HOLDS, carry};
@@ -125,9 +125,8 @@ impl Grip {
         let [hold] = &self.holds[..] else { return false };
         let is_face = hold.feature.kind == FeatureKind::Face;
         let begins = !hold.closed && is_face && self.near.is_one_plane(hold.feature.id);
-        // a stem that may give way is asked step by step
-        let yields = world.terrain.stems.is_some() && world.terrain.is_tree(hold.triangle);
-        if !begins || yields || self.touches.iter().any(|touch| self.is_sunk(world, touch)) {
+        if !begins || self.may_yield || self.touches.iter().any(|touch| self.is_sunk(world, touch))
+        {
             return false;
         }
         let (n, triangle) = (hold.n, hold.triangle);
@@ -174,7 +173,10 @@ impl Grip {
         if self.impact.h == 0.0 {
             self.impact.h = FIRST / omega;
         }
-        let limit = travel_limit(world, self).min(LONGEST / omega);
+        let c = self.c;
+        self.know(world, &c);
+        let way = TRAVEL * world.body.radius;
+        let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST / omega);
         let known = self.holds.len();
         loop {
             self.holds.truncate(known);
