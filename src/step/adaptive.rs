@@ -68,7 +68,7 @@ pub struct Control {
 }
 
 /// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most.
-const IMPACT: (f64, f64) = (4e-4, 2e-5);
+const IMPACT: (f64, f64) = (4e-3, 2e-4);
 /// The same for the reference.
 const IMPACT_OF_REFERENCE: f64 = 1e-10;
 /// Local error allowed in lasting contact, whatever is asked for (–, relative to √(g R), the speed of a rock that tips over

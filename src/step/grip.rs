@@ -135,6 +135,13 @@ impl Rate {
         self.roll[..holds].copy_from_slice(&from.roll[..holds]);
     }
 
+    /// Forgets the rates of the first `holds` springs.
+    #[inline]
+    pub fn clear(&mut self, holds: usize) {
+        self.shear[..holds].fill(Vec3::zeros());
+        self.roll[..holds].fill(Vec3::zeros());
+    }
+
     /// No change.
     pub const NONE: Self = Self {
         c: Vec3::new(0.0, 0.0, 0.0),
