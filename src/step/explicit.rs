@@ -143,7 +143,7 @@ impl Grip {
         let plane = Plane::new(&world.body, world.law(triangle), tolerance);
         let Followed::Left(rebound) = plane.follow(&n, &self.v, &self.w) else { return false };
         let along = rebound.shift_m - n * n.dot(&rebound.shift_m);
-        let way = along.norm().hypot(rebound.deepest_m);
+        let way = math::hypot(along.norm(), rebound.deepest_m);
         let is_known = way <= self.near.room_m(&self.c);
         if rebound.time_s > h_max || !is_known || !self.near.is_plane_within(face, &self.c, way) {
             return false;
