@@ -235,7 +235,7 @@ fn verify(out: &Path) -> Result<ExitCode> {
 }
 
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
-    let mode = if overwrite { Mode::Overwrite } else { Mode::Fresh };
+    let mode = if overwrite { Mode::Overwrite } else { Mode::Merge };
     wiring::merge(shards, out, mode)?;
     Ok(say(format!("results in {}", out.display())))
 }

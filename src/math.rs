@@ -7,8 +7,8 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 pub use libm::{
-    acos, acosh, asin, atan, atan2, cbrt, cos, erfc, exp, hypot, log as ln, log2, log10, pow, sin,
-    tan,
+    acos, acosh, asin, atan, atan2, atanh, cbrt, cos, erfc, exp, hypot, log as ln, log2, log10,
+    pow, sin, tan,
 };
 
 /// Sine and cosine of an angle (rad).
@@ -52,5 +52,14 @@ mod tests {
         assert_eq!(bits, BITS, "{bits:?}");
     }
 
-    const BITS: [u64; 8] = [0; 8];
+    const BITS: [u64; 8] = [
+        4_604_231_164_604_569_244,
+        4_604_842_690_419_111_072,
+        4_606_356_298_226_681_008,
+        4_607_514_581_934_838_694,
+        4_602_289_156_421_002_099,
+        13_822_531_970_792_100_887,
+        4_606_395_673_111_392_447,
+        4_614_138_883_235_811_309,
+    ];
 }

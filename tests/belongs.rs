@@ -116,6 +116,13 @@ fn one_part_of_one_is_merged() {
     let done = rockfall(&["merge", word(&part), "--out", word(&merged)]);
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     same_results(&whole, &merged);
+    // what merge says, merge can do
+    let begun = dir.path().join("begun");
+    let mut half = Output::create(info(RELEASES), &begun, Mode::Fresh).unwrap();
+    half.write(&[fall(0)]).unwrap();
+    drop(half);
+    let said = message(Output::create(info(RELEASES), &begun, Mode::Merge));
+    assert!(said.contains("--overwrite") && !said.contains("--resume"), "{said}");
 }
 
 /// Whoever runs the program under `nohup` wants it to outlive the terminal; whoever does not gets the way to go on.

@@ -10,6 +10,7 @@ use rockfall::release::Releases;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
 use rockfall::terrain::stl::write_ascii;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -67,7 +68,8 @@ fn measure(scene: &Path, seed: &str) -> PathBuf {
         fs::read_to_string(out.join("releases.csv")).unwrap().lines().skip(1).enumerate()
     {
         let cells: Vec<&str> = row.split(',').collect();
-        text += &format!("{},{},{},{},{}\n", cells[5], cells[6], cells[8], cells[9], number / 2);
+        let [from_x, from_y, x, y] = [5, 6, 8, 9].map(|at| cells[at]);
+        writeln!(text, "{from_x},{from_y},{x},{y},{}", number / 2).unwrap();
     }
     let ends = scene.with_extension("csv");
     fs::write(&ends, text).unwrap();
@@ -104,7 +106,7 @@ fn a_known_value_is_found_and_an_idle_one_is_named() {
     assert!(!restitution.is_told, "{said}");
     assert!(said.contains("meadow.restitution") && said.contains("hardly tell it"), "{said}");
     let whole = found.whole.unwrap();
-    assert!(whole.all.ks < whole.all.ks_limit && found.before.all.ks > found.before.all.ks_limit);
+    assert!(whole.all.ks < whole.all.ks_limit && found.before.all.ks > 1.3 * whole.all.ks);
     assert_eq!(found.ends.0, 80);
     assert!(found.measures.iter().any(|m| m.what.starts_with("share past") && m.scene == "fast"));
     // the scene that has the values, with everything else as it was

@@ -10,6 +10,7 @@ mod program;
 use program::{command, results};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::path::Path;
 
 /// Small runs: every scheme for rocks alone, trees, roughness, maps, figures; and one world of rocks.
@@ -58,7 +59,8 @@ fn digests_hold_on_every_machine() {
         let files = run(scene, releases, &dir.path().join(name), "");
         for table in ["releases.csv", "paths.csv", "crossings.csv"] {
             if let Some(bytes) = files.get(table) {
-                found += &format!("{:x}  {name}/{table}\n", Sha256::digest(bytes));
+                let digest = Sha256::digest(bytes);
+                writeln!(found, "{digest:x}  {name}/{table}").unwrap();
             }
         }
     }

@@ -65,19 +65,31 @@ impl Search<'_> {
             let mut chance = stream(seed, Purpose::Redraw, redraw);
             let drawn: Vec<Vec<Way>> =
                 self.sites.iter().map(|site| site.redraw(&mut chance)).collect();
-            let area = |computed: &[Vec<(usize, Way)>]| -> f64 {
+            let distance = |computed: &[Vec<(usize, Way)>]| -> f64 {
                 let each = drawn.iter().zip(computed).filter_map(|(measured, computed)| {
                     let ways: Vec<Way> = computed.iter().map(|(_, way)| *way).collect();
                     Some(measured.len() as f64 * Agreement::of(measured, &ways)?.ks)
                 });
                 each.sum()
             };
-            let known = self.known.iter().map(|(values, computed)| (values, area(computed)));
-            known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(values, _)| values.clone())
+            let distances: Vec<f64> =
+                self.known.iter().map(|(_, computed)| distance(computed)).collect();
+            let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+            // values that make no difference fit equally well, all of them
+            let ties =
+                self.known.iter().zip(distances).filter(move |(_, distance)| *distance <= least);
+            ties.map(|((values, _), _)| values.clone()).collect::<Vec<_>>()
         };
-        let best: Vec<Vec<f64>> = (0..REDRAWS).filter_map(best).collect();
+        let best: Vec<Vec<Vec<f64>>> = (0..REDRAWS).map(best).collect();
+        let ends = |at: usize| {
+            let extremes = |ties: &Vec<Vec<f64>>| {
+                let values = || ties.iter().map(|values| values[at]);
+                [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
+            };
+            best.iter().flat_map(extremes).collect()
+        };
         let one = |(at, vary): (usize, &crate::scene::VaryTable)| {
-            let [low_95, high_95] = middle_95(best.iter().map(|values| values[at]).collect());
+            let [low_95, high_95] = middle_95(ends(at));
             let is_told = high_95 - low_95 < UNTOLD * (vary.to - vary.from);
             let name = format!("{}.{}", vary.ground, vary.key.name());
             Told { name, value: values[at], low_95, high_95, is_told }

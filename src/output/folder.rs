@@ -88,7 +88,12 @@ pub(super) fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Prog
         _ => {
             let how_far =
                 format!("holds {} of {} releases of an interrupted run", found.done, old.releases);
-            refuse(dir, &how_far, "go on with --resume or start again with --overwrite")
+            let remedy = if mode == Mode::Merge {
+                "take another --out or replace them with --overwrite"
+            } else {
+                "go on with --resume or start again with --overwrite"
+            };
+            refuse(dir, &how_far, remedy)
         }
     }
 }

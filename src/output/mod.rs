@@ -93,6 +93,8 @@ pub struct RunInfo {
 pub enum Mode {
     /// Refuse them.
     Fresh,
+    /// The same for parts that are put together, where there is nothing to go on with.
+    Merge,
     /// Go on with them; start when there are none; nothing is left to do when they are complete.
     Resume,
     /// The same, also where they are the first of the releases asked for.

@@ -69,6 +69,19 @@ fn phase_warning(ground: &str, (radius_m, phase): (f64, f64), step_s: f64) -> Op
     ))
 }
 
+/// A tolerance above twice the capture speed lets slow rocks flutter for ever.
+pub(super) fn flutter(step: &Settings, warnings: &mut Vec<String>) {
+    if let Some(capture) =
+        step.capture_speed_m_s.filter(|capture| step.tolerance_m_s > 2.0 * capture)
+    {
+        warnings.push(format!(
+            "capture_speed_m_s = {capture} is below half the tolerance of {} m/s: slow rocks may flutter and never come to rest; write {} or more",
+            step.tolerance_m_s,
+            0.5 * step.tolerance_m_s
+        ));
+    }
+}
+
 /// A fixed step so short that a rock may spend its budget of work before its time is up.
 pub(super) fn too_short(step: &Settings, longest_s: f64, warnings: &mut Vec<String>) {
     let most = step.scheme.most_work() as f64;

@@ -11,6 +11,7 @@ use super::impact::{Followed, Plane};
 use super::stage::End;
 use crate::contact::hold::{HOLDS, carry};
 use crate::contact::{FeatureKind, Touch};
+use crate::math;
 use crate::rock::Vec3;
 
 /// Stages of the pair; the last is the first of the next step.
@@ -150,7 +151,7 @@ impl Grip {
         let plane = Plane::new(&world.body, world.law(triangle), tolerance);
         let Followed::Left(rebound) = plane.follow(&n, &self.v, &self.w) else { return false };
         let along = rebound.shift_m - n * n.dot(&rebound.shift_m);
-        let way = along.norm().hypot(rebound.deepest_m);
+        let way = math::hypot(along.norm(), rebound.deepest_m);
         let is_known = way <= self.near.room_m(&self.c);
         if rebound.time_s > h_max || !is_known || !self.near.is_plane_within(face, &self.c, way) {
             return false;
@@ -395,5 +396,9 @@ fn normal_spring(damping: f64) -> Loss {
 }
 
 fn growth(error: f64) -> f64 {
-    if error.is_finite() { (SAFETY * error.powf(-0.2)).clamp(RATIO.0, RATIO.1) } else { RATIO.0 }
+    if error.is_finite() {
+        (SAFETY * math::pow(error, -0.2)).clamp(RATIO.0, RATIO.1)
+    } else {
+        RATIO.0
+    }
 }

@@ -8,6 +8,7 @@ use super::plane::{Followed, LOCAL, Plane, shared};
 use super::{Effort, Settled};
 use crate::contact::MOST;
 use crate::ground::Law;
+use crate::math;
 use crate::rock::Vec3;
 use crate::step::grip::Loss;
 use crate::step::law::Body;
@@ -148,7 +149,7 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     let speed = v.norm();
     let flow = Several::<K>::new(body, contacts, LOCAL * tolerance);
     let mut run = Run::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
-    end.settled = run.follow(FIRST * tolerance.powf(0.2));
+    end.settled = run.follow(FIRST * math::pow(tolerance, 0.2));
     end.effort = run.effort;
     let start = (v / speed, w * (body.radius / speed));
     let place = run.flow.contacts.come_to_an_end(start, run.place(), run.flow.nothing());

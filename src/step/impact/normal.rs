@@ -11,6 +11,7 @@
 //! terms follow from the equation itself, gives it to rounding without another sine (numerics 2.1, 2.2).
 
 use crate::ground::restitution;
+use crate::math;
 use std::f64::consts::TAU;
 
 /// Terms of the Taylor series about the end of contact.
@@ -129,7 +130,7 @@ impl Swing {
         let a = 1.0 - 2.0 * zeta * beta;
         if 1.0 - zeta * zeta > CRITICAL {
             let wd = (1.0 - zeta * zeta).sqrt();
-            let phase = ((a * zeta + beta) / wd).atan2(a);
+            let phase = math::atan2((a * zeta + beta) / wd, a);
             return Some((-0.25 * TAU - phase).rem_euclid(TAU) / wd);
         }
         // Overdamped it turns once at most: up, if it began to fall.
@@ -148,7 +149,7 @@ impl Swing {
     pub(super) fn deepest(&self, gamma: f64) -> f64 {
         let zeta = self.zeta;
         let t = time_at(zeta, zeta - gamma);
-        gamma + (-zeta * t).exp() * (1.0 - 2.0 * zeta * gamma + gamma * gamma).max(0.0).sqrt()
+        gamma + math::exp(-zeta * t) * (1.0 - 2.0 * zeta * gamma + gamma * gamma).max(0.0).sqrt()
     }
 }
 
@@ -159,7 +160,7 @@ fn time_at(zeta: f64, y: f64) -> f64 {
         return 1.0 / y;
     }
     let wd = off.abs().sqrt();
-    if off > 0.0 { wd.atan2(y) / wd } else { (wd / y).atanh() / wd }
+    if off > 0.0 { math::atan2(wd, y) / wd } else { math::atanh(wd / y) / wd }
 }
 
 /// `S` and `S'`.
@@ -169,15 +170,15 @@ fn answer(zeta: f64, t: f64) -> [f64; 2] {
     let (s, c) = if off.abs() <= CRITICAL {
         (t, 1.0)
     } else if off > 0.0 {
-        let (s, c) = (wd * t).sin_cos();
+        let (s, c) = math::sin_cos(wd * t);
         (s / wd, c)
     } else {
         // Together with the fading, so that neither overflows.
-        let (slow, fast) = (((wd - zeta) * t).exp(), ((-wd - zeta) * t).exp());
+        let (slow, fast) = (math::exp((wd - zeta) * t), math::exp((-wd - zeta) * t));
         let (s, c) = (0.5 * (slow - fast) / wd, 0.5 * (slow + fast));
         return [s, c - zeta * s];
     };
-    let fade = (-zeta * t).exp();
+    let fade = math::exp(-zeta * t);
     [fade * s, fade * (c - zeta * s)]
 }
 

@@ -5,6 +5,7 @@ use super::normal::{Exit, Swing};
 use super::rub::{Both, Element, Shear};
 use super::run::{Pressed, Span, run};
 use crate::ground::Law;
+use crate::math;
 use crate::rock::Vec3;
 use crate::step::grip::Loss;
 use crate::step::law::Body;
@@ -96,7 +97,7 @@ impl Plane {
             shear: Element::shear(body, law, p_n),
             rolling: Element::rolling(body, law, p_n),
             tolerance,
-            first: FIRST * tolerance.powf(0.2),
+            first: FIRST * math::pow(tolerance, 0.2),
         }
     }
 
