@@ -16,6 +16,7 @@ pub mod error;
 pub mod clock;
 pub mod chance;
 pub mod rock;
+pub mod frequency;
 // world
 pub mod ground;
 pub mod terrain;

@@ -1,20 +1,22 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod annual;
 mod grounds;
 mod inputs;
 mod listing;
 mod stiffness;
 mod watch;
 
+pub use annual::Year;
 pub use stiffness::OwnDissipation;
-pub use watch::{Curtain, Lattice, Piece, Watch};
+pub use watch::{Curtain, Footprint, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::release::{self, Release, Releases};
-use crate::scene::{BarrierTable, Polyline, RecordTable, Scene, SolverTable};
+use crate::scene::{BarrierTable, ObjectTable, Polyline, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -123,6 +125,10 @@ pub struct Plan {
     pub lines: Part<Vec<Curtain>>,
     /// Barriers; each has an evaluation line of its name.
     pub barriers: Part<Vec<BarrierTable>>,
+    /// Objects that rocks may hit; each has a curtain of its name.
+    pub objects: Part<Vec<ObjectTable>>,
+    /// Sources and their frequency.
+    pub year: Part<Year>,
     /// Cells of the maps.
     pub maps: Part<Lattice>,
     /// Grounds with values of the catalogue: name, what was taken, source.
@@ -170,6 +176,8 @@ impl Plan {
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
+        let year = annual::year(scene, &mut warnings)?;
+        let objects = annual::objects(scene, &mut warnings);
         let values = || scene.grounds.values();
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();
         let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
@@ -183,7 +191,7 @@ impl Plan {
             seed: scene.seed,
             count: scene.release.count,
             releases,
-            radii_m: scene.rocks.radius_m.reckoned(),
+            radii_m: scene.rocks.radius_m().reckoned(),
             ground_names: scene.grounds.keys().cloned().collect(),
             gravity_m_s2: scene.gravity_m_s2,
             step,
@@ -223,6 +231,8 @@ impl Plan {
                 Some(scene.barriers.clone()).filter(|all| !all.is_empty()),
                 "the scene has none",
             ),
+            objects,
+            year,
             maps: Part::when(
                 lattice(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
@@ -344,6 +354,7 @@ fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
     let mut all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
     let elsewhere = scene.barriers.iter().flat_map(BarrierTable::elsewhere);
     all.extend(elsewhere.map(|(_, name, line)| Curtain::new(&name, &line, terrain.origin_m)));
+    all.extend(annual::curtains(scene, terrain)?);
     Ok(Some(all).filter(|all| !all.is_empty()))
 }
 

@@ -2,6 +2,7 @@
 
 use crate::chance::{Distribution, Purpose, stream, unit};
 use crate::error::{Error, Result};
+use crate::frequency::{Frequency, radius_of_m3};
 use crate::flight::{Landing, Parabola, leap};
 use crate::ground::Ground;
 use crate::rock::{Motion, Rock, Vec3};
@@ -43,11 +44,13 @@ pub struct Releases {
     file: PathBuf,
     seed: u64,
     gravity_m_s2: f64,
-    place: Where,
+    /// One, or one for each source.
+    places: Vec<Where>,
     height_m: Option<Distribution>,
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
     radius_m: Distribution,
+    frequency: Option<Frequency>,
     density_kg_m3: f64,
     grounds: Vec<GroundTable>,
 }
@@ -61,11 +64,14 @@ impl Releases {
     /// coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
         let asked = &scene.release;
-        let place = match (&asked.points_m, &asked.line_m, &asked.polygon_m) {
-            (Some(points), None, None) => Where::Points(points.clone()),
-            (None, Some(line), None) => Where::Line(line.clone()),
-            (None, None, Some(area)) => Where::Area(area.clone()),
-            _ => {
+        let sources = scene.frequency.as_ref().map_or(&[][..], |table| &table.sources[..]);
+        let places = match Where::one_of((&asked.points_m, &asked.line_m, &asked.polygon_m)) {
+            Some(place) => vec![place],
+            None if !sources.is_empty() => sources
+                .iter()
+                .filter_map(|one| Where::one_of((&one.points_m, &one.line_m, &one.polygon_m)))
+                .collect(),
+            None => {
                 let remedy = "write exactly one of points_m, line_m and polygon_m";
                 return Err(Error::input(
                     &scene.file,
@@ -79,30 +85,73 @@ impl Releases {
             file: scene.file.clone(),
             seed: scene.seed,
             gravity_m_s2: scene.gravity_m_s2,
-            place,
+            places,
             height_m: asked.height_m.clone(),
             velocity_m_s: asked.velocity_m_s.clone(),
             spin_rad_s: asked.spin_rad_s.clone(),
-            radius_m: scene.rocks.radius_m.clone(),
+            radius_m: scene.rocks.radius_m().clone(),
+            frequency: scene.sources(),
             density_kg_m3: scene.rocks.density_kg_m3,
             grounds: scene.grounds.values().cloned().collect(),
         };
-        let (key, corners_m) = releases.place.corners_m();
-        for (number, corner) in corners_m.into_iter().enumerate() {
-            let who = format!("[release] {key}, entry {}", number + 1);
-            releases.ground_m(terrain, corner, &who)?;
-        }
-        if let Where::Points(points) = &releases.place {
-            for index in 0..points.len().min(asked.count) {
-                releases.release(terrain, index)?;
-            }
+        releases.look_for_ground(terrain)?;
+        for index in 0..releases.turns().min(asked.count) {
+            releases.release(terrain, index)?;
         }
         Ok(releases)
     }
 
-    /// Where rocks are released.
-    pub fn place(&self) -> &Where {
-        &self.place
+    /// Refuses a point or corner without ground below.
+    fn look_for_ground(&self, terrain: &Terrain) -> Result<()> {
+        for (k, place) in self.places.iter().enumerate() {
+            let table = if self.places.len() > 1 {
+                format!("[[frequency.sources]] #{}", k + 1)
+            } else {
+                "[release]".to_owned()
+            };
+            let (key, corners_m) = place.corners_m();
+            for (number, corner) in corners_m.into_iter().enumerate() {
+                let who = format!("{table} {key}, entry {}", number + 1);
+                self.ground_m(terrain, corner, &who)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The first so many releases come from every fixed point.
+    fn turns(&self) -> usize {
+        let points = |place: &Where| if let Where::Points(all) = place { all.len() } else { 0 };
+        let strata = self.frequency.as_ref().map_or(1, |one| one.strata().len());
+        strata * self.places.iter().map(points).max().unwrap_or(0)
+    }
+
+    /// Place of a release, and which turn it is there.
+    fn place_of(&self, index: usize) -> (&Where, usize) {
+        match &self.frequency {
+            Some(frequency) => {
+                let source = frequency.stratum(index).source.min(self.places.len() - 1);
+                (&self.places[source], frequency.turn(index))
+            }
+            None => (&self.places[0], index),
+        }
+    }
+
+    /// Radius of a rock (m), as its source or else the scene has it.
+    fn draw_radius_m(&self, index: usize) -> f64 {
+        let mut chance = stream(self.seed, Purpose::Size, index);
+        let own = self.frequency.as_ref().filter(|one| one.draws_volumes());
+        let volume_m3 = own.and_then(|one| one.stratum(index).quantile_m3(unit(&mut chance)));
+        volume_m3.map_or_else(|| self.radius_m.draw(&mut chance), radius_of_m3)
+    }
+
+    /// The sources, their laws of size, and what is asked of the year; none where the scene says nothing of it.
+    pub fn frequency(&self) -> Option<&Frequency> {
+        self.frequency.as_ref()
+    }
+
+    /// Where rocks are released: one place, or one for each source.
+    pub fn places(&self) -> &[Where] {
+        &self.places
     }
 
     /// Draws release `index`: the same alone, resumed, or among a million.
@@ -113,7 +162,7 @@ impl Releases {
     pub fn release(&self, terrain: &Terrain, index: usize) -> Result<Release> {
         let grounds = self.draw_grounds(index);
         let rock = Rock {
-            radius_m: self.radius_m.draw(&mut stream(self.seed, Purpose::Size, index)),
+            radius_m: self.draw_radius_m(index),
             density_kg_m3: self.density_kg_m3,
         };
         let mut chance = stream(self.seed, Purpose::Start, index);
@@ -133,9 +182,10 @@ impl Releases {
     fn draw_centre(&self, terrain: &Terrain, radius_m: f64, index: usize) -> Result<Vec3> {
         let mut chance = stream(self.seed, Purpose::Place, index);
         let even = [0; 3].map(|_| unit(&mut chance));
-        let (at_m, fixed_m) = match &self.place {
+        let (place, turn) = self.place_of(index);
+        let (at_m, fixed_m) = match place {
             Where::Points(points) => {
-                let point = &points[index % points.len()];
+                let point = &points[turn % points.len()];
                 (point.at_m, point.height_m)
             }
             Where::Line(line) => (line.at(even[0]), None),
@@ -201,6 +251,18 @@ impl Releases {
 }
 
 impl Where {
+    /// The one place that is given; none where none or several are.
+    fn one_of(
+        given: (&Option<Vec<Point>>, &Option<Polyline>, &Option<Area>),
+    ) -> Option<Self> {
+        match given {
+            (Some(points), None, None) => Some(Self::Points(points.clone())),
+            (None, Some(line), None) => Some(Self::Line(line.clone())),
+            (None, None, Some(area)) => Some(Self::Area(area.clone())),
+            _ => None,
+        }
+    }
+
     /// The scene's key and its points or corners in plan view (m), map coordinates.
     fn corners_m(&self) -> (&'static str, Vec<Corner>) {
         match self {

@@ -1,6 +1,7 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
 pub(crate) mod study;
+mod year;
 
 use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
@@ -199,6 +200,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         lines: line_infos(plan),
         maps: map_frame(plan),
         barriers: barriers(plan),
+        asked: year::asked(plan),
         observed: plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)?,
         keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),

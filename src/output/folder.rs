@@ -3,6 +3,7 @@
 use super::progress::{Identity, Progress};
 use super::summary::{SUMMARY, Summary};
 use super::whole::as_whole;
+use super::annual::FREQUENCY;
 use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
 use std::fs;
@@ -10,7 +11,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files besides `progress.json`.
-const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY];
+const FILES: [&str; 7] =
+    [RELEASES, PATHS, IMPACTS, CROSSINGS, FREQUENCY, "report.html", SUMMARY];
 /// Folder of the figures: every SVG file in it belongs to the results.
 const FIGURES: &str = "figures";
 
