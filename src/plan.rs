@@ -176,7 +176,7 @@ impl Plan {
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
-        let year = annual::year(scene, &mut warnings)?;
+        let year = annual::year(scene, &terrain, &mut warnings)?;
         let objects = annual::objects(scene, &mut warnings);
         let values = || scene.grounds.values();
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();

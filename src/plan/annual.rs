@@ -1,9 +1,11 @@
 //! What a scene asks of the year: sources, objects, and what to know of the numbers.
 
 use super::{Curtain, Part};
+use crate::chance::Distribution;
 use crate::error::{Error, Result};
-use crate::frequency::Frequency;
+use crate::frequency::{Frequency, Stratum, radius_of_m3};
 use crate::release;
+use crate::rock::Rock;
 use crate::scene::{MatrixTable, ObjectTable, Scene};
 use crate::terrain::Terrain;
 
@@ -17,13 +19,19 @@ pub struct Year {
     pub frequency: Frequency,
     /// Classes of hazard.
     pub matrix: Option<MatrixTable>,
+    /// Most energy that a rock of each stratum can ever have (J).
+    pub most_j: Vec<f64>,
 }
 
 /// The sources; none where the scene has none.
 ///
 /// # Errors
 /// Fewer releases than strata: nothing would stand for some of the sizes.
-pub(super) fn year(scene: &Scene, warnings: &mut Vec<String>) -> Result<Part<Year>> {
+pub(super) fn year(
+    scene: &Scene,
+    terrain: &Terrain,
+    warnings: &mut Vec<String>,
+) -> Result<Part<Year>> {
     let Some(frequency) = scene.sources() else {
         return Ok(Part::LeftOut(
             "the scene has no [frequency], every number is conditional on release",
@@ -48,8 +56,46 @@ pub(super) fn year(scene: &Scene, warnings: &mut Vec<String>) -> Result<Part<Yea
         );
     }
     let matrix = scene.frequency.as_ref().and_then(|table| table.matrix.clone());
-    Ok(Part::Kept(Year { frequency, matrix }))
+    let most_j = most_j(scene, terrain, &frequency);
+    Ok(Part::Kept(Year { frequency, matrix, most_j }))
 }
+
+/// What the numerics may add to the energy of a rock, over all that it has (–): ten times what was ever measured.
+const NUMERICS: f64 = 1.1;
+/// Energy of a rock that nothing bounds (J); a file can hold it, unlike infinity.
+const UNBOUNDED_J: f64 = 1e300;
+
+/// Most energy that a rock of each stratum can ever have (J): that of its start and of a fall through the whole height of
+/// the terrain.
+fn most_j(scene: &Scene, terrain: &Terrain, frequency: &Frequency) -> Vec<f64> {
+    let largest = |value: &Distribution| {
+        let (low, high) = value.support();
+        low.abs().max(high.abs())
+    };
+    let squares = |vector: &[Distribution; 3]| -> f64 {
+        vector.iter().map(|value| largest(value).powi(2)).sum()
+    };
+    let (low, high) = terrain.index.bounds();
+    let points = scene.release.points_m.iter().flatten().filter_map(|point| point.height_m);
+    let top_m = points.map(|z| z - terrain.origin_m.z).fold(high.z, f64::max);
+    let gap_m = scene.release.height_m.as_ref().map_or(0.0, largest);
+    let (v2, w2) = (squares(&scene.release.velocity_m_s), squares(&scene.release.spin_rad_s));
+    let most = |stratum: &Stratum| {
+        let own = stratum.volume_m3.map(|[_, largest]| radius_of_m3(largest));
+        let radius_m = own.unwrap_or_else(|| largest(scene.rocks.radius_m()));
+        let rock = Rock { radius_m, density_kg_m3: scene.rocks.density_kg_m3 };
+        // a rock over steep ground may be lifted by some radii until it is clear of it
+        let drop_m = top_m - low.z + gap_m + LIFTED * radius_m;
+        let fall_j = rock.mass_kg() * scene.gravity_m_s2 * drop_m;
+        let start_j = 0.5 * (rock.mass_kg() * v2 + rock.inertia_kg_m2() * w2);
+        (NUMERICS * (fall_j + start_j)).min(UNBOUNDED_J)
+    };
+    frequency.strata().iter().map(most).collect()
+}
+
+/// More radii than a release is ever lifted by (–).
+const LIFTED: f64 = 8.0;
+
 
 /// The objects; none where the scene has none.
 pub(super) fn objects(scene: &Scene, warnings: &mut Vec<String>) -> Part<Vec<ObjectTable>> {
@@ -115,7 +161,7 @@ pub(super) fn words(object: &ObjectTable) -> String {
 
 /// The sources in words, one line each, and how they are sampled.
 pub(super) fn lines(year: &Year, count: usize) -> Vec<String> {
-    let Year { frequency, matrix } = year;
+    let Year { frequency, matrix, most_j: _ } = year;
     let mut lines: Vec<String> = frequency
         .sources()
         .iter()

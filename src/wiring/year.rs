@@ -43,5 +43,6 @@ fn asked_of_sources(plan: &Plan) -> Asked {
         frequency: Some(year.frequency.clone()),
         objects: Vec::new(),
         matrix: year.matrix.as_ref().map(matrix),
+        most_j: year.most_j.clone(),
     }
 }

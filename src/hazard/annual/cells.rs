@@ -2,8 +2,8 @@
 
 use super::super::classes::{Counts, class_of, place_in_class};
 use super::super::maps::Maps;
-use super::curve::{curve, return_energy};
-use super::rate::{Running, Sums};
+use super::curve::{Ceilings, curve, return_energy};
+use super::rate::{Limits, Running, Sums};
 use super::{Asked, Matrix};
 
 /// A map of something a year, where rocks came.
@@ -29,7 +29,11 @@ pub fn year_maps(maps: &Maps, asked: &Asked, releases: usize) -> Vec<YearMap> {
     names.extend(energies.iter().map(|joule| format!("frequency_above_{}kj_per_year", joule / 1e3)));
     names.extend(periods.iter().map(|years| format!("energy_T{years}_j")));
     let mut layers: Vec<YearMap> = names.iter().flat_map(|name| with_bounds(name)).collect();
-    let mut running = Running::new(&weights, 1.0);
+    let ceilings = Ceilings::of(&weights, &asked.most_j);
+    let least = || [0.0].iter().chain(energies);
+    let limits: Vec<Limits> =
+        least().map(|joule| Limits::above(&weights, &asked.most_j, *joule)).collect();
+    let mut running = Running::new(&weights);
     let mut levels = Vec::new();
     for (cell, counts) in maps.energies() {
         let mut layer = layers.iter_mut();
@@ -40,15 +44,16 @@ pub fn year_maps(maps: &Maps, asked: &Asked, releases: usize) -> Vec<YearMap> {
                 }
             }
         };
-        for least_j in [0.0].iter().chain(energies) {
+        for (least_j, limits) in least().zip(&limits) {
             running.clear();
-            say(above(counts, *least_j, &mut running));
+            add_above(counts, *least_j, &mut running);
+            say(running.estimate(limits));
         }
         running.clear();
         let falling = counts.entries().iter().rev();
         let falling = falling.map(|&(class, stratum, n)| (class, stratum, Sums::many(n)));
-        let points = curve(falling, &mut running);
-        let energy = |years: f64| return_energy(&points, &weights, years, false);
+        let points = curve(falling, &mut running, &ceilings);
+        let energy = |years: f64| return_energy(&points, &ceilings, years, false);
         for years in periods {
             let found = energy(*years);
             // an end that is open has no number
@@ -78,8 +83,8 @@ fn with_bounds(name: &str) -> [YearMap; 3] {
     })
 }
 
-/// Passages a year with at least an energy (J), and the ends of the interval.
-fn above(counts: &Counts, least_j: f64, running: &mut Running<'_>) -> [f64; 3] {
+/// Adds the rocks with at least an energy (J).
+fn add_above(counts: &Counts, least_j: f64, running: &mut Running<'_>) {
     let (cut, part) = (class_of(least_j), 1.0 - place_in_class(least_j));
     for &(class, stratum, n) in counts.entries() {
         if class > cut || class == cut && part >= 1.0 {
@@ -88,5 +93,4 @@ fn above(counts: &Counts, least_j: f64, running: &mut Running<'_>) -> [f64; 3] {
             running.add(stratum, &Sums::part(n, part));
         }
     }
-    running.estimate()
 }

@@ -30,6 +30,8 @@ pub struct Asked {
     pub objects: Vec<Object>,
     /// Classes of hazard.
     pub matrix: Option<Matrix>,
+    /// Most energy that a rock of each stratum can ever have (J); may be empty, then nothing is known of it.
+    pub most_j: Vec<f64>,
 }
 
 /// Levels of hazard by energy and return period, as the scene has them.

@@ -4,8 +4,8 @@ use super::super::barriers::{Arrival, Barrier};
 use super::super::classes::class_of;
 use super::super::lines::{CrossingRow, LineInfo};
 use super::super::proportion::Proportion;
-use super::curve::{ExceedancePoint, ReturnEnergy, curve, return_energy};
-use super::rate::{Rate, Running, Sums, proportion};
+use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
+use super::rate::{Limits, Rate, Running, Sums, proportion};
 use super::risk::{Object, Risk};
 use super::Asked;
 use crate::frequency::{Frequency, Weights, volume_m3};
@@ -117,7 +117,9 @@ impl Tally {
     }
 
     fn rate(&self, level: usize, all: &All<'_>) -> Rate {
-        all.rate(self.above.get(level), 1.0)
+        let energies = all.frequency.energies_j();
+        let least_j = level.checked_sub(1).map_or(0.0, |k| energies[k]);
+        all.rate(self.above.get(level), &Limits::above(&all.weights, &all.asked.most_j, least_j))
     }
 
     fn above(&self, all: &All<'_>) -> Vec<Above> {
@@ -128,10 +130,11 @@ impl Tally {
     fn figures(&self, object: Option<&Object>, all: &All<'_>) -> AnnualFigures {
         let passages = self.rate(0, all);
         let falling = self.classes.iter().rev().map(|(&(class, at), sums)| (class, at, *sums));
-        let curve = curve(falling, &mut Running::new(&all.weights, 1.0));
-        let energy = |years: &f64| return_energy(&curve, &all.weights, *years, all.has_exponent);
+        let curve = curve(falling, &mut Running::new(&all.weights), &all.ceilings);
+        let energy = |years: &f64| return_energy(&curve, &all.ceilings, *years, all.has_exponent);
         let returns = all.frequency.return_periods_years().iter().map(energy).collect();
-        let blocked = all.rate(Some(&self.blocked), self.longest_m.max(f64::MIN_POSITIVE));
+        let limits = Limits::above(&all.weights, &all.asked.most_j, 0.0);
+        let blocked = all.rate(Some(&self.blocked), &limits.times(self.longest_m.max(f64::MIN_POSITIVE)));
         let risks = object.map_or_else(Vec::new, |object| object.risks(&passages, &blocked));
         AnnualFigures { passages, above: self.above(all), returns, risks, curve }
     }
@@ -139,19 +142,21 @@ impl Tally {
 
 /// What all places share.
 struct All<'a> {
+    asked: &'a Asked,
     frequency: &'a Frequency,
     weights: Weights,
+    ceilings: Ceilings,
     has_exponent: bool,
     barriers: &'a [Barrier],
 }
 
 impl All<'_> {
-    fn rate(&self, strata: Option<&Strata>, most: f64) -> Rate {
-        let mut running = Running::new(&self.weights, most);
+    fn rate(&self, strata: Option<&Strata>, limits: &Limits) -> Rate {
+        let mut running = Running::new(&self.weights);
         for (stratum, sums) in strata.into_iter().flatten() {
             running.add(*stratum, sums);
         }
-        running.rate(self.has_exponent)
+        running.rate(limits, self.has_exponent)
     }
 }
 
@@ -176,7 +181,9 @@ pub fn annual<E>(
 ) -> Result<Option<Annual>, E> {
     let Some(frequency) = &asked.frequency else { return Ok(None) };
     let has_exponent = frequency.strata().iter().any(|stratum| stratum.exponent.is_some());
-    let all = All { frequency, weights: frequency.weights(releases), has_exponent, barriers };
+    let weights = frequency.weights(releases);
+    let ceilings = Ceilings::of(&weights, &asked.most_j);
+    let all = All { asked, frequency, weights, ceilings, has_exponent, barriers };
     let place = |line| Place::of(line, &asked.objects, barriers.len());
     let shown = lines.iter().filter(|line| !line.of_barrier);
     let mut places: Vec<Place<'_>> = shown.map(place).collect();

@@ -92,12 +92,37 @@ impl Sums {
     }
 }
 
+/// What a rate can reach at most.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::hazard) struct Limits {
+    /// Events a year of all strata that can count (1/year).
+    most: f64,
+    /// Events a year that a rock of the heaviest of them stands for (1/year).
+    heaviest: f64,
+}
+
+impl Limits {
+    /// Of passages with at least an energy (J): strata whose largest rock can never have it do not count. `most_j` is the
+    /// most energy of each stratum; of none without an entry anything is known.
+    pub(in crate::hazard) fn above(weights: &Weights, most_j: &[f64], energy_j: f64) -> Self {
+        let can = |stratum: &usize| most_j.get(*stratum).is_none_or(|most| *most >= energy_j);
+        let strata = || (0..weights.strata()).filter(can);
+        Self {
+            most: strata().map(|stratum| weights.per_year(stratum)).sum(),
+            heaviest: strata().map(|stratum| weights.of_stratum(stratum)).fold(0.0, f64::max),
+        }
+    }
+
+    /// The same where a rock counts for so much at most.
+    pub(in crate::hazard) fn times(self, most: f64) -> Self {
+        Self { most: most * self.most, heaviest: most * self.heaviest }
+    }
+}
+
 /// The rate of all rocks added so far.
 #[derive(Debug)]
 pub(in crate::hazard) struct Running<'a> {
     weights: &'a Weights,
-    /// Most that a rock can count for.
-    most: f64,
     strata: Vec<Sums>,
     touched: Vec<u16>,
     value: f64,
@@ -106,10 +131,10 @@ pub(in crate::hazard) struct Running<'a> {
 }
 
 impl<'a> Running<'a> {
-    /// Without rocks; one counts for `most` at most.
-    pub(in crate::hazard) fn new(weights: &'a Weights, most: f64) -> Self {
+    /// Without rocks.
+    pub(in crate::hazard) fn new(weights: &'a Weights) -> Self {
         let strata = vec![Sums::default(); weights.strata()];
-        Self { weights, most, strata, touched: Vec::new(), value: 0.0, score: 0.0, variance: 0.0 }
+        Self { weights, strata, touched: Vec::new(), value: 0.0, score: 0.0, variance: 0.0 }
     }
 
     /// Adds rocks of a stratum. Sums depend on the order in their last bits: callers add in a fixed one.
@@ -154,13 +179,8 @@ impl<'a> Running<'a> {
     }
 
     /// Value, and lower and upper end of the interval.
-    pub(in crate::hazard) fn estimate(&self) -> [f64; 3] {
-        let [low, high] = interval(
-            self.value,
-            self.variance.max(0.0),
-            self.most * self.weights.total_per_year(),
-            self.most * self.weights.heaviest(),
-        );
+    pub(in crate::hazard) fn estimate(&self, limits: &Limits) -> [f64; 3] {
+        let [low, high] = interval(self.value, self.variance.max(0.0), limits);
         [self.value, low, high]
     }
 
@@ -170,8 +190,8 @@ impl<'a> Running<'a> {
     }
 
     /// All of it; `has_exponent` where a source has one.
-    pub(in crate::hazard) fn rate(&self, has_exponent: bool) -> Rate {
-        let [per_year, low_95, high_95] = self.estimate();
+    pub(in crate::hazard) fn rate(&self, limits: &Limits, has_exponent: bool) -> Rate {
+        let [per_year, low_95, high_95] = self.estimate(limits);
         Rate {
             rocks: self.strata.iter().map(|sums| sums.rocks as usize).sum(),
             per_year,
@@ -183,14 +203,14 @@ impl<'a> Running<'a> {
     }
 }
 
-/// 95 % interval of a sum of weighted counts that can reach `most`.
+/// 95 % interval of a sum of weighted counts.
 ///
 /// Wilson's score interval with the effective weight of a count, `variance / (λ (1 − λ/most))`: with equal weights it is
 /// that of [`Proportion`]. For the upper end one more rock of the heaviest weight is added to variance and sum, as Fay
 /// and Feuer (1997, Statistics in Medicine 16, 791) do: what was not seen may belong to the stratum whose rocks stand for
-/// most. Nothing seen: three of the heaviest, `3 max f_j/n_j`; the mean weight would be too small a bound where the
+/// most; only strata that can count at all are asked. Nothing seen: three of the heaviest, `3 max f_j/n_j`; the mean weight would be too small a bound where the
 /// rocks to come are of the heaviest stratum.
-fn interval(value: f64, variance: f64, most: f64, heaviest: f64) -> [f64; 2] {
+fn interval(value: f64, variance: f64, &Limits { most, heaviest }: &Limits) -> [f64; 2] {
     const NONE: f64 = 3.0;
     if value <= 0.0 {
         return [0.0, (NONE * heaviest).min(most)];
@@ -210,7 +230,7 @@ pub(in crate::hazard) fn proportion(
     weights: &Weights,
     counts: impl Iterator<Item = (u16, usize)>,
 ) -> Proportion {
-    let mut running = Running::new(weights, 1.0);
+    let mut running = Running::new(weights);
     let mut count = 0;
     for (stratum, rocks) in counts.filter(|(_, rocks)| *rocks > 0) {
         running.add(stratum, &Sums::many(rocks as u32));
@@ -221,6 +241,6 @@ pub(in crate::hazard) fn proportion(
         return plain;
     }
     let [share, low_95, high_95] =
-        running.estimate().map(|value| value / weights.total_per_year());
+        running.estimate(&Limits::above(weights, &[], 0.0)).map(|value| value / weights.total_per_year());
     Proportion { share, low_95, high_95, ..plain }
 }
