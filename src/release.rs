@@ -2,8 +2,8 @@
 
 use crate::chance::{Distribution, Purpose, stream, unit};
 use crate::error::{Error, Result};
-use crate::frequency::{Frequency, radius_of_m3};
 use crate::flight::{Landing, Parabola, leap};
+use crate::frequency::{Frequency, radius_of_m3};
 use crate::ground::Ground;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene};
@@ -161,10 +161,7 @@ impl Releases {
     /// coordinates.
     pub fn release(&self, terrain: &Terrain, index: usize) -> Result<Release> {
         let grounds = self.draw_grounds(index);
-        let rock = Rock {
-            radius_m: self.draw_radius_m(index),
-            density_kg_m3: self.density_kg_m3,
-        };
+        let rock = Rock { radius_m: self.draw_radius_m(index), density_kg_m3: self.density_kg_m3 };
         let mut chance = stream(self.seed, Purpose::Start, index);
         let mut vector = |from: &[Distribution; 3]| {
             let [x, y, z] = from;
@@ -252,9 +249,7 @@ impl Releases {
 
 impl Where {
     /// The one place that is given; none where none or several are.
-    fn one_of(
-        given: (&Option<Vec<Point>>, &Option<Polyline>, &Option<Area>),
-    ) -> Option<Self> {
+    fn one_of(given: (&Option<Vec<Point>>, &Option<Polyline>, &Option<Area>)) -> Option<Self> {
         match given {
             (Some(points), None, None) => Some(Self::Points(points.clone())),
             (None, Some(line), None) => Some(Self::Line(line.clone())),

@@ -304,8 +304,7 @@ impl Rule {
     /// What it asks for, from the rocks that arrive; none without rocks.
     fn design(&self, rocks: &[Arrival], weights: &Weights) -> Option<Design> {
         let p = self.percentile / 100.0;
-        let value =
-            |of: fn(&Arrival) -> f64| Some(sample(rocks, weights, of).percentile(p)?.value);
+        let value = |of: fn(&Arrival) -> f64| Some(sample(rocks, weights, of).percentile(p)?.value);
         let product = |factors: &BTreeMap<String, f64>| factors.values().product::<f64>();
         let (energy, height) = (value(|rock| rock.total_j)?, value(|rock| rock.top_m)?);
         let speed = product(&self.speed_factors);
@@ -376,7 +375,8 @@ mod tests {
             row(4, "lower", 1.0, 0.5, 50.0),
             row(4, "upper -5 m", 1.5, 0.0, 10.0),
         ];
-        let found = judge(&barriers, rows.into_iter().map(Ok::<_, Infallible>), &Weights::equal(8)).unwrap();
+        let found = judge(&barriers, rows.into_iter().map(Ok::<_, Infallible>), &Weights::equal(8))
+            .unwrap();
         let counts = |k: usize| {
             let at: &BarrierSummary = &found[k];
             [at.arriving.count, at.stopped.count, at.over, at.through]

@@ -228,7 +228,8 @@ mod tests {
             maps.add(0, &visits, (StopKind::AtRest, [103.0, 53.0 - height_m, 7.0]));
         }
         let weights = Weights::equal(6);
-        let value = |layer| maps.values(layer, &weights).find(|(cell, _)| *cell == 4).map(|(_, v)| v);
+        let value =
+            |layer| maps.values(layer, &weights).find(|(cell, _)| *cell == 4).map(|(_, v)| v);
         assert_eq!(value(Layer::Passages), Some(3.0));
         assert_eq!(value(Layer::Reach), Some(0.5));
         // (103, 51) is in the row below

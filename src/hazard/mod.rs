@@ -157,7 +157,8 @@ impl Hazard {
         let values = self.values[quantity as usize].iter().copied();
         let Some(weights) = self.weights() else { return Sample::of(values) };
         let first = self.first.unwrap_or(0);
-        let ended = (first..first + self.rocks()).filter(|at| self.failed.binary_search(at).is_err());
+        let ended =
+            (first..first + self.rocks()).filter(|at| self.failed.binary_search(at).is_err());
         Sample::weighted(values.zip(ended.map(|at| weights.of_release(at))))
     }
 

@@ -1,9 +1,9 @@
 //! What a result folder holds already, and whether a run may use it.
 
+use super::annual::FREQUENCY;
 use super::progress::{Identity, Progress};
 use super::summary::{SUMMARY, Summary};
 use super::whole::as_whole;
-use super::annual::FREQUENCY;
 use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
 use std::fs;
@@ -11,8 +11,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files besides `progress.json`.
-const FILES: [&str; 7] =
-    [RELEASES, PATHS, IMPACTS, CROSSINGS, FREQUENCY, "report.html", SUMMARY];
+const FILES: [&str; 7] = [RELEASES, PATHS, IMPACTS, CROSSINGS, FREQUENCY, "report.html", SUMMARY];
 /// Folder of the figures: every SVG file in it belongs to the results.
 const FIGURES: &str = "figures";
 

@@ -5,8 +5,8 @@ use super::progress::Identity;
 use super::whole::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::{
-    Annual, Asked, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion, Quantity, Statistic,
-    StopKind, Totals, Way,
+    Annual, Asked, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion,
+    Quantity, Statistic, StopKind, Totals, Way,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

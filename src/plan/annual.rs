@@ -96,7 +96,6 @@ fn most_j(scene: &Scene, terrain: &Terrain, frequency: &Frequency) -> Vec<f64> {
 /// More radii than a release is ever lifted by (–).
 const LIFTED: f64 = 8.0;
 
-
 /// The objects; none where the scene has none.
 pub(super) fn objects(scene: &Scene, warnings: &mut Vec<String>) -> Part<Vec<ObjectTable>> {
     if !scene.objects.is_empty() && scene.frequency.is_none() {
@@ -135,7 +134,9 @@ pub(super) fn rows(scene: &Scene) -> Vec<(String, String)> {
             rows.push((format!("Source “{}”", source.name), source.law.in_words()));
         }
     }
-    rows.extend(scene.objects.iter().map(|object| (format!("Object “{}”", object.name), words(object))));
+    rows.extend(
+        scene.objects.iter().map(|object| (format!("Object “{}”", object.name), words(object))),
+    );
     rows
 }
 
@@ -175,6 +176,8 @@ pub(super) fn lines(year: &Year, count: usize) -> Vec<String> {
         count / frequency.strata().len(),
         weights.effective_rocks()
     ));
-    lines.extend(matrix.as_ref().map(|one| format!("levels of “{}”; source: {}", one.name, one.source)));
+    lines.extend(
+        matrix.as_ref().map(|one| format!("levels of “{}”; source: {}", one.name, one.source)),
+    );
     lines
 }

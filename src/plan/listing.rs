@@ -129,7 +129,8 @@ impl Plan {
             format!("{}: judged on the rocks that cross, they change no way", each.join(", "))
         });
         list.part("objects", objects, |all| {
-            let each = |object: &ObjectTable| format!("{} ({})", object.name, annual::words(object));
+            let each =
+                |object: &ObjectTable| format!("{} ({})", object.name, annual::words(object));
             let each: Vec<String> = all.iter().map(each).collect();
             format!("{}: hit when the rim of a rock comes over them", each.join("; "))
         });

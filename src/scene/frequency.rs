@@ -137,7 +137,8 @@ impl FrequencyTable {
         if let Some(index) = draws.iter().position(|one| *one != draws[0]) {
             let remedy = "write per_year alone in all sources, or volumes in all";
             let about = Complaint::about("name", remedy);
-            let found = "found a source with volumes of its own beside one that takes [rocks] radius_m";
+            let found =
+                "found a source with volumes of its own beside one that takes [rocks] radius_m";
             return Err(about.finding(found).in_entry(index).inside("sources"));
         }
         positive_list("energies_j", self.energies_j.as_deref())?;

@@ -287,7 +287,8 @@ impl Scene {
         }
         if self.frequency.is_some() {
             let remedy = "remove it, or write together = false: what a year brings is summed over rocks that fall on their own";
-            return Err(Complaint::about("frequency", remedy).finding("found it beside [release] together = true"));
+            return Err(Complaint::about("frequency", remedy)
+                .finding("found it beside [release] together = true"));
         }
         let scheme = self.solver.scheme();
         let Some(contact) = &self.rocks.contact else {

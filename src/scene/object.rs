@@ -47,7 +47,10 @@ impl ObjectTable {
                 number("width_m", width_m, Allowed::NotNegative, "a road is near 6")?;
             }
             (Some(_), None, None) => {
-                return Err(Complaint::missing("width_m", "write the width of the line, 0 or more"));
+                return Err(Complaint::missing(
+                    "width_m",
+                    "write the width of the line, 0 or more",
+                ));
             }
             (None, Some(_), None) => {}
             (None, Some(_), Some(_)) => {
@@ -69,7 +72,8 @@ impl ObjectTable {
 
     fn check_exposure(&self) -> Checked {
         let asks = [("occupancy", self.occupancy.is_some()), ("persons", self.persons.is_some())];
-        if let (Some((key, _)), None) = (asks.iter().find(|(_, given)| *given), self.vulnerability) {
+        if let (Some((key, _)), None) = (asks.iter().find(|(_, given)| *given), self.vulnerability)
+        {
             let remedy = "write the probability that a person who is hit dies, 0..1, or remove what needs it";
             let found = format!("found {key} without it");
             return Err(Complaint::missing("vulnerability", remedy).finding(found));

@@ -182,10 +182,10 @@ impl<'a> Crossings<'a> {
     }
 }
 
-/// Nearer than this (m) touches: a rim that comes no deeper over an object than 1e-8 m may be missed.
+/// Nearer than this (m) touches: a hit is found to 1e-5 m of way, and a rim that comes no deeper over an object than 1e-9 m may be missed.
 const TOUCH_M: f64 = 1e-6;
 /// Shortest way that is gone over at a time (m).
-const SHORTEST_M: f64 = 1e-4;
+const SHORTEST_M: f64 = 1e-5;
 
 /// The share of a way inside `hull` at which the rim of a rock first comes over an object, and where along the object.
 ///

@@ -26,7 +26,8 @@ pub fn year_maps(maps: &Maps, asked: &Asked, releases: usize) -> Vec<YearMap> {
     let weights = frequency.weights(releases);
     let (energies, periods) = (frequency.energies_j(), frequency.return_periods_years());
     let mut names = vec!["frequency_per_year".to_owned()];
-    names.extend(energies.iter().map(|joule| format!("frequency_above_{}kj_per_year", joule / 1e3)));
+    names
+        .extend(energies.iter().map(|joule| format!("frequency_above_{}kj_per_year", joule / 1e3)));
     names.extend(periods.iter().map(|years| format!("energy_T{years}_j")));
     let mut layers: Vec<YearMap> = names.iter().flat_map(|name| with_bounds(name)).collect();
     let ceilings = Ceilings::of(&weights, &asked.most_j);

@@ -60,4 +60,3 @@ impl Matrix {
         self.return_periods_years.iter().zip(&self.levels).filter_map(at).max().unwrap_or(0)
     }
 }
-

@@ -4,10 +4,10 @@ use super::super::barriers::{Arrival, Barrier};
 use super::super::classes::class_of;
 use super::super::lines::{CrossingRow, LineInfo};
 use super::super::proportion::Proportion;
+use super::Asked;
 use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
 use super::rate::{Limits, Rate, Running, Sums, proportion};
 use super::risk::{Object, Risk};
-use super::Asked;
 use crate::frequency::{Frequency, Weights, volume_m3};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -134,7 +134,8 @@ impl Tally {
         let energy = |years: &f64| return_energy(&curve, &all.ceilings, *years, all.has_exponent);
         let returns = all.frequency.return_periods_years().iter().map(energy).collect();
         let limits = Limits::above(&all.weights, &all.asked.most_j, 0.0);
-        let blocked = all.rate(Some(&self.blocked), &limits.times(self.longest_m.max(f64::MIN_POSITIVE)));
+        let blocked =
+            all.rate(Some(&self.blocked), &limits.times(self.longest_m.max(f64::MIN_POSITIVE)));
         let risks = object.map_or_else(Vec::new, |object| object.risks(&passages, &blocked));
         AnnualFigures { passages, above: self.above(all), returns, risks, curve }
     }

@@ -172,7 +172,11 @@ impl<'a> Running<'a> {
         let mean = y / n;
         let spread = (y2 / n - mean * mean).max(0.0);
         // a whole stratum, but not a part of a class of it
-        let full = if y >= n && rocks as usize == self.weights.rocks(stratum) { 0.5 / n * y2 / n } else { 0.0 };
+        let full = if y >= n && rocks as usize == self.weights.rocks(stratum) {
+            0.5 / n * y2 / n
+        } else {
+            0.0
+        };
         // with one stratum the interval of a proportion is Wilson's, which wants p (1 − p)
         let few = if self.weights.strata() == 1 { 1.0 } else { n / (n - 1.0).max(1.0) };
         self.weights.per_year(stratum).powi(2) * (few * spread + full) / n
@@ -240,7 +244,8 @@ pub(in crate::hazard) fn proportion(
     if weights.are_equal() {
         return plain;
     }
-    let [share, low_95, high_95] =
-        running.estimate(&Limits::above(weights, &[], 0.0)).map(|value| value / weights.total_per_year());
+    let [share, low_95, high_95] = running
+        .estimate(&Limits::above(weights, &[], 0.0))
+        .map(|value| value / weights.total_per_year());
     Proportion { share, low_95, high_95, ..plain }
 }

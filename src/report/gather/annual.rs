@@ -36,9 +36,8 @@ fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
 /// Three tables a place: how often, with what energy, at what risk.
 pub(super) fn tables(results: &Results) -> Vec<Table> {
     let Some(annual) = &results.summary.annual else { return Vec::new() };
-    let each = |place: &AnnualPlace| {
-        [Some(passages(annual, place)), Some(returns(place)), risks(place)]
-    };
+    let each =
+        |place: &AnnualPlace| [Some(passages(annual, place)), Some(returns(place)), risks(place)];
     annual.places.iter().flat_map(each).flatten().collect()
 }
 
@@ -123,9 +122,7 @@ fn returns(place: &AnnualPlace) -> Table {
     let row = |(which, one): (&str, &ReturnEnergy)| {
         let kilo = |joule: f64| joule / 1e3;
         let energy = match one.energy_j {
-            Some(joule) => {
-                estimate(kilo(joule), Some(kilo(one.low_95)), one.high_95.map(kilo))
-            }
+            Some(joule) => estimate(kilo(joule), Some(kilo(one.low_95)), one.high_95.map(kilo)),
             // more seldom than that, but perhaps not by much
             None => estimate(f64::NAN, None, one.high_95.filter(|high| *high > 0.0).map(kilo)),
         };
@@ -133,9 +130,9 @@ fn returns(place: &AnnualPlace) -> Table {
         let name = format!("{} years{which}", format::plain(one.years));
         (name, vec![Some(energy), slope(one.by_log_rate), slope(one.by_exponent)])
     };
-    let all = both(place).flat_map(|(which, figures)| figures.returns.iter().map(move |r| (which, r)));
-    let columns =
-        ["total energy (kJ)", "change with ln(rate) (kJ)", "change with exponent (kJ)"];
+    let all =
+        both(place).flat_map(|(which, figures)| figures.returns.iter().map(move |r| (which, r)));
+    let columns = ["total energy (kJ)", "change with ln(rate) (kJ)", "change with exponent (kJ)"];
     Table {
         title: format!("Energy of return periods: {}", named(place)),
         note: "Passed with at least that energy once in so many years on average; no number where rocks come more seldom. The 95 % \
@@ -150,14 +147,12 @@ fn risks(place: &AnnualPlace) -> Option<Table> {
     let row = |(which, risk): (&str, &Risk)| {
         let Risk { kind, rate } = risk;
         let slope = |slope: f64| estimate(slope, None, None);
-        let cells = vec![
-            Some(of(rate, |x| x)),
-            Some(slope(rate.by_log_rate)),
-            rate.by_exponent.map(slope),
-        ];
+        let cells =
+            vec![Some(of(rate, |x| x)), Some(slope(rate.by_log_rate)), rate.by_exponent.map(slope)];
         (format!("{}{which}", kind.name()), cells)
     };
-    let all = both(place).flat_map(|(which, figures)| figures.risks.iter().map(move |r| (which, r)));
+    let all =
+        both(place).flat_map(|(which, figures)| figures.risks.iter().map(move |r| (which, r)));
     let rows: Vec<_> = all.map(row).collect();
     let columns = ["a year (1/a)", "change with ln(rate) (1/a)", "change with exponent (1/a)"];
     (!rows.is_empty()).then(|| Table {
