@@ -121,7 +121,7 @@ impl FrequencyTable {
 
     pub(super) fn check(&self) -> Checked {
         let own = self.keys().law()?;
-        if own.is_some() == !self.sources.is_empty() {
+        if own.is_some() != self.sources.is_empty() {
             return Err(if own.is_some() {
                 let remedy = "remove it, or the law in [frequency]: each source has its own";
                 Complaint::about("sources", remedy).finding("found both a law and sources")
