@@ -88,6 +88,7 @@ pub(crate) fn run(
     begin: impl FnOnce(Arc<AtomicBool>) -> Result<()>,
     progress: impl Fn(usize, usize),
 ) -> Result<Ended> {
+    year::allows(plan, order.until.is_some())?;
     let ensemble = Ensemble::new(order.threads)?;
     begin(ensemble.stop_flag())?;
     let mut mode = order.mode;

@@ -3,16 +3,17 @@
 //! A barrier does not change a rock's way in the computation. A rock that the first barrier on its way stops counts as
 //! not arriving at those behind it: with several in line, each sees what the ones before have let through.
 
-use super::annual::proportion;
+mod weighted;
+
 use super::lines::CrossingRow;
 use super::proportion::Proportion;
-use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::iter;
+use weighted::{arriving, sample, stopped_at};
 
 /// A barrier on one of the evaluation lines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -270,34 +271,6 @@ fn summary(
         design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks, weights)),
         by_place: offsets.zip(places).map(at_place).collect(),
     }
-}
-
-/// The share of some rocks that the barrier would stop at another height (m).
-fn stopped_at(
-    barrier: &Barrier,
-    (rocks, weights): (&[Arrival], &Weights),
-    height_m: f64,
-) -> Proportion {
-    let is_stopped = |rock: &&Arrival| rock.is_stopped(height_m, barrier.capacity_j);
-    let count = rocks.iter().filter(is_stopped).count();
-    if weights.are_equal() {
-        return Proportion::new(count, rocks.len());
-    }
-    let weight = |rock: &Arrival| weights.of_release(rock.release);
-    let all: f64 = rocks.iter().map(weight).sum();
-    let squares: f64 = rocks.iter().map(|rock| weight(rock).powi(2)).sum();
-    let share = rocks.iter().filter(is_stopped).map(weight).sum::<f64>() / all;
-    Proportion::effective(count, rocks.len(), share, all * all / squares)
-}
-
-/// Share of all releases, by what they stand for, that arrive.
-fn arriving(rocks: &[Arrival], weights: &Weights) -> Proportion {
-    let strata = rocks.iter().map(|rock| (weights.stratum_of(rock.release) as u16, 1));
-    proportion(weights, strata)
-}
-
-fn sample(rocks: &[Arrival], weights: &Weights, of: impl Fn(&Arrival) -> f64) -> Sample {
-    Sample::weighted(rocks.iter().map(|rock| (of(rock), weights.of_release(rock.release))))
 }
 
 impl Rule {
