@@ -1,6 +1,7 @@
 //! Magnitude–frequency laws, cut into strata.
 
 use super::STRATA_PER_DECADE;
+use crate::math;
 use serde::{Deserialize, Serialize};
 
 /// How often a source releases rocks of what size.
@@ -57,14 +58,14 @@ impl Law {
             }
             Self::PowerLaw { per_year_at_1m3, exponent, volume_m3: [least, largest] } => {
                 let ratio = largest / least;
-                let wanted = (STRATA_PER_DECADE * libm::log10(ratio)).ceil();
+                let wanted = (STRATA_PER_DECADE * math::log10(ratio)).ceil();
                 let count = (wanted as usize).clamp(1, most);
                 let edge = |k: usize| match k {
                     0 => *least,
                     k if k == count => *largest,
-                    k => least * libm::pow(ratio, k as f64 / count as f64),
+                    k => least * math::pow(ratio, k as f64 / count as f64),
                 };
-                let beyond = |v: f64| per_year_at_1m3 * libm::pow(v, -exponent);
+                let beyond = |v: f64| per_year_at_1m3 * math::pow(v, -exponent);
                 let stratum = |k: usize| Stratum {
                     source,
                     volume_m3: Some([edge(k), edge(k + 1)]),
@@ -119,10 +120,10 @@ impl Stratum {
         let volume = match self.exponent {
             Some(b) => {
                 // over the smallest volume, so that steep laws neither overflow nor vanish
-                let end = libm::pow(largest / least, -b);
-                least * libm::pow(1.0 - p * (1.0 - end), -1.0 / b)
+                let end = math::pow(largest / least, -b);
+                least * math::pow(1.0 - p * (1.0 - end), -1.0 / b)
             }
-            None => least * libm::pow(largest / least, p),
+            None => least * math::pow(largest / least, p),
         };
         Some(volume.clamp(least, largest))
     }
@@ -130,6 +131,6 @@ impl Stratum {
     /// How its frequency of one volume (m³) changes with the exponent, over itself: `∂ ln(a b V^−b−1)/∂b = 1/b − ln V`.
     /// Over its rocks the mean is `∂ ln f_j/∂b`. None where there is no exponent.
     pub fn score(&self, volume_m3: f64) -> Option<f64> {
-        self.exponent.map(|b| 1.0 / b - libm::log(volume_m3))
+        self.exponent.map(|b| 1.0 / b - math::ln(volume_m3))
     }
 }

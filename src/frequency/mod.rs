@@ -15,6 +15,7 @@ mod weights;
 pub use law::{Class, Law, Stratum};
 pub use weights::Weights;
 
+use crate::math;
 use serde::{Deserialize, Serialize};
 
 /// Strata for a decade of volume: within one the volume changes by a factor of 2.2.
@@ -136,7 +137,7 @@ impl Frequency {
 
 /// Radius (m) of a sphere of a volume (m³).
 pub fn radius_of_m3(volume_m3: f64) -> f64 {
-    libm::cbrt(0.75 * volume_m3 / std::f64::consts::PI)
+    math::cbrt(0.75 * volume_m3 / std::f64::consts::PI)
 }
 
 /// Volume (m³) of a sphere of a radius (m).

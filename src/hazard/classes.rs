@@ -1,6 +1,7 @@
 //! Counts over classes of equal ratio: percentiles and exceedance without keeping values.
 
 use crate::frequency::Weights;
+use crate::math;
 use serde::{Deserialize, Serialize};
 
 /// Ratio of the upper to the lower end of a class of values (–): its middle is at most 2.5 % from any value in it.
@@ -15,7 +16,7 @@ pub(super) struct Counts(Vec<(u16, u16, u32)>);
 /// Class of a value: 0 up to [`SMALLEST`], then equal ratios. 65535 classes reach beyond any f64.
 pub(super) fn class_of(value: f64) -> u16 {
     if value > SMALLEST {
-        (libm::log(value / SMALLEST) / RATIO.ln()).floor().min(65_534.0) as u16 + 1
+        (math::ln(value / SMALLEST) / math::ln(RATIO)).floor().min(65_534.0) as u16 + 1
     } else {
         0
     }
@@ -23,19 +24,19 @@ pub(super) fn class_of(value: f64) -> u16 {
 
 /// The value that stands for a class: the geometric middle of its ends, 0 for the first.
 fn middle_of(class: u16) -> f64 {
-    if class == 0 { 0.0 } else { SMALLEST * libm::pow(RATIO, f64::from(class) - 0.5) }
+    if class == 0 { 0.0 } else { SMALLEST * math::pow(RATIO, f64::from(class) - 0.5) }
 }
 
 /// Lower end of a class; 0 of the first.
 pub(super) fn lower_end_of(class: u16) -> f64 {
-    if class == 0 { 0.0 } else { SMALLEST * libm::pow(RATIO, f64::from(class) - 1.0) }
+    if class == 0 { 0.0 } else { SMALLEST * math::pow(RATIO, f64::from(class) - 1.0) }
 }
 
 /// How far a value lies up its class (–), 0..1: 0 at its lower, 1 at its upper end.
 pub(super) fn place_in_class(value: f64) -> f64 {
     match class_of(value) {
         0 => (value / SMALLEST).clamp(0.0, 1.0),
-        class => (libm::log(value / lower_end_of(class)) / RATIO.ln()).clamp(0.0, 1.0),
+        class => (math::ln(value / lower_end_of(class)) / math::ln(RATIO)).clamp(0.0, 1.0),
     }
 }
 

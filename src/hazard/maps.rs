@@ -48,6 +48,7 @@ impl MapFrame {
 
 /// What is known of one cell.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(from = "Packed", into = "Packed")]
 struct Cell {
     passages: u32,
     deposits: u32,
@@ -55,6 +56,22 @@ struct Cell {
     largest_m: f64,
     totals_j: Counts,
     heights_m: Counts,
+}
+
+/// A cell on the disk: in the order of its fields, without their names, which would be most of it.
+type Packed = (u32, u32, f64, f64, Counts, Counts);
+
+impl From<Packed> for Cell {
+    fn from((passages, deposits, largest_j, largest_m, totals_j, heights_m): Packed) -> Self {
+        Self { passages, deposits, largest_j, largest_m, totals_j, heights_m }
+    }
+}
+
+impl From<Cell> for Packed {
+    fn from(cell: Cell) -> Self {
+        let Cell { passages, deposits, largest_j, largest_m, totals_j, heights_m } = cell;
+        (passages, deposits, largest_j, largest_m, totals_j, heights_m)
+    }
 }
 
 impl Cell {
@@ -158,6 +175,11 @@ impl Maps {
     /// Goes on from what earlier rocks left.
     pub fn new(frame: MapFrame, state: MapState) -> Self {
         Self { frame, cells: state.0.into_iter().collect() }
+    }
+
+    /// Cells that rocks have passed so far.
+    pub fn known_cells(&self) -> usize {
+        self.cells.len()
     }
 
     /// What a resumed run needs.

@@ -1,6 +1,7 @@
 //! What is watched along every rock's way: evaluation lines and the cells of maps, in local coordinates.
 
 use crate::error::{Error, Result};
+use crate::math;
 use crate::rock::Vec3;
 use crate::scene::{Corner, MapsTable, ObjectTable, Polyline};
 use crate::terrain::Terrain;
@@ -45,7 +46,7 @@ pub struct Piece {
 impl Piece {
     /// Its length (m), positive.
     pub fn length_m(&self) -> f64 {
-        self.way_m[0].hypot(self.way_m[1])
+        math::hypot(self.way_m[0], self.way_m[1])
     }
 
     /// Distance of a point from the line through the piece (m), positive on its left.
@@ -119,7 +120,7 @@ impl Curtain {
         let to_piece = |piece: &Piece| {
             let share = piece.share(at_m).clamp(0.0, 1.0);
             let away = [0, 1].map(|k| at_m[k] - piece.from_m[k] - share * piece.way_m[k]);
-            (away[0].hypot(away[1]), piece.along_m + share * piece.length_m())
+            (math::hypot(away[0], away[1]), piece.along_m + share * piece.length_m())
         };
         let nearest = self.pieces.iter().map(to_piece).min_by(|a, b| a.0.total_cmp(&b.0));
         let (distance_m, along_m) = nearest.unwrap_or((f64::INFINITY, 0.0));

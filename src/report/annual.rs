@@ -8,6 +8,7 @@ use super::input::{AnnualView, BandPoint, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
+use crate::math;
 
 const TOP_PX: f64 = 26.0;
 const HEIGHT_PX: f64 = 300.0;
@@ -66,7 +67,7 @@ fn panel(view: &AnnualView, largest_j: f64, (unit, size): (&str, f64)) -> Panel 
     let least = rates().chain(periods()).fold(f64::INFINITY, f64::min);
     let most = rates().chain(periods()).fold(0.0, f64::max);
     let from_j = view.curves().flatten().map(|point| point.x).filter(positive);
-    let from_j = from_j.fold(f64::INFINITY, f64::min).max(largest_j * 10_f64.powf(-DECADES));
+    let from_j = from_j.fold(f64::INFINITY, f64::min).max(largest_j * math::pow(10.0, -DECADES));
     let frame =
         Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom: TOP_PX + HEIGHT_PX };
     let x = Axis::log(from_j / size, largest_j / size, format!("Total energy e ({unit})"));

@@ -39,9 +39,12 @@ pub struct RockContact {
 impl Rocks {
     pub(super) fn check(&self, frequency: Option<&Frequency>) -> Checked {
         number("density_kg_m3", self.density_kg_m3, Allowed::Positive, "rock is near 2700")?;
+        let density = Allowed::Between(1.0, 1e5);
+        number("density_kg_m3", self.density_kg_m3, density, "rock is near 2700")?;
         frequency::check_radius(self.radius_m.as_ref(), frequency)?;
         if let Some(radius_m) = &self.radius_m {
             drawn("radius_m", radius_m, Allowed::Positive, "")?;
+            drawn("radius_m", radius_m, Allowed::Between(1e-3, 1e3), "")?;
         }
         match &self.contact {
             Some(contact) => contact.check().map_err(|wrong| wrong.inside("contact")),

@@ -2,8 +2,10 @@
 
 pub mod adaptive;
 pub mod dda;
+pub(crate) mod explicit;
 pub(crate) mod flat;
 pub mod grip;
+pub(crate) mod impact;
 pub(crate) mod joint;
 pub mod law;
 pub mod rigid;
@@ -37,6 +39,15 @@ impl Scheme {
             Self::Adaptive => "adaptive",
             Self::Reference => "reference",
             Self::Rigid => "rigid",
+        }
+    }
+
+    /// Budget of work of one rock: steps, accepted or not, and flights. A minute of fall takes a few thousand, with the
+    /// paper's fixed step of 1e-5 s six million.
+    pub const fn most_work(self) -> u64 {
+        match self {
+            Self::Dda => 20_000_000,
+            Self::Adaptive | Self::Reference | Self::Rigid => 5_000_000,
         }
     }
 }
@@ -76,7 +87,7 @@ impl Stepper {
             Scheme::Dda => return Self::Dda(dda::Fixed::new(settings, world, grip)),
             Scheme::Adaptive => &TR_BDF2,
         };
-        let control = Control { tableau, tolerance: settings.tolerance_m_s };
+        let control = Control::new(tableau, settings, world);
         Self::Controlled(control, adaptive::first_step(world, grip))
     }
 }

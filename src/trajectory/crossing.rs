@@ -2,6 +2,7 @@
 
 use super::journey::between;
 use crate::flight::Parabola;
+use crate::math;
 use crate::plan::{Curtain, Footprint, Piece};
 use crate::rock::{Motion, Rock};
 use crate::scene::Corner;
@@ -29,7 +30,7 @@ impl Crossing {
     /// Slope of the path against the horizontal (degrees), positive downwards, −90..90.
     pub fn descent_deg(&self) -> f64 {
         let v = self.motion.velocity_m_s;
-        (-v.z).atan2(v.x.hypot(v.y)).to_degrees()
+        math::atan2(-v.z, math::hypot(v.x, v.y)).to_degrees()
     }
 }
 
@@ -197,7 +198,7 @@ fn enter(
     hull: [Corner; 4],
     at: impl Fn(f64) -> Motion,
 ) -> Option<(f64, f64)> {
-    let side = |pair: &[Corner]| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
+    let side = |pair: &[Corner]| math::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
     let fastest_m = 3.0 * hull.windows(2).map(side).fold(0.0, f64::max);
     let mut s = 0.0;
     while s <= 1.0 {

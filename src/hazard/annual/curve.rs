@@ -3,6 +3,7 @@
 use super::super::classes::{RATIO, class_of, lower_end_of};
 use super::rate::{Limits, Running, Sums};
 use crate::frequency::Weights;
+use crate::math;
 use serde::{Deserialize, Serialize};
 
 /// A point of the curve: at the lower end of a class of energy that a rock fell in.
@@ -142,7 +143,7 @@ fn reached(
         let here = of(point);
         if here >= wanted {
             let share = ((here - wanted) / (here - above)).clamp(0.0, 1.0);
-            return Some(point.energy_j * libm::pow(RATIO, share));
+            return Some(point.energy_j * math::pow(RATIO, share));
         }
         above = here;
     }

@@ -33,7 +33,7 @@ impl Rate {
 
     /// Probability of one or more in a year, `1 − e^−λ` (Poisson).
     pub fn annual_probability(&self) -> f64 {
-        -(-self.per_year).exp_m1()
+        -libm::expm1(-self.per_year)
     }
 
     /// The same scaled: a probability that each event is followed by another.

@@ -111,7 +111,7 @@ fn cells(rate: &Rate, annual: &Annual) -> Vec<Option<Estimate>> {
     vec![
         Some(of(rate, |x| x)),
         Some(years),
-        Some(of(rate, |x| -100.0 * (-x).exp_m1())),
+        Some(of(rate, |x| -100.0 * libm::expm1(-x))),
         Some(of(rate, |x| 100.0 * x / annual.events_per_year)),
         Some(estimate(rate.by_log_rate, None, None)),
         rate.by_exponent.map(|slope| estimate(slope, None, None)),
