@@ -287,17 +287,25 @@ impl Plan {
     /// the answer.
     #[must_use]
     pub fn keep_everything(self) -> Self {
-        let triangles = if let Part::Kept(triangles) = self.trees { triangles } else { 0 };
-        let step_s = if let Part::Kept(paths) = &self.paths { paths.step_s } else { PATH_STEP_S };
+        let plan = self.without_kernels();
+        let triangles = if let Part::Kept(triangles) = plan.trees { triangles } else { 0 };
+        let step_s = if let Part::Kept(paths) = &plan.paths { paths.step_s } else { PATH_STEP_S };
         Self {
             trees: Part::Kept(triangles),
             rolling: Part::Kept(()),
             roughness: Part::Kept(()),
-            paths: Part::Kept(Paths { first: self.count, step_s }),
+            paths: Part::Kept(Paths { first: plan.count, step_s }),
             impacts: Part::Kept(()),
-            terrain: self.terrain.with_every_feature(),
-            ..self
+            terrain: plan.terrain.with_every_feature(),
+            ..plan
         }
+    }
+
+    /// The same plan with every impact followed step by step: the same motion within the error allowed.
+    #[must_use]
+    pub fn without_kernels(mut self) -> Self {
+        self.step.plane_impacts = false;
+        self
     }
 }
 
@@ -316,6 +324,7 @@ fn settings(solver: &SolverTable) -> Settings {
         tolerance_m_s: solver.tolerance_m_s.unwrap_or(tolerance_m_s),
         step_s: solver.step_s.unwrap_or(step_s),
         shear_memory: solver.shear_memory.unwrap_or(true),
+        plane_impacts: matches!(scheme, Scheme::Adaptive | Scheme::Reference),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
 }

@@ -111,6 +111,8 @@ impl Default for Near {
             faces: Vec::with_capacity(64),
             edges: Vec::with_capacity(64),
             corners: Vec::with_capacity(64),
+            saddles: Vec::with_capacity(64),
+            patches: Patches::with_room(),
             rays: Vec::with_capacity(512),
             sheets: Vec::with_capacity(256),
             ..Self::empty()
@@ -199,17 +201,45 @@ impl Near {
         }
     }
 
-    /// Whether all that can touch within the margin lies in the plane of `face`, however many triangles that is.
-    pub fn is_one_plane(&self, face: u32) -> bool {
+    /// Whether a rock touches nothing but the plane of `face`, however many triangles that is, wherever its centre goes up to
+    /// `way` (m) from `centre`: distances change no faster than the centre moves.
+    pub fn is_plane_within(&self, face: u32, centre: &Vec3, way: f64) -> bool {
         let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
-        let (near, flat) = (SLACK * self.radius, SLACK * SLACK);
-        self.edges.is_empty()
-            && self.corners.is_empty()
-            && self.saddles.is_empty()
-            && self.faces.iter().all(|other| {
-                let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
-                turned <= flat && own.n.dot(&(other.a - own.a)).abs() <= near
-            })
+        let reach = self.radius + way;
+        let flat = SLACK * self.radius;
+        let in_plane = |p: &Vec3| own.n.dot(&(p - own.a)).abs() <= flat;
+        let lies_flat = |rays: (u32, u32)| {
+            let rays = &self.rays[rays.0 as usize..rays.1 as usize];
+            rays.len() > 1 && rays.iter().all(|ray| own.n.dot(ray).abs() <= SLACK)
+        };
+        let outward = |rays: (u32, u32), off: &Vec3, side: f64| {
+            let rays = &self.rays[rays.0 as usize..rays.1 as usize];
+            rays.iter().all(|ray| side * ray.dot(off) >= -way)
+        };
+        self.faces.iter().all(|other| {
+            let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
+            turned <= SLACK * SLACK && in_plane(&other.a)
+                || other.n.dot(&(centre - other.a)).abs() >= reach
+                || !other.holds_foot_of(centre, way)
+        }) && self.edges.iter().all(|edge| {
+            let to = centre - edge.a;
+            let off = to - edge.along * edge.along.dot(&to).clamp(0.0, edge.length);
+            off.norm_squared() >= reach * reach
+                || !outward(edge.rays, &off, 1.0)
+                || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.a)
+        }) && self.corners.iter().all(|corner| {
+            (centre - corner.p).norm_squared() >= reach * reach
+                || !corner.at_border && lies_flat(corner.rays) && in_plane(&corner.p)
+        }) && self.saddles.iter().all(|saddle| match saddle {
+            NearSaddle::Edge { a, along, length, rays } => {
+                let to = centre - a;
+                let off = to - along * along.dot(&to).clamp(0.0, *length);
+                off.norm_squared() >= reach * reach
+                    || rays.0 < rays.1 && !outward(*rays, &off, -1.0)
+                    || lies_flat(*rays) && in_plane(a)
+            }
+            NearSaddle::Vertex { p, .. } => (centre - p).norm_squared() >= reach * reach,
+        })
     }
 
     /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners; where a
@@ -245,10 +275,14 @@ impl Near {
             NearSaddle::Edge { a, along, length, rays } => {
                 let to = centre - a;
                 let s = along.dot(&to);
-                let off = to - along * s.clamp(0.0, *length);
+                let off = to - along * s;
+                let slack = SLACK * self.radius;
                 let outward = &self.rays[rays.0 as usize..rays.1 as usize];
-                off.norm_squared() < self.radius * self.radius
-                    && outward.iter().all(|out| out.dot(&off) <= SLACK * self.radius)
+                // beyond its ends the edge is as near as its vertices, and those are asked by themselves
+                s >= -slack
+                    && s <= length + slack
+                    && off.norm_squared() < self.radius * self.radius
+                    && outward.iter().all(|out| out.dot(&off) <= slack)
             }
             NearSaddle::Vertex { id, p } => {
                 let off = centre - p;

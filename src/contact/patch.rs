@@ -55,6 +55,11 @@ pub(super) struct Patches {
 }
 
 impl Patches {
+    /// With room for what is usually pressed.
+    pub(super) fn with_room() -> Self {
+        Self { pressed: Vec::with_capacity(128), shared: Vec::with_capacity(1024) }
+    }
+
     /// Finds the patches of a ball of `radius` (m) at `centre` among `sheets`, all triangles near it, and hands each to
     /// `found`, in the order of their first triangles.
     pub(super) fn find(

@@ -87,6 +87,7 @@ impl Plan {
                 format!("{speed:.4} m/s on {name}, {whose}: slower impacts do not rebound"),
             );
         }
+        list.line("impacts on one plane", plane_impacts(step));
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
@@ -268,6 +269,15 @@ fn one_world(scheme: Scheme, ground: &Ground) -> String {
 fn map([x, y, z]: [f64; 3], epsg: Option<u32>) -> String {
     let code = epsg.map_or_else(|| "no EPSG code".to_owned(), |code| format!("EPSG:{code}"));
     format!("origin ({x}, {y}, {z}) m subtracted, {code}")
+}
+
+fn plane_impacts(step: &Settings) -> &'static str {
+    match (step.scheme, step.plane_impacts) {
+        (Scheme::Rigid, _) => "in no time: the limit of stiff springs",
+        (Scheme::Dda, _) => "left out: the fixed step knows no other",
+        (_, true) => "followed as a whole, in their own time; all others step by step",
+        (_, false) => "left out: every impact is followed step by step",
+    }
 }
 
 fn scheme(step: &Settings) -> String {

@@ -63,10 +63,12 @@ pub struct Control {
     pub tolerance: f64,
     /// … and in an impact (–, relative to its speed).
     pub impact: f64,
+    /// Whether an impact on one plane is followed as a whole.
+    pub plane_impacts: bool,
 }
 
 /// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most.
-const IMPACT: (f64, f64) = (4e-4, 2e-5);
+const IMPACT: (f64, f64) = (4e-3, 2e-4);
 /// The same for the reference.
 const IMPACT_OF_REFERENCE: f64 = 1e-10;
 /// Local error allowed in lasting contact, whatever is asked for (–, relative to √(g R), the speed of a rock that tips over
@@ -82,7 +84,12 @@ impl Control {
             Scheme::Reference => IMPACT_OF_REFERENCE,
             _ => (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1),
         };
-        Self { tableau, tolerance: settings.tolerance_m_s.min(relative), impact }
+        Self {
+            tableau,
+            tolerance: settings.tolerance_m_s.min(relative),
+            impact,
+            plane_impacts: settings.plane_impacts,
+        }
     }
 }
 
@@ -112,7 +119,7 @@ pub fn advance(
     let mut done = Advance::default();
     if grip.is_rebounding() {
         grip.leave_plane(world);
-        if grip.bounce(world, control.impact, h_max, &mut done) {
+        if control.plane_impacts && grip.bounce(world, control.impact, h_max, &mut done) {
             return Ok(done);
         }
         let omega = stiffest(world, grip);

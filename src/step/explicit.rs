@@ -5,8 +5,8 @@
 //! impact, so that restitution is as right for a pebble as for a block. Geometry is that of every stage; force is continuous
 //! wherever patches meet (`contact::patch`), and where a further contact begins the step is cut by its error.
 
-use super::adaptive::{Advance, Stuck, travel_limit};
-use super::grip::{Grip, Loss, Rate, TOUCH, World};
+use super::adaptive::{Advance, Stuck, TRAVEL};
+use super::grip::{Grip, Loss, Rate, TOUCH, World, longest_step};
 use super::impact::{Followed, Plane};
 use super::stage::End;
 use crate::contact::hold::{HOLDS, carry};
@@ -43,7 +43,9 @@ const FIRST: f64 = 0.4;
 /// Longest step (rad): beyond about 3 an explicit step is not stable.
 const LONGEST: f64 = 1.5;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
-const KINKED: f64 = 0.1;
+const KINKED: f64 = 0.25;
+/// Largest error of energy that is balanced (–, relative to motion).
+const BALANCED: f64 = 0.1;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
 const SHORTEST: f64 = 1e-9;
 /// Safety factor of the step controller (–).
@@ -106,6 +108,13 @@ impl Explicit {
     }
 }
 
+/// What the contacts of one stage do to the rock.
+struct Motions {
+    v: Vec3,
+    w: Vec3,
+    loss: Loss,
+}
+
 impl Grip {
     /// Whether an impact is going on.
     pub(crate) fn is_rebounding(&self) -> bool {
@@ -114,6 +123,7 @@ impl Grip {
 
     /// All of an impact on one plane, if it is one: nothing else can be touched as far as the rock gets, springs are
     /// unstretched, and the rock comes out again within `h_max` (s). `tolerance` as in [`Self::step_impact`].
+    #[inline(never)]
     pub(crate) fn bounce(
         &mut self,
         world: &World,
@@ -122,19 +132,19 @@ impl Grip {
         done: &mut Advance,
     ) -> bool {
         let [hold] = &self.holds[..] else { return false };
-        let is_face = hold.feature.kind == FeatureKind::Face;
-        let begins = !hold.closed && is_face && self.near.is_one_plane(hold.feature.id);
-        // a stem that may give way is asked step by step
-        let yields = world.terrain.stems.is_some() && world.terrain.is_tree(hold.triangle);
-        if !begins || yields || self.touches.iter().any(|touch| self.is_sunk(world, touch)) {
+        let (face, is_face) = (hold.feature.id, hold.feature.kind == FeatureKind::Face);
+        let begins = !hold.closed && is_face;
+        if !begins || self.may_yield || self.touches.iter().any(|touch| self.is_sunk(world, touch))
+        {
             return false;
         }
         let (n, triangle) = (hold.n, hold.triangle);
         let plane = Plane::new(&world.body, world.law(triangle), tolerance);
         let Followed::Left(rebound) = plane.follow(&n, &self.v, &self.w) else { return false };
         let along = rebound.shift_m - n * n.dot(&rebound.shift_m);
-        let reached = along.norm_squared() + rebound.deepest_m.powi(2);
-        if rebound.time_s > h_max || reached > self.near.room_m(&self.c).max(0.0).powi(2) {
+        let way = along.norm().hypot(rebound.deepest_m);
+        let is_known = way <= self.near.room_m(&self.c);
+        if rebound.time_s > h_max || !is_known || !self.near.is_plane_within(face, &self.c, way) {
             return false;
         }
         self.c += rebound.shift_m;
@@ -158,6 +168,7 @@ impl Grip {
     ///
     /// # Errors
     /// [`Stuck`] if the motion is no longer finite.
+    #[inline(never)]
     pub(crate) fn step_impact(
         &mut self,
         world: &World,
@@ -173,7 +184,10 @@ impl Grip {
         if self.impact.h == 0.0 {
             self.impact.h = FIRST / omega;
         }
-        let limit = travel_limit(world, self).min(LONGEST / omega);
+        let c = self.c;
+        self.know(world, &c);
+        let way = TRAVEL * world.body.radius;
+        let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST / omega);
         let known = self.holds.len();
         loop {
             self.holds.truncate(known);
@@ -208,8 +222,9 @@ impl Grip {
             off[1] += rate.v * weight;
             off[2] += rate.w * weight;
         }
-        for k in 0..self.holds.len() {
-            let stages = self.impact.rates.iter().zip(ERROR);
+        // A spring that nothing presses on any more holds nothing: how it relaxes does not matter.
+        for spot in self.spots[..self.spot_count].iter().filter(|spot| spot.push > 0.0) {
+            let (k, stages) = (spot.hold, self.impact.rates.iter().zip(ERROR));
             let drift = stages.fold(Vec3::zeros(), |sum, (rate, by)| sum + rate.shear[k] * by);
             stretch2 = stretch2.max(drift.norm_squared());
         }
@@ -233,7 +248,8 @@ impl Grip {
     fn rate_at(&mut self, world: &World, at: &End, i: usize, dt: f64) {
         let body = &world.body;
         self.look(world, &at.c, body.radius * (1.0 + TOUCH));
-        let mut total = Rate { c: at.v, v: body.gravity, ..Rate::NONE };
+        let mut total = Motions { v: body.gravity, w: Vec3::zeros(), loss: Loss::default() };
+        self.impact.rates[i].clear(HOLDS.min(self.holds.len() + self.touches.len()));
         let mut taken = 0;
         self.spot_count = self.touches.len();
         for k in 0..self.touches.len() {
@@ -257,12 +273,13 @@ impl Grip {
             let (shear_rate, roll_rate) = spot.act_now(world, &at.v, &at.w);
             total.v += (spot.n * spot.push - spot.drag) / body.mass;
             total.w += (spot.n.cross(&spot.drag) * body.radius - spot.moment) / body.inertia;
-            total.shear[hold] = carry(shear_rate, &spot.n, &back);
-            total.roll[hold] = roll_rate;
+            let rate = &mut self.impact.rates[i];
+            (rate.shear[hold], rate.roll[hold]) = (carry(shear_rate, &spot.n, &back), roll_rate);
             total.loss.add(&spot.loss(world, &at.v, &at.w, &shear_rate), 1.0);
             self.spots[k] = spot;
         }
-        self.impact.rates[i] = total;
+        let rate = &mut self.impact.rates[i];
+        (rate.c, rate.v, rate.w, rate.loss) = (at.v, total.v, total.w, total.loss);
     }
 
     /// Takes over the step's end: motion, memories, losses. The last stage was there.
@@ -281,17 +298,18 @@ impl Grip {
         self.keep_closed(world);
         self.fresh = false;
         if self.is_free() || self.impact.left <= 0.0 {
-            self.give_back(world);
+            self.balance(world);
         }
         done.loss.add(&loss, 1.0);
         done.dt += dt;
         done.steps += 1;
     }
 
-    /// Takes from motion what the steps of the impact have gained: they may lose energy, never make some.
-    fn give_back(&mut self, world: &World) {
+    /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of
+    /// the energy is what came in less what the contacts took.
+    fn balance(&mut self, world: &World) {
         let (gained, motion) = (self.impact.gained, self.motion_j(&world.body));
-        if gained > 0.0 && motion > gained {
+        if gained.abs() < BALANCED * motion {
             let kept = (1.0 - gained / motion).sqrt();
             self.v *= kept;
             self.w *= kept;
@@ -319,16 +337,17 @@ impl Grip {
     /// Forgets contacts that have opened and makes the last rate the first of the next step.
     fn keep_closed(&mut self, world: &World) {
         let merged = self.merge_lost(world);
-        let mut next = self.impact.rates[STAGES - 1];
-        let (mut kept, count) = (0, self.holds.len());
-        for k in 0..count.min(HOLDS) {
+        let (first, last) = self.impact.rates.split_at_mut(STAGES - 1);
+        let (next, last) = (&mut first[0], &last[0]);
+        (next.c, next.v, next.w, next.loss) = (last.c, last.v, last.w, last.loss);
+        let mut kept = 0;
+        for k in 0..self.holds.len() {
             if self.holds[k].closed {
-                (next.shear[kept], next.roll[kept]) = (next.shear[k], next.roll[k]);
+                (next.shear[kept], next.roll[kept]) = (last.shear[k], last.roll[k]);
                 kept += 1;
             }
         }
         self.holds.retain(|hold| hold.closed);
-        self.impact.rates[0] = next;
         self.impact.fresh = !merged;
     }
 }

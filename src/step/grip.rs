@@ -135,6 +135,13 @@ impl Rate {
         self.roll[..holds].copy_from_slice(&from.roll[..holds]);
     }
 
+    /// Forgets the rates of the first `holds` springs.
+    #[inline]
+    pub fn clear(&mut self, holds: usize) {
+        self.shear[..holds].fill(Vec3::zeros());
+        self.roll[..holds].fill(Vec3::zeros());
+    }
+
     /// No change.
     pub const NONE: Self = Self {
         c: Vec3::new(0.0, 0.0, 0.0),
@@ -179,6 +186,8 @@ pub struct Grip {
     pub(crate) impact: Explicit,
     /// Contacts that are about to be struck anew within an episode (`rigid`).
     pub struck: Holds,
+    /// Whether what is touched may give way: it is asked step by step.
+    pub may_yield: bool,
     /// Whether the blow in hand has been announced (`rigid`).
     pub(crate) is_struck: bool,
     /// Work space of the fixed step.
@@ -231,6 +240,7 @@ impl Grip {
             impact: Explicit::default(),
             struck: Holds::default(),
             is_struck: true,
+            may_yield: false,
             bench: Bench::default(),
             sweeps: 0,
             clocks: Clocks::default(),

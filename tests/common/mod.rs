@@ -56,6 +56,7 @@ pub struct Case {
     pub tolerance_m_s: f64,
     pub step_s: f64,
     pub shear_memory: bool,
+    pub plane_impacts: bool,
     pub ground: Ground,
     pub rock: Rock,
     pub capture_speed_m_s: Option<f64>,
@@ -68,6 +69,7 @@ pub const CASE: Case = Case {
     tolerance_m_s: 1e-3,
     step_s: 1e-5,
     shear_memory: true,
+    plane_impacts: true,
     ground: GROUND,
     rock: ROCK,
     capture_speed_m_s: None,
@@ -95,6 +97,7 @@ impl Case {
             tolerance_m_s: self.tolerance_m_s,
             step_s: self.step_s,
             shear_memory: self.shear_memory,
+            plane_impacts: self.plane_impacts,
             capture_speed_m_s: self.capture_speed_m_s,
         };
         let course = Course {

@@ -51,6 +51,7 @@ impl World {
             tolerance_m_s: self.tolerance_m_s,
             step_s: self.step_s,
             shear_memory: true,
+            plane_impacts: true,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
         let course = Course {

@@ -161,6 +161,7 @@ impl<'a> Job<'a> {
             tableau: if self.course.step.scheme == Scheme::Reference { &ESDIRK4 } else { &TR_BDF2 },
             tolerance: self.course.step.tolerance_m_s,
             impact: f64::INFINITY,
+            plane_impacts: false,
         };
         let now_s = self.now_s;
         self.rovers.iter_mut().for_each(|rover| rover.fly_to(self.course, now_s));
