@@ -187,7 +187,7 @@ impl Plan {
         let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
         stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
-        let between = scene.release.together.then(|| between_rocks(scene)).flatten();
+        let between = scene.release.together.then(|| grounds::between_rocks(scene)).flatten();
         let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
         let is_rough = values().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
         Ok(Self {
@@ -327,19 +327,6 @@ fn settings(solver: &SolverTable) -> Settings {
         plane_impacts: matches!(scheme, Scheme::Adaptive | Scheme::Reference),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
-}
-
-/// How rocks answer each other.
-fn between_rocks(scene: &Scene) -> Option<Ground> {
-    scene.rocks.contact.as_ref().map(|contact| Ground {
-        normal_stiffness_n_m: contact.normal_stiffness_n_m,
-        shear_stiffness_n_m: contact.shear_stiffness_n_m,
-        friction_angle_rad: contact.friction_angle_deg.to_radians(),
-        restitution: contact.restitution,
-        rolling_friction: 0.0,
-        roughness_rad: 0.0,
-        roughness_length_m: None,
-    })
 }
 
 fn bonds(scene: &Scene) -> Part<Strength> {

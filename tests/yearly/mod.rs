@@ -1,6 +1,6 @@
 //! Made-up crossings of a line by rocks of a known law.
 
-#![allow(missing_docs, dead_code, unreachable_pub)]
+#![allow(missing_docs, dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use rockfall::chance::{Purpose, stream, unit};
 use rockfall::frequency::{Frequency, Law, Source, radius_of_m3};
