@@ -1,5 +1,6 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod annual;
 mod apart;
 mod cost;
 mod grounds;
@@ -8,16 +9,17 @@ mod listing;
 mod stiffness;
 mod watch;
 
+pub use annual::Year;
 pub use cost::Cost;
 pub use stiffness::OwnDissipation;
-pub use watch::{Curtain, Lattice, Piece, Watch};
+pub use watch::{Curtain, Footprint, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::release::{self, Lost, Release, Releases};
-use crate::scene::{BarrierTable, Polyline, RecordTable, Scene, SolverTable};
+use crate::scene::{BarrierTable, ObjectTable, Polyline, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -126,6 +128,10 @@ pub struct Plan {
     pub lines: Part<Vec<Curtain>>,
     /// Barriers; each has an evaluation line of its name.
     pub barriers: Part<Vec<BarrierTable>>,
+    /// Objects that rocks may hit; each has a curtain of its name.
+    pub objects: Part<Vec<ObjectTable>>,
+    /// Sources and their frequency.
+    pub year: Part<Year>,
     /// Cells of the maps.
     pub maps: Part<Lattice>,
     /// Grounds with values of the catalogue: name, what was taken, source.
@@ -177,10 +183,12 @@ impl Plan {
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         stiffness::flutter(&step, &mut warnings);
+        let year = annual::year(scene, &terrain, &mut warnings)?;
+        let objects = annual::objects(scene, &mut warnings);
         let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
         stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
-        let between = scene.release.together.then(|| between_rocks(scene)).flatten();
+        let between = scene.release.together.then(|| grounds::between_rocks(scene)).flatten();
         let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
         let is_rough = values().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
         let plan = Self {
@@ -192,7 +200,7 @@ impl Plan {
             seed: scene.seed,
             count: scene.release.count,
             releases,
-            radii_m: scene.rocks.radius_m.reckoned(),
+            radii_m: scene.rocks.radius_m().reckoned(),
             ground_names: scene.grounds.keys().cloned().collect(),
             gravity_m_s2: scene.gravity_m_s2,
             step,
@@ -203,7 +211,7 @@ impl Plan {
                 time_s: scene.solver.rest_time_s.unwrap_or(REST_TIME_S),
             },
             longest_s,
-            trees: Part::when(tree_triangles(&terrain), "the scene has none"),
+            trees: Part::when(grounds::tree_triangles(&terrain), "the scene has none"),
             breaking: Part::when(
                 terrain.stems.as_ref().map(Stems::count),
                 "no ground of trees has breaks_above_j, stems stand for good",
@@ -232,6 +240,8 @@ impl Plan {
                 Some(scene.barriers.clone()).filter(|all| !all.is_empty()),
                 "the scene has none",
             ),
+            objects,
+            year,
             maps: Part::when(
                 lattice(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
@@ -324,19 +334,6 @@ fn settings(solver: &SolverTable) -> Settings {
     }
 }
 
-/// How rocks answer each other.
-fn between_rocks(scene: &Scene) -> Option<Ground> {
-    scene.rocks.contact.as_ref().map(|contact| Ground {
-        normal_stiffness_n_m: contact.normal_stiffness_n_m,
-        shear_stiffness_n_m: contact.shear_stiffness_n_m,
-        friction_angle_rad: contact.friction_angle_deg.to_radians(),
-        restitution: contact.restitution,
-        rolling_friction: 0.0,
-        roughness_rad: 0.0,
-        roughness_length_m: None,
-    })
-}
-
 fn bonds(scene: &Scene) -> Part<Strength> {
     let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
         return Part::LeftOut("releases are independent");
@@ -377,16 +374,12 @@ fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
     let mut all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
     let elsewhere = scene.barriers.iter().flat_map(BarrierTable::elsewhere);
     all.extend(elsewhere.map(|(_, name, line)| Curtain::new(&name, &line, terrain.origin_m)));
+    all.extend(annual::curtains(scene, terrain)?);
     Ok(Some(all).filter(|all| !all.is_empty()))
 }
 
 fn lattice(scene: &Scene, terrain: &Terrain) -> Result<Option<Lattice>> {
     scene.maps.as_ref().map(|maps| Lattice::over(terrain, maps, &scene.file)).transpose()
-}
-
-fn tree_triangles(terrain: &Terrain) -> Option<usize> {
-    let trees = (0..terrain.triangles.len() as u32).filter(|&triangle| terrain.is_tree(triangle));
-    Some(trees.count()).filter(|count| *count > 0)
 }
 
 fn can_exceed_0(value: Option<&Distribution>) -> bool {

@@ -1,13 +1,15 @@
 //! Rock number i: drawn from the scene, the seed and i, and put on the terrain.
 
 mod clear;
+mod sources;
 mod tried;
 
 use crate::chance::{Chance, Distribution, Purpose, stream, unit};
 use crate::error::{Error, Result};
+use crate::frequency::Frequency;
 use crate::ground::Ground;
 use crate::rock::{Motion, Rock, Vec3};
-use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene};
+use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable};
 use crate::terrain::Terrain;
 use clear::{clear_of, distance_m};
 use std::path::PathBuf;
@@ -67,11 +69,13 @@ pub struct Releases {
     file: PathBuf,
     seed: u64,
     gravity_m_s2: f64,
-    place: Where,
+    /// One, or one for each source.
+    places: Vec<Where>,
     height_m: Option<Distribution>,
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
     radius_m: Distribution,
+    frequency: Option<Frequency>,
     /// Radii of a table's blocks, taken in turn with their places (m); empty if they are drawn.
     radii_m: Vec<f64>,
     density_kg_m3: f64,
@@ -87,58 +91,46 @@ impl Releases {
     /// coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
         let asked = &scene.release;
-        let place = if asked.blocks.is_empty() {
-            Self::place_asked(scene)?
+        let sources = scene.frequency.as_ref().map_or(&[][..], |table| &table.sources[..]);
+        let places = if !asked.blocks.is_empty() {
+            vec![Where::Points(asked.blocks.iter().map(Point::of_block).collect())]
+        } else if sources.is_empty() {
+            vec![Self::place_asked(scene)?]
         } else {
-            Where::Points(asked.blocks.iter().map(Point::of_block).collect())
+            let of_source =
+                |one: &SourceTable| Where::one_of((&one.points_m, &one.line_m, &one.polygon_m));
+            sources.iter().filter_map(of_source).collect()
         };
         let releases = Self {
             file: scene.file.clone(),
             seed: scene.seed,
             gravity_m_s2: scene.gravity_m_s2,
-            place,
+            places,
             height_m: asked.height_m.clone(),
             velocity_m_s: asked.velocity_m_s.clone(),
             spin_rad_s: asked.spin_rad_s.clone(),
-            radius_m: scene.rocks.radius_m.clone(),
+            radius_m: scene.rocks.radius_m().clone(),
+            frequency: scene.sources(),
             radii_m: asked.blocks.iter().map_while(|block| block.radius_m).collect(),
             density_kg_m3: scene.rocks.density_kg_m3,
             grounds: scene.grounds.values().cloned().collect(),
         };
-        let (key, corners_m) = releases.place.corners_m();
-        for (number, corner) in corners_m.into_iter().enumerate() {
-            let who = format!("[release] {key}, entry {}", number + 1);
-            releases.check_corner(terrain, number, corner, &who)?;
-        }
-        if let Where::Points(points) = &releases.place {
-            for index in 0..points.len().min(asked.count) {
-                releases.release(terrain, index)?;
-            }
+        releases.look_for_ground(terrain)?;
+        for index in 0..releases.turns().min(asked.count) {
+            releases.release(terrain, index)?;
         }
         Ok(releases)
     }
 
-    fn place_asked(scene: &Scene) -> Result<Where> {
-        let asked = &scene.release;
-        match (&asked.points_m, &asked.line_m, &asked.polygon_m) {
-            (Some(points), None, None) => Ok(Where::Points(points.clone())),
-            (None, Some(line), None) => Ok(Where::Line(line.clone())),
-            (None, None, Some(area)) => Ok(Where::Area(area.clone())),
-            _ => {
-                let remedy = "write exactly one of points_m, line_m and polygon_m";
-                Err(Error::input(&scene.file, "[release]", "found none or several", remedy))
-            }
-        }
-    }
-
-    /// Where rocks are released.
-    pub fn place(&self) -> &Where {
-        &self.place
-    }
-
     /// Looks for ground below an entry of the place, or beside a centre that is given with its height.
-    fn check_corner(&self, terrain: &Terrain, entry: usize, at_m: Corner, who: &str) -> Result<()> {
-        let Where::Points(points) = &self.place else {
+    fn check_corner(
+        &self,
+        terrain: &Terrain,
+        (place, entry): (&Where, usize),
+        at_m: Corner,
+        who: &str,
+    ) -> Result<()> {
+        let Where::Points(points) = place else {
             return self.ground_m(terrain, at_m, who).map(|_| ());
         };
         let Some(z) = points[entry].height_m else {
@@ -179,7 +171,8 @@ impl Releases {
     ) -> (std::result::Result<Release, Box<Lost>>, usize) {
         let mut release = self.unplaced(index);
         let mut chance = stream(self.seed, Purpose::Place, index);
-        let draws = if matches!(self.place, Where::Points(_)) { 1 } else { MOST_DRAWS };
+        let is_fixed = matches!(self.place_of(index).0, Where::Points(_));
+        let draws = if is_fixed { 1 } else { MOST_DRAWS };
         let mut lost = None;
         for drawn in 1..=draws {
             let at_m = self.draw_place(&mut chance, index);
@@ -208,12 +201,7 @@ impl Releases {
     /// Everything of a release but its place.
     fn unplaced(&self, index: usize) -> Release {
         let grounds = self.draw_grounds(index);
-        let radius_m = if self.radii_m.is_empty() {
-            self.radius_m.draw(&mut stream(self.seed, Purpose::Size, index))
-        } else {
-            self.radii_m[index % self.radii_m.len()]
-        };
-        let rock = Rock { radius_m, density_kg_m3: self.density_kg_m3 };
+        let rock = Rock { radius_m: self.draw_radius_m(index), density_kg_m3: self.density_kg_m3 };
         let mut chance = stream(self.seed, Purpose::Start, index);
         let mut vector = |from: &[Distribution; 3]| {
             let [x, y, z] = from;
@@ -227,9 +215,10 @@ impl Releases {
     /// A place on the map, and the height of the rock's centre where it is given.
     fn draw_place(&self, chance: &mut Chance, index: usize) -> (Corner, Option<f64>) {
         let even = [0; 3].map(|_| unit(chance));
-        match &self.place {
+        let (place, turn) = self.place_of(index);
+        match place {
             Where::Points(points) => {
-                let point = &points[index % points.len()];
+                let point = &points[turn % points.len()];
                 (point.at_m, point.height_m)
             }
             Where::Line(line) => (line.at(even[0]), None),
@@ -328,17 +317,6 @@ impl Releases {
             roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut chance)),
         };
         self.grounds.iter().map(draw_ground).collect()
-    }
-}
-
-impl Where {
-    /// The scene's key and its points or corners in plan view (m), map coordinates.
-    fn corners_m(&self) -> (&'static str, Vec<Corner>) {
-        match self {
-            Self::Points(points) => ("points_m", points.iter().map(|point| point.at_m).collect()),
-            Self::Line(line) => ("line_m", line.corners_m().to_vec()),
-            Self::Area(area) => ("polygon_m", area.corners_m().to_vec()),
-        }
     }
 }
 

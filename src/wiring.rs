@@ -1,6 +1,7 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
 pub(crate) mod study;
+mod year;
 
 use rockfall::calibrate::{self, Ends, Trial};
 use rockfall::ensemble::Ensemble;
@@ -88,6 +89,7 @@ pub(crate) fn run(
     begin: impl FnOnce(Arc<AtomicBool>) -> Result<()>,
     progress: impl Fn(usize, usize),
 ) -> Result<Ended> {
+    year::allows(plan, order.until.is_some())?;
     let ensemble = Ensemble::new(order.threads)?;
     begin(ensemble.stop_flag())?;
     let mut mode = order.mode;
@@ -212,6 +214,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         lines: line_infos(plan),
         maps: map_frame(plan),
         barriers: barriers(plan),
+        asked: year::asked(plan),
         observed: read_measured(plan)?,
         keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),

@@ -119,7 +119,7 @@ fn fixing_the_radius_leaves_the_other_draws_alone() {
     let terrain = plane(0.0);
     let drawn_radius = scene(L_SHAPE, "");
     let mut fixed_radius = drawn_radius.clone();
-    fixed_radius.rocks.radius_m = rockfall::chance::Distribution::fixed(0.3).unwrap();
+    fixed_radius.rocks.radius_m = Some(rockfall::chance::Distribution::fixed(0.3).unwrap());
     let (some, others) = (drawn(&drawn_radius, &terrain, 20), drawn(&fixed_radius, &terrain, 20));
     for (one, other) in some.iter().zip(&others) {
         assert_eq!(one.motion.position_m.xy(), other.motion.position_m.xy());

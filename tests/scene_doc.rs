@@ -54,6 +54,12 @@ fn every_known_key_stands_in_the_documentation() {
         ("lines", "[[lines]]\n", ""),
         ("barriers", "[[barriers]]\n", ""),
         ("barriers.design", "[barriers.design]\n", ""),
+        ("objects", "[[objects]]\n", ""),
+        ("objects.vehicles", "vehicles = {", ""),
+        ("frequency", "[frequency]\n", ""),
+        ("frequency.sources", "[[frequency.sources]]\n", "[[frequency.sources]]\n"),
+        ("frequency.classes", "[[frequency.classes]]\n", "[[frequency.classes]]\n"),
+        ("frequency.matrix", "[frequency.matrix]\n", "[frequency.matrix]\n"),
         ("maps", "[maps]\n", ""),
         ("report", "[report]\n", ""),
         ("calibrate", calibrate, calibrate),
@@ -66,7 +72,8 @@ fn every_known_key_stands_in_the_documentation() {
     for (section, begins, added) in places {
         let scene = format!("{}\n{added}", example());
         assert!(scene.contains(begins), "{section}");
-        let mut known = known(&scene.replacen(begins, &format!("{begins}zzz = 1\n"), 1));
+        let end = if begins.ends_with('{') { ", " } else { "\n" };
+        let mut known = known(&scene.replacen(begins, &format!("{begins}zzz = 1{end}"), 1));
         let mut documented = documented(section);
         known.sort();
         documented.sort();

@@ -177,7 +177,11 @@ impl Distribution {
         Self::values(values, None)
     }
 
-    pub(super) fn values(values: Vec<f64>, weights: Option<Vec<f64>>) -> Result<Self, Flaw> {
+    /// One of the values, as often as the weights say; all alike without weights.
+    ///
+    /// # Errors
+    /// No values, other numbers of values and weights, numbers that are not finite, weights below 0 or all 0.
+    pub fn values(values: Vec<f64>, weights: Option<Vec<f64>>) -> Result<Self, Flaw> {
         let weights = weights.unwrap_or_else(|| vec![1.0; values.len()]);
         finite(&values)?;
         finite(&weights)?;

@@ -3,14 +3,17 @@
 //! A barrier does not change a rock's way in the computation. A rock that the first barrier on its way stops counts as
 //! not arriving at those behind it: with several in line, each sees what the ones before have let through.
 
+mod weighted;
+
 use super::lines::CrossingRow;
 use super::proportion::Proportion;
-use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
+use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::iter;
+use weighted::{arriving, sample, stopped_at};
 
 /// A barrier on one of the evaluation lines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -131,18 +134,18 @@ pub struct Arrival {
 /// Rocks that arrive at each place of a barrier, its own first.
 pub type Arrivals = Vec<Vec<Arrival>>;
 
-/// Judges all barriers; `rows` are first crossings, release by release.
+/// Judges all barriers; `rows` are first crossings, release by release, and every rock weighs what it stands for.
 ///
 /// # Errors
 /// Passes on what reading a row says.
 pub fn judge<E>(
     barriers: &[Barrier],
     rows: impl Iterator<Item = Result<CrossingRow, E>>,
-    releases: usize,
+    weights: &Weights,
 ) -> Result<Vec<BarrierSummary>, E> {
     let (arrivals, crossing) = follow(barriers, rows)?;
     let all = barriers.iter().zip(&arrivals).zip(crossing);
-    Ok(all.map(|((barrier, places), n)| summary(barrier, places, (n, releases))).collect())
+    Ok(all.map(|((barrier, places), n)| summary(barrier, places, (n, weights))).collect())
 }
 
 /// The rocks that arrive at each barrier, at its own place and elsewhere.
@@ -218,7 +221,7 @@ fn until_stopped<'a>(barriers: &[Barrier], way: &'a [(usize, Arrival)]) -> &'a [
 }
 
 impl Arrival {
-    fn of(row: &CrossingRow) -> Self {
+    pub(super) fn of(row: &CrossingRow) -> Self {
         // where there is no ground below, nothing says how high it is: it is let through
         let top_m =
             if row.height_m.is_nan() { f64::INFINITY } else { row.height_m + 2.0 * row.radius_m };
@@ -234,54 +237,47 @@ impl Arrival {
 fn summary(
     barrier: &Barrier,
     places: &Arrivals,
-    (crossing, releases): (usize, usize),
+    (crossing, weights): (usize, &Weights),
 ) -> BarrierSummary {
     let rocks = &places[0];
-    let stopped = stopped_at(barrier, rocks, barrier.height_m);
+    let stopped = stopped_at(barrier, (rocks, weights), barrier.height_m);
     let over = rocks.iter().filter(|rock| rock.top_m > barrier.height_m).count();
     let statistic = |of: fn(&Arrival) -> f64| {
         let mut largest = None;
         for rock in rocks {
             Largest::update(&mut largest, rock.release, of(rock));
         }
-        statistic(&Sample::of(rocks.iter().map(of)), largest)
+        statistic(&sample(rocks, weights, of), largest)
     };
     let offsets = iter::once(0.0).chain(barrier.elsewhere.iter().map(|place| place.offset_m));
     let at_place = |(offset_m, rocks): (f64, &Vec<Arrival>)| AtPlace {
         offset_m,
-        arriving: Proportion::new(rocks.len(), releases),
+        arriving: arriving(rocks, weights),
         by_height: HEIGHTS
             .map(|share| share * barrier.height_m)
-            .map(|height_m| (height_m, stopped_at(barrier, rocks, height_m)))
+            .map(|height_m| (height_m, stopped_at(barrier, (rocks, weights), height_m)))
             .into(),
-        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks)),
+        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks, weights)),
     };
     BarrierSummary {
         barrier: barrier.clone(),
         crossing,
-        arriving: Proportion::new(rocks.len(), releases),
+        arriving: arriving(rocks, weights),
         stopped,
         over,
         through: rocks.len() - stopped.count - over,
         energy_j: statistic(|rock| rock.total_j),
         top_m: statistic(|rock| rock.top_m),
-        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks)),
+        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks, weights)),
         by_place: offsets.zip(places).map(at_place).collect(),
     }
 }
 
-/// The share of some rocks that the barrier would stop at another height (m).
-fn stopped_at(barrier: &Barrier, rocks: &[Arrival], height_m: f64) -> Proportion {
-    let stopped = rocks.iter().filter(|rock| rock.is_stopped(height_m, barrier.capacity_j));
-    Proportion::new(stopped.count(), rocks.len())
-}
-
 impl Rule {
     /// What it asks for, from the rocks that arrive; none without rocks.
-    fn design(&self, rocks: &[Arrival]) -> Option<Design> {
+    fn design(&self, rocks: &[Arrival], weights: &Weights) -> Option<Design> {
         let p = self.percentile / 100.0;
-        let value =
-            |of: fn(&Arrival) -> f64| Some(Sample::of(rocks.iter().map(of)).percentile(p)?.value);
+        let value = |of: fn(&Arrival) -> f64| Some(sample(rocks, weights, of).percentile(p)?.value);
         let product = |factors: &BTreeMap<String, f64>| factors.values().product::<f64>();
         let (energy, height) = (value(|rock| rock.total_j)?, value(|rock| rock.top_m)?);
         let speed = product(&self.speed_factors);
@@ -352,7 +348,8 @@ mod tests {
             row(4, "lower", 1.0, 0.5, 50.0),
             row(4, "upper -5 m", 1.5, 0.0, 10.0),
         ];
-        let found = judge(&barriers, rows.into_iter().map(Ok::<_, Infallible>), 8).unwrap();
+        let found = judge(&barriers, rows.into_iter().map(Ok::<_, Infallible>), &Weights::equal(8))
+            .unwrap();
         let counts = |k: usize| {
             let at: &BarrierSummary = &found[k];
             [at.arriving.count, at.stopped.count, at.over, at.through]

@@ -1,9 +1,11 @@
 //! What all rocks say at one evaluation line.
 
+use super::annual::proportion;
 use super::proportion::Proportion;
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
+use crate::frequency::Weights;
 use crate::rock::{Rock, Vec3};
 use crate::trajectory::Crossing;
 use serde::{Deserialize, Serialize};
@@ -176,6 +178,9 @@ pub struct Line {
     repeated: usize,
     values: [Vec<f64>; LineQuantity::ALL.len()],
     largest: [Option<Largest>; LineQuantity::ALL.len()],
+    /// Release numbers, in the order of the values; kept only where rocks weigh differently.
+    releases: Vec<u32>,
+    weights: Option<Weights>,
 }
 
 /// What `summary.json` says of a line.
@@ -201,13 +206,24 @@ impl Line {
             repeated: 0,
             values: Default::default(),
             largest: Default::default(),
+            releases: Vec::new(),
+            weights: None,
         }
+    }
+
+    /// The same, of rocks that weigh what they stand for.
+    #[must_use]
+    pub fn weighing(self, weights: Option<Weights>) -> Self {
+        Self { weights: weights.filter(|weights| !weights.are_equal()), ..self }
     }
 
     /// Adds the first crossing of a rock.
     pub fn add(&mut self, row: &CrossingRow) {
         self.crossings += 1;
         self.repeated += usize::from(row.times > 1);
+        if self.weights.is_some() {
+            self.releases.push(row.index as u32);
+        }
         for (slot, quantity) in LineQuantity::ALL.into_iter().enumerate() {
             let value = quantity.of(row);
             self.values[slot].push(value);
@@ -215,8 +231,12 @@ impl Line {
         }
     }
 
-    /// Rocks that cross it, as a share of `releases`.
+    /// Rocks that cross it, as a share of `releases`; where rocks weigh differently, of all events.
     pub fn reach(&self, releases: usize) -> Proportion {
+        if let Some(weights) = &self.weights {
+            let strata = self.releases.iter().map(|at| weights.stratum_of(*at as usize) as u16);
+            return proportion(weights, strata.map(|stratum| (stratum, 1)));
+        }
         Proportion::new(self.crossings, releases)
     }
 
@@ -227,7 +247,14 @@ impl Line {
 
     /// All values of one quantity, sorted.
     pub fn sample(&self, quantity: LineQuantity) -> Sample {
-        Sample::of(self.values[quantity as usize].iter().copied())
+        let values = self.values[quantity as usize].iter().copied();
+        match &self.weights {
+            None => Sample::of(values),
+            Some(weights) => {
+                let each = self.releases.iter().map(|at| weights.of_release(*at as usize));
+                Sample::weighted(values.zip(each))
+            }
+        }
     }
 
     /// Statistics of one quantity.

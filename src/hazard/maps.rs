@@ -1,11 +1,13 @@
 //! What all rocks say cell by cell: counts, largest values and percentiles.
 //!
 //! Memory grows with the cells that rocks pass, not with the rocks: percentiles come from counts over
-//! [classes](class_of) of equal ratio. Counts and largest values are the same in whatever order rocks arrive, so a
+//! [classes](super::classes) of equal ratio. Counts and largest values are the same in whatever order rocks arrive, so a
 //! resumed run gives the same maps.
 
+use super::annual::proportion;
+use super::classes::Counts;
 use super::row::StopKind;
-use crate::math;
+use crate::frequency::Weights;
 use crate::trajectory::Visit;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -41,62 +43,6 @@ impl MapFrame {
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.columns as usize * self.rows as usize
-    }
-}
-
-/// Ratio of the upper to the lower end of a class of values (–): its middle is at most 2.5 % from any value in it.
-const RATIO: f64 = 1.05;
-/// Upper end of the first class (J or m): smaller values are not told apart from 0.
-const SMALLEST: f64 = 1e-3;
-
-/// How often values fell in each class, by rising class.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-struct Counts(Vec<(u16, u32)>);
-
-/// Class of a value: 0 up to [`SMALLEST`], then equal ratios. 65535 classes reach beyond any f64.
-fn class_of(value: f64) -> u16 {
-    if value > SMALLEST {
-        (math::ln(value / SMALLEST) / math::ln(RATIO)).floor().min(65_534.0) as u16 + 1
-    } else {
-        0
-    }
-}
-
-/// The value that stands for a class: the geometric middle of its ends, 0 for the first.
-fn middle_of(class: u16) -> f64 {
-    if class == 0 { 0.0 } else { SMALLEST * math::pow(RATIO, f64::from(class) - 0.5) }
-}
-
-impl Counts {
-    fn add(&mut self, value: f64) {
-        self.add_class(class_of(value), 1);
-    }
-
-    fn add_class(&mut self, class: u16, count: u32) {
-        match self.0.binary_search_by_key(&class, |(known, _)| *known) {
-            Ok(at) => self.0[at].1 += count,
-            Err(at) => self.0.insert(at, (class, count)),
-        }
-    }
-
-    fn join(&mut self, other: &Self) {
-        for &(class, count) in &other.0 {
-            self.add_class(class, count);
-        }
-    }
-
-    /// The class that holds the ⌈p n⌉-th smallest value, by its middle; 0 of nothing.
-    fn percentile(&self, p: f64) -> f64 {
-        let n: u64 = self.0.iter().map(|(_, count)| u64::from(*count)).sum();
-        let rank = (p * n as f64).ceil().max(1.0) as u64;
-        let mut below = 0;
-        for &(class, count) in &self.0 {
-            below += u64::from(count);
-            if below >= rank {
-                return middle_of(class);
-            }
-        }
-        0.0
     }
 }
 
@@ -190,16 +136,22 @@ impl Layer {
         }
     }
 
-    fn of(self, cell: &Cell, releases: usize) -> f64 {
+    fn of(self, cell: &Cell, weights: &Weights) -> f64 {
         match self {
             Self::Passages => f64::from(cell.passages),
-            Self::Reach => f64::from(cell.passages) / releases.max(1) as f64,
+            Self::Reach if weights.are_equal() => {
+                f64::from(cell.passages) / weights.all_rocks().max(1) as f64
+            }
+            Self::Reach => {
+                let strata = cell.totals_j.entries().iter();
+                proportion(weights, strata.map(|&(_, stratum, n)| (stratum, n as usize))).share
+            }
             Self::Deposits => f64::from(cell.deposits),
             Self::EnergyMax => cell.largest_j,
             // the middle of the highest class may lie above the largest value in it
-            Self::EnergyP95 => cell.totals_j.percentile(0.95).min(cell.largest_j),
+            Self::EnergyP95 => cell.totals_j.percentile(0.95, weights).min(cell.largest_j),
             Self::HeightMax => cell.largest_m,
-            Self::HeightP95 => cell.heights_m.percentile(0.95).min(cell.largest_m),
+            Self::HeightP95 => cell.heights_m.percentile(0.95, weights).min(cell.largest_m),
             Self::Intensity => {
                 1.0 + INTENSITY_J.iter().filter(|limit| cell.largest_j >= **limit).count() as f64
             }
@@ -242,31 +194,41 @@ impl Maps {
         }
     }
 
-    /// Adds the cells of one rock and where it ended (map coordinates).
-    pub fn add(&mut self, visits: &[Visit], stop: StopKind, end_m: [f64; 3]) {
+    /// Adds the cells of one rock of a stratum, and how and where it ended (map coordinates).
+    pub fn add(&mut self, stratum: u16, visits: &[Visit], (stop, end_m): (StopKind, [f64; 3])) {
         for visit in visits {
             let cell = self.cells.entry(visit.cell).or_default();
             cell.passages += 1;
             cell.largest_j = cell.largest_j.max(visit.total_j);
             cell.largest_m = cell.largest_m.max(visit.height_m);
-            cell.totals_j.add(visit.total_j);
-            cell.heights_m.add(visit.height_m);
+            cell.totals_j.add(visit.total_j, stratum);
+            cell.heights_m.add(visit.height_m, stratum);
         }
         if let (StopKind::AtRest, Some(cell)) = (stop, self.frame.cell(end_m)) {
             self.cells.entry(cell).or_default().deposits += 1;
         }
     }
 
-    /// Values of one layer where rocks came, with the numbers of their cells, rising; `releases` are all rocks.
-    pub fn values(&self, layer: Layer, releases: usize) -> impl Iterator<Item = (u32, f64)> + '_ {
+    /// Counts of total energy of the cells that rocks pass, rising.
+    pub(super) fn energies(&self) -> impl Iterator<Item = (u32, &Counts)> + '_ {
+        let came = self.cells.iter().filter(|(_, cell)| cell.passages > 0);
+        came.map(|(number, cell)| (*number, &cell.totals_j))
+    }
+
+    /// Values of one layer where rocks came, with the numbers of their cells, rising.
+    pub fn values<'a>(
+        &'a self,
+        layer: Layer,
+        weights: &'a Weights,
+    ) -> impl Iterator<Item = (u32, f64)> + 'a {
         let came = self.cells.iter().filter(|(_, cell)| cell.passages + cell.deposits > 0);
-        came.map(move |(number, cell)| (*number, layer.of(cell, releases)))
+        came.map(move |(number, cell)| (*number, layer.of(cell, weights)))
     }
 
     /// Cells of each Swiss class of intensity: weak, medium, strong.
     pub fn intensity_cells(&self) -> [usize; 3] {
         let mut counts = [0; 3];
-        for (_, class) in self.values(Layer::Intensity, 1) {
+        for (_, class) in self.values(Layer::Intensity, &Weights::equal(1)) {
             counts[class as usize - 1] += 1;
         }
         counts
@@ -277,21 +239,6 @@ impl Maps {
 mod tests {
     use super::*;
 
-    /// The percentile of the classes lies within 2.5 % of the ⌈p n⌉-th value, over twelve decades.
-    #[test]
-    fn percentiles_by_class_keep_their_error() {
-        let values: Vec<f64> = (0..5000).map(|k| 2e-3 * 1.006_f64.powi(k)).collect();
-        let mut counts = Counts::default();
-        for value in &values {
-            counts.add(*value);
-        }
-        for p in [0.01, 0.5, 0.9, 0.95, 0.99] {
-            let exact = values[(p * 5000.0_f64).ceil() as usize - 1];
-            assert!((counts.percentile(p) / exact - 1.0).abs() < 0.025, "{p}");
-        }
-        assert_eq!(counts.0.iter().map(|(_, count)| count).sum::<u32>(), 5000);
-    }
-
     /// By hand: three rocks in a cell, one of them at rest in it; 29.9, 30 and 299 kJ.
     #[test]
     fn a_cell_counts_each_rock_once() {
@@ -300,9 +247,11 @@ mod tests {
         let mut maps = Maps::new(frame, MapState::default());
         for (total_j, height_m) in [(29.9e3, 0.5), (30e3, 0.0), (299e3, 2.0)] {
             let visits = [Visit { cell: 4, total_j, height_m }];
-            maps.add(&visits, StopKind::AtRest, [103.0, 53.0 - height_m, 7.0]);
+            maps.add(0, &visits, (StopKind::AtRest, [103.0, 53.0 - height_m, 7.0]));
         }
-        let value = |layer| maps.values(layer, 6).find(|(cell, _)| *cell == 4).map(|(_, v)| v);
+        let weights = Weights::equal(6);
+        let value =
+            |layer| maps.values(layer, &weights).find(|(cell, _)| *cell == 4).map(|(_, v)| v);
         assert_eq!(value(Layer::Passages), Some(3.0));
         assert_eq!(value(Layer::Reach), Some(0.5));
         // (103, 51) is in the row below

@@ -4,7 +4,9 @@
 //! Nothing is sketched or binned before it is asked for, so the statistics do not depend on the order or the
 //! grouping in which rocks arrive, and a drawing from files shows the same bits as the run itself.
 
+mod annual;
 mod barriers;
+mod classes;
 mod lines;
 mod maps;
 mod observed;
@@ -16,6 +18,10 @@ mod sample;
 mod sum;
 mod totals;
 
+pub use annual::{
+    Above, Annual, AnnualFigures, AnnualPlace, Asked, ExceedancePoint, Matrix, Object, Rate,
+    ReturnEnergy, Risk, RiskKind, Saved, Vehicles, YearMap, annual, year_maps,
+};
 pub use barriers::{
     Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Design, Elsewhere, Rule, arrivals, judge,
 };
@@ -30,6 +36,7 @@ pub use sample::{Exceedance, Histogram, Mean, Sample};
 pub use sum::Sum;
 pub use totals::{Largest, LedgerSums, Totals};
 
+use crate::frequency::{Frequency, Weights};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -43,12 +50,33 @@ pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 /// had done until then; its runout is a lower bound.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hazard {
-    stops: BTreeMap<StopKind, usize>,
+    stops: BTreeMap<StopKind, Ended>,
     values: [Vec<f64>; Quantity::ALL.len()],
     largest: [Option<Largest>; Quantity::ALL.len()],
     largest_balance_error: Option<Largest>,
+    frequency: Option<Frequency>,
+    /// The first release added, and those that failed.
+    first: Option<usize>,
+    failed: Vec<usize>,
     /// Effort, ledger and failures: what the rows do not hold.
     pub totals: Totals,
+}
+
+/// Rocks that ended in one way, stratum by stratum.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Ended(Vec<usize>);
+
+impl Ended {
+    fn add(&mut self, stratum: usize) {
+        if self.0.len() <= stratum {
+            self.0.resize(stratum + 1, 0);
+        }
+        self.0[stratum] += 1;
+    }
+
+    fn count(&self) -> usize {
+        self.0.iter().sum()
+    }
 }
 
 /// What is said of one quantity.
@@ -72,11 +100,26 @@ impl Hazard {
         Self { totals, ..Self::default() }
     }
 
+    /// The same, of rocks that are drawn by a frequency: they weigh what they stand for.
+    #[must_use]
+    pub fn weighing(self, frequency: Option<Frequency>) -> Self {
+        Self { frequency, ..self }
+    }
+
+    /// What each rock stands for; none where all weigh the same.
+    pub fn weights(&self) -> Option<Weights> {
+        let weights = self.frequency.as_ref().map(|one| one.weights(self.rocks()));
+        weights.filter(|weights| !weights.are_equal())
+    }
+
     /// Adds one rock. Its failure reason, ledger and effort go into [`Self::totals`].
     pub fn add(&mut self, row: &Row) {
-        *self.stops.entry(row.stop).or_default() += 1;
+        let stratum = self.frequency.as_ref().map_or(0, |one| one.stratum_of(row.index));
+        self.stops.entry(row.stop).or_default().add(stratum);
+        self.first.get_or_insert(row.index);
         Largest::update(&mut self.largest_balance_error, row.index, row.energy_balance_error);
         if !row.stop.counts() {
+            self.failed.push(row.index);
             return;
         }
         for (slot, quantity) in Quantity::ALL.into_iter().enumerate() {
@@ -88,12 +131,20 @@ impl Hazard {
 
     /// Rocks added so far, failed and never released ones included.
     pub fn rocks(&self) -> usize {
-        self.stops.values().sum()
+        self.stops.values().map(Ended::count).sum()
     }
 
     /// Rocks that ended so, as a share of all.
     pub fn ended(&self, stop: StopKind) -> Proportion {
-        Proportion::new(self.stops.get(&stop).copied().unwrap_or(0), self.rocks())
+        let count = self.stops.get(&stop).map_or(0, Ended::count);
+        match self.weights() {
+            None => Proportion::new(count, self.rocks()),
+            Some(weights) => {
+                let strata = self.stops.get(&stop).map_or(&[][..], |ended| &ended.0);
+                let each = strata.iter().enumerate().map(|(at, count)| (at as u16, *count));
+                annual::proportion(&weights, each)
+            }
+        }
     }
 
     /// Largest energy balance error of one rock (–); a failed rock counts too if it has a number.
@@ -103,7 +154,12 @@ impl Hazard {
 
     /// All values of one quantity, sorted: for curves and histograms.
     pub fn sample(&self, quantity: Quantity) -> Sample {
-        Sample::of(self.values[quantity as usize].iter().copied())
+        let values = self.values[quantity as usize].iter().copied();
+        let Some(weights) = self.weights() else { return Sample::of(values) };
+        let first = self.first.unwrap_or(0);
+        let ended =
+            (first..first + self.rocks()).filter(|at| self.failed.binary_search(at).is_err());
+        Sample::weighted(values.zip(ended.map(|at| weights.of_release(at))))
     }
 
     /// The values of one quantity in the order of releases (failed rocks have none).

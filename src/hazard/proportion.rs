@@ -38,13 +38,26 @@ impl Proportion {
     }
 }
 
+impl Proportion {
+    /// A share of weighted rocks: as many of equal weight as would know it equally well say how well it is known.
+    pub(super) fn effective(count: usize, of: usize, share: f64, rocks: f64) -> Self {
+        let (low_95, high_95) = match count {
+            _ if of == 0 => (0.0, 1.0),
+            0 => (0.0, (3.0 / rocks).min(1.0)),
+            all if all == of => ((1.0 - 3.0 / rocks).max(0.0), 1.0),
+            _ => wilson(share, rocks),
+        };
+        Self { count, of, share, low_95, high_95 }
+    }
+}
+
 /// Upper 95 % bound of a share of which none was seen among `n`: `1 − 0.05^(1/n) ≈ 3/n`.
 fn rule_of_three(n: usize) -> f64 {
     (3.0 / n as f64).min(1.0)
 }
 
 /// Wilson's score interval: `(p + z²/2n ± z √(p(1 − p)/n + z²/4n²)) / (1 + z²/n)`.
-fn wilson(p: f64, n: f64) -> (f64, f64) {
+pub(super) fn wilson(p: f64, n: f64) -> (f64, f64) {
     let z2 = NORMAL_95 * NORMAL_95;
     let middle = p + z2 / (2.0 * n);
     let half = NORMAL_95 * (p * (1.0 - p) / n + z2 / (4.0 * n * n)).sqrt();

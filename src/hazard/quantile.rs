@@ -4,6 +4,7 @@
 //! of the values. So the `l`-th and `u`-th smallest value enclose `q_p` with probability `P(l ≤ B < u)`
 //! (Conover, Practical Nonparametric Statistics, section 3.2). The probabilities are summed, not approximated.
 
+use super::proportion::NORMAL_95;
 use crate::math;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +12,8 @@ use serde::{Deserialize, Serialize};
 const ONE_TAIL: f64 = 0.025;
 /// Chance that a one-sided bound misses: 1 − 95 %.
 const WHOLE_TAIL: f64 = 0.05;
+/// 95 % quantile of the standard normal distribution (–).
+const NORMAL_ONE_SIDED_95: f64 = 1.644_853_626_951_472_2;
 /// Binomial probabilities below this part of the largest are left out: their sum stays under 1e-15.
 const NEGLIGIBLE: f64 = 1e-22;
 
@@ -42,6 +45,38 @@ impl Percentile {
             low_95: at(ranks.low),
             high_95: at(ranks.high),
             upper_95: at(ranks.upper),
+            needs: needed(p),
+        })
+    }
+}
+
+impl Percentile {
+    /// Percentile `p` (0 < p < 1) of weighted values in ascending order: the smallest that at least the share `p` of all
+    /// weight does not exceed; none of nothing.
+    ///
+    /// The interval is Woodruff's (1952): the share of weight below is known to `σ² = Σ w² (1{x ≤ q} − p)² / (Σ w)²`, and
+    /// the values at the shares `p ± 1.96 σ` enclose the percentile. Where such a share is not below 1, or has no rock
+    /// below it, that end is open. [`needs`](Self::needs) counts rocks of equal weight.
+    pub(super) fn weighted((sorted, weights): (&[f64], &[f64]), p: f64) -> Option<Self> {
+        let all: f64 = weights.iter().sum();
+        let at = |share: f64| {
+            let mut below = 0.0;
+            let reaches = |weight: &f64| {
+                below += weight;
+                below >= share * all
+            };
+            let rank = weights.iter().position(reaches);
+            rank.map_or(sorted.last(), |rank| sorted.get(rank)).copied()
+        };
+        let value = at(p)?;
+        let side = |(x, w): (&f64, &f64)| (w * (f64::from(u8::from(*x <= value)) - p)).powi(2);
+        let sd = sorted.iter().zip(weights).map(side).sum::<f64>().sqrt() / all;
+        let end = |share: f64| (share > 0.0 && share < 1.0).then(|| at(share)).flatten();
+        Some(Self {
+            value,
+            low_95: end(p - NORMAL_95 * sd),
+            high_95: end(p + NORMAL_95 * sd),
+            upper_95: end(p + NORMAL_ONE_SIDED_95 * sd),
             needs: needed(p),
         })
     }

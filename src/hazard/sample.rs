@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     sorted: Vec<f64>,
+    /// What each of them weighs; none where all weigh the same.
+    weights: Option<Vec<f64>>,
 }
 
 /// A mean with its 95 % interval.
@@ -52,7 +54,20 @@ impl Sample {
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
-        Self { sorted }
+        Self { sorted, weights: None }
+    }
+
+    /// Sorts values, each with what it weighs (0 or more).
+    pub fn weighted(values: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let finite = values.into_iter().filter(|(value, _)| value.is_finite());
+        let mut pairs: Vec<(f64, f64)> = finite.collect();
+        #[expect(clippy::float_cmp, reason = "equal weights are the same number")]
+        if pairs.windows(2).all(|pair| pair[0].1 == pair[1].1) {
+            return Self::of(pairs.into_iter().map(|(value, _)| value));
+        }
+        pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
+        let (sorted, weights) = pairs.into_iter().unzip();
+        Self { sorted, weights: Some(weights) }
     }
 
     /// The values in ascending order.
@@ -62,8 +77,12 @@ impl Sample {
 
     /// Mean with the normal interval `± 1.96 s/√n`; none of nothing.
     ///
-    /// Summed in ascending order, so the same values give the same bits however they arrived.
+    /// Summed in ascending order, so the same values give the same bits however they arrived. Weighted values: ratio of
+    /// sums, with the variance `Σ w² (x − mean)² / (Σ w)²` of its linearisation (delta method).
     pub fn mean(&self) -> Option<Mean> {
+        if let Some(weights) = &self.weights {
+            return Some(weighted_mean(&self.sorted, weights));
+        }
         let n = self.sorted.len() as f64;
         let value = self.sorted.iter().sum::<f64>() / n;
         let squares: f64 = self.sorted.iter().map(|one| (one - value).powi(2)).sum();
@@ -79,7 +98,10 @@ impl Sample {
 
     /// Percentile `p` (0 < p < 1) with its interval; none of nothing.
     pub fn percentile(&self, p: f64) -> Option<Percentile> {
-        Percentile::of(&self.sorted, p)
+        match &self.weights {
+            None => Percentile::of(&self.sorted, p),
+            Some(weights) => Percentile::weighted((&self.sorted, weights), p),
+        }
     }
 
     /// The curve of exceedance, from the share 0.995 down to `1/n`.
@@ -119,6 +141,15 @@ impl Sample {
         // All values equal: one bar, wide enough to be told from its neighbours in f64.
         if width > 0.0 { round_up(width) } else { round_up(least.abs().max(1.0) * 1e-3) }
     }
+}
+
+fn weighted_mean(values: &[f64], weights: &[f64]) -> Mean {
+    let pairs = || values.iter().zip(weights);
+    let all: f64 = weights.iter().sum();
+    let value = pairs().map(|(x, w)| w * x).sum::<f64>() / all;
+    let squares: f64 = pairs().map(|(x, w)| (w * (x - value)).powi(2)).sum();
+    let half = NORMAL_95 * squares.sqrt() / all;
+    Mean { value, low_95: Some(value - half), high_95: Some(value + half) }
 }
 
 /// The next of 1, 2, 5 times a power of ten.

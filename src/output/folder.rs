@@ -1,5 +1,6 @@
 //! What a result folder holds already, and whether a run may use it.
 
+use super::annual::FREQUENCY;
 use super::claim::Claim;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::summary::{SUMMARY, Summary};
@@ -12,7 +13,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files besides `progress.json`.
-const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY];
+const FILES: [&str; 7] = [RELEASES, PATHS, IMPACTS, CROSSINGS, FREQUENCY, "report.html", SUMMARY];
 /// Folder of the figures.
 const FIGURES: &str = "figures";
 /// File in it that names those which belong to the results.

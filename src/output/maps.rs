@@ -2,7 +2,8 @@
 
 use super::whole::{as_whole, write_whole};
 use crate::error::{Error, Result};
-use crate::hazard::{Layer, MapFrame, MapState, Maps};
+use crate::frequency::Weights;
+use crate::hazard::{Asked, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
@@ -21,22 +22,56 @@ const STATE: &str = "state";
 const NO_DATA: f32 = -9999.0;
 
 /// Writes all layers; a cell where no rock came holds no data.
-pub(super) fn write(dir: &Path, maps: &Maps, releases: usize) -> Result<()> {
+///
+/// Layers of a year stand beside them where the run is no part of another; the ends of their intervals as GeoTIFF alone.
+pub(super) fn write(
+    dir: &Path,
+    maps: &Maps,
+    (asked, releases): (&Asked, usize),
+    is_part: bool,
+) -> Result<()> {
+    let weights = match &asked.frequency {
+        Some(frequency) => frequency.weights(releases),
+        None => Weights::equal(releases),
+    };
     let folder = dir.join(FOLDER);
     fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
     for layer in Layer::ALL {
-        let mut cells = vec![NO_DATA; maps.frame.cells()];
-        for (cell, value) in maps.values(layer, releases) {
-            cells[cell as usize] = value as f32;
-        }
-        let path = folder.join(layer.file());
-        write_whole(&path.with_extension("asc"), ascii(&maps.frame, &cells).as_bytes())?;
-        let tif = path.with_extension("tif");
-        let bytes = geotiff(&maps.frame, &cells)
-            .map_err(|why| Error::file("write", &tif)(std::io::Error::other(why)))?;
-        write_whole(&tif, &bytes)?;
+        let cells = raster(&maps.frame, maps.values(layer, &weights));
+        write_raster(&folder.join(layer.file()), (&maps.frame, &cells), true)?;
+    }
+    let layers = if is_part { Vec::new() } else { year_maps(maps, asked, releases) };
+    for layer in layers {
+        let cells = raster(&maps.frame, layer.values.into_iter());
+        write_raster(&folder.join(layer.file), (&maps.frame, &cells), !layer.is_bound)?;
     }
     Ok(())
+}
+
+/// All cells; no data where there is no value, or no number.
+fn raster(frame: &MapFrame, values: impl Iterator<Item = (u32, f64)>) -> Vec<f32> {
+    let mut cells = vec![NO_DATA; frame.cells()];
+    for (cell, value) in values.filter(|(_, value)| value.is_finite()) {
+        cells[cell as usize] = value as f32;
+    }
+    cells
+}
+
+/// Writes one layer as GeoTIFF, and as an ESRI ASCII grid where it is wanted.
+fn write_raster(path: &Path, (frame, cells): (&MapFrame, &[f32]), as_text: bool) -> Result<()> {
+    // names hold points: with_extension would cut them
+    let named = |ending: &str| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    if as_text {
+        write_whole(&named(".asc"), ascii(frame, cells).as_bytes())?;
+    }
+    let tif = named(".tif");
+    let bytes = geotiff(frame, cells)
+        .map_err(|why| Error::file("write", &tif)(std::io::Error::other(why)))?;
+    write_whole(&tif, &bytes)
 }
 
 /// Rows from north to south, as both formats have them.
@@ -130,12 +165,20 @@ pub(super) fn is_result(path: &Path) -> bool {
     match ending.as_str() {
         // the ground that figures are drawn on stands beside the maps
         "asc" if ["ground", "trees"].contains(&stem.as_str()) => true,
-        "asc" | "tif" => Layer::ALL.iter().any(|layer| layer.file() == stem),
+        "asc" | "tif" => Layer::ALL.iter().any(|layer| layer.file() == stem) || is_of_year(&stem),
         "geojson" => ["ends", "paths"].contains(&stem.as_str()),
         "vtk" => stem == "paths",
         STATE => stem.parse::<usize>().is_ok(),
         _ => false,
     }
+}
+
+/// Whether a name is that of a layer of a year.
+fn is_of_year(stem: &str) -> bool {
+    let value = stem.trim_end_matches("_low_95").trim_end_matches("_high_95");
+    value == Matrix::FILE
+        || value.starts_with("frequency_") && value.ends_with("per_year")
+        || value.starts_with("energy_T") && value.ends_with("_j")
 }
 
 /// Removes the states of all other moments, whole or not: a run that was killed may have left some.

@@ -78,6 +78,7 @@ impl Shard {
             lines,
             maps,
             barriers,
+            asked,
             observed,
             ..
         } = self.summary.clone();
@@ -92,6 +93,7 @@ impl Shard {
             lines: lines.into_iter().map(|line| line.info).collect(),
             maps,
             barriers: barriers.into_iter().map(|one| one.barrier).collect(),
+            asked,
             observed,
             keeps_paths: keeps(PATHS),
             keeps_impacts: keeps(IMPACTS),

@@ -4,6 +4,7 @@
 //! behind that mark is cut off when the run is resumed. So a resumed run writes the same bytes as an
 //! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
 
+mod annual;
 mod calibration;
 mod claim;
 mod folder;
@@ -29,8 +30,11 @@ pub use summary::{Run, Summary};
 pub use whole::write_whole;
 
 use crate::error::{Error, Result};
+use crate::frequency::Weights;
 use crate::hazard;
-use crate::hazard::{Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way};
+use crate::hazard::{
+    Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
+};
 use crate::rock::Vec3;
 use crate::trajectory::Trajectory;
 use opened::{open, open_maps};
@@ -64,6 +68,8 @@ pub struct RunInfo {
     pub maps: Option<MapFrame>,
     /// Barriers; each on the line of its name.
     pub barriers: Vec<Barrier>,
+    /// What is asked of the year: sources, objects, classes of hazard.
+    pub asked: Asked,
     /// Measured ways to compare with; none if the scene names none.
     pub observed: Vec<Way>,
     /// Whether `paths.csv` is written.
@@ -153,13 +159,13 @@ impl Output {
         let crossings = (!info.lines.is_empty())
             .then(|| open(dir, CROSSINGS, &CrossingRow::COLUMNS, bytes))
             .transpose()?;
-        let mut lines: Vec<Line> = info.lines.iter().cloned().map(Line::new).collect();
+        let mut lines = read::lines(&info.lines, &info.asked, info.identity.releases);
         if found.is_some() {
             read::recall_lines(dir, &mut lines)?;
         }
         let maps = open_maps(dir, &info, found.as_ref())?;
         let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
-        let mut hazard = Hazard::default();
+        let mut hazard = Hazard::default().weighing(info.asked.frequency.clone());
         // finished results are whole: nothing is marked, and what follows changes none of their rows
         let mut is_marked = false;
         if let Some(found) = found {
@@ -221,7 +227,9 @@ impl Output {
             self.write_impacts(fall)?;
             self.write_crossings(fall)?;
             if let Some(maps) = &mut self.maps {
-                maps.add(&fall.visits, row.stop, row.end_m);
+                let frequency = self.info.asked.frequency.as_ref();
+                let stratum = frequency.map_or(0, |one| one.stratum_of(row.index));
+                maps.add(stratum as u16, &fall.visits, (row.stop, row.end_m));
             }
             self.hazard.add(&row);
             self.hazard.totals.add(fall);
@@ -276,12 +284,15 @@ impl Output {
         let bytes = self.lengths()?;
         let done = self.hazard.rocks();
         if let Some(maps) = &self.maps {
-            maps::write(&self.dir, maps, done)?;
+            // of a part of a run no number a year can be told
+            maps::write(&self.dir, maps, (&self.info.asked, done), is_part)?;
         }
+        let weights = self.hazard.weights().unwrap_or_else(|| Weights::equal(done));
         let crossings = read::crossings(&self.dir)?;
-        let barriers = hazard::judge(&self.info.barriers, crossings, done)?;
+        let barriers = hazard::judge(&self.info.barriers, crossings, &weights)?;
+        let annual = if is_part { None } else { self.annual(done)? };
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
-        summary.barriers = barriers;
+        (summary.barriers, summary.annual) = (barriers, annual);
         summary.bytes = bytes;
         summary.write(&self.dir)?;
         self.hazard.totals = summary.totals.clone();
@@ -301,6 +312,15 @@ impl Output {
             maps::keep_state(&results.dir, None)?;
         }
         Ok(results)
+    }
+
+    /// What a year brings, of all releases.
+    fn annual(&self, releases: usize) -> Result<Option<Annual>> {
+        let RunInfo { asked, lines, barriers, .. } = &self.info;
+        let crossings = read::crossings(&self.dir)?;
+        let annual = hazard::annual(asked, releases, (lines, barriers), crossings)?;
+        annual.as_ref().map_or(Ok(()), |annual| annual::write(&self.dir, annual))?;
+        Ok(annual)
     }
 
     fn write_path(&mut self, fall: &Trajectory) -> Result<()> {

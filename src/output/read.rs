@@ -7,7 +7,7 @@ use super::summary::{SUMMARY, Summary};
 use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
-use crate::hazard::{CrossingRow, Hazard, Line, Row};
+use crate::hazard::{Asked, CrossingRow, Hazard, Line, LineInfo, Row};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -54,10 +54,11 @@ pub fn read(dir: &Path) -> Result<Results> {
             );
         }
     };
-    let mut hazard = Hazard::with(summary.totals.clone());
+    let asked = &summary.asked;
+    let mut hazard = Hazard::with(summary.totals.clone()).weighing(asked.frequency.clone());
     recall(dir, &summary.identity, summary.identity.releases, &mut hazard)?;
-    let mut lines: Vec<Line> =
-        summary.lines.iter().map(|line| Line::new(line.info.clone())).collect();
+    let infos: Vec<LineInfo> = summary.lines.iter().map(|line| line.info.clone()).collect();
+    let mut lines = self::lines(&infos, asked, summary.identity.releases);
     recall_lines(dir, &mut lines)?;
     check_lengths(dir, &summary.bytes)?;
     Ok(Results { dir: dir.to_owned(), summary, hazard, lines, claim: None })
@@ -111,6 +112,12 @@ impl Results {
     pub fn impacts(&self) -> Result<impl Iterator<Item = Result<ImpactRow<'static>>>> {
         if_there(self.dir.join(IMPACTS), &ImpactRow::COLUMNS)
     }
+}
+
+/// Lines without crossings, whose rocks weigh what they stand for.
+pub(super) fn lines(infos: &[LineInfo], asked: &Asked, releases: usize) -> Vec<Line> {
+    let weights = asked.frequency.as_ref().map(|one| one.weights(releases));
+    infos.iter().map(|info| Line::new(info.clone()).weighing(weights.clone())).collect()
 }
 
 /// The rows of `crossings.csv` in `dir`.

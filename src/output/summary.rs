@@ -5,8 +5,8 @@ use super::progress::Identity;
 use super::whole::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::{
-    BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion, Quantity, Statistic,
-    StopKind, Totals, Way,
+    Annual, Asked, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion,
+    Quantity, Statistic, StopKind, Totals, Way,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -16,7 +16,15 @@ use std::path::Path;
 pub(super) const SUMMARY: &str = "summary.json";
 
 /// What the numbers mean, printed beside them.
-const DEFINITIONS: [(&str, &str); 9] = [
+const DEFINITIONS: [(&str, &str); 11] = [
+    (
+        "annual",
+        "numbers a year, not conditional on release: passage frequency = sum over classes of size and source of their events a year x share of their rocks that pass (with at least an energy); interval: Wilson's with the effective weight of a rock, upper end as if one more rock of the heaviest class passed, 3 x that weight where none does; return period = 1 / frequency; annual probability = 1 - exp(-frequency); energy of return period T: passed with at least that much once in T years, its interval read off that of the frequency; by_log_rate = derivative by the logarithm of all rates, by_exponent = derivative by the exponents of all power laws with their events of 1 m3 or more kept; saved = passages whose rock a barrier stops before, told to the first that does",
+    ),
+    (
+        "asked",
+        "a rock hits an object when, seen from above, its rim first comes over it: within (width + diameter) / 2 of a line, half a diameter of an outline; at any height. Individual risk = hits x share of time there x vulnerability; of n vehicles a day of length l at speed v, n (l + diameter) / (24 h v) are in the way of a rock",
+    ),
     (
         "barriers",
         "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height",
@@ -27,7 +35,7 @@ const DEFINITIONS: [(&str, &str); 9] = [
     ),
     (
         "intervals",
-        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means normal; of shares Wilson, 3/n where none was seen. Conditional on release: no annual frequency",
+        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means normal; of shares Wilson, 3/n where none was seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
     ),
     (
         "lines",
@@ -68,6 +76,12 @@ pub struct Summary {
     /// What each barrier stops and what its rule asks for.
     #[serde(default)]
     pub barriers: Vec<BarrierSummary>,
+    /// What was asked of the year: sources, objects, classes of hazard.
+    #[serde(default)]
+    pub asked: Asked,
+    /// What a year brings to each line and object; none without sources, and none of a part of a run.
+    #[serde(default)]
+    pub annual: Option<Annual>,
     /// Measured ways, if the scene names any.
     #[serde(default)]
     pub observed: Vec<Way>,
@@ -124,6 +138,8 @@ impl Summary {
             statistics: statistics(hazard),
             lines: lines.iter().map(|line| line.summary(hazard.rocks())).collect(),
             barriers: Vec::new(),
+            asked: info.asked,
+            annual: None,
             observed: info.observed,
             maps: info.maps,
             largest_energy_balance_error: hazard.largest_balance_error(),

@@ -1,6 +1,7 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
 use crate::error::{Error, Result};
+use crate::ground::Ground;
 use crate::math;
 use crate::release::NO_WIDTH_M;
 use crate::scene::{GroundTable, Scene, known_ground};
@@ -88,4 +89,23 @@ pub(super) fn unused(scene: &Scene, terrain: &Terrain) -> Vec<String> {
         }
     };
     scene.grounds.iter().enumerate().filter_map(wrong).chain(endless_rolling(scene)).collect()
+}
+
+/// Triangles of trees; none where there is no tree.
+pub(super) fn tree_triangles(terrain: &Terrain) -> Option<usize> {
+    let trees = (0..terrain.triangles.len() as u32).filter(|&triangle| terrain.is_tree(triangle));
+    Some(trees.count()).filter(|count| *count > 0)
+}
+
+/// How rocks answer each other.
+pub(super) fn between_rocks(scene: &Scene) -> Option<Ground> {
+    scene.rocks.contact.as_ref().map(|contact| Ground {
+        normal_stiffness_n_m: contact.normal_stiffness_n_m,
+        shear_stiffness_n_m: contact.shear_stiffness_n_m,
+        friction_angle_rad: contact.friction_angle_deg.to_radians(),
+        restitution: contact.restitution,
+        rolling_friction: 0.0,
+        roughness_rad: 0.0,
+        roughness_length_m: None,
+    })
 }

@@ -1,5 +1,6 @@
 //! What went into a run, as name and value for the report.
 
+use super::annual;
 use crate::chance::Distribution;
 use crate::scene::{GroundTable, MeshFile, ReportTable, Scene, known_ground};
 
@@ -10,15 +11,24 @@ pub(super) fn of(scene: &Scene) -> Vec<(String, String)> {
         .map(|vector| vector.each_ref().map(|one| words(one, "")).join(" | "));
     let mut rows = vec![
         row("Rock density", format!("{} kg/m³", scene.rocks.density_kg_m3)),
-        row("Rock radius", words(&scene.rocks.radius_m, " m")),
+        row("Rock radius", sizes(scene)),
         row("Velocity at release (x | y | z)", format!("{velocity} m/s")),
         row("Spin at release (x | y | z)", format!("{spin} rad/s")),
     ];
     if let Some(height_m) = &scene.release.height_m {
         rows.insert(2, row("Release above the ground", words(height_m, " m")));
     }
+    rows.extend(annual::rows(scene));
     rows.extend(scene.grounds.iter().map(|(name, ground)| ground_row(scene, name, ground)));
     rows
+}
+
+/// Sizes as the rocks or the sources have them.
+fn sizes(scene: &Scene) -> String {
+    if scene.sources().is_some_and(|one| one.draws_volumes()) {
+        return "by the volumes of the sources, see below".to_owned();
+    }
+    words(scene.rocks.radius_m(), " m")
 }
 
 fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, String) {

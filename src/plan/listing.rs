@@ -1,9 +1,9 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{Curtain, Part, Paths, Plan, RestRule};
+use super::{Curtain, Part, Paths, Plan, RestRule, annual};
 use crate::ground::Ground;
 use crate::release::Where;
-use crate::scene::BarrierTable;
+use crate::scene::{BarrierTable, ObjectTable};
 use crate::step::dda::own_restitution;
 use crate::step::{Scheme, Settings};
 use crate::terrain::features::Count;
@@ -48,6 +48,8 @@ impl Plan {
             impacts,
             lines,
             barriers,
+            objects,
+            year,
             maps,
             catalogued,
             rolling_stops,
@@ -57,7 +59,7 @@ impl Plan {
             sources: _,     // with the report
             warnings,
         } = self;
-        let place = place(releases.place());
+        let place = places(releases.places());
         let mut list = List::default();
         list.line("scene", title);
         list.line("file", format!("{}, {}", scene_file.display(), fingerprint(scene_hash)));
@@ -129,6 +131,16 @@ impl Plan {
             let each: Vec<String> = all.iter().map(each).collect();
             format!("{}: judged on the rocks that cross, they change no way", each.join(", "))
         });
+        list.part("objects", objects, |all| {
+            let each =
+                |object: &ObjectTable| format!("{} ({})", object.name, annual::words(object));
+            let each: Vec<String> = all.iter().map(each).collect();
+            format!("{}: hit when the rim of a rock comes over them", each.join("; "))
+        });
+        match year {
+            Part::Kept(year) => list.lines("frequency", annual::lines(year, *count).into_iter()),
+            Part::LeftOut(why) => list.line("frequency", format!("left out: {why}")),
+        }
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
         });
@@ -215,6 +227,13 @@ fn never(part: &Part<Infallible>) -> &'static str {
     match part {
         Part::Kept(never) => match *never {},
         Part::LeftOut(why) => why,
+    }
+}
+
+fn places(all: &[Where]) -> String {
+    match all {
+        [one] => place(one),
+        all => all.iter().map(place).collect::<Vec<_>>().join(", "),
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) fn own_dissipation(
     let dissipation = |(name, ground): (&String, &GroundTable)| {
         let [soft, median, stiff] = ground.normal_stiffness_n_m.reckoned();
         let stiffness = [stiff, median, soft];
-        let mut phases = scene.rocks.radius_m.reckoned().map(|radius_m| (radius_m, 0.0));
+        let mut phases = scene.rocks.radius_m().reckoned().map(|radius_m| (radius_m, 0.0));
         for ((radius_m, phase), stiffness) in phases.iter_mut().zip(stiffness) {
             *phase = step_s * (stiffness / rock(scene, *radius_m).mass_kg()).sqrt();
         }
@@ -102,7 +102,7 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
         gravity_m_s2: scene.gravity_m_s2,
     };
     let median = |value: &Distribution| value.quantile(0.5);
-    let rock = rock(scene, median(&scene.rocks.radius_m));
+    let rock = rock(scene, median(scene.rocks.radius_m()));
     let of = |table: &GroundTable| {
         let ground = Ground {
             normal_stiffness_n_m: median(&table.normal_stiffness_n_m),
@@ -124,7 +124,7 @@ pub(super) fn check(scene: &Scene, terrain: &Terrain, warnings: &mut Vec<String>
     if scene.solver.scheme() == Scheme::Rigid {
         return Ok(());
     }
-    let largest = rock(scene, scene.rocks.radius_m.reckoned()[2]);
+    let largest = rock(scene, scene.rocks.radius_m().reckoned()[2]);
     let fastest_m_s = fastest_m_s(scene, terrain);
     for (name, ground) in &scene.grounds {
         let softest = ground.normal_stiffness_n_m.reckoned()[0];

@@ -3,19 +3,33 @@
 use crate::error::{Error, Result};
 use crate::math;
 use crate::rock::Vec3;
-use crate::scene::{Corner, MapsTable, Polyline};
+use crate::scene::{Corner, MapsTable, ObjectTable, Polyline};
 use crate::terrain::Terrain;
 use std::path::Path;
 
-/// An evaluation line: a vertical curtain over a polyline.
+/// An evaluation line: a vertical curtain over a polyline. Or an object, which has a footprint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curtain {
     /// Name in the results.
     pub name: String,
     /// Its straight pieces, one behind the other.
     pub pieces: Vec<Piece>,
+    /// Of an object; none of a line.
+    pub footprint: Option<Footprint>,
     low_m: Corner,
     high_m: Corner,
+}
+
+/// What an object covers in plan view. A rock hits it when its rim comes over it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Footprint {
+    /// All within half the width (m) of the pieces.
+    Strip {
+        /// Half the width (m), 0 or more.
+        half_width_m: f64,
+    },
+    /// The inside of the pieces, which close.
+    Area,
 }
 
 /// A straight piece of a curtain.
@@ -67,7 +81,64 @@ impl Curtain {
         };
         let low_m = extreme(f64::min, f64::INFINITY);
         let high_m = extreme(f64::max, f64::NEG_INFINITY);
-        Self { name: name.to_owned(), pieces, low_m, high_m }
+        Self { name: name.to_owned(), pieces, footprint: None, low_m, high_m }
+    }
+
+    /// The curtain over the footprint of an object.
+    pub fn of_object(object: &ObjectTable, origin_m: Vec3) -> Self {
+        let outline = object.polygon_m.as_ref().and_then(|area| {
+            let corners = area.corners_m();
+            let closed: Vec<Corner> = corners.iter().chain(corners.first()).copied().collect();
+            Polyline::try_from(closed).ok()
+        });
+        let line = object.points_m.as_ref().or(outline.as_ref());
+        let half_width_m = 0.5 * object.width_m.unwrap_or(0.0);
+        let footprint = match object.polygon_m {
+            Some(_) => Footprint::Area,
+            None => Footprint::Strip { half_width_m },
+        };
+        // the scene's check has made sure that there is a line or an outline
+        let empty = Self {
+            name: object.name.clone(),
+            pieces: Vec::new(),
+            footprint: None,
+            low_m: [f64::INFINITY; 2],
+            high_m: [f64::NEG_INFINITY; 2],
+        };
+        let plain = line.map_or(empty, |line| Self::new(&object.name, line, origin_m));
+        Self {
+            footprint: Some(footprint),
+            low_m: plain.low_m.map(|low| low - half_width_m),
+            high_m: plain.high_m.map(|high| high + half_width_m),
+            ..plain
+        }
+    }
+
+    /// Distance in plan view of a point from an object's footprint (m), 0 or less over it; and where along its line or
+    /// outline (m) it is nearest.
+    pub fn gap_m(&self, footprint: Footprint, at_m: Corner) -> (f64, f64) {
+        let to_piece = |piece: &Piece| {
+            let share = piece.share(at_m).clamp(0.0, 1.0);
+            let away = [0, 1].map(|k| at_m[k] - piece.from_m[k] - share * piece.way_m[k]);
+            (math::hypot(away[0], away[1]), piece.along_m + share * piece.length_m())
+        };
+        let nearest = self.pieces.iter().map(to_piece).min_by(|a, b| a.0.total_cmp(&b.0));
+        let (distance_m, along_m) = nearest.unwrap_or((f64::INFINITY, 0.0));
+        let gap_m = match footprint {
+            Footprint::Strip { half_width_m } => distance_m - half_width_m,
+            Footprint::Area if self.encloses(at_m) => -distance_m,
+            Footprint::Area => distance_m,
+        };
+        (gap_m, along_m)
+    }
+
+    /// Whether a point lies inside closed pieces: a ray to the east crosses an odd number of them.
+    fn encloses(&self, [x, y]: Corner) -> bool {
+        let crosses = |piece: &&Piece| {
+            let ([x0, y0], [dx, dy]) = (piece.from_m, piece.way_m);
+            (y0 > y) != (y0 + dy > y) && x < x0 + (y - y0) / dy * dx
+        };
+        self.pieces.iter().filter(crosses).count() % 2 == 1
     }
 
     /// Its length (m).

@@ -1,5 +1,6 @@
 //! The report's numbers, gathered from the result files of a run: a report drawn again is the same report.
 
+mod annual;
 mod barriers;
 mod lines;
 mod measured;
@@ -50,11 +51,13 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         headline: headline(hazard),
         tables: [table(hazard)]
             .into_iter()
+            .chain(annual::tables(results))
             .chain(lines::tables(results))
             .chain(barriers::tables(results))
             .chain(measured::tables(results)?)
             .collect(),
         lines: lines::lines(results)?,
+        annual: annual::views(results),
         barriers: barriers::views(results)?,
         maps: lines::maps(results)?,
         observed: measured::observed(results)?,
@@ -184,8 +187,13 @@ pub(super) fn headline(hazard: &Hazard) -> Vec<Row> {
 fn table(hazard: &Hazard) -> Table {
     let rows = TABLED.map(|(here, there)| (here.name(), here, hazard.sample(there)));
     let note = format!(
-        "Over {} rocks. Percentiles with distribution-free 95 % intervals (order statistics); a bound that the sample is too small for is left open.",
-        hazard.rocks()
+        "Conditional on release, over {} rocks. Percentiles with 95 % intervals ({}); a bound that the sample is too small for is left open.",
+        hazard.rocks(),
+        if hazard.weights().is_some() {
+            "weighted by what each rock stands for, Woodruff's"
+        } else {
+            "distribution-free, order statistics"
+        }
     );
     statistics_table("Statistics over all releases", note, &rows)
 }

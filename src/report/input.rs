@@ -28,6 +28,8 @@ pub struct Report {
     pub tables: Vec<Table>,
     /// Evaluation lines, in the order of the scene.
     pub lines: Vec<Line>,
+    /// What a year brings to each line and object; empty without sources.
+    pub annual: Vec<AnnualView>,
     /// Barriers, in the order of the scene.
     pub barriers: Vec<BarrierView>,
     /// Measured ends, where the scene names some.
@@ -214,6 +216,28 @@ pub struct PlaceView {
     pub arriving: f64,
     /// Height of the highest point (m) and total energy (J) of each.
     pub rocks: Vec<(f64, f64)>,
+}
+
+/// How often a year which energy is passed at a line or object.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnnualView {
+    /// Its name.
+    pub name: String,
+    /// Whether it is an object.
+    pub is_object: bool,
+    /// λ(E ≥ x) (1/year) by rising `x` (J), as if there were no barrier.
+    pub without: Vec<BandPoint>,
+    /// The same of rocks that no barrier stops before; none where the scene has none.
+    pub with: Option<Vec<BandPoint>>,
+    /// Return periods asked for (years).
+    pub return_periods_years: Vec<f64>,
+}
+
+impl AnnualView {
+    /// Its curves.
+    pub(super) fn curves(&self) -> impl Iterator<Item = &Vec<BandPoint>> {
+        [&self.without].into_iter().chain(&self.with)
+    }
 }
 
 /// One evaluation line.

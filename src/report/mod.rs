@@ -8,6 +8,7 @@
 //! Nothing is computed here that a reader would quote: estimates and intervals come in as [`input`] has them; only the
 //! bins of histograms and the envelopes along the fall line are found for display.
 
+mod annual;
 pub mod axis;
 mod barriers;
 pub mod colour;
@@ -122,6 +123,11 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
     }
     if report.lines.len() > 1 {
         drawn.push((heading("retention.svg", "Retention"), lines::retention(&report.lines)));
+    }
+    for (number, view) in report.annual.iter().enumerate() {
+        let file = format!("annual_{}.svg", number + 1);
+        let title = format!("Frequency a year at “{}”", view.name);
+        drawn.push((heading(&file, &title), annual::draw(view, number + 1)));
     }
     for (number, line) in report.lines.iter().enumerate() {
         // names of lines may hold anything: files are numbered

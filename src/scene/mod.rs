@@ -8,8 +8,10 @@ mod blocks;
 mod calibrate;
 mod catalogue;
 mod check;
+mod frequency;
 mod grounds;
 mod meshes;
+mod object;
 mod places;
 mod record;
 mod release;
@@ -23,8 +25,10 @@ pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
 pub use blocks::Block;
 pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
+pub use frequency::{ClassTable, FrequencyTable, MatrixTable, SourceTable};
 pub use grounds::GroundTable;
 pub use meshes::{MeshFile, MeshTable};
+pub use object::{ObjectTable, VehiclesTable};
 pub use places::{Area, Corner, Point, Polyline};
 pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
@@ -35,6 +39,7 @@ pub use solver::SolverTable;
 use crate::chance::{Distribution, entries};
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
+use crate::frequency::Frequency;
 use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
@@ -91,6 +96,11 @@ pub struct Scene {
     /// Barriers, judged on what crosses them.
     #[serde(default)]
     pub barriers: Vec<BarrierTable>,
+    /// Roads, paths and houses that rocks may hit.
+    #[serde(default)]
+    pub objects: Vec<ObjectTable>,
+    /// How often rocks are released.
+    pub frequency: Option<FrequencyTable>,
     /// Rasters.
     pub maps: Option<MapsTable>,
     /// What stands on the report.
@@ -137,6 +147,7 @@ impl Scene {
             .take_from_catalogue()
             .and_then(|()| scene.check())
             .map_err(|wrong| Lookup::of(file, text).refuse(wrong))?;
+        scene.rocks.take_sizes(scene.sources().as_ref());
         let folder = file.parent().unwrap_or(Path::new(""));
         for mesh in scene.terrain.iter_mut().chain(&mut scene.trees) {
             mesh.mesh = folder.join(&mesh.mesh);
@@ -162,12 +173,12 @@ impl Scene {
                 Error::input(table, "radius_m or mass_kg", flaw.found, flaw.remedy)
             };
             let radius_m = Distribution::listed(radii_m).map_err(refuse)?;
-            self.rocks.radius_m = radius_m;
+            self.rocks.radius_m = Some(radius_m);
             let wrong = |wrong: Complaint| {
                 let found = wrong.found.unwrap_or_else(|| "found another".to_owned());
                 Error::input(table, "radius_m or mass_kg", found, wrong.remedy)
             };
-            self.rocks.check().map_err(wrong)?;
+            self.rocks.check(self.sources().as_ref()).map_err(wrong)?;
         }
         self.release.blocks = blocks;
         Ok(())
@@ -176,6 +187,11 @@ impl Scene {
     /// Position of a ground in the scene's list of grounds.
     pub fn ground_index(&self, name: &str) -> Option<usize> {
         self.grounds.keys().position(|known| known == name)
+    }
+
+    /// The sources of rocks, their laws of size, and what is asked of the year; none without `[frequency]`.
+    pub fn sources(&self) -> Option<Frequency> {
+        self.frequency.as_ref().and_then(FrequencyTable::compile)
     }
 
     /// The mesh files of slope and trees, ready for [`Terrain::read`].
@@ -226,21 +242,41 @@ impl Scene {
             }
             ground.check(scheme).map_err(|wrong| wrong.inside(name).inside("grounds"))?;
         }
-        self.rocks.check().map_err(|wrong| wrong.inside("rocks"))?;
-        self.release.check().map_err(|wrong| wrong.inside("release"))?;
+        if let Some(frequency) = &self.frequency {
+            frequency.check().map_err(|wrong| wrong.inside("frequency"))?;
+        }
+        let sources = self.sources();
+        if self.release.table.is_some() && sources.as_ref().is_some_and(Frequency::draws_volumes) {
+            let remedy =
+                "remove it, or write per_year = … in [frequency]: a table has blocks of its own";
+            let about = Complaint::about("table", remedy);
+            return Err(about.finding("found it beside volumes of [frequency]").inside("release"));
+        }
+        self.rocks.check(sources.as_ref()).map_err(|wrong| wrong.inside("rocks"))?;
+        let placed = self.frequency.as_ref().is_some_and(|table| !table.sources.is_empty());
+        self.release.check(placed).map_err(|wrong| wrong.inside("release"))?;
         self.solver.check().map_err(|wrong| wrong.inside("solver"))?;
         self.record.check().map_err(|wrong| wrong.inside("record"))?;
         for (index, barrier) in self.barriers.iter().enumerate() {
             barrier.check().map_err(|wrong| wrong.in_entry(index).inside("barriers"))?;
         }
+        for (index, object) in self.objects.iter().enumerate() {
+            object.check().map_err(|wrong| wrong.in_entry(index).inside("objects"))?;
+        }
         let lines = self.lines.iter().map(|line| line.name.as_str());
         let barriers = self.barriers.iter().map(|barrier| barrier.name.as_str());
-        check_names(&[("lines", lines.collect()), ("barriers", barriers.collect())])?;
+        let objects = self.objects.iter().map(|object| object.name.as_str());
+        check_names(&[
+            ("lines", lines.collect()),
+            ("barriers", barriers.collect()),
+            ("objects", objects.collect()),
+        ])?;
         for (index, barrier) in self.barriers.iter().enumerate() {
             let taken = |name: &str| {
                 let lines = self.lines.iter().map(|line| line.name.as_str());
                 lines
                     .chain(self.barriers.iter().map(|other| other.name.as_str()))
+                    .chain(self.objects.iter().map(|object| object.name.as_str()))
                     .any(|n| n == name)
             };
             if let Some((_, name, _)) = barrier.elsewhere().find(|(_, name, _)| taken(name)) {
@@ -291,6 +327,11 @@ impl Scene {
     fn check_together(&self) -> Checked {
         if !self.release.together {
             return Ok(());
+        }
+        if self.frequency.is_some() {
+            let remedy = "remove it, or write together = false: what a year brings is summed over rocks that fall on their own";
+            return Err(Complaint::about("frequency", remedy)
+                .finding("found it beside [release] together = true"));
         }
         let scheme = self.solver.scheme();
         let Some(contact) = &self.rocks.contact else {

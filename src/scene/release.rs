@@ -43,7 +43,8 @@ pub const MOST_RELEASES: usize = 1_000_000_000;
 const WHERE: &str = "write exactly one of points_m, line_m, polygon_m and table";
 
 impl ReleaseTable {
-    pub(super) fn check(&self) -> Checked {
+    /// `placed`: the sources of `[frequency]` say where.
+    pub(super) fn check(&self, placed: bool) -> Checked {
         if self.count == 0 {
             return Err(Complaint::about("count", "write 1 or more"));
         }
@@ -58,6 +59,11 @@ impl ReleaseTable {
         ];
         let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
         match (given.next(), given.next()) {
+            (None, _) if placed => {}
+            (Some(one), _) if placed => {
+                let remedy = "remove it: each of [[frequency.sources]] has its place";
+                return Err(Complaint::about(one, remedy));
+            }
             (None, _) => return Err(Complaint::missing("points_m", WHERE)),
             (Some(one), Some(other)) => {
                 let found = format!("found {one} beside it");

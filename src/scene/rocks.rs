@@ -1,7 +1,9 @@
 //! `[rocks]` and `[rocks.contact]`.
 
 use super::check::{Allowed, Checked, drawn, number, optional};
+use super::frequency;
 use crate::chance::Distribution;
+use crate::frequency::Frequency;
 use serde::Deserialize;
 
 /// The rocks.
@@ -10,8 +12,8 @@ use serde::Deserialize;
 pub struct Rocks {
     /// Density (kg/m³), positive.
     pub density_kg_m3: f64,
-    /// Radius (m), positive.
-    pub radius_m: Distribution,
+    /// Radius (m), positive; absent in the file where `[frequency]` has volumes, and then filled in to reckon with.
+    pub radius_m: Option<Distribution>,
     /// Contact between rocks; needed only when they share one world.
     pub contact: Option<RockContact>,
 }
@@ -35,16 +37,36 @@ pub struct RockContact {
 }
 
 impl Rocks {
-    pub(super) fn check(&self) -> Checked {
+    pub(super) fn check(&self, frequency: Option<&Frequency>) -> Checked {
         number("density_kg_m3", self.density_kg_m3, Allowed::Positive, "rock is near 2700")?;
         let density = Allowed::Between(1.0, 1e5);
         number("density_kg_m3", self.density_kg_m3, density, "rock is near 2700")?;
-        drawn("radius_m", &self.radius_m, Allowed::Positive, "")?;
-        drawn("radius_m", &self.radius_m, Allowed::Between(1e-3, 1e3), "")?;
+        frequency::check_radius(self.radius_m.as_ref(), frequency)?;
+        if let Some(radius_m) = &self.radius_m {
+            drawn("radius_m", radius_m, Allowed::Positive, "")?;
+            drawn("radius_m", radius_m, Allowed::Between(1e-3, 1e3), "")?;
+        }
         match &self.contact {
             Some(contact) => contact.check().map_err(|wrong| wrong.inside("contact")),
             None => Ok(()),
         }
+    }
+}
+
+impl Rocks {
+    /// Takes the sizes of sources that have volumes of their own, as a list to reckon with.
+    pub(super) fn take_sizes(&mut self, frequency: Option<&Frequency>) {
+        if let Some(frequency) = frequency.filter(|one| one.draws_volumes()) {
+            self.radius_m = frequency::radii_m(frequency);
+        }
+    }
+
+    /// Radius (m); where sources have volumes of their own it serves to reckon with only.
+    ///
+    /// # Panics
+    /// Never for a scene that was read: the check asks for a radius, or the sources fill it in.
+    pub fn radius_m(&self) -> &Distribution {
+        self.radius_m.as_ref().expect("a checked scene has sizes")
     }
 }
 

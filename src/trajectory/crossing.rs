@@ -3,7 +3,7 @@
 use super::journey::between;
 use crate::flight::Parabola;
 use crate::math;
-use crate::plan::{Curtain, Piece};
+use crate::plan::{Curtain, Footprint, Piece};
 use crate::rock::{Motion, Rock};
 use crate::scene::Corner;
 use crate::terrain::Terrain;
@@ -129,6 +129,18 @@ impl<'a> Crossings<'a> {
         let low = [0, 1].map(|k| hull.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
         let high = [0, 1].map(|k| hull.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
         for (line, curtain) in self.lines.iter().enumerate() {
+            if let Some(footprint) = curtain.footprint {
+                let free = |k: usize| [low[k] - rock.radius_m, high[k] + rock.radius_m];
+                let ([west, east], [south, north]) = (free(0), free(1));
+                let is_known = self.found.iter().any(|crossing| crossing.line == line);
+                if is_known || !curtain.is_near([west, south], [east, north]) {
+                    continue;
+                }
+                if let Some((s, along_m)) = enter((curtain, footprint), rock, hull, &at) {
+                    self.note((terrain, rock), line, (at(s), along_m), 1);
+                }
+                continue;
+            }
             if !curtain.is_near(low, high) {
                 continue;
             }
@@ -169,6 +181,35 @@ impl<'a> Crossings<'a> {
         });
         self.found.push(Crossing { line, motion, along_m, height_m, height_normal_m, times });
     }
+}
+
+/// Nearer than this (m) touches: a hit is found to 1e-5 m of way, and a rim that comes no deeper over an object than 1e-9 m may be missed.
+const TOUCH_M: f64 = 1e-6;
+/// Shortest way that is gone over at a time (m).
+const SHORTEST_M: f64 = 1e-5;
+
+/// The share of a way inside `hull` at which the rim of a rock first comes over an object, and where along the object.
+///
+/// The way is gone along by what is free each time (conservative advancement): no place on it is farther from the next
+/// than three times the longest side of the hull allows, so the first touch cannot be jumped over.
+fn enter(
+    (curtain, footprint): (&Curtain, Footprint),
+    rock: &Rock,
+    hull: [Corner; 4],
+    at: impl Fn(f64) -> Motion,
+) -> Option<(f64, f64)> {
+    let side = |pair: &[Corner]| math::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+    let fastest_m = 3.0 * hull.windows(2).map(side).fold(0.0, f64::max);
+    let mut s = 0.0;
+    while s <= 1.0 {
+        let (gap_m, along_m) = curtain.gap_m(footprint, flat(&at(s).position_m));
+        let free_m = gap_m - rock.radius_m;
+        if free_m <= TOUCH_M {
+            return Some((s, along_m));
+        }
+        s += free_m.max(SHORTEST_M) / fastest_m;
+    }
+    None
 }
 
 fn flat(point: &crate::rock::Vec3) -> Corner {

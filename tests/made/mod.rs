@@ -4,7 +4,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rockfall::hazard::{LineInfo, MapFrame};
+use rockfall::hazard::{Asked, LineInfo, MapFrame};
 use rockfall::output::{Identity, RunInfo};
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::trajectory::{
@@ -47,6 +47,7 @@ pub fn info(releases: usize) -> RunInfo {
             epsg: Some(2056),
         }),
         barriers: vec![],
+        asked: Asked::default(),
         observed: vec![],
         keeps_paths: true,
         keeps_impacts: true,

@@ -24,10 +24,17 @@ fn shown(results: &Results) -> impl Iterator<Item = &hazard::Line> {
     results.lines.iter().filter(|line| !line.info.of_barrier)
 }
 
+/// Objects stand with what a year brings.
+fn is_object(results: &Results, name: &str) -> bool {
+    results.summary.asked.objects.iter().any(|object| object.name == name)
+}
+
 /// All lines with their first crossings.
 pub(super) fn lines(results: &Results) -> Result<Vec<Line>> {
     let releases = results.hazard.rocks();
-    let mut lines: Vec<Line> = shown(results).map(|line| empty(line, releases)).collect();
+    let is_object = |line: &&hazard::Line| is_object(results, &line.info.name);
+    let all = shown(results).filter(|line| !is_object(line));
+    let mut lines: Vec<Line> = all.map(|line| empty(line, releases)).collect();
     for row in results.crossings()? {
         let row = row?;
         if let Some(line) = lines.iter_mut().find(|line| line.name == row.line) {
@@ -73,16 +80,26 @@ pub(super) fn tables(results: &Results) -> Vec<Table> {
     let table = |line: &hazard::Line| {
         let reach = line.reach(releases);
         let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+        let object = is_object(results, &line.info.name);
+        let [what, verb, one] = if object {
+            ["Object", "hit it", "touch"]
+        } else {
+            ["Evaluation line", "cross", "crossing"]
+        };
+        let again = if object {
+            String::new()
+        } else {
+            format!("; {} cross more than once", line.crossing_again())
+        };
         let note = format!(
-            "{} of {releases} releases cross: reach probability {} ({} to {}, conditional on release); {} cross more than once. Values at the first crossing.",
+            "Conditional on release: {} of {releases} releases {verb}, reach probability {} ({} to {}){again}. Values at the first {one}.",
             reach.count,
             percent(reach.share),
             percent(reach.low_95),
-            percent(reach.high_95),
-            line.crossing_again()
+            percent(reach.high_95)
         );
         let rows = TABLED.map(|(quantity, name, like)| (name, like, line.sample(quantity)));
-        statistics_table(&format!("Evaluation line “{}”", line.info.name), note, &rows)
+        statistics_table(&format!("{what} “{}”", line.info.name), note, &rows)
     };
     shown(results).map(table).collect()
 }

@@ -11,7 +11,7 @@ pub(super) const METHOD: [&str; 4] = [
 ];
 
 /// What the terms mean here.
-pub(super) const GLOSSARY: [(&str, &str); 18] = [
+pub(super) const GLOSSARY: [(&str, &str); 22] = [
     (
         "Percentile",
         "Over rocks, of each rock's value: its largest along the way, or at its first crossing of a line. On maps: of each rock's \
@@ -73,6 +73,25 @@ pub(super) const GLOSSARY: [(&str, &str); 18] = [
     (
         "Intensity",
         "Swiss classes of the largest total energy in a cell: weak below 30 kJ, medium 30 to 300 kJ, strong above 300 kJ.",
+    ),
+    (
+        "Conditional on release, a year",
+        "Conditional on release: given that a rock has been released; a share of releases or events. A year: how often it happens, \
+         the sources' own frequency included. Only tables and figures that say “a year” or “return period” hold numbers of the second kind.",
+    ),
+    (
+        "Passage frequency, energy exceedance",
+        "Failure frequency (events a year at a source) times reach probability (conditional on release), summed over sources and sizes; \
+         energy exceedance λ(E ≥ e) counts passages with at least the total energy e only.",
+    ),
+    (
+        "Return period",
+        "1/λ. The energy of a return period T is the one with λ(E ≥ e) = 1/T. The probability of one or more in a year is 1 − e^−λ.",
+    ),
+    (
+        "Hit of an object",
+        "Seen from above, the rim of the rock comes over the object: within (width + diameter)/2 of its line, or half a diameter of its \
+         outline. At any height. Each rock counts once, with its energy at that moment.",
     ),
     (
         "Passages and deposits",

@@ -3,6 +3,7 @@
 use super::machine::OwnTime;
 use super::slope::Slope;
 use crate::error::{Error, Result};
+use crate::hazard::Asked;
 use crate::output::{Identity, Mode, Output, RunInfo};
 use crate::report;
 use crate::terrain::{Sheet, Terrain};
@@ -73,6 +74,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         lines: Vec::new(),
         maps: None,
         barriers: Vec::new(),
+        asked: Asked::default(),
         observed: Vec::new(),
         keeps_paths: false,
         keeps_impacts: false,

@@ -1,0 +1,136 @@
+//! Magnitude–frequency laws, cut into strata.
+
+use super::STRATA_PER_DECADE;
+use crate::math;
+use serde::{Deserialize, Serialize};
+
+/// How often a source releases rocks of what size.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Law {
+    /// Events a year; the sizes are those of the scene's rocks.
+    Events {
+        /// Events a year (1/year), positive.
+        per_year: f64,
+    },
+    /// `N(≥ V) = a V^−b` events a year of at least the volume `V` (m³) between two volumes (Hantz et al. 2021,
+    /// Geosciences 11, 158).
+    PowerLaw {
+        /// `a`: events a year of 1 m³ or more (1/year), positive.
+        per_year_at_1m3: f64,
+        /// `b` (–), positive.
+        exponent: f64,
+        /// Smallest and largest volume (m³), positive and rising.
+        volume_m3: [f64; 2],
+    },
+    /// Events a year, class by class of volume.
+    Classes(Vec<Class>),
+}
+
+/// A class of volume.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Class {
+    /// Smallest and largest volume (m³); the same twice where all rocks are equal. Even in the logarithm in between.
+    pub volume_m3: [f64; 2],
+    /// Events a year (1/year), positive.
+    pub per_year: f64,
+}
+
+/// A part of a source's rocks that is sampled on its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stratum {
+    /// Number of the source.
+    pub source: usize,
+    /// Smallest and largest volume (m³); none where the scene's rocks say how large they are.
+    pub volume_m3: Option<[f64; 2]>,
+    /// Exponent of the power law that it belongs to (–).
+    pub exponent: Option<f64>,
+    /// Events a year (1/year).
+    pub per_year: f64,
+}
+
+impl Law {
+    /// Its strata, at most so many where it may be cut at will; `source` is their source's number.
+    pub(super) fn strata(&self, source: usize, most: usize) -> Vec<Stratum> {
+        match self {
+            Self::Events { per_year } => {
+                vec![Stratum { source, volume_m3: None, exponent: None, per_year: *per_year }]
+            }
+            Self::PowerLaw { per_year_at_1m3, exponent, volume_m3: [least, largest] } => {
+                let ratio = largest / least;
+                let wanted = (STRATA_PER_DECADE * math::log10(ratio)).ceil();
+                let count = (wanted as usize).clamp(1, most);
+                let edge = |k: usize| match k {
+                    0 => *least,
+                    k if k == count => *largest,
+                    k => least * math::pow(ratio, k as f64 / count as f64),
+                };
+                let beyond = |v: f64| per_year_at_1m3 * math::pow(v, -exponent);
+                let stratum = |k: usize| Stratum {
+                    source,
+                    volume_m3: Some([edge(k), edge(k + 1)]),
+                    exponent: Some(*exponent),
+                    per_year: beyond(edge(k)) - beyond(edge(k + 1)),
+                };
+                (0..count).map(stratum).collect()
+            }
+            Self::Classes(classes) => {
+                let stratum = |class: &Class| Stratum {
+                    source,
+                    volume_m3: Some(class.volume_m3),
+                    exponent: None,
+                    per_year: class.per_year,
+                };
+                classes.iter().map(stratum).collect()
+            }
+        }
+    }
+
+    /// Events a year of all sizes together (1/year).
+    pub fn per_year(&self) -> f64 {
+        self.strata(0, 1).iter().map(|stratum| stratum.per_year).sum()
+    }
+
+    /// The law in words.
+    pub fn in_words(&self) -> String {
+        match self {
+            Self::Events { per_year } => {
+                format!("{per_year} events a year of the scene's rocks")
+            }
+            Self::PowerLaw { per_year_at_1m3, exponent, volume_m3: [least, largest] } => format!(
+                "{per_year_at_1m3} V^-{exponent} events a year of V m³ or more, {least} to {largest} m³"
+            ),
+            Self::Classes(classes) => {
+                let class = |class: &Class| {
+                    let Class { volume_m3: [least, largest], per_year } = class;
+                    format!("{per_year} a year of {least} to {largest} m³")
+                };
+                classes.iter().map(class).collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
+}
+
+impl Stratum {
+    /// The volume (m³) that the share `p` (–, 0..1) of its rocks stays below; none where the scene's rocks say.
+    ///
+    /// Power law: `V^−b = V_0^−b − p (V_0^−b − V_1^−b)`; a class of a table: even in the logarithm.
+    pub fn quantile_m3(&self, p: f64) -> Option<f64> {
+        let [least, largest] = self.volume_m3?;
+        let volume = match self.exponent {
+            Some(b) => {
+                // over the smallest volume, so that steep laws neither overflow nor vanish
+                let end = math::pow(largest / least, -b);
+                least * math::pow(1.0 - p * (1.0 - end), -1.0 / b)
+            }
+            None => least * math::pow(largest / least, p),
+        };
+        Some(volume.clamp(least, largest))
+    }
+
+    /// How its frequency of one volume (m³) changes with the exponent, over itself: `∂ ln(a b V^−b−1)/∂b = 1/b − ln V`.
+    /// Over its rocks the mean is `∂ ln f_j/∂b`. None where there is no exponent.
+    pub fn score(&self, volume_m3: f64) -> Option<f64> {
+        self.exponent.map(|b| 1.0 / b - math::ln(volume_m3))
+    }
+}

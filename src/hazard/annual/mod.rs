@@ -1,0 +1,62 @@
+//! What a year brings: how often rocks pass with more than an energy, and what that means to who is there.
+//!
+//! Four things are kept apart: *failure* frequency (events a year at the source), *reach* probability (conditional on
+//! release), *passage* frequency (their product, summed over sources) and *energy exceedance* (passage with more than an
+//! energy). Everything here is a number a year; what is conditional on release stands with lines, maps and barriers.
+
+mod cells;
+mod curve;
+mod places;
+mod rate;
+mod risk;
+
+pub use cells::{YearMap, year_maps};
+pub use curve::{ExceedancePoint, ReturnEnergy};
+pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, annual};
+pub use rate::Rate;
+pub(in crate::hazard) use rate::proportion;
+pub use risk::{Object, Risk, RiskKind, Vehicles};
+
+use crate::frequency::Frequency;
+use serde::{Deserialize, Serialize};
+
+/// What a scene asks of the year.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Asked {
+    /// Sources and their laws; none leaves all numbers a year out.
+    pub frequency: Option<Frequency>,
+    /// Roads, paths and houses; each has an evaluation line of its name.
+    pub objects: Vec<Object>,
+    /// Classes of hazard.
+    pub matrix: Option<Matrix>,
+    /// Most energy that a rock of each stratum can ever have (J); may be empty, then nothing is known of it.
+    pub most_j: Vec<f64>,
+}
+
+/// Levels of hazard by energy and return period, as the scene has them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Matrix {
+    /// Its name.
+    pub name: String,
+    /// Where it was read.
+    pub source: String,
+    /// Limits between the classes of energy (J), rising.
+    pub energies_j: Vec<f64>,
+    /// Return periods (years), rising.
+    pub return_periods_years: Vec<f64>,
+    /// A row for each return period, in it a level for each class of energy.
+    pub levels: Vec<Vec<u8>>,
+}
+
+impl Matrix {
+    /// The highest level of a place by the energy of each return period (J); 0 where rocks come more seldom than all.
+    pub(super) fn level(&self, energy_of: impl Fn(f64) -> Option<f64>) -> u8 {
+        let at = |(years, row): (&f64, &Vec<u8>)| {
+            let energy_j = energy_of(*years)?;
+            let class = self.energies_j.iter().filter(|limit| energy_j >= **limit).count();
+            row.get(class).copied()
+        };
+        self.return_periods_years.iter().zip(&self.levels).filter_map(at).max().unwrap_or(0)
+    }
+}

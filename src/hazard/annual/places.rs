@@ -1,0 +1,273 @@
+//! Passages a year at lines and objects, with the barriers of the scene and without them.
+
+use super::super::barriers::{Arrival, Barrier};
+use super::super::classes::class_of;
+use super::super::lines::{CrossingRow, LineInfo};
+use super::super::proportion::Proportion;
+use super::Asked;
+use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
+use super::rate::{Limits, Rate, Running, Sums, proportion};
+use super::risk::{Object, Risk};
+use crate::frequency::{Frequency, Weights, volume_m3};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a year brings, at every line and object.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Annual {
+    /// Events a year of all sources (1/year).
+    pub events_per_year: f64,
+    /// Rocks computed.
+    pub rocks: usize,
+    /// So many of equal weight would say as much of all rocks together (–).
+    pub effective_rocks: f64,
+    /// Strata that they were drawn from.
+    pub strata: usize,
+    /// Lines and objects, in the order of the scene.
+    pub places: Vec<AnnualPlace>,
+}
+
+/// One line or object.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AnnualPlace {
+    /// Its name.
+    pub name: String,
+    /// Whether it is an object.
+    pub is_object: bool,
+    /// Share of all events that reach it: conditional on release, not a year.
+    pub conditional_on_release: Proportion,
+    /// As if there were no barrier.
+    pub without_barriers: AnnualFigures,
+    /// Of the rocks that no barrier stops before; none where the scene has no barrier.
+    pub with_barriers: Option<AnnualFigures>,
+    /// What each barrier keeps away: the first that stops a rock counts.
+    pub saved: Vec<Saved>,
+}
+
+/// What a year brings to a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AnnualFigures {
+    /// Rocks that pass: of a line those that cross it, of an object those that hit it.
+    pub passages: Rate,
+    /// The same with at least an energy, for each that is asked for.
+    pub above: Vec<Above>,
+    /// The energy of each return period asked for.
+    pub returns: Vec<ReturnEnergy>,
+    /// Risks of an object.
+    pub risks: Vec<Risk>,
+    /// λ(E ≥ e), by falling energy.
+    pub curve: Vec<ExceedancePoint>,
+}
+
+/// Passages with at least an energy.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Above {
+    /// Total energy (J).
+    pub energy_j: f64,
+    /// How often.
+    pub rate: Rate,
+}
+
+/// What a barrier keeps away from a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Saved {
+    /// Name of the barrier.
+    pub barrier: String,
+    /// Passages that do not happen.
+    pub passages: Rate,
+    /// The same with at least an energy.
+    pub above: Vec<Above>,
+}
+
+/// Sums over rocks, stratum by stratum.
+type Strata = BTreeMap<u16, Sums>;
+
+/// Passages of one place that have something in common.
+#[derive(Default)]
+struct Tally {
+    /// All, and above each energy asked for.
+    above: Vec<Strata>,
+    /// Metres of road blocked, and the most of one rock.
+    blocked: Strata,
+    longest_m: f64,
+    classes: BTreeMap<(u16, u16), Sums>,
+}
+
+/// One passage.
+struct Passage {
+    stratum: u16,
+    score: f64,
+    total_j: f64,
+    blocked_m: f64,
+}
+
+impl Tally {
+    fn add(&mut self, passage: &Passage, energies_j: &[f64]) {
+        let Passage { stratum, score, total_j, blocked_m } = *passage;
+        let one = Sums::one(1.0, score);
+        self.above.resize(energies_j.len() + 1, Strata::default());
+        for (strata, least_j) in self.above.iter_mut().zip([0.0].iter().chain(energies_j)) {
+            if total_j >= *least_j {
+                strata.entry(stratum).or_default().join(&one);
+            }
+        }
+        self.blocked.entry(stratum).or_default().join(&Sums::one(blocked_m, score));
+        self.longest_m = self.longest_m.max(blocked_m);
+        self.classes.entry((class_of(total_j), stratum)).or_default().join(&one);
+    }
+
+    fn rate(&self, level: usize, all: &All<'_>) -> Rate {
+        let energies = all.frequency.energies_j();
+        let least_j = level.checked_sub(1).map_or(0.0, |k| energies[k]);
+        all.rate(self.above.get(level), &Limits::above(&all.weights, &all.asked.most_j, least_j))
+    }
+
+    fn above(&self, all: &All<'_>) -> Vec<Above> {
+        let above = |(k, &energy_j): (usize, &f64)| Above { energy_j, rate: self.rate(k + 1, all) };
+        all.frequency.energies_j().iter().enumerate().map(above).collect()
+    }
+
+    fn figures(&self, object: Option<&Object>, all: &All<'_>) -> AnnualFigures {
+        let passages = self.rate(0, all);
+        let falling = self.classes.iter().rev().map(|(&(class, at), sums)| (class, at, *sums));
+        let curve = curve(falling, &mut Running::new(&all.weights), &all.ceilings);
+        let energy = |years: &f64| return_energy(&curve, &all.ceilings, *years, all.has_exponent);
+        let returns = all.frequency.return_periods_years().iter().map(energy).collect();
+        let limits = Limits::above(&all.weights, &all.asked.most_j, 0.0);
+        let blocked =
+            all.rate(Some(&self.blocked), &limits.times(self.longest_m.max(f64::MIN_POSITIVE)));
+        let risks = object.map_or_else(Vec::new, |object| object.risks(&passages, &blocked));
+        AnnualFigures { passages, above: self.above(all), returns, risks, curve }
+    }
+}
+
+/// What all places share.
+struct All<'a> {
+    asked: &'a Asked,
+    frequency: &'a Frequency,
+    weights: Weights,
+    ceilings: Ceilings,
+    has_exponent: bool,
+    barriers: &'a [Barrier],
+}
+
+impl All<'_> {
+    fn rate(&self, strata: Option<&Strata>, limits: &Limits) -> Rate {
+        let mut running = Running::new(&self.weights);
+        for (stratum, sums) in strata.into_iter().flatten() {
+            running.add(*stratum, sums);
+        }
+        running.rate(limits, self.has_exponent)
+    }
+}
+
+/// A place while rocks come in.
+struct Place<'a> {
+    name: &'a str,
+    object: Option<&'a Object>,
+    all: Tally,
+    unstopped: Tally,
+    saved: Vec<Tally>,
+}
+
+/// What a year brings, from first crossings that come release by release; none without sources.
+///
+/// # Errors
+/// Passes on what reading a row says.
+pub fn annual<E>(
+    asked: &Asked,
+    releases: usize,
+    (lines, barriers): (&[LineInfo], &[Barrier]),
+    rows: impl Iterator<Item = Result<CrossingRow, E>>,
+) -> Result<Option<Annual>, E> {
+    let Some(frequency) = &asked.frequency else { return Ok(None) };
+    let has_exponent = frequency.strata().iter().any(|stratum| stratum.exponent.is_some());
+    let weights = frequency.weights(releases);
+    let ceilings = Ceilings::of(&weights, &asked.most_j);
+    let all = All { asked, frequency, weights, ceilings, has_exponent, barriers };
+    let place = |line| Place::of(line, &asked.objects, barriers.len());
+    let shown = lines.iter().filter(|line| !line.of_barrier);
+    let mut places: Vec<Place<'_>> = shown.map(place).collect();
+    let mut rock: Vec<CrossingRow> = Vec::new();
+    for row in rows {
+        let row = row?;
+        if rock.first().is_some_and(|first| first.index != row.index) {
+            send(&mut places, &mut rock, &all);
+        }
+        rock.push(row);
+    }
+    send(&mut places, &mut rock, &all);
+    Ok(Some(Annual {
+        events_per_year: frequency.per_year(),
+        rocks: releases,
+        effective_rocks: all.weights.effective_rocks(),
+        strata: frequency.strata().len(),
+        places: places.iter().map(|place| place.said(&all)).collect(),
+    }))
+}
+
+/// Notes all passages of one rock, and which of them a barrier prevents.
+fn send(places: &mut [Place<'_>], rock: &mut Vec<CrossingRow>, all: &All<'_>) {
+    rock.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+    let stop = rock.iter().find_map(|row| {
+        let which = all.barriers.iter().position(|barrier| barrier.name == row.line)?;
+        let barrier = &all.barriers[which];
+        let stops = Arrival::of(row).is_stopped(barrier.height_m, barrier.capacity_j);
+        stops.then_some((row.time_s, which))
+    });
+    for row in rock.iter() {
+        let Some(place) = places.iter_mut().find(|place| place.name == row.line) else { continue };
+        place.add(row, stop.filter(|(time_s, _)| *time_s < row.time_s), all);
+    }
+    rock.clear();
+}
+
+impl<'a> Place<'a> {
+    fn of(line: &'a LineInfo, objects: &'a [Object], barriers: usize) -> Self {
+        Self {
+            name: &line.name,
+            object: objects.iter().find(|object| object.name == line.name),
+            all: Tally::default(),
+            unstopped: Tally::default(),
+            saved: (0..barriers).map(|_| Tally::default()).collect(),
+        }
+    }
+
+    fn add(&mut self, row: &CrossingRow, stopped: Option<(f64, usize)>, all: &All<'_>) {
+        let stratum = all.frequency.stratum(row.index);
+        let passage = Passage {
+            stratum: all.frequency.stratum_of(row.index) as u16,
+            score: stratum.score(volume_m3(row.radius_m)).unwrap_or(0.0),
+            total_j: row.total_j(),
+            blocked_m: self.object.map_or(0.0, |object| object.blocked_m(2.0 * row.radius_m)),
+        };
+        let energies_j = all.frequency.energies_j();
+        self.all.add(&passage, energies_j);
+        match stopped {
+            None => self.unstopped.add(&passage, energies_j),
+            Some((_, which)) => self.saved[which].add(&passage, energies_j),
+        }
+    }
+
+    fn said(&self, all: &All<'_>) -> AnnualPlace {
+        let rocks = |sums: &Sums| sums.rocks();
+        let reach = self.all.above.first().into_iter().flatten();
+        let saved = |(barrier, tally): (&Barrier, &Tally)| Saved {
+            barrier: barrier.name.clone(),
+            passages: tally.rate(0, all),
+            above: tally.above(all),
+        };
+        let judged = !all.barriers.is_empty();
+        AnnualPlace {
+            name: self.name.to_owned(),
+            is_object: self.object.is_some(),
+            conditional_on_release: proportion(
+                &all.weights,
+                reach.map(|(stratum, sums)| (*stratum, rocks(sums))),
+            ),
+            without_barriers: self.all.figures(self.object, all),
+            with_barriers: judged.then(|| self.unstopped.figures(self.object, all)),
+            saved: all.barriers.iter().zip(&self.saved).map(saved).collect(),
+        }
+    }
+}

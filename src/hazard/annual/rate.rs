@@ -1,0 +1,251 @@
+//! Events a year from weighted counts, with their interval.
+//!
+//! A stratum of `n_j` rocks that stands for `f_j` events a year and of which `k_j` do something gives `f_j k_j / n_j`; the
+//! strata add (Hantz et al. 2021, Geosciences 11, 158: passage frequency = Σ failure frequency × reach probability).
+//! Every rock may count for more or less than one, by its exposure `y` for instance.
+
+use super::super::proportion::{Proportion, wilson};
+use crate::frequency::Weights;
+use serde::{Deserialize, Serialize};
+
+/// Events a year with their 95 % interval, and what moves them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rate {
+    /// Rocks that count.
+    pub rocks: usize,
+    /// Events a year (1/year).
+    pub per_year: f64,
+    /// Lower end of the 95 % interval (1/year).
+    pub low_95: f64,
+    /// Upper end of the 95 % interval (1/year); where no rock counts, a one-sided 95 % bound.
+    pub high_95: f64,
+    /// Change with the logarithm of all rates (1/year): 10 % more rocks make it 10 % of this more.
+    pub by_log_rate: f64,
+    /// Change with the exponents of all power laws (1/year), their events of 1 m³ or more kept; none without power law.
+    pub by_exponent: Option<f64>,
+}
+
+impl Rate {
+    /// Return period `1/λ` (years); none of nothing.
+    pub fn return_period_years(&self) -> Option<f64> {
+        (self.per_year > 0.0).then(|| 1.0 / self.per_year)
+    }
+
+    /// Probability of one or more in a year, `1 − e^−λ` (Poisson).
+    pub fn annual_probability(&self) -> f64 {
+        -libm::expm1(-self.per_year)
+    }
+
+    /// The same scaled: a probability that each event is followed by another.
+    #[must_use]
+    pub fn times(&self, share: f64) -> Self {
+        Self {
+            rocks: self.rocks,
+            per_year: share * self.per_year,
+            low_95: share * self.low_95,
+            high_95: share * self.high_95,
+            by_log_rate: share * self.by_log_rate,
+            by_exponent: self.by_exponent.map(|slope| share * slope),
+        }
+    }
+}
+
+/// Sums over the rocks of one stratum that count.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(in crate::hazard) struct Sums {
+    rocks: u32,
+    /// Sum of what each counts for, and of its square.
+    y: f64,
+    y2: f64,
+    /// Sum of `y ∂ ln(frequency)/∂ exponent`.
+    score: f64,
+}
+
+impl Sums {
+    /// One rock that counts for `y`, whose frequency changes so with the exponent.
+    pub(in crate::hazard) fn one(y: f64, score: f64) -> Self {
+        Self { rocks: 1, y, y2: y * y, score: y * score }
+    }
+
+    /// So many rocks that count for one each.
+    pub(in crate::hazard) fn many(rocks: u32) -> Self {
+        let y = f64::from(rocks);
+        Self { rocks, y, y2: y, score: 0.0 }
+    }
+
+    /// A share of so many rocks: which of them is not known.
+    pub(in crate::hazard) fn part(rocks: u32, share: f64) -> Self {
+        let y = share * f64::from(rocks);
+        Self { rocks, y, y2: y, score: 0.0 }
+    }
+
+    /// How many there are.
+    pub(in crate::hazard) fn rocks(&self) -> usize {
+        self.rocks as usize
+    }
+
+    pub(in crate::hazard) fn join(&mut self, other: &Self) {
+        self.rocks += other.rocks;
+        self.y += other.y;
+        self.y2 += other.y2;
+        self.score += other.score;
+    }
+}
+
+/// What a rate can reach at most.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::hazard) struct Limits {
+    /// Events a year of all strata that can count (1/year).
+    most: f64,
+    /// Events a year that a rock of the heaviest of them stands for (1/year).
+    heaviest: f64,
+}
+
+impl Limits {
+    /// Of passages with at least an energy (J): strata whose largest rock can never have it do not count. `most_j` is the
+    /// most energy of each stratum; of none without an entry anything is known.
+    pub(in crate::hazard) fn above(weights: &Weights, most_j: &[f64], energy_j: f64) -> Self {
+        let can = |stratum: &usize| most_j.get(*stratum).is_none_or(|most| *most >= energy_j);
+        let strata = || (0..weights.strata()).filter(can);
+        Self {
+            most: strata().map(|stratum| weights.per_year(stratum)).sum(),
+            heaviest: strata().map(|stratum| weights.of_stratum(stratum)).fold(0.0, f64::max),
+        }
+    }
+
+    /// The same where a rock counts for so much at most.
+    pub(in crate::hazard) fn times(self, most: f64) -> Self {
+        Self { most: most * self.most, heaviest: most * self.heaviest }
+    }
+}
+
+/// The rate of all rocks added so far.
+#[derive(Debug)]
+pub(in crate::hazard) struct Running<'a> {
+    weights: &'a Weights,
+    strata: Vec<Sums>,
+    touched: Vec<u16>,
+    value: f64,
+    score: f64,
+    variance: f64,
+}
+
+impl<'a> Running<'a> {
+    /// Without rocks.
+    pub(in crate::hazard) fn new(weights: &'a Weights) -> Self {
+        let strata = vec![Sums::default(); weights.strata()];
+        Self { weights, strata, touched: Vec::new(), value: 0.0, score: 0.0, variance: 0.0 }
+    }
+
+    /// Adds rocks of a stratum. Sums depend on the order in their last bits: callers add in a fixed one.
+    pub(in crate::hazard) fn add(&mut self, stratum: u16, sums: &Sums) {
+        let at = usize::from(stratum);
+        self.variance -= self.variance_of(at);
+        if self.strata[at].rocks == 0 {
+            self.touched.push(stratum);
+        }
+        self.strata[at].join(sums);
+        let weight = self.weights.of_stratum(at);
+        self.value += weight * sums.y;
+        self.score += weight * sums.score;
+        self.variance += self.variance_of(at);
+    }
+
+    /// Without rocks again.
+    pub(in crate::hazard) fn clear(&mut self) {
+        for stratum in self.touched.drain(..) {
+            self.strata[usize::from(stratum)] = Sums::default();
+        }
+        (self.value, self.score, self.variance) = (0.0, 0.0, 0.0);
+    }
+
+    /// `f² s²/n` of one stratum: of independent rocks, those that do not count included.
+    ///
+    /// A stratum of which every rock counts is taken as if half a rock did not: that none was seen to fail does not make
+    /// it certain. One of which none counts has its say in [`interval`].
+    fn variance_of(&self, stratum: usize) -> f64 {
+        let Sums { rocks, y, y2, .. } = self.strata[stratum];
+        let n = self.weights.rocks(stratum) as f64;
+        if rocks == 0 {
+            return 0.0;
+        }
+        let mean = y / n;
+        let spread = (y2 / n - mean * mean).max(0.0);
+        // a whole stratum, but not a part of a class of it
+        let full = if y >= n && rocks as usize == self.weights.rocks(stratum) {
+            0.5 / n * y2 / n
+        } else {
+            0.0
+        };
+        // with one stratum the interval of a proportion is Wilson's, which wants p (1 − p)
+        let few = if self.weights.strata() == 1 { 1.0 } else { n / (n - 1.0).max(1.0) };
+        self.weights.per_year(stratum).powi(2) * (few * spread + full) / n
+    }
+
+    /// Value, and lower and upper end of the interval.
+    pub(in crate::hazard) fn estimate(&self, limits: &Limits) -> [f64; 3] {
+        let [low, high] = interval(self.value, self.variance.max(0.0), limits);
+        [self.value, low, high]
+    }
+
+    /// Change with the exponent.
+    pub(in crate::hazard) fn by_exponent(&self) -> f64 {
+        self.score
+    }
+
+    /// All of it; `has_exponent` where a source has one.
+    pub(in crate::hazard) fn rate(&self, limits: &Limits, has_exponent: bool) -> Rate {
+        let [per_year, low_95, high_95] = self.estimate(limits);
+        Rate {
+            rocks: self.strata.iter().map(|sums| sums.rocks as usize).sum(),
+            per_year,
+            low_95,
+            high_95,
+            by_log_rate: per_year,
+            by_exponent: has_exponent.then(|| self.by_exponent()),
+        }
+    }
+}
+
+/// 95 % interval of a sum of weighted counts.
+///
+/// Wilson's score interval with the effective weight of a count, `variance / (λ (1 − λ/most))`: with equal weights it is
+/// that of [`Proportion`]. For the upper end one more rock of the heaviest weight is added to variance and sum, as Fay
+/// and Feuer (1997, Statistics in Medicine 16, 791) do: what was not seen may belong to the stratum whose rocks stand for
+/// most; only strata that can count at all are asked. Nothing seen: three of the heaviest, `3 max f_j/n_j`; the mean weight would be too small a bound where the
+/// rocks to come are of the heaviest stratum.
+fn interval(value: f64, variance: f64, &Limits { most, heaviest }: &Limits) -> [f64; 2] {
+    const NONE: f64 = 3.0;
+    if value <= 0.0 {
+        return [0.0, (NONE * heaviest).min(most)];
+    }
+    let spread = value * (1.0 - value / most);
+    if spread <= 1e-12 * most {
+        return [(most - NONE * heaviest).max(0.0), most];
+    }
+    let weight = (variance / spread).max(f64::MIN_POSITIVE);
+    let wider = (variance + heaviest * heaviest) / (spread + heaviest);
+    let share = value / most;
+    [most * wilson(share, most / weight).0, most * wilson(share, most / wider).1]
+}
+
+/// Share of all events that some rocks stand for, given by their number in each stratum.
+pub(in crate::hazard) fn proportion(
+    weights: &Weights,
+    counts: impl Iterator<Item = (u16, usize)>,
+) -> Proportion {
+    let mut running = Running::new(weights);
+    let mut count = 0;
+    for (stratum, rocks) in counts.filter(|(_, rocks)| *rocks > 0) {
+        running.add(stratum, &Sums::many(rocks as u32));
+        count += rocks;
+    }
+    let plain = Proportion::new(count, weights.all_rocks());
+    if weights.are_equal() {
+        return plain;
+    }
+    let [share, low_95, high_95] = running
+        .estimate(&Limits::above(weights, &[], 0.0))
+        .map(|value| value / weights.total_per_year());
+    Proportion { share, low_95, high_95, ..plain }
+}

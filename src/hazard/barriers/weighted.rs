@@ -1,0 +1,36 @@
+//! Shares and values of the rocks that arrive, by what each of them stands for.
+
+use super::super::annual::proportion;
+use super::super::proportion::Proportion;
+use super::super::sample::Sample;
+use super::{Arrival, Barrier};
+use crate::frequency::Weights;
+
+/// The share of some rocks that the barrier would stop at another height (m).
+pub(super) fn stopped_at(
+    barrier: &Barrier,
+    (rocks, weights): (&[Arrival], &Weights),
+    height_m: f64,
+) -> Proportion {
+    let is_stopped = |rock: &&Arrival| rock.is_stopped(height_m, barrier.capacity_j);
+    let count = rocks.iter().filter(is_stopped).count();
+    if weights.are_equal() {
+        return Proportion::new(count, rocks.len());
+    }
+    let weight = |rock: &Arrival| weights.of_release(rock.release);
+    let all: f64 = rocks.iter().map(weight).sum();
+    let squares: f64 = rocks.iter().map(|rock| weight(rock).powi(2)).sum();
+    let share = rocks.iter().filter(is_stopped).map(weight).sum::<f64>() / all;
+    Proportion::effective(count, rocks.len(), share, all * all / squares)
+}
+
+/// Share of all releases, by what they stand for, that arrive.
+pub(super) fn arriving(rocks: &[Arrival], weights: &Weights) -> Proportion {
+    let strata = rocks.iter().map(|rock| (weights.stratum_of(rock.release) as u16, 1));
+    proportion(weights, strata)
+}
+
+/// Values of rocks, each with what the rock stands for.
+pub(super) fn sample(rocks: &[Arrival], weights: &Weights, of: impl Fn(&Arrival) -> f64) -> Sample {
+    Sample::weighted(rocks.iter().map(|rock| (of(rock), weights.of_release(rock.release))))
+}

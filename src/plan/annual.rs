@@ -1,0 +1,183 @@
+//! What a scene asks of the year: sources, objects, and what to know of the numbers.
+
+use super::{Curtain, Part};
+use crate::chance::Distribution;
+use crate::error::{Error, Result};
+use crate::frequency::{Frequency, Stratum, radius_of_m3};
+use crate::release;
+use crate::rock::Rock;
+use crate::scene::{MatrixTable, ObjectTable, Scene};
+use crate::terrain::Terrain;
+
+/// Fewest rocks of a stratum with which the intervals hold what they promise, as simulated runs say.
+const FEW_ROCKS: usize = 20;
+
+/// What is asked of the year.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Year {
+    /// Sources, strata, energies and return periods.
+    pub frequency: Frequency,
+    /// Classes of hazard.
+    pub matrix: Option<MatrixTable>,
+    /// Most energy that a rock of each stratum can ever have (J).
+    pub most_j: Vec<f64>,
+}
+
+/// The sources; none where the scene has none.
+///
+/// # Errors
+/// Fewer releases than strata: nothing would stand for some of the sizes.
+pub(super) fn year(
+    scene: &Scene,
+    terrain: &Terrain,
+    warnings: &mut Vec<String>,
+) -> Result<Part<Year>> {
+    let Some(frequency) = scene.sources() else {
+        return Ok(Part::LeftOut(
+            "the scene has no [frequency], every number is conditional on release",
+        ));
+    };
+    let (strata, count) = (frequency.strata().len(), scene.release.count);
+    if count < strata {
+        let found = format!("found {count} releases for {strata} classes of size and source");
+        let remedy = format!("write {} or more", FEW_ROCKS * strata);
+        return Err(Error::input(&scene.file, "[release] count", found, remedy));
+    }
+    if strata > 1 && count < FEW_ROCKS * strata {
+        warnings.push(format!(
+            "{count} releases over {strata} classes of size and source: with fewer than {FEW_ROCKS} each the intervals a year may be too narrow; write count = {} or more",
+            FEW_ROCKS * strata
+        ));
+    }
+    if !frequency.weights(count).are_equal() {
+        warnings.push(
+            "sizes are sampled by importance: large rocks are computed more often than they come. Percentiles, shares and maps are weighted back and hold for the sources as they are; counts of rocks, histograms and dots in figures show rocks as computed"
+                .to_owned(),
+        );
+    }
+    let matrix = scene.frequency.as_ref().and_then(|table| table.matrix.clone());
+    let most_j = most_j(scene, terrain, &frequency);
+    Ok(Part::Kept(Year { frequency, matrix, most_j }))
+}
+
+/// What the numerics may add to the energy of a rock, over all that it has (–): ten times what was ever measured.
+const NUMERICS: f64 = 1.1;
+/// Energy of a rock that nothing bounds (J); a file can hold it, unlike infinity.
+const UNBOUNDED_J: f64 = 1e300;
+
+/// Most energy that a rock of each stratum can ever have (J): that of its start and of a fall through the whole height of
+/// the terrain.
+fn most_j(scene: &Scene, terrain: &Terrain, frequency: &Frequency) -> Vec<f64> {
+    let largest = |value: &Distribution| {
+        let (low, high) = value.support();
+        low.abs().max(high.abs())
+    };
+    let squares = |vector: &[Distribution; 3]| -> f64 {
+        vector.iter().map(|value| largest(value).powi(2)).sum()
+    };
+    let (low, high) = terrain.index.bounds();
+    let points = scene.release.points_m.iter().flatten().filter_map(|point| point.height_m);
+    let top_m = points.map(|z| z - terrain.origin_m.z).fold(high.z, f64::max);
+    let gap_m = scene.release.height_m.as_ref().map_or(0.0, largest);
+    let (v2, w2) = (squares(&scene.release.velocity_m_s), squares(&scene.release.spin_rad_s));
+    let most = |stratum: &Stratum| {
+        let own = stratum.volume_m3.map(|[_, largest]| radius_of_m3(largest));
+        let radius_m = own.unwrap_or_else(|| largest(scene.rocks.radius_m()));
+        let rock = Rock { radius_m, density_kg_m3: scene.rocks.density_kg_m3 };
+        // a rock over steep ground may be lifted by some radii until it is clear of it
+        let drop_m = top_m - low.z + gap_m + LIFTED * radius_m;
+        let fall_j = rock.mass_kg() * scene.gravity_m_s2 * drop_m;
+        let start_j = 0.5 * (rock.mass_kg() * v2 + rock.inertia_kg_m2() * w2);
+        (NUMERICS * (fall_j + start_j)).min(UNBOUNDED_J)
+    };
+    frequency.strata().iter().map(most).collect()
+}
+
+/// More radii than a release is ever lifted by (–).
+const LIFTED: f64 = 8.0;
+
+/// The objects; none where the scene has none.
+pub(super) fn objects(scene: &Scene, warnings: &mut Vec<String>) -> Part<Vec<ObjectTable>> {
+    if !scene.objects.is_empty() && scene.frequency.is_none() {
+        warnings.push(
+            "[[objects]] without [frequency]: how many releases hit them is computed, how often a year and at what risk is not"
+                .to_owned(),
+        );
+    }
+    let objects = scene.objects.clone();
+    Part::when(Some(objects).filter(|all| !all.is_empty()), "the scene has none")
+}
+
+/// The curtains of the objects.
+///
+/// # Errors
+/// An object that comes nowhere near the terrain.
+pub(super) fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Vec<Curtain>> {
+    let (low, high) = terrain.index.bounds();
+    let curtain = |table: &ObjectTable| {
+        let curtain = Curtain::of_object(table, terrain.origin_m);
+        if curtain.is_near([low.x, low.y], [high.x, high.y]) {
+            return Ok(curtain);
+        }
+        let place = format!("[[objects]] \"{}\"", table.name);
+        let remedy = release::outside(terrain);
+        Err(Error::input(&scene.file, place, "found no terrain near it", remedy))
+    };
+    scene.objects.iter().map(curtain).collect()
+}
+
+/// Sources and objects as name and value for the report.
+pub(super) fn rows(scene: &Scene) -> Vec<(String, String)> {
+    let mut rows = Vec::new();
+    if let Some(frequency) = scene.sources() {
+        for source in frequency.sources() {
+            rows.push((format!("Source “{}”", source.name), source.law.in_words()));
+        }
+    }
+    rows.extend(
+        scene.objects.iter().map(|object| (format!("Object “{}”", object.name), words(object))),
+    );
+    rows
+}
+
+/// An object in words.
+pub(super) fn words(object: &ObjectTable) -> String {
+    let mut parts = vec![match (&object.points_m, object.width_m) {
+        (Some(line), Some(width)) => format!("{:.1} m long, {width} m wide", line.length_m()),
+        _ => object
+            .polygon_m
+            .as_ref()
+            .map_or(String::new(), |area| format!("{:.1} m²", area.area_m2())),
+    }];
+    if let Some(vehicles) = &object.vehicles {
+        let (n, v, l) = (vehicles.per_day, vehicles.speed_km_h, vehicles.length_m);
+        parts.push(format!("{n} vehicles a day of {l} m at {v} km/h"));
+        parts.extend(vehicles.own_per_day.map(|own| format!("{own} passages a day of one person")));
+    }
+    parts.extend(object.occupancy.map(|share| format!("occupied {share} of the time")));
+    parts.extend(object.persons.map(|persons| format!("{persons} persons")));
+    parts.extend(object.vulnerability.map(|share| format!("vulnerability {share}")));
+    parts.join(", ")
+}
+
+/// The sources in words, one line each, and how they are sampled.
+pub(super) fn lines(year: &Year, count: usize) -> Vec<String> {
+    let Year { frequency, matrix, most_j: _ } = year;
+    let mut lines: Vec<String> = frequency
+        .sources()
+        .iter()
+        .map(|source| format!("{}: {}", source.name, source.law.in_words()))
+        .collect();
+    let weights = frequency.weights(count);
+    lines.push(format!(
+        "{:.4} events a year; {} classes of size and source, {} rocks or more each: {count} rocks know what {:.0} of equal weight would",
+        frequency.per_year(),
+        frequency.strata().len(),
+        count / frequency.strata().len(),
+        weights.effective_rocks()
+    ));
+    lines.extend(
+        matrix.as_ref().map(|one| format!("levels of “{}”; source: {}", one.name, one.source)),
+    );
+    lines
+}

@@ -1,0 +1,97 @@
+//! Places that release rocks, and the sizes of what each of them releases.
+
+use super::{Releases, Where};
+use crate::chance::{Purpose, stream, unit};
+use crate::error::{Error, Result};
+use crate::frequency::{Frequency, radius_of_m3};
+use crate::scene::{Area, Corner, Point, Polyline, Scene};
+use crate::terrain::Terrain;
+
+impl Releases {
+    pub(super) fn place_asked(scene: &Scene) -> Result<Where> {
+        let asked = &scene.release;
+        Where::one_of((&asked.points_m, &asked.line_m, &asked.polygon_m)).ok_or_else(|| {
+            let remedy = "write exactly one of points_m, line_m and polygon_m";
+            Error::input(&scene.file, "[release]", "found none or several", remedy)
+        })
+    }
+
+    /// Refuses a point or corner without ground below.
+    pub(super) fn look_for_ground(&self, terrain: &Terrain) -> Result<()> {
+        for (k, place) in self.places.iter().enumerate() {
+            let table = if self.places.len() > 1 {
+                format!("[[frequency.sources]] #{}", k + 1)
+            } else {
+                "[release]".to_owned()
+            };
+            let (key, corners_m) = place.corners_m();
+            for (number, corner) in corners_m.into_iter().enumerate() {
+                let who = format!("{table} {key}, entry {}", number + 1);
+                self.check_corner(terrain, (place, number), corner, &who)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The first so many releases come from every fixed point.
+    pub(super) fn turns(&self) -> usize {
+        let points = |place: &Where| if let Where::Points(all) = place { all.len() } else { 0 };
+        let strata = self.frequency.as_ref().map_or(1, |one| one.strata().len());
+        strata * self.places.iter().map(points).max().unwrap_or(0)
+    }
+
+    /// Place of a release, and which turn it is there.
+    pub(super) fn place_of(&self, index: usize) -> (&Where, usize) {
+        match &self.frequency {
+            Some(frequency) => {
+                let source = frequency.stratum(index).source.min(self.places.len() - 1);
+                (&self.places[source], frequency.turn(index))
+            }
+            None => (&self.places[0], index),
+        }
+    }
+
+    /// Radius of a rock (m), as its source, its table or else the scene has it.
+    pub(super) fn draw_radius_m(&self, index: usize) -> f64 {
+        if !self.radii_m.is_empty() {
+            return self.radii_m[self.place_of(index).1 % self.radii_m.len()];
+        }
+        let mut chance = stream(self.seed, Purpose::Size, index);
+        let own = self.frequency.as_ref().filter(|one| one.draws_volumes());
+        let volume_m3 = own.and_then(|one| one.stratum(index).quantile_m3(unit(&mut chance)));
+        volume_m3.map_or_else(|| self.radius_m.draw(&mut chance), radius_of_m3)
+    }
+
+    /// The sources, their laws of size, and what is asked of the year; none where the scene says nothing of it.
+    pub fn frequency(&self) -> Option<&Frequency> {
+        self.frequency.as_ref()
+    }
+
+    /// Where rocks are released: one place, or one for each source.
+    pub fn places(&self) -> &[Where] {
+        &self.places
+    }
+}
+
+impl Where {
+    /// The one place that is given; none where none or several are.
+    pub(super) fn one_of(
+        given: (&Option<Vec<Point>>, &Option<Polyline>, &Option<Area>),
+    ) -> Option<Self> {
+        match given {
+            (Some(points), None, None) => Some(Self::Points(points.clone())),
+            (None, Some(line), None) => Some(Self::Line(line.clone())),
+            (None, None, Some(area)) => Some(Self::Area(area.clone())),
+            _ => None,
+        }
+    }
+
+    /// The scene's key and its points or corners in plan view (m), map coordinates.
+    fn corners_m(&self) -> (&'static str, Vec<Corner>) {
+        match self {
+            Self::Points(points) => ("points_m", points.iter().map(|point| point.at_m).collect()),
+            Self::Line(line) => ("line_m", line.corners_m().to_vec()),
+            Self::Area(area) => ("polygon_m", area.corners_m().to_vec()),
+        }
+    }
+}

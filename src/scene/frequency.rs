@@ -1,0 +1,338 @@
+//! `[frequency]`: how often rocks are released, of what size, and what is asked of the year.
+
+use super::check::{Allowed, Checked, Complaint, number};
+use super::places::{Area, Point, Polyline};
+use crate::chance::{Distribution, Entries};
+use crate::frequency::{Class, Frequency, Law, Source, radius_of_m3};
+use serde::{Deserialize, Deserializer};
+
+/// How often rocks are released: one law, or one for each of several sources.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [frequency]")]
+pub struct FrequencyTable {
+    /// Events a year of rocks as `[rocks] radius_m` has them (1/year), positive.
+    pub per_year: Option<f64>,
+    /// Power law: events a year of 1 m³ or more (1/year), positive.
+    pub per_year_at_1m3: Option<f64>,
+    /// Power law: exponent `b` of `N(≥ V) = a V^−b` (–), positive.
+    pub exponent: Option<f64>,
+    /// Power law: smallest and largest volume (m³), positive and rising.
+    #[serde(default, deserialize_with = "pair")]
+    pub volume_m3: Option<[f64; 2]>,
+    /// Instead: events a year by class of volume.
+    pub classes: Option<Vec<ClassTable>>,
+    /// Instead: several sources, each with its place and its law.
+    #[serde(default)]
+    pub sources: Vec<SourceTable>,
+    /// Energies whose frequency is asked for (J), positive.
+    pub energies_j: Option<Vec<f64>>,
+    /// Return periods whose energy is asked for (years), positive.
+    pub return_periods_years: Option<Vec<f64>>,
+    /// Classes of hazard by energy and return period.
+    pub matrix: Option<MatrixTable>,
+}
+
+/// `[[frequency.sources]]`: a place that releases rocks.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with name, a place and a law")]
+pub struct SourceTable {
+    /// Name in the results.
+    pub name: String,
+    /// Where: points in map coordinates (m), taken in turn.
+    pub points_m: Option<Vec<Point>>,
+    /// Where: uniform along a polyline in map coordinates (m).
+    pub line_m: Option<Polyline>,
+    /// Where: uniform over an area in map coordinates (m).
+    pub polygon_m: Option<Area>,
+    /// As of [`FrequencyTable`].
+    pub per_year: Option<f64>,
+    /// As of [`FrequencyTable`].
+    pub per_year_at_1m3: Option<f64>,
+    /// As of [`FrequencyTable`].
+    pub exponent: Option<f64>,
+    /// As of [`FrequencyTable`].
+    #[serde(default, deserialize_with = "pair")]
+    pub volume_m3: Option<[f64; 2]>,
+    /// As of [`FrequencyTable`].
+    pub classes: Option<Vec<ClassTable>>,
+}
+
+/// A class of volume and how often it comes.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with volume_m3 and per_year")]
+pub struct ClassTable {
+    /// One volume, or smallest and largest (m³), positive.
+    #[serde(deserialize_with = "one_or_two")]
+    pub volume_m3: [f64; 2],
+    /// Events a year (1/year), positive.
+    pub per_year: f64,
+}
+
+/// `[frequency.matrix]`: levels of hazard by the energy of each return period; the table and its source are the scene's.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table [frequency.matrix]")]
+pub struct MatrixTable {
+    /// Name that stands beside the map.
+    pub name: String,
+    /// Where the table was read; stands beside the map.
+    pub source: String,
+    /// Limits between the classes of energy (J), rising.
+    pub energies_j: Vec<f64>,
+    /// Return periods (years), rising.
+    pub return_periods_years: Vec<f64>,
+    /// A row for each return period, in it a level for each class of energy, from weak to strong.
+    pub levels: Vec<Vec<u8>>,
+}
+
+/// The keys of a law, wherever they stand.
+struct LawKeys<'a> {
+    per_year: Option<f64>,
+    per_year_at_1m3: Option<f64>,
+    exponent: Option<f64>,
+    volume_m3: Option<[f64; 2]>,
+    classes: Option<&'a [ClassTable]>,
+}
+
+/// Return periods unless the scene names others (years).
+const RETURN_PERIODS_YEARS: [f64; 4] = [30.0, 100.0, 300.0, 1000.0];
+/// Energies unless the scene names others (J): the limits of the classes of the intensity map.
+const ENERGIES_J: [f64; 2] = [30e3, 300e3];
+/// Largest exponent (–): measured ones are below 2, and far steeper laws have one size only.
+const STEEPEST: f64 = 20.0;
+const LAW: &str = "write per_year = … (sizes as [rocks] radius_m has them), or per_year_at_1m3, exponent and volume_m3, or classes";
+
+impl FrequencyTable {
+    /// The sources, their laws and what is asked; none where a key is wrong, which the check has said.
+    pub(super) fn compile(&self) -> Option<Frequency> {
+        let own = self.keys().law().ok()?.map(|law| Source { name: "release".to_owned(), law });
+        let named = |table: &SourceTable| {
+            Some(Source { name: table.name.clone(), law: table.keys().law().ok()?? })
+        };
+        let sources: Option<Vec<Source>> = match own {
+            Some(source) => Some(vec![source]),
+            None => self.sources.iter().map(named).collect(),
+        };
+        Some(Frequency::new(
+            sources?,
+            self.energies_j.clone().unwrap_or_else(|| ENERGIES_J.into()),
+            self.return_periods_years.clone().unwrap_or_else(|| RETURN_PERIODS_YEARS.into()),
+        ))
+    }
+
+    pub(super) fn check(&self) -> Checked {
+        let own = self.keys().law()?;
+        if own.is_some() != self.sources.is_empty() {
+            return Err(if own.is_some() {
+                let remedy = "remove it, or the law in [frequency]: each source has its own";
+                Complaint::about("sources", remedy).finding("found both a law and sources")
+            } else {
+                Complaint::missing("per_year", format!("{LAW}, or [[frequency.sources]]"))
+            });
+        }
+        let mut draws = Vec::new();
+        for (index, source) in self.sources.iter().enumerate() {
+            let law = source.check().map_err(|wrong| wrong.in_entry(index).inside("sources"))?;
+            draws.push(!matches!(law, Law::Events { .. }));
+        }
+        if let Some(index) = draws.iter().position(|one| *one != draws[0]) {
+            let remedy = "write per_year alone in all sources, or volumes in all";
+            let about = Complaint::about("name", remedy);
+            let found =
+                "found a source with volumes of its own beside one that takes [rocks] radius_m";
+            return Err(about.finding(found).in_entry(index).inside("sources"));
+        }
+        positive_list("energies_j", self.energies_j.as_deref())?;
+        positive_list("return_periods_years", self.return_periods_years.as_deref())?;
+        self.matrix.as_ref().map_or(Ok(()), |one| one.check().map_err(|w| w.inside("matrix")))
+    }
+
+    fn keys(&self) -> LawKeys<'_> {
+        LawKeys {
+            per_year: self.per_year,
+            per_year_at_1m3: self.per_year_at_1m3,
+            exponent: self.exponent,
+            volume_m3: self.volume_m3,
+            classes: self.classes.as_deref(),
+        }
+    }
+}
+
+impl SourceTable {
+    fn check(&self) -> Result<Law, Complaint> {
+        let places = [self.points_m.is_some(), self.line_m.is_some(), self.polygon_m.is_some()];
+        if places.iter().filter(|given| **given).count() != 1 {
+            let remedy = "write exactly one of points_m, line_m and polygon_m";
+            return Err(Complaint::about("name", remedy).finding("found none or several places"));
+        }
+        if self.points_m.as_ref().is_some_and(Vec::is_empty) {
+            return Err(Complaint::about("points_m", "write at least one point"));
+        }
+        let points = self.points_m.as_deref().unwrap_or_default();
+        if points.iter().any(|point| point.height_m.is_some()) {
+            let remedy = "write the points as [x, y]: height_m of [release] says how high";
+            return Err(Complaint::about("points_m", remedy));
+        }
+        let law = self.keys().law()?;
+        law.ok_or_else(|| Complaint::missing("per_year", LAW))
+    }
+
+    fn keys(&self) -> LawKeys<'_> {
+        LawKeys {
+            per_year: self.per_year,
+            per_year_at_1m3: self.per_year_at_1m3,
+            exponent: self.exponent,
+            volume_m3: self.volume_m3,
+            classes: self.classes.as_deref(),
+        }
+    }
+}
+
+impl LawKeys<'_> {
+    /// The law; none where no key of one is written.
+    fn law(&self) -> Result<Option<Law>, Complaint> {
+        let power = [
+            ("per_year_at_1m3", self.per_year_at_1m3.is_some()),
+            ("exponent", self.exponent.is_some()),
+            ("volume_m3", self.volume_m3.is_some()),
+        ];
+        let given = [
+            self.per_year.map(|_| "per_year"),
+            power.iter().find(|(_, given)| *given).map(|(key, _)| *key),
+            self.classes.map(|_| "classes"),
+        ];
+        let mut given = given.into_iter().flatten();
+        let (one, other) = (given.next(), given.next());
+        if let (Some(one), Some(other)) = (one, other) {
+            return Err(Complaint::about(other, LAW).finding(format!("found {one} beside it")));
+        }
+        if let Some(per_year) = self.per_year {
+            number("per_year", per_year, Allowed::Positive, "")?;
+            return Ok(Some(Law::Events { per_year }));
+        }
+        if let Some(classes) = self.classes {
+            return classes_law(classes).map(Some);
+        }
+        let (Some(per_year_at_1m3), Some(exponent), Some(volume_m3)) =
+            (self.per_year_at_1m3, self.exponent, self.volume_m3)
+        else {
+            let missing = power.iter().find(|(_, given)| !given);
+            return match missing.filter(|_| one.is_some()) {
+                Some((key, _)) => Err(Complaint::missing(key, LAW)),
+                None => Ok(None),
+            };
+        };
+        number("per_year_at_1m3", per_year_at_1m3, Allowed::Positive, "")?;
+        number("exponent", exponent, Allowed::Positive, "")?;
+        if exponent > STEEPEST {
+            return Err(Complaint::about("exponent", format!("write at most {STEEPEST}")));
+        }
+        volumes("volume_m3", volume_m3, false)?;
+        Ok(Some(Law::PowerLaw { per_year_at_1m3, exponent, volume_m3 }))
+    }
+}
+
+fn classes_law(classes: &[ClassTable]) -> Result<Law, Complaint> {
+    if classes.is_empty() {
+        return Err(Complaint::about("classes", "write at least one class"));
+    }
+    for (index, class) in classes.iter().enumerate() {
+        volumes("volume_m3", class.volume_m3, true)
+            .and_then(|()| number("per_year", class.per_year, Allowed::Positive, ""))
+            .map_err(|wrong| wrong.in_entry(index).inside("classes"))?;
+    }
+    let class = |one: &ClassTable| Class { volume_m3: one.volume_m3, per_year: one.per_year };
+    Ok(Law::Classes(classes.iter().map(class).collect()))
+}
+
+/// Volumes of blocks (m³) that a run can follow, from a pebble to a hillside.
+const VOLUMES_M3: [f64; 2] = [1e-6, 1e6];
+
+fn volumes(key: &str, [least, largest]: [f64; 2], may_be_equal: bool) -> Checked {
+    let rise = least < largest || may_be_equal && least <= largest;
+    if rise && least >= VOLUMES_M3[0] && largest <= VOLUMES_M3[1] {
+        return Ok(());
+    }
+    let [low, high] = VOLUMES_M3;
+    let remedy = format!("write smallest and largest volume, from {low:e} to {high:e} m³");
+    Err(Complaint::about(key, remedy))
+}
+
+fn positive_list(key: &str, list: Option<&[f64]>) -> Checked {
+    list.unwrap_or_default().iter().try_for_each(|value| number(key, *value, Allowed::Positive, ""))
+}
+
+impl MatrixTable {
+    fn check(&self) -> Checked {
+        for (key, words) in [("name", &self.name), ("source", &self.source)] {
+            if words.trim().is_empty() {
+                let remedy = "write it: a table of levels stands with its name and its source";
+                return Err(Complaint::about(key, remedy));
+            }
+        }
+        for (key, list) in
+            [("energies_j", &self.energies_j), ("return_periods_years", &self.return_periods_years)]
+        {
+            positive_list(key, Some(list))?;
+            if list.is_empty() || list.windows(2).any(|pair| pair[0] >= pair[1]) {
+                return Err(Complaint::about(key, "write at least one number, rising"));
+            }
+        }
+        let (rows, columns) = (self.return_periods_years.len(), self.energies_j.len() + 1);
+        if self.levels.len() != rows || self.levels.iter().any(|row| row.len() != columns) {
+            let remedy = format!(
+                "write {rows} rows, one a return period, of {columns} levels, one a class of energy"
+            );
+            return Err(Complaint::about("levels", remedy));
+        }
+        Ok(())
+    }
+}
+
+/// Radii to reckon with (m) where the sources have volumes of their own: ends and middle of every stratum, as often as
+/// it comes.
+pub(super) fn radii_m(frequency: &Frequency) -> Option<Distribution> {
+    let shares = [0.0, 0.5, 1.0];
+    let radii = frequency.strata().iter().flat_map(|stratum| {
+        let volumes = shares.map(|p| Some((stratum.quantile_m3(p)?, stratum.per_year)));
+        volumes.into_iter().flatten()
+    });
+    let (radii, weights): (Vec<f64>, Vec<f64>) =
+        radii.map(|(volume, weight)| (radius_of_m3(volume), weight)).unzip();
+    Distribution::values(radii, Some(weights)).ok()
+}
+
+fn pair<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 2]>, D::Error> {
+    Entries::deserialize(from).map(|Entries(pair)| Some(pair))
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "a volume, or [smallest, largest]")]
+enum OneOrTwo {
+    One(f64),
+    Two([f64; 2]),
+}
+
+fn one_or_two<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> {
+    OneOrTwo::deserialize(from).map(|found| match found {
+        OneOrTwo::One(volume) => [volume; 2],
+        OneOrTwo::Two(pair) => pair,
+    })
+}
+
+/// Checks `radius_m` against the laws: volumes of their own, or none.
+pub(super) fn check_radius(
+    radius_m: Option<&Distribution>,
+    frequency: Option<&Frequency>,
+) -> Checked {
+    let drawn = frequency.is_some_and(Frequency::draws_volumes);
+    match (radius_m, drawn) {
+        (Some(_), true) => Err(Complaint::about(
+            "radius_m",
+            "remove it: the volumes of [frequency] say how large rocks are; or write per_year = … there",
+        )),
+        (None, false) => {
+            Err(Complaint::missing("radius_m", "write radius_m = …; it has no default"))
+        }
+        _ => Ok(()),
+    }
+}
