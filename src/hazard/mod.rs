@@ -5,6 +5,7 @@
 //! grouping in which rocks arrive, and a drawing from files shows the same bits as the run itself.
 
 mod barriers;
+mod difference;
 mod lines;
 mod maps;
 mod observed;
@@ -19,6 +20,7 @@ mod totals;
 pub use barriers::{
     Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Design, Elsewhere, Rule, arrivals, judge,
 };
+pub use difference::{Difference, Reading, Values};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{Agreement, Way};

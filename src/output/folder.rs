@@ -10,7 +10,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files besides `progress.json`.
-const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY];
+const FILES: [&str; 8] =
+    [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", "view.html", "view.glb", SUMMARY];
 /// Folder of the figures: every SVG file in it belongs to the results.
 const FIGURES: &str = "figures";
 

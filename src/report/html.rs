@@ -74,8 +74,13 @@ fn title_block(report: &Report) -> String {
         words => format!("<p class=\"subtitle\">{}</p>\n", escape(words)),
     };
     let count = format::decimal(report.releases.len() as f64, 0);
+    let view = if report.has_view {
+        " · <a href=\"view.html\">the slope in 3D</a> · <a href=\"view.glb\">view.glb</a>"
+    } else {
+        ""
+    };
     format!(
-        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{count} releases · {} kept paths · seed {} · rockfall {}</p>\n{}</header>\n",
+        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{count} releases · {} kept paths · seed {} · rockfall {}{view}</p>\n{}</header>\n",
         escape(&text.title),
         report.paths.len(),
         text.seed,
