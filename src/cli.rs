@@ -2,6 +2,8 @@
 
 #![expect(clippy::print_stderr, reason = "this is the face of the program")]
 
+mod calibrate;
+mod compare;
 mod study;
 
 use crate::wiring::{self, Ended, Order, Part};
@@ -64,6 +66,8 @@ enum Command {
         /// Folder with the results of a run
         dir: PathBuf,
     },
+    /// Compare two finished runs: differences with intervals, on the same rocks where both have one seed
+    Compare(compare::CompareArgs),
     /// Run the exact cases and the method paper's examples; write table and figures
     Verify {
         /// Folder for table and figures
@@ -73,7 +77,7 @@ enum Command {
     /// List the grounds that `like` knows, with their sources
     Grounds,
     /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
-    Calibrate(CalibrateArgs),
+    Calibrate(calibrate::CalibrateArgs),
     /// Study the numerics: error against run time, stability
     #[command(subcommand)]
     Study(study::StudyCommand),
@@ -125,21 +129,6 @@ enum MeshCommand {
 }
 
 #[derive(Debug, Args)]
-struct CalibrateArgs {
-    /// Scene file (TOML) with a table [calibrate]
-    scene: PathBuf,
-    /// Folder for calibration.csv and calibration.json [default: reports/<scene name>]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Releases of each trial
-    #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
-    releases: usize,
-    /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = at_least_1)]
-    threads: Option<usize>,
-}
-
-#[derive(Debug, Args)]
 struct RunArgs {
     /// Scene file (TOML)
     scene: PathBuf,
@@ -182,9 +171,10 @@ pub(crate) fn main() -> ExitCode {
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Compare(args) => compare::compare(&args),
         Command::Verify { out } => verify(&out),
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
-        Command::Calibrate(args) => calibrate(&args),
+        Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Study(command) => study::study(&command),
         Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
@@ -199,13 +189,6 @@ pub(crate) fn main() -> ExitCode {
         eprintln!("error: {error}");
         ExitCode::from(WRONG_INPUT)
     })
-}
-
-fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
-    let scene = Scene::read(&args.scene)?;
-    let name = args.scene.file_stem().unwrap_or_default();
-    let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
-    wiring::calibrate(&scene, (args.releases, args.threads), &out).map(say)
 }
 
 fn plan(scene: &Path) -> Result<ExitCode> {

@@ -298,6 +298,17 @@ pub(crate) fn draw(dir: &Path) -> Result<()> {
     report::draw_again(dir)
 }
 
+/// Compares two finished runs, writes page, figures and table into `out`, and says what changes.
+pub(crate) fn compare(a: &Path, b: &Path, out: &Path) -> Result<String> {
+    let comparison = report::compare::Comparison::of(a, b)?;
+    comparison.write(out)?;
+    Ok(format!(
+        "{}\n\npage in {}",
+        comparison.headline().join("\n"),
+        out.join("compare.html").display()
+    ))
+}
+
 /// Health of mesh files as they will be welded, in words.
 pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
     let sources: Vec<Source> = files.iter().map(|path| slope_source(path)).collect();

@@ -92,9 +92,8 @@ impl Difference {
     /// From one statistic to the other; `paired` where the same release numbers are the same rocks.
     pub fn between(a: &Reading, b: &Reading, paired: bool) -> Self {
         let squares = |pulls: &Values| pulls.iter().map(|(_, pull)| pull * pull).sum::<f64>();
-        let variance = |one: &Values, other: &Values| match paired {
-            true => apart(one, other),
-            false => squares(one) + squares(other),
+        let variance = |one: &Values, other: &Values| {
+            if paired { apart(one, other) } else { squares(one) + squares(other) }
         };
         let value = b.value - a.value;
         let interval = a.pulls.as_ref().zip(b.pulls.as_ref()).map(|(one, other)| {
@@ -196,7 +195,9 @@ mod tests {
         let (lost, won) = (2.0 / 12.0, 3.0 / 12.0);
         let half = NORMAL_95 * ((won + lost - (won - lost) * (won - lost)) / 12.0_f64).sqrt();
         let (low, high) = found.interval.unwrap();
-        assert!((low - (won - lost - half)).abs() < 1e-12 && (high - (won - lost + half)).abs() < 1e-12);
+        assert!(
+            (low - (won - lost - half)).abs() < 1e-12 && (high - (won - lost + half)).abs() < 1e-12
+        );
     }
 
     /// None of 100 in either: the rule of three's size, not zero.
@@ -212,6 +213,8 @@ mod tests {
         let few: Values = (0..20).map(|k| (k, k as f64)).collect();
         let p99 = Reading::percentile(&few, 0.99).unwrap();
         assert_eq!(Difference::between(&p99, &p99, true).interval, None);
-        assert!(Reading::mean(&[]).is_none() && Reading::percentile(&[(0, f64::NAN)], 0.5).is_none());
+        assert!(
+            Reading::mean(&[]).is_none() && Reading::percentile(&[(0, f64::NAN)], 0.5).is_none()
+        );
     }
 }

@@ -30,7 +30,7 @@ pub fn page(report: &Report, figures: &[(Heading, Drawing)]) -> String {
     page
 }
 
-fn head(title: &str) -> String {
+pub(super) fn head(title: &str) -> String {
     let title = escape(title);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -39,14 +39,14 @@ fn head(title: &str) -> String {
     )
 }
 
-fn section(title: &str, body: &str) -> String {
+pub(super) fn section(title: &str, body: &str) -> String {
     if body.is_empty() {
         return String::new();
     }
     format!("<section>\n<h2>{}</h2>\n{body}</section>\n", escape(title))
 }
 
-fn list(lines: &[String]) -> String {
+pub(super) fn list(lines: &[String]) -> String {
     if lines.is_empty() {
         return String::new();
     }
@@ -213,7 +213,7 @@ fn table_cell(estimate: Option<&Estimate>) -> String {
     format!("<td class=\"number\">{value}{below}</td>")
 }
 
-fn figure_section(figures: &[(Heading, Drawing)]) -> String {
+pub(super) fn figure_section(figures: &[(Heading, Drawing)]) -> String {
     let mut body = String::new();
     for (number, (figure, drawing)) in figures.iter().enumerate() {
         let _ = write!(

@@ -12,6 +12,7 @@
 pub mod axis;
 mod barriers;
 pub mod colour;
+pub mod compare;
 pub mod contour;
 pub mod curves;
 mod distributions;

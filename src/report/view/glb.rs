@@ -63,7 +63,7 @@ impl Scene<'_> {
         std::array::from_fn(|axis| (place_m[axis] - self.origin_m[axis]) as f32)
     }
 
-    fn add_mesh(&mut self, primitives: Vec<Value>) -> usize {
+    fn add_mesh(&mut self, primitives: &[Value]) -> usize {
         self.meshes.push(json!({ "primitives": primitives }));
         self.meshes.len() - 1
     }
@@ -86,7 +86,7 @@ impl Scene<'_> {
                 continue;
             }
             let corners = self.bin.corners(triangles.as_flattened());
-            let number = self.add_mesh(vec![json!({
+            let number = self.add_mesh(&[json!({
                 "attributes": { "POSITION": position }, "indices": corners,
                 "material": material, "mode": TRIANGLES
             })]);
@@ -117,7 +117,7 @@ impl Scene<'_> {
                     pieces.flat_map(|k| [k, k + 2, k + 1, k + 1, k + 2, k + 3]).collect();
                 primitive["indices"] = self.bin.corners(&corners).into();
             }
-            let number = self.add_mesh(vec![primitive]);
+            let number = self.add_mesh(&[primitive]);
             self.add_node(&wall.name, number);
         }
     }
@@ -138,7 +138,7 @@ impl Scene<'_> {
             }));
         }
         if !primitives.is_empty() {
-            let number = self.add_mesh(primitives);
+            let number = self.add_mesh(&primitives);
             self.add_node("paths", number);
         }
     }
@@ -153,13 +153,14 @@ impl Scene<'_> {
             "POSITION": self.bin.places(&places), "NORMAL": self.bin.places(&places)
         });
         let corners = self.bin.corners(&corners);
-        let number = self.add_mesh(vec![json!({
+        let number = self.add_mesh(&[json!({
             "attributes": attributes, "indices": corners, "material": ROCK, "mode": TRIANGLES
         })]);
         for way in &self.shown.ways.ways {
             let places: Vec<_> =
                 way.instants.iter().map(|instant| self.local(instant.place_m)).collect();
-            let times: Vec<f32> = way.instants.iter().map(|instant| instant.time_s as f32).collect();
+            let times: Vec<f32> =
+                way.instants.iter().map(|instant| instant.time_s as f32).collect();
             let input = self.bin.times(&times);
             let output = self.bin.samples(&places);
             self.channels.push(json!({

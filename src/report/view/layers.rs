@@ -12,6 +12,8 @@ use serde_json::json;
 const LONGEST: usize = 2048;
 /// Limits between the classes of a layer.
 const LIMITS: usize = 5;
+/// Decades that hold them.
+const DECADES: i32 = 3;
 
 /// What is shown of the maps: layer, name, unit, size of the unit in SI.
 const SHOWN: [(hazard::Layer, &str, &str, f64); 4] = [
@@ -51,10 +53,9 @@ impl MapLayers {
             let path = results.dir.join("maps").join(layer.file()).with_extension("asc");
             let values = coarsened(&Grid::read(&path)?, every);
             let limits = limits(values.iter().map(|value| value / size).fold(0.0, f64::max));
-            let class = |value: &f64| match *value > 0.0 {
-                true => 1 + limits.iter().filter(|limit| value / size >= **limit).count() as u32,
-                false => 0,
-            };
+            let above =
+                |value: f64| limits.iter().filter(|limit| value / size >= **limit).count() as u32;
+            let class = |value: &f64| if *value > 0.0 { 1 + above(*value) } else { 0 };
             let classes = values.iter().map(class).collect();
             layers.push(Layer { name, unit, limits, classes });
         }
@@ -64,9 +65,8 @@ impl MapLayers {
     /// What was left out.
     pub(super) fn note(&self) -> Option<String> {
         let cell_m = self.frame.cell_m * self.every as f64;
-        (self.every > 1).then(|| {
-            format!("Map layers in cells of {cell_m} m, each with its largest value.")
-        })
+        (self.every > 1)
+            .then(|| format!("Map layers in cells of {cell_m} m, each with its largest value."))
     }
 
     /// Packed as text.
@@ -106,7 +106,7 @@ fn limits(most: f64) -> Vec<f64> {
         return Vec::new();
     }
     let top = most.log10().floor() as i32;
-    let series = (top - LIMITS as i32..=top).flat_map(|k| {
+    let series = (top - DECADES..=top).flat_map(|k| {
         let power: f64 = format!("1e{k}").parse().unwrap_or(0.0);
         [power, 3.0 * power]
     });

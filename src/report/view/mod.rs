@@ -77,7 +77,7 @@ impl Shown {
         notes.extend(self.ways.notes());
         if self.rows.len() < self.releases {
             notes.push(format!(
-                "Ends of the first {} of {} rocks.",
+                "Shown are the first {} of {} rocks.",
                 self.rows.len(),
                 self.releases
             ));

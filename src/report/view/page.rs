@@ -7,7 +7,8 @@ use serde_json::json;
 use std::fmt::Write as _;
 
 /// What the page may do: run its own script and style, and nothing else. No request can leave it.
-pub const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'";
+pub const POLICY: &str =
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'";
 
 /// Name of the section with the terrain.
 pub const TERRAIN: &str = "terrain";
@@ -67,7 +68,11 @@ pub fn page(shown: &Shown) -> String {
     if let Some(layers) = &shown.layers {
         put(&mut page, "maps", &layers.text());
     }
-    let _ = write!(page, "<script>\n\"use strict\";\n{}</script>\n</body>\n</html>\n", SCRIPTS.concat());
+    let _ = write!(
+        page,
+        "<script>\n\"use strict\";\n{}</script>\n</body>\n</html>\n",
+        SCRIPTS.concat()
+    );
     page
 }
 

@@ -54,12 +54,11 @@ impl Ways {
                 let (release, radius_m) = (row.index, rock.radius_m);
                 ways.push(Way { release, radius_m, instants: Vec::new() });
             }
-            let is_ahead = |last: &Instant| row.time_s > last.time_s;
-            let instants = ways.last_mut().map(|way| &mut way.instants);
-            instants
-                .filter(|_| is_finite(&row.position_m) && row.time_s.is_finite())
-                .filter(|instants| instants.last().is_none_or(is_ahead))
-                .map(|instants| instants.push(instant(&row, rock)));
+            let Some(way) = ways.last_mut() else { break };
+            let is_ahead = way.instants.last().is_none_or(|last| row.time_s > last.time_s);
+            if is_ahead && is_finite(&row.position_m) && row.time_s.is_finite() {
+                way.instants.push(instant(&row, rock));
+            }
         }
         ways.retain(|way| !way.instants.is_empty());
         let points: usize = ways.iter().map(|way| way.instants.len()).sum();

@@ -29,10 +29,10 @@ const NUMBERS: [Number; 7] = [
 pub(super) fn text(shown: &Shown) -> String {
     let rows = &shown.rows;
     let frame = Frame::round(rows.iter().map(|row| row.end_m));
-    let mut section =
-        Section::new(json!({ "frame": frame, "first": shown.first_release, "all": shown.releases }));
-    let end =
-        |row: &Row| if is_finite(&row.end_m) { frame.steps(row.end_m) } else { [0; 3] };
+    let mut section = Section::new(
+        json!({ "frame": frame, "first": shown.first_release, "all": shown.releases }),
+    );
+    let end = |row: &Row| if is_finite(&row.end_m) { frame.steps(row.end_m) } else { [0; 3] };
     section.add("end", 3, 0, rows.iter().flat_map(end).collect());
     section.add("stop", 1, 0, rows.iter().map(stop).collect());
     section.add("impacts", 1, 0, rows.iter().map(|row| row.impacts).collect());

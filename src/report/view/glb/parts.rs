@@ -153,12 +153,16 @@ fn cut(places: &mut Vec<[f32; 3]>, [a, b, c]: [u32; 3]) -> [[u32; 3]; 4] {
         let sum: [f32; 3] =
             std::array::from_fn(|i| places[one as usize][i] + places[other as usize][i]);
         let length = sum.iter().map(|x| x * x).sum::<f32>().sqrt();
-        let place = sum.map(|x| x / length);
+        // + 0 turns the zero of either sign into one
+        let place = sum.map(|x| x / length + 0.0);
         // a side is shared: its middle may be there already
-        places.iter().position(|known| *known == place).unwrap_or_else(|| {
-            places.push(place);
-            places.len() - 1
-        }) as u32
+        places
+            .iter()
+            .position(|known| known.map(f32::to_bits) == place.map(f32::to_bits))
+            .unwrap_or_else(|| {
+                places.push(place);
+                places.len() - 1
+            }) as u32
     };
     let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
