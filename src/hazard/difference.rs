@@ -5,13 +5,13 @@
 //! over the number of rocks); the variance of a difference is the sum of the squared differences of the pulls where releases
 //! pair, and the sum of both sums of squares where they do not.
 //!
-//! The pull on a percentile needs the density there. It comes from the order statistics that bound the percentile, as in
+//! The pull on a percentile needs the density there. It comes from the order statistics about the percentile, as in
 //! Price and Bonett (2002, J. Stat. Comput. Simul. 72, 119–124), with the covariance of paired releases. Shares are
 //! adjusted as in Bonett and Price (2012, J. Educ. Behav. Stat. 37, 479–488) for pairs and in Agresti and Caffo
 //! (2000, Am. Stat. 54, 280–288) without: their intervals stay sound where hardly any rock counts.
 
 use super::proportion::NORMAL_95;
-use super::quantile::{Percentile, Ranks};
+use super::quantile::{Percentile, between};
 use std::cmp::Ordering;
 
 /// A value of each release that has one, by rising release number.
@@ -82,10 +82,16 @@ fn finite(values: &[(usize, f64)]) -> Values {
     values.iter().copied().filter(|(_, x)| x.is_finite()).collect()
 }
 
-/// Standard deviation of a percentile, from the order statistics that bound it; none where there are too few.
+/// Standard deviation of a percentile, from the order statistics as far from it as the number of rocks below it varies; none
+/// where there are too few.
+///
+/// Whole ranks would bound it with more than 95 %, by up to a fifth too far: it is read between them.
 fn deviation(sorted: &[f64], p: f64) -> Option<f64> {
-    let Ranks { low, high, .. } = Ranks::of(sorted.len(), p);
-    Some((sorted[high? - 1] - sorted[low? - 1]) / (2.0 * NORMAL_95))
+    let n = sorted.len() as f64;
+    let (place, reach) = ((n - 1.0) * p, NORMAL_95 * (n * p * (1.0 - p)).sqrt());
+    let (low, high) = (place - reach, place + reach);
+    let is_inside = low >= 0.0 && high <= n - 1.0;
+    is_inside.then(|| (between(sorted, high) - between(sorted, low)) / (2.0 * NORMAL_95))
 }
 
 impl Difference {

@@ -63,6 +63,7 @@ impl Comparison {
                 common.end - 1
             ));
         }
+        notes.extend(populations::censored(&populations[0]));
         if !paired {
             notes.push(
                 "The runs have different seeds: nothing pairs, and differences are known no better than both runs apart. \

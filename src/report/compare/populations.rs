@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::hazard::{self, Barrier, CrossingRow, Quantity, Row, StopKind, Values};
 use crate::output::Results;
+use crate::report::format;
 use std::ops::Range;
 
 /// Some rocks of one run.
@@ -92,10 +93,44 @@ pub(super) fn of(
         }
     }
     let both: Vec<String> = one.into_iter().filter(|name| other.contains(name)).collect();
-    let [mut one, mut other] =
-        [at_lines(&runs[0], &both, &ranges[0])?, at_lines(&runs[1], &both, &ranges[1])?];
-    pairs.extend(one.drain(..).zip(other.drain(..)).map(|(a, b)| [a, b]));
+    let one = at_lines(&runs[0], &both, &ranges[0])?;
+    let other = at_lines(&runs[1], &both, &ranges[1])?;
+    for (a, b) in one.into_iter().zip(other) {
+        let stops = a.barriers_stop || b.barriers_stop;
+        pairs.push([a.crossing, b.crossing]);
+        // where no barrier stops anything before the line or at it, the same numbers would stand twice
+        pairs.extend(stops.then_some([a.arriving, b.arriving]));
+    }
     Ok((pairs, notes))
+}
+
+/// The rocks at a line, with and without the barriers.
+struct AtLine {
+    crossing: Population,
+    arriving: Population,
+    /// Whether a barrier stops some before it, or stands on it.
+    barriers_stop: bool,
+}
+
+/// Share of rocks that left the terrain from which on it must be said what that does (–).
+const MANY_LEFT: f64 = 0.01;
+
+/// What rocks that left the terrain do to the numbers, where there are some.
+pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
+    let left = |of: &Population| {
+        let name = ended(StopKind::LeftTerrain);
+        let found = of.shares.iter().find(|(share, _)| share == name);
+        found.map_or(0.0, |(_, releases)| releases.len() as f64 / of.among.max(1) as f64)
+    };
+    let [a, b] = [left(&pair[0]), left(&pair[1])];
+    (a.max(b) > MANY_LEFT).then(|| {
+        format!(
+            "{} of the rocks of A and {} of B left the terrain: their runout is a lower bound, and differences of runout and \
+             reach angle hold only up to the edge.",
+            format::percent(a, 1),
+            format::percent(b, 1)
+        )
+    })
 }
 
 /// All releases of a run.
@@ -134,7 +169,7 @@ fn ended(stop: StopKind) -> &'static str {
 
 /// The rocks that come to each of some lines: all that cross, and where there are barriers those that the barriers
 /// before have let through.
-fn at_lines(run: &Results, names: &[String], range: &Range<usize>) -> Result<Vec<Population>> {
+fn at_lines(run: &Results, names: &[String], range: &Range<usize>) -> Result<Vec<AtLine>> {
     let rows: Vec<CrossingRow> = run
         .crossings()?
         .filter(|row| row.as_ref().map_or(true, |row| range.contains(&row.index)))
@@ -144,8 +179,11 @@ fn at_lines(run: &Results, names: &[String], range: &Range<usize>) -> Result<Vec
     let arrived = arrived(&barriers, names, &rows)?;
     let mut found = Vec::new();
     for (name, arrived) in names.iter().zip(arrived) {
-        found.push(crossing(name, &rows, range.len()));
-        found.push(arriving(name, &barriers, &arrived, range.len()));
+        let crossing = crossing(name, &rows, range.len());
+        let is_barrier = barriers.iter().any(|barrier| barrier.name == *name);
+        let barriers_stop = is_barrier || arrived.len() < crossing.shares[0].1.len();
+        let arriving = arriving(name, &barriers, &arrived, range.len());
+        found.push(AtLine { crossing, arriving, barriers_stop });
     }
     Ok(found)
 }

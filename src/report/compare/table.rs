@@ -122,10 +122,10 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
         for row in rows {
             let [a, b, change, interval] = in_words(&row.difference);
             let mark = if row.difference.is_clear() { "  clear" } else { "" };
-            let unit = row.unit;
+            let gap = if row.unit.is_empty() { "" } else { " " };
             lines.push(format!(
-                "  {:<width$}  {a} → {b} {unit}, {change} ({interval}){mark}",
-                row.name
+                "  {:<width$}  {a} → {b}{gap}{}, {change} ({interval}){mark}",
+                row.name, row.unit
             ));
         }
     }
@@ -136,12 +136,13 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
 pub(super) fn in_words(difference: &Difference) -> [String; 4] {
     let Difference { a, b, value, interval } = *difference;
     let number = |v: f64| format::significant(v, 4);
-    // a difference is written as finely as its interval allows: its last digit is at most a fifth of it
-    let finest = interval.map_or(0.0, |(low, high)| 0.2 * (high - low));
+    // a difference is written as finely as its interval allows: its last digit is at most a twentieth of it
+    let finest = interval.map_or(0.0, |(low, high)| 0.05 * (high - low));
     let largest = interval.map_or(value.abs(), |(low, high)| low.abs().max(high.abs()));
     let decimals = match finest {
         fine if fine > 0.0 => -fine.log10().floor(),
-        _ => 3.0 - largest.max(1e-9).log10().floor(),
+        _ if largest > 0.0 => 3.0 - largest.log10().floor(),
+        _ => 0.0,
     };
     let decimals = decimals.clamp(0.0, 9.0) as usize;
     let signed = |v: f64| {

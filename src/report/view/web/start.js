@@ -77,6 +77,8 @@ async function begin() {
   element("title").textContent = scene.title;
   element("notes").textContent = scene.notes.join(" ");
   const view = prepare(gl, canvas, scene);
+  // a small window is for the slope
+  element("what").open = window.innerWidth > 640;
   let waiting = false;
   const changed = () => {
     if (waiting) return;
