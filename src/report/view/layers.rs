@@ -106,10 +106,9 @@ fn limits(most: f64) -> Vec<f64> {
         return Vec::new();
     }
     let top = most.log10().floor() as i32;
-    let series = (top - DECADES..=top).flat_map(|k| {
-        let power: f64 = format!("1e{k}").parse().unwrap_or(0.0);
-        [power, 3.0 * power]
-    });
+    // written and read, not multiplied: 0.3 is then the double that everybody else has for it
+    let series = (top - DECADES..=top)
+        .flat_map(|k| [1, 3].map(|digit| format!("{digit}e{k}").parse().unwrap_or(f64::NAN)));
     let below: Vec<f64> = series.filter(|limit| *limit <= most).collect();
     below[below.len().saturating_sub(LIMITS)..].to_vec()
 }
