@@ -1,11 +1,13 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod cost;
 mod grounds;
 mod inputs;
 mod listing;
 mod stiffness;
 mod watch;
 
+pub use cost::Cost;
 pub use stiffness::OwnDissipation;
 pub use watch::{Curtain, Lattice, Piece, Watch};
 
@@ -13,7 +15,7 @@ use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
-use crate::release::{self, Release, Releases};
+use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, Polyline, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
@@ -69,7 +71,7 @@ pub struct Plan {
     pub scene_file: PathBuf,
     /// SHA-256 (hexadecimal) of the scene's text and its mesh files.
     pub scene_hash: String,
-    /// Version of this crate.
+    /// Version of this crate, and after the + the fingerprint of its sources.
     pub version: &'static str,
     /// EPSG code of the map coordinates.
     pub epsg: Option<u32>,
@@ -127,6 +129,8 @@ pub struct Plan {
     pub maps: Part<Lattice>,
     /// Grounds with values of the catalogue: name, what was taken, source.
     pub catalogued: Vec<String>,
+    /// Up to which slope each ground stops a rolling sphere, in words.
+    pub rolling_stops: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
     /// What went in, as name and value.
@@ -164,12 +168,16 @@ impl Plan {
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings(&scene.solver);
+        grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
         let mut warnings = grounds::unused(scene, &terrain);
+        releases.try_out(&terrain, &mut warnings)?;
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
+        let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
+        stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();
         let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
@@ -178,7 +186,7 @@ impl Plan {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
             scene_hash: scene.hash.clone(),
-            version: env!("CARGO_PKG_VERSION"),
+            version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
             epsg: scene.epsg,
             seed: scene.seed,
             count: scene.release.count,
@@ -193,7 +201,7 @@ impl Plan {
                 speed_m_s: scene.solver.rest_speed_m_s.unwrap_or(REST_SPEED_M_S),
                 time_s: scene.solver.rest_time_s.unwrap_or(REST_TIME_S),
             },
-            longest_s: scene.solver.longest_s.unwrap_or(LONGEST_S),
+            longest_s,
             trees: Part::when(tree_triangles(&terrain), "the scene has none"),
             breaking: Part::when(
                 terrain.stems.as_ref().map(Stems::count),
@@ -213,7 +221,7 @@ impl Plan {
                 "one rock has 6 unknowns, a dense factor is enough",
             ),
             bonds: bonds(scene),
-            paths: paths(&scene.record, scene.release.count),
+            paths: paths(&scene.record),
             impacts: Part::when(
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
@@ -234,6 +242,7 @@ impl Plan {
                 inputs::ground_source(scene, &grounds::catalogued(scene)),
             ],
             catalogued: grounds::catalogued(scene),
+            rolling_stops: grounds::rolling_stops(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             terrain,
@@ -248,6 +257,14 @@ impl Plan {
         self.releases.release(&self.terrain, index)
     }
 
+    /// The same, or what is known of a rock that finds no place to start from.
+    ///
+    /// # Errors
+    /// As [`Self::release`].
+    pub fn try_release(&self, index: usize) -> std::result::Result<Release, Box<Lost>> {
+        self.releases.try_release(&self.terrain, index)
+    }
+
     /// What every rock is watched for.
     pub fn watch(&self) -> Watch<'_> {
         Watch {
@@ -260,17 +277,25 @@ impl Plan {
     /// the answer.
     #[must_use]
     pub fn keep_everything(self) -> Self {
-        let triangles = if let Part::Kept(triangles) = self.trees { triangles } else { 0 };
-        let step_s = if let Part::Kept(paths) = &self.paths { paths.step_s } else { PATH_STEP_S };
+        let plan = self.without_kernels();
+        let triangles = if let Part::Kept(triangles) = plan.trees { triangles } else { 0 };
+        let step_s = if let Part::Kept(paths) = &plan.paths { paths.step_s } else { PATH_STEP_S };
         Self {
             trees: Part::Kept(triangles),
             rolling: Part::Kept(()),
             roughness: Part::Kept(()),
-            paths: Part::Kept(Paths { first: self.count, step_s }),
+            paths: Part::Kept(Paths { first: plan.count, step_s }),
             impacts: Part::Kept(()),
-            terrain: self.terrain.with_every_feature(),
-            ..self
+            terrain: plan.terrain.with_every_feature(),
+            ..plan
         }
+    }
+
+    /// The same plan with every impact followed step by step: the same motion within the error allowed.
+    #[must_use]
+    pub fn without_kernels(mut self) -> Self {
+        self.step.plane_impacts = false;
+        self
     }
 }
 
@@ -289,6 +314,7 @@ fn settings(solver: &SolverTable) -> Settings {
         tolerance_m_s: solver.tolerance_m_s.unwrap_or(tolerance_m_s),
         step_s: solver.step_s.unwrap_or(step_s),
         shear_memory: solver.shear_memory.unwrap_or(true),
+        plane_impacts: matches!(scheme, Scheme::Adaptive | Scheme::Reference),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
 }
@@ -302,6 +328,7 @@ fn between_rocks(scene: &Scene) -> Option<Ground> {
         restitution: contact.restitution,
         rolling_friction: 0.0,
         roughness_rad: 0.0,
+        roughness_length_m: None,
     })
 }
 
@@ -320,8 +347,9 @@ fn bonds(scene: &Scene) -> Part<Strength> {
     )
 }
 
-fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
-    let first = record.paths.unwrap_or(PATHS).min(count);
+/// Not cut to the number of releases: a run that goes on with more keeps as many paths as one that asked for them at once.
+fn paths(record: &RecordTable) -> Part<Paths> {
+    let first = record.paths.unwrap_or(PATHS);
     let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
 }

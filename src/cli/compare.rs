@@ -20,5 +20,5 @@ pub(super) struct CompareArgs {
 
 /// Compares two finished runs and says what changes.
 pub(super) fn compare(args: &CompareArgs) -> Result<ExitCode> {
-    wiring::compare(&args.a, &args.b, &args.out).map(say)
+    wiring::compare::compare(&args.a, &args.b, &args.out).map(say)
 }

@@ -149,7 +149,7 @@ fn all(run: &Results, range: &Range<usize>) -> Result<Population> {
         let stop = StopKind::ALL.iter().position(|stop| *stop == row.stop).unwrap_or(0);
         found.shares[stop].1.push(row.index);
         // as in every other table: where a failed rock stopped is where the computation did
-        if row.stop != StopKind::Failed {
+        if row.stop.counts() {
             for ((_, values), quantity) in found.values.iter_mut().zip(WHOLE) {
                 values.push((row.index, quantity.of(&row)));
             }
@@ -163,7 +163,9 @@ fn ended(stop: StopKind) -> &'static str {
         StopKind::AtRest => "Come to rest",
         StopKind::LeftTerrain => "Left the terrain",
         StopKind::TimeUp => "Still moving at the end",
+        StopKind::OverBudget => "Still moving when the work was spent",
         StopKind::Failed => "Failed",
+        StopKind::NotReleased => "Not released",
     }
 }
 

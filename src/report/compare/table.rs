@@ -2,6 +2,7 @@
 
 use super::populations::{Measure, Population};
 use crate::hazard::{Difference, Reading, Values};
+use crate::math;
 use crate::report::format;
 use std::fmt::Write as _;
 
@@ -140,8 +141,8 @@ pub(super) fn in_words(difference: &Difference) -> [String; 4] {
     let finest = interval.map_or(0.0, |(low, high)| 0.05 * (high - low));
     let largest = interval.map_or(value.abs(), |(low, high)| low.abs().max(high.abs()));
     let decimals = match finest {
-        fine if fine > 0.0 => -fine.log10().floor(),
-        _ if largest > 0.0 => 3.0 - largest.log10().floor(),
+        fine if fine > 0.0 => -math::log10(fine).floor(),
+        _ if largest > 0.0 => 3.0 - math::log10(largest).floor(),
         _ => 0.0,
     };
     let decimals = decimals.clamp(0.0, 9.0) as usize;

@@ -3,6 +3,7 @@
 use super::pack::Section;
 use crate::error::Result;
 use crate::hazard::{self, MapFrame};
+use crate::math;
 use crate::output::Results;
 use crate::terrain::grid::Grid;
 use serde::Serialize;
@@ -105,7 +106,7 @@ fn limits(most: f64) -> Vec<f64> {
     if most.is_nan() || most <= 0.0 {
         return Vec::new();
     }
-    let top = most.log10().floor() as i32;
+    let top = math::log10(most).floor() as i32;
     // written and read, not multiplied: 0.3 is then the double that everybody else has for it
     let series = (top - DECADES..=top)
         .flat_map(|k| [1, 3].map(|digit| format!("{digit}e{k}").parse().unwrap_or(f64::NAN)));

@@ -2,6 +2,7 @@
 
 use super::{Shown, rocks};
 use crate::hazard::StopKind;
+use crate::math;
 use crate::report::format::escape;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -34,8 +35,9 @@ pub(super) fn class_limits_j(shown: &Shown) -> [f64; 2] {
     if most >= crate::hazard::INTENSITY_J[0] {
         return crate::hazard::INTENSITY_J;
     }
-    let power = 10_f64.powf(most.max(1e-6).log10().floor());
-    [0.1 * power, power].map(|limit| format!("{limit:.1e}").parse().unwrap_or(limit))
+    let power = math::log10(most.max(1e-6)).floor() as i32;
+    // written and read, not multiplied: the doubles that everybody else has for them
+    [power - 1, power].map(|k| format!("1e{k}").parse().unwrap_or(f64::NAN))
 }
 
 /// The page.

@@ -4,6 +4,7 @@ use super::frame::{Frame, is_finite};
 use super::pack::Section;
 use crate::error::Result;
 use crate::hazard::Row;
+use crate::math;
 use crate::output::{PathRow, Results};
 use crate::report::format;
 use crate::rock::Vec3;
@@ -98,7 +99,7 @@ impl Ways {
         let ticks = |instant: &Instant| (instant.time_s * TICKS_PER_S).round() as u32;
         section.add("time", 1, 2, instants().map(ticks).collect());
         let energy = |instant: &Instant| {
-            (ENERGY_STEPS * libm::log10(1.0 + instant.total_j.max(0.0))).round() as u32
+            (ENERGY_STEPS * math::log10(1.0 + instant.total_j.max(0.0))).round() as u32
         };
         section.add("energy", 1, 1, instants().map(energy).collect());
         section.text()

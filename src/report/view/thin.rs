@@ -2,6 +2,7 @@
 
 use super::mesh::Soup;
 use crate::report::format;
+use crate::rock::Vec3;
 use std::collections::BTreeSet;
 
 /// How much longer the cells become when there are still too many triangles (–).
@@ -31,7 +32,7 @@ pub(super) fn ground(soup: Soup, most: usize, notes: &mut Vec<String>) -> Soup {
 
 fn mean_edge_m(soup: &Soup) -> f64 {
     let at = |v: u32| soup.places_m[v as usize];
-    let length = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2]);
+    let length = |a: [f64; 3], b: [f64; 3]| (Vec3::from(b) - Vec3::from(a)).norm();
     let sum: f64 = soup.triangles.iter().map(|[a, b, _]| length(at(*a), at(*b))).sum();
     (sum / soup.triangles.len() as f64).max(1e-9)
 }

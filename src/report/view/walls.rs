@@ -1,6 +1,7 @@
 //! Evaluation lines and barriers on the ground.
 
 use crate::hazard::{BarrierSummary, LineSummary};
+use crate::math;
 use crate::output::Results;
 use crate::report::raster::GroundRaster;
 use serde::Serialize;
@@ -55,7 +56,7 @@ fn draped(corners_m: &[[f64; 2]], ground: &GroundRaster) -> Vec<[f64; 3]> {
     let mut foot = Vec::new();
     for pair in corners_m.windows(2) {
         let (from, way) = (pair[0], [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]]);
-        let length_m = way[0].hypot(way[1]);
+        let length_m = math::hypot(way[0], way[1]);
         let pieces = (length_m / ground.cell_m).ceil().clamp(1.0, MOST_PIECES);
         let shares = (0..=pieces as usize).map(|k| k as f64 / pieces);
         foot.extend(shares.filter_map(|share| {

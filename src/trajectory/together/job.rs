@@ -160,6 +160,8 @@ impl<'a> Job<'a> {
         let control = Control {
             tableau: if self.course.step.scheme == Scheme::Reference { &ESDIRK4 } else { &TR_BDF2 },
             tolerance: self.course.step.tolerance_m_s,
+            impact: f64::INFINITY,
+            plane_impacts: false,
         };
         let now_s = self.now_s;
         self.rovers.iter_mut().for_each(|rover| rover.fly_to(self.course, now_s));
@@ -279,10 +281,9 @@ impl<'a> Job<'a> {
             islands.join(tie.a, tie.b);
         }
         for list in islands.lists() {
-            let rest = self.course.rest;
             let quiet = |k: &u32| {
                 let rover = &self.rovers[*k as usize];
-                rover.state == State::Moving && !rover.member.flying && rover.quiet_s >= rest.time_s
+                rover.state == State::Moving && !rover.member.flying && rover.calm.rests()
             };
             if list.iter().all(quiet) {
                 for k in list {

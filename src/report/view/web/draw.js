@@ -190,7 +190,7 @@ function drawBalls(gl, view, at, { height, ratio }) {
   gl.uniform1f(at.per_metre, height / (2 * Math.tan(camera.opening / 2)));
   gl.uniform3fv(at.rim, rgb(CHOSEN_COLOUR));
   if (shown.ends && scene.rocks) {
-    gl.uniform3fv(at.colours, [...STOP_COLOURS.flatMap(rgb), ...Array(12).fill(0)]);
+    gl.uniform3fv(at.colours, [...STOP_COLOURS.flatMap(rgb), ...Array(24 - 3 * STOP_COLOURS.length).fill(0)]);
     gl.uniform1f(at.least, 3.4 * ratio);
     gl.uniform1f(at.opacity, 0.85);
     gl.uniform1f(at.chosen, view.chosen ?? -9);

@@ -2,8 +2,11 @@
 
 // Okabe and Ito's colours: energy classes, reasons of an end, lines and barriers.
 const CLASS_COLOURS = ["#0072b2", "#e69f00", "#d55e00"];
-const STOP_COLOURS = ["#333333", "#56b4e9", "#cc79a7", "#f0e442"];
-const STOP_NAMES = { at_rest: "at rest", left_terrain: "left the terrain", time_up: "time up", failed: "failed" };
+const STOP_COLOURS = ["#333333", "#56b4e9", "#cc79a7", "#b3446c", "#f0e442", "#ffffff"];
+const STOP_NAMES = {
+  at_rest: "at rest", left_terrain: "left the terrain", time_up: "time up", over_budget: "work spent",
+  failed: "failed", not_released: "not released",
+};
 const LINE_COLOUR = "#7b3294", BARRIER_COLOUR = "#009e73", CHOSEN_COLOUR = "#e0007f";
 const LAYER_COLOURS = ["#dcefc0", "#9fd8a0", "#52b69a", "#2a7f9e", "#34508c", "#3b1f5b"];
 
