@@ -1,5 +1,6 @@
 //! The command line: what is asked, what is said, and the exit status. Only this file prints.
 
+mod compare;
 mod signals;
 mod study;
 mod words;
@@ -60,6 +61,8 @@ enum Command {
         /// Folder with the results of a run
         dir: PathBuf,
     },
+    /// Compare two finished runs: differences with intervals, on the same rocks where both have one seed
+    Compare(compare::CompareArgs),
     /// Run the exact cases and the method paper's examples; write table and figures
     Verify {
         /// Folder for table and figures
@@ -187,6 +190,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
         Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Compare(args) => compare::compare(&args),
         Command::Verify { out } => verify(&out),
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
         Command::Calibrate(args) => calibrate(&args),
@@ -349,7 +353,8 @@ impl RunArgs {
     /// Says how to go on.
     fn interrupted(&self, done: usize, asked: usize) -> ExitCode {
         let given = std::env::args_os().skip(1).filter(|word| word != "--overwrite");
-        let mut words: Vec<String> = given.map(|word| quoted(&word.to_string_lossy())).collect();
+        let mut words: Vec<String> =
+            given.map(|word| words::quoted(&word.to_string_lossy())).collect();
         if !self.resume {
             words.push("--resume".to_owned());
         }
@@ -367,15 +372,6 @@ fn bar(asked: usize, what: &str) -> ProgressBar {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }
-}
-
-/// A word as a shell takes it for one.
-fn quoted(word: &str) -> String {
-    let plain = |letter: char| letter.is_alphanumeric() || "-_./=,:+%@".contains(letter);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 /// Says what is wrong; where even that cannot be written (a full disk, nobody there) the status must do.

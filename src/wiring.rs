@@ -1,5 +1,6 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
+pub(crate) mod compare;
 pub(crate) mod study;
 mod year;
 

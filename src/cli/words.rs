@@ -1,4 +1,4 @@
-//! Words of the command line that are numbers.
+//! Words of the command line: those that are numbers, and how one is written again.
 
 use crate::wiring::Part;
 use rockfall::scene::MOST_RELEASES;
@@ -45,4 +45,13 @@ pub(super) fn up(text: &str) -> std::result::Result<Up, String> {
         "y" => Ok(Up::Y),
         _ => Err("write z or y".to_owned()),
     }
+}
+
+/// A word as a shell takes it for one.
+pub(super) fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_alphanumeric() || "-_./=,:+%@".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
 }

@@ -7,6 +7,7 @@
 mod annual;
 mod barriers;
 mod classes;
+mod difference;
 mod lines;
 mod maps;
 mod observed;
@@ -25,6 +26,7 @@ pub use annual::{
 pub use barriers::{
     Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Design, Elsewhere, Rule, arrivals, judge,
 };
+pub use difference::{Difference, Reading, Values};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{Agreement, Spread, Way, effective};

@@ -84,10 +84,14 @@ impl Percentile {
 
 /// The value at `(n − 1) p` of the sorted values, counted from 0, linear in between.
 fn interpolated(sorted: &[f64], p: f64) -> Option<f64> {
-    let place = sorted.len().checked_sub(1)? as f64 * p;
+    Some(between(sorted, sorted.len().checked_sub(1)? as f64 * p))
+}
+
+/// The value at a place among sorted ones, counted from 0, linear in between.
+pub(super) fn between(sorted: &[f64], place: f64) -> f64 {
     let below = sorted[place.floor() as usize];
     let above = sorted[place.ceil() as usize];
-    Some(below + place.fract() * (above - below))
+    below + place.fract() * (above - below)
 }
 
 /// Fewest rocks of which the largest value bounds percentile `p` with 95 % confidence: `pⁿ ≤ 0.05`.

@@ -13,7 +13,17 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files besides `progress.json`.
-const FILES: [&str; 7] = [RELEASES, PATHS, IMPACTS, CROSSINGS, FREQUENCY, "report.html", SUMMARY];
+const FILES: [&str; 9] = [
+    RELEASES,
+    PATHS,
+    IMPACTS,
+    CROSSINGS,
+    FREQUENCY,
+    "report.html",
+    "view.html",
+    "view.glb",
+    SUMMARY,
+];
 /// Folder of the figures.
 const FIGURES: &str = "figures";
 /// File in it that names those which belong to the results.

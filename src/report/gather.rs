@@ -61,6 +61,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         barriers: barriers::views(results)?,
         maps: lines::maps(results)?,
         observed: measured::observed(results)?,
+        has_view: false,
     })
 }
 

@@ -31,7 +31,7 @@ pub fn page(report: &Report, figures: &[(Heading, Drawing)]) -> String {
     page
 }
 
-fn head(title: &str) -> String {
+pub(super) fn head(title: &str) -> String {
     let title = escape(title);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -40,14 +40,14 @@ fn head(title: &str) -> String {
     )
 }
 
-fn section(title: &str, body: &str) -> String {
+pub(super) fn section(title: &str, body: &str) -> String {
     if body.is_empty() {
         return String::new();
     }
     format!("<section>\n<h2>{}</h2>\n{body}</section>\n", escape(title))
 }
 
-fn list(lines: &[String]) -> String {
+pub(super) fn list(lines: &[String]) -> String {
     if lines.is_empty() {
         return String::new();
     }
@@ -75,8 +75,13 @@ fn title_block(report: &Report) -> String {
         words => format!("<p class=\"subtitle\">{}</p>\n", escape(words)),
     };
     let count = format::decimal(report.releases.len() as f64, 0);
+    let view = if report.has_view {
+        " · <a href=\"view.html\">the slope in 3D</a> · <a href=\"view.glb\">view.glb</a>"
+    } else {
+        ""
+    };
     format!(
-        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{count} releases · {} kept paths · seed {} · rockfall {}</p>\n{}</header>\n",
+        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{count} releases · {} kept paths · seed {} · rockfall {}{view}</p>\n{}</header>\n",
         escape(&text.title),
         report.paths.len(),
         text.seed,
@@ -209,7 +214,7 @@ fn table_cell(estimate: Option<&Estimate>) -> String {
     format!("<td class=\"number\">{value}{below}</td>")
 }
 
-fn figure_section(figures: &[(Heading, Drawing)]) -> String {
+pub(super) fn figure_section(figures: &[(Heading, Drawing)]) -> String {
     let mut body = String::new();
     for (number, (figure, drawing)) in figures.iter().enumerate() {
         let _ = write!(

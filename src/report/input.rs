@@ -36,6 +36,8 @@ pub struct Report {
     pub observed: Option<Observed>,
     /// Maps, where the scene asks for them.
     pub maps: Option<CellMap>,
+    /// Whether `view.html` and `view.glb` stand beside the page.
+    pub has_view: bool,
 }
 
 /// Words and provenance.

@@ -3,6 +3,7 @@
 //! ```text
 //! Report ─► FIGURES (plan, side, runout, …) ─► figures/*.svg
 //!                                          └─► report.html (figures inlined)
+//! Results ─► view.html, view.glb (the slope in three dimensions)
 //! ```
 //!
 //! Nothing is computed here that a reader would quote: estimates and intervals come in as [`input`] has them; only the
@@ -12,6 +13,7 @@ mod annual;
 pub mod axis;
 mod barriers;
 pub mod colour;
+pub mod compare;
 pub mod contour;
 pub mod curves;
 mod distributions;
@@ -34,6 +36,7 @@ mod runout;
 mod side_view;
 mod stops;
 pub mod svg;
+pub mod view;
 
 use crate::error::{Error, Result};
 use crate::hazard::Hazard;
@@ -44,6 +47,7 @@ use input::Report;
 use raster::GroundRaster;
 use std::fs;
 use std::path::Path;
+use view::mesh::Mesh;
 
 /// Draws a finished run: `figures/*.svg`, `report.html`, and the ground it was drawn on, below the run's folder.
 ///
@@ -52,7 +56,8 @@ use std::path::Path;
 pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     let ground = GroundRaster::from_terrain(terrain, GROUND_CELLS);
     ground.write(&results.dir)?;
-    draw(&gather::gather(results, Some(ground))?, &results.dir)
+    view::write(results, Mesh::of(terrain), Some(&ground))?;
+    draw_all(results, Some(ground))
 }
 
 /// Draws a run put together from shards; the ground is that of `shard`, one of their folders.
@@ -64,7 +69,10 @@ pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
     if let Some(ground) = &ground {
         ground.write(&results.dir)?;
     }
-    draw(&gather::gather(results, ground)?, &results.dir)
+    if let Some(mesh) = view::mesh_in(shard)? {
+        view::write(results, mesh, ground.as_ref())?;
+    }
+    draw_all(results, ground)
 }
 
 /// Draws a run again from its files alone; no mesh is read.
@@ -74,7 +82,17 @@ pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
 pub fn draw_again(dir: &Path) -> Result<()> {
     let results = output::read(dir)?;
     let _claim = Claim::on(dir)?;
-    draw(&gather::gather(&results, GroundRaster::read(dir)?)?, dir)
+    let ground = GroundRaster::read(dir)?;
+    if let Some(mesh) = view::mesh_in(dir)? {
+        view::write(&results, mesh, ground.as_ref())?;
+    }
+    draw_all(&results, ground)
+}
+
+/// Figures and page of results, with a link to their view where there is one.
+fn draw_all(results: &Results, ground: Option<GroundRaster>) -> Result<()> {
+    let has_view = results.dir.join(view::PAGE).exists();
+    draw(&Report { has_view, ..gather::gather(results, ground)? }, &results.dir)
 }
 
 /// Each headline statistic of the rocks with its 95 % interval, line by line, and what the computation warns of.

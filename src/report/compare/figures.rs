@@ -1,0 +1,165 @@
+//! Figures of a comparison: all differences at a glance, and distributions on top of each other.
+
+use super::Comparison;
+use super::populations::{Measure, Population};
+use super::table::{Group, Line};
+use crate::hazard::{Quantity, Sample, Values};
+use crate::report::axis::Axis;
+use crate::report::colour::{BLUE, GREY, INK, PALE, VERMILLION};
+use crate::report::figure::{Drawing, Heading, WIDTH_PX};
+use crate::report::format;
+use crate::report::panel::{FOOT_PX, Panel};
+use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
+use crate::report::svg::path::Frame;
+
+const A_PEN: Pen = Pen::full(BLUE, 1.6);
+const B_PEN: Pen = Pen::full(VERMILLION, 1.6).dashed();
+const ROW_PX: f64 = 21.0;
+const CURVE_PX: f64 = 165.0;
+const HEAD_PX: f64 = 30.0;
+/// Room for the key above the panels (px).
+const KEY_PX: f64 = 20.0;
+/// Changes beyond this are drawn at the edge (–).
+const MOST_CHANGE: f64 = 2.0;
+/// Share of the rocks that an axis of values leaves out at its upper end (–).
+const BEYOND: f64 = 0.005;
+
+/// All figures with their captions.
+pub(super) fn all(comparison: &Comparison) -> Vec<(Heading, Drawing)> {
+    let heading = |file: String, title: String| Heading { file, title };
+    let mut drawn = vec![(
+        heading("differences.svg".to_owned(), "What changes from A to B".to_owned()),
+        changes(&comparison.groups),
+    )];
+    for (number, pair) in comparison.populations.iter().enumerate() {
+        let curves = curves_of(pair);
+        if curves.iter().any(|(_, values)| values.iter().any(|one| !one.is_empty())) {
+            let (file, title) = (format!("exceedance_{}.svg", number + 1), pair[0].name.clone());
+            drawn.push((
+                heading(file, title),
+                exceedance(&format!("compare-{number}"), pair, &curves),
+            ));
+        }
+    }
+    drawn
+}
+
+/// The rows of the first figure: name, change and its interval over the value of A.
+fn rows(groups: &[Group]) -> Vec<(String, [f64; 3])> {
+    fn relative(group: &Group, row: &Line) -> Option<(String, [f64; 3])> {
+        let (low, high) = row.difference.interval?;
+        let a = row.difference.a;
+        let named = match group.name.as_str() {
+            "All releases" => row.name.clone(),
+            group => format!("{}: {}", group.split(',').next().unwrap_or(group), row.name),
+        };
+        (a.abs() > 0.0).then(|| (named, [row.difference.value, low, high].map(|x| x / a.abs())))
+    }
+    let of_group = |group| {
+        let rows: &Group = group;
+        rows.rows.iter().filter(|row| row.is_headline).filter_map(move |row| relative(rows, row))
+    };
+    groups.iter().flat_map(of_group).collect()
+}
+
+fn changes(groups: &[Group]) -> Drawing {
+    let rows = rows(groups);
+    let widest = rows.iter().map(|(name, _)| text_width(name, SMALL)).fold(0.0, f64::max);
+    let left = widest.min(0.55 * WIDTH_PX) + 16.0;
+    let bottom = 8.0 + ROW_PX * rows.len().max(2) as f64;
+    let frame = Frame { left, top: 8.0, right: WIDTH_PX - 14.0, bottom };
+    let reach = rows.iter().flat_map(|(_, values)| values).filter(|x| x.is_finite());
+    let reach = reach.fold(0.05_f64, |most, x| most.max(x.abs())).min(MOST_CHANGE);
+    let x = Axis::linear(-105.0 * reach, 105.0 * reach, "Change from A to B (% of A)");
+    let panel = Panel::new(frame, x, Axis::linear(0.0, 1.0, ""));
+    let svg = paint("compare", (WIDTH_PX, bottom + FOOT_PX), "What changes from A to B", |paper| {
+        panel.grid_upright(paper);
+        panel.upright(paper, 0.0, Pen::full(GREY, 1.2));
+        for (k, (name, values)) in rows.iter().enumerate() {
+            let y = frame.top + ROW_PX * (k as f64 + 0.5);
+            paper.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
+            let [at, low, high] = values.map(|x| panel.at(100.0 * x.clamp(-reach, reach), 0.0).0);
+            let is_clear = values[1] > 0.0 || values[2] < 0.0;
+            let colour = if is_clear { VERMILLION } else { INK };
+            paper.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
+            paper.disc((at, y), 3.2, colour);
+            paper.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
+        }
+        paper.outline(&frame, Pen::full(INK, 0.8));
+        panel.x_axis(paper);
+        if rows.is_empty() {
+            panel.nothing(paper, "nothing to compare");
+        }
+    });
+    let beyond = rows.iter().flat_map(|(_, values)| values).any(|x| x.abs() > MOST_CHANGE);
+    let caption = format!(
+        "Change of each statistic over its value in A, with its 95 % interval; vermillion where the interval leaves out zero. \
+         One in twenty intervals misses by chance.{}",
+        if beyond { " What lies beyond the frame is drawn at its edge." } else { "" }
+    );
+    Drawing { svg, caption }
+}
+
+/// The quantities of a population that are drawn, with the values of both runs.
+fn curves_of([a, b]: &[Population; 2]) -> Vec<(Measure, [&Values; 2])> {
+    let shown =
+        |measure: Measure| !measure.is_count() && measure != Measure::Whole(Quantity::ReachAngle);
+    let pairs = a.values.iter().zip(&b.values).filter(|((measure, _), _)| shown(*measure));
+    pairs.map(|((measure, one), (_, other))| (*measure, [one, other])).collect()
+}
+
+fn exceedance(name: &str, pair: &[Population; 2], curves: &[(Measure, [&Values; 2])]) -> Drawing {
+    let half = 0.5 * WIDTH_PX;
+    let band = HEAD_PX + CURVE_PX + FOOT_PX;
+    let height = KEY_PX + band * curves.len().div_ceil(2) as f64;
+    let title = &pair[0].name;
+    let svg = paint(name, (WIDTH_PX, height), title, |paper| {
+        key(paper);
+        for (k, (measure, values)) in curves.iter().enumerate() {
+            let top = KEY_PX + band * (k / 2) as f64 + HEAD_PX;
+            let left = half * (k % 2) as f64;
+            let frame = Frame { left, top, right: left + half - 14.0, bottom: top + CURVE_PX };
+            one_panel(paper, frame, *measure, *values);
+        }
+    });
+    let count =
+        |k: usize| format::decimal(pair[k].values.first().map_or(0, |(_, v)| v.len()) as f64, 0);
+    let caption = format!(
+        "Share of the rocks that exceed a value: A full, B dashed ({} and {} rocks). Axes end where one in two hundred exceeds in both.",
+        count(0),
+        count(1)
+    );
+    Drawing { svg, caption }
+}
+
+fn key(paper: &Paper<'_>) {
+    let mut x = 60.0;
+    for (name, pen) in [("A", A_PEN), ("B", B_PEN)] {
+        paper.line(&[(x, 11.0), (x + 26.0, 11.0)], pen);
+        paper.text(&Label::new(name, (x + 32.0, 11.0)).bold());
+        x += 70.0;
+    }
+}
+
+fn one_panel(paper: &Paper<'_>, frame: Frame, measure: Measure, values: [&Values; 2]) {
+    let (name, unit, size) = measure.words();
+    let samples = values.map(|values| Sample::of(values.iter().map(|(_, x)| x / size)));
+    let far = samples.iter().filter_map(|sample| Some(sample.percentile(1.0 - BEYOND)?.value));
+    let x = Axis::from_zero(far, format!("{name} ({unit})"));
+    let rocks = samples.iter().map(|sample| sample.values().len()).max().unwrap_or(0);
+    let mut panel =
+        Panel::new(frame, x, Axis::log(1.0 / rocks.clamp(10, 200) as f64, 1.0, "Share exceeding"));
+    panel.frame.left += panel.room_left();
+    let at = (panel.frame.left, panel.frame.top - 9.0);
+    paper.text(&Label::new(name, at).bold().sized(NORMAL));
+    panel.grid(paper);
+    for (sample, pen) in samples.iter().zip([A_PEN, B_PEN]) {
+        let curve: Vec<(f64, f64)> =
+            sample.exceedance().iter().map(|point| (point.value, point.share)).collect();
+        panel.line(paper, &curve, pen);
+    }
+    panel.axes(paper);
+    if rocks == 0 {
+        panel.nothing(paper, "no rock");
+    }
+}

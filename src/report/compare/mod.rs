@@ -1,0 +1,125 @@
+//! Two finished runs side by side: what differs between their inputs, and by how much their statistics do.
+//!
+//! ```text
+//! Results A, Results B ─► Comparison ─► differences.csv · figures/*.svg · compare.html
+//! ```
+//!
+//! Releases pair where both runs have the same seed: then release 17 of the one is release 17 of the other, and the
+//! intervals of the differences are those of pairs. Nothing else is computed here.
+
+mod figures;
+mod inputs;
+mod page;
+mod populations;
+mod table;
+
+use crate::error::{Error, Result};
+use crate::output::{self, Results, write_whole};
+use populations::Population;
+use std::fs;
+use std::path::Path;
+use table::Group;
+
+/// Two runs and what differs.
+#[derive(Debug)]
+pub struct Comparison {
+    /// Folder and title of each run.
+    names: [(String, String); 2],
+    /// Releases compared of each run.
+    releases: [usize; 2],
+    /// Whether the same release numbers are the same rocks.
+    paired: bool,
+    /// Whether both are one and the same run.
+    same_run: bool,
+    /// What went in and differs: name, first, second.
+    inputs: Vec<(String, [String; 2])>,
+    /// What the reader must know.
+    notes: Vec<String>,
+    groups: Vec<Group>,
+    /// The rocks of each group, for the figures.
+    populations: Vec<[Population; 2]>,
+}
+
+impl Comparison {
+    /// Compares the finished runs in two folders.
+    ///
+    /// # Errors
+    /// A folder without finished results.
+    pub fn of(a: &Path, b: &Path) -> Result<Self> {
+        let runs = [output::read(a)?, output::read(b)?];
+        let [one, other] = [&runs[0].summary.identity, &runs[1].summary.identity];
+        let common =
+            one.range().start.max(other.range().start)..one.range().end.min(other.range().end);
+        let paired = one.seed == other.seed && !common.is_empty();
+        let same_run = one == other;
+        let range =
+            |run: &Results| if paired { common.clone() } else { run.summary.identity.range() };
+        let ranges = [range(&runs[0]), range(&runs[1])];
+        let (populations, mut notes) = populations::of(&runs, &ranges)?;
+        if paired && (one.range() != common || other.range() != common) {
+            notes.push(format!(
+                "Only the releases {} to {} are in both runs: the others are left out.",
+                common.start,
+                common.end - 1
+            ));
+        }
+        notes.extend(populations::censored(&populations[0]));
+        if !paired {
+            notes.push(
+                "The runs have different seeds: nothing pairs, and differences are known no better than both runs apart. \
+                 With one seed the same rocks would be released."
+                    .to_owned(),
+            );
+        }
+        let groups = populations.iter().map(|pair| table::group(pair, paired, same_run)).collect();
+        Ok(Self {
+            names: [(a, &runs[0]), (b, &runs[1])]
+                .map(|(dir, run)| (dir.display().to_string(), run.summary.title.clone())),
+            releases: ranges.map(|range| range.len()),
+            paired,
+            same_run,
+            inputs: inputs::differing(&runs[0].summary, &runs[1].summary),
+            notes,
+            groups,
+            populations,
+        })
+    }
+
+    /// Writes `differences.csv`, `figures/*.svg` and `compare.html` below `dir`.
+    ///
+    /// # Errors
+    /// When `dir` holds the results of a run, or a file cannot be written.
+    pub fn write(&self, dir: &Path) -> Result<()> {
+        if output::releases_in(dir)?.is_some() {
+            return Err(Error::Request(format!(
+                "--out {}: holds the results of a run; write another folder",
+                dir.display()
+            )));
+        }
+        let figures = dir.join("figures");
+        fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
+        let drawn = figures::all(self);
+        for (heading, drawing) in &drawn {
+            write_whole(&figures.join(&heading.file), drawing.svg.as_bytes())?;
+        }
+        write_whole(
+            &dir.join("differences.csv"),
+            table::csv(&self.groups, self.paired).as_bytes(),
+        )?;
+        write_whole(&dir.join("compare.html"), page::page(self, &drawn).as_bytes())
+    }
+
+    /// The differences that matter most, line by line for a terminal.
+    pub fn headline(&self) -> Vec<String> {
+        table::headline(&self.groups)
+    }
+
+    /// Largest difference of any statistic, in its own unit, and the widest interval: both 0 for a run beside itself.
+    pub fn largest(&self) -> (f64, f64) {
+        let rows = self.groups.iter().flat_map(|group| &group.rows);
+        rows.fold((0.0, 0.0), |(value, width), row| {
+            let (low, high) = row.difference.interval.unwrap_or((0.0, 0.0));
+            (value.max(row.difference.value.abs()), width.max(high - low))
+        })
+    }
+}

@@ -1,0 +1,114 @@
+//! `compare.html`: one page in the style of the report, without a script.
+
+use super::Comparison;
+use super::table::{Group, Line, in_words};
+use crate::report::figure::{Drawing, Heading};
+use crate::report::format::{self, escape};
+use crate::report::html::{figure_section, head, list, section};
+use std::fmt::Write as _;
+
+/// How the intervals came about.
+const METHOD: &str = "Percentiles differ by their order statistics: the spread of each comes from the ranks that bound it (Price and \
+    Bonett 2002), and where releases pair, what moves both runs alike is taken out. Means by the differences of pairs, shares \
+    by adjusted counts (Bonett and Price 2012 for pairs, Agresti and Caffo 2000 without). An interval covers chance in the \
+    sample only, not how well ground values and terrain are known. Of twenty statistics that do not differ, one is \
+    expected to be called clear.";
+
+/// The page with the figures inlined.
+pub(super) fn page(comparison: &Comparison, figures: &[(Heading, Drawing)]) -> String {
+    let mut page = head("Two runs compared");
+    page.push_str(&heading(comparison));
+    if !comparison.notes.is_empty() {
+        let _ = writeln!(
+            page,
+            "<section class=\"warnings\">\n<h2>Read this first</h2>\n{}</section>",
+            list(&comparison.notes)
+        );
+    }
+    page.push_str(&section("Inputs that differ", &inputs(comparison)));
+    page.push_str(&figure_section(figures));
+    for group in comparison.groups.iter().filter(|group| !group.rows.is_empty()) {
+        page.push_str(&section(&group.name, &table(group)));
+    }
+    page.push_str(&section("How it was compared", &format!("<p>{METHOD}</p>\n")));
+    page.push_str("</main>\n</body>\n</html>\n");
+    page
+}
+
+fn heading(comparison: &Comparison) -> String {
+    let [a, b] = &comparison.names;
+    let who = |letter: &str, (folder, title): &(String, String), count: usize| {
+        format!(
+            "<tr><th scope=\"row\">{letter}</th><td>{} <small>{}, {} releases</small></td></tr>\n",
+            escape(title),
+            escape(folder),
+            format::decimal(count as f64, 0)
+        )
+    };
+    let pairs = match (comparison.same_run, comparison.paired) {
+        (true, _) => "Both are one and the same run: every difference is zero.",
+        (_, true) => {
+            "One seed: the same rocks are released in both, and differences are taken pair by pair."
+        }
+        _ => "Two seeds: nothing pairs.",
+    };
+    format!(
+        "<header>\n<h1>Two runs compared</h1>\n<p class=\"facts\">{pairs}</p>\n<table class=\"pairs\">\n{}{}</table>\n</header>\n",
+        who("A", a, comparison.releases[0]),
+        who("B", b, comparison.releases[1])
+    )
+}
+
+fn inputs(comparison: &Comparison) -> String {
+    if comparison.inputs.is_empty() {
+        return "<p>None: scene, meshes, seed, version and releases are the same.</p>\n".to_owned();
+    }
+    let mut rows = String::new();
+    for (name, [a, b]) in &comparison.inputs {
+        let _ = writeln!(
+            rows,
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>",
+            escape(name),
+            escape(a),
+            escape(b)
+        );
+    }
+    format!(
+        "<table class=\"dense\">\n<thead><tr><th></th><th>A</th><th>B</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"
+    )
+}
+
+fn table(group: &Group) -> String {
+    let mut rows = String::new();
+    for row in &group.rows {
+        let _ = writeln!(rows, "{}", table_row(row));
+    }
+    format!(
+        "<div class=\"wide\"><table class=\"dense\">\n<thead><tr><th></th><th class=\"number\">Rocks</th><th class=\"number\">A</th>\
+         <th class=\"number\">B</th><th class=\"number\">B − A</th><th class=\"number\">95 % interval</th>\
+         <th class=\"number\">of A</th><th></th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
+    )
+}
+
+fn table_row(row: &Line) -> String {
+    let name = match row.unit {
+        "" => row.name.clone(),
+        unit => format!("{} ({unit})", row.name),
+    };
+    let [a, b, change, interval] = in_words(&row.difference);
+    let count = |k: usize| format::decimal(row.rocks[k] as f64, 0);
+    let share = match row.difference.a {
+        0.0 => format::NO_NUMBER.to_owned(),
+        a => format::percent(row.difference.value / a.abs(), 1),
+    };
+    let verdict = match row.difference.interval {
+        None => "",
+        Some(_) if row.difference.is_clear() => "<b>clear</b>",
+        Some((0.0, 0.0)) => "the same",
+        Some(_) => "within chance",
+    };
+    let cells: String = [format!("{} | {}", count(0), count(1)), a, b, change, interval, share]
+        .map(|cell| format!("<td class=\"number\">{cell}</td>"))
+        .concat();
+    format!("<tr><th scope=\"row\">{}</th>{cells}<td>{verdict}</td></tr>", escape(&name))
+}

@@ -1,0 +1,262 @@
+//! Whose values are compared: all releases, and those that come to each line and barrier that both runs have.
+
+use crate::error::Result;
+use crate::hazard::{self, Barrier, CrossingRow, Quantity, Row, StopKind, Values};
+use crate::output::Results;
+use crate::report::format;
+use std::ops::Range;
+
+/// Some rocks of one run.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Population {
+    /// What they are: a heading.
+    pub(super) name: String,
+    /// Releases that they are among.
+    pub(super) among: usize,
+    /// Shares: name, and the releases that count.
+    pub(super) shares: Vec<(String, Vec<usize>)>,
+    /// Quantities: what, and its value for each release that has one.
+    pub(super) values: Vec<(Measure, Values)>,
+}
+
+/// A quantity that is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Measure {
+    /// Of a whole way.
+    Whole(Quantity),
+    /// Total energy (J).
+    Energy,
+    /// Height of the lowest point (m).
+    Height,
+    /// Height of the highest point (m).
+    Top,
+    /// Speed (m/s).
+    Speed,
+}
+
+impl Measure {
+    /// Name, unit and its size in SI.
+    pub(super) fn words(self) -> (&'static str, &'static str, f64) {
+        match self {
+            Self::Whole(Quantity::Runout) => ("Runout", "m", 1.0),
+            Self::Whole(Quantity::Drop) => ("Drop", "m", 1.0),
+            Self::Whole(Quantity::ReachAngle) => ("Reach angle", "°", 1.0),
+            Self::Whole(Quantity::MaxSpeed) => ("Largest speed", "m/s", 1.0),
+            Self::Whole(Quantity::MaxTranslational) => ("Largest translational energy", "kJ", 1e3),
+            Self::Whole(Quantity::MaxRotational) => ("Largest rotational energy", "kJ", 1e3),
+            Self::Whole(Quantity::MaxTotal) => ("Largest total energy", "kJ", 1e3),
+            Self::Whole(Quantity::MaxHeight) => ("Largest bounce height", "m", 1.0),
+            Self::Whole(Quantity::Impacts) => ("Impacts a rock", "", 1.0),
+            Self::Whole(Quantity::TreeImpacts) => ("Impacts on trees a rock", "", 1.0),
+            Self::Whole(Quantity::Time) => ("Time to the end", "s", 1.0),
+            Self::Energy => ("Total energy", "kJ", 1e3),
+            Self::Height => ("Height of the lowest point", "m", 1.0),
+            Self::Top => ("Height of the highest point", "m", 1.0),
+            Self::Speed => ("Speed", "m/s", 1.0),
+        }
+    }
+
+    /// Whether it is a count: its percentiles stand on steps, and only its mean is compared.
+    pub(super) fn is_count(self) -> bool {
+        matches!(self, Self::Whole(Quantity::Impacts | Quantity::TreeImpacts))
+    }
+}
+
+/// Quantities of all releases.
+const WHOLE: [Quantity; 7] = [
+    Quantity::Runout,
+    Quantity::ReachAngle,
+    Quantity::MaxSpeed,
+    Quantity::MaxTotal,
+    Quantity::MaxHeight,
+    Quantity::Impacts,
+    Quantity::TreeImpacts,
+];
+
+/// The populations of both runs, pair by pair, and what is in one of them only.
+pub(super) fn of(
+    runs: &[Results; 2],
+    ranges: &[Range<usize>; 2],
+) -> Result<(Vec<[Population; 2]>, Vec<String>)> {
+    let mut pairs = vec![[all(&runs[0], &ranges[0])?, all(&runs[1], &ranges[1])?]];
+    let mut notes = Vec::new();
+    let lines = |run: &Results| -> Vec<String> {
+        let own = run.lines.iter().filter(|line| !line.info.of_barrier);
+        own.map(|line| line.info.name.clone()).collect()
+    };
+    let [one, other] = [lines(&runs[0]), lines(&runs[1])];
+    for (who, mine, others) in [("A", &one, &other), ("B", &other, &one)] {
+        let alone: Vec<&str> =
+            mine.iter().filter(|name| !others.contains(name)).map(String::as_str).collect();
+        if !alone.is_empty() {
+            notes.push(format!("Only in {who}: {}.", alone.join(", ")));
+        }
+    }
+    let both: Vec<String> = one.into_iter().filter(|name| other.contains(name)).collect();
+    let one = at_lines(&runs[0], &both, &ranges[0])?;
+    let other = at_lines(&runs[1], &both, &ranges[1])?;
+    for (a, b) in one.into_iter().zip(other) {
+        let stops = a.barriers_stop || b.barriers_stop;
+        pairs.push([a.crossing, b.crossing]);
+        // where no barrier stops anything before the line or at it, the same numbers would stand twice
+        pairs.extend(stops.then_some([a.arriving, b.arriving]));
+    }
+    Ok((pairs, notes))
+}
+
+/// The rocks at a line, with and without the barriers.
+struct AtLine {
+    crossing: Population,
+    arriving: Population,
+    /// Whether a barrier stops some before it, or stands on it.
+    barriers_stop: bool,
+}
+
+/// Share of rocks that left the terrain from which on it must be said what that does (–).
+const MANY_LEFT: f64 = 0.01;
+
+/// What rocks that left the terrain do to the numbers, where there are some.
+pub(super) fn censored(pair: &[Population; 2]) -> Option<String> {
+    let left = |of: &Population| {
+        let name = ended(StopKind::LeftTerrain);
+        let found = of.shares.iter().find(|(share, _)| share == name);
+        found.map_or(0.0, |(_, releases)| releases.len() as f64 / of.among.max(1) as f64)
+    };
+    let [a, b] = [left(&pair[0]), left(&pair[1])];
+    (a.max(b) > MANY_LEFT).then(|| {
+        format!(
+            "{} of the rocks of A and {} of B left the terrain: their runout is a lower bound, and differences of runout and \
+             reach angle hold only up to the edge.",
+            format::percent(a, 1),
+            format::percent(b, 1)
+        )
+    })
+}
+
+/// All releases of a run.
+fn all(run: &Results, range: &Range<usize>) -> Result<Population> {
+    let mut found = Population {
+        name: "All releases".to_owned(),
+        among: range.len(),
+        shares: StopKind::ALL.map(|stop| (ended(stop).to_owned(), Vec::new())).into(),
+        values: WHOLE.map(|quantity| (Measure::Whole(quantity), Values::new())).into(),
+    };
+    for row in run.rows()? {
+        let row: Row = row?;
+        if !range.contains(&row.index) {
+            continue;
+        }
+        let stop = StopKind::ALL.iter().position(|stop| *stop == row.stop).unwrap_or(0);
+        found.shares[stop].1.push(row.index);
+        // as in every other table: where a failed rock stopped is where the computation did
+        if row.stop.counts() {
+            for ((_, values), quantity) in found.values.iter_mut().zip(WHOLE) {
+                values.push((row.index, quantity.of(&row)));
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn ended(stop: StopKind) -> &'static str {
+    match stop {
+        StopKind::AtRest => "Come to rest",
+        StopKind::LeftTerrain => "Left the terrain",
+        StopKind::TimeUp => "Still moving at the end",
+        StopKind::OverBudget => "Still moving when the work was spent",
+        StopKind::Failed => "Failed",
+        StopKind::NotReleased => "Not released",
+    }
+}
+
+/// The rocks that come to each of some lines: all that cross, and where there are barriers those that the barriers
+/// before have let through.
+fn at_lines(run: &Results, names: &[String], range: &Range<usize>) -> Result<Vec<AtLine>> {
+    let rows: Vec<CrossingRow> = run
+        .crossings()?
+        .filter(|row| row.as_ref().map_or(true, |row| range.contains(&row.index)))
+        .collect::<Result<_>>()?;
+    let barriers: Vec<Barrier> =
+        run.summary.barriers.iter().map(|one| one.barrier.clone()).collect();
+    let arrived = arrived(&barriers, names, &rows)?;
+    let mut found = Vec::new();
+    for (name, arrived) in names.iter().zip(arrived) {
+        let crossing = crossing(name, &rows, range.len());
+        let is_barrier = barriers.iter().any(|barrier| barrier.name == *name);
+        let barriers_stop = is_barrier || arrived.len() < crossing.shares[0].1.len();
+        let arriving = arriving(name, &barriers, &arrived, range.len());
+        found.push(AtLine { crossing, arriving, barriers_stop });
+    }
+    Ok(found)
+}
+
+fn crossing(name: &str, rows: &[CrossingRow], among: usize) -> Population {
+    let own = || rows.iter().filter(|row| row.line == name);
+    let values = |of: fn(&CrossingRow) -> f64| own().map(|row| (row.index, of(row))).collect();
+    Population {
+        name: format!("Line “{name}”, barriers left aside"),
+        among,
+        shares: vec![("Cross it".to_owned(), own().map(|row| row.index).collect())],
+        values: vec![
+            (Measure::Energy, values(CrossingRow::total_j)),
+            (Measure::Height, values(|row| row.height_m)),
+            (Measure::Speed, values(|row| row.speed_m_s)),
+        ],
+    }
+}
+
+fn arriving(
+    name: &str,
+    barriers: &[Barrier],
+    arrived: &[hazard::Arrival],
+    among: usize,
+) -> Population {
+    let releases = |keep: &dyn Fn(&hazard::Arrival) -> bool| {
+        arrived.iter().filter(|rock| keep(rock)).map(|rock| rock.release).collect()
+    };
+    let mut shares = vec![("Arrive".to_owned(), releases(&|_| true))];
+    if let Some(barrier) = barriers.iter().find(|barrier| barrier.name == name) {
+        let passes =
+            |rock: &hazard::Arrival| !rock.is_stopped(barrier.height_m, barrier.capacity_j);
+        shares.push(("Pass it".to_owned(), releases(&passes)));
+    }
+    let values = |of: fn(&hazard::Arrival) -> f64| {
+        arrived.iter().map(|rock| (rock.release, of(rock))).collect()
+    };
+    Population {
+        name: format!("“{name}”, behind the barriers of each run"),
+        among,
+        shares,
+        values: vec![
+            (Measure::Energy, values(|rock| rock.total_j)),
+            (Measure::Top, values(|rock| rock.top_m)),
+        ],
+    }
+}
+
+/// Rocks that arrive at each of some lines, those left out that a barrier before has stopped.
+fn arrived(
+    barriers: &[Barrier],
+    names: &[String],
+    rows: &[CrossingRow],
+) -> Result<Vec<Vec<hazard::Arrival>>> {
+    // a line is a barrier that stops nothing: every rock's highest point is above its edge
+    let line = |name: &String| Barrier {
+        name: name.clone(),
+        height_m: 0.0,
+        capacity_j: 0.0,
+        design: None,
+        elsewhere: Vec::new(),
+    };
+    let stand = |name: &&String| barriers.iter().all(|barrier| barrier.name != **name);
+    let all: Vec<Barrier> =
+        barriers.iter().cloned().chain(names.iter().filter(stand).map(line)).collect();
+    let mut found = hazard::arrivals(&all, rows.iter().cloned().map(Ok::<_, crate::error::Error>))?;
+    let own = |name: &String| all.iter().position(|barrier| barrier.name == *name);
+    let mut places = |name: &String| {
+        let mut rocks = own(name).map(|k| std::mem::take(&mut found[k][0])).unwrap_or_default();
+        rocks.sort_by_key(|rock| rock.release);
+        rocks
+    };
+    Ok(names.iter().map(&mut places).collect())
+}

@@ -1,0 +1,158 @@
+//! Statistics of both runs and their differences, row by row.
+
+use super::populations::{Measure, Population};
+use crate::hazard::{Difference, Reading, Values};
+use crate::math;
+use crate::report::format;
+use std::fmt::Write as _;
+
+/// Percentiles that are compared (per cent).
+const PERCENTS: [u8; 4] = [50, 90, 95, 99];
+
+/// All statistics of one population.
+#[derive(Debug, Clone)]
+pub(super) struct Group {
+    /// Heading.
+    pub(super) name: String,
+    pub(super) rows: Vec<Line>,
+}
+
+/// One statistic.
+#[derive(Debug, Clone)]
+pub(super) struct Line {
+    pub(super) name: String,
+    pub(super) unit: &'static str,
+    /// Rocks that it is of, in each run.
+    pub(super) rocks: [usize; 2],
+    /// In the unit of the row.
+    pub(super) difference: Difference,
+    /// Whether it is of those that a designer asks for first.
+    pub(super) is_headline: bool,
+}
+
+/// Compares all statistics of a population of two runs.
+pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> Group {
+    let settled = |one: Difference| if same_run { one.of_one_run() } else { one };
+    let mut rows = Vec::new();
+    for ((name, one), (_, other)) in a.shares.iter().zip(&b.shares) {
+        let difference = Difference::of_shares((one, a.among), (other, b.among), paired);
+        rows.push(Line {
+            name: name.clone(),
+            unit: "%",
+            rocks: [one.len(), other.len()],
+            difference: scaled(settled(difference), 0.01),
+            is_headline: true,
+        });
+    }
+    for ((measure, one), (_, other)) in a.values.iter().zip(&b.values) {
+        rows.extend(
+            of_measure(*measure, [one, other], paired)
+                .into_iter()
+                .map(|row| Line { difference: settled(row.difference), ..row }),
+        );
+    }
+    // what neither run has seen is no news
+    rows.retain(|row| row.rocks != [0, 0]);
+    Group { name: a.name.clone(), rows }
+}
+
+fn scaled(one: Difference, size: f64) -> Difference {
+    Difference {
+        a: one.a / size,
+        b: one.b / size,
+        value: one.value / size,
+        interval: one.interval.map(|(low, high)| (low / size, high / size)),
+    }
+}
+
+/// Mean and percentiles of one quantity.
+fn of_measure(measure: Measure, values: [&Values; 2], paired: bool) -> Vec<Line> {
+    let (name, unit, size) = measure.words();
+    let row = |what: String, is_headline: bool, read: &dyn Fn(&Values) -> Option<Reading>| {
+        let [a, b] = values.map(read);
+        let (a, b) = (a?.times(1.0 / size), b?.times(1.0 / size));
+        Some(Line {
+            name: format!("{name}, {what}"),
+            unit,
+            rocks: [a.rocks, b.rocks],
+            difference: Difference::between(&a, &b, paired),
+            is_headline,
+        })
+    };
+    let mean = row("mean".to_owned(), measure.is_count(), &|values| Reading::mean(values));
+    let percents = PERCENTS.iter().filter(|_| !measure.is_count()).filter_map(|&percent| {
+        let p = f64::from(percent) / 100.0;
+        row(format!("P{percent}"), percent == 95, &|values| Reading::percentile(values, p))
+    });
+    mean.into_iter().chain(percents).collect()
+}
+
+/// All rows with full precision, in the units of the rows.
+pub(super) fn csv(groups: &[Group], paired: bool) -> String {
+    let mut text =
+        "group,statistic,unit,rocks_a,rocks_b,a,b,difference,low_95,high_95,paired\n".to_owned();
+    let quoted = |words: &str| format!("\"{}\"", words.replace('"', "\"\""));
+    for group in groups {
+        for row in &group.rows {
+            let Difference { a, b, value, interval } = row.difference;
+            let (low, high) = interval.unwrap_or((f64::NAN, f64::NAN));
+            let (name, unit) = (quoted(&row.name), row.unit);
+            // writing to a string cannot fail
+            let _ = writeln!(
+                text,
+                "{},{name},{unit},{},{},{a},{b},{value},{low},{high},{paired}",
+                quoted(&group.name),
+                row.rocks[0],
+                row.rocks[1]
+            );
+        }
+    }
+    text
+}
+
+/// The first rows of each group, in columns for a terminal.
+pub(super) fn headline(groups: &[Group]) -> Vec<String> {
+    let mut lines = Vec::new();
+    for group in groups {
+        let rows: Vec<&Line> = group.rows.iter().filter(|row| row.is_headline).collect();
+        if rows.is_empty() {
+            continue;
+        }
+        lines.push(group.name.clone());
+        let width = rows.iter().map(|row| row.name.chars().count()).max().unwrap_or(0);
+        for row in rows {
+            let [a, b, change, interval] = in_words(&row.difference);
+            let mark = if row.difference.is_clear() { "  clear" } else { "" };
+            let gap = if row.unit.is_empty() { "" } else { " " };
+            lines.push(format!(
+                "  {:<width$}  {a} → {b}{gap}{}, {change} ({interval}){mark}",
+                row.name, row.unit
+            ));
+        }
+    }
+    lines
+}
+
+/// Both values, the difference with its sign, and its interval.
+pub(super) fn in_words(difference: &Difference) -> [String; 4] {
+    let Difference { a, b, value, interval } = *difference;
+    let number = |v: f64| format::significant(v, 4);
+    // a difference is written as finely as its interval allows: its last digit is at most a twentieth of it
+    let finest = interval.map_or(0.0, |(low, high)| 0.05 * (high - low));
+    let largest = interval.map_or(value.abs(), |(low, high)| low.abs().max(high.abs()));
+    let decimals = match finest {
+        fine if fine > 0.0 => -math::log10(fine).floor(),
+        _ if largest > 0.0 => 3.0 - math::log10(largest).floor(),
+        _ => 0.0,
+    };
+    let decimals = decimals.clamp(0.0, 9.0) as usize;
+    let signed = |v: f64| {
+        let text = format::decimal(v, decimals);
+        let is_zero = !text.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
+        if v > 0.0 && !is_zero { format!("+{text}") } else { text }
+    };
+    let interval = interval.map_or("too few rocks for an interval".to_owned(), |(low, high)| {
+        format::interval(&signed(low), &signed(high))
+    });
+    [number(a), number(b), signed(value), interval]
+}

@@ -1,0 +1,93 @@
+//! `view.html`: sections of packed columns and the script that draws them, in one file that loads nothing.
+
+use super::{Shown, rocks};
+use crate::hazard::StopKind;
+use crate::math;
+use crate::report::format::escape;
+use serde_json::json;
+use std::fmt::Write as _;
+
+/// What the page may do: run its own script and style, and nothing else. No request can leave it.
+pub const POLICY: &str =
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'";
+
+/// Name of the section with the terrain.
+pub const TERRAIN: &str = "terrain";
+
+/// The scripts, in the order in which they stand in the page.
+const SCRIPTS: [&str; 8] = [
+    include_str!("web/decode.js"),
+    include_str!("web/vectors.js"),
+    include_str!("web/shaders.js"),
+    include_str!("web/scene.js"),
+    include_str!("web/camera.js"),
+    include_str!("web/panel.js"),
+    include_str!("web/draw.js"),
+    include_str!("web/start.js"),
+];
+const BODY: &str = include_str!("web/body.html");
+const STYLE: &str = include_str!("web/page.css");
+
+/// Total energy that parts the classes of paths (J): the Swiss limits, or lower ones where no rock is that strong.
+pub(super) fn class_limits_j(shown: &Shown) -> [f64; 2] {
+    let most = shown.rows.iter().map(|row| row.max_total_j).filter(|j| j.is_finite());
+    let most = most.fold(0.0, f64::max);
+    if most >= crate::hazard::INTENSITY_J[0] {
+        return crate::hazard::INTENSITY_J;
+    }
+    let power = math::log10(most.max(1e-6)).floor() as i32;
+    // written and read, not multiplied: the doubles that everybody else has for them
+    [power - 1, power].map(|k| format!("1e{k}").parse().unwrap_or(f64::NAN))
+}
+
+/// The page.
+pub fn page(shown: &Shown) -> String {
+    let title = escape(&shown.title);
+    let mut page = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>{title}: view in three dimensions</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{BODY}"
+    );
+    let head = json!({
+        "version": 1,
+        "title": shown.title,
+        "notes": shown.notes(),
+        "classes_j": class_limits_j(shown),
+        "stops": StopKind::ALL.map(StopKind::word),
+        "walls": shown.walls,
+    });
+    // a `<` in a name must not end the element; JSON reads the escape as the same character
+    let head = head.to_string().replace('<', "\\u003c");
+    let _ = writeln!(page, "<script type=\"application/json\" id=\"scene\">{head}</script>");
+    put(&mut page, TERRAIN, &shown.mesh.text());
+    if !shown.ways.ways.is_empty() {
+        put(&mut page, "paths", &shown.ways.text());
+    }
+    if !shown.rows.is_empty() {
+        put(&mut page, "rocks", &rocks::text(shown));
+    }
+    if let Some(layers) = &shown.layers {
+        put(&mut page, "maps", &layers.text());
+    }
+    let _ = write!(
+        page,
+        "<script>\n\"use strict\";\n{}</script>\n</body>\n</html>\n",
+        SCRIPTS.concat()
+    );
+    page
+}
+
+fn opening(name: &str) -> String {
+    format!("<script type=\"text/plain\" id=\"{name}\">")
+}
+
+fn put(page: &mut String, name: &str, text: &str) {
+    let _ = writeln!(page, "{}{text}</script>", opening(name));
+}
+
+/// The text of a section of a page; none when there is no such.
+pub fn section<'a>(page: &'a str, name: &str) -> Option<&'a str> {
+    let (_, rest) = page.split_once(&opening(name))?;
+    rest.split_once("</script>").map(|(text, _)| text)
+}

@@ -1,0 +1,69 @@
+//! Evaluation lines and barriers on the ground.
+
+use crate::hazard::{BarrierSummary, LineSummary};
+use crate::math;
+use crate::output::Results;
+use crate::report::raster::GroundRaster;
+use serde::Serialize;
+
+/// Most pieces that a line is cut into to follow the ground.
+const MOST_PIECES: f64 = 400.0;
+
+/// A line on the ground, or a barrier on it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Wall {
+    pub(super) name: String,
+    /// Height of the barrier (m); none for a line alone.
+    pub(super) height_m: Option<f64>,
+    /// What to say of it.
+    pub(super) words: String,
+    /// Places on the ground, map coordinates (m).
+    pub(super) foot_m: Vec<[f64; 3]>,
+}
+
+/// The lines of the scene, and the barriers that stand on some of them; without ground there is none to draw.
+pub(super) fn of(results: &Results, ground: Option<&GroundRaster>) -> Vec<Wall> {
+    let Some(ground) = ground else { return Vec::new() };
+    let shown = results.summary.lines.iter().filter(|line| !line.info.of_barrier);
+    shown.map(|line| wall(line, &results.summary.barriers, ground)).collect()
+}
+
+fn wall(line: &LineSummary, barriers: &[BarrierSummary], ground: &GroundRaster) -> Wall {
+    let barrier = barriers.iter().find(|one| one.barrier.name == line.info.name);
+    let reached = format!("{} of {} rocks cross", line.reach.count, line.reach.of);
+    let words = barrier.map_or(reached.clone(), |one| {
+        let (height_m, capacity_kj) = (one.barrier.height_m, one.barrier.capacity_j / 1e3);
+        format!(
+            "{height_m} m, {capacity_kj} kJ: stops {} of the {} that arrive",
+            one.stopped.count, one.stopped.of
+        )
+    });
+    Wall {
+        name: line.info.name.clone(),
+        height_m: barrier.map(|one| one.barrier.height_m),
+        words,
+        foot_m: draped(&line.info.corners_m, ground),
+    }
+}
+
+/// Finer digits say nothing of a line on a raster and make the page long.
+fn to_the_centimetre(x_m: f64) -> f64 {
+    (x_m * 100.0).round() / 100.0
+}
+
+/// A line cut so finely that it follows the ground; places without ground are left out.
+fn draped(corners_m: &[[f64; 2]], ground: &GroundRaster) -> Vec<[f64; 3]> {
+    let mut foot = Vec::new();
+    for pair in corners_m.windows(2) {
+        let (from, way) = (pair[0], [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]]);
+        let length_m = math::hypot(way[0], way[1]);
+        let pieces = (length_m / ground.cell_m).ceil().clamp(1.0, MOST_PIECES);
+        let shares = (0..=pieces as usize).map(|k| k as f64 / pieces);
+        foot.extend(shares.filter_map(|share| {
+            let [x, y] = [from[0] + share * way[0], from[1] + share * way[1]];
+            let z = ground.height_at(x, y);
+            z.is_finite().then_some([x, y, z].map(to_the_centimetre))
+        }));
+    }
+    foot
+}
