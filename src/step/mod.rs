@@ -12,6 +12,7 @@ pub mod rigid;
 pub(crate) mod slide;
 pub mod stage;
 pub mod tableau;
+pub mod world;
 
 use adaptive::{Advance, Control, Stuck};
 use grip::{Grip, World};
