@@ -87,11 +87,11 @@ fn a_pyramid_of_the_fixed_step_stands_if_friction_holds_it() {
     let world = World { scheme: Scheme::Dda, step_s: 1e-5, ..WORLD };
     let run = |share: f64| {
         let friction = with_friction(world, share * needed());
-        sunk_m(&friction.run(&plane(), &pyramid(0.5), 0.8).0)
+        sunk_m(&friction.run(&plane(), &pyramid(0.5), 0.4).0)
     };
     let (stands, falls) = (run(1.05), run(0.95));
     println!("sunk by {stands:e} and {falls:e} m");
-    assert!(stands < 1e-4 && falls > 1e-2, "{stands} {falls}");
+    assert!(stands < 1e-4 && falls > 2e-3, "{stands} {falls}");
 }
 
 /// At no time has it more energy than before, and it does not lean to one side more than a rock's error.

@@ -33,11 +33,6 @@ impl Given {
         [Self { lost, passed_on: a - lost }, Self { lost, passed_on: b - lost }]
     }
 
-    /// The same of impulses over a whole step, in which friction that turns round may seem to work: that is the step's error.
-    pub(super) fn of_impulses(work: [f64; 2]) -> [Self; 2] {
-        Self::of_ends(work).map(|one| Self { lost: one.lost.max(0.0), ..one })
-    }
-
     /// Adds `other` times `factor`.
     pub(super) fn add(&mut self, other: &Self, factor: f64) {
         self.lost += factor * other.lost;

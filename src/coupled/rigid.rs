@@ -233,13 +233,12 @@ impl Member {
 }
 
 impl Foot {
-    /// Energy that the impulses take (J), at a mean velocity and spin. Friction that turns round within a step may seem to
-    /// work: that is the step's error.
+    /// Energy that the impulses take (J), at a mean velocity and spin.
     fn loss(&self, world: &World, (v, w): &(Vec3, Vec3)) -> Loss {
         let loss = Loss {
-            friction: (-self.drag.dot(&world.body.slip(&self.n, v, w))).max(0.0),
+            friction: -self.drag.dot(&world.body.slip(&self.n, v, w)),
             damping: -self.push * self.n.dot(v),
-            rolling: (-self.turn.dot(w)).max(0.0),
+            rolling: -self.turn.dot(w),
             trees: 0.0,
         };
         loss.on(world, self.triangle)

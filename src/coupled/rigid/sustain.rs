@@ -132,7 +132,7 @@ impl Pile {
                 let (v, w) = mean(&self.balls[knot.ends[k]]);
                 -Ball::work_j(&knot.load(k), &v, &w)
             });
-            for (end, given) in knot.ends.into_iter().zip(Given::of_impulses(given)) {
+            for (end, given) in knot.ends.into_iter().zip(Given::of_ends(given)) {
                 self.given[end].add(&given, 1.0);
             }
         }

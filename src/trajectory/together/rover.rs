@@ -290,6 +290,12 @@ impl Rover<'_> {
         }
         self.journey.end_impact();
         self.journey.end_path();
+        // Friction that turns round within a step may seem to work: that is an error of the steps.
+        let ledger = &mut self.journey.ledger;
+        for entry in [&mut ledger.friction_j, &mut ledger.damping_j, &mut ledger.rolling_j] {
+            ledger.remainder_j += entry.min(0.0);
+            *entry = entry.max(0.0);
+        }
         let journey = self.journey;
         let start = release.motion;
         let fallen = start.position_m.z - journey.now.position_m.z;
