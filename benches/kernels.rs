@@ -119,7 +119,7 @@ fn collect_features(bencher: Bencher, triangles: usize) {
 fn ask_for_touches(bencher: Bencher, triangles: usize) {
     let States { slope, touches, .. } = states(triangles);
     let r = ROCK.radius_m;
-    let nears: Vec<(Near, Vec3)> = touches
+    let mut nears: Vec<(Near, Vec3)> = touches
         .iter()
         .take(200)
         .map(|touch| {
@@ -131,8 +131,8 @@ fn ask_for_touches(bencher: Bencher, triangles: usize) {
     let mut found = Touches::default();
     let mut next = (0..nears.len()).cycle();
     bencher.bench_local(|| {
-        let (near, centre) = &nears[next.next().unwrap_or(0)];
-        near.touches(&slope.terrain, black_box(centre), 1.1 * r, &mut found);
+        let (near, centre) = &mut nears[next.next().unwrap_or(0)];
+        near.touches(&slope.terrain, black_box(&*centre), 1.1 * r, &mut found);
     });
 }
 
