@@ -71,6 +71,8 @@ pub struct Plan {
     pub scene_hash: String,
     /// Version of this crate.
     pub version: &'static str,
+    /// Map position of the mesh files' (0, 0, 0) (m).
+    pub mesh_origin_m: [f64; 3],
     /// EPSG code of the map coordinates.
     pub epsg: Option<u32>,
     /// Where chance starts.
@@ -179,6 +181,7 @@ impl Plan {
             scene_file: scene.file.clone(),
             scene_hash: scene.hash.clone(),
             version: env!("CARGO_PKG_VERSION"),
+            mesh_origin_m: scene.origin_m,
             epsg: scene.epsg,
             seed: scene.seed,
             count: scene.release.count,

@@ -6,8 +6,9 @@ use rockfall::calibrate::{self, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::hazard::{Barrier, Elsewhere, Hazard, LineInfo, MapFrame, Rule, Way};
-use rockfall::output::{self, Identity, Mode, Output, RunInfo};
+use rockfall::output::{self, Identity, Mode, Output, RunInfo, Site, Zone};
 use rockfall::plan::{self, Curtain, Plan};
+use rockfall::release::Where;
 use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::scene::{BarrierTable, DesignTable, Scene};
@@ -104,6 +105,10 @@ pub(crate) fn run(
             return Ok(Ended::Interrupted(done, asked.len()));
         }
         let results = output.finish()?;
+        if let Some(why) = order.until.as_ref().and_then(|aim| aim.refusal(&results.hazard)) {
+            report::draw_run(&results, &plan.terrain)?;
+            return Err(Error::Request(why));
+        }
         let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) else {
             report::draw_run(&results, &plan.terrain)?;
             return Ok(Ended::Complete(report::headline(&results.hazard)));
@@ -190,6 +195,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
             of_releases: plan.count,
         },
         origin_m: plan.terrain.origin_m,
+        site: Site { mesh_origin_m: plan.mesh_origin_m, release: zone(plan) },
         ground_of_sheet: plan
             .terrain
             .sheets
@@ -210,6 +216,15 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         warnings: plan.warnings.clone(),
         mesh_health,
     })
+}
+
+/// Where rocks are released.
+fn zone(plan: &Plan) -> Zone {
+    match plan.releases.place() {
+        Where::Points(points) => Zone::Points(points.iter().map(|point| point.at_m).collect()),
+        Where::Line(line) => Zone::Line(line.corners_m().to_vec()),
+        Where::Area(area) => Zone::Polygon(area.corners_m().to_vec()),
+    }
 }
 
 fn line_infos(plan: &Plan) -> Vec<LineInfo> {

@@ -3,13 +3,13 @@
 //! A barrier does not change a rock's way in the computation. A rock that the first barrier on its way stops counts as
 //! not arriving at those behind it: with several in line, each sees what the ones before have let through.
 
+use super::design::{Design, Rule};
 use super::lines::CrossingRow;
 use super::proportion::Proportion;
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::iter;
 
 /// A barrier on one of the evaluation lines.
@@ -37,44 +37,6 @@ pub struct Elsewhere {
     pub line: String,
 }
 
-/// A design rule: a percentile and factors, each by its name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Rule {
-    /// The standard it follows, in words; none = the scene's own.
-    #[serde(default)]
-    pub standard: Option<String>,
-    /// Percentile of energy and height over the rocks that arrive (per cent), above 0 and below 100.
-    pub percentile: f64,
-    /// Factors on the speed (–); they enter the energy squared.
-    #[serde(default)]
-    pub speed_factors: BTreeMap<String, f64>,
-    /// Factors on the mass (–).
-    #[serde(default)]
-    pub mass_factors: BTreeMap<String, f64>,
-    /// Factors on the height (–).
-    #[serde(default)]
-    pub height_factors: BTreeMap<String, f64>,
-    /// Free height to be kept above the design height (m).
-    pub free_height_m: f64,
-    /// Distance that must be kept free behind the barrier (m), where elongation and standard are named.
-    #[serde(default)]
-    pub free_distance_m: Option<f64>,
-}
-
-/// What a rule asks of a barrier at its place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Design {
-    /// The percentile of total energy (J).
-    pub energy_percentile_j: f64,
-    /// With all factors (J).
-    pub energy_j: f64,
-    /// The percentile of the height of the rock's highest point (m).
-    pub height_percentile_m: f64,
-    /// With all factors and the free height (m).
-    pub height_m: f64,
-}
-
 /// What a barrier does.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BarrierSummary {
@@ -95,8 +57,11 @@ pub struct BarrierSummary {
     pub energy_j: Statistic,
     /// Height of the highest point of the rocks that arrive (m).
     pub top_m: Statistic,
-    /// What the rule asks for, from the rocks that arrive; none without rule or rocks.
+    /// What the rule asks for, from the rocks that arrive; none without a rule, and with too few rocks.
     pub design_values: Option<Design>,
+    /// Rocks missing for a design value; 0 with one, and without a rule.
+    #[serde(default)]
+    pub design_lacks: usize,
     /// At its own place first, then elsewhere.
     pub by_place: Vec<AtPlace>,
 }
@@ -110,7 +75,7 @@ pub struct AtPlace {
     pub arriving: Proportion,
     /// Height (m) and share of the arriving rocks that would be stopped.
     pub by_height: Vec<(f64, Proportion)>,
-    /// What the rule asks for there.
+    /// What the rule asks for there; none with too few rocks.
     pub design_values: Option<Design>,
 }
 
@@ -218,7 +183,7 @@ fn until_stopped<'a>(barriers: &[Barrier], way: &'a [(usize, Arrival)]) -> &'a [
 }
 
 impl Arrival {
-    fn of(row: &CrossingRow) -> Self {
+    pub(super) fn of(row: &CrossingRow) -> Self {
         // where there is no ground below, nothing says how high it is: it is let through
         let top_m =
             if row.height_m.is_nan() { f64::INFINITY } else { row.height_m + 2.0 * row.radius_m };
@@ -254,8 +219,9 @@ fn summary(
             .map(|share| share * barrier.height_m)
             .map(|height_m| (height_m, stopped_at(barrier, rocks, height_m)))
             .into(),
-        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks)),
+        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks).ok()),
     };
+    let asked = barrier.design.as_ref().map(|rule| rule.design(rocks));
     BarrierSummary {
         barrier: barrier.clone(),
         crossing,
@@ -265,7 +231,8 @@ fn summary(
         through: rocks.len() - stopped.count - over,
         energy_j: statistic(|rock| rock.total_j),
         top_m: statistic(|rock| rock.top_m),
-        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks)),
+        design_lacks: asked.as_ref().and_then(|asked| asked.as_ref().err().copied()).unwrap_or(0),
+        design_values: asked.and_then(Result::ok),
         by_place: offsets.zip(places).map(at_place).collect(),
     }
 }
@@ -276,27 +243,10 @@ fn stopped_at(barrier: &Barrier, rocks: &[Arrival], height_m: f64) -> Proportion
     Proportion::new(stopped.count(), rocks.len())
 }
 
-impl Rule {
-    /// What it asks for, from the rocks that arrive; none without rocks.
-    fn design(&self, rocks: &[Arrival]) -> Option<Design> {
-        let p = self.percentile / 100.0;
-        let value =
-            |of: fn(&Arrival) -> f64| Some(Sample::of(rocks.iter().map(of)).percentile(p)?.value);
-        let product = |factors: &BTreeMap<String, f64>| factors.values().product::<f64>();
-        let (energy, height) = (value(|rock| rock.total_j)?, value(|rock| rock.top_m)?);
-        let speed = product(&self.speed_factors);
-        Some(Design {
-            energy_percentile_j: energy,
-            energy_j: energy * speed * speed * product(&self.mass_factors),
-            height_percentile_m: height,
-            height_m: height * product(&self.height_factors) + self.free_height_m,
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeMap;
     use std::convert::Infallible;
 
     fn barrier(name: &str, height_m: f64, capacity_j: f64) -> Barrier {
@@ -331,7 +281,7 @@ mod tests {
         let (mass_factors, height_factors) = ([("c".to_owned(), 1.02)].into(), BTreeMap::new());
         upper.design = Some(Rule {
             standard: None,
-            percentile: 50.0,
+            percentile: 30.0,
             speed_factors,
             mass_factors,
             height_factors,
@@ -374,7 +324,8 @@ mod tests {
         // lower by half: 1.5 m stop none of the tops of 3, 3.5 and 1 m but the last, which has too much energy
         assert_eq!(found[0].by_place[0].by_height[0].1.count, 0);
         let design = found[0].design_values.as_ref().unwrap();
-        assert!((design.energy_j - 100.0 * (1.02_f64 * 1.1).powi(2) * 1.02).abs() < 1e-9);
-        assert!((design.height_m - 3.5).abs() < 1e-12);
+        // P30 of 50, 100 and 500 J and of tops at 1, 3 and 3.5 m
+        assert!((design.energy_j - 80.0 * (1.02_f64 * 1.1).powi(2) * 1.02).abs() < 1e-9);
+        assert!((design.height_m - 2.7).abs() < 1e-12);
     }
 }

@@ -108,6 +108,9 @@ struct Cell {
     largest_m: f64,
     totals_j: Counts,
     heights_m: Counts,
+    /// Rocks with a total energy of at least each of [`INTENSITY_J`].
+    #[serde(default)]
+    above: [u32; 2],
 }
 
 impl Cell {
@@ -118,6 +121,16 @@ impl Cell {
         self.largest_m = self.largest_m.max(other.largest_m);
         self.totals_j.join(&other.totals_j);
         self.heights_m.join(&other.heights_m);
+        self.above = [0, 1].map(|limit| self.above[limit] + other.above[limit]);
+    }
+
+    /// Swiss class of the 95th percentile of energy, counted and not read from classes of values: the ⌈0.95 n⌉-th
+    /// smallest energy reaches a limit when at least `n − ⌈0.95 n⌉ + 1` rocks do. The largest would grow with the number
+    /// of releases.
+    fn intensity(&self) -> f64 {
+        let rank = (0.95 * f64::from(self.passages)).ceil().max(1.0);
+        let needed = f64::from(self.passages) - rank + 1.0;
+        1.0 + self.above.iter().filter(|count| f64::from(**count) >= needed).count() as f64
     }
 }
 
@@ -138,8 +151,12 @@ pub enum Layer {
     HeightMax,
     /// 95th percentile over the rocks that pass of each one's largest height in the cell (m).
     HeightP95,
-    /// Swiss intensity by the largest total energy: 1 below 30 kJ, 2 from 30 to 300 kJ, 3 above.
+    /// Swiss intensity by the 95th percentile of total energy: 1 below 30 kJ, 2 from 30 to 300 kJ, 3 above.
     Intensity,
+    /// Rocks that pass with 30 kJ or more, over all releases (–).
+    ExceedsWeak,
+    /// Rocks that pass with 300 kJ or more, over all releases (–).
+    ExceedsMedium,
 }
 
 /// Limits of the Swiss classes of intensity (J): weak below, medium, strong from the second on.
@@ -147,7 +164,7 @@ pub const INTENSITY_J: [f64; 2] = [30e3, 300e3];
 
 impl Layer {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Passages,
         Self::Reach,
         Self::Deposits,
@@ -156,6 +173,8 @@ impl Layer {
         Self::HeightMax,
         Self::HeightP95,
         Self::Intensity,
+        Self::ExceedsWeak,
+        Self::ExceedsMedium,
     ];
 
     /// File name without ending.
@@ -169,6 +188,24 @@ impl Layer {
             Self::HeightMax => "height_max_m",
             Self::HeightP95 => "height_p95_m",
             Self::Intensity => "intensity_class",
+            Self::ExceedsWeak => "exceeds_30_kj_probability",
+            Self::ExceedsMedium => "exceeds_300_kj_probability",
+        }
+    }
+
+    /// Name and unit of its values, as a GIS shows them; a pure number has no unit.
+    pub fn in_words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Passages => ("Rocks that pass", ""),
+            Self::Reach => ("Reach probability, conditional on release", ""),
+            Self::Deposits => ("Rocks at rest", ""),
+            Self::EnergyMax => ("Total energy, largest", "J"),
+            Self::EnergyP95 => ("Total energy, 95th percentile", "J"),
+            Self::HeightMax => ("Bounce height, largest", "m"),
+            Self::HeightP95 => ("Bounce height, 95th percentile", "m"),
+            Self::Intensity => ("Intensity of the 95th percentile of energy, 1 weak 2 medium 3 strong", ""),
+            Self::ExceedsWeak => ("Probability of 30 kJ or more, conditional on release", ""),
+            Self::ExceedsMedium => ("Probability of 300 kJ or more, conditional on release", ""),
         }
     }
 
@@ -182,9 +219,9 @@ impl Layer {
             Self::EnergyP95 => cell.totals_j.percentile(0.95).min(cell.largest_j),
             Self::HeightMax => cell.largest_m,
             Self::HeightP95 => cell.heights_m.percentile(0.95).min(cell.largest_m),
-            Self::Intensity => {
-                1.0 + INTENSITY_J.iter().filter(|limit| cell.largest_j >= **limit).count() as f64
-            }
+            Self::Intensity => cell.intensity(),
+            Self::ExceedsWeak => f64::from(cell.above[0]) / releases.max(1) as f64,
+            Self::ExceedsMedium => f64::from(cell.above[1]) / releases.max(1) as f64,
         }
     }
 }
@@ -228,6 +265,9 @@ impl Maps {
             cell.largest_m = cell.largest_m.max(visit.height_m);
             cell.totals_j.add(visit.total_j);
             cell.heights_m.add(visit.height_m);
+            for (count, limit) in cell.above.iter_mut().zip(INTENSITY_J) {
+                *count += u32::from(visit.total_j >= limit);
+            }
         }
         if let (StopKind::AtRest, Some(cell)) = (stop, self.frame.cell(end_m)) {
             self.cells.entry(cell).or_default().deposits += 1;
@@ -288,5 +328,24 @@ mod tests {
         assert_eq!(value(Layer::HeightMax), Some(2.0));
         assert_eq!(value(Layer::Intensity), Some(2.0));
         assert_eq!(maps.intensity_cells(), [1, 1, 0]);
+        assert_eq!(value(Layer::ExceedsWeak), Some(2.0 / 6.0));
+        assert_eq!(value(Layer::ExceedsMedium), Some(0.0));
+    }
+
+    /// One wild rock among a hundred leaves the class where it was; the sixth makes it: P95 of 100 is the 95th.
+    #[test]
+    fn the_class_does_not_grow_with_the_largest() {
+        let frame =
+            MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
+        for (wild, class) in [(0, 1.0), (1, 1.0), (5, 1.0), (6, 3.0)] {
+            let mut maps = Maps::new(frame, MapState::default());
+            for k in 0..100 {
+                let total_j = if k < wild { 1e6 } else { 1e3 };
+                let visit = Visit { cell: 0, total_j, height_m: 0.0 };
+                maps.add(&[visit], StopKind::LeftTerrain, [9.0; 3]);
+            }
+            let found = maps.values(Layer::Intensity, 100).next().map(|(_, found)| found);
+            assert_eq!(found, Some(class), "{wild} wild rocks");
+        }
     }
 }

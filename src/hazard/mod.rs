@@ -5,26 +5,30 @@
 //! grouping in which rocks arrive, and a drawing from files shows the same bits as the run itself.
 
 mod barriers;
+mod design;
 mod lines;
 mod maps;
 mod observed;
 mod proportion;
 mod quantile;
 mod quantity;
+mod residual;
 mod row;
 mod sample;
 mod sum;
 mod totals;
 
 pub use barriers::{
-    Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Design, Elsewhere, Rule, arrivals, judge,
+    Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge,
 };
+pub use design::{Design, Rule};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{Agreement, Way};
 pub use proportion::Proportion;
-pub use quantile::{Percentile, Ranks};
+pub use quantile::{Open, Percentile, Ranks};
 pub use quantity::Quantity;
+pub use residual::{Passing, Residual, residual, unstopped};
 pub use row::{Row, StopKind};
 pub use sample::{Exceedance, Histogram, Mean, Sample};
 pub use sum::Sum;
@@ -40,11 +44,13 @@ pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 ///
 /// The statistics are over all rocks but the failed: a failed rock has a row and is counted, but where it
 /// stopped is where the computation did. A rock that left the terrain or ran out of time counts with what it
-/// had done until then; its runout is a lower bound.
+/// had done until then; its runout is a lower bound, and so is every percentile of runout that such rocks decide.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hazard {
     stops: BTreeMap<StopKind, usize>,
     values: [Vec<f64>; Quantity::ALL.len()],
+    /// Whether each rock would have gone on, in the order of the values.
+    is_open: Vec<bool>,
     largest: [Option<Largest>; Quantity::ALL.len()],
     largest_balance_error: Option<Largest>,
     /// Effort, ledger and failures: what the rows do not hold.
@@ -62,6 +68,9 @@ pub struct Statistic {
     pub percentiles: BTreeMap<String, Percentile>,
     /// The largest value and the release it belongs to.
     pub max: Option<Largest>,
+    /// Rocks whose own value is only a bound: they left the terrain or ran out of time.
+    #[serde(default, skip_serializing_if = "is_0")]
+    pub censored: usize,
     /// Which percentiles have no upper bound because there are too few rocks; empty when all have.
     pub too_few: String,
 }
@@ -79,6 +88,7 @@ impl Hazard {
         if row.stop == StopKind::Failed {
             return;
         }
+        self.is_open.push(row.stop.is_open());
         for (slot, quantity) in Quantity::ALL.into_iter().enumerate() {
             let value = quantity.of(row);
             self.values[slot].push(value);
@@ -103,7 +113,11 @@ impl Hazard {
 
     /// All values of one quantity, sorted: for curves and histograms.
     pub fn sample(&self, quantity: Quantity) -> Sample {
-        Sample::of(self.values[quantity as usize].iter().copied())
+        let values = self.values[quantity as usize].iter().copied();
+        match quantity.open() {
+            Some(open) => Sample::censored(values.zip(self.is_open.iter().copied()), open),
+            None => Sample::of(values),
+        }
     }
 
     /// The values of one quantity in the order of releases (failed rocks have none).
@@ -129,17 +143,23 @@ fn statistic(sample: &Sample, max: Option<Largest>) -> Statistic {
     Statistic {
         rocks: sample.values().len(),
         mean: sample.mean(),
+        censored: sample.bounds(),
         too_few: too_few(sample.values().len(), &percentiles),
         percentiles,
         max,
     }
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_0(count: &usize) -> bool {
+    *count == 0
+}
+
 /// Names the percentiles that no value bounds, and how many rocks they need.
 fn too_few(rocks: usize, percentiles: &BTreeMap<String, Percentile>) -> String {
     let missing: Vec<String> = percentiles
         .iter()
-        .filter(|(_, percentile)| percentile.upper_95.is_none())
+        .filter(|(_, percentile)| rocks < percentile.needs)
         .map(|(name, percentile)| format!("{name} needs {}", percentile.needs))
         .collect();
     if missing.is_empty() {

@@ -83,6 +83,11 @@ impl StopKind {
     /// All of them, in the order of tables.
     pub const ALL: [Self; 4] = [Self::AtRest, Self::LeftTerrain, Self::TimeUp, Self::Failed];
 
+    /// Whether the rock would have gone on: where it ended says only how far it came at least.
+    pub fn is_open(self) -> bool {
+        matches!(self, Self::LeftTerrain | Self::TimeUp)
+    }
+
     /// Its word in `releases.csv` and `summary.json`.
     pub fn word(self) -> &'static str {
         match self {

@@ -1,13 +1,15 @@
 //! All values of one quantity, sorted, and what they say.
 
 use super::proportion::NORMAL_95;
-use super::quantile::Percentile;
+use super::quantile::{Open, Percentile};
 use serde::{Deserialize, Serialize};
 
 /// Values of one quantity in ascending order; what is not a finite number is left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     sorted: Vec<f64>,
+    /// The same with the rocks seen only in part at the far end of where they may lie; none when all were seen whole.
+    far: Option<(Vec<f64>, Open)>,
 }
 
 /// A mean with its 95 % interval.
@@ -19,6 +21,9 @@ pub struct Mean {
     pub low_95: Option<f64>,
     /// Upper end of the interval; none for a single value.
     pub high_95: Option<f64>,
+    /// Whether values that are only bounds leave the mean a bound too: its interval is open on their side.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub censored: bool,
 }
 
 /// A share of rocks that exceeds a value, the value, and where it lies with 95 % confidence.
@@ -32,6 +37,8 @@ pub struct Exceedance {
     pub low_95: Option<f64>,
     /// Upper end of the interval of the value; none when there are too few rocks.
     pub high_95: Option<f64>,
+    /// Whether the value is only a bound: rocks seen in part decide it.
+    pub censored: bool,
 }
 
 /// How many values fall between neighbouring edges.
@@ -51,7 +58,30 @@ impl Sample {
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
-        Self { sorted }
+        Self { sorted, far: None }
+    }
+
+    /// Sorts values of which some are only bounds (true): the rock was seen in part. The truth lies on the `open` side.
+    pub fn censored(values: impl IntoIterator<Item = (f64, bool)>, open: Open) -> Self {
+        let seen: Vec<(f64, bool)> =
+            values.into_iter().filter(|(value, _)| value.is_finite()).collect();
+        let far_end = match open {
+            Open::Above => f64::INFINITY,
+            Open::Below => f64::NEG_INFINITY,
+        };
+        let far = seen.iter().any(|(_, is_bound)| *is_bound).then(|| {
+            let moved = |&(value, is_bound): &(f64, bool)| if is_bound { far_end } else { value };
+            let mut far: Vec<f64> = seen.iter().map(moved).collect();
+            far.sort_unstable_by(f64::total_cmp);
+            (far, open)
+        });
+        Self { far, ..Self::of(seen.into_iter().map(|(value, _)| value)) }
+    }
+
+    /// How many of the values are only bounds.
+    pub fn bounds(&self) -> usize {
+        let of = |(far, _): &(Vec<f64>, Open)| far.iter().filter(|v| !v.is_finite()).count();
+        self.far.as_ref().map_or(0, of)
     }
 
     /// The values in ascending order.
@@ -61,24 +91,37 @@ impl Sample {
 
     /// Mean with the normal interval `± 1.96 s/√n`; none of nothing.
     ///
+    /// Where that would reach below 0 although no value does, the interval is normal for the logarithm of the mean:
+    /// `mean · exp(± 1.96 s/(mean √n))`.
     /// Summed in ascending order, so the same values give the same bits however they arrived.
     pub fn mean(&self) -> Option<Mean> {
         let n = self.sorted.len() as f64;
         let value = self.sorted.iter().sum::<f64>() / n;
         let squares: f64 = self.sorted.iter().map(|one| (one - value).powi(2)).sum();
         let half = NORMAL_95 * (squares / (n - 1.0) / n).sqrt();
-        let spread = (n > 1.0).then_some(half);
+        let is_positive = self.sorted.first().is_some_and(|least| *least >= 0.0) && value > 0.0;
+        let (low, high) = if is_positive && half > value {
+            let factor = (half / value).exp();
+            (value / factor, value * factor)
+        } else {
+            (value - half, value + half)
+        };
+        let ends = |end: f64| (n > 1.0).then_some(end);
+        let open = self.far.as_ref().map(|(_, open)| *open);
         let mean = Mean {
             value,
-            low_95: spread.map(|half| value - half),
-            high_95: spread.map(|half| value + half),
+            low_95: ends(low).filter(|_| open != Some(Open::Below)),
+            high_95: ends(high).filter(|_| open != Some(Open::Above)),
+            censored: open.is_some(),
         };
         (!self.sorted.is_empty()).then_some(mean)
     }
 
     /// Percentile `p` (0 < p < 1) with its interval; none of nothing.
     pub fn percentile(&self, p: f64) -> Option<Percentile> {
-        Percentile::of(&self.sorted, p)
+        let seen = Percentile::of(&self.sorted, p)?;
+        let Some((far, open)) = &self.far else { return Some(seen) };
+        Some(seen.between(&Percentile::of(far, p)?, *open))
     }
 
     /// The curve of exceedance, from the share 0.995 down to `1/n`.
@@ -87,8 +130,9 @@ impl Sample {
     /// percentiles of the tables. The band is pointwise: each point keeps 95 % by itself, not all at once.
     pub fn exceedance(&self) -> Vec<Exceedance> {
         let point = |share: f64| {
-            let Percentile { value, low_95, high_95, .. } = self.percentile(1.0 - share)?;
-            Some(Exceedance { share, value, low_95, high_95 })
+            let Percentile { value, low_95, high_95, censored, .. } =
+                self.percentile(1.0 - share)?;
+            Some(Exceedance { share, value, low_95, high_95, censored })
         };
         shares(self.sorted.len()).into_iter().filter_map(point).collect()
     }

@@ -32,7 +32,7 @@ pub(super) fn write(dir: &Path, maps: &Maps, releases: usize) -> Result<()> {
         let path = folder.join(layer.file());
         write_whole(&path.with_extension("asc"), ascii(&maps.frame, &cells).as_bytes())?;
         let tif = path.with_extension("tif");
-        let bytes = geotiff(&maps.frame, &cells)
+        let bytes = geotiff(&maps.frame, layer.in_words(), &cells)
             .map_err(|why| Error::file("write", &tif)(std::io::Error::other(why)))?;
         write_whole(&tif, &bytes)?;
     }
@@ -61,8 +61,13 @@ fn ascii(frame: &MapFrame, cells: &[f32]) -> String {
 }
 
 /// One deflated band of 32-bit floats with the keys of OGC 19-008r4 (GeoTIFF 1.1): pixel is area, projected system by
-/// its EPSG code where one is given.
-fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
+/// its EPSG code where one is given. Name and unit of the band stand where GDAL keeps them.
+fn geotiff(
+    frame: &MapFrame,
+    (name, unit): (&str, &str),
+    cells: &[f32],
+) -> tiff::TiffResult<Vec<u8>> {
+    const GDAL_METADATA: u16 = 42_112;
     const GEO_KEY_DIRECTORY: u16 = 34_735;
     const MODEL_PIXEL_SCALE: u16 = 33_550;
     const MODEL_TIEPOINT: u16 = 33_922;
@@ -82,6 +87,14 @@ fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
         None => vec![1, 1, 0, 1, 1025, 0, 1, 1],
     };
     tags.write_tag(Tag::Unknown(GEO_KEY_DIRECTORY), &keys[..])?;
+    let unit = match unit {
+        "" => String::new(),
+        unit => format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>"),
+    };
+    let said = format!(
+        "<GDALMetadata><Item name=\"DESCRIPTION\" sample=\"0\" role=\"description\">{name}</Item>{unit}</GDALMetadata>"
+    );
+    tags.write_tag(Tag::Unknown(GDAL_METADATA), said.as_str())?;
     tags.write_tag(Tag::Unknown(GDAL_NODATA), "-9999")?;
     let values: Vec<f32> = rows(frame, cells).flatten().copied().collect();
     image.write_data(&values)?;
@@ -131,8 +144,10 @@ pub(super) fn is_result(path: &Path) -> bool {
         // the ground that figures are drawn on stands beside the maps
         "asc" if ["ground", "trees"].contains(&stem.as_str()) => true,
         "asc" | "tif" => Layer::ALL.iter().any(|layer| layer.file() == stem),
-        "geojson" => ["ends", "paths"].contains(&stem.as_str()),
-        "vtk" => stem == "paths",
+        "geojson" => {
+            ["ends", "paths", "lines", "barriers", "release_zone"].contains(&stem.as_str())
+        }
+        "vtk" => ["paths", "terrain"].contains(&stem.as_str()),
         STATE => stem.parse::<usize>().is_ok(),
         _ => false,
     }

@@ -12,6 +12,7 @@ mod merge;
 mod progress;
 mod read;
 mod rows;
+mod site;
 mod summary;
 mod table;
 mod vector;
@@ -24,7 +25,9 @@ pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
 pub use rows::{ImpactRow, PathRow};
+pub use site::{Site, Zone};
 pub use summary::{Run, Summary};
+pub use vector::write_terrain;
 pub use whole::write_whole;
 
 use crate::error::{Error, Result};
@@ -56,6 +59,8 @@ pub struct RunInfo {
     pub identity: Identity,
     /// Map position of the local (0, 0, 0) (m): added to every position written.
     pub origin_m: Vec3,
+    /// Where meshes and releases lie.
+    pub site: Site,
     /// Name of the ground of each mesh, in the order of [`Terrain::sheets`](crate::terrain::Terrain).
     pub ground_of_sheet: Vec<String>,
     /// Evaluation lines, in the order of the scene; none leaves `crossings.csv` out.
@@ -231,8 +236,11 @@ impl Output {
         }
         let crossings = read::crossings(&self.dir)?;
         let barriers = hazard::judge(&self.info.barriers, crossings, done)?;
+        let crossings = read::crossings(&self.dir)?;
+        let residual =
+            hazard::residual(&self.info.barriers, &self.info.lines, crossings, done)?;
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
-        summary.barriers = barriers;
+        (summary.barriers, summary.residual) = (barriers, residual);
         summary.write(&self.dir)?;
         self.hazard.totals = summary.totals.clone();
         let results = Results {

@@ -2,11 +2,12 @@
 
 use super::RunInfo;
 use super::progress::Identity;
+use super::site::Site;
 use super::whole::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::{
-    BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion, Quantity, Statistic,
-    StopKind, Totals, Way,
+    BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion, Quantity, Residual,
+    Statistic, StopKind, Totals, Way,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -16,10 +17,14 @@ use std::path::Path;
 pub(super) const SUMMARY: &str = "summary.json";
 
 /// What the numbers mean, printed beside them.
-const DEFINITIONS: [(&str, &str); 9] = [
+const DEFINITIONS: [(&str, &str); 11] = [
     (
         "barriers",
-        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height",
+        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height; none where fewer rocks arrive than bound the percentile, design_lacks says how many are missing; energy_95_j and height_95_m are the intervals of the percentile with the same factors",
+    ),
+    (
+        "censored",
+        "the value is a bound only: rocks that left the terrain or ran out of time decide it. Runout, drop and time are then at least, reach angle at most what is written; the interval is open on that side; censored counts those rocks",
     ),
     (
         "energy_balance_error",
@@ -27,7 +32,7 @@ const DEFINITIONS: [(&str, &str); 9] = [
     ),
     (
         "intervals",
-        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means normal; of shares Wilson, 3/n where none was seen. Conditional on release: no annual frequency",
+        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means normal, or normal for their logarithm where that would reach below 0; of shares Wilson, 3/n where none was seen. Conditional on release: no annual frequency",
     ),
     (
         "lines",
@@ -35,7 +40,7 @@ const DEFINITIONS: [(&str, &str); 9] = [
     ),
     (
         "maps",
-        "one value per rock and cell, its largest there; 95th percentiles from classes of ratio 1.05: within 2.5 % of the ranked value; heights are taken at three places of a flight in the cell",
+        "one value per rock and cell, its largest there; 95th percentiles from classes of ratio 1.05: within 2.5 % of the ranked value; heights are taken at three places of a flight in the cell; intensity_class by the 95th percentile of energy, counted: weak below 30 kJ, strong from 300 kJ on",
     ),
     ("max_height_m", "vertical, from the ground below to the lowest point of the rock"),
     (
@@ -43,6 +48,10 @@ const DEFINITIONS: [(&str, &str); 9] = [
         "over all rocks that did not fail, linear between neighbouring order statistics; rocks that left the terrain or ran out of time count with what they had done until then",
     ),
     ("reach_angle_deg", "atan(drop / runout)"),
+    (
+        "residual",
+        "each line without and with the barriers that rocks meet before it; a rock that a barrier lets through keeps its energy",
+    ),
     ("runout_m", "horizontal distance from release to end"),
 ];
 
@@ -68,6 +77,12 @@ pub struct Summary {
     /// What each barrier stops and what its rule asks for.
     #[serde(default)]
     pub barriers: Vec<BarrierSummary>,
+    /// What remains at each line behind the barriers.
+    #[serde(default)]
+    pub residual: Vec<Residual>,
+    /// Where meshes and releases lie.
+    #[serde(default)]
+    pub site: Site,
     /// Measured ways, if the scene names any.
     #[serde(default)]
     pub observed: Vec<Way>,
@@ -121,6 +136,8 @@ impl Summary {
             statistics: statistics(hazard),
             lines: lines.iter().map(|line| line.summary(hazard.rocks())).collect(),
             barriers: Vec::new(),
+            residual: Vec::new(),
+            site: info.site,
             observed: info.observed,
             maps: info.maps,
             largest_energy_balance_error: hazard.largest_balance_error(),

@@ -22,6 +22,7 @@ impl Plan {
             scene_file,
             scene_hash,
             version,
+            mesh_origin_m: _, // the terrain's own says more
             epsg,
             seed,
             count,

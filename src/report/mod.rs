@@ -51,6 +51,9 @@ use std::path::Path;
 pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     let ground = GroundRaster::from_terrain(terrain, GROUND_CELLS);
     ground.write(&results.dir)?;
+    if results.summary.maps.is_some() {
+        output::write_terrain(&results.dir, terrain, results.summary.site.mesh_origin_m)?;
+    }
     draw(&gather::gather(results, Some(ground))?, &results.dir)
 }
 

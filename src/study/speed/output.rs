@@ -69,6 +69,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         title: "Benchmark".to_owned(),
         identity,
         origin_m: terrain.origin_m,
+        site: Default::default(),
         ground_of_sheet: terrain.sheets.iter().map(ground).collect(),
         lines: Vec::new(),
         maps: None,

@@ -1,0 +1,39 @@
+//! Where things stand on the map: what figures and GIS show beside the rocks.
+
+use serde::{Deserialize, Serialize};
+
+/// Where meshes and releases lie, in map coordinates.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Site {
+    /// Map position of the mesh files' (0, 0, 0) (m).
+    pub mesh_origin_m: [f64; 3],
+    /// Where rocks are released.
+    pub release: Zone,
+}
+
+/// Where rocks are released, in plan view (m).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", content = "corners_m", rename_all = "snake_case")]
+pub enum Zone {
+    /// From these points.
+    Points(Vec<[f64; 2]>),
+    /// Along a line.
+    Line(Vec<[f64; 2]>),
+    /// Over an area.
+    Polygon(Vec<[f64; 2]>),
+}
+
+impl Default for Zone {
+    fn default() -> Self {
+        Self::Points(Vec::new())
+    }
+}
+
+impl Zone {
+    /// Its corners or points (m).
+    pub fn corners_m(&self) -> &[[f64; 2]] {
+        match self {
+            Self::Points(corners) | Self::Line(corners) | Self::Polygon(corners) => corners,
+        }
+    }
+}
