@@ -64,12 +64,12 @@ impl Rule {
             let sample = Sample::of(rocks.iter().map(of));
             let rocks = sample.values().len();
             // of nothing, how many are needed is still known
-            let needs = Sample::of([0.0]).percentile(self.percentile / 100.0).map_or(1, |of| of.needs);
+            let needs =
+                Sample::of([0.0]).percentile(self.percentile / 100.0).map_or(1, |of| of.needs);
             let found = sample.percentile(self.percentile / 100.0);
             found.filter(|_| rocks >= needs).ok_or(needs - rocks.min(needs))
         };
-        let (energy, height) =
-            (percentile(|rock| rock.total_j)?, percentile(|rock| rock.top_m)?);
+        let (energy, height) = (percentile(|rock| rock.total_j)?, percentile(|rock| rock.top_m)?);
         let product = |factors: &BTreeMap<String, f64>| factors.values().product::<f64>();
         let on_energy = product(&self.speed_factors).powi(2) * product(&self.mass_factors);
         let on_height = product(&self.height_factors);

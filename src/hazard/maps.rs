@@ -203,7 +203,9 @@ impl Layer {
             Self::EnergyP95 => ("Total energy, 95th percentile", "J"),
             Self::HeightMax => ("Bounce height, largest", "m"),
             Self::HeightP95 => ("Bounce height, 95th percentile", "m"),
-            Self::Intensity => ("Intensity of the 95th percentile of energy, 1 weak 2 medium 3 strong", ""),
+            Self::Intensity => {
+                ("Intensity of the 95th percentile of energy, 1 weak 2 medium 3 strong", "")
+            }
             Self::ExceedsWeak => ("Probability of 30 kJ or more, conditional on release", ""),
             Self::ExceedsMedium => ("Probability of 300 kJ or more, conditional on release", ""),
         }

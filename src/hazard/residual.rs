@@ -95,12 +95,7 @@ pub fn residual<E>(
     Ok(lines.iter().zip(seen).map(said).collect())
 }
 
-fn take(
-    barriers: &[Barrier],
-    lines: &[&LineInfo],
-    rock: &mut Vec<CrossingRow>,
-    seen: &mut [Seen],
-) {
+fn take(barriers: &[Barrier], lines: &[&LineInfo], rock: &mut Vec<CrossingRow>, seen: &mut [Seen]) {
     let passes = unstopped(barriers, rock);
     for (row, passes) in rock.iter().zip(passes) {
         let Some(at) = lines.iter().position(|line| line.name == row.line) else { continue };

@@ -237,8 +237,7 @@ impl Output {
         let crossings = read::crossings(&self.dir)?;
         let barriers = hazard::judge(&self.info.barriers, crossings, done)?;
         let crossings = read::crossings(&self.dir)?;
-        let residual =
-            hazard::residual(&self.info.barriers, &self.info.lines, crossings, done)?;
+        let residual = hazard::residual(&self.info.barriers, &self.info.lines, crossings, done)?;
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
         (summary.barriers, summary.residual) = (barriers, residual);
         summary.write(&self.dir)?;

@@ -78,9 +78,8 @@ pub(super) fn write_paths(
 /// What a rock did, and at every point of its path the time, speed, energies and height above the ground.
 fn along(rock: &Row, points: &[PathRow]) -> serde_json::Value {
     // digits beyond these only make the file long
-    let short = |value: f64, digits: f64| {
-        value.is_finite().then(|| (value * digits).round() / digits)
-    };
+    let short =
+        |value: f64, digits: f64| value.is_finite().then(|| (value * digits).round() / digits);
     let each = |value: &dyn Fn(&PathRow) -> f64, digits: f64| -> Vec<Option<f64>> {
         points.iter().map(|row| short(value(row), digits)).collect()
     };
@@ -106,8 +105,7 @@ fn along(rock: &Row, points: &[PathRow]) -> serde_json::Value {
 
 /// Writes `lines.geojson`, `barriers.geojson` and `release_zone.geojson` into `folder`, each where there is something.
 pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) -> Result<()> {
-    let is_barrier =
-        |name: &String| summary.barriers.iter().find(|one| one.barrier.name == *name);
+    let is_barrier = |name: &String| summary.barriers.iter().find(|one| one.barrier.name == *name);
     let line = |corners: &[[f64; 2]]| json!({ "type": "LineString", "coordinates": corners });
     let own = summary.lines.iter().filter(|line| !line.info.of_barrier);
     let (barriers, lines): (Vec<&LineSummary>, Vec<&LineSummary>) =
@@ -132,7 +130,8 @@ pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) ->
         file.add(&line(&at.info.corners_m), &said(at))?;
     }
     file.finish()?;
-    let mut file = Features::create_if(!barriers.is_empty(), folder.join("barriers.geojson"), epsg)?;
+    let mut file =
+        Features::create_if(!barriers.is_empty(), folder.join("barriers.geojson"), epsg)?;
     for at in &barriers {
         let mut said = said(at);
         if let Some(one) = is_barrier(&at.info.name) {

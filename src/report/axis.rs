@@ -49,6 +49,19 @@ impl Axis {
         Self::linear((low / step).floor() * step, (high / step).ceil() * step, title)
     }
 
+    /// An axis for energies: logarithmic over those above 0 where they spread over more than 30 times, else from 0.
+    pub fn energies(values: impl IntoIterator<Item = f64>, title: impl Into<String>) -> Self {
+        let some: Vec<f64> = values.into_iter().filter(|v| v.is_finite() && *v > 0.0).collect();
+        let least = some.iter().copied().reduce(f64::min).unwrap_or(1.0);
+        let most = some.iter().copied().reduce(f64::max).unwrap_or(1.0);
+        if most > 30.0 * least {
+            // what is a millionth of the largest needs no room
+            Self::log(least.max(1e-6 * most), most, title)
+        } else {
+            Self::from_zero(some, title)
+        }
+    }
+
     /// Where a value lies: 0 at the lower end, 1 at the upper.
     pub fn share(&self, value: f64) -> f64 {
         if self.is_log {

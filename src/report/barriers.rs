@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{BarrierView, PlaceView, energy_unit};
+use super::input::{BarrierView, DesignView, Estimate, PlaceView, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Label, NORMAL, Paper, Pen, paint};
 use super::svg::path::{Frame, Spot};
@@ -44,23 +44,38 @@ pub(super) fn draw(barrier: &BarrierView, number: usize) -> Drawing {
     Drawing { svg, caption: caption(barrier, rocks.len()) }
 }
 
+/// What there is to say of a barrier that no rock reaches; none where one does.
+pub(super) fn nobody(barrier: &BarrierView) -> Option<String> {
+    let is_met = barrier.places.iter().any(|place| !place.rocks.is_empty());
+    (!is_met).then(|| format!("No rock arrives at barrier “{}”.", barrier.name))
+}
+
 fn caption(barrier: &BarrierView, arriving: usize) -> String {
+    let percentile = barrier.percentile.map_or(String::new(), |p| format!("P{p}"));
     let design = match barrier.design {
-        Some(_) => " The diamond is the design of its rule.",
-        None => "",
+        Some(_) => format!(
+            " The diamond is the design of its rule, from {percentile} with its factors; its bars are 95 % intervals."
+        ),
+        None if barrier.design_lacks > 0 => format!(
+            " No design value: {percentile} needs {} more {}.",
+            barrier.design_lacks,
+            format::counted(barrier.design_lacks, "rock that arrives", "rocks that arrive")
+        ),
+        None => String::new(),
     };
     let places = if barrier.places.len() > 1 {
-        ", at its place (blue) and at the other places of the scene. Below right: the same share at its own height against its \
-         place, positive to the left of its line, with Wilson's 95 % interval."
+        ", at its place (full) and at the other places of the scene. Below right: the same share at its own height against its \
+         place, with Wilson's 95 % interval."
     } else {
         "."
     };
     format!(
-        "Barrier “{}”: {} rocks arrive. Above: total energy and height of the highest point of each; inside the green frame it \
+        "Barrier “{}”: {} {}. Above: total energy and height of the highest point of each; inside the green frame it \
          stops them.{design} Below: share of the arriving rocks that a barrier of another height and the same capacity \
          would stop{places}",
         barrier.name,
-        format::decimal(arriving as f64, 0)
+        format::decimal(arriving as f64, 0),
+        format::counted(arriving, "rock arrives", "rocks arrive")
     )
 }
 
@@ -70,15 +85,16 @@ fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
 }
 
 fn cloud_panel(barrier: &BarrierView, rocks: &[(f64, f64)], (unit, size): (&str, f64)) -> Panel {
-    let (design_m, design_j) = barrier.design.unwrap_or((0.0, 0.0));
-    let energies =
-        rocks.iter().map(|rock| rock.1).chain([1.05 * barrier.capacity_j, 1.05 * design_j]);
+    let reach = |at: &Estimate| 1.05 * [at.value, at.high].into_iter().fold(0.0, f64::max);
+    let (design_m, design_j) =
+        barrier.design.map_or((0.0, 0.0), |of| (reach(&of.height_m), reach(&of.energy_j)));
+    let energies = rocks.iter().map(|rock| rock.1).chain([1.05 * barrier.capacity_j, design_j]);
     let tops = rocks.iter().map(|rock| rock.0).filter(|top| top.is_finite());
-    let tops = tops.chain([1.05 * barrier.height_m, 1.05 * design_m]);
+    let tops = tops.chain([1.05 * barrier.height_m, design_m]);
     let frame = Frame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + CLOUD_PX };
     let mut panel = Panel::new(
         frame,
-        Axis::from_zero(energies.map(|joule| joule / size), format!("Total energy ({unit})")),
+        Axis::energies(energies.map(|joule| joule / size), format!("Total energy ({unit})")),
         Axis::from_zero(tops, "Height of the highest point (m)"),
     );
     panel.frame.left += panel.room_left();
@@ -103,19 +119,30 @@ fn draw_cloud(
         .collect();
     paper.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     paper.outline(&stopped, Pen::full(GREEN, 1.6));
-    if let Some((height_m, joule)) = barrier.design {
-        let (x, y) = panel.at(joule / size, height_m);
-        paper.polygon(&[(x, y - 6.0), (x + 6.0, y), (x, y + 6.0), (x - 6.0, y)], VERMILLION, 1.0);
-        let label = if x > panel.frame.right - 60.0 {
-            Label::new("design", (x - 9.0, y)).right()
-        } else {
-            Label::new("design", (x + 9.0, y))
-        };
-        paper.text_on_rim(&label.coloured(INK));
+    if let Some(design) = barrier.design {
+        draw_design(paper, panel, &design, size);
     }
     panel.axes(paper);
     if rocks.is_empty() {
         panel.nothing(paper, "no rock arrives");
+    }
+}
+
+/// The design as a diamond with the intervals of its energy and its height.
+fn draw_design(paper: &Paper<'_>, panel: &Panel, design: &DesignView, size: f64) {
+    let (energy, height) = (design.energy_j.over(size), design.height_m);
+    let (x, y) = panel.at(energy.value, height.value);
+    let pen = Pen::full(VERMILLION, 1.4);
+    let end = |of: &Estimate, bound: f64| if bound.is_finite() { bound } else { of.value };
+    let across = [energy.low, energy.high].map(|at| (end(&energy, at), height.value));
+    let up = [height.low, height.high].map(|at| (energy.value, end(&height, at)));
+    panel.line(paper, &across, pen);
+    panel.line(paper, &up, pen);
+    paper.polygon(&[(x, y - 6.0), (x + 6.0, y), (x, y + 6.0), (x - 6.0, y)], VERMILLION, 1.0);
+    let at = |dx: f64, dy: f64| Label::new("design", (x + dx, y + dy)).coloured(INK);
+    let places = [at(9.0, -11.0), at(-9.0, -11.0).right(), at(9.0, 12.0), at(-9.0, 12.0).right()];
+    if let Some(label) = places.iter().find(|label| panel.frame.contains(&label.frame())) {
+        paper.text_on_rim(label);
     }
 }
 
@@ -137,7 +164,12 @@ fn lower_panels(barrier: &BarrierView, top: f64) -> (Panel, Option<Panel>) {
         panel
     };
     let heights = Axis::linear(0.0, 2.0 * barrier.height_m, "Height (m)");
-    let places = || Axis::linear(low, high, "Distance from its place (m)");
+    let title = match barrier.left_is_uphill {
+        Some(true) => "Distance from its place (m), uphill positive",
+        Some(false) => "Distance from its place (m), downhill positive",
+        None => "Distance from its place (m), left positive",
+    };
+    let places = || Axis::linear(low, high, title);
     (
         placed(frame(0.0, first), heights),
         has_places.then(|| placed(frame(half, RIGHT_PX), places())),
@@ -155,6 +187,11 @@ fn staircase(barrier: &BarrierView, place: &PlaceView, most_m: f64) -> Vec<(f64,
     [(0.0, 0.0)].into_iter().chain(steps).chain([(most_m, percent(tops.len()))]).collect()
 }
 
+/// Colour of the `k`-th other place, from 1.
+fn elsewhere(k: usize) -> RGBColor {
+    ELSEWHERE[(k - 1).min(ELSEWHERE.len() - 1)]
+}
+
 fn draw_heights(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
     panel.grid(paper);
     panel.upright(paper, barrier.height_m, Pen::full(GREEN, 1.4));
@@ -162,9 +199,27 @@ fn draw_heights(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
     for (k, place) in barrier.places.iter().enumerate().rev() {
         let pen = match k {
             0 => Pen::full(BLUE, 1.8),
-            _ => Pen::full(ELSEWHERE[(k - 1).min(ELSEWHERE.len() - 1)], 1.2).dashed(),
+            k if k % 2 == 1 => Pen::full(elsewhere(k), 1.2).dashed(),
+            k => Pen::full(elsewhere(k), 1.2).dotted(),
         };
         panel.line(paper, &staircase(barrier, place, panel.x.high), pen);
+    }
+    // named where each ends: colours alone do not tell them apart
+    for place in barrier.places.iter().filter(|_| barrier.places.len() > 1) {
+        let percent = staircase(barrier, place, panel.x.high).last().map_or(0.0, |end| end.1);
+        let words = if place.offset_m == 0.0 {
+            "its place".to_owned()
+        } else {
+            super::gather::side(place.offset_m, barrier.left_is_uphill)
+        };
+        let (x, y) = panel.at(panel.x.high, percent);
+        let labels =
+            [-7.0, 8.0, -20.0, 21.0].map(|dy| Label::new(words.clone(), (x - 4.0, y + dy)).right());
+        let fits =
+            |label: &&Label| panel.frame.contains(&label.frame()) && paper.is_free(&label.frame());
+        if let Some(label) = labels.iter().find(fits) {
+            paper.text_on_rim(label);
+        }
     }
     panel.axes(paper);
 }
@@ -180,7 +235,7 @@ fn draw_places(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
         if share.of == 0 {
             continue;
         }
-        let colour = if k == 0 { BLUE } else { ELSEWHERE[(k - 1).min(ELSEWHERE.len() - 1)] };
+        let colour = if k == 0 { BLUE } else { elsewhere(k) };
         let at = |percent: f64| panel.at(place.offset_m, percent);
         paper.line(&[at(100.0 * share.low_95), at(100.0 * share.high_95)], Pen::full(INK, 1.2));
         paper.disc(at(100.0 * share.share), 4.0, colour);

@@ -7,7 +7,7 @@ use super::format;
 use super::histogram::{Histogram, percent_of};
 use super::input::{Quantity, Report};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
+use super::paper::{Label, NORMAL, Paper, Pen, SMALL, bold_width, paint, text_width};
 use super::svg::path::Frame;
 
 /// What is shown, left to right, top to bottom.
@@ -48,7 +48,8 @@ pub(super) fn draw(report: &Report) -> Drawing {
         }
     });
     let caption = "Distributions over all releases of each rock's largest value. The energies reach their \
-                   largest values at different instants, so they do not add up. Lines: P50 full, P95 dashed, P99 dotted.";
+                   largest values at different instants, so they do not add up; their axes are logarithmic. Lines: P50 full, P95 \
+                   dashed, P99 dotted. “+n →”: so many rocks lie beyond the end of the axis.";
     Drawing { svg, caption: caption.to_owned() }
 }
 
@@ -70,7 +71,12 @@ impl<'a> Distribution<'a> {
         let finite = si.iter().copied().filter(|v| v.is_finite());
         let largest = finite.reduce(f64::max).unwrap_or(0.0);
         let (unit, unit_size) = quantity.unit(largest);
-        let bins = Histogram::of(&si.iter().map(|v| v / unit_size).collect::<Vec<_>>());
+        let values: Vec<f64> = si.iter().map(|v| v / unit_size).collect();
+        let bins = match quantity {
+            _ if quantity.is_energy() => Histogram::of_ratios(&values),
+            Quantity::ReachAngle => Histogram::of(&values),
+            _ => Histogram::clipped(&values),
+        };
         let tallest = percent_of(bins.largest(), si.len());
         let y = Axis::from_zero([1.02 * tallest], "Releases (%)");
         let panel = Panel::new(frame, bins.axis(&titled(quantity.name(), unit)), y);
@@ -87,6 +93,11 @@ impl<'a> Distribution<'a> {
             words.push(format!("max {}", format::significant(self.largest / self.unit_size, 3)));
         }
         self.panel.axes(paper);
+        if self.bins.beyond > 0 {
+            let Frame { right, top, .. } = self.panel.frame;
+            let words = format!("+{} →", format::decimal(self.bins.beyond as f64, 0));
+            paper.text_on_rim(&Label::new(words, (right - 4.0, top + 10.0)).right().coloured(GREY));
+        }
         let above = Frame { top: self.panel.frame.top - head_px, ..self.panel.frame };
         head(paper, &above, self.quantity.name(), &words.join(" · "));
         if self.bins.counts.is_empty() {
@@ -103,7 +114,12 @@ impl<'a> Distribution<'a> {
             let Some(quantile) = found.filter(|q| q.at.value.is_finite()) else { continue };
             let value = quantile.at.value / self.unit_size;
             self.panel.upright(paper, value, pen);
-            words.push(format!("P{:.0} {}", 100.0 * probability, format::significant(value, 3)));
+            let sign = format::sign(quantile.at.is);
+            words.push(format!(
+                "P{:.0} {sign}{}",
+                100.0 * probability,
+                format::significant(value, 3)
+            ));
         }
         words
     }
@@ -112,9 +128,9 @@ impl<'a> Distribution<'a> {
 /// Name left and numbers right, in two lines where they do not fit in one.
 fn head(paper: &Paper<'_>, frame: &Frame, name: &str, words: &str) {
     let y = frame.top;
-    let fits = text_width(name, NORMAL) * 1.06 + text_width(words, SMALL) + 8.0 < frame.width();
+    let fits = bold_width(name, NORMAL) + text_width(words, SMALL) + 8.0 < frame.width();
     paper.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));
-    let y = if fits { y } else { y + 14.0 };
+    let y = if fits { y } else { y + 15.0 };
     paper.text(&Label::new(words, (frame.right, y)).right().coloured(GREY));
 }
 

@@ -8,6 +8,7 @@
 //! Nothing is computed here that a reader would quote: estimates and intervals come in as [`input`] has them; only the
 //! bins of histograms and the envelopes along the fall line are found for display.
 
+mod along_paths;
 pub mod axis;
 mod barriers;
 pub mod colour;
@@ -27,10 +28,12 @@ mod measured;
 pub mod panel;
 pub mod paper;
 mod plan_view;
+mod plausibility;
 pub mod raster;
 mod reach_angle;
 mod runout;
 mod side_view;
+mod site;
 mod stops;
 pub mod svg;
 
@@ -81,7 +84,8 @@ pub fn draw_again(dir: &Path) -> Result<()> {
 
 /// Each headline statistic of the rocks with its 95 % interval, line by line, and what the computation warns of.
 pub fn headline(hazard: &Hazard) -> Vec<String> {
-    let warnings = hazard.totals.warnings(hazard.rocks());
+    let warnings =
+        [gather::warnings_first(hazard), hazard.totals.warnings(hazard.rocks())].concat();
     let mut lines = html::plain_headline(&gather::headline(hazard));
     lines.extend(warnings.iter().map(|warning| format!("warning: {warning}")));
     lines
@@ -97,14 +101,29 @@ const GROUND_CELLS: usize = 400;
 pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
-    let drawn = drawings(report);
+    let mut drawn = drawings(report);
+    drawn.extend(error_study(dir));
     for (heading, drawing) in &drawn {
         write_whole(&figures.join(&heading.file), drawing.svg.as_bytes())?;
     }
     write_whole(&dir.join("report.html"), html::page(report, &drawn).as_bytes())
 }
 
-/// All figures, drawn.
+/// The figure that `rockfall study error` has left in `error/` below the results, if it has.
+fn error_study(dir: &Path) -> Option<(Heading, Drawing)> {
+    let file = html::ERROR_STUDY;
+    let svg = fs::read_to_string(dir.join("error").join(file)).ok()?;
+    let title = "Error against run time".to_owned();
+    let caption = "Errors of the 95th percentiles from chance in the sample, from the steps and, where it was studied, from the \
+                   mesh, over the run time that they cost, as `rockfall study error` found them.";
+    let heading = Heading { file: file.to_owned(), title };
+    Some((
+        heading,
+        Drawing { svg: svg[svg.find("<svg")?..].to_owned(), caption: caption.to_owned() },
+    ))
+}
+
+/// All figures, drawn. Lines and barriers that no rock reaches have a sentence on the page and no figure.
 pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
     let heading =
         |file: &str, title: &str| Heading { file: file.to_owned(), title: title.to_owned() };
@@ -112,6 +131,9 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         .iter()
         .map(|figure| (heading(figure.file, figure.title), (figure.draw)(report)))
         .collect();
+    if let Some(drawing) = along_paths::draw(report) {
+        drawn.push((heading("along.svg", "Along the way"), drawing));
+    }
     if let Some(observed) = &report.observed {
         drawn.push((
             heading("measured.svg", "Measured and computed"),
@@ -119,18 +141,21 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         ));
     }
     if let Some(cells) = &report.maps {
-        drawn.push((heading("maps.svg", "Maps"), maps::draw(report, cells)));
+        drawn.push((heading("maps.svg", "Reach and intensity"), maps::draw(report, cells)));
+        let values = maps::draw_values(report, cells);
+        drawn.push((heading("maps_values.svg", "Energy, height and deposits"), values));
     }
     if report.lines.len() > 1 {
         drawn.push((heading("retention.svg", "Retention"), lines::retention(&report.lines)));
     }
-    for (number, line) in report.lines.iter().enumerate() {
+    for line in report.lines.iter().filter(|line| lines::nobody(line).is_none()) {
         // names of lines may hold anything: files are numbered
-        let file = format!("line_{}.svg", number + 1);
+        let file = format!("line_{}.svg", line.number);
         let title = format!("Evaluation line “{}”", line.name);
-        drawn.push((heading(&file, &title), lines::draw(line, number + 1)));
+        drawn.push((heading(&file, &title), lines::draw(line)));
     }
-    for (number, barrier) in report.barriers.iter().enumerate() {
+    let barriers = report.barriers.iter().enumerate();
+    for (number, barrier) in barriers.filter(|(_, one)| barriers::nobody(one).is_none()) {
         let file = format!("barrier_{}.svg", number + 1);
         let title = format!("Barrier “{}”", barrier.name);
         drawn.push((heading(&file, &title), barriers::draw(barrier, number + 1)));

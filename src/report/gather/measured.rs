@@ -1,7 +1,6 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
-use super::super::input::{Estimate, Observed, Table};
-use super::estimate;
+use super::super::input::{About, Estimate, Observed, Table};
 use crate::calibrate::{Calibration, Trial};
 use crate::error::Result;
 use crate::hazard::{Agreement, Way};
@@ -37,6 +36,7 @@ pub(super) fn tables(results: &Results) -> Result<Vec<Table>> {
     let mut tables = Vec::new();
     if let Some(observed) = observed(results)? {
         tables.push(Table {
+            about: About::Measured,
             title: "Agreement with measured ends".to_owned(),
             note: format!(
                 "{} measured and {} computed rocks. KS: largest difference of the two distributions of runout; equal ones \
@@ -60,6 +60,7 @@ fn calibration(found: &Calibration) -> Table {
     };
     let (first, second) = (&found.first, &found.second);
     Table {
+        about: About::Measured,
         title: "Calibration and what it is worth".to_owned(),
         note: format!(
             "{} trials of {} releases on each half of the measured rocks; a value counts only on the half that it was not fitted to.",
@@ -86,5 +87,5 @@ fn cells(of: &Agreement) -> Vec<Option<Estimate>> {
         of.measured_side_m,
         of.computed_side_m,
     ];
-    numbers.map(|value| Some(estimate(value, None, None))).into()
+    numbers.map(|value| Some(Estimate::plain(value))).into()
 }
