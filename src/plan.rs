@@ -3,10 +3,11 @@
 mod grounds;
 mod inputs;
 mod listing;
+mod slips;
 mod stiffness;
 mod watch;
 
-pub use stiffness::OwnDissipation;
+pub use stiffness::{FastWarning, OwnDissipation};
 pub use watch::{Curtain, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;
@@ -139,6 +140,8 @@ pub struct Plan {
     pub sources: [String; 2],
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
+    /// What it should know if rocks come so fast.
+    pub fast_warnings: Vec<FastWarning>,
 }
 
 /// Local error of the adaptive scheme (m/s): statistics of runout no longer change below it.
@@ -168,8 +171,9 @@ impl Plan {
         let step = settings(&scene.solver);
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
-        let mut warnings = grounds::unused(scene, &terrain);
-        stiffness::check(scene, &terrain, &mut warnings)?;
+        let mut warnings = [slips::of(scene), grounds::unused(scene, &terrain)].concat();
+        let mut fast_warnings = Vec::new();
+        stiffness::check(scene, &terrain, &mut fast_warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
         let values = || scene.grounds.values();
@@ -239,6 +243,7 @@ impl Plan {
             catalogued: grounds::catalogued(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
+            fast_warnings,
             terrain,
         })
     }

@@ -195,7 +195,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
             of_releases: plan.count,
         },
         origin_m: plan.terrain.origin_m,
-        site: Site { mesh_origin_m: plan.mesh_origin_m, release: zone(plan) },
+        site: site(plan),
         ground_of_sheet: plan
             .terrain
             .sheets
@@ -218,13 +218,15 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
     })
 }
 
-/// Where rocks are released.
-fn zone(plan: &Plan) -> Zone {
-    match plan.releases.place() {
+/// Where meshes and releases lie.
+fn site(plan: &Plan) -> Site {
+    let release = match plan.releases.place() {
         Where::Points(points) => Zone::Points(points.iter().map(|point| point.at_m).collect()),
         Where::Line(line) => Zone::Line(line.corners_m().to_vec()),
         Where::Area(area) => Zone::Polygon(area.corners_m().to_vec()),
-    }
+    };
+    let fast_warnings = plan.fast_warnings.clone();
+    Site { mesh_origin_m: plan.mesh_origin_m, release, fast_warnings }
 }
 
 fn line_infos(plan: &Plan) -> Vec<LineInfo> {

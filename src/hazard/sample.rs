@@ -37,7 +37,7 @@ pub struct Exceedance {
     pub low_95: Option<f64>,
     /// Upper end of the interval of the value; none when there are too few rocks.
     pub high_95: Option<f64>,
-    /// Whether the value is only a bound: rocks seen in part decide it.
+    /// Whether rocks seen only in part decide the value more than chance in the sample does: there the curve ends.
     pub censored: bool,
 }
 
@@ -130,11 +130,24 @@ impl Sample {
     /// percentiles of the tables. The band is pointwise: each point keeps 95 % by itself, not all at once.
     pub fn exceedance(&self) -> Vec<Exceedance> {
         let point = |share: f64| {
-            let Percentile { value, low_95, high_95, censored, .. } =
-                self.percentile(1.0 - share)?;
+            let Percentile { value, low_95, high_95, .. } = self.percentile(1.0 - share)?;
+            let censored = self.is_decided_by_bounds(1.0 - share);
             Some(Exceedance { share, value, low_95, high_95, censored })
         };
         shares(self.sorted.len()).into_iter().filter_map(point).collect()
+    }
+
+    /// Whether the far end of percentile `p` lies outside the interval that chance alone gives.
+    fn is_decided_by_bounds(&self, p: f64) -> bool {
+        let Some((far, open)) = &self.far else { return false };
+        let (Some(seen), Some(far)) = (Percentile::of(&self.sorted, p), Percentile::of(far, p))
+        else {
+            return false;
+        };
+        match open {
+            Open::Above => seen.high_95.is_none_or(|high| far.value > high),
+            Open::Below => seen.low_95.is_none_or(|low| far.value < low),
+        }
     }
 
     /// A histogram with bars of a round width near that of Freedman and Diaconis (1981), `2 IQR / ∛n`;

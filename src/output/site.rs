@@ -1,5 +1,6 @@
-//! Where things stand on the map: what figures and GIS show beside the rocks.
+//! Where things stand on the map, and what is said only once rocks have fallen.
 
+use crate::plan::FastWarning;
 use serde::{Deserialize, Serialize};
 
 /// Where meshes and releases lie, in map coordinates.
@@ -9,6 +10,9 @@ pub struct Site {
     pub mesh_origin_m: [f64; 3],
     /// Where rocks are released.
     pub release: Zone,
+    /// What the user should know if rocks come so fast.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fast_warnings: Vec<FastWarning>,
 }
 
 /// Where rocks are released, in plan view (m).

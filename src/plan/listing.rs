@@ -56,6 +56,7 @@ impl Plan {
             title_block: _, // with the report
             sources: _,     // with the report
             warnings,
+            fast_warnings,
         } = self;
         let place = place(releases.place());
         let mut list = List::default();
@@ -134,6 +135,7 @@ impl Plan {
             list.line("compared with", format!("measured ends in {}", file.display()));
         }
         list.lines("warning", warnings.iter().cloned());
+        list.lines("warning", fast_warnings.iter().map(|warning| warning.text.clone()));
         list.0
     }
 

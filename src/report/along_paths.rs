@@ -65,7 +65,10 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
             let share = rock.path.points[k].speed_m_s / rock.fall.max_speed_m_s;
             rock.fall.max_translational_j * share * share / size
         }),
-        along(&chosen, |rock, k| rock.path.points[k].clearance_m.max(0.0)),
+        along(&chosen, |rock, k| {
+            let height_m = rock.path.points[k].clearance_m;
+            if height_m < 0.0 { 0.0 } else { height_m }
+        }),
     ];
     let energy = format!("Transl. energy ({unit})");
     let titles = ["Speed (m/s)", energy.as_str(), "Height (m)"];
@@ -127,7 +130,7 @@ fn key(paper: &Paper<'_>, panel: &Panel, chosen: &[Chosen<'_>]) {
     let y = panel.frame.top - 14.0;
     let mut x = panel.frame.left;
     for (rock, pen) in chosen.iter().zip(PENS) {
-        let words = format!("{}: {}", format::decimal(rock.path.index as f64, 0), rock.why);
+        let words = format!("release {}: {}", format::decimal(rock.path.index as f64, 0), rock.why);
         paper.line(&[(x, y), (x + 20.0, y)], pen);
         x += 25.0 + text_width(&words, SMALL) + 18.0;
         paper.text(

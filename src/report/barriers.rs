@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{BarrierView, DesignView, Estimate, PlaceView, energy_unit};
+use super::input::{BarrierView, DesignView, Estimate, PlaceView, kilo};
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Label, NORMAL, Paper, Pen, paint};
 use super::svg::path::{Frame, Spot};
@@ -25,7 +25,7 @@ const ELSEWHERE: [RGBColor; 4] = [ORANGE, PURPLE, SKY, GREY];
 pub(super) fn draw(barrier: &BarrierView, number: usize) -> Drawing {
     let rocks = barrier.places.first().map_or(&[][..], |own| &own.rocks);
     let most_j = rocks.iter().map(|rock| rock.1).fold(barrier.capacity_j, f64::max);
-    let (unit, size) = energy_unit(most_j);
+    let (unit, size) = kilo(most_j);
     let cloud = cloud_panel(barrier, rocks, (unit, size));
     let top = cloud.frame.bottom + FOOT_PX + GAP_PX;
     let (heights, places) = lower_panels(barrier, top);
@@ -187,9 +187,11 @@ fn staircase(barrier: &BarrierView, place: &PlaceView, most_m: f64) -> Vec<(f64,
     [(0.0, 0.0)].into_iter().chain(steps).chain([(most_m, percent(tops.len()))]).collect()
 }
 
-/// Colour of the `k`-th other place, from 1.
-fn elsewhere(k: usize) -> RGBColor {
-    ELSEWHERE[(k - 1).min(ELSEWHERE.len() - 1)]
+/// Pen of a place: 0 is the barrier's own, the others follow in the order of the scene.
+fn pen_of(place: usize) -> Pen {
+    let Some(other) = place.checked_sub(1) else { return Pen::full(BLUE, 1.8) };
+    let pen = Pen::full(ELSEWHERE[other.min(ELSEWHERE.len() - 1)], 1.4);
+    if other % 2 == 0 { pen.dashed() } else { pen.dotted() }
 }
 
 fn draw_heights(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
@@ -197,29 +199,7 @@ fn draw_heights(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
     panel.upright(paper, barrier.height_m, Pen::full(GREEN, 1.4));
     // its own place last, on top of the others
     for (k, place) in barrier.places.iter().enumerate().rev() {
-        let pen = match k {
-            0 => Pen::full(BLUE, 1.8),
-            k if k % 2 == 1 => Pen::full(elsewhere(k), 1.2).dashed(),
-            k => Pen::full(elsewhere(k), 1.2).dotted(),
-        };
-        panel.line(paper, &staircase(barrier, place, panel.x.high), pen);
-    }
-    // named where each ends: colours alone do not tell them apart
-    for place in barrier.places.iter().filter(|_| barrier.places.len() > 1) {
-        let percent = staircase(barrier, place, panel.x.high).last().map_or(0.0, |end| end.1);
-        let words = if place.offset_m == 0.0 {
-            "its place".to_owned()
-        } else {
-            super::gather::side(place.offset_m, barrier.left_is_uphill)
-        };
-        let (x, y) = panel.at(panel.x.high, percent);
-        let labels =
-            [-7.0, 8.0, -20.0, 21.0].map(|dy| Label::new(words.clone(), (x - 4.0, y + dy)).right());
-        let fits =
-            |label: &&Label| panel.frame.contains(&label.frame()) && paper.is_free(&label.frame());
-        if let Some(label) = labels.iter().find(fits) {
-            paper.text_on_rim(label);
-        }
+        panel.line(paper, &staircase(barrier, place, panel.x.high), pen_of(k));
     }
     panel.axes(paper);
 }
@@ -235,10 +215,12 @@ fn draw_places(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
         if share.of == 0 {
             continue;
         }
-        let colour = if k == 0 { BLUE } else { elsewhere(k) };
         let at = |percent: f64| panel.at(place.offset_m, percent);
         paper.line(&[at(100.0 * share.low_95), at(100.0 * share.high_95)], Pen::full(INK, 1.2));
-        paper.disc(at(100.0 * share.share), 4.0, colour);
+        // its pen in the other panel: colours alone do not tell them apart
+        let (x, y) = at(100.0 * share.share);
+        paper.line(&[(x - 16.0, y), (x + 16.0, y)], pen_of(k));
+        paper.disc((x, y), 4.0, pen_of(k).colour);
     }
     panel.axes(paper);
 }

@@ -5,7 +5,7 @@ use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{Quantity, Report};
+use super::input::{Quantity, Report, kilo};
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Label, NORMAL, Paper, Pen, SMALL, bold_width, paint, text_width};
 use super::svg::path::Frame;
@@ -70,7 +70,8 @@ impl<'a> Distribution<'a> {
         let si: Vec<f64> = report.releases.iter().map(|fall| quantity.of(fall)).collect();
         let finite = si.iter().copied().filter(|v| v.is_finite());
         let largest = finite.reduce(f64::max).unwrap_or(0.0);
-        let (unit, unit_size) = quantity.unit(largest);
+        let (unit, unit_size) =
+            if quantity.is_energy() { kilo(largest) } else { quantity.unit(largest) };
         let values: Vec<f64> = si.iter().map(|v| v / unit_size).collect();
         let bins = match quantity {
             _ if quantity.is_energy() => Histogram::of_ratios(&values),

@@ -6,8 +6,6 @@ mod lines;
 mod maps;
 mod measured;
 
-pub(super) use barriers::side;
-
 use super::input::{
     About, BandPoint, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row, StopShare,
     Table, Text,
@@ -41,6 +39,8 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let hazard = &results.hazard;
     let releases =
         results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
+    let lines = lines::lines(results, ground.as_ref())?;
+    let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
     let mut report = Report {
         text: text_of(results),
         releases,
@@ -49,7 +49,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         quantiles: TABLED.map(|(here, there)| (here, quantiles(hazard, there))).into(),
         stops: StopKind::ALL.map(|kind| stop_share(hazard, kind)).into(),
         headline: headline(hazard),
-        arrivals: arrivals::tables(results),
+        arrivals: arrivals::tables(results, &order),
         zone: results.summary.site.release.clone(),
         marks: lines::marks(results),
         tables: [table(hazard)]
@@ -58,7 +58,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
             .chain(barriers::tables(results, ground.as_ref()))
             .chain(measured::tables(results)?)
             .collect(),
-        lines: lines::lines(results, ground.as_ref())?,
+        lines,
         barriers: barriers::views(results, ground.as_ref())?,
         maps: maps::maps(results)?,
         observed: measured::observed(results)?,
@@ -266,6 +266,14 @@ fn statistics_table(title: &str, note: String, rows: &[StatisticsRow<'_>]) -> Ta
     Table { title: title.to_owned(), note, columns, rows: rows.collect(), about }
 }
 
+/// Warnings that concern rocks above a speed, where some came so fast.
+fn fast_warnings(results: &Results) -> Vec<String> {
+    let speeds = results.hazard.sample(hazard::Quantity::MaxSpeed);
+    let fastest = speeds.values().last().copied().unwrap_or(0.0);
+    let all = &results.summary.site.fast_warnings;
+    all.iter().filter(|one| fastest > one.above_m_s).map(|one| one.text.clone()).collect()
+}
+
 fn text_of(results: &Results) -> Text {
     let summary = &results.summary;
     let lines = |value: &serde_json::Value| -> Vec<String> {
@@ -290,8 +298,12 @@ fn text_of(results: &Results) -> Text {
             .join("; "),
         parameter_source: summary.sources[1].clone(),
         plan: summary.plan.clone(),
-        warnings: [&summary.warnings[..], &summary.totals.warnings(results.hazard.rocks())]
-            .concat(),
+        warnings: [
+            &summary.warnings[..],
+            &fast_warnings(results)[..],
+            &summary.totals.warnings(results.hazard.rocks()),
+        ]
+        .concat(),
         mesh_health: lines(&summary.mesh_health),
         seed: summary.identity.seed,
         version: summary.identity.version.clone(),

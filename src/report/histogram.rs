@@ -101,8 +101,7 @@ impl Histogram {
     pub(super) fn axis(&self, title: &str) -> Axis {
         let (from, to) = (self.from, self.to().max(self.from + self.width));
         if self.is_log {
-            // a whole decade at least, so that its ends are labelled
-            return Axis::log(10f64.powf(from + 1e-6), 10f64.powf(to - 1e-6), title);
+            return Axis::ratios(10f64.powf(from + 1e-6), 10f64.powf(to - 1e-6), title);
         }
         // a few bins do not fill the frame
         let missing = (LEAST_BINS - (to - from) / self.width).max(0.0);

@@ -126,7 +126,7 @@ fn first_page(report: &Report, figures: &Figures) -> String {
         pairs(&text.title_block),
         question(report),
         warnings(report),
-        figure(figures, "plan.svg"),
+        figure(figures, "plan.svg").replacen("<figure>", "<figure class=\"map\">", 1),
         report.arrivals.iter().map(tables::table).collect::<String>(),
         tables::headline(&report.headline),
     )
@@ -224,11 +224,7 @@ fn at_lines(report: &Report, figures: &Figures) -> String {
 
 fn at_barriers(report: &Report, figures: &Figures) -> String {
     let each = report.barriers.iter().enumerate().map(|(number, barrier)| {
-        let line = report.lines.iter().find(|line| line.name == barrier.name);
-        let line = line
-            .map_or(String::new(), |line| figure(figures, &format!("line_{}.svg", line.number)));
         figure(figures, &format!("barrier_{}.svg", number + 1))
-            + &line
             + &sentence(barriers::nobody(barrier))
     });
     each.collect::<String>() + &tables_about(report, About::Barriers)

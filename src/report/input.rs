@@ -338,6 +338,11 @@ impl Quantity {
     }
 }
 
+/// J or kJ: on a logarithmic axis thousands of kilojoules are read more easily than thousandths of megajoules.
+pub(super) fn kilo(largest_j: f64) -> (&'static str, f64) {
+    if largest_j >= 2e3 { ("kJ", 1e3) } else { ("J", 1.0) }
+}
+
 /// J, kJ or MJ, whichever keeps numbers up to `largest_j` short.
 pub(super) fn energy_unit(largest_j: f64) -> (&'static str, f64) {
     match largest_j {

@@ -5,7 +5,7 @@ use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{BandPoint, Line, energy_unit};
+use super::input::{BandPoint, Line, kilo};
 use super::panel::{FOOT_PX, Panel, align};
 use super::paper::{Label, NORMAL, Paper, Pen, SMALL, fitted, paint, text_width};
 use super::svg::path::{Frame, Spot};
@@ -39,7 +39,7 @@ pub(super) fn nobody(line: &Line) -> Option<String> {
 /// Draws the line's panels: where, how high with how much energy, and the exceedance of both beside each other.
 pub(super) fn draw(line: &Line) -> Drawing {
     let largest_j = line.crossings.iter().map(|at| at.total_j).fold(0.0, f64::max);
-    let (unit, size) = energy_unit(largest_j);
+    let (unit, size) = kilo(largest_j);
     let alongs: Vec<f64> = line.crossings.iter().map(|at| at.along_m).collect();
     let bins = Histogram::of(&alongs);
     let (along, cloud) = upper_panels(line, &bins, (unit, size));
@@ -112,7 +112,7 @@ fn upper_panels(line: &Line, bins: &Histogram, (unit, size): (&str, f64)) -> (Pa
         shares,
     );
     let energies = line.crossings.iter().map(|at| at.total_j / size);
-    let heights = line.crossings.iter().map(|at| at.height_m.max(0.0));
+    let heights = line.crossings.iter().map(|at| above(at.height_m));
     let mut cloud = Panel::new(
         frame(TOP_PX + ALONG_PX + FOOT_PX + GAP_PX, CLOUD_PX),
         Axis::energies(energies, format!("Total energy ({unit})")),
@@ -150,7 +150,7 @@ fn draw_cloud(paper: &Paper<'_>, panel: &Panel, line: &Line, size: f64) {
     let spots: Vec<Spot> = line
         .crossings
         .iter()
-        .map(|at| panel.at(at.total_j / size, at.height_m.max(0.0)))
+        .map(|at| panel.at(at.total_j / size, above(at.height_m)))
         .filter(|&spot| panel.frame.holds(spot))
         .collect();
     paper.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
@@ -174,6 +174,11 @@ fn draw_cloud(paper: &Paper<'_>, panel: &Panel, line: &Line, size: f64) {
         }
     }
     panel.axes(paper);
+}
+
+/// A height without what a rock presses into the ground; NaN where there is no ground.
+fn above(height_m: f64) -> f64 {
+    if height_m < 0.0 { 0.0 } else { height_m }
 }
 
 /// Writes a word at the first place that is free.

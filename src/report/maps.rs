@@ -54,14 +54,24 @@ impl Layer {
         }
     }
 
-    /// Values in round classes up to the largest, each `step` wide.
-    fn of_values(title: &str, values: &[(u32, f64)], (unit, size): (&str, f64)) -> Self {
+    /// Values in classes that grow from one to the next, the last one reaching the largest: a few large values do not leave
+    /// all others in one class.
+    fn of_values(
+        title: &str,
+        values: &[(u32, f64)],
+        (unit, size): (&str, f64),
+        steps: &[f64],
+    ) -> Self {
         let most = values.iter().map(|(_, v)| v / size).fold(0.0, f64::max);
-        let step = round_step(most / CLASSES as f64, &[1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0]);
-        let class = |v: f64| ((v / size / step - 1e-9).floor().max(0.0) as usize).min(CLASSES - 1);
-        let name = |k: usize| {
-            format!("≤\u{2009}{}", format::plain(format::rounded(step * (k + 1) as f64, 3)))
+        let mut ends = [round_step(most, steps); CLASSES];
+        for k in (0..CLASSES - 1).rev() {
+            // just below the class above
+            ends[k] = largest_below(ends[k + 1], steps);
+        }
+        let class = |v: f64| {
+            ends.iter().position(|end| v / size <= end * (1.0 + 1e-9)).unwrap_or(CLASSES - 1)
         };
+        let name = |k: usize| format!("≤\u{2009}{}", format::plain(format::rounded(ends[k], 3)));
         Self {
             title: format!("{title} ({unit})"),
             cells: values.iter().map(|&(cell, v)| (cell, class(v))).collect(),
@@ -80,6 +90,14 @@ impl Layer {
             classes: names.iter().enumerate().map(|(k, n)| ((*n).to_owned(), shade(k))).collect(),
         }
     }
+}
+
+/// The largest of some mantissas (1 first, rising) times a power of ten that is below a value of this kind.
+fn largest_below(value: f64, mantissas: &[f64]) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let below = mantissas.iter().rev().map(|mantissa| mantissa * power);
+    let last = mantissas.last().copied().unwrap_or(1.0);
+    below.into_iter().find(|b| *b < value * (1.0 - 1e-9)).unwrap_or(0.1 * last * power)
 }
 
 /// Colour of one of [`CLASSES`].
@@ -111,8 +129,8 @@ pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
 pub(super) fn draw_values(report: &Report, maps: &CellMap) -> Drawing {
     let most_j = maps.energy_j.iter().map(|(_, v)| *v).fold(0.0, f64::max);
     let layers = [
-        Layer::of_values("Total energy P95", &maps.energy_j, energy_unit(most_j)),
-        Layer::of_values("Bounce height P95", &maps.height_m, ("m", 1.0)),
+        Layer::of_values("Total energy P95", &maps.energy_j, energy_unit(most_j), &[1.0, 3.0]),
+        Layer::of_values("Bounce height P95", &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
         Layer::of_counts("Rocks at rest in a cell", &maps.deposits),
         Layer::of_shares("Probability of 30\u{2009}kJ or more", &maps.exceeds),
     ];

@@ -148,7 +148,9 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
     if report.lines.len() > 1 {
         drawn.push((heading("retention.svg", "Retention"), lines::retention(&report.lines)));
     }
-    for line in report.lines.iter().filter(|line| lines::nobody(line).is_none()) {
+    // what passes a barrier's line stands in the barrier's own figure
+    let own = report.lines.iter().filter(|line| !line.is_barrier);
+    for line in own.filter(|line| lines::nobody(line).is_none()) {
         // names of lines may hold anything: files are numbered
         let file = format!("line_{}.svg", line.number);
         let title = format!("Evaluation line “{}”", line.name);

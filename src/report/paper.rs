@@ -24,6 +24,9 @@ pub const SMALL: f64 = 10.5;
 /// Size of axis titles and panel heads (px).
 pub const NORMAL: f64 = 11.5;
 
+/// How many forms of marks there are: disc, square, diamond, triangle.
+const SHAPES: usize = 4;
+
 /// How a line looks.
 #[derive(Debug, Clone, Copy)]
 pub struct Pen {
@@ -169,6 +172,29 @@ impl<'a> Paper<'a> {
     pub fn disc(&self, centre: Spot, radius_px: f64, fill: RGBColor) {
         let radius = (radius_px * TENTHS).round() as i32;
         self.put(&Circle::new(tenths(centre), radius, ShapeStyle::from(fill).filled()));
+    }
+
+    /// A mark of one of [`SHAPES`] forms: series are told apart without colour.
+    pub fn mark(&self, shape: usize, (x, y): Spot, radius_px: f64, fill: RGBColor) {
+        let r = 1.2 * radius_px;
+        match shape % SHAPES {
+            0 => self.disc((x, y), radius_px, fill),
+            1 => self.polygon(
+                &[(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)],
+                fill,
+                1.0,
+            ),
+            2 => self.polygon(
+                &[(x, y - 1.4 * r), (x + 1.4 * r, y), (x, y + 1.4 * r), (x - 1.4 * r, y)],
+                fill,
+                1.0,
+            ),
+            _ => self.polygon(
+                &[(x, y - 1.3 * r), (x + 1.3 * r, y + r), (x - 1.3 * r, y + r)],
+                fill,
+                1.0,
+            ),
+        }
     }
 
     /// Dots of one size in one path: hundreds of thousands stay small.

@@ -230,6 +230,16 @@ fn deposits(paper: &Paper<'_>, panel: &Panel, report: &Report) {
     }
 }
 
+/// A square of each class beside the other, for the key.
+fn density_symbol(paper: &Paper<'_>, at: Spot) {
+    for (class, (_, opacity)) in DEPOSITS.iter().enumerate() {
+        let x = at.0 + (class as f64 - 1.5) * 4.0;
+        let frame = Frame { left: x - 2.0, right: x + 2.0, top: at.1 - 3.0, bottom: at.1 + 3.0 };
+        let colour = if class + 1 == DEPOSITS.len() { DARK_VERMILLION } else { VERMILLION };
+        paper.fill(&frame, colour, *opacity);
+    }
+}
+
 /// Places inside the frame, one for each little square of `raster_px`: what lies on top of each other is drawn once.
 fn apart(panel: &Panel, places: impl Iterator<Item = [f64; 3]>, raster_px: f64) -> Vec<Spot> {
     let spots = places.map(|p| panel.at(p[0], p[1])).filter(|&s| panel.frame.holds(s));

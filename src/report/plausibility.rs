@@ -7,7 +7,7 @@ use super::reach_angle;
 use crate::output::Results;
 use crate::trajectory::Stop;
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// Speed that single blocks seldom pass (m/s).
 const FAST_M_S: f64 = 40.0;
@@ -19,6 +19,10 @@ const HOLLOW_M: f64 = 0.2;
 const IN_HOLLOWS: f64 = 0.25;
 /// Edge of the triangles over the diameter of the rocks (–) from which the ground is smooth for them.
 const COARSE: f64 = 5.0;
+/// Share of the area of all deposits on which half of them may lie (–).
+const CROWDED: f64 = 0.1;
+/// Rocks at rest from which on their crowding says something.
+const MANY: usize = 400;
 /// Rocks from which on a median says something.
 const ENOUGH: usize = 20;
 
@@ -82,18 +86,41 @@ fn hollows(report: &Report, ground: &GroundRaster) -> Option<Check> {
     }
     let held = at_rest.iter().filter(|end| depth.at(ground, end) > HOLLOW_M).count();
     let share = held as f64 / at_rest.len() as f64;
-    let found = format!(
-        "{} of {} rocks at rest ({}) lie in hollows of the mesh without an outlet, deeper than {HOLLOW_M} m{}",
+    let (half_m2, all_m2) = areas_m2(ground, &at_rest);
+    let number = |value: f64| format::significant(value, 2);
+    let mut found = format!(
+        "{} of {} rocks at rest ({}) lie in hollows of the mesh without an outlet, deeper than {HOLLOW_M} m; half of all lie on {} of the {} m² that hold them all",
         format::decimal(held as f64, 0),
         format::decimal(at_rest.len() as f64, 0),
         format::percent(share, 0),
-        if share > IN_HOLLOWS {
-            ": pits of the terrain model, unless such hollows are there; they shorten the runout"
-        } else {
-            ""
-        }
+        number(half_m2),
+        number(all_m2)
     );
-    Some(check("Deposits", found, share <= IN_HOLLOWS))
+    let is_crowded = at_rest.len() >= MANY && half_m2 < CROWDED * all_m2;
+    let passes = share <= IN_HOLLOWS && !is_crowded;
+    if !passes {
+        found += ": pits and creases of the terrain model, unless they are there on the slope; they shorten the runout";
+    }
+    Some(check("Deposits", found, passes))
+}
+
+/// Area of the fewest cells that hold half of the rocks, and of all cells that hold one (m²).
+fn areas_m2(ground: &GroundRaster, ends: &[[f64; 3]]) -> (f64, f64) {
+    let mut counts: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+    for end in ends {
+        let cell = [end[0] / ground.cell_m, end[1] / ground.cell_m].map(|x| x.floor() as i64);
+        *counts.entry((cell[0], cell[1])).or_default() += 1;
+    }
+    let mut sizes: Vec<usize> = counts.into_values().collect();
+    sizes.sort_unstable_by_key(|count| Reverse(*count));
+    let mut held = 0;
+    let half = sizes.iter().take_while(|count| {
+        let is_open = 2 * held < ends.len();
+        held += **count;
+        is_open
+    });
+    let area = |cells: usize| cells as f64 * ground.cell_m * ground.cell_m;
+    (area(half.count()), area(sizes.len()))
 }
 
 /// How deep water would stand in every cell.

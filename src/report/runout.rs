@@ -5,7 +5,7 @@ use super::colour::{BLUE, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{Fall, Quantile, Quantity, Report};
+use super::input::{Fall, Is, Quantile, Quantity, Report};
 use super::panel::{FOOT_PX, Panel, align};
 use super::paper::{Label, Paper, Pen, SMALL, paint};
 use super::svg::path::Frame;
@@ -73,8 +73,14 @@ fn open_end(paper: &Paper<'_>, panel: &Panel, report: &Report) {
         let at = |dx: f64| Label::new(words.clone(), (x + dx, y + dy)).coloured(BLUE);
         [at(6.0), at(-6.0).right(), at(0.0).centred()]
     });
-    let free =
-        |label: &Label| panel.frame.contains(&label.frame()) && paper.is_free(&label.frame());
+    let on_curve = |room: &Frame| {
+        let mut spots = report.runout_exceedance.iter().map(|p| panel.at(p.x, p.y.value));
+        spots.any(|spot| room.holds(spot))
+    };
+    let free = |label: &Label| {
+        let room = label.frame();
+        panel.frame.contains(&room) && paper.is_free(&room) && !on_curve(&room)
+    };
     if let Some(label) = candidates.into_iter().find(free) {
         paper.text_on_rim(&label);
     }
@@ -110,7 +116,9 @@ fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
     }
     let least = report.runout_exceedance.iter().map(|p| p.y.value).filter(|&y| y > 0.0);
     let y = if count >= MANY {
-        let least = least.fold(0.1, f64::min).max(1e-4);
+        let marked = report.quantiles.get(&Quantity::Runout).into_iter().flatten();
+        let marked = marked.map(|quantile| 0.999 * (1.0 - quantile.probability));
+        let least = least.chain(marked).fold(0.1, f64::min).max(1e-4);
         Axis::log(least, 1.0, "Share running farther")
     } else {
         Axis::linear(0.0, 1.0, "Share running farther")
@@ -158,7 +166,10 @@ fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
         whisker(paper, (end(quantile.at.low), end(quantile.at.high)), y);
         paper.disc((x, y), 3.0, VERMILLION);
         // the curve falls: above and to the right of a point is free, below and to the left too
-        let words = format!("{}{}", format::sign(quantile.at.is), name(quantile));
+        let words = match quantile.at.is {
+            Is::AtLeast => format!("{}\u{2009}≥", name(quantile)),
+            _ => name(quantile),
+        };
         let at = |dx: f64, dy: f64| Label::new(words.clone(), (x + dx, y + dy)).bold();
         let candidates =
             [at(6.0, -10.0), at(-6.0, -10.0).right(), at(-6.0, 11.0).right(), at(6.0, 11.0)];

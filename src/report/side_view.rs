@@ -79,7 +79,9 @@ struct View {
 impl View {
     fn of(report: &Report, line: &FallLine) -> Self {
         let (along, z) = line.extent(report);
-        let heights = Envelope::of(report, line, along, |p| p.clearance_m.max(0.0));
+        let heights = Envelope::of(report, line, along, |p| {
+            if p.clearance_m < 0.0 { 0.0 } else { p.clearance_m }
+        });
         let speeds = Envelope::of(report, line, along, |p| p.speed_m_s);
         let title = "Distance along the mean fall line (m)";
         let x = Axis::linear(along.0, along.1, title);

@@ -32,6 +32,7 @@ pub fn info(releases: usize) -> RunInfo {
         site: Site {
             mesh_origin_m: [2_600_000.0, 1_200_000.0, 0.0],
             release: Zone::Line(vec![[2_600_000.0, 1_200_000.0], [2_600_010.0, 1_200_000.0]]),
+            fast_warnings: vec![],
         },
         ground_of_sheet: vec!["rock".to_owned(), "trunk, \"old\"".to_owned()],
         lines: [("road", 40.0), ("fence, \"upper\"", 35.5)]

@@ -10,9 +10,9 @@ use crate::output::Results;
 /// The percentile of the headline (–).
 const P: f64 = 0.95;
 
-/// One table over the lines, one over the barriers; each where there are some.
-pub(super) fn tables(results: &Results) -> Vec<Table> {
-    [lines(results), barriers(results)].into_iter().flatten().collect()
+/// One table over the lines in this order, one over the barriers; each where there are some.
+pub(super) fn tables(results: &Results, order: &[String]) -> Vec<Table> {
+    [lines(results, order), barriers(results)].into_iter().flatten().collect()
 }
 
 fn of(statistic: &Statistic) -> Option<Estimate> {
@@ -28,11 +28,12 @@ fn percent(share: Estimate) -> Estimate {
     share.over(0.01)
 }
 
-fn lines(results: &Results) -> Option<Table> {
+fn lines(results: &Results, order: &[String]) -> Option<Table> {
     let releases = results.hazard.rocks();
     let is_barrier =
         |name: &str| results.summary.barriers.iter().any(|one| one.barrier.name == name);
-    let own: Vec<_> = shown(results).filter(|(_, line)| !is_barrier(&line.info.name)).collect();
+    let mut own: Vec<_> = shown(results).filter(|(_, line)| !is_barrier(&line.info.name)).collect();
+    own.sort_by_key(|(_, line)| order.iter().position(|name| *name == line.info.name));
     let p95 = |line: &crate::hazard::Line, of| percentile_of(&line.sample(of), P, None);
     let energies = own.iter().filter_map(|(_, line)| p95(line, LineQuantity::Total));
     let (unit, size) = energy_unit(energies.map(|at| at.value));

@@ -246,7 +246,7 @@ fn sensitivity(one: &BarrierSummary, left_is_uphill: Option<bool>) -> Table {
 }
 
 /// A distance beside a line in words (m, positive on its left): uphill or downhill where the ground says which.
-pub(in crate::report) fn side(aside_m: f64, left_is_uphill: Option<bool>) -> String {
+fn side(aside_m: f64, left_is_uphill: Option<bool>) -> String {
     let towards = match (aside_m > 0.0, left_is_uphill) {
         (is_left, Some(uphill)) => {
             if is_left == uphill {

@@ -75,7 +75,7 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
         line.behind = residual.filter(|at| !at.behind.is_empty()).map(|at| behind(line, at));
         let all = || line.crossings.iter();
         line.energy_exceedance = exceedance(all().map(|at| at.total_j), releases);
-        line.height_exceedance = exceedance(all().map(|at| at.height_m), releases);
+        line.height_exceedance = exceedance(all().map(|at| above(at.height_m)), releases);
     }
     // stable: lines without ground keep the order of the scene, behind the others
     let key =
@@ -98,13 +98,18 @@ fn take(barriers: &[Barrier], rock: &mut Vec<CrossingRow>, lines: &mut [Line]) {
     }
 }
 
+/// A height without what a rock presses into the ground; NaN where there is no ground.
+fn above(height_m: f64) -> f64 {
+    if height_m < 0.0 { 0.0 } else { height_m }
+}
+
 fn behind(line: &Line, at: &Residual) -> Behind {
     let passing = || line.crossings.iter().filter(|at| at.passes);
     Behind {
         barriers: at.behind.clone(),
         reach: of_share(&at.with.reach),
         energy_exceedance: exceedance(passing().map(|at| at.total_j), line.releases),
-        height_exceedance: exceedance(passing().map(|at| at.height_m), line.releases),
+        height_exceedance: exceedance(passing().map(|at| above(at.height_m)), line.releases),
     }
 }
 

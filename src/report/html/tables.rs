@@ -81,8 +81,24 @@ fn in_words(estimate: &Estimate) -> (String, String) {
     } else {
         4
     };
-    let bound = |v: f64| format::significant(format::rounded(v, digits), digits);
+    let bound = like(estimate.value, digits);
     (format!("{sign}{}", bound(estimate.value)), one_sided(estimate, bound))
+}
+
+/// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.
+fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
+    let exponent = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
+    let last = exponent - digits as f64 + 1.0;
+    move |v| {
+        if !(-4.0..9.0).contains(&exponent) {
+            return format::significant(format::rounded(v, digits), digits);
+        }
+        let place = 10f64.powf(last.max(0.0));
+        format::decimal(
+            if last > 0.0 { (v / place).round() * place } else { v },
+            (-last).max(0.0) as usize,
+        )
+    }
 }
 
 fn one_sided(estimate: &Estimate, bound: impl Fn(f64) -> String) -> String {

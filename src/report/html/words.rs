@@ -157,6 +157,11 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   .wide { overflow: visible; }
   figure { margin: 3mm 0 5mm; }
   figure svg { max-height: 205mm; }
+  .map svg { max-height: 138mm; }
+  .map { margin: 2mm 0; }
+  .warnings { margin: 3mm 0; padding: 2mm 4mm; }
+  .warnings ul { font-size: 8.5pt; }
+  .question { font-size: 10.5pt; }
   nav { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   figcaption { font-size: 8.5pt; }
   pre { font-size: 7.8pt; }

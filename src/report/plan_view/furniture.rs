@@ -78,6 +78,7 @@ pub(super) struct Key {
 
 enum Symbol {
     Mark(Mark),
+    Density,
     Zone(Zone),
     Line,
     Barrier,
@@ -102,7 +103,8 @@ impl Key {
             let count = report.releases.iter().filter(|f| Mark::of(&f.stop) == mark).count();
             if count > 0 {
                 let text = format!("{name} ({})", format::decimal(count as f64, 0));
-                entries.push((Symbol::Mark(mark), text));
+                let is_density = mark == Mark::AtRest && count > super::MANY;
+                entries.push((if is_density { Symbol::Density } else { Symbol::Mark(mark) }, text));
             }
         }
         for (symbol, name, is_barrier) in
@@ -143,6 +145,7 @@ impl Key {
         {
             let at = (left + x + 7.0, top + (line as f64 + 0.5) * LINE_PX);
             match symbol {
+                Symbol::Density => super::density_symbol(paper, at),
                 Symbol::Mark(mark) => mark.draw(paper, &[at], 3.0),
                 Symbol::Zone(zone) => site::zone_symbol(paper, at, zone),
                 Symbol::Line => site::symbol(paper, at, false),
