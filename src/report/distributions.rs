@@ -7,7 +7,7 @@ use super::format;
 use super::histogram::{Histogram, percent_of};
 use super::input::{Quantity, Report, kilo};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, bold_width, paint, text_width};
+use super::paper::{Label, NORMAL, Paper, Pen, SMALL, bold_width, fitted, paint, text_width};
 use super::svg::path::Frame;
 
 /// What is shown, left to right, top to bottom.
@@ -91,7 +91,7 @@ impl<'a> Distribution<'a> {
         self.bins.bars(paper, &self.panel, total);
         let mut words = self.percentiles(paper);
         if total > 0 {
-            words.push(format!("max {}", format::significant(self.largest / self.unit_size, 3)));
+            words.push(format!("max {}", format::short(self.largest / self.unit_size)));
         }
         self.panel.axes(paper);
         if self.bins.beyond > 0 {
@@ -116,11 +116,7 @@ impl<'a> Distribution<'a> {
             let value = quantile.at.value / self.unit_size;
             self.panel.upright(paper, value, pen);
             let sign = format::sign(quantile.at.is);
-            words.push(format!(
-                "P{:.0} {sign}{}",
-                100.0 * probability,
-                format::significant(value, 3)
-            ));
+            words.push(format!("P{:.0} {sign}{}", 100.0 * probability, format::short(value)));
         }
         words
     }
@@ -132,6 +128,7 @@ fn head(paper: &Paper<'_>, frame: &Frame, name: &str, words: &str) {
     let fits = bold_width(name, NORMAL) + text_width(words, SMALL) + 8.0 < frame.width();
     paper.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));
     let y = if fits { y } else { y + 15.0 };
+    let words = fitted(words, SMALL, frame.width());
     paper.text(&Label::new(words, (frame.right, y)).right().coloured(GREY));
 }
 

@@ -54,6 +54,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// Three significant digits; from a hundred thousand on as a power of ten.
+pub fn short(value: f64) -> String {
+    if value.abs() >= 1e5 { scientific(value, 2) } else { significant(value, 3) }
+}
+
 /// The nearest number with so many significant digits.
 pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{:.*e}", digits.max(1) - 1, value).parse().unwrap_or(value)
