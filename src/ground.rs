@@ -18,6 +18,8 @@ pub struct Ground {
     pub rolling_friction: f64,
     /// Largest random tilt of the contact normal at an impact (rad), 0 = none.
     pub roughness_rad: f64,
+    /// Way over which one tilted facet reaches (m), positive; `None` = the radius of the rock.
+    pub roughness_length_m: Option<f64>,
 }
 
 /// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.
@@ -60,6 +62,8 @@ pub struct Law {
     pub restitution: f64,
     /// Largest random tilt of the normal (rad).
     pub roughness_rad: f64,
+    /// Way over which one tilted facet reaches (m).
+    pub roughness_length_m: f64,
     /// `√(p_N/m)` (rad/s).
     pub omega: f64,
 }
@@ -90,6 +94,7 @@ impl Law {
         capture_m_s: 0.0,
         restitution: 0.0,
         roughness_rad: 0.0,
+        roughness_length_m: 0.0,
         omega: 0.0,
     };
 
@@ -127,7 +132,28 @@ impl Law {
             capture_m_s: capture.own_m_s.unwrap_or_else(|| physical.max(least)),
             restitution: ground.restitution.unwrap_or(1.0),
             roughness_rad: ground.roughness_rad,
+            roughness_length_m: ground.roughness_length_m.unwrap_or(radius),
             omega,
+        }
+    }
+}
+
+impl Law {
+    /// The same law for a patch of stiffness `gain2 = |a|²` (–) among several that are pressed at once: its effective mass is
+    /// `m/|a|²`, so `c_N` goes with `|a|`, and parallel dashpots take `share` of theirs (–), so that the damping ratio, and
+    /// with it the restitution, does not depend on how many patches there are.
+    #[must_use]
+    #[inline]
+    pub fn of_patch(&self, gain2: f64, share: f64) -> Self {
+        if gain2 == 1.0 && share == 1.0 {
+            return *self;
+        }
+        let gain = gain2.sqrt();
+        Self {
+            p_n: self.p_n * gain2,
+            c_n: self.c_n * (gain * share),
+            c_n_captured: self.c_n_captured * (gain * share),
+            ..*self
         }
     }
 }

@@ -310,6 +310,7 @@ fn between_rocks(scene: &Scene) -> Option<Ground> {
         restitution: contact.restitution,
         rolling_friction: 0.0,
         roughness_rad: 0.0,
+        roughness_length_m: None,
     })
 }
 

@@ -195,6 +195,7 @@ impl Releases {
             restitution: table.restitution.as_ref().map(&mut draw),
             rolling_friction: table.rolling_friction.as_ref().map_or(0.0, &mut draw),
             roughness_rad: table.roughness_deg.as_ref().map_or(0.0, &mut draw).to_radians(),
+            roughness_length_m: table.roughness_length_m.as_ref().map(&mut draw),
         };
         self.grounds.iter().map(draw_ground).collect()
     }

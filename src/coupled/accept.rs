@@ -1,11 +1,12 @@
 //! The end of an accepted step: memories, bonds, angular momentum.
 
 use super::cluster::{Cluster, Done};
+use super::member::Member;
 use crate::contact::hold::carry;
 use crate::contact::pair::{Bond, Tie, between};
 use crate::rock::Vec3;
 use crate::step::adaptive;
-use crate::step::grip::Loss;
+use crate::step::grip::{Loss, World};
 use crate::step::law::within;
 use crate::step::tableau::Tableau;
 use nalgebra::Matrix3;
@@ -18,7 +19,11 @@ impl Cluster<'_> {
         for member in &mut self.members {
             let mut loss = Loss::default();
             let end = member.end;
-            adaptive::accept(tableau, &mut member.grip, &end, dt, &mut loss);
+            let Member { grip, body, laws, .. } = &mut **member;
+            let world = World { terrain: self.terrain, body: *body, laws };
+            adaptive::accept(&world, tableau, grip, (&end, dt), &mut loss);
+            // a merged contact acts otherwise than its rates say
+            self.fresh &= grip.fresh;
             done.losses.push(loss);
             let sums = (0..tableau.stages).map(|k| dt * tableau.work_weight(k) * member.given[k]);
             done.given_j.push(sums.sum());

@@ -187,8 +187,8 @@ impl Member {
         let v = grip.v;
         let hold = grip.hold_of(&world, k, taken, &v);
         let touch = Touch { distance_m, ..grip.touches[k] };
-        let law = world.law(touch.triangle);
-        joints.push(Contact::new(&step, law, &touch, (hold, &grip.holds[hold])));
+        let law = world.law_of(&grip.touches, k);
+        joints.push(Contact::new(&step, &law, &touch, (hold, &grip.holds[hold])));
     }
 
     /// Adds the contacts that the step ran into; whether there are any.
@@ -226,6 +226,7 @@ impl Member {
             loss.add(&joint.loss(&d).on(&world, joint.triangle), 1.0);
             joint.remember(&d, &mut grip.holds[joint.hold]);
         }
+        grip.merge_lost(&world);
         grip.holds.retain(|hold| hold.closed);
         grip.c += d.fixed_rows::<3>(0);
         grip.v += body.gravity * dt + kick.fixed_rows::<3>(0);

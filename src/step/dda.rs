@@ -157,9 +157,9 @@ fn add_contact(world: &World, step: &Step, grip: &mut Grip, (k, distance_m): (us
     let v = grip.v;
     let hold = grip.hold_of(world, k, grip.bench.taken, &v);
     let touch = Touch { distance_m, ..grip.touches[k] };
-    let law = world.law(touch.triangle);
+    let law = world.law_of(&grip.touches, k);
     let bench = &mut grip.bench;
-    bench.contacts[bench.count] = Contact::new(step, law, &touch, (hold, &grip.holds[hold]));
+    bench.contacts[bench.count] = Contact::new(step, &law, &touch, (hold, &grip.holds[hold]));
     bench.count += 1;
     bench.taken |= 1 << hold;
 }
@@ -298,6 +298,7 @@ fn carry_on(world: &World, grip: &mut Grip, d: &Vec6, kick: &Vec6, dt: f64) {
     for contact in grip.bench.contacts() {
         contact.remember(d, &mut grip.holds[contact.hold]);
     }
+    grip.merge_lost(world);
     grip.holds.retain(|hold| hold.closed);
     grip.c += d.fixed_rows::<3>(0);
     grip.v += world.body.gravity * dt + kick.fixed_rows::<3>(0);

@@ -2,8 +2,10 @@
 
 pub mod adaptive;
 pub mod dda;
+pub(crate) mod explicit;
 pub(crate) mod flat;
 pub mod grip;
+pub(crate) mod impact;
 pub(crate) mod joint;
 pub mod law;
 pub mod rigid;
@@ -76,7 +78,7 @@ impl Stepper {
             Scheme::Dda => return Self::Dda(dda::Fixed::new(settings, world, grip)),
             Scheme::Adaptive => &TR_BDF2,
         };
-        let control = Control { tableau, tolerance: settings.tolerance_m_s };
+        let control = Control::new(tableau, settings, world);
         Self::Controlled(control, adaptive::first_step(world, grip))
     }
 }

@@ -26,6 +26,7 @@ pub const GROUND: Ground = Ground {
     restitution: Some(0.5),
     rolling_friction: 0.0,
     roughness_rad: 0.0,
+    roughness_length_m: None,
 };
 
 /// Corners closer than this are one (m): made meshes repeat theirs to rounding.

@@ -90,7 +90,7 @@ fn stepper(scheme: Scheme, world: &World, grip: &mut Grip, dt: f64) -> Stepper {
             return Stepper::new(&settings(scheme, dt, None), world, grip);
         }
     };
-    Stepper::Controlled(Control { tableau, tolerance: f64::INFINITY }, dt)
+    Stepper::Controlled(Control { tableau, tolerance: f64::INFINITY, impact: f64::INFINITY }, dt)
 }
 
 impl Ladder {

@@ -24,6 +24,7 @@ const GROUND: Ground = Ground {
     restitution: Some(0.5),
     rolling_friction: 0.05,
     roughness_rad: 0.0,
+    roughness_length_m: None,
 };
 /// Distance of the spheres at the start (m), as in example 3.
 const SPACING_M: f64 = 0.12;

@@ -3,6 +3,8 @@
 mod crossing;
 mod fall;
 mod journey;
+mod rest;
+mod roughness;
 mod stems;
 mod together;
 mod visit;

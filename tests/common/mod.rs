@@ -46,6 +46,7 @@ pub const GROUND: Ground = Ground {
     restitution: Some(0.5),
     rolling_friction: 0.0,
     roughness_rad: 0.0,
+    roughness_length_m: None,
 };
 
 /// A case: one rock on one ground.
@@ -77,7 +78,18 @@ pub const CASE: Case = Case {
 impl Case {
     /// Follows the rock from map position `c` with velocity `v` and spin `w` for at most `longest_s`; ends in map
     /// coordinates.
-    pub fn run(&self, terrain: &Terrain, [c, v, w]: [[f64; 3]; 3], longest_s: f64) -> Trajectory {
+    pub fn run(&self, terrain: &Terrain, start: [[f64; 3]; 3], longest_s: f64) -> Trajectory {
+        self.run_with(terrain, start, longest_s, 1)
+    }
+
+    /// The same with another stream of chance.
+    pub fn run_with(
+        &self,
+        terrain: &Terrain,
+        [c, v, w]: [[f64; 3]; 3],
+        longest_s: f64,
+        seed: u64,
+    ) -> Trajectory {
         let step = Settings {
             scheme: self.scheme,
             tolerance_m_s: self.tolerance_m_s,
@@ -100,7 +112,7 @@ impl Case {
             spin_rad_s: w.into(),
         };
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
-        let mut chance = stream(1, Purpose::Impacts, 0);
+        let mut chance = stream(seed, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
         let mut fallen = follow(&course, &release, keep, &mut chance, &mut Scratch::default());
         fallen.start.position_m += terrain.origin_m;

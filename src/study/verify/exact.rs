@@ -25,6 +25,7 @@ const GROUND: Ground = Ground {
     restitution: Some(0.5),
     rolling_friction: 0.0,
     roughness_rad: 0.0,
+    roughness_length_m: None,
 };
 const G: f64 = 9.8;
 

@@ -160,6 +160,7 @@ impl<'a> Job<'a> {
         let control = Control {
             tableau: if self.course.step.scheme == Scheme::Reference { &ESDIRK4 } else { &TR_BDF2 },
             tolerance: self.course.step.tolerance_m_s,
+            impact: f64::INFINITY,
         };
         let now_s = self.now_s;
         self.rovers.iter_mut().for_each(|rover| rover.fly_to(self.course, now_s));
