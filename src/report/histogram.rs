@@ -73,7 +73,7 @@ impl Histogram {
         let beyond = sorted.iter().filter(|v| **v > last).count();
         let shown: Vec<f64> = values.iter().copied().filter(|v| *v <= last).collect();
         let left_out = values.iter().filter(|v| !v.is_finite()).count();
-        Self { beyond, left_out, ..Self::of(&shown) }
+        Self { left_out, beyond, ..Self::of(&shown) }
     }
 
     /// Bins of equal ratio over the values above 0, from the half per cent on; the few smaller ones count in the first.
@@ -84,7 +84,7 @@ impl Histogram {
         let least = logs.get(((1.0 - SHOWN) * logs.len() as f64) as usize).copied();
         let raised: Vec<f64> = logs.iter().map(|&v| v.max(least.unwrap_or(v))).collect();
         let left_out = values.len() - logs.len();
-        Self { is_log: true, left_out, ..Self::of(&raised) }
+        Self { left_out, is_log: true, ..Self::of(&raised) }
     }
 
     /// Upper end of the last bin.

@@ -69,6 +69,12 @@ pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
     if let Some(ground) = &ground {
         ground.write(&results.dir)?;
     }
+    // what the run at once would have written beside its maps
+    let terrain = "maps/terrain.vtk";
+    let (from, to) = (shard.join(terrain), results.dir.join(terrain));
+    if results.summary.maps.is_some() && from.exists() {
+        fs::copy(&from, &to).map_err(Error::file("write", &to))?;
+    }
     draw(&gather::gather(results, ground)?, &results.dir)
 }
 

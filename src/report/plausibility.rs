@@ -153,8 +153,7 @@ fn depths(ground: &GroundRaster) -> Depths {
             (row + 1 < rows).then(|| cell + columns),
         ]
     };
-    for cell in 0..level.len() {
-        let z = ground.height_m[cell];
+    for (cell, &z) in ground.height_m.iter().enumerate() {
         let is_edge =
             neighbours(cell).iter().any(|next| next.is_none_or(|n| ground.height_m[n].is_nan()));
         if z.is_finite() && is_edge {
