@@ -1,5 +1,6 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod cost;
 mod grounds;
 mod inputs;
 mod listing;
@@ -7,6 +8,7 @@ mod slips;
 mod stiffness;
 mod watch;
 
+pub use cost::Cost;
 pub use stiffness::{FastWarning, OwnDissipation};
 pub use watch::{Curtain, Lattice, Piece, Watch};
 
@@ -14,7 +16,7 @@ use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
-use crate::release::{self, Release, Releases};
+use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, Polyline, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
@@ -70,7 +72,7 @@ pub struct Plan {
     pub scene_file: PathBuf,
     /// SHA-256 (hexadecimal) of the scene's text and its mesh files.
     pub scene_hash: String,
-    /// Version of this crate.
+    /// Version of this crate, and after the + the fingerprint of its sources.
     pub version: &'static str,
     /// Map position of the mesh files' (0, 0, 0) (m).
     pub mesh_origin_m: [f64; 3],
@@ -130,6 +132,8 @@ pub struct Plan {
     pub maps: Part<Lattice>,
     /// Grounds with values of the catalogue: name, what was taken, source.
     pub catalogued: Vec<String>,
+    /// Up to which slope each ground stops a rolling sphere, in words.
+    pub rolling_stops: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
     /// What went in, as name and value.
@@ -169,13 +173,17 @@ impl Plan {
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings(&scene.solver);
+        grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
         let mut warnings = [slips::of(scene), grounds::unused(scene, &terrain)].concat();
         let mut fast_warnings = Vec::new();
+        releases.try_out(&terrain, &mut warnings)?;
         stiffness::check(scene, &terrain, &mut fast_warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         flutter(&step, &mut warnings);
+        let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
+        stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();
         let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
@@ -184,7 +192,7 @@ impl Plan {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
             scene_hash: scene.hash.clone(),
-            version: env!("CARGO_PKG_VERSION"),
+            version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
             mesh_origin_m: scene.origin_m,
             epsg: scene.epsg,
             seed: scene.seed,
@@ -200,7 +208,7 @@ impl Plan {
                 speed_m_s: scene.solver.rest_speed_m_s.unwrap_or(REST_SPEED_M_S),
                 time_s: scene.solver.rest_time_s.unwrap_or(REST_TIME_S),
             },
-            longest_s: scene.solver.longest_s.unwrap_or(LONGEST_S),
+            longest_s,
             trees: Part::when(tree_triangles(&terrain), "the scene has none"),
             breaking: Part::when(
                 terrain.stems.as_ref().map(Stems::count),
@@ -220,7 +228,7 @@ impl Plan {
                 "one rock has 6 unknowns, a dense factor is enough",
             ),
             bonds: bonds(scene),
-            paths: paths(&scene.record, scene.release.count),
+            paths: paths(&scene.record),
             impacts: Part::when(
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
@@ -241,6 +249,7 @@ impl Plan {
                 inputs::ground_source(scene, &grounds::catalogued(scene)),
             ],
             catalogued: grounds::catalogued(scene),
+            rolling_stops: grounds::rolling_stops(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             fast_warnings,
@@ -254,6 +263,14 @@ impl Plan {
     /// No ground below the point drawn, or a rock that starts inside the ground or a tree.
     pub fn release(&self, index: usize) -> Result<Release> {
         self.releases.release(&self.terrain, index)
+    }
+
+    /// The same, or what is known of a rock that finds no place to start from.
+    ///
+    /// # Errors
+    /// As [`Self::release`].
+    pub fn try_release(&self, index: usize) -> std::result::Result<Release, Box<Lost>> {
+        self.releases.try_release(&self.terrain, index)
     }
 
     /// What every rock is watched for.
@@ -329,8 +346,9 @@ fn bonds(scene: &Scene) -> Part<Strength> {
     )
 }
 
-fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
-    let first = record.paths.unwrap_or(PATHS).min(count);
+/// Not cut to the number of releases: a run that goes on with more keeps as many paths as one that asked for them at once.
+fn paths(record: &RecordTable) -> Part<Paths> {
+    let first = record.paths.unwrap_or(PATHS);
     let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
 }

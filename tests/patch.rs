@@ -87,13 +87,10 @@ fn elastic_impacts_on_folds_keep_their_energy() {
                 let x = place * f64::min(angle, 0.6) * radius;
                 let z = 1.2 * radius / (0.5 * angle).cos() + x.abs() * (0.5 * angle).tan();
                 let start = [[x, 0.1, z], [0.2 * speed, 0.0, -speed]];
-                for (k, (scheme, tolerance)) in [
-                    (Scheme::Reference, 1e-8),
-                    (Scheme::Adaptive, 0.05),
-                    (Scheme::Rigid, 0.05),
-                ]
-                .into_iter()
-                .enumerate()
+                for (k, (scheme, tolerance)) in
+                    [(Scheme::Reference, 1e-8), (Scheme::Adaptive, 0.05), (Scheme::Rigid, 0.05)]
+                        .into_iter()
+                        .enumerate()
                 {
                     let case = Case {
                         scheme,
@@ -106,7 +103,9 @@ fn elastic_impacts_on_folds_keep_their_energy() {
                     };
                     let off = (kept(&terrain, &case, start) - 1.0).abs();
                     if off > [1e-6, 2e-3, 1e-12, 0.0][k] {
-                        println!("{scheme:?} fold {angle} p_n {p_n:e} R {radius} place {place}: {off:e}");
+                        println!(
+                            "{scheme:?} fold {angle} p_n {p_n:e} R {radius} place {place}: {off:e}"
+                        );
                     }
                     worst[k] = worst[k].max(off);
                 }

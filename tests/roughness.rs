@@ -3,8 +3,8 @@
 mod common;
 use common::*;
 use rockfall::ground::Ground;
-use rockfall::step::Scheme;
 use rockfall::rock::Vec3;
+use rockfall::step::Scheme;
 use std::f64::consts::TAU;
 
 fn elastic(roughness_deg: f64) -> Ground {
@@ -37,7 +37,12 @@ fn a_facet_turns_the_rock_by_twice_its_tilt() {
         let case = Case { ground: elastic(20.0), ..case };
         let mut most = 0.0f64;
         for seed in 0..400 {
-            let run = case.run_with(&floor, [[0.0, 0.0, 0.501], [0.0, 0.0, -10.0], [0.0; 3]], 0.005, seed);
+            let run = case.run_with(
+                &floor,
+                [[0.0, 0.0, 0.501], [0.0, 0.0, -10.0], [0.0; 3]],
+                0.005,
+                seed,
+            );
             let v = run.end.velocity_m_s;
             most = most.max(v.x.hypot(v.y) / 10.0);
             assert!((v.norm() - 10.0).abs() < 0.06, "{name} {seed}: {v:?}");
@@ -78,7 +83,8 @@ fn facets_are_met_as_often_as_they_are_seen() {
     let rocks = 2000;
     for (name, case) in SCHEMES {
         // So stiff that a rebound into the mean surface is the next impact before the rock has moved or fallen.
-        let ground = Ground { normal_stiffness_n_m: 1e13, shear_stiffness_n_m: 0.25e13, ..elastic(15.0) };
+        let ground =
+            Ground { normal_stiffness_n_m: 1e13, shear_stiffness_n_m: 0.25e13, ..elastic(15.0) };
         let case = Case { ground, ..case };
         let (mut count, mut sum, mut sum2) = (0.0, 0.0, 0.0);
         for seed in 0..rocks {
@@ -91,7 +97,9 @@ fn facets_are_met_as_often_as_they_are_seen() {
         }
         let n = rocks as f64;
         let (found, average) = (count / n, sum / count);
-        println!("{name}: first rebound leaves {found:.4} for {share:.4}, with {average:.4} for {mean:.4}");
+        println!(
+            "{name}: first rebound leaves {found:.4} for {share:.4}, with {average:.4} for {mean:.4}"
+        );
         assert!((found - share).abs() < 4.0 * (share * (1.0 - share) / n).sqrt(), "{name}");
         assert!((average - mean).abs() < 4.0 * ((sum2 / count - average * average) / count).sqrt());
     }

@@ -191,14 +191,25 @@ impl Near {
     pub fn plane(&self) -> Option<u32> {
         match &self.faces[..] {
             [face]
-                if self.edges.is_empty()
-                    && self.corners.is_empty()
-                    && self.saddles.is_empty() =>
+                if self.edges.is_empty() && self.corners.is_empty() && self.saddles.is_empty() =>
             {
                 Some(face.id)
             }
             _ => None,
         }
+    }
+
+    /// Whether all that can touch within the margin lies in the plane of `face`, however many triangles that is.
+    pub fn is_one_plane(&self, face: u32) -> bool {
+        let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
+        let (near, flat) = (SLACK * self.radius, SLACK * SLACK);
+        self.edges.is_empty()
+            && self.corners.is_empty()
+            && self.saddles.is_empty()
+            && self.faces.iter().all(|other| {
+                let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
+                turned <= flat && own.n.dot(&(other.a - own.a)).abs() <= near
+            })
     }
 
     /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners; where a
@@ -270,8 +281,7 @@ impl Near {
                 FeatureKind::Edge => features.edges.triangles_on(touch.feature.id).len() == 1,
                 FeatureKind::Vertex => features.is_border_vertex(touch.feature.id),
             };
-            let covered = at_border
-                && self.is_covered(terrain, &foot, centre, touch.distance_m);
+            let covered = at_border && self.is_covered(terrain, &foot, centre, touch.distance_m);
             if !covered {
                 self.merge(touch, centre, touches);
             }
@@ -336,7 +346,8 @@ impl Near {
         }
         let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
         let normal = off / distance;
-        let touch = Touch { feature, triangle: edge.triangle, normal, distance_m: distance, gain2: 1.0 };
+        let touch =
+            Touch { feature, triangle: edge.triangle, normal, distance_m: distance, gain2: 1.0 };
         Some(touch)
     }
 

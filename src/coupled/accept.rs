@@ -4,6 +4,7 @@ use super::cluster::{Cluster, Done};
 use super::member::Member;
 use crate::contact::hold::carry;
 use crate::contact::pair::{Bond, Tie, between};
+use crate::math;
 use crate::rock::Vec3;
 use crate::step::adaptive;
 use crate::step::grip::{Loss, World};
@@ -60,7 +61,7 @@ impl Cluster<'_> {
             let stretch = bridge.stretch(hh);
             // The spring turns with the two rocks about their line.
             let turn = 0.5 * dt * (a.grip.w + b.grip.w).dot(&bridge.n);
-            let turned = |x: Vec3| x * turn.cos() + bridge.n.cross(&x) * turn.sin();
+            let turned = |x: Vec3| x * math::cos(turn) + bridge.n.cross(&x) * math::sin(turn);
             (tie.push, tie.drag, tie.n) = (bridge.push, bridge.drag, bridge.n);
             tie.captured = bridge.captured;
             tie.closed = bridge.push > 0.0 || distance < a.body.radius + b.body.radius;

@@ -24,7 +24,7 @@ use ball::{Ball, Foot, Knot};
 use std::collections::BinaryHeap;
 pub use strike::Hit;
 use strike::{Due, Scene};
-use sweep::Asked;
+use sweep::{Asked, Lean};
 
 /// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
 /// contact that is slid over meanwhile is off by the square of half of this.
@@ -47,6 +47,8 @@ pub(super) struct Pile {
     links: Vec<u32>,
     /// Contacts that one of their rocks has changed since.
     asked: Asked,
+    lean: Lean,
+    taken_j: f64,
     places: Vec<Vec3>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
@@ -108,7 +110,8 @@ impl Cluster<'_> {
             let [a, b] = knot.ends.map(|k| &pile.balls[k]);
             (tie.push, tie.drag) = (knot.push / dt, knot.drag / dt);
             tie.slides = knot.drag.norm() >= knot.friction * knot.push * (1.0 - 1e-9);
-            tie.closed |= tie.captured && tie.is_slow(&(a.v - b.v));
+            // what carried in this step is where the next begins to look for what carries
+            tie.closed |= tie.is_slow(&(a.v - b.v));
         }
         let mut feet = pile.feet.iter().filter(|foot| foot.push > 0.0).peekable();
         for (k, (member, ball)) in self.members.iter_mut().zip(&pile.balls).enumerate() {

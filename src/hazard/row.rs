@@ -75,17 +75,38 @@ pub enum StopKind {
     LeftTerrain,
     /// Still moving at the longest simulated time.
     TimeUp,
+    /// Still moving when its budget of work was spent.
+    OverBudget,
     /// The computation could not go on.
     Failed,
+    /// Never began: no place was found where it could start.
+    NotReleased,
 }
 
 impl StopKind {
     /// All of them, in the order of tables.
-    pub const ALL: [Self; 4] = [Self::AtRest, Self::LeftTerrain, Self::TimeUp, Self::Failed];
+    pub const ALL: [Self; 6] = [
+        Self::AtRest,
+        Self::LeftTerrain,
+        Self::TimeUp,
+        Self::OverBudget,
+        Self::Failed,
+        Self::NotReleased,
+    ];
+
+    /// Whether the rock's way says something of rocks: it began, and was computed as far as it was followed.
+    pub fn counts(self) -> bool {
+        !matches!(self, Self::Failed | Self::NotReleased)
+    }
+
+    /// Whether no sound run ends a rock so: what never happened then needs no line in a table.
+    pub fn is_unusual(self) -> bool {
+        matches!(self, Self::OverBudget | Self::NotReleased)
+    }
 
     /// Whether the rock would have gone on: where it ended says only how far it came at least.
     pub fn is_open(self) -> bool {
-        matches!(self, Self::LeftTerrain | Self::TimeUp)
+        matches!(self, Self::LeftTerrain | Self::TimeUp | Self::OverBudget)
     }
 
     /// Its word in `releases.csv` and `summary.json`.
@@ -94,6 +115,8 @@ impl StopKind {
             Self::AtRest => "at_rest",
             Self::LeftTerrain => "left_terrain",
             Self::TimeUp => "time_up",
+            Self::OverBudget => "over_budget",
+            Self::NotReleased => "not_released",
             Self::Failed => "failed",
         }
     }
@@ -105,6 +128,8 @@ impl From<&Stop> for StopKind {
             Stop::AtRest => Self::AtRest,
             Stop::LeftTerrain => Self::LeftTerrain,
             Stop::TimeUp => Self::TimeUp,
+            Stop::OverBudget => Self::OverBudget,
+            Stop::NotReleased(_) => Self::NotReleased,
             Stop::Failed(_) => Self::Failed,
         }
     }

@@ -102,7 +102,7 @@ fn geotiff(
 }
 
 /// Where the maps after so many rocks wait for a resumed run.
-fn state_path(dir: &Path, done: usize) -> PathBuf {
+pub(super) fn state_path(dir: &Path, done: usize) -> PathBuf {
     dir.join(FOLDER).join(format!("{done}.{STATE}"))
 }
 

@@ -51,6 +51,7 @@ impl Plan {
             barriers,
             maps,
             catalogued,
+            rolling_stops,
             deposits,
             inputs: _,      // with the report
             title_block: _, // with the report
@@ -87,7 +88,7 @@ impl Plan {
             );
         }
         list.lines("own dissipation", self.dissipation());
-        list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s"));
+        list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
         list.part("breaking stems", breaking, |stems| {
             format!("{stems}, each whole again for the next rock")
@@ -96,6 +97,7 @@ impl Plan {
         list.line("orientation", format!("left out: {}", never(orientation)));
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
+        list.lines("rolling stops", rolling_stops.iter().cloned());
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
@@ -113,7 +115,7 @@ impl Plan {
             )
         });
         list.part("paths", paths, |Paths { first, step_s }| {
-            format!("kept for {first} of {count} releases, every {step_s} s")
+            format!("kept for {} of {count} releases, every {step_s} s", first.min(count))
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
         list.part("lines", lines, |lines| {
@@ -131,6 +133,9 @@ impl Plan {
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
         });
+        let cost = self.cost(*count);
+        let asks = if cost.is_modest() { "" } else { "; runs with --yes only" };
+        list.line("at most", format!("{cost}{asks}"));
         if let Some(file) = deposits {
             list.line("compared with", format!("measured ends in {}", file.display()));
         }

@@ -78,6 +78,18 @@ fn phase_warning(ground: &str, (radius_m, phase): (f64, f64), step_s: f64) -> Op
     ))
 }
 
+/// A fixed step so short that a rock may spend its budget of work before its time is up.
+pub(super) fn too_short(step: &Settings, longest_s: f64, warnings: &mut Vec<String>) {
+    let most = step.scheme.most_work() as f64;
+    if step.scheme == Scheme::Dda && longest_s > most * step.step_s {
+        warnings.push(format!(
+            "step_s = {:e} lets a rock fall for {:.3} s at most before its budget of {most} steps is spent; write a longer step, or a longest_s below that",
+            step.step_s,
+            most * step.step_s
+        ));
+    }
+}
+
 /// Speed below which the median rock does not rebound from each ground (m/s).
 pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
     let capture = Capture {

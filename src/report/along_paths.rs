@@ -8,6 +8,7 @@ use super::input::{Fall, Path, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel, align};
 use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
+use crate::math;
 
 const TOP_PX: f64 = 30.0;
 const PLOT_PX: f64 = 110.0;
@@ -103,7 +104,7 @@ fn along(chosen: &[Chosen<'_>], value: impl Fn(&Chosen<'_>, usize) -> f64) -> Ve
             .map(|k| {
                 let before = points[k.saturating_sub(1)].place_m;
                 let here = points[k].place_m;
-                let step = (here[0] - before[0]).hypot(here[1] - before[1]);
+                let step = math::hypot(here[0] - before[0], here[1] - before[1]);
                 way += if step.is_finite() { step } else { 0.0 };
                 (way, value(rock, k))
             })

@@ -15,7 +15,7 @@ const CLOUD_PX: f64 = 210.0;
 const CURVE_PX: f64 = 160.0;
 /// Between a panel's axis title and the head of the next panel (px).
 const GAP_PX: f64 = 34.0;
-const RIGHT_PX: f64 = WIDTH_PX - 14.0;
+const RIGHT_PX: f64 = WIDTH_PX - 20.0;
 /// From so many rocks on, marks shrink to dots.
 const MANY: usize = 400;
 /// Colours of other places, in the order of the scene; more places share the last.

@@ -47,7 +47,11 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         paths: paths_of(results)?,
         runout_exceedance: band(&hazard.sample(hazard::Quantity::Runout).exceedance()),
         quantiles: TABLED.map(|(here, there)| (here, quantiles(hazard, there))).into(),
-        stops: StopKind::ALL.map(|kind| stop_share(hazard, kind)).into(),
+        stops: StopKind::ALL
+            .into_iter()
+            .filter(|kind| !kind.is_unusual() || hazard.ended(*kind).count > 0)
+            .map(|kind| stop_share(hazard, kind))
+            .collect(),
         headline: headline(hazard),
         arrivals: arrivals::tables(results, &order),
         zone: results.summary.site.release.clone(),
@@ -91,7 +95,15 @@ pub(super) fn warnings_first(hazard: &Hazard) -> Vec<String> {
     let late = (late.count > 0).then(|| {
         said(&late, "were still moving when their time was up", "Give a longer [solver] longest_s.")
     });
-    left.into_iter().chain(late).collect()
+    let spent = hazard.ended(StopKind::OverBudget);
+    let spent = (spent.count > 0).then(|| {
+        said(
+            &spent,
+            "were still moving when their budget of work was spent",
+            "Ask why: see how the rocks ended.",
+        )
+    });
+    left.into_iter().chain(late).chain(spent).collect()
 }
 
 /// The exceedance curve with its band upright: the intervals of the percentiles lie along x, figures want them along y.
@@ -144,6 +156,8 @@ fn stop_of(kind: StopKind) -> Stop {
         StopKind::AtRest => Stop::AtRest,
         StopKind::LeftTerrain => Stop::LeftTerrain,
         StopKind::TimeUp => Stop::TimeUp,
+        StopKind::OverBudget => Stop::OverBudget,
+        StopKind::NotReleased => Stop::NotReleased(""),
         StopKind::Failed => Stop::Failed(String::new()),
     }
 }

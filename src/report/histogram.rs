@@ -4,6 +4,7 @@ use super::axis::{Axis, nice_step};
 use super::colour::SKY;
 use super::panel::Panel;
 use super::paper::Paper;
+use crate::math;
 
 /// Most and least number of bins over the range of the values.
 const MOST_BINS: f64 = 40.0;
@@ -79,7 +80,7 @@ impl Histogram {
     /// Bins of equal ratio over the values above 0, from the half per cent on; the few smaller ones count in the first.
     pub(super) fn of_ratios(values: &[f64]) -> Self {
         let mut logs: Vec<f64> =
-            values.iter().filter(|v| v.is_finite() && **v > 0.0).map(|v| v.log10()).collect();
+            values.iter().filter(|v| v.is_finite() && **v > 0.0).map(|v| math::log10(*v)).collect();
         logs.sort_by(f64::total_cmp);
         let least = logs.get(((1.0 - SHOWN) * logs.len() as f64) as usize).copied();
         let raised: Vec<f64> = logs.iter().map(|&v| v.max(least.unwrap_or(v))).collect();
@@ -101,7 +102,7 @@ impl Histogram {
     pub(super) fn axis(&self, title: &str) -> Axis {
         let (from, to) = (self.from, self.to().max(self.from + self.width));
         if self.is_log {
-            return Axis::ratios(10f64.powf(from + 1e-6), 10f64.powf(to - 1e-6), title);
+            return Axis::ratios(math::pow(10.0, from + 1e-6), math::pow(10.0, to - 1e-6), title);
         }
         // a few bins do not fill the frame
         let missing = (LEAST_BINS - (to - from) / self.width).max(0.0);
@@ -115,7 +116,7 @@ impl Histogram {
     pub(super) fn bars(&self, paper: &Paper<'_>, panel: &Panel, total: usize) {
         for (i, &count) in self.counts.iter().enumerate() {
             let ends = [i, i + 1].map(|k| self.from + k as f64 * self.width);
-            let [from, to] = if self.is_log { ends.map(|end| 10f64.powf(end)) } else { ends };
+            let [from, to] = if self.is_log { ends.map(|end| math::pow(10.0, end)) } else { ends };
             panel.bar(paper, (from, to), percent_of(count, total), SKY);
         }
     }

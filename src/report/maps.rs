@@ -10,6 +10,7 @@ use super::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use super::plan_view::ground;
 use super::site;
 use super::svg::path::{Frame, Spot};
+use crate::math;
 use plotters::style::RGBColor;
 
 const TOP_PX: f64 = 24.0;
@@ -94,7 +95,7 @@ impl Layer {
 
 /// The largest of some mantissas (1 first, rising) times a power of ten that is below a value of this kind.
 fn largest_below(value: f64, mantissas: &[f64]) -> f64 {
-    let power = 10f64.powf(value.log10().floor());
+    let power = math::pow(10.0, math::log10(value).floor());
     let below = mantissas.iter().rev().map(|mantissa| mantissa * power);
     let last = mantissas.last().copied().unwrap_or(1.0);
     below.into_iter().find(|b| *b < value * (1.0 - 1e-9)).unwrap_or(0.1 * last * power)

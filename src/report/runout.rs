@@ -49,7 +49,8 @@ pub(super) fn draw(report: &Report) -> Drawing {
 
 /// Rocks whose runout is only a lower bound.
 fn open_rocks(report: &Report) -> usize {
-    let is_open = |fall: &&Fall| matches!(fall.stop, Stop::LeftTerrain | Stop::TimeUp);
+    let is_open =
+        |fall: &&Fall| matches!(fall.stop, Stop::LeftTerrain | Stop::TimeUp | Stop::OverBudget);
     report.releases.iter().filter(is_open).count()
 }
 

@@ -6,6 +6,7 @@ use super::input::{MapMark, Quantity, Report};
 use super::panel::Panel;
 use super::paper::{Label, Paper, Pen, SMALL, fitted};
 use super::svg::path::{Frame, Spot, clipped};
+use crate::math;
 use crate::output::Zone;
 
 /// Pens of the marks; all lie on a white rim, to be seen over anything.
@@ -68,7 +69,7 @@ fn teeth(part: &[Spot]) -> Vec<Vec<Spot>> {
     let (apart, long) = TOOTH_PX;
     let tooth = |pair: &[Spot]| -> Vec<Vec<Spot>> {
         let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
-        let length = (x1 - x0).hypot(y1 - y0).max(1e-9);
+        let length = math::hypot(x1 - x0, y1 - y0).max(1e-9);
         let (dx, dy) = ((x1 - x0) / length, (y1 - y0) / length);
         (0..(length / apart) as usize)
             .map(|k| apart * (k as f64 + 0.5))

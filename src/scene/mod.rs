@@ -4,6 +4,7 @@
 //! here is either numerics, filled in and printed by the plan, or an error.
 
 mod barrier;
+mod blocks;
 mod calibrate;
 mod catalogue;
 mod check;
@@ -12,12 +13,14 @@ mod meshes;
 mod places;
 mod record;
 mod release;
+mod rewrite;
 mod rocks;
 mod solver;
 mod source;
 mod wording;
 
 pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
+pub use blocks::Block;
 pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use grounds::GroundTable;
@@ -25,21 +28,24 @@ pub use meshes::{MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
 pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
+pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 
-use crate::chance::entries;
+use crate::chance::{Distribution, entries};
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_MESH};
 use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
-use check::{Allowed, Checked, Complaint, check_names, number};
+use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
 use places::FARTHEST_M;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use source::Lookup;
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// A scene file.
@@ -95,7 +101,7 @@ pub struct Scene {
     /// The scene file itself.
     #[serde(skip)]
     pub file: PathBuf,
-    /// SHA-256 (hexadecimal) of the scene's text and of every mesh file's bytes.
+    /// SHA-256 (hexadecimal) of the scene's text and of the bytes of every file that it names.
     #[serde(skip)]
     pub hash: String,
 }
@@ -111,8 +117,9 @@ impl Scene {
     /// # Errors
     /// Whatever is wrong with the scene, with file, table, key and line; a mesh file that is not there.
     pub fn read(file: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(file).map_err(Error::file("read", file))?;
+        let text = crate::file::read_text(file)?;
         let mut scene = Self::parse(&text, file)?;
+        scene.read_blocks()?;
         scene.hash =
             scene.fingerprint(&text).map_err(|wrong| Lookup::of(file, &text).refuse(wrong))?;
         Ok(scene)
@@ -134,11 +141,36 @@ impl Scene {
         for mesh in scene.terrain.iter_mut().chain(&mut scene.trees) {
             mesh.mesh = folder.join(&mesh.mesh);
         }
+        if let Some(table) = &mut scene.release.table {
+            *table = folder.join(&*table);
+        }
         if let Some(calibrate) = &mut scene.calibrate {
             calibrate.deposits = folder.join(&calibrate.deposits);
         }
         file.clone_into(&mut scene.file);
         Ok(scene)
+    }
+
+    /// Reads the blocks of the release table; their radii, where they are there, are those of the scene.
+    fn read_blocks(&mut self) -> Result<()> {
+        let Some(table) = &self.release.table else { return Ok(()) };
+        let has_height = self.release.height_m.is_some();
+        let blocks = blocks::read(table, has_height, self.rocks.density_kg_m3)?;
+        let radii_m: Vec<f64> = blocks.iter().filter_map(|block| block.radius_m).collect();
+        if !radii_m.is_empty() {
+            let refuse = |flaw: crate::error::Flaw| {
+                Error::input(table, "radius_m or mass_kg", flaw.found, flaw.remedy)
+            };
+            let radius_m = Distribution::listed(radii_m).map_err(refuse)?;
+            self.rocks.radius_m = radius_m;
+            let wrong = |wrong: Complaint| {
+                let found = wrong.found.unwrap_or_else(|| "found another".to_owned());
+                Error::input(table, "radius_m or mass_kg", found, wrong.remedy)
+            };
+            self.rocks.check().map_err(wrong)?;
+        }
+        self.release.blocks = blocks;
+        Ok(())
     }
 
     /// Position of a ground in the scene's list of grounds.
@@ -187,6 +219,11 @@ impl Scene {
         self.check_meshes()?;
         let scheme = self.solver.scheme();
         for (name, ground) in &self.grounds {
+            if is_formula(name) {
+                return Err(Complaint::about(name, FORMULA)
+                    .finding(format!("found the name {name}"))
+                    .inside("grounds"));
+            }
             ground.check(scheme).map_err(|wrong| wrong.inside(name).inside("grounds"))?;
         }
         self.rocks.check().map_err(|wrong| wrong.inside("rocks"))?;
@@ -284,26 +321,37 @@ impl Scene {
         Ok(())
     }
 
-    /// Hash over text and mesh files, each followed by its length so that no two scenes run together.
+    /// Hash over text, mesh files and measured ends, each followed by its length so that no two scenes run together.
     fn fingerprint(&self, text: &str) -> std::result::Result<String, Complaint> {
         let mut hash = Sha256::new();
         hash.update(text);
         hash.update((text.len() as u64).to_le_bytes());
         self.each_mesh(|mesh| {
-            let read = std::fs::File::open(&mesh.mesh)
-                .and_then(|mut file| std::io::copy(&mut file, &mut hash));
-            match read {
-                Ok(length) => hash.update(length.to_le_bytes()),
-                Err(error) => {
-                    let path = mesh.mesh.display();
-                    let remedy = format!(
-                        "write the path of an STL file as seen from the scene file; {path}: {error}"
-                    );
-                    return Err(Complaint::about("mesh", remedy));
-                }
-            }
-            Ok(())
+            let remedy = "write the path of an STL file as seen from the scene file";
+            take_in(&mut hash, "mesh", &mesh.mesh, remedy)
         })?;
+        if let Some(table) = &self.release.table {
+            let remedy = "write the path of a CSV file as seen from the scene file";
+            take_in(&mut hash, "table", table, remedy).map_err(|wrong| wrong.inside("release"))?;
+        }
+        if let Some(calibrate) = &self.calibrate {
+            let remedy = "write the path of a CSV file as seen from the scene file";
+            take_in(&mut hash, "deposits", &calibrate.deposits, remedy)
+                .map_err(|wrong| wrong.inside("calibrate"))?;
+        }
         Ok(format!("{:x}", hash.finalize()))
     }
+}
+
+/// Adds a file and its length to a hash.
+fn take_in(hash: &mut Sha256, key: &str, path: &Path, remedy: &str) -> Checked {
+    let wrong = |why: String| Complaint::about(key, format!("{remedy}; {why}"));
+    let file = file::open(path, LONGEST_MESH).map_err(|error| match error {
+        Error::File { file, source, .. } => wrong(format!("{}: {source}", file.display())),
+        other => wrong(other.to_string()),
+    })?;
+    let length = std::io::copy(&mut file.take(LONGEST_MESH), hash)
+        .map_err(|error| wrong(format!("{}: {error}", path.display())))?;
+    hash.update(length.to_le_bytes());
+    Ok(())
 }

@@ -1,7 +1,9 @@
 //! Points, polylines and areas in plan view, in map coordinates; valid by construction.
 
+use super::blocks::Block;
 use crate::chance::Entries;
 use crate::error::Flaw;
+use crate::math;
 use serde::Deserialize;
 
 /// A corner in plan view (m), map coordinates.
@@ -15,6 +17,13 @@ pub struct Point {
     pub at_m: Corner,
     /// Height of the rock's centre (m), map coordinates; absent = reckoned from the ground below.
     pub height_m: Option<f64>,
+}
+
+impl Point {
+    /// The place of a block of a table.
+    pub fn of_block(block: &Block) -> Self {
+        Self { at_m: block.at_m, height_m: block.height_m }
+    }
 }
 
 impl TryFrom<Vec<f64>> for Point {
@@ -59,7 +68,7 @@ impl Polyline {
         let pieces = self.corners_m.windows(2).map(|pair| minus(pair[1], pair[0]));
         let left: Vec<Corner> = pieces
             .map(|[x, y]| {
-                let length = x.hypot(y);
+                let length = math::hypot(x, y);
                 [-y / length, x / length]
             })
             .collect();
@@ -101,7 +110,7 @@ impl TryFrom<Vec<Corner>> for Polyline {
         let mut along_m = vec![0.0];
         for pair in corners_m.windows(2) {
             let step = minus(pair[1], pair[0]);
-            along_m.push(along_m[along_m.len() - 1] + step[0].hypot(step[1]));
+            along_m.push(along_m[along_m.len() - 1] + math::hypot(step[0], step[1]));
         }
         Ok(Self { corners_m, along_m })
     }

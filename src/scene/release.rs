@@ -1,9 +1,11 @@
 //! `[release]`.
 
+use super::blocks::Block;
 use super::check::{Allowed, Checked, Complaint, drawn};
 use super::places::{Area, Point, Polyline};
 use crate::chance::{Distribution, entries};
 use serde::Deserialize;
+use std::path::PathBuf;
 
 /// How rocks are released.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -28,12 +30,17 @@ pub struct ReleaseTable {
     pub line_m: Option<Polyline>,
     /// Where: uniform over an area in map coordinates (m).
     pub polygon_m: Option<Area>,
+    /// Where: blocks one by one, from a CSV file; once a [`Scene`](super::Scene) is read, as seen from the working directory.
+    pub table: Option<PathBuf>,
+    /// The blocks of the table, once a scene is read.
+    #[serde(skip)]
+    pub blocks: Vec<Block>,
 }
 
 /// Most releases of one run: their values take 0.1 kB each in memory.
 pub const MOST_RELEASES: usize = 1_000_000_000;
 
-const WHERE: &str = "write exactly one of points_m, line_m and polygon_m";
+const WHERE: &str = "write exactly one of points_m, line_m, polygon_m and table";
 
 impl ReleaseTable {
     pub(super) fn check(&self) -> Checked {
@@ -47,6 +54,7 @@ impl ReleaseTable {
             ("points_m", self.points_m.is_some()),
             ("line_m", self.line_m.is_some()),
             ("polygon_m", self.polygon_m.is_some()),
+            ("table", self.table.is_some()),
         ];
         let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
         match (given.next(), given.next()) {
@@ -73,6 +81,8 @@ impl ReleaseTable {
                 "remove it, or write the points as [x, y]: their third coordinate already says how high",
             )),
             Some(height) => drawn("height_m", height, Allowed::NotNegative, ""),
+            // the table is read later, and must have heights then
+            None if self.table.is_some() => Ok(()),
             None if !points.is_empty() && points.iter().all(|point| placed(&point)) => Ok(()),
             None => Err(Complaint::missing(
                 "height_m",

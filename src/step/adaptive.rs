@@ -2,9 +2,10 @@
 
 use super::grip::{Grip, Loss, World};
 use super::stage::End;
-use super::{Scheme, Settings};
 use super::tableau::Tableau;
+use super::{Scheme, Settings};
 use crate::contact::hold::carry;
+use crate::math;
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
 pub(crate) const ONSET: f64 = 0.3;
@@ -273,7 +274,7 @@ pub(crate) fn pressed_j(grip: &Grip, end: &End, hh: f64) -> f64 {
 }
 
 fn grown(control: &Control, dt: f64, error: f64) -> f64 {
-    dt * (SAFETY * error.powf(-control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
+    dt * (SAFETY * math::pow(error, -control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
 }
 
 /// Longest step that cannot jump over a feature (s).

@@ -21,6 +21,7 @@ use super::grip::{Grip, Loss, World};
 use super::law::Body;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
 use crate::contact::{MOST, Touch};
+use crate::math;
 use crate::rock::Vec3;
 use contact::{Contact, Shape, Step};
 use nalgebra::{Cholesky, U6};
@@ -52,10 +53,10 @@ pub fn own_restitution(phase: f64) -> f64 {
     if phase >= SINGLE_STEP_PHASE {
         return (q - 1.0) / (q + 1.0);
     }
-    let angle = ((2.0 - q) / (2.0 * (1.0 + q).sqrt())).acos();
+    let angle = math::acos((2.0 - q) / (2.0 * (1.0 + q).sqrt()));
     let steps = (PI / angle).ceil() - 1.0;
-    let (sine, cosine) = (steps * angle).sin_cos();
-    (1.0 + q).powf(-0.5 * steps) * ((q / (8.0 - q)).sqrt() * sine - cosine)
+    let (sine, cosine) = math::sin_cos(steps * angle);
+    math::pow(1.0 + q, -0.5 * steps) * ((q / (8.0 - q)).sqrt() * sine - cosine)
 }
 
 /// The fixed step of one contact episode.

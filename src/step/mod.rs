@@ -41,6 +41,15 @@ impl Scheme {
             Self::Rigid => "rigid",
         }
     }
+
+    /// Budget of work of one rock: steps, accepted or not, and flights. A minute of fall takes a few thousand, with the
+    /// paper's fixed step of 1e-5 s six million.
+    pub const fn most_work(self) -> u64 {
+        match self {
+            Self::Dda => 20_000_000,
+            Self::Adaptive | Self::Reference | Self::Rigid => 5_000_000,
+        }
+    }
 }
 
 /// Settings of the step, all in force (defaults already filled in by the plan).

@@ -103,9 +103,7 @@ impl Grip {
         let spots = &self.spots[..self.spot_count];
         spots.len() == self.touches.len()
             && spots.iter().zip(self.touches.iter()).all(|(spot, touch)| {
-                touch.is_on_plane()
-                    && touch.feature == spot.feature
-                    && touch.normal == spot.n
+                touch.is_on_plane() && touch.feature == spot.feature && touch.normal == spot.n
             })
     }
 

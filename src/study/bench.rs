@@ -2,6 +2,7 @@
 
 use crate::chance::{Purpose, stream};
 use crate::ground::Ground;
+use crate::math;
 use crate::plan::RestRule;
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
@@ -96,7 +97,8 @@ impl Setup {
 
     /// How deep the weight presses one spring where the ground is inclined at `angle_rad` (m).
     pub fn pressed_m(&self, angle_rad: f64) -> f64 {
-        self.rock.mass_kg() * self.gravity_m_s2 * angle_rad.cos() / self.ground.normal_stiffness_n_m
+        self.rock.mass_kg() * self.gravity_m_s2 * math::cos(angle_rad)
+            / self.ground.normal_stiffness_n_m
     }
 }
 

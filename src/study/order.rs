@@ -7,6 +7,7 @@
 use super::bench::{Setup, settings};
 use super::cases::{Case, has_springs, rolling_off_an_edge};
 use crate::ground::{Capture, Damping, Law};
+use crate::math;
 use crate::report::axis::Axis;
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
@@ -104,7 +105,7 @@ impl Ladder {
             falls
         });
         let logs: Vec<(f64, f64)> =
-            falling.map(|&(steps, error)| (f64::from(steps).ln(), error.ln())).collect();
+            falling.map(|&(steps, error)| (math::ln(f64::from(steps)), math::ln(error))).collect();
         let logs = &logs[logs.len().saturating_sub(FINEST)..];
         let n = logs.len() as f64;
         let (x, y) = logs.iter().fold((0.0, 0.0), |(x, y), log| (x + log.0 / n, y + log.1 / n));

@@ -4,6 +4,7 @@ use super::bench::{GRAVITY_M_S2, terrain};
 use super::speed::machine::{OwnTime, status_bytes};
 use crate::contact::pair::Strength;
 use crate::ground::Ground;
+use crate::math;
 use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
@@ -291,7 +292,7 @@ fn resident_bytes(key: &str) -> Option<u64> {
 
 /// Exponent `b` of `y ~ xᵇ` by least squares over the logarithms; `None` below two points.
 pub(super) fn exponent(points: &[(f64, f64)]) -> Option<f64> {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (math::ln(*x), math::ln(*y))).collect();
     let count = logs.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / count;
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));

@@ -192,7 +192,6 @@ impl Features {
         edges.iter().any(|&edge| self.edges.triangles_on(edge).len() == 1)
     }
 
-
     /// Gives every touchable edge and corner to the first triangle on it.
     fn own(&mut self, vertices_m: &[Vec3], triangles: &[[u32; 3]]) {
         let kept: Vec<bool> =

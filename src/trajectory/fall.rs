@@ -1,7 +1,7 @@
 //! The fall itself: leap, touch, step, stop.
 
+use super::calm::Calm;
 use super::journey::{Journey, Keep};
-use super::rest::Rest;
 use super::roughness::Roughness;
 use super::stems::Strain;
 use super::{Stop, Trajectory};
@@ -73,8 +73,6 @@ impl Scratch {
     }
 }
 
-/// Steps after which a rock is given up: it counts as failed.
-const MOST_STEPS: u64 = 100_000_000;
 /// An impact is over after so many contact times (–), whether the rock has left or not.
 pub(super) const IMPACT_TIMES: f64 = 3.0;
 
@@ -122,15 +120,20 @@ pub fn follow(
 
 /// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
 ///
+/// A release that cannot be made (off the terrain, or inside the ground) ends where it should have begun.
+///
 /// # Errors
-/// The release cannot be made: off the terrain, or inside the ground.
+/// None today; a caller must be ready for one.
 pub fn fall(
     plan: &Plan,
     index: usize,
     paths: Option<&Range<usize>>,
     scratch: &mut Scratch,
 ) -> Result<Trajectory> {
-    let release = plan.release(index)?;
+    let release = match plan.try_release(index) {
+        Ok(release) => release,
+        Err(lost) => return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.why)),
+    };
     let mut chance = stream(plan.seed, Purpose::Impacts, index);
     let fallen =
         follow(&Course::of(plan), &release, kept(plan, index, paths), &mut chance, scratch);
@@ -202,12 +205,21 @@ impl Fall<'_> {
             Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
             Landing::Flies => (left, Some(Stop::TimeUp)),
         };
+        // a touch at the very end of the time comes too late
+        let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
         self.grip.clocks.stop(Piece::Leap, begun);
         self.journey.effort.leaps += 1;
         let begun = self.grip.clocks.now();
         self.journey.fly(&flight, dt);
         self.grip.clocks.stop(Piece::NotesInFlight, begun);
-        stop
+        // flights count too: between two plates a rock may fly without end and without getting on in time
+        stop.or_else(|| self.over_budget())
+    }
+
+    /// Whether the rock has had all the work it may have.
+    fn over_budget(&self) -> Option<Stop> {
+        let most = self.course.step.scheme.most_work();
+        (self.journey.effort.work() > most).then_some(Stop::OverBudget)
     }
 
     /// Goes on in contact until the rock is free again or stops.
@@ -246,7 +258,7 @@ impl Fall<'_> {
     }
 
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
-        let mut rest = Rest::default();
+        let mut calm = Calm::from(self.grip.c);
         loop {
             let left = self.course.longest_s - self.journey.now.time_s;
             self.strike();
@@ -274,18 +286,17 @@ impl Fall<'_> {
             self.leave_facet_in_time();
             self.journey.end_impact_in_time();
             self.grip.clocks.stop(Piece::NotesInContact, begun);
+            let time_up = (done.dt >= left).then_some(Stop::TimeUp);
+            let ends = time_up.or_else(|| self.over_budget());
             if self.grip.is_free() {
-                return None;
+                return ends;
             }
-            let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.world.body.radius);
-            if rest.is_reached(&self.course.rest, done.dt, slow) {
+            calm.note(done.dt, &to, self.world.body.radius, &self.course.rest);
+            if calm.rests() {
                 return Some(Stop::AtRest);
             }
-            if done.dt >= left {
-                return Some(Stop::TimeUp);
-            }
-            if self.journey.effort.steps > MOST_STEPS {
-                return Some(Stop::Failed(format!("no rest after {MOST_STEPS} steps")));
+            if ends.is_some() {
+                return ends;
             }
         }
     }

@@ -1,15 +1,16 @@
 //! One rock from release to rest: leap, touch, step, stop.
 
+mod calm;
 mod crossing;
 mod fall;
 mod journey;
-mod rest;
 mod roughness;
 mod stems;
 mod together;
 mod visit;
 
 pub use crate::contact::FeatureKind;
+use crate::math;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,10 @@ pub enum Stop {
     LeftTerrain,
     /// Still moving at the longest simulated time.
     TimeUp,
+    /// Still moving when its budget of work was spent, see [`Effort::work`].
+    OverBudget,
+    /// Never began: no place was found where it could start; the reason is kept and counted.
+    NotReleased(&'static str),
     /// The computation could not go on; the reason is kept and counted.
     Failed(String),
 }
@@ -52,6 +57,11 @@ pub struct Effort {
 }
 
 impl Effort {
+    /// What is held against a rock's budget: steps, accepted or not, and flights.
+    pub fn work(&self) -> u64 {
+        self.steps + self.rejected + self.leaps
+    }
+
     /// Adds what another rock cost. Every field is named, so that a new counter does not compile until it is summed.
     pub fn add(&mut self, one: &Self) {
         let Self { steps, rejected, leaps, sweeps, triangles, unsettled } = *one;
@@ -177,10 +187,31 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
+    /// A release that could not be made: a row like any other, with nothing in it but the rock and its place.
+    pub fn not_released(index: usize, rock: Rock, start: Motion, why: &'static str) -> Self {
+        Self {
+            index,
+            rock,
+            start,
+            end: start,
+            stop: Stop::NotReleased(why),
+            extremes: Extremes::default(),
+            impact_count: 0,
+            tree_impact_count: 0,
+            impacts: Vec::new(),
+            path: Vec::new(),
+            crossings: Vec::new(),
+            visits: Vec::new(),
+            ledger: Ledger::default(),
+            released_j: 0.0,
+            effort: Effort::default(),
+        }
+    }
+
     /// Horizontal distance from release to end (m).
     pub fn runout_m(&self) -> f64 {
         let way = self.end.position_m - self.start.position_m;
-        way.x.hypot(way.y)
+        math::hypot(way.x, way.y)
     }
 
     /// Height lost from release to end (m), positive downwards.
@@ -190,7 +221,7 @@ impl Trajectory {
 
     /// Reach angle (Fahrböschung) `atan(drop/runout)` (degrees).
     pub fn reach_angle_deg(&self) -> f64 {
-        self.drop_m().atan2(self.runout_m()).to_degrees()
+        math::atan2(self.drop_m(), self.runout_m()).to_degrees()
     }
 
     /// `|numerical remainder| / energy released` (–).

@@ -10,6 +10,7 @@
 
 use super::fall::Fall;
 use crate::chance::{Chance, unit};
+use crate::math;
 use crate::rock::Vec3;
 use nalgebra::{Rotation3, Unit};
 use std::f64::consts::TAU;
@@ -99,9 +100,9 @@ fn draw(chance: &mut Chance, normal: &Vec3, most: f64, v: &Vec3) -> Option<Rotat
     let beside = if normal.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
     let across = normal.cross(&beside);
     (0..DRAWS).find_map(|_| {
-        let around = Rotation3::from_axis_angle(&Unit::new_normalize(*normal), TAU * unit(chance));
+        let around = math::turn(&Unit::new_normalize(*normal), TAU * unit(chance));
         let axis = Unit::new_normalize(around * across);
-        let turn = Rotation3::from_axis_angle(&axis, most * unit(chance));
+        let turn = math::turn(&axis, most * unit(chance));
         let seen = -(turn * normal).dot(v);
         (seen > speed * unit(chance)).then_some(turn)
     })

@@ -13,6 +13,7 @@ mod rover;
 mod split;
 mod wide;
 
+use super::calm::Calm;
 use super::fall::{Course, kept};
 use super::journey::{Journey, Keep};
 use super::{Stop, Trajectory};
@@ -43,6 +44,9 @@ pub struct Answer {
 /// six digits.
 const TOUCHING: f64 = 1e-4;
 
+/// Dashpots that are kept at hand.
+const KNOWN: usize = 16;
+
 /// One rock on its way.
 struct Rover<'a> {
     member: Seat,
@@ -50,8 +54,8 @@ struct Rover<'a> {
     state: State,
     /// When its flight ends (s), and how.
     lands: Option<(f64, Option<Stop>)>,
-    /// How long it has been slow (s).
-    quiet_s: f64,
+    /// Whether it is slow and gets no faster.
+    calm: Calm,
     /// Step its last island would have tried next (s).
     h: f64,
     /// Velocity when the window began, and the largest change of it since (m/s).
@@ -156,10 +160,20 @@ pub fn follow_watched(
     keep: impl Fn(usize) -> Keep,
     (stop, see): (&AtomicBool, impl FnMut(f64, &Census)),
 ) -> Option<(Vec<Trajectory>, Census)> {
+    // Most scenes give all rocks the same ground: its dashpot is sought once.
+    let mut known: Vec<Damping> = Vec::new();
+    let mut damping = |restitution| {
+        let found = known.iter().find(|one| one.restitution == restitution).copied();
+        found.unwrap_or_else(|| {
+            known.insert(0, Damping::of(restitution));
+            known.truncate(KNOWN);
+            known[0]
+        })
+    };
     let rovers = releases
         .iter()
         .enumerate()
-        .map(|(k, release)| Some(Box::new(rover(course, release, keep(k)))))
+        .map(|(k, release)| Some(Box::new(rover(course, release, keep(k), &mut damping))))
         .collect();
     let mut crowd = Crowd::new(course, answer, rovers);
     crowd.bond(answer);
@@ -177,9 +191,14 @@ fn capture(course: &Course) -> Capture {
     }
 }
 
-fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
+fn rover<'a>(
+    course: &Course<'a>,
+    release: &Release,
+    keep: Keep,
+    damping: &mut impl FnMut(Option<f64>) -> Damping,
+) -> Rover<'a> {
     let laws = release.grounds.iter().map(|ground| {
-        Law::new(ground, &Damping::of(ground.restitution), &release.rock, &capture(course))
+        Law::new(ground, &damping(ground.restitution), &release.rock, &capture(course))
     });
     let motion = release.motion;
     let body = Body::new(&release.rock, course.gravity_m_s2);
@@ -189,7 +208,7 @@ fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
         journey: Journey::new(course.terrain, release.rock, motion, (keep, course.watch)),
         state: State::Moving,
         lands: None,
-        quiet_s: 0.0,
+        calm: Calm::from(motion.position_m),
         h: f64::INFINITY,
         off: (Vec3::zeros(), 0.0),
         foreseen_m_s: 0.0,

@@ -15,6 +15,8 @@ use std::sync::atomic::AtomicBool;
 /// Spheres in one world.
 #[derive(Clone, Copy)]
 pub struct World {
+    pub scheme: Scheme,
+    pub tolerance_m_s: f64,
     pub gravity_m_s2: f64,
     pub restitution: f64,
     pub friction_angle_rad: f64,
@@ -24,6 +26,8 @@ pub struct World {
 }
 
 pub const WORLD: World = World {
+    scheme: Scheme::Rigid,
+    tolerance_m_s: 0.0,
     gravity_m_s2: 0.0,
     restitution: 0.5,
     friction_angle_rad: std::f64::consts::FRAC_PI_6,
@@ -43,8 +47,8 @@ impl World {
         longest_s: f64,
     ) -> (Vec<Trajectory>, Census) {
         let step = Settings {
-            scheme: Scheme::Rigid,
-            tolerance_m_s: 0.0,
+            scheme: self.scheme,
+            tolerance_m_s: self.tolerance_m_s,
             step_s: self.step_s,
             shear_memory: true,
             capture_speed_m_s: CASE.capture_speed_m_s,

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::hazard::{
     self, Arrival, AtPlace, BarrierSummary, Design, PERCENTS, Proportion, Rule, Statistic,
 };
+use crate::math;
 use crate::output::Results;
 use std::collections::BTreeMap;
 
@@ -59,7 +60,7 @@ fn left_is_uphill(
     let pair = corners.get(corners.len().checked_sub(1)? / 2..)?.get(..2)?;
     let [dx, dy] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
     let (x, y) = (0.5 * (pair[0][0] + pair[1][0]), 0.5 * (pair[0][1] + pair[1][1]));
-    let aside = 10.0 / dx.hypot(dy);
+    let aside = 10.0 / math::hypot(dx, dy);
     let height =
         |side: f64| ground.map(|g| g.height_at(x - side * aside * dy, y + side * aside * dx));
     let (left, right) = (height(1.0)?, height(-1.0)?);

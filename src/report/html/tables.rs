@@ -1,6 +1,7 @@
 //! Tables of estimates: numbers with as many digits as their intervals leave meaningful.
 
 use super::note;
+use crate::math;
 use crate::report::format::{self, escape};
 use crate::report::input::{Estimate, Is, Row, Table, energy_unit};
 use std::fmt::Write as _;
@@ -76,7 +77,7 @@ fn in_words(estimate: &Estimate) -> (String, String) {
     }
     let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
         // the last digit is at most a fifth of the interval
-        let leading = estimate.value.abs().log10().floor() - (0.2 * width).log10().floor();
+        let leading = math::log10(estimate.value.abs()).floor() - math::log10(0.2 * width).floor();
         (leading as i32 + 1).clamp(3, 5) as usize
     } else {
         4
@@ -87,13 +88,13 @@ fn in_words(estimate: &Estimate) -> (String, String) {
 
 /// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.
 fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
-    let exponent = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
+    let exponent = if value == 0.0 { 0.0 } else { math::log10(value.abs()).floor() };
     let last = exponent - digits as f64 + 1.0;
     move |v| {
         if !(-4.0..9.0).contains(&exponent) {
             return format::significant(format::rounded(v, digits), digits);
         }
-        let place = 10f64.powf(last.max(0.0));
+        let place = math::pow(10.0, last.max(0.0));
         format::decimal(
             if last > 0.0 { (v / place).round() * place } else { v },
             (-last).max(0.0) as usize,

@@ -11,8 +11,9 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::step::grip::Loss;
 use crate::step::law::Body;
-use contacts::{Contacts, Place};
-use flow::{Several, W, WAY, speed_of};
+use contacts::Place;
+use flow::{Several, W, speed_of};
+use std::f64::consts::TAU;
 
 /// One contact of a frozen impact.
 #[derive(Debug, Clone, Copy)]
@@ -60,10 +61,14 @@ pub(crate) struct Thrown {
 const LONGEST: f64 = 0.9;
 /// … and the first one at a tolerance of 1 is this.
 const FIRST: f64 = 3.5;
+/// A step shorter than this is not cut at a kink (radians).
+const SHORTEST: f64 = 1e-9;
 /// An approach slower than this share of the error allowed is none (–).
 const NOTHING: f64 = 1e-3;
-/// Radians of the softest contact after which an impact is ended: rattling between walls has no other end.
+/// Radians of the softest contact, flights between touches apart, after which an impact is ended: rattling between walls has no other end.
 const MOST_TIME: f64 = 300.0;
+/// A rock whose motion changes by no more than so many errors allowed over a swing of the softest contact is jammed (–).
+const QUIET: f64 = 3.0;
 /// Steps after which it is ended.
 const MOST_STEPS: u32 = 20_000;
 
@@ -96,13 +101,13 @@ pub(crate) fn throw(
     let rolls = contacts.iter().any(|contact| contact.law.k_r > 0.0);
     let how = (body, contacts, tolerance);
     match (contacts.len(), rolls) {
-        (2, false) => several::<2, 15, 8>(how, (v, w), same),
-        (2, true) => several::<2, 21, 8>(how, (v, w), same),
-        (3, false) => several::<3, 18, 12>(how, (v, w), same),
-        (3, true) => several::<3, 27, 12>(how, (v, w), same),
-        (4, false) => several::<4, 21, 16>(how, (v, w), same),
-        (4, true) => several::<4, 33, 16>(how, (v, w), same),
-        _ => several::<MOST, { 9 + 6 * MOST }, { 4 * MOST }>(how, (v, w), same),
+        (2, false) => several::<2, 15, 8, 6>(how, (v, w), same),
+        (2, true) => several::<2, 21, 8, 6>(how, (v, w), same),
+        (3, false) => several::<3, 18, 12, 9>(how, (v, w), same),
+        (3, true) => several::<3, 27, 12, 9>(how, (v, w), same),
+        (4, false) => several::<4, 21, 16, 12>(how, (v, w), same),
+        (4, true) => several::<4, 33, 16, 12>(how, (v, w), same),
+        _ => several::<MOST, { 9 + 6 * MOST }, { 4 * MOST }, { 3 * MOST }>(how, (v, w), same),
     }
 }
 
@@ -134,20 +139,19 @@ fn alone(
     end
 }
 
-/// Several contacts; `K` of them at most, `N` numbers that change, `Q` that are summed up.
-fn several<const K: usize, const N: usize, const Q: usize>(
+/// Several contacts; `K` of them at most, `N` numbers that change, `Q` that are summed up, `P` possible kinks.
+fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     (body, contacts, tolerance): (&Body, &[Struck], f64),
     (v, w): (&Vec3, &Vec3),
     mut end: Thrown,
 ) -> Thrown {
     let speed = v.norm();
     let flow = Several::<K>::new(body, contacts, LOCAL * tolerance);
-    let mut run = Run::<K, N, Q>::new(flow, v / speed, w * (body.radius / speed));
+    let mut run = Run::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
     end.settled = run.follow(FIRST * tolerance.powf(0.2));
     end.effort = run.effort;
-    let motion = (speed_of(&run.y), W.map(|k| run.y[k]).into());
     let start = (v / speed, w * (body.radius / speed));
-    let place = run.flow.contacts.come_to_an_end(start, motion, run.flow.nothing());
+    let place = run.flow.contacts.come_to_an_end(start, run.place(), run.flow.nothing());
     let mut parts = run.parts();
     for (part, plastic) in parts.iter_mut().zip(place.plastic) {
         part[1] += plastic;
@@ -171,7 +175,7 @@ fn several<const K: usize, const N: usize, const Q: usize>(
 }
 
 /// An impact being followed.
-struct Run<const K: usize, const N: usize, const Q: usize> {
+struct Run<const K: usize, const N: usize, const Q: usize, const P: usize> {
     flow: Several<K>,
     y: [f64; N],
     sums: [f64; Q],
@@ -180,7 +184,7 @@ struct Run<const K: usize, const N: usize, const Q: usize> {
     effort: Effort,
 }
 
-impl<const K: usize, const N: usize, const Q: usize> Run<K, N, Q> {
+impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q, P> {
     fn new(flow: Several<K>, v: Vec3, w: Vec3) -> Self {
         let mut y = [0.0; N];
         y[3..6].copy_from_slice(v.as_slice());
@@ -190,10 +194,13 @@ impl<const K: usize, const N: usize, const Q: usize> Run<K, N, Q> {
 
     /// Steps until nothing pushes and nothing comes nearer.
     fn follow(&mut self, first: f64) -> Settled {
-        let (mut wish, mut time) = (first, 0.0);
-        let most = MOST_TIME / self.flow.contacts.softest;
+        let (mut wish, mut kept, mut time) = (first, 0.0, 0.0);
+        let softest = self.flow.contacts.softest;
+        let (most, mut quiet) = (MOST_TIME / softest, Quiet::default());
+        // Whether the contacts have been changed without a step: once is enough.
+        let mut turned = false;
         self.flow.press(&mut self.y);
-        let mut rates = self.flow.rates_of::<N, Q>(&self.y);
+        let mut rates = self.flow.rates_of::<N, Q, P>(&self.y);
         loop {
             self.note();
             if time > most || self.effort.steps + self.effort.rejected > MOST_STEPS {
@@ -201,38 +208,56 @@ impl<const K: usize, const N: usize, const Q: usize> Run<K, N, Q> {
             }
             if self.flow.is_free(&self.y) {
                 let Some(wait) = self.flow.next_touch(&self.y) else { return Settled::Free };
+                // Exact and free of cost: not counted.
                 self.flow.drift(&mut self.y, wait);
-                time += wait;
+                self.effort.steps += 1;
                 rates = self.flow.rates_of(&self.y);
                 continue;
+            }
+            if quiet.stays(self.place(), time, QUIET * self.flow.allowed) > TAU / softest {
+                return Settled::Jammed;
             }
             let h = wish.min(self.flow.longest);
             let tried = step(&self.flow, &self.y, &rates, h);
             self.effort.evaluations += 6;
-            if tried.error2 > 1.0 {
+            let kink = tried.cut(h, self.flow.allowed).filter(|_| h > SHORTEST);
+            if tried.error2 > 1.0 || kink.is_some() {
                 self.effort.rejected += 1;
-                wish = h * growth(tried.error2).min(0.7);
+                // Beyond a kink the law is as smooth as before it.
+                kept = if kink.is_some() { h.max(kept) } else { 0.0 };
+                wish = h * kink.unwrap_or_else(|| growth(tried.error2).min(0.7));
                 continue;
             }
             match self.flow.crossing(&self.y, &tried.y, h) {
-                Some(Place::Now) => rates = self.flow.rates_of(&self.y),
+                Some(Place::Now) if !turned => {
+                    turned = true;
+                    rates = self.flow.rates_of(&self.y);
+                }
                 Some(Place::At(share)) => {
                     self.effort.rejected += 1;
+                    kept = h.max(kept);
                     wish = h * share;
                 }
-                None => {
+                _ => {
+                    turned = false;
                     self.y = tried.y;
                     for (sum, q) in self.sums.iter_mut().zip(tried.q) {
                         *sum += q;
                     }
                     time += h;
                     self.effort.steps += 1;
-                    wish = h * growth(tried.error2);
+                    wish = f64::max(h * growth(tried.error2), kept);
+                    kept = 0.0;
                     let changed = self.flow.press(&mut self.y);
                     rates = if changed { self.flow.rates_of(&self.y) } else { tried.last };
                 }
             }
         }
+    }
+
+    /// Velocity, and spin times radius.
+    fn place(&self) -> (Vec3, Vec3) {
+        (speed_of(&self.y), W.map(|k| self.y[k]).into())
     }
 
     /// Notes how fast the contacts that are pressed come nearer.
@@ -259,8 +284,25 @@ impl<const K: usize, const N: usize, const Q: usize> Run<K, N, Q> {
     }
 }
 
-/// No rate of anything.
-fn still<const N: usize, const Q: usize>() -> Rates<N, Q> {
-    Rates { y: [0.0; N], q: [0.0; Q], kinks: [[0.0; 2]; 2] }
+/// Since when the motion of a rock has not changed.
+#[derive(Default)]
+struct Quiet {
+    since: f64,
+    motion: (Vec3, Vec3),
 }
-const _: usize = WAY;
+
+impl Quiet {
+    /// For how long velocity and spin have been the same, to `allowed`.
+    fn stays(&mut self, (v, w): (Vec3, Vec3), time: f64, allowed: f64) -> f64 {
+        let change2 = (v - self.motion.0).norm_squared().max((w - self.motion.1).norm_squared());
+        if change2 > allowed * allowed {
+            (self.since, self.motion) = (time, (v, w));
+        }
+        time - self.since
+    }
+}
+
+/// No rate of anything.
+fn still<const N: usize, const Q: usize, const P: usize>() -> Rates<N, Q, P> {
+    Rates { y: [0.0; N], q: [0.0; Q], kinks: [[0.0; 2]; P] }
+}

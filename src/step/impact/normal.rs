@@ -19,6 +19,8 @@ const TERMS: usize = 14;
 const NEAR: f64 = 0.3;
 /// Steps of Newton's rule at most, with halving where it would leave its bracket.
 const NEWTON: u32 = 80;
+/// Damping below this is none (–): what a search for that of `e = 1` leaves.
+pub(super) const NONE: f64 = 1e-12;
 /// Damping this near to critical is critical (–).
 const CRITICAL: f64 = 1e-9;
 
@@ -46,6 +48,7 @@ pub(super) struct Exit {
 
 impl Swing {
     pub(super) fn new(zeta: f64) -> Self {
+        let zeta = if zeta > NONE { zeta } else { 0.0 };
         Self { zeta, kept: restitution(zeta), contact: time_at(zeta, zeta - 0.5 / zeta) }
     }
 

@@ -6,8 +6,7 @@ pub(super) const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 const A2: [f64; 1] = [0.2];
 const A3: [f64; 2] = [3.0 / 40.0, 9.0 / 40.0];
 const A4: [f64; 3] = [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0];
-const A5: [f64; 4] =
-    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0];
+const A5: [f64; 4] = [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0];
 const A6: [f64; 5] =
     [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0];
 /// Weights of the first, third … sixth stage in the step.
@@ -22,44 +21,44 @@ const E: [f64; 6] = [
     -1.0 / 40.0,
 ];
 
-/// Rates of `N` numbers that change and of `Q` that are only summed up.
+/// Rates of `N` numbers that change and of `Q` that are only summed up, and `P` places where the law may have a kink.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rates<const N: usize, const Q: usize> {
+pub(super) struct Rates<const N: usize, const Q: usize, const P: usize> {
     pub(super) y: [f64; N],
     pub(super) q: [f64; Q],
-    /// What shear and rolling ask for, squared, and their caps: where they cross, the law has a kink.
-    pub(super) kinks: [[f64; 2]; 2],
+    /// What an element asks for, squared, and its cap: where they cross, the law has a kink.
+    pub(super) kinks: [[f64; 2]; P],
 }
 
 /// Something that changes.
-pub(super) trait Flow<const N: usize, const Q: usize> {
+pub(super) trait Flow<const N: usize, const Q: usize, const P: usize> {
     /// Rates at the time of stage `node`.
-    fn rates(&self, node: usize, y: &[f64; N]) -> Rates<N, Q>;
+    fn rates(&self, node: usize, y: &[f64; N]) -> Rates<N, Q, P>;
     /// Square of a local error over the one allowed.
     fn size2(&self, off: &[f64; N]) -> f64;
 }
 
 /// A step tried.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tried<const N: usize, const Q: usize> {
+pub(super) struct Tried<const N: usize, const Q: usize, const P: usize> {
     pub(super) y: [f64; N],
     pub(super) q: [f64; Q],
     /// Rates at its end.
-    pub(super) last: Rates<N, Q>,
+    pub(super) last: Rates<N, Q, P>,
     /// Square of its local error over the one allowed.
     pub(super) error2: f64,
-    /// What shear and rolling ask for, squared, and their caps, at every stage.
-    kinks: [[[f64; 2]; 2]; 7],
+    /// What the elements ask for, squared, and their caps, at every stage.
+    kinks: [[[f64; 2]; P]; 7],
 }
 
 /// Tries a step of length `h` from `y`, where the rates are `first`.
 #[inline]
-pub(super) fn step<const N: usize, const Q: usize>(
-    flow: &impl Flow<N, Q>,
+pub(super) fn step<const N: usize, const Q: usize, const P: usize>(
+    flow: &impl Flow<N, Q, P>,
     y: &[f64; N],
-    first: &Rates<N, Q>,
+    first: &Rates<N, Q, P>,
     h: f64,
-) -> Tried<N, Q> {
+) -> Tried<N, Q, P> {
     let k1 = first;
     let k2 = flow.rates(1, &mixed(y, h, [&k1.y], A2));
     let k3 = flow.rates(2, &mixed(y, h, [&k1.y, &k2.y], A3));
@@ -109,27 +108,36 @@ pub(super) fn growth(error2: f64) -> f64 {
     if root * RATIO.1 <= SAFETY { RATIO.1 } else { (SAFETY / root).max(RATIO.0) }
 }
 
-impl<const N: usize, const Q: usize> Tried<N, Q> {
-    /// Where in the step (–) an element first began to slip or to stick, and by how much it is on the other side of its cap
-    /// then, if it did.
+/// A kink nearer to an end of a step than this share of it is not looked for (–) …
+const AT_AN_END: (f64, f64) = (0.02, 0.98);
+/// … and one found is passed by this share, so that it lies in the shorter step (–).
+const PAST: f64 = 1.01;
+/// A kink is cut at where what is beyond it, times the step, is more than so many errors allowed (–): the pair's own estimate
+/// may not see it.
+const FELT: f64 = 20.0;
+
+impl<const N: usize, const Q: usize, const P: usize> Tried<N, Q, P> {
+    /// At which share of the step of length `h` it should end instead (–), because an element begins to slip, to stick or to
+    /// open there, and not little beyond it.
     #[inline]
-    pub(super) fn kink(&self) -> Option<(f64, f64)> {
+    pub(super) fn cut(&self, h: f64, allowed: f64) -> Option<f64> {
         let slips = |[asked2, cap]: [f64; 2]| asked2 > cap * cap;
         let first = self.kinks[0].map(slips);
-        let turns = |k: usize| {
-            self.kinks[1..].iter().any(|kinks| slips(kinks[k]) != first[k])
-        };
-        let (shear, rolling) = (turns(0), turns(1));
-        if !shear && !rolling {
-            return None;
+        let mut cut: Option<f64> = None;
+        for (k, first) in first.into_iter().enumerate() {
+            if self.kinks[1..].iter().any(|kinks| slips(kinks[k]) != first) {
+                let (at, beyond) = self.kink(k);
+                let is_felt = at > AT_AN_END.0 && at < AT_AN_END.1 && beyond * h > FELT * allowed;
+                if is_felt && cut.is_none_or(|cut| at < cut) {
+                    cut = Some(at);
+                }
+            }
         }
-        let none = (1.0, 0.0);
-        let shear = if shear { self.kink_of(0) } else { none };
-        let rolling = if rolling { self.kink_of(1) } else { none };
-        Some((shear.0.min(rolling.0), shear.1.max(rolling.1)))
+        cut.map(|at| at * PAST)
     }
 
-    fn kink_of(&self, k: usize) -> (f64, f64) {
+    /// Where in the step element `k` first crosses its cap, and how far beyond it gets.
+    fn kink(&self, k: usize) -> (f64, f64) {
         let over = |stage: usize| {
             let [asked2, cap] = self.kinks[stage][k];
             asked2.sqrt() - cap
@@ -140,10 +148,8 @@ impl<const N: usize, const Q: usize> Tried<N, Q> {
             let here = over(stage);
             if (here > 0.0) != (first > 0.0) {
                 beyond = beyond.max(here.abs());
-                if found.is_none() {
-                    let share = before / (before - here);
-                    found = Some(at + (node - at) * share);
-                }
+                let share = before / (before - here);
+                found = found.or(Some(at + (node - at) * share));
             }
             (before, at) = (here, node);
         }

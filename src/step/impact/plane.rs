@@ -3,7 +3,7 @@
 use super::Effort;
 use super::normal::{Exit, Swing};
 use super::rub::{Both, Element, Shear};
-use super::run::{Span, run};
+use super::run::{Pressed, Span, run};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::step::grip::Loss;
@@ -124,9 +124,7 @@ impl Plane {
         Followed::Left(Rebound {
             time_s: (exit.lift + exit.out) / self.omega,
             shift_m: frame.out_along(along.way.map(|x| x * scale)),
-            velocity_m_s: frame.out_local(
-                [along.v[0], along.v[1], exit.speed].map(|v| v * speed),
-            ),
+            velocity_m_s: frame.out_local([along.v[0], along.v[1], exit.speed].map(|v| v * speed)),
             spin_rad_s: if self.rubs() { frame.out_local(along.w.map(|w| w * spin)) } else { *w },
             deepest_m: self.swing.deepest(-gn) * scale,
             loss: Loss {
@@ -210,12 +208,8 @@ impl Plane {
         let ([vx, vy], [wx, wy, wz]) = (start.v, start.w);
         let begin = [vx, vy, wx, wy, wz, 0.0, 0.0, 0.0, 0.0, 0.0];
         let (y, [slipping, x, z, rolling, shear]) = self.run(&flow, begin, start, t, effort);
-        let mut end = Along2 {
-            v: [y[0], y[1]],
-            w: [y[2], y[3], y[4]],
-            way: [x, z],
-            lost: [0.0; 3],
-        };
+        let mut end =
+            Along2 { v: [y[0], y[1]], w: [y[2], y[3], y[4]], way: [x, z], lost: [0.0; 3] };
         let lost = self.settle(start, &mut end);
         let slipping = slipping.max(0.0);
         end.lost = shared(lost, [slipping, (shear - slipping).max(0.0), rolling.max(0.0)]);
@@ -223,7 +217,7 @@ impl Plane {
     }
 
     #[inline]
-    fn run<P: super::run::Pressed<N, Q>, const N: usize, const Q: usize>(
+    fn run<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize>(
         &self,
         flow: &P,
         begin: [f64; N],
@@ -233,9 +227,9 @@ impl Plane {
     ) -> ([f64; N], [f64; Q]) {
         let span = self.span(start, t);
         if start.allowed >= COARSE {
-            run::<P, N, Q, 9>(flow, begin, &span, effort)
+            run::<P, N, Q, K, 9>(flow, begin, &span, effort)
         } else {
-            run::<P, N, Q, 17>(flow, begin, &span, effort)
+            run::<P, N, Q, K, 17>(flow, begin, &span, effort)
         }
     }
 

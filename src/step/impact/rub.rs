@@ -70,9 +70,9 @@ pub(super) struct Shear {
 }
 
 /// Slip, spring `s`; summed up: what slipping takes, slip.
-impl Pressed<4, 3> for Shear {
+impl Pressed<4, 3, 1> for Shear {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 4]) -> Rates<4, 3> {
+    fn rates(&self, f: f64, y: &[f64; 4]) -> Rates<4, 3, 1> {
         let Element { damping, rate, .. } = self.element;
         let asked = [y[0] + y[2], y[1] + y[3]];
         let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
@@ -81,14 +81,9 @@ impl Pressed<4, 3> for Shear {
         let push = self.lightness * damping;
         let g = self.gravity;
         Rates {
-            y: [
-                g[0] - push * p[0],
-                g[1] - push * p[1],
-                rate * (p[0] - y[2]),
-                rate * (p[1] - y[3]),
-            ],
+            y: [g[0] - push * p[0], g[1] - push * p[1], rate * (p[0] - y[2]), rate * (p[1] - y[3])],
             q: [damping * cap * slips, y[0], y[1]],
-            kinks: [[asked2, cap], [0.0; 2]],
+            kinks: [[asked2, cap]],
         }
     }
 
@@ -112,9 +107,9 @@ pub(super) struct Both {
 }
 
 /// Velocity, spin, springs; summed up: what slipping takes, way, work of rolling and of shear.
-impl Pressed<10, 5> for Both {
+impl Pressed<10, 5, 2> for Both {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 10]) -> Rates<10, 5> {
+    fn rates(&self, f: f64, y: &[f64; 10]) -> Rates<10, 5, 2> {
         let (shear, rolling) = (self.shear, self.rolling);
         let slip = [y[0] - y[3], y[1] + y[2]];
         let asked = [slip[0] + y[5], slip[1] + y[6]];

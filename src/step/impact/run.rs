@@ -6,20 +6,13 @@ use super::pair::{Flow, NODES, Rates, growth, step};
 
 /// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits.
 const LONGEST: f64 = 0.9;
-/// A kink nearer to the start of a step than this share of it is not looked for (–) …
-const AT_ONCE: f64 = 0.02;
-/// … and one found is passed by this share, so that it lies in the shorter step (–).
-const PAST: f64 = 1.01;
-/// A kink is cut at where what is beyond it, times the step, is more than so many errors allowed (–): the pair's own estimate
-/// may not see it.
-const FELT: f64 = 20.0;
 /// Steps below this share of the whole are taken as they are (–): rounding.
 const SHORTEST: f64 = 1e-9;
 
 /// A flow under a force that is known.
-pub(super) trait Pressed<const N: usize, const Q: usize> {
+pub(super) trait Pressed<const N: usize, const Q: usize, const K: usize> {
     /// Rates under the force `f`.
-    fn rates(&self, f: f64, y: &[f64; N]) -> Rates<N, Q>;
+    fn rates(&self, f: f64, y: &[f64; N]) -> Rates<N, Q, K>;
     /// Square of an error.
     fn size2(&self, off: &[f64; N]) -> f64;
 }
@@ -62,11 +55,11 @@ struct Under<'a, P, const D: usize> {
     over_allowed2: f64,
 }
 
-impl<P: Pressed<N, Q>, const N: usize, const Q: usize, const D: usize> Flow<N, Q>
-    for Under<'_, P, D>
+impl<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
+    Flow<N, Q, K> for Under<'_, P, D>
 {
     #[inline]
-    fn rates(&self, node: usize, y: &[f64; N]) -> Rates<N, Q> {
+    fn rates(&self, node: usize, y: &[f64; N]) -> Rates<N, Q, K> {
         self.law.rates(self.force.nodes[node], y)
     }
 
@@ -90,7 +83,13 @@ pub(super) struct Span {
 }
 
 /// Runs from `y` over the whole span; `D` terms of the force's series. Returns the end and the sums.
-pub(super) fn run<P: Pressed<N, Q>, const N: usize, const Q: usize, const D: usize>(
+pub(super) fn run<
+    P: Pressed<N, Q, K>,
+    const N: usize,
+    const Q: usize,
+    const K: usize,
+    const D: usize,
+>(
     law: &P,
     mut y: [f64; N],
     span: &Span,
@@ -115,9 +114,7 @@ pub(super) fn run<P: Pressed<N, Q>, const N: usize, const Q: usize, const D: usi
         force.aim(h);
         let tried = step(&Under { law, force: &force, over_allowed2 }, &y, &rates, h);
         effort.evaluations += 6;
-        let kink = tried.kink().filter(|(at, beyond)| {
-            *at > AT_ONCE && *at < 0.95 && *beyond * h > FELT * span.allowed
-        });
+        let kink = tried.cut(h, span.allowed);
         let short = h < SHORTEST * span.length;
         if (tried.error2 <= 1.0 && kink.is_none()) || short {
             (y, rates) = (tried.y, tried.last);
@@ -133,7 +130,7 @@ pub(super) fn run<P: Pressed<N, Q>, const N: usize, const Q: usize, const D: usi
             effort.rejected += 1;
             // Beyond a kink the law is as smooth as before it.
             kept = if kink.is_some() { h.max(kept) } else { 0.0 };
-            wish = h * kink.map_or_else(|| growth(tried.error2).min(0.7), |(at, _)| at * PAST);
+            wish = h * kink.unwrap_or_else(|| growth(tried.error2).min(0.7));
         }
     }
     (y, sum)

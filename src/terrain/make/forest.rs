@@ -2,6 +2,7 @@
 
 use super::stems::{Stem, prism, ring};
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_TEXT};
 use crate::terrain::Terrain;
 use crate::terrain::stl::Facet;
 use serde::Deserialize;
@@ -31,7 +32,7 @@ struct Written {
 /// # Errors
 /// A file that cannot be read, a row without these numbers, a diameter or height that is not above 0, no row at all.
 pub fn read_list(path: &Path) -> Result<Vec<(u64, Stem)>> {
-    let file = std::fs::File::open(path).map_err(Error::file("read", path))?;
+    let file = file::open(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers().cloned().unwrap_or_default();
     let mut stems = Vec::new();

@@ -280,10 +280,9 @@ impl<'a> Job<'a> {
             islands.join(tie.a, tie.b);
         }
         for list in islands.lists() {
-            let rest = self.course.rest;
             let quiet = |k: &u32| {
                 let rover = &self.rovers[*k as usize];
-                rover.state == State::Moving && !rover.member.flying && rover.quiet_s >= rest.time_s
+                rover.state == State::Moving && !rover.member.flying && rover.calm.rests()
             };
             if list.iter().all(quiet) {
                 for k in list {

@@ -8,6 +8,7 @@ use crate::rock::{Motion, Vec3};
 use crate::step::Scheme;
 use crate::step::adaptive::ONSET;
 use crate::step::grip::{Loss, World};
+use crate::trajectory::calm::Calm;
 use crate::trajectory::fall::{Course, IMPACT_TIMES};
 use crate::trajectory::{PathState, Stop, Trajectory};
 use std::f64::consts::PI;
@@ -99,7 +100,7 @@ impl Rover<'_> {
         if self.member.flying {
             self.member.flying = false;
             self.lands = None;
-            self.quiet_s = 0.0;
+            self.calm = Calm::from(self.journey.now.position_m);
             self.member.grip.holds.clear();
             self.member.grip.stored = 0.0;
             self.began_j = (self.total_j(course), self.journey.ledger.others_j);
@@ -212,14 +213,13 @@ impl Rover<'_> {
         self.journey.end_impact_in_time();
         if was_flying {
             self.lands = None;
-            self.quiet_s = 0.0;
+            self.calm = Calm::from(self.journey.now.position_m);
             self.began_j = (before_j, self.journey.ledger.others_j - given_j);
         }
         if self.member.flying {
             self.end_episode(course);
         }
-        let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.member.body.radius);
-        self.quiet_s = if slow < course.rest.speed_m_s { self.quiet_s + dt } else { 0.0 };
+        self.calm.note(dt, &to, self.member.body.radius, &course.rest);
     }
 
     /// Largest rise of energy over the contact episode that ends now.

@@ -4,11 +4,12 @@ use super::Struck;
 use crate::contact::MOST;
 use crate::ground::restitution;
 use crate::rock::Vec3;
+use crate::step::impact::normal::NONE;
 use crate::step::impact::rub::Element;
 use crate::step::law::Body;
 
 /// Sweeps of projections at the end, at most.
-const SWEEPS: u32 = 200;
+const SWEEPS: u32 = 5000;
 /// What a captured contact throws back by its own spring may be so much more than its restitution says (–).
 const ALLOWANCE: f64 = 1.05;
 
@@ -65,10 +66,11 @@ impl Contacts {
         let contact = |struck: &Struck| {
             let law = struck.law;
             let c_n = if struck.captured { law.c_n_captured } else { law.c_n };
+            let damping = c_n * struck.stiffness_scale.sqrt() / momentum;
             Contact {
                 n: struck.normal,
                 stiffness: stiffness(struck) / stiffest,
-                damping: c_n * struck.stiffness_scale.sqrt() / momentum,
+                damping: if damping > NONE { damping } else { 0.0 },
                 shear: Element::shear(body, law, stiffest),
                 rolling: Element::rolling(body, law, stiffest),
                 captured: struck.captured,
@@ -122,7 +124,7 @@ impl Contacts {
                     largest = largest.max(up.abs());
                 }
             }
-            if largest <= 1e-13 {
+            if largest <= 1e-10 {
                 break;
             }
         }

@@ -33,13 +33,15 @@ pub(super) struct Several<const K: usize> {
     damping: [f64; MOST],
     /// Longest step.
     pub(super) longest: f64,
-    allowed: f64,
+    /// Local error allowed.
+    pub(super) allowed: f64,
 }
 
 impl<const K: usize> Several<K> {
     pub(super) fn new(body: &Body, struck: &[Struck], allowed: f64) -> Self {
         let contacts = Contacts::new(body, struck);
-        let fastest = contacts.list().iter().fold(1.0f64, |rate, contact| rate.max(contact.damping));
+        let fastest =
+            contacts.list().iter().fold(1.0f64, |rate, contact| rate.max(contact.damping));
         Self {
             contacts,
             // All of them at penetration zero: those that come nearer press at once.
@@ -98,11 +100,11 @@ impl<const K: usize> Several<K> {
         }
     }
 
-    /// Normal force of contact `k`.
+    /// Normal force of contact `k`, if it could pull.
     #[inline]
-    fn push<const N: usize>(&self, k: usize, y: &[f64; N]) -> f64 {
+    fn asked<const N: usize>(&self, k: usize, y: &[f64; N]) -> f64 {
         let [x, rate] = self.depth(k, y);
-        (self.contacts.list()[k].stiffness * x + self.damping[k] * rate).max(0.0)
+        self.contacts.list()[k].stiffness * x + self.damping[k] * rate
     }
 
     /// Whether no contact pushes.
@@ -110,7 +112,8 @@ impl<const K: usize> Several<K> {
         let nothing = self.nothing() * self.nothing();
         (0..self.contacts.list().len()).all(|k| {
             let [x, rate] = self.depth(k, y);
-            !self.pressed[k] || (self.push(k, y) <= nothing && rate <= 0.0)
+            !self.pressed[k]
+                || (self.asked(k, y) <= nothing && rate <= 0.0)
                 || (x.abs() <= self.nothing() && rate.abs() <= self.nothing())
         })
     }
@@ -166,8 +169,11 @@ impl<const K: usize> Several<K> {
 
     /// Rates of everything.
     #[inline]
-    pub(super) fn rates_of<const N: usize, const Q: usize>(&self, y: &[f64; N]) -> Rates<N, Q> {
-        let mut rates = still::<N, Q>();
+    pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
+        &self,
+        y: &[f64; N],
+    ) -> Rates<N, Q, P> {
+        let mut rates = still::<N, Q, P>();
         let rolls = N > SPRINGS + 3 * K;
         let (v, w, turns) = (speed_of(y), three(y, W[0]), self.contacts.turns);
         let (mut dv, mut dw) = (Vec3::zeros(), Vec3::zeros());
@@ -176,7 +182,9 @@ impl<const K: usize> Several<K> {
                 continue;
             }
             let (n, at) = (&contact.n, SPRINGS + 3 * k);
-            let push = self.push(k, y);
+            let asked = self.asked(k, y);
+            let push = asked.max(0.0);
+            rates.kinks[3 * k] = [push * push, (-asked).max(0.0)];
             let approach = -n.dot(&v);
             let slip = v + n * approach + n.cross(&w);
             let held = three(y, at);
@@ -190,14 +198,13 @@ impl<const K: usize> Several<K> {
             rates.q[4 * k] = contact.shear.damping * cap * slips;
             rates.q[4 * k + 1] = drag.dot(&slip);
             rates.q[4 * k + 3] = push * approach;
-            if k < 2 {
-                rates.kinks[k] = [asked.norm_squared(), cap];
-            }
+            rates.kinks[3 * k + 1] = [asked.norm_squared(), cap];
             if rolls {
                 let at = SPRINGS + 3 * (K + k);
                 let wound = three(y, at);
                 let asked = w + wound;
-                let (share, ..) = contact.rolling.share(asked.norm_squared(), push);
+                let (share, _, cap) = contact.rolling.share(asked.norm_squared(), push);
+                rates.kinks[3 * k + 2] = [asked.norm_squared(), cap];
                 let p = asked * share;
                 let moment = p * contact.rolling.damping;
                 put(&mut rates.y, at, &((p - wound) * contact.rolling.rate));
@@ -216,9 +223,9 @@ fn put<const N: usize>(y: &mut [f64; N], at: usize, x: &Vec3) {
     y[at..at + 3].copy_from_slice(x.as_slice());
 }
 
-impl<const K: usize, const N: usize, const Q: usize> Flow<N, Q> for Several<K> {
+impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P> for Several<K> {
     #[inline]
-    fn rates(&self, _node: usize, y: &[f64; N]) -> Rates<N, Q> {
+    fn rates(&self, _node: usize, y: &[f64; N]) -> Rates<N, Q, P> {
         self.rates_of(y)
     }
 

@@ -1,5 +1,6 @@
 //! Laws that the impacts must obey.
 
+mod frozen;
 mod oracle;
 mod plane;
 
@@ -28,6 +29,14 @@ fn case(ground: &Ground, radius_m: f64, gravity: f64) -> (Body, Law) {
     let capture = Capture { own_m_s: None, tolerance_m_s: 1e-4, gravity_m_s2: gravity };
     let law = Law::new(ground, &Damping::of(ground.restitution), &rock, &capture);
     (Body::new(&rock, gravity), law)
+}
+
+/// Numbers in [0, 1), the same every time.
+fn uniforms(mut seed: u64) -> impl FnMut() -> f64 {
+    move || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    }
 }
 
 /// Energy of motion (J).
