@@ -6,12 +6,13 @@ mod cost;
 mod grounds;
 mod inputs;
 mod listing;
+mod slips;
 mod stiffness;
 mod watch;
 
 pub use annual::Year;
 pub use cost::Cost;
-pub use stiffness::OwnDissipation;
+pub use stiffness::{FastWarning, OwnDissipation};
 pub use watch::{Curtain, Footprint, Lattice, Piece, Watch};
 
 use crate::chance::Distribution;
@@ -76,6 +77,8 @@ pub struct Plan {
     pub scene_hash: String,
     /// Version of this crate, and after the + the fingerprint of its sources.
     pub version: &'static str,
+    /// Map position of the mesh files' (0, 0, 0) (m).
+    pub mesh_origin_m: [f64; 3],
     /// EPSG code of the map coordinates.
     pub epsg: Option<u32>,
     /// Where chance starts.
@@ -148,6 +151,8 @@ pub struct Plan {
     pub sources: [String; 2],
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
+    /// What it should know if rocks come so fast.
+    pub fast_warnings: Vec<FastWarning>,
 }
 
 /// Local error of the adaptive scheme (m/s): statistics of runout no longer change below it.
@@ -178,9 +183,10 @@ impl Plan {
         grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
-        let mut warnings = grounds::unused(scene, &terrain);
+        let mut warnings = [slips::of(scene), grounds::unused(scene, &terrain)].concat();
+        let mut fast_warnings = Vec::new();
         releases.try_out(&terrain, &mut warnings)?;
-        stiffness::check(scene, &terrain, &mut warnings)?;
+        stiffness::check(scene, &terrain, &mut fast_warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
         stiffness::flutter(&step, &mut warnings);
         let year = annual::year(scene, &terrain, &mut warnings)?;
@@ -196,6 +202,7 @@ impl Plan {
             scene_file: scene.file.clone(),
             scene_hash: scene.hash.clone(),
             version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
+            mesh_origin_m: scene.origin_m,
             epsg: scene.epsg,
             seed: scene.seed,
             count: scene.release.count,
@@ -256,6 +263,7 @@ impl Plan {
             rolling_stops: grounds::rolling_stops(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
+            fast_warnings,
             terrain,
         };
         if plan.rock_against_rock.is_kept() {

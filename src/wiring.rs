@@ -9,8 +9,9 @@ use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::file;
 use rockfall::hazard::{Barrier, Elsewhere, Hazard, LineInfo, MapFrame, Rule, Way};
-use rockfall::output::{self, Identity, Mode, Output, RunInfo};
+use rockfall::output::{self, Identity, Mode, Output, RunInfo, Site, Zone};
 use rockfall::plan::{self, Curtain, Plan};
+use rockfall::release::Where;
 use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::scene::{BarrierTable, DesignTable, Scene};
@@ -177,6 +178,9 @@ fn beside<T: Send>(
 /// If it is out of reach: the rounds before stay, and can be finished without the aim.
 fn more(until: Option<&Aim>, hazard: &Hazard, done: usize) -> Result<Option<usize>> {
     let Some(aim) = until else { return Ok(None) };
+    if let Some(why) = aim.refusal(hazard) {
+        return Err(Error::Request(format!("{why}; finish these with --releases {done} --resume")));
+    }
     let values = hazard.values(aim.quantity);
     let needed = aim.needs(values, done);
     if needed > MOST_RELEASES as f64 {
@@ -206,6 +210,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
             of_releases: plan.count,
         },
         origin_m: plan.terrain.origin_m,
+        site: site(plan),
         ground_of_sheet: plan
             .terrain
             .sheets
@@ -228,6 +233,22 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         warnings: plan.warnings.clone(),
         mesh_health,
     })
+}
+
+/// Where meshes and releases lie.
+fn site(plan: &Plan) -> Site {
+    let zone = |place: &Where| match place {
+        Where::Points(points) => Zone::Points(points.iter().map(|point| point.at_m).collect()),
+        Where::Line(line) => Zone::Line(line.corners_m().to_vec()),
+        Where::Area(area) => Zone::Polygon(area.corners_m().to_vec()),
+    };
+    let mut zones = plan.releases.places().iter().map(zone);
+    Site {
+        mesh_origin_m: plan.mesh_origin_m,
+        release: zones.next().unwrap_or_default(),
+        further_releases: zones.collect(),
+        fast_warnings: plan.fast_warnings.clone(),
+    }
 }
 
 /// The measured ends that a plan compares with; none if it names none.

@@ -56,6 +56,39 @@ fn every_message_has_a_remedy() {
     }
 }
 
+/// Where most rocks leave the terrain, no number of releases narrows the far end of the runout: the aim is refused, with
+/// the number of rocks and what to do.
+#[test]
+fn an_aim_that_rocks_beyond_the_terrain_decide_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().to_str().unwrap();
+    let scene = "examples/paper_slope.toml";
+    let aim = "runout.p95 < 1.0 m";
+    let said =
+        rockfall(&["run", scene, "--quiet", "--releases", "200", "--until", aim, "--out", out]);
+    let stderr = String::from_utf8(said.stderr).unwrap();
+    assert_eq!(said.status.code(), Some(2), "{stderr}");
+    assert!(
+        stderr.contains("of 200 rocks left the terrain") && stderr.contains("give terrain"),
+        "{stderr}"
+    );
+    // a largest speed is that on the terrain given: no rock has to come to rest for it
+    let aim = "speed.p50 < 5 m/s";
+    let said = rockfall(&[
+        "run",
+        scene,
+        "--quiet",
+        "--overwrite",
+        "--releases",
+        "200",
+        "--until",
+        aim,
+        "--out",
+        out,
+    ]);
+    assert_eq!(said.status.code(), Some(0), "{}", String::from_utf8_lossy(&said.stderr));
+}
+
 /// The answer to wrong input: exit status 2, nothing on stdout, one line on stderr.
 fn refusal(said: Output) -> String {
     let stderr = String::from_utf8(said.stderr).unwrap();

@@ -217,8 +217,7 @@ fn unsorted_lists_have_true_quantiles() {
         .replace("tolerance_m_s = 0.0", "")
         .replace("radius_m = 0.15", "radius_m = { values = [0.3, 0.1, 0.2], weights = [1, 1, 2] }");
     let scene = Scene::parse(&text, Path::new("scene.toml")).unwrap();
-    let found = [0.1, 0.3, 0.6, 0.9]
-        .map(|p| scene.rocks.radius_m.as_ref().unwrap().quantile(p).to_string());
+    let found = [0.1, 0.3, 0.6, 0.9].map(|p| scene.rocks.radius_m().quantile(p).to_string());
     assert_eq!(found, ["0.1", "0.2", "0.2", "0.3"]);
 }
 

@@ -69,6 +69,16 @@ fn rasters(maps: &Path, frame: &Value) {
             }
             assert_eq!(found["bands"][0]["noDataValue"].as_f64(), Some(-9999.0));
         }
+        // the band says what it is
+        let band = &tif["bands"][0];
+        assert!(band["description"].as_str().is_some_and(|name| name.len() > 5), "{band}");
+        let name = asc.file_stem().unwrap().to_string_lossy().into_owned();
+        let unit = match name.rsplit('_').next() {
+            Some("j") => Some("J"),
+            Some("m") => Some("m"),
+            _ => None,
+        };
+        assert_eq!(band["unit"].as_str().filter(|unit| !unit.is_empty()), unit, "{name}");
         let wkt = tif["coordinateSystem"]["wkt"].as_str().unwrap();
         assert!(wkt.contains("ID[\"EPSG\",31287]"), "{wkt}");
         for end in ["computedMin", "computedMax"] {
@@ -77,11 +87,17 @@ fn rasters(maps: &Path, frame: &Value) {
         }
         seen += 1;
     }
-    assert!(seen >= 8, "{seen} grids");
+    assert!(seen >= 10, "{seen} grids");
 }
 
 fn vectors(maps: &Path) {
-    for (file, kind, count) in [("ends", "3D Point", 24), ("paths", "3D Line String", 24)] {
+    for (file, kind, count) in [
+        ("ends", "3D Point", 24),
+        ("paths", "3D Line String", 24),
+        ("lines", "Line String", 1),
+        ("barriers", "Line String", 2),
+        ("release_zone", "Polygon", 1),
+    ] {
         let path = maps.join(file).with_extension("geojson");
         let Some(said) = output("ogrinfo", &["-al", "-so", path.to_str().unwrap()]) else { return };
         let said = text(&said);
@@ -110,6 +126,7 @@ except ImportError:
     sys.exit()
 mesh = meshio.read(sys.argv[1])
 print(len(mesh.points), sum(len(cells.data) for cells in mesh.cells), len(set(mesh.point_data['release'].ravel())))
+print(*mesh.points.min(axis=0), *mesh.points.max(axis=0))
 ";
 
 fn paths(maps: &Path) {
@@ -120,8 +137,34 @@ fn paths(maps: &Path) {
         eprintln!("skipped: python3 has no meshio");
         return;
     }
-    let numbers: Vec<usize> = said.split_whitespace().map(|word| word.parse().unwrap()).collect();
+    let numbers: Vec<usize> =
+        said.lines().next().unwrap().split(' ').map(|word| word.parse().unwrap()).collect();
     let rows = std::fs::read_to_string(maps.parent().unwrap().join("paths.csv")).unwrap();
     let points = rows.lines().count() - 1;
     assert_eq!(numbers, [points, points - 24, 24]);
+    // the terrain opens beside the paths, in the coordinates of the mesh files: within the STL's box
+    let bounds =
+        |line: &str| -> Vec<f64> { line.split(' ').map(|word| word.parse().unwrap()).collect() };
+    let terrain = text(
+        &output("python3", &["-c", READ_BOX, maps.join("terrain.vtk").to_str().unwrap()]).unwrap(),
+    );
+    let (paths, terrain) = (bounds(said.lines().nth(1).unwrap()), bounds(terrain.trim()));
+    for axis in 0..2 {
+        assert!(terrain[axis].abs() < 500.0, "far from the files' origin: {terrain:?}");
+        // a rock that left the terrain is a little beyond it
+        let inside =
+            paths[axis] > terrain[axis] - 30.0 && paths[3 + axis] < terrain[3 + axis] + 30.0;
+        assert!(inside, "{paths:?} {terrain:?}");
+    }
 }
+
+/// The script prints the lowest and highest corner of a legacy VTK file of polygons in binary.
+const READ_BOX: &str = "
+import struct, sys
+data = open(sys.argv[1], 'rb').read()
+head, rest = data.split(b'POINTS ', 1)
+line, rest = rest.split(b'\n', 1)
+count = int(line.split()[0])
+points = struct.unpack('>%dd' % (3 * count), rest[:24 * count])
+print(*[min(points[k::3]) for k in range(3)], *[max(points[k::3]) for k in range(3)])
+";

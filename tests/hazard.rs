@@ -6,7 +6,7 @@ use made::{fall, info};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rockfall::hazard::{
-    CrossingRow, Hazard, Line, Proportion, Quantity, Ranks, Row, Sample, StopKind, Totals,
+    CrossingRow, Hazard, Line, Open, Proportion, Quantity, Ranks, Row, Sample, StopKind, Totals,
 };
 
 fn ranks(n: usize, p: f64) -> (Option<usize>, Option<usize>, Option<usize>) {
@@ -185,6 +185,61 @@ fn three_rocks_by_hand() {
     );
     assert_eq!(hazard.ended(StopKind::AtRest), Proportion::new(2, 3));
     assert_eq!(hazard.largest_balance_error().unwrap().release, 0);
+}
+
+/// A hundred rocks with runouts 1 to 100 m, the twenty longest of which left the terrain: whatever they would have run
+/// beyond, the median stays (40th to 61st value), P90 is at least what was seen, and nothing bounds it from above. With
+/// the reach angle it is the other way round: there those rocks lie at the low end.
+#[test]
+fn rocks_that_left_the_terrain_leave_the_far_end_open() {
+    let mut hazard = Hazard::default();
+    let row = Row::of(&fall(1), info(1).origin_m);
+    for index in 1..=100 {
+        let stop = if index > 80 { StopKind::LeftTerrain } else { StopKind::AtRest };
+        let (runout_m, reach_angle_deg) = (index as f64, 101.0 - index as f64);
+        hazard.add(&Row { index, stop, runout_m, reach_angle_deg, max_speed_m_s: runout_m, ..row });
+    }
+    let runout = hazard.sample(Quantity::Runout);
+    let median = runout.percentile(0.5).unwrap();
+    assert_eq!((median.low_95, median.high_95, median.censored), (Some(40.0), Some(61.0), false));
+    let p90 = runout.percentile(0.9).unwrap();
+    assert!(p90.censored && p90.high_95.is_none() && p90.upper_95.is_none());
+    assert_eq!(p90.low_95, Some(84.0));
+    assert!((p90.value - 90.1).abs() < 1e-12);
+    let angle = hazard.sample(Quantity::ReachAngle).percentile(0.1).unwrap();
+    assert!(angle.censored && angle.low_95.is_none() && angle.high_95.is_some());
+    assert!(runout.mean().unwrap().high_95.is_none() && runout.bounds() == 20);
+    // a largest speed is that on the terrain given
+    assert!(!hazard.sample(Quantity::MaxSpeed).percentile(0.9).unwrap().censored);
+    // the curve passes the median and ends where the twenty decide
+    let curve = runout.exceedance();
+    let open: Vec<bool> = curve.iter().map(|at| at.censored).collect();
+    let first = open.iter().position(|is_open| *is_open).unwrap();
+    assert!(open[first..].iter().all(|is_open| *is_open) && curve[first].share < 0.3);
+    assert!(curve[first].value <= 81.0, "{}", curve[first].value);
+}
+
+/// One rock of a hundred left at 10 m and may have come anywhere: between the percentile of what was seen and that with
+/// it at the far end lies all that it can do, P90 from 90.1 to 91.1.
+#[test]
+fn one_rock_that_left_widens_the_interval_and_closes_it() {
+    let values = (1..=100).map(|k| (f64::from(k), 1.0, k == 10));
+    let found = Sample::censored(values, Open::Above).percentile(0.9).unwrap();
+    let whole = Sample::of((1..=100).map(f64::from)).percentile(0.9).unwrap();
+    assert!(found.censored && (found.value - whole.value).abs() < 1e-12);
+    assert_eq!((found.low_95, whole.high_95), (whole.low_95, Some(96.0)));
+    assert_eq!(found.high_95, Some(97.0));
+}
+
+/// No speed or energy is negative, so no interval of its mean is: of 0, 0, 0, 1 the normal one would be 0.25 ± 0.49.
+#[test]
+fn the_mean_of_positive_values_has_a_positive_interval() {
+    let mean = Sample::of([0.0, 0.0, 0.0, 1.0]).mean().unwrap();
+    let factor = (1.959_964_f64).exp();
+    assert!((mean.low_95.unwrap() - 0.25 / factor).abs() < 1e-6);
+    assert!((mean.high_95.unwrap() - 0.25 * factor).abs() < 1e-5);
+    let signed = Sample::of([-1.0, 0.0, 0.0, 1.2]).mean().unwrap();
+    assert!(signed.low_95.unwrap() < 0.0);
 }
 
 /// Sums go over the rocks that did not fail; the effort of all is counted.

@@ -1,20 +1,25 @@
 //! Figures and page from made data: whatever comes in, what goes out is a file that opens and a drawing that stays on its paper.
 
+#[path = "report/boxes.rs"]
+mod boxes;
+#[path = "report/places.rs"]
+mod places;
+#[path = "report/raster.rs"]
+mod raster;
 #[path = "report/slope.rs"]
 mod slope;
 #[path = "report/svg.rs"]
 mod svg;
 
+use places::net;
 use rockfall::report::axis::Axis;
 use rockfall::report::colour;
 use rockfall::report::figure::{FIGURES, WIDTH_PX};
-use rockfall::report::input::{BarrierView, Fall, Path, PlaceView, Point, Report};
+use rockfall::report::input::{Estimate, Fall, Is, Path, Point, Quantity, Report};
 use rockfall::report::panel::{FOOT_PX, Panel};
 use rockfall::report::paper::{Label, Pen, paint};
-use rockfall::report::raster::GroundRaster;
 use rockfall::report::svg::path::Frame;
 use rockfall::report::{self, html};
-use rockfall::rock::Vec3;
 use rockfall::trajectory::{PathState, Stop};
 
 /// What is drawn is written: a file for every figure, and the page with all of them in it.
@@ -49,24 +54,9 @@ fn inputs() -> Vec<(&'static str, Report)> {
         ("small", small()),
         ("all_ends", slope::filled(all_ends(slope::report(400, 20)))),
         ("barriers", Report { barriers: vec![net(60), net(0)], ..slope::report(30, 5) }),
+        ("site", places::site()),
+        ("left", left()),
     ]
-}
-
-/// A barrier that so many rocks reach, some of them with no ground below, and fewer at another place.
-fn net(rocks: usize) -> BarrierView {
-    let top_m = |k: usize| if k % 7 == 6 { f64::INFINITY } else { 0.3 + 0.1 * k as f64 };
-    let place = |offset_m: f64, rocks: usize| PlaceView {
-        offset_m,
-        arriving: 0.5,
-        rocks: (0..rocks).map(|k| (top_m(k), 1e4 * k as f64)).collect(),
-    };
-    BarrierView {
-        name: "<net> & \"fence\"".to_owned(),
-        height_m: 3.0,
-        capacity_j: 4e5,
-        design: (rocks > 0).then_some((4.2, 6e5)),
-        places: vec![place(0.0, rocks), place(-10.0, rocks / 2), place(20.0, 0)],
-    }
 }
 
 /// A rock that stays where it is released.
@@ -142,6 +132,22 @@ fn all_ends(mut report: Report) -> Report {
     Report { ground: None, paths: Vec::new(), ..report }
 }
 
+/// Most rocks leave the terrain: runout is open upwards, the reach angle downwards.
+fn left() -> Report {
+    let mut report = slope::report(400, 40);
+    report.releases.iter_mut().step_by(2).for_each(|fall| fall.stop = Stop::LeftTerrain);
+    let mut report = slope::filled(report);
+    report.runout_exceedance.truncate(60);
+    for (quantity, is) in [(Quantity::Runout, Is::AtLeast), (Quantity::ReachAngle, Is::AtMost)] {
+        for quantile in report.quantiles.get_mut(&quantity).into_iter().flatten() {
+            let at = &mut quantile.at;
+            at.is = is;
+            if is == Is::AtLeast { at.high = f64::NAN } else { at.low = f64::NAN }
+        }
+    }
+    report
+}
+
 /// A table-top experiment: everything within a metre, at the origin.
 fn small() -> Report {
     let mut report = slope::report(40, 40);
@@ -159,14 +165,17 @@ fn small() -> Report {
 }
 
 #[test]
-fn every_input_gives_drawings_that_stay_on_their_paper() {
+fn every_input_gives_drawings_that_stay_on_their_paper_and_off_each_other() {
+    let mut faults = Vec::new();
     for (name, report) in inputs() {
         for (figure, drawing) in report::drawings(&report) {
             let place = format!("{} of {name}", figure.file);
             svg::check(&drawing.svg, &place);
+            faults.extend(boxes::faults(&drawing.svg, &place));
             assert!(!drawing.caption.contains("NaN"), "{place}: {}", drawing.caption);
         }
     }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
 #[test]
@@ -295,98 +304,37 @@ fn text_in_a_figure_stays_text() {
     assert!(svg.contains("a &lt; b &amp; 10"));
 }
 
+/// A line and a net that nobody reaches have a sentence, and no empty axes.
+#[test]
+fn what_nobody_reaches_has_a_sentence_and_no_figure() {
+    let report = places::site();
+    let drawn = report::drawings(&report);
+    let files: Vec<&str> = drawn.iter().map(|(heading, _)| heading.file.as_str()).collect();
+    assert!(files.contains(&"line_2.svg") && files.contains(&"barrier_1.svg"), "{files:?}");
+    assert!(!files.contains(&"line_3.svg") && !files.contains(&"barrier_2.svg"), "{files:?}");
+    let page = html::page(&report, &drawn);
+    assert!(page.contains("crosses the line “nobody&#39;s line”"));
+    assert!(page.contains("No rock arrives at barrier"));
+}
+
+/// A percentile that rocks beyond the terrain decide is written as a bound; what too few rocks cannot give, as their
+/// number.
+#[test]
+fn bounds_and_missing_rocks_are_named() {
+    let mut report = left();
+    report.headline[0].estimate = report.quantiles[&Quantity::Runout][0].at;
+    report.headline[1].estimate = Estimate::lacking(52);
+    let page = html::page(&report, &report::drawings(&report));
+    assert!(page.contains("≥\u{2009}"), "a lower bound has its sign");
+    assert!(page.contains("52 more rocks needed"));
+    let lines = html::plain_headline(&report.headline);
+    assert!(lines[0].contains('≥') && lines[1].ends_with("52 more rocks needed"), "{lines:?}");
+}
+
 #[test]
 fn every_figure_has_its_own_file() {
     let mut files: Vec<&str> = FIGURES.iter().map(|f| f.file).collect();
     files.sort_unstable();
     files.dedup();
     assert_eq!(files.len(), FIGURES.len());
-}
-
-/// On a mesh of 1 m a bilinear raster can be off by the curvature over a triangle and a cell: the made slope bends by less than
-/// 0.5·0.31² + 0.25·1.3 = 0.37 /m (away from the kink at the cliff), so by 0.37·(1² + 0.35²)/4 = 0.11 m.
-#[test]
-fn the_raster_gives_the_height_of_the_mesh() {
-    let origin = Vec3::new(2_600_000.0, 1_200_000.0, 800.0);
-    let raster = GroundRaster::from_terrain(&slope::terrain(1.0, origin), 600);
-    let mut dice = slope::Dice::new(3);
-    let mut worst: f64 = 0.0;
-    for _ in 0..2000 {
-        let (x, y) = (1.0 + 138.0 * dice.roll(), 1.0 + 166.0 * dice.roll());
-        let found = raster.height_at(origin.x + x, origin.y + y);
-        worst = worst.max((found - 800.0 - slope::height_m(x, y)).abs());
-    }
-    assert!(worst < 0.11, "{worst} m off");
-    assert!(raster.height_at(origin.x - 5.0, origin.y).is_nan());
-    assert!(raster.height_at(origin.x + 20.0, origin.y + 300.0).is_nan());
-}
-
-/// On cells of half a metre every second cell centre lies exactly on an edge between two triangles: it belongs to one of them.
-#[test]
-fn no_hole_between_triangles() {
-    let raster = GroundRaster::from_terrain(&slope::terrain(1.0, Vec3::zeros()), 400);
-    assert!((raster.cell_m - 0.5).abs() < 1e-12);
-    let holes = raster.height_m.iter().filter(|z| z.is_nan()).count();
-    assert_eq!(holes, 0);
-}
-
-/// 60 open prisms of 0.2 to 0.45 m on cells of a third of a metre: each leaves a mark, none is hollow.
-#[test]
-fn every_stem_leaves_a_mark() {
-    let origin = Vec3::new(0.0, 0.0, 0.0);
-    let raster = GroundRaster::from_terrain(&slope::terrain(2.0, origin), 600);
-    let patches = raster.tree_patches();
-    assert!(
-        (50..=60).contains(&patches.len()),
-        "{} patches (touching stems are one)",
-        patches.len()
-    );
-    let area_m2 = raster.trees.iter().filter(|&&t| t).count() as f64 * raster.cell_m.powi(2);
-    // a cell that a stem touches counts: a ring of half a cell around radius 0.2..0.45
-    let (least, most) = (60.0 * 3.1 * 0.2_f64.powi(2), 60.0 * 3.2 * (0.45 + raster.cell_m).powi(2));
-    assert!((least..most).contains(&area_m2), "{area_m2} m²");
-}
-
-#[test]
-fn a_raster_read_back_is_the_same_raster() {
-    let dir = tempfile::tempdir().unwrap();
-    let origin = Vec3::new(2_600_000.123, 1_200_000.456, 800.0);
-    let raster = GroundRaster::from_terrain(&slope::terrain(3.0, origin), 97);
-    raster.write(dir.path()).unwrap();
-    let back = GroundRaster::read(dir.path()).unwrap().unwrap();
-    assert_eq!(back.trees, raster.trees);
-    let bits = |r: &GroundRaster| r.height_m.iter().map(|z| z.to_bits()).collect::<Vec<_>>();
-    assert_eq!(bits(&back), bits(&raster));
-    assert_eq!(
-        (back.west_m, back.south_m, back.cell_m),
-        (raster.west_m, raster.south_m, raster.cell_m)
-    );
-    assert!(GroundRaster::read(&dir.path().join("nowhere")).unwrap().is_none());
-}
-
-#[test]
-fn a_wrong_grid_file_says_what_is_wrong() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("maps/ground.asc");
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    let cases = [
-        ("ncols x", "ncols"),
-        (
-            "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize -1\nNODATA_value -9999\n1 2",
-            "positive",
-        ),
-        (
-            "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1",
-            "ncols × nrows = 2",
-        ),
-        (
-            "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n1 abc",
-            "value 2",
-        ),
-    ];
-    for (text, expected) in cases {
-        std::fs::write(&path, text).unwrap();
-        let message = GroundRaster::read(dir.path()).unwrap_err().to_string();
-        assert!(message.contains(expected) && message.contains("ground.asc"), "{message}");
-    }
 }

@@ -5,15 +5,16 @@
 
 mod weighted;
 
+use super::design::{Design, Rule};
 use super::lines::CrossingRow;
 use super::proportion::Proportion;
 use super::totals::Largest;
 use super::{Statistic, statistic};
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::iter;
-use weighted::{arriving, sample, stopped_at};
+pub(super) use weighted::sample;
+use weighted::{arriving, stopped_at};
 
 /// A barrier on one of the evaluation lines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,44 +41,6 @@ pub struct Elsewhere {
     pub line: String,
 }
 
-/// A design rule: a percentile and factors, each by its name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Rule {
-    /// The standard it follows, in words; none = the scene's own.
-    #[serde(default)]
-    pub standard: Option<String>,
-    /// Percentile of energy and height over the rocks that arrive (per cent), above 0 and below 100.
-    pub percentile: f64,
-    /// Factors on the speed (–); they enter the energy squared.
-    #[serde(default)]
-    pub speed_factors: BTreeMap<String, f64>,
-    /// Factors on the mass (–).
-    #[serde(default)]
-    pub mass_factors: BTreeMap<String, f64>,
-    /// Factors on the height (–).
-    #[serde(default)]
-    pub height_factors: BTreeMap<String, f64>,
-    /// Free height to be kept above the design height (m).
-    pub free_height_m: f64,
-    /// Distance that must be kept free behind the barrier (m), where elongation and standard are named.
-    #[serde(default)]
-    pub free_distance_m: Option<f64>,
-}
-
-/// What a rule asks of a barrier at its place.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Design {
-    /// The percentile of total energy (J).
-    pub energy_percentile_j: f64,
-    /// With all factors (J).
-    pub energy_j: f64,
-    /// The percentile of the height of the rock's highest point (m).
-    pub height_percentile_m: f64,
-    /// With all factors and the free height (m).
-    pub height_m: f64,
-}
-
 /// What a barrier does.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BarrierSummary {
@@ -98,8 +61,11 @@ pub struct BarrierSummary {
     pub energy_j: Statistic,
     /// Height of the highest point of the rocks that arrive (m).
     pub top_m: Statistic,
-    /// What the rule asks for, from the rocks that arrive; none without rule or rocks.
+    /// What the rule asks for, from the rocks that arrive; none without a rule, and with too few rocks.
     pub design_values: Option<Design>,
+    /// Rocks missing for a design value; 0 with one, and without a rule.
+    #[serde(default)]
+    pub design_lacks: usize,
     /// At its own place first, then elsewhere.
     pub by_place: Vec<AtPlace>,
 }
@@ -113,7 +79,7 @@ pub struct AtPlace {
     pub arriving: Proportion,
     /// Height (m) and share of the arriving rocks that would be stopped.
     pub by_height: Vec<(f64, Proportion)>,
-    /// What the rule asks for there.
+    /// What the rule asks for there; none with too few rocks.
     pub design_values: Option<Design>,
 }
 
@@ -257,8 +223,9 @@ fn summary(
             .map(|share| share * barrier.height_m)
             .map(|height_m| (height_m, stopped_at(barrier, (rocks, weights), height_m)))
             .into(),
-        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks, weights)),
+        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks, weights).ok()),
     };
+    let asked = barrier.design.as_ref().map(|rule| rule.design(rocks, weights));
     BarrierSummary {
         barrier: barrier.clone(),
         crossing,
@@ -268,31 +235,16 @@ fn summary(
         through: rocks.len() - stopped.count - over,
         energy_j: statistic(|rock| rock.total_j),
         top_m: statistic(|rock| rock.top_m),
-        design_values: barrier.design.as_ref().and_then(|rule| rule.design(rocks, weights)),
+        design_lacks: asked.as_ref().and_then(|asked| asked.as_ref().err().copied()).unwrap_or(0),
+        design_values: asked.and_then(Result::ok),
         by_place: offsets.zip(places).map(at_place).collect(),
-    }
-}
-
-impl Rule {
-    /// What it asks for, from the rocks that arrive; none without rocks.
-    fn design(&self, rocks: &[Arrival], weights: &Weights) -> Option<Design> {
-        let p = self.percentile / 100.0;
-        let value = |of: fn(&Arrival) -> f64| Some(sample(rocks, weights, of).percentile(p)?.value);
-        let product = |factors: &BTreeMap<String, f64>| factors.values().product::<f64>();
-        let (energy, height) = (value(|rock| rock.total_j)?, value(|rock| rock.top_m)?);
-        let speed = product(&self.speed_factors);
-        Some(Design {
-            energy_percentile_j: energy,
-            energy_j: energy * speed * speed * product(&self.mass_factors),
-            height_percentile_m: height,
-            height_m: height * product(&self.height_factors) + self.free_height_m,
-        })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeMap;
     use std::convert::Infallible;
 
     fn barrier(name: &str, height_m: f64, capacity_j: f64) -> Barrier {
@@ -327,7 +279,7 @@ mod tests {
         let (mass_factors, height_factors) = ([("c".to_owned(), 1.02)].into(), BTreeMap::new());
         upper.design = Some(Rule {
             standard: None,
-            percentile: 50.0,
+            percentile: 30.0,
             speed_factors,
             mass_factors,
             height_factors,
@@ -371,7 +323,8 @@ mod tests {
         // lower by half: 1.5 m stop none of the tops of 3, 3.5 and 1 m but the last, which has too much energy
         assert_eq!(found[0].by_place[0].by_height[0].1.count, 0);
         let design = found[0].design_values.as_ref().unwrap();
-        assert!((design.energy_j - 100.0 * (1.02_f64 * 1.1).powi(2) * 1.02).abs() < 1e-9);
-        assert!((design.height_m - 3.5).abs() < 1e-12);
+        // P30 of 50, 100 and 500 J and of tops at 1, 3 and 3.5 m
+        assert!((design.energy_j - 80.0 * (1.02_f64 * 1.1).powi(2) * 1.02).abs() < 1e-9);
+        assert!((design.height_m - 2.7).abs() < 1e-12);
     }
 }

@@ -56,21 +56,24 @@ struct Cell {
     largest_m: f64,
     totals_j: Counts,
     heights_m: Counts,
+    /// Rocks with a total energy of at least each of [`INTENSITY_J`].
+    above: [Strata; 2],
 }
 
 /// A cell on the disk: in the order of its fields, without their names, which would be most of it.
-type Packed = (u32, u32, f64, f64, Counts, Counts);
+type Packed = (u32, u32, f64, f64, Counts, Counts, [Strata; 2]);
 
 impl From<Packed> for Cell {
-    fn from((passages, deposits, largest_j, largest_m, totals_j, heights_m): Packed) -> Self {
-        Self { passages, deposits, largest_j, largest_m, totals_j, heights_m }
+    fn from(packed: Packed) -> Self {
+        let (passages, deposits, largest_j, largest_m, totals_j, heights_m, above) = packed;
+        Self { passages, deposits, largest_j, largest_m, totals_j, heights_m, above }
     }
 }
 
 impl From<Cell> for Packed {
     fn from(cell: Cell) -> Self {
-        let Cell { passages, deposits, largest_j, largest_m, totals_j, heights_m } = cell;
-        (passages, deposits, largest_j, largest_m, totals_j, heights_m)
+        let Cell { passages, deposits, largest_j, largest_m, totals_j, heights_m, above } = cell;
+        (passages, deposits, largest_j, largest_m, totals_j, heights_m, above)
     }
 }
 
@@ -82,6 +85,58 @@ impl Cell {
         self.largest_m = self.largest_m.max(other.largest_m);
         self.totals_j.join(&other.totals_j);
         self.heights_m.join(&other.heights_m);
+        for (rocks, others) in self.above.iter_mut().zip(&other.above) {
+            for &(stratum, count) in &others.0 {
+                rocks.add(stratum, count);
+            }
+        }
+    }
+
+    /// Swiss class of the 95th percentile of energy, counted and not read from classes of values: it reaches a limit when
+    /// less than 95 % of all weight stays below. Of `n` rocks of equal weight at least `n − ⌈0.95 n⌉ + 1` must reach it
+    /// then. The largest would grow with the number of releases.
+    fn intensity(&self, weights: &Weights) -> f64 {
+        let reaches = |above: &&Strata| {
+            if weights.are_equal() {
+                let rank = (0.95 * f64::from(self.passages)).ceil().max(1.0);
+                return f64::from(above.rocks()) >= f64::from(self.passages) - rank + 1.0;
+            }
+            let strata = self.totals_j.entries().iter();
+            let all = strata.map(|&(_, s, n)| weights.of_stratum(usize::from(s)) * f64::from(n));
+            let all: f64 = all.sum();
+            all - above.weight(weights) < 0.95 * all
+        };
+        1.0 + self.above.iter().filter(reaches).count() as f64
+    }
+}
+
+/// Rocks of each stratum, by rising stratum.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+struct Strata(Vec<(u16, u32)>);
+
+impl Strata {
+    fn add(&mut self, stratum: u16, count: u32) {
+        match self.0.binary_search_by_key(&stratum, |(stratum, _)| *stratum) {
+            Ok(at) => self.0[at].1 += count,
+            Err(at) => self.0.insert(at, (stratum, count)),
+        }
+    }
+
+    fn rocks(&self) -> u32 {
+        self.0.iter().map(|(_, count)| count).sum()
+    }
+
+    fn weight(&self, weights: &Weights) -> f64 {
+        let each = self.0.iter();
+        each.map(|&(s, n)| weights.of_stratum(usize::from(s)) * f64::from(n)).sum()
+    }
+
+    /// What they stand for, over what all releases stand for.
+    fn share(&self, weights: &Weights) -> f64 {
+        if weights.are_equal() {
+            return f64::from(self.rocks()) / weights.all_rocks().max(1) as f64;
+        }
+        proportion(weights, self.0.iter().map(|&(stratum, count)| (stratum, count as usize))).share
     }
 }
 
@@ -102,8 +157,12 @@ pub enum Layer {
     HeightMax,
     /// 95th percentile over the rocks that pass of each one's largest height in the cell (m).
     HeightP95,
-    /// Swiss intensity by the largest total energy: 1 below 30 kJ, 2 from 30 to 300 kJ, 3 above.
+    /// Swiss intensity by the 95th percentile of total energy: 1 below 30 kJ, 2 from 30 to 300 kJ, 3 above.
     Intensity,
+    /// Rocks that pass with 30 kJ or more, over all releases (–).
+    ExceedsWeak,
+    /// Rocks that pass with 300 kJ or more, over all releases (–).
+    ExceedsMedium,
 }
 
 /// Limits of the Swiss classes of intensity (J): weak below, medium, strong from the second on.
@@ -111,7 +170,7 @@ pub const INTENSITY_J: [f64; 2] = [30e3, 300e3];
 
 impl Layer {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Passages,
         Self::Reach,
         Self::Deposits,
@@ -120,6 +179,8 @@ impl Layer {
         Self::HeightMax,
         Self::HeightP95,
         Self::Intensity,
+        Self::ExceedsWeak,
+        Self::ExceedsMedium,
     ];
 
     /// File name without ending.
@@ -133,6 +194,26 @@ impl Layer {
             Self::HeightMax => "height_max_m",
             Self::HeightP95 => "height_p95_m",
             Self::Intensity => "intensity_class",
+            Self::ExceedsWeak => "exceeds_30_kj_probability",
+            Self::ExceedsMedium => "exceeds_300_kj_probability",
+        }
+    }
+
+    /// Name and unit of its values, as a GIS shows them; a pure number has no unit.
+    pub fn in_words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Passages => ("Rocks that pass", ""),
+            Self::Reach => ("Reach probability, conditional on release", ""),
+            Self::Deposits => ("Rocks at rest", ""),
+            Self::EnergyMax => ("Total energy, largest", "J"),
+            Self::EnergyP95 => ("Total energy, 95th percentile", "J"),
+            Self::HeightMax => ("Bounce height, largest", "m"),
+            Self::HeightP95 => ("Bounce height, 95th percentile", "m"),
+            Self::Intensity => {
+                ("Intensity of the 95th percentile of energy, 1 weak 2 medium 3 strong", "")
+            }
+            Self::ExceedsWeak => ("Probability of 30 kJ or more, conditional on release", ""),
+            Self::ExceedsMedium => ("Probability of 300 kJ or more, conditional on release", ""),
         }
     }
 
@@ -152,9 +233,9 @@ impl Layer {
             Self::EnergyP95 => cell.totals_j.percentile(0.95, weights).min(cell.largest_j),
             Self::HeightMax => cell.largest_m,
             Self::HeightP95 => cell.heights_m.percentile(0.95, weights).min(cell.largest_m),
-            Self::Intensity => {
-                1.0 + INTENSITY_J.iter().filter(|limit| cell.largest_j >= **limit).count() as f64
-            }
+            Self::Intensity => cell.intensity(weights),
+            Self::ExceedsWeak => cell.above[0].share(weights),
+            Self::ExceedsMedium => cell.above[1].share(weights),
         }
     }
 }
@@ -203,6 +284,11 @@ impl Maps {
             cell.largest_m = cell.largest_m.max(visit.height_m);
             cell.totals_j.add(visit.total_j, stratum);
             cell.heights_m.add(visit.height_m, stratum);
+            for (rocks, limit) in cell.above.iter_mut().zip(INTENSITY_J) {
+                if visit.total_j >= limit {
+                    rocks.add(stratum, 1);
+                }
+            }
         }
         if let (StopKind::AtRest, Some(cell)) = (stop, self.frame.cell(end_m)) {
             self.cells.entry(cell).or_default().deposits += 1;
@@ -226,9 +312,9 @@ impl Maps {
     }
 
     /// Cells of each Swiss class of intensity: weak, medium, strong.
-    pub fn intensity_cells(&self) -> [usize; 3] {
+    pub fn intensity_cells(&self, weights: &Weights) -> [usize; 3] {
         let mut counts = [0; 3];
-        for (_, class) in self.values(Layer::Intensity, &Weights::equal(1)) {
+        for (_, class) in self.values(Layer::Intensity, weights) {
             counts[class as usize - 1] += 1;
         }
         counts
@@ -259,6 +345,26 @@ mod tests {
         assert_eq!(value(Layer::EnergyMax), Some(299e3));
         assert_eq!(value(Layer::HeightMax), Some(2.0));
         assert_eq!(value(Layer::Intensity), Some(2.0));
-        assert_eq!(maps.intensity_cells(), [1, 1, 0]);
+        assert_eq!(maps.intensity_cells(&weights), [1, 1, 0]);
+        assert_eq!(value(Layer::ExceedsWeak), Some(2.0 / 6.0));
+        assert_eq!(value(Layer::ExceedsMedium), Some(0.0));
+    }
+
+    /// One wild rock among a hundred leaves the class where it was; the sixth makes it: P95 of 100 is the 95th.
+    #[test]
+    fn the_class_does_not_grow_with_the_largest() {
+        let frame =
+            MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
+        for (wild, class) in [(0, 1.0), (1, 1.0), (5, 1.0), (6, 3.0)] {
+            let mut maps = Maps::new(frame, MapState::default());
+            for k in 0..100 {
+                let total_j = if k < wild { 1e6 } else { 1e3 };
+                let visit = Visit { cell: 0, total_j, height_m: 0.0 };
+                maps.add(0, &[visit], (StopKind::LeftTerrain, [9.0; 3]));
+            }
+            let weights = Weights::equal(100);
+            let found = maps.values(Layer::Intensity, &weights).next().map(|(_, found)| found);
+            assert_eq!(found, Some(class), "{wild} wild rocks");
+        }
     }
 }

@@ -7,6 +7,7 @@
 mod annual;
 mod barriers;
 mod classes;
+mod design;
 mod difference;
 mod lines;
 mod maps;
@@ -14,6 +15,7 @@ mod observed;
 mod proportion;
 mod quantile;
 mod quantity;
+mod residual;
 mod row;
 mod sample;
 mod sum;
@@ -21,18 +23,20 @@ mod totals;
 
 pub use annual::{
     Above, Annual, AnnualFigures, AnnualPlace, Asked, ExceedancePoint, Matrix, Object, Rate,
-    ReturnEnergy, Risk, RiskKind, Saved, Vehicles, YearMap, annual, year_maps,
+    ReturnEnergy, Risk, RiskKind, Saved, Vehicles, YearMap, annual, share_of, year_maps,
 };
 pub use barriers::{
-    Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Design, Elsewhere, Rule, arrivals, judge,
+    Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge,
 };
+pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{Agreement, Spread, Way, effective};
 pub use proportion::Proportion;
-pub use quantile::{Percentile, Ranks};
+pub use quantile::{Open, Percentile, Ranks};
 pub use quantity::Quantity;
+pub use residual::{Passing, Residual, residual, unstopped};
 pub use row::{Row, StopKind};
 pub use sample::{Exceedance, Histogram, Mean, Sample};
 pub use sum::Sum;
@@ -49,11 +53,13 @@ pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 ///
 /// The statistics are over all rocks but the failed and the never released: these have a row and are counted, but
 /// where they stopped is where the computation did. A rock that left the terrain or ran out of time or work counts with what it
-/// had done until then; its runout is a lower bound.
+/// had done until then; its runout is a lower bound, and so is every percentile of runout that such rocks decide.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hazard {
     stops: BTreeMap<StopKind, Ended>,
     values: [Vec<f64>; Quantity::ALL.len()],
+    /// Whether each rock would have gone on, in the order of the values.
+    is_open: Vec<bool>,
     largest: [Option<Largest>; Quantity::ALL.len()],
     largest_balance_error: Option<Largest>,
     frequency: Option<Frequency>,
@@ -92,6 +98,9 @@ pub struct Statistic {
     pub percentiles: BTreeMap<String, Percentile>,
     /// The largest value and the release it belongs to.
     pub max: Option<Largest>,
+    /// Rocks whose own value is only a bound: they left the terrain or ran out of time.
+    #[serde(default, skip_serializing_if = "is_0")]
+    pub censored: usize,
     /// Which percentiles have no upper bound because there are too few rocks; empty when all have.
     pub too_few: String,
 }
@@ -124,6 +133,7 @@ impl Hazard {
             self.failed.push(row.index);
             return;
         }
+        self.is_open.push(row.stop.is_open());
         for (slot, quantity) in Quantity::ALL.into_iter().enumerate() {
             let value = quantity.of(row);
             self.values[slot].push(value);
@@ -157,11 +167,22 @@ impl Hazard {
     /// All values of one quantity, sorted: for curves and histograms.
     pub fn sample(&self, quantity: Quantity) -> Sample {
         let values = self.values[quantity as usize].iter().copied();
-        let Some(weights) = self.weights() else { return Sample::of(values) };
         let first = self.first.unwrap_or(0);
         let ended =
             (first..first + self.rocks()).filter(|at| self.failed.binary_search(at).is_err());
-        Sample::weighted(values.zip(ended.map(|at| weights.of_release(at))))
+        let weights = self.weights();
+        let weighs = |release| weights.as_ref().map_or(1.0, |all| all.of_release(release));
+        let each = values.zip(ended.map(weighs));
+        match quantity.open() {
+            Some(open) => {
+                let seen = each.zip(self.is_open.iter().copied());
+                Sample::censored(
+                    seen.map(|((value, weighs), is_bound)| (value, weighs, is_bound)),
+                    open,
+                )
+            }
+            None => Sample::weighted(each),
+        }
     }
 
     /// The values of one quantity in the order of releases (failed rocks have none).
@@ -187,17 +208,23 @@ fn statistic(sample: &Sample, max: Option<Largest>) -> Statistic {
     Statistic {
         rocks: sample.values().len(),
         mean: sample.mean(),
+        censored: sample.bounds(),
         too_few: too_few(sample.values().len(), &percentiles),
         percentiles,
         max,
     }
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_0(count: &usize) -> bool {
+    *count == 0
+}
+
 /// Names the percentiles that no value bounds, and how many rocks they need.
 fn too_few(rocks: usize, percentiles: &BTreeMap<String, Percentile>) -> String {
     let missing: Vec<String> = percentiles
         .iter()
-        .filter(|(_, percentile)| percentile.upper_95.is_none())
+        .filter(|(_, percentile)| rocks < percentile.needs)
         .map(|(name, percentile)| format!("{name} needs {}", percentile.needs))
         .collect();
     if missing.is_empty() {

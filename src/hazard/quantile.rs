@@ -33,6 +33,21 @@ pub struct Percentile {
     pub upper_95: Option<f64>,
     /// Rocks needed before any [`upper_95`](Self::upper_95) exists: 59 for P95, 299 for P99.
     pub needs: usize,
+    /// Whether rocks whose own value is only a bound leave this percentile a bound too: see [`Open`].
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub censored: bool,
+}
+
+/// On which side the true value of a rock lies that was seen only in part.
+///
+/// A rock that left the terrain would have gone on. Its runout is *at least* what was seen; its reach angle *at most*,
+/// since slopes flatten downwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Open {
+    /// At or above what was seen.
+    Above,
+    /// At or below what was seen.
+    Below,
 }
 
 impl Percentile {
@@ -46,7 +61,25 @@ impl Percentile {
             high_95: at(ranks.high),
             upper_95: at(ranks.upper),
             needs: needed(p),
+            censored: false,
         })
+    }
+
+    /// What is known of a percentile when some rocks were seen only in part: `self` takes each at what was seen, `far`
+    /// moves each to the far end of where it may lie. The truth is between the two, however the rocks would have gone on
+    /// (worst-case bounds, Manski 1990), so each end of the interval is taken from the one that gives the wider.
+    pub(super) fn between(self, far: &Self, open: Open) -> Self {
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+        let censored = far.value.total_cmp(&self.value).is_ne();
+        match open {
+            Open::Above => Self {
+                high_95: finite(far.high_95),
+                upper_95: finite(far.upper_95),
+                censored,
+                ..self
+            },
+            Open::Below => Self { low_95: finite(far.low_95), censored, ..self },
+        }
     }
 }
 
@@ -78,6 +111,7 @@ impl Percentile {
             high_95: end(p + NORMAL_95 * sd),
             upper_95: end(p + NORMAL_ONE_SIDED_95 * sd),
             needs: needed(p),
+            censored: false,
         })
     }
 }
@@ -91,7 +125,8 @@ fn interpolated(sorted: &[f64], p: f64) -> Option<f64> {
 pub(super) fn between(sorted: &[f64], place: f64) -> f64 {
     let below = sorted[place.floor() as usize];
     let above = sorted[place.ceil() as usize];
-    below + place.fract() * (above - below)
+    // between two open ends nothing can be interpolated
+    if above > below { below + place.fract() * (above - below) } else { below }
 }
 
 /// Fewest rocks of which the largest value bounds percentile `p` with 95 % confidence: `pⁿ ≤ 0.05`.

@@ -1,5 +1,6 @@
 //! The quantities of which statistics are kept.
 
+use super::quantile::Open;
 use super::row::Row;
 
 /// A quantity that every released rock has one value of.
@@ -59,6 +60,16 @@ impl Quantity {
             Self::Impacts => "impacts",
             Self::TreeImpacts => "tree_impacts",
             Self::Time => "time_s",
+        }
+    }
+
+    /// Where the true value of a rock lies that left the terrain or ran out of time; none where its way so far gives
+    /// the value: a largest speed is that on the terrain given.
+    pub fn open(self) -> Option<Open> {
+        match self {
+            Self::Runout | Self::Drop | Self::Time => Some(Open::Above),
+            Self::ReachAngle => Some(Open::Below),
+            _ => None,
         }
     }
 

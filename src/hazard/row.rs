@@ -108,6 +108,11 @@ impl StopKind {
         matches!(self, Self::OverBudget | Self::NotReleased)
     }
 
+    /// Whether the rock would have gone on: where it ended says only how far it came at least.
+    pub fn is_open(self) -> bool {
+        matches!(self, Self::LeftTerrain | Self::TimeUp | Self::OverBudget)
+    }
+
     /// Its word in `releases.csv` and `summary.json`.
     pub fn word(self) -> &'static str {
         match self {

@@ -1,7 +1,7 @@
 //! All values of one quantity, sorted, and what they say.
 
 use super::proportion::NORMAL_95;
-use super::quantile::Percentile;
+use super::quantile::{Open, Percentile};
 use crate::math;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +11,8 @@ pub struct Sample {
     sorted: Vec<f64>,
     /// What each of them weighs; none where all weigh the same.
     weights: Option<Vec<f64>>,
+    /// The same with the rocks seen only in part at the far end of where they may lie; none when all were seen whole.
+    far: Option<(Box<Sample>, Open)>,
 }
 
 /// A mean with its 95 % interval.
@@ -22,6 +24,9 @@ pub struct Mean {
     pub low_95: Option<f64>,
     /// Upper end of the interval; none for a single value.
     pub high_95: Option<f64>,
+    /// Whether values that are only bounds leave the mean a bound too: its interval is open on their side.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub censored: bool,
 }
 
 /// A share of rocks that exceeds a value, the value, and where it lies with 95 % confidence.
@@ -35,6 +40,8 @@ pub struct Exceedance {
     pub low_95: Option<f64>,
     /// Upper end of the interval of the value; none when there are too few rocks.
     pub high_95: Option<f64>,
+    /// Whether rocks seen only in part decide the value more than chance in the sample does: there the curve ends.
+    pub censored: bool,
 }
 
 /// How many values fall between neighbouring edges.
@@ -54,20 +61,58 @@ impl Sample {
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut sorted: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
-        Self { sorted, weights: None }
+        Self { sorted, weights: None, far: None }
     }
 
     /// Sorts values, each with what it weighs (0 or more).
     pub fn weighted(values: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let finite = values.into_iter().filter(|(value, _)| value.is_finite());
-        let mut pairs: Vec<(f64, f64)> = finite.collect();
+        Self::sorted(values.into_iter().filter(|(value, _)| value.is_finite()).collect())
+    }
+
+    /// Sorts values with their weights; an open end of where a rock may lie is one of them.
+    fn sorted(mut pairs: Vec<(f64, f64)>) -> Self {
         #[expect(clippy::float_cmp, reason = "equal weights are the same number")]
-        if pairs.windows(2).all(|pair| pair[0].1 == pair[1].1) {
-            return Self::of(pairs.into_iter().map(|(value, _)| value));
+        let are_equal = pairs.windows(2).all(|pair| pair[0].1 == pair[1].1);
+        if are_equal {
+            let mut sorted: Vec<f64> = pairs.into_iter().map(|(value, _)| value).collect();
+            sorted.sort_unstable_by(f64::total_cmp);
+            return Self { sorted, weights: None, far: None };
         }
         pairs.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)));
         let (sorted, weights) = pairs.into_iter().unzip();
-        Self { sorted, weights: Some(weights) }
+        Self { sorted, weights: Some(weights), far: None }
+    }
+
+    /// Sorts values, each with what it weighs, of which some are only bounds (true): the rock was seen in part. The truth
+    /// lies on the `open` side.
+    pub fn censored(values: impl IntoIterator<Item = (f64, f64, bool)>, open: Open) -> Self {
+        let seen: Vec<(f64, f64, bool)> =
+            values.into_iter().filter(|(value, ..)| value.is_finite()).collect();
+        let far_end = match open {
+            Open::Above => f64::INFINITY,
+            Open::Below => f64::NEG_INFINITY,
+        };
+        let far = seen.iter().any(|(.., is_bound)| *is_bound).then(|| {
+            let moved = |&(value, weighs, is_bound): &(f64, f64, bool)| {
+                (if is_bound { far_end } else { value }, weighs)
+            };
+            (Box::new(Self::sorted(seen.iter().map(moved).collect())), open)
+        });
+        Self { far, ..Self::weighted(seen.into_iter().map(|(value, weighs, _)| (value, weighs))) }
+    }
+
+    /// How many of the values are only bounds.
+    pub fn bounds(&self) -> usize {
+        let of =
+            |(far, _): &(Box<Self>, Open)| far.sorted.iter().filter(|v| !v.is_finite()).count();
+        self.far.as_ref().map_or(0, of)
+    }
+
+    /// So many values of equal weight would say as much (–): `(Σ w)² / Σ w²`.
+    pub fn effective_rocks(&self) -> f64 {
+        let Some(weights) = &self.weights else { return self.sorted.len() as f64 };
+        let all: f64 = weights.iter().sum();
+        all * all / weights.iter().map(|weight| weight * weight).sum::<f64>()
     }
 
     /// The values in ascending order.
@@ -77,27 +122,42 @@ impl Sample {
 
     /// Mean with the normal interval `± 1.96 s/√n`; none of nothing.
     ///
+    /// Where that would reach below 0 although no value does, the interval is normal for the logarithm of the mean:
+    /// `mean · exp(± 1.96 s/(mean √n))`.
     /// Summed in ascending order, so the same values give the same bits however they arrived. Weighted values: ratio of
     /// sums, with the variance `Σ w² (x − mean)² / (Σ w)²` of its linearisation (delta method).
     pub fn mean(&self) -> Option<Mean> {
-        if let Some(weights) = &self.weights {
-            return Some(weighted_mean(&self.sorted, weights));
-        }
-        let n = self.sorted.len() as f64;
-        let value = self.sorted.iter().sum::<f64>() / n;
-        let squares: f64 = self.sorted.iter().map(|one| (one - value).powi(2)).sum();
-        let half = NORMAL_95 * (squares / (n - 1.0) / n).sqrt();
-        let spread = (n > 1.0).then_some(half);
+        let (value, half) = match &self.weights {
+            None => mean_and_half(&self.sorted),
+            Some(weights) => weighted_mean_and_half(&self.sorted, weights),
+        };
+        let is_positive = self.sorted.first().is_some_and(|least| *least >= 0.0) && value > 0.0;
+        let (low, high) = if is_positive && half > value {
+            let factor = math::exp(half / value);
+            (value / factor, value * factor)
+        } else {
+            (value - half, value + half)
+        };
+        let ends = |end: f64| (self.sorted.len() > 1).then_some(end);
+        let open = self.far.as_ref().map(|(_, open)| *open);
         let mean = Mean {
             value,
-            low_95: spread.map(|half| value - half),
-            high_95: spread.map(|half| value + half),
+            low_95: ends(low).filter(|_| open != Some(Open::Below)),
+            high_95: ends(high).filter(|_| open != Some(Open::Above)),
+            censored: open.is_some(),
         };
         (!self.sorted.is_empty()).then_some(mean)
     }
 
     /// Percentile `p` (0 < p < 1) with its interval; none of nothing.
     pub fn percentile(&self, p: f64) -> Option<Percentile> {
+        let seen = self.seen(p)?;
+        let Some((far, open)) = &self.far else { return Some(seen) };
+        Some(seen.between(&far.seen(p)?, *open))
+    }
+
+    /// The same, each value taken as it is.
+    fn seen(&self, p: f64) -> Option<Percentile> {
         match &self.weights {
             None => Percentile::of(&self.sorted, p),
             Some(weights) => Percentile::weighted((&self.sorted, weights), p),
@@ -111,9 +171,20 @@ impl Sample {
     pub fn exceedance(&self) -> Vec<Exceedance> {
         let point = |share: f64| {
             let Percentile { value, low_95, high_95, .. } = self.percentile(1.0 - share)?;
-            Some(Exceedance { share, value, low_95, high_95 })
+            let censored = self.is_decided_by_bounds(1.0 - share);
+            Some(Exceedance { share, value, low_95, high_95, censored })
         };
         shares(self.sorted.len()).into_iter().filter_map(point).collect()
+    }
+
+    /// Whether the far end of percentile `p` lies outside the interval that chance alone gives.
+    fn is_decided_by_bounds(&self, p: f64) -> bool {
+        let Some((far, open)) = &self.far else { return false };
+        let (Some(seen), Some(far)) = (self.seen(p), far.seen(p)) else { return false };
+        match open {
+            Open::Above => seen.high_95.is_none_or(|high| far.value > high),
+            Open::Below => seen.low_95.is_none_or(|low| far.value < low),
+        }
     }
 
     /// A histogram with bars of a round width near that of Freedman and Diaconis (1981), `2 IQR / ∛n`;
@@ -143,13 +214,21 @@ impl Sample {
     }
 }
 
-fn weighted_mean(values: &[f64], weights: &[f64]) -> Mean {
+/// Mean and half its normal interval.
+fn mean_and_half(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let value = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|one| (one - value).powi(2)).sum();
+    (value, NORMAL_95 * (squares / (n - 1.0) / n).sqrt())
+}
+
+/// The same of weighted values.
+fn weighted_mean_and_half(values: &[f64], weights: &[f64]) -> (f64, f64) {
     let pairs = || values.iter().zip(weights);
     let all: f64 = weights.iter().sum();
     let value = pairs().map(|(x, w)| w * x).sum::<f64>() / all;
     let squares: f64 = pairs().map(|(x, w)| (w * (x - value)).powi(2)).sum();
-    let half = NORMAL_95 * squares.sqrt() / all;
-    Mean { value, low_95: Some(value - half), high_95: Some(value + half) }
+    (value, NORMAL_95 * squares.sqrt() / all)
 }
 
 /// The next of 1, 2, 5 times a power of ten.

@@ -38,12 +38,14 @@ pub(super) fn write(
     fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
     for layer in Layer::ALL {
         let cells = raster(&maps.frame, maps.values(layer, &weights));
-        write_raster(&folder.join(layer.file()), (&maps.frame, &cells), true)?;
+        write_raster(&folder.join(layer.file()), layer.in_words(), (&maps.frame, &cells), true)?;
     }
     let layers = if is_part { Vec::new() } else { year_maps(maps, asked, releases) };
     for layer in layers {
         let cells = raster(&maps.frame, layer.values.into_iter());
-        write_raster(&folder.join(layer.file), (&maps.frame, &cells), !layer.is_bound)?;
+        let path = folder.join(&layer.file);
+        let said = (layer.name.as_str(), layer.unit);
+        write_raster(&path, said, (&maps.frame, &cells), !layer.is_bound)?;
     }
     Ok(())
 }
@@ -57,8 +59,13 @@ fn raster(frame: &MapFrame, values: impl Iterator<Item = (u32, f64)>) -> Vec<f32
     cells
 }
 
-/// Writes one layer as GeoTIFF, and as an ESRI ASCII grid where it is wanted.
-fn write_raster(path: &Path, (frame, cells): (&MapFrame, &[f32]), as_text: bool) -> Result<()> {
+/// Writes one layer, with name and unit, as GeoTIFF, and as an ESRI ASCII grid where it is wanted.
+fn write_raster(
+    path: &Path,
+    said: (&str, &str),
+    (frame, cells): (&MapFrame, &[f32]),
+    as_text: bool,
+) -> Result<()> {
     // names hold points: with_extension would cut them
     let named = |ending: &str| {
         let mut name = path.as_os_str().to_owned();
@@ -69,7 +76,7 @@ fn write_raster(path: &Path, (frame, cells): (&MapFrame, &[f32]), as_text: bool)
         write_whole(&named(".asc"), ascii(frame, cells).as_bytes())?;
     }
     let tif = named(".tif");
-    let bytes = geotiff(frame, cells)
+    let bytes = geotiff(frame, said, cells)
         .map_err(|why| Error::file("write", &tif)(std::io::Error::other(why)))?;
     write_whole(&tif, &bytes)
 }
@@ -96,8 +103,13 @@ fn ascii(frame: &MapFrame, cells: &[f32]) -> String {
 }
 
 /// One deflated band of 32-bit floats with the keys of OGC 19-008r4 (GeoTIFF 1.1): pixel is area, projected system by
-/// its EPSG code where one is given.
-fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
+/// its EPSG code where one is given. Name and unit of the band stand where GDAL keeps them.
+fn geotiff(
+    frame: &MapFrame,
+    (name, unit): (&str, &str),
+    cells: &[f32],
+) -> tiff::TiffResult<Vec<u8>> {
+    const GDAL_METADATA: u16 = 42_112;
     const GEO_KEY_DIRECTORY: u16 = 34_735;
     const MODEL_PIXEL_SCALE: u16 = 33_550;
     const MODEL_TIEPOINT: u16 = 33_922;
@@ -117,6 +129,14 @@ fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
         None => vec![1, 1, 0, 1, 1025, 0, 1, 1],
     };
     tags.write_tag(Tag::Unknown(GEO_KEY_DIRECTORY), &keys[..])?;
+    let unit = match unit {
+        "" => String::new(),
+        unit => format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>"),
+    };
+    let said = format!(
+        "<GDALMetadata><Item name=\"DESCRIPTION\" sample=\"0\" role=\"description\">{name}</Item>{unit}</GDALMetadata>"
+    );
+    tags.write_tag(Tag::Unknown(GDAL_METADATA), said.as_str())?;
     tags.write_tag(Tag::Unknown(GDAL_NODATA), "-9999")?;
     let values: Vec<f32> = rows(frame, cells).flatten().copied().collect();
     image.write_data(&values)?;
@@ -166,8 +186,10 @@ pub(super) fn is_result(path: &Path) -> bool {
         // the ground that figures are drawn on stands beside the maps
         "asc" if ["ground", "trees"].contains(&stem.as_str()) => true,
         "asc" | "tif" => Layer::ALL.iter().any(|layer| layer.file() == stem) || is_of_year(&stem),
-        "geojson" => ["ends", "paths"].contains(&stem.as_str()),
-        "vtk" => stem == "paths",
+        "geojson" => {
+            ["ends", "paths", "lines", "barriers", "release_zone"].contains(&stem.as_str())
+        }
+        "vtk" => ["paths", "terrain"].contains(&stem.as_str()),
         STATE => stem.parse::<usize>().is_ok(),
         _ => false,
     }

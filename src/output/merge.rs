@@ -80,6 +80,7 @@ impl Shard {
             barriers,
             asked,
             observed,
+            site,
             ..
         } = self.summary.clone();
         let keeps = |table: &str| self.progress.bytes.contains_key(table);
@@ -88,6 +89,7 @@ impl Shard {
             title,
             identity: super::Identity { first_release: 0, releases: of_releases, ..identity },
             origin_m: Vec3::from(origin_m),
+            site,
             // rows are copied, and hold the names already
             ground_of_sheet: Vec::new(),
             lines: lines.into_iter().map(|line| line.info).collect(),

@@ -14,6 +14,7 @@ mod opened;
 mod progress;
 mod read;
 mod rows;
+mod site;
 mod summary;
 mod table;
 mod vector;
@@ -26,7 +27,9 @@ pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
 pub use rows::{ImpactRow, PathRow};
+pub use site::{Site, Zone};
 pub use summary::{Run, Summary};
+pub use vector::write_terrain;
 pub use whole::write_whole;
 
 use crate::error::{Error, Result};
@@ -60,6 +63,8 @@ pub struct RunInfo {
     pub identity: Identity,
     /// Map position of the local (0, 0, 0) (m): added to every position written.
     pub origin_m: Vec3,
+    /// Where meshes and releases lie.
+    pub site: Site,
     /// Name of the ground of each mesh, in the order of [`Terrain::sheets`](crate::terrain::Terrain).
     pub ground_of_sheet: Vec<String>,
     /// Evaluation lines, in the order of the scene; none leaves `crossings.csv` out.
@@ -290,9 +295,12 @@ impl Output {
         let weights = self.hazard.weights().unwrap_or_else(|| Weights::equal(done));
         let crossings = read::crossings(&self.dir)?;
         let barriers = hazard::judge(&self.info.barriers, crossings, &weights)?;
+        let crossings = read::crossings(&self.dir)?;
+        let (nets, lines) = (&self.info.barriers, &self.info.lines);
+        let residual = hazard::residual(nets, lines, crossings, &weights)?;
         let annual = if is_part { None } else { self.annual(done)? };
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
-        (summary.barriers, summary.annual) = (barriers, annual);
+        (summary.barriers, summary.residual, summary.annual) = (barriers, residual, annual);
         summary.bytes = bytes;
         summary.write(&self.dir)?;
         self.hazard.totals = summary.totals.clone();

@@ -83,14 +83,17 @@ impl Results {
         if_there(self.dir.join(PATHS), &PathRow::COLUMNS)
     }
 
-    /// Writes `maps/ends.geojson`, and `maps/paths.geojson` and `maps/paths.vtk` where paths were kept.
+    /// Writes the vectors of `maps/`: ends, what stands on the map, and paths where they were kept.
     pub(super) fn write_vectors(&self) -> Result<()> {
         let (folder, epsg) =
             (self.dir.join(super::maps::FOLDER), self.summary.maps.and_then(|maps| maps.epsg));
         vector::write_ends(&folder.join("ends.geojson"), epsg, self.rows()?)?;
+        vector::write_site(&folder, epsg, &self.summary)?;
         if self.dir.join(PATHS).exists() {
-            vector::write_paths(&folder.join("paths.geojson"), epsg, self.paths()?)?;
-            vector::write_vtk(&folder.join("paths.vtk"), self.summary.origin_m, self.paths()?)?;
+            let rocks = self.rows()?;
+            vector::write_paths(&folder.join("paths.geojson"), epsg, (self.paths()?, rocks))?;
+            let origin_m = self.summary.site.mesh_origin_m;
+            vector::write_vtk(&folder.join("paths.vtk"), origin_m, self.paths()?)?;
         }
         Ok(())
     }

@@ -2,11 +2,12 @@
 
 use super::RunInfo;
 use super::progress::Identity;
+use super::site::Site;
 use super::whole::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::{
     Annual, Asked, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion,
-    Quantity, Statistic, StopKind, Totals, Way,
+    Quantity, Residual, Statistic, StopKind, Totals, Way,
 };
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -16,7 +17,7 @@ use std::path::Path;
 pub(super) const SUMMARY: &str = "summary.json";
 
 /// What the numbers mean, printed beside them.
-const DEFINITIONS: [(&str, &str); 11] = [
+const DEFINITIONS: [(&str, &str); 13] = [
     (
         "annual",
         "numbers a year, not conditional on release: passage frequency = sum over classes of size and source of their events a year x share of their rocks that pass (with at least an energy); interval: Wilson's with the effective weight of a rock, upper end as if one more rock of the heaviest class passed, 3 x that weight where none does; return period = 1 / frequency; annual probability = 1 - exp(-frequency); energy of return period T: passed with at least that much once in T years, its interval read off that of the frequency; by_log_rate = derivative by the logarithm of all rates, by_exponent = derivative by the exponents of all power laws with their events of 1 m3 or more kept; saved = passages whose rock a barrier stops before, told to the first that does",
@@ -27,7 +28,11 @@ const DEFINITIONS: [(&str, &str); 11] = [
     ),
     (
         "barriers",
-        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height",
+        "a barrier stops a rock whose highest point is not above its edge (height_m + 2 radius) and whose total energy it can take; it changes no rock's way, but what it stops does not arrive at the barriers behind it; design energy = percentile x speed factors squared x mass factors, design height = percentile of the highest point x height factors + free height; none where fewer rocks arrive than bound the percentile, design_lacks says how many are missing; energy_95_j and height_95_m are the intervals of the percentile with the same factors",
+    ),
+    (
+        "censored",
+        "the value is a bound only: rocks that left the terrain or ran out of time decide it. Runout, drop and time are then at least, reach angle at most what is written; the interval is open on that side; censored counts those rocks",
     ),
     (
         "energy_balance_error",
@@ -35,7 +40,7 @@ const DEFINITIONS: [(&str, &str); 11] = [
     ),
     (
         "intervals",
-        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means normal; of shares Wilson, 3/n where none was seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
+        "95 %: of percentiles by order statistics, whatever the distribution (low_95 and high_95 two-sided, upper_95 one-sided); of means normal, or normal for their logarithm where that would reach below 0; of shares Wilson, 3/n where none was seen. Conditional on release; numbers a year stand under annual only. With sources that sample sizes by importance rocks weigh what they stand for: ratios of sums, intervals by the delta method, of percentiles Woodruff's",
     ),
     (
         "lines",
@@ -43,7 +48,7 @@ const DEFINITIONS: [(&str, &str); 11] = [
     ),
     (
         "maps",
-        "one value per rock and cell, its largest there; 95th percentiles from classes of ratio 1.05: within 2.5 % of the ranked value; heights are taken at three places of a flight in the cell",
+        "one value per rock and cell, its largest there; 95th percentiles from classes of ratio 1.05: within 2.5 % of the ranked value; heights are taken at three places of a flight in the cell; intensity_class by the 95th percentile of energy, counted: weak below 30 kJ, strong from 300 kJ on",
     ),
     ("max_height_m", "vertical, from the ground below to the lowest point of the rock"),
     (
@@ -51,6 +56,10 @@ const DEFINITIONS: [(&str, &str); 11] = [
         "over all rocks that did not fail, linear between neighbouring order statistics; rocks that left the terrain or ran out of time count with what they had done until then",
     ),
     ("reach_angle_deg", "atan(drop / runout)"),
+    (
+        "residual",
+        "each line without and with the barriers that rocks meet before it; a rock that a barrier lets through keeps its energy",
+    ),
     ("runout_m", "horizontal distance from release to end"),
 ];
 
@@ -82,6 +91,12 @@ pub struct Summary {
     /// What a year brings to each line and object; none without sources, and none of a part of a run.
     #[serde(default)]
     pub annual: Option<Annual>,
+    /// What remains at each line behind the barriers.
+    #[serde(default)]
+    pub residual: Vec<Residual>,
+    /// Where meshes and releases lie.
+    #[serde(default)]
+    pub site: Site,
     /// Measured ways, if the scene names any.
     #[serde(default)]
     pub observed: Vec<Way>,
@@ -140,6 +155,8 @@ impl Summary {
             barriers: Vec::new(),
             asked: info.asked,
             annual: None,
+            residual: Vec::new(),
+            site: info.site,
             observed: info.observed,
             maps: info.maps,
             largest_energy_balance_error: hazard.largest_balance_error(),

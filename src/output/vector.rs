@@ -1,13 +1,15 @@
 //! Ends and paths for GIS (GeoJSON) and for `ParaView` (VTK), written from the tables when a run is complete.
 
-use super::PathRow;
+use super::site::Zone;
+use super::{PathRow, Summary};
 use crate::error::{Error, Result};
-use crate::hazard::Row;
+use crate::hazard::{LineSummary, Row};
 use crate::rock::Vec3;
-use serde_json::json;
+use crate::terrain::Terrain;
+use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Writes one feature a release at its end, with what `releases.csv` says of it.
 pub(super) fn write_ends(
@@ -38,40 +40,159 @@ pub(super) fn write_ends(
     file.finish()
 }
 
-/// Writes one feature a kept path; `rows` release by release.
+/// Writes one feature a kept path, with what its rock did point by point; `rows` and `rocks` release by release.
 pub(super) fn write_paths(
     path: &Path,
     epsg: Option<u32>,
-    rows: impl Iterator<Item = Result<PathRow>>,
+    (rows, mut rocks): (impl Iterator<Item = Result<PathRow>>, impl Iterator<Item = Result<Row>>),
 ) -> Result<()> {
     let mut file = Features::create(path, epsg)?;
-    let mut line: (usize, Vec<[f64; 3]>) = (0, Vec::new());
+    let mut points: Vec<PathRow> = Vec::new();
+    let mut write = |points: &mut Vec<PathRow>| -> Result<()> {
+        let Some(first) = points.first() else { return Ok(()) };
+        let rock = loop {
+            match rocks.next().transpose()? {
+                Some(rock) if rock.index < first.index => {}
+                rock => break rock.filter(|rock| rock.index == first.index),
+            }
+        };
+        if let (Some(rock), true) = (rock, points.len() > 1) {
+            let places: Vec<_> = points.iter().map(|row| row.position_m).collect();
+            let geometry = json!({ "type": "LineString", "coordinates": places });
+            file.add(&geometry, &along(&rock, points))?;
+        }
+        points.clear();
+        Ok(())
+    };
     for row in rows {
         let row = row?;
-        if row.index != line.0 {
-            file.add_line(&line)?;
-            line = (row.index, Vec::new());
+        if points.first().is_some_and(|first| first.index != row.index) {
+            write(&mut points)?;
         }
-        line.1.push(row.position_m);
+        points.push(row);
     }
-    file.add_line(&line)?;
+    write(&mut points)?;
     file.finish()
+}
+
+/// What a rock did, and at every point of its path the time, speed, energies and height above the ground.
+fn along(rock: &Row, points: &[PathRow]) -> serde_json::Value {
+    // digits beyond these only make the file long
+    let short =
+        |value: f64, digits: f64| value.is_finite().then(|| (value * digits).round() / digits);
+    let each = |value: &dyn Fn(&PathRow) -> f64, digits: f64| -> Vec<Option<f64>> {
+        points.iter().map(|row| short(value(row), digits)).collect()
+    };
+    let speed = |row: &PathRow| Vec3::from(row.velocity_m_s).norm();
+    let spin = |row: &PathRow| rock.radius_m * Vec3::from(row.spin_rad_s).norm();
+    json!({
+        "index": rock.index,
+        "stop": rock.stop.word(),
+        "radius_m": rock.radius_m,
+        "mass_kg": rock.mass_kg,
+        "max_speed_m_s": rock.max_speed_m_s,
+        "max_total_j": rock.max_total_j,
+        "max_height_m": rock.max_height_m,
+        "duration_s": rock.time_s,
+        "time_s": each(&|row| row.time_s, 1e4),
+        "speed_m_s": each(&speed, 1e4),
+        "translational_j": each(&|row| 0.5 * rock.mass_kg * speed(row).powi(2), 1e3),
+        // a homogeneous sphere: I = 2/5 m R²
+        "rotational_j": each(&|row| 0.2 * rock.mass_kg * spin(row).powi(2), 1e3),
+        "height_m": each(&|row| row.clearance_m, 1e4),
+    })
+}
+
+/// Writes `lines.geojson`, `barriers.geojson` and `release_zone.geojson` into `folder`, each where there is something.
+pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) -> Result<()> {
+    let is_barrier = |name: &String| summary.barriers.iter().find(|one| one.barrier.name == *name);
+    let line = |corners: &[[f64; 2]]| json!({ "type": "LineString", "coordinates": corners });
+    let own = summary.lines.iter().filter(|line| !line.info.of_barrier);
+    let (barriers, lines): (Vec<&LineSummary>, Vec<&LineSummary>) =
+        own.partition(|line| is_barrier(&line.info.name).is_some());
+    let p95 = |line: &LineSummary, column: &str| {
+        let found = line.statistics.get(column).and_then(|of| of.percentiles.get("p95"));
+        found.filter(|found| line.reach.count >= found.needs).map(|found| found.value)
+    };
+    let said = |at: &LineSummary| {
+        json!({
+            "name": at.info.name,
+            "length_m": at.info.length_m,
+            "reach": at.reach.share,
+            "reach_low_95": at.reach.low_95,
+            "reach_high_95": at.reach.high_95,
+            "total_p95_j": p95(at, "total_j"),
+            "height_p95_m": p95(at, "height_m"),
+        })
+    };
+    let mut file = Features::create_if(!lines.is_empty(), folder.join("lines.geojson"), epsg)?;
+    for at in &lines {
+        file.add(&line(&at.info.corners_m), &said(at))?;
+    }
+    file.finish()?;
+    let mut file =
+        Features::create_if(!barriers.is_empty(), folder.join("barriers.geojson"), epsg)?;
+    for at in &barriers {
+        let mut said = said(at);
+        if let Some(one) = is_barrier(&at.info.name) {
+            said["height_m"] = one.barrier.height_m.into();
+            said["capacity_j"] = one.barrier.capacity_j.into();
+            said["arriving"] = one.arriving.share.into();
+            said["stopped"] = one.stopped.share.into();
+            said["design_height_m"] = one.design_values.as_ref().map(|of| of.height_m).into();
+            said["design_energy_j"] = one.design_values.as_ref().map(|of| of.energy_j).into();
+        }
+        file.add(&line(&at.info.corners_m), &said)?;
+    }
+    file.finish()?;
+    let zones: Vec<&Zone> =
+        summary.site.zones().filter(|zone| !zone.corners_m().is_empty()).collect();
+    let mut file =
+        Features::create_if(!zones.is_empty(), folder.join("release_zone.geojson"), epsg)?;
+    for (number, zone) in zones.iter().enumerate() {
+        let said = if zones.len() > 1 {
+            json!({ "source": number + 1 })
+        } else {
+            json!({ "releases": summary.identity.of_releases })
+        };
+        file.add(&geometry(zone), &said)?;
+    }
+    file.finish()
+}
+
+fn geometry(zone: &Zone) -> Value {
+    let mut corners = zone.corners_m().to_vec();
+    match zone {
+        Zone::Points(_) => json!({ "type": "MultiPoint", "coordinates": corners }),
+        Zone::Line(_) => json!({ "type": "LineString", "coordinates": corners }),
+        Zone::Polygon(_) => {
+            // a ring ends where it begins
+            corners.extend(zone.corners_m().first().copied());
+            json!({ "type": "Polygon", "coordinates": [corners] })
+        }
+    }
 }
 
 /// A GeoJSON file that grows feature by feature.
 ///
 /// RFC 7946 knows longitude and latitude only. The older member `crs` says that these are map coordinates; GDAL and
 /// QGIS read it.
-struct Features<'a> {
-    path: &'a Path,
-    file: BufWriter<File>,
+struct Features {
+    path: PathBuf,
+    /// None: there is nothing to write, and no file.
+    file: Option<BufWriter<File>>,
     is_first: bool,
 }
 
-impl<'a> Features<'a> {
-    fn create(path: &'a Path, epsg: Option<u32>) -> Result<Self> {
-        let file = File::create(path).map_err(Error::file("create", path))?;
-        let mut features = Self { path, file: BufWriter::new(file), is_first: true };
+impl Features {
+    fn create(path: &Path, epsg: Option<u32>) -> Result<Self> {
+        Self::create_if(true, path.to_owned(), epsg)
+    }
+
+    fn create_if(is_wanted: bool, path: PathBuf, epsg: Option<u32>) -> Result<Self> {
+        let create = || File::create(&path).map_err(Error::file("create", &path));
+        let file = is_wanted.then(create).transpose()?.map(BufWriter::new);
+        let mut features = Self { path, file, is_first: true };
         let crs = epsg.map_or(String::new(), |code| {
             let name = format!("urn:ogc:def:crs:EPSG::{code}");
             format!("\"crs\":{},", json!({ "type": "name", "properties": { "name": name } }))
@@ -81,7 +202,8 @@ impl<'a> Features<'a> {
     }
 
     fn put(&mut self, text: &str) -> Result<()> {
-        self.file.write_all(text.as_bytes()).map_err(Error::file("write", self.path))
+        let Some(file) = &mut self.file else { return Ok(()) };
+        file.write_all(text.as_bytes()).map_err(Error::file("write", &self.path))
     }
 
     fn add(&mut self, geometry: &serde_json::Value, properties: &serde_json::Value) -> Result<()> {
@@ -90,23 +212,16 @@ impl<'a> Features<'a> {
         self.put(&format!("{comma}{feature}"))
     }
 
-    fn add_line(&mut self, (index, points): &(usize, Vec<[f64; 3]>)) -> Result<()> {
-        if points.len() < 2 {
-            return Ok(());
-        }
-        let geometry = json!({ "type": "LineString", "coordinates": points });
-        self.add(&geometry, &json!({ "index": index }))
-    }
-
     fn finish(mut self) -> Result<()> {
         self.put("\n]}\n")?;
-        self.file.flush().map_err(Error::file("write", self.path))
+        let Some(file) = &mut self.file else { return Ok(()) };
+        file.flush().map_err(Error::file("write", &self.path))
     }
 }
 
 /// Writes all kept paths as straight pieces of a legacy VTK unstructured grid in ASCII, with release, time, speed and
-/// clearance at every point; `ParaView`, pyvista and meshio read it. Coordinates are local to `origin_m`, as programs that
-/// draw in single precision need them.
+/// clearance at every point; `ParaView`, pyvista and meshio read it. Coordinates are those of the mesh files, whose (0, 0, 0)
+/// lies at `origin_m` on the map: paths and meshes open in one view.
 pub(super) fn write_vtk(
     path: &Path,
     origin_m: [f64; 3],
@@ -127,7 +242,7 @@ fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io:
     writeln!(to, "# vtk DataFile Version 3.0")?;
     writeln!(
         to,
-        "rockfall paths; map = local + ({}, {}, {}) m",
+        "rockfall paths in the coordinates of the meshes; map = these + ({}, {}, {}) m",
         origin_m.x, origin_m.y, origin_m.z
     )?;
     writeln!(to, "ASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double", rows.len())?;
@@ -160,4 +275,45 @@ fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io:
         }
     }
     Ok(())
+}
+
+/// Writes the welded terrain as `maps/terrain.vtk` below `dir`: legacy VTK polygons in binary, in the coordinates of the mesh
+/// files as the paths are, with the number of the ground and whether it is a tree on every triangle.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_terrain(dir: &Path, terrain: &Terrain, mesh_origin_m: [f64; 3]) -> Result<()> {
+    let path = dir.join(super::maps::FOLDER).join("terrain.vtk");
+    super::write_whole(&path, &terrain_vtk(terrain, mesh_origin_m))
+}
+
+fn terrain_vtk(terrain: &Terrain, mesh_origin_m: [f64; 3]) -> Vec<u8> {
+    let shift = terrain.origin_m - Vec3::from(mesh_origin_m);
+    let (points, count) = (terrain.vertices_m.len(), terrain.triangles.len());
+    let mut bytes = format!(
+        "# vtk DataFile Version 3.0\nrockfall terrain in the coordinates of the meshes\nBINARY\nDATASET POLYDATA\nPOINTS {points} double\n"
+    )
+    .into_bytes();
+    // the format is big-endian
+    for vertex in &terrain.vertices_m {
+        let place: [f64; 3] = (vertex + shift).into();
+        bytes.extend(place.into_iter().flat_map(f64::to_be_bytes));
+    }
+    bytes.extend(format!("\nPOLYGONS {count} {}\n", 4 * count).bytes());
+    for corners in &terrain.triangles {
+        let cell = [3, corners[0], corners[1], corners[2]];
+        bytes.extend(cell.into_iter().flat_map(u32::to_be_bytes));
+    }
+    bytes.extend(format!("\nCELL_DATA {count}\n").bytes());
+    let sheet = |triangle: usize| &terrain.sheets[usize::from(terrain.sheet_of[triangle])];
+    let columns: [(&str, &dyn Fn(usize) -> u32); 2] = [
+        ("ground", &|triangle| u32::from(sheet(triangle).ground)),
+        ("is_tree", &|triangle| u32::from(sheet(triangle).is_tree)),
+    ];
+    for (name, value) in columns {
+        bytes.extend(format!("SCALARS {name} int 1\nLOOKUP_TABLE default\n").bytes());
+        bytes.extend((0..count).flat_map(|triangle| value(triangle).to_be_bytes()));
+        bytes.push(b'\n');
+    }
+    bytes
 }

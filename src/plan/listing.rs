@@ -22,6 +22,7 @@ impl Plan {
             scene_file,
             scene_hash,
             version,
+            mesh_origin_m: _, // the terrain's own says more
             epsg,
             seed,
             count,
@@ -58,6 +59,7 @@ impl Plan {
             title_block: _, // with the report
             sources: _,     // with the report
             warnings,
+            fast_warnings,
         } = self;
         let place = places(releases.places());
         let mut list = List::default();
@@ -151,6 +153,7 @@ impl Plan {
             list.line("compared with", format!("measured ends in {}", file.display()));
         }
         list.lines("warning", warnings.iter().cloned());
+        list.lines("warning", fast_warnings.iter().map(|warning| warning.text.clone()));
         list.0
     }
 

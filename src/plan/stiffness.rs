@@ -21,6 +21,15 @@ const SELDOM_PASSED_M_S: f64 = 40.0;
 /// fifth of the speed.
 const RESOLVED_PHASE: f64 = 0.3;
 
+/// A warning that concerns rocks above a speed: where none comes so fast, there is nothing to warn of.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct FastWarning {
+    /// The speed (m/s).
+    pub above_m_s: f64,
+    /// In words.
+    pub text: String,
+}
+
 /// What the fixed-step scheme dissipates by itself on one ground.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnDissipation {
@@ -120,7 +129,11 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
 }
 
 /// Refuses springs that cannot carry the largest rock and warns of those that an impact presses too deep.
-pub(super) fn check(scene: &Scene, terrain: &Terrain, warnings: &mut Vec<String>) -> Result<()> {
+pub(super) fn check(
+    scene: &Scene,
+    terrain: &Terrain,
+    warnings: &mut Vec<FastWarning>,
+) -> Result<()> {
     if scene.solver.scheme() == Scheme::Rigid {
         return Ok(());
     }
@@ -146,11 +159,15 @@ pub(super) fn check(scene: &Scene, terrain: &Terrain, warnings: &mut Vec<String>
         }
         let needed = least(fastest_m_s.min(SELDOM_PASSED_M_S), IMPACT_DEPTH);
         if softest < needed {
-            warnings.push(format!(
-                "[grounds.{name}] normal_stiffness_n_m = {softest:e} lets a rock of {:.3} m sink in by more than {IMPACT_DEPTH} of its radius in an impact at {:.0} m/s; {needed:.1e} would not",
+            let above_m_s = IMPACT_DEPTH
+                * largest.radius_m
+                * (softest / (liveliest * largest.mass_kg())).sqrt();
+            let text = format!(
+                "[grounds.{name}] normal_stiffness_n_m = {softest:e} lets a rock of {:.3} m sink in by more than {IMPACT_DEPTH} of its radius in impacts above {above_m_s:.1} m/s; {needed:.1e} would hold it up to {:.0} m/s",
                 largest.radius_m,
                 fastest_m_s.min(SELDOM_PASSED_M_S),
-            ));
+            );
+            warnings.push(FastWarning { above_m_s, text });
         }
     }
     Ok(())

@@ -46,6 +46,17 @@ impl Axis {
         }
     }
 
+    /// A logarithmic axis that ends at 1, 2 or 5 times a power of ten.
+    pub fn ratios(low: f64, high: f64, title: impl Into<String>) -> Self {
+        let whole = Self::log(low, high, title);
+        let within = |value: f64| (whole.low..=whole.high).contains(&value);
+        let below = [5.0, 2.0, 1.0].map(|step| round_down(low, step)).into_iter();
+        let below = below.filter(|v| v.is_finite() && *v > 0.0).fold(whole.low, f64::max);
+        let above = round_step(high, &[1.0, 2.0, 5.0]);
+        let (low, high) = (below.max(whole.low), if within(above) { above } else { whole.high });
+        if high > 1.5 * low { Self { low, high, ..whole } } else { whole }
+    }
+
     /// A linear axis from 0 (or a negative least value) to a round number not below the largest of `values`.
     pub fn from_zero(values: impl IntoIterator<Item = f64>, title: impl Into<String>) -> Self {
         let finite = values.into_iter().filter(|v| v.is_finite());
@@ -53,6 +64,19 @@ impl Axis {
         let (low, high) = if high > low { (low, high) } else { (low, low + 1.0) };
         let step = nice_step((high - low) / 8.0);
         Self::linear((low / step).floor() * step, (high / step).ceil() * step, title)
+    }
+
+    /// An axis for energies: logarithmic over those above 0 where they spread over more than 30 times, else from 0.
+    pub fn energies(values: impl IntoIterator<Item = f64>, title: impl Into<String>) -> Self {
+        let some: Vec<f64> = values.into_iter().filter(|v| v.is_finite() && *v > 0.0).collect();
+        let least = some.iter().copied().reduce(f64::min).unwrap_or(1.0);
+        let most = some.iter().copied().reduce(f64::max).unwrap_or(1.0);
+        if most > 30.0 * least {
+            // what is a millionth of the largest needs no room
+            Self::ratios(least.max(1e-6 * most), most, title)
+        } else {
+            Self::from_zero(some, title)
+        }
     }
 
     /// Where a value lies: 0 at the lower end, 1 at the upper.
@@ -80,19 +104,40 @@ impl Axis {
     }
 
     fn log_ticks(&self, count: usize) -> Vec<Tick> {
-        let (down, up) =
-            (math::log10(self.low).round() as i32, math::log10(self.high).round() as i32);
+        let down = (math::log10(self.low) + 1e-9).floor() as i32;
+        let up = (math::log10(self.high) - 1e-9).ceil() as i32;
         let every = (f64::from(up - down) / count.max(1) as f64).ceil().max(1.0) as i32;
+        // numbers that a reader knows stand as they are
+        let is_plain = down >= -4 && up <= 5;
+        let label = |value: f64, exponent: i32| {
+            if is_plain {
+                format::plain(format::rounded(value, 1))
+            } else {
+                format::power_of_ten(exponent)
+            }
+        };
+        // within two decades their halves and doubles are named too
+        let is_short = is_plain && self.high < 101.0 * self.low && count >= 4;
         let mut ticks = Vec::new();
         for exponent in down..=up {
+            let value = |m: i32| match exponent {
+                // a quotient is the double nearest to the decimal number
+                e if e < 0 => f64::from(m) / 10f64.powi(-e),
+                e => f64::from(m) * 10f64.powi(e),
+            };
             let is_labelled = (exponent - down) % every == 0;
-            let label = if is_labelled { format::power_of_ten(exponent) } else { String::new() };
-            ticks.push(Tick { value: 10f64.powi(exponent), label });
+            let text = if is_labelled { label(value(1), exponent) } else { String::new() };
+            ticks.push(Tick { value: value(1), label: text });
             if exponent < up && every == 1 {
-                let minor = |m: i32| f64::from(m) * 10f64.powi(exponent);
-                ticks.extend((2..10).map(|m| Tick { value: minor(m), label: String::new() }));
+                ticks.extend((2..10).map(|m| {
+                    let is_named = is_short && (m == 2 || m == 5);
+                    let label = if is_named { label(value(m), exponent) } else { String::new() };
+                    Tick { value: value(m), label }
+                }));
             }
         }
+        let (low, high) = (self.low * (1.0 - 1e-9), self.high * (1.0 + 1e-9));
+        ticks.retain(|tick| (low..=high).contains(&tick.value));
         ticks
     }
 }
@@ -109,6 +154,11 @@ fn widened(low: f64, high: f64) -> (f64, f64) {
         (false, true) => widened(high, high),
         (false, false) => (0.0, 1.0),
     }
+}
+
+/// The largest `step` times a power of ten that is not above a positive value.
+fn round_down(value: f64, step: f64) -> f64 {
+    step * math::pow(10.0, (math::log10(value / step) + 1e-9).floor())
 }
 
 /// The smallest of 1, 2, 2.5, 5 times a power of ten that is not below `rough`.

@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{BarrierView, PlaceView, energy_unit};
+use super::input::{BarrierView, DesignView, Estimate, PlaceView, kilo};
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Label, NORMAL, Paper, Pen, paint};
 use super::svg::path::{Frame, Spot};
@@ -15,7 +15,7 @@ const CLOUD_PX: f64 = 210.0;
 const CURVE_PX: f64 = 160.0;
 /// Between a panel's axis title and the head of the next panel (px).
 const GAP_PX: f64 = 34.0;
-const RIGHT_PX: f64 = WIDTH_PX - 14.0;
+const RIGHT_PX: f64 = WIDTH_PX - 20.0;
 /// From so many rocks on, marks shrink to dots.
 const MANY: usize = 400;
 /// Colours of other places, in the order of the scene; more places share the last.
@@ -25,7 +25,7 @@ const ELSEWHERE: [RGBColor; 4] = [ORANGE, PURPLE, SKY, GREY];
 pub(super) fn draw(barrier: &BarrierView, number: usize) -> Drawing {
     let rocks = barrier.places.first().map_or(&[][..], |own| &own.rocks);
     let most_j = rocks.iter().map(|rock| rock.1).fold(barrier.capacity_j, f64::max);
-    let (unit, size) = energy_unit(most_j);
+    let (unit, size) = kilo(most_j);
     let cloud = cloud_panel(barrier, rocks, (unit, size));
     let top = cloud.frame.bottom + FOOT_PX + GAP_PX;
     let (heights, places) = lower_panels(barrier, top);
@@ -44,23 +44,38 @@ pub(super) fn draw(barrier: &BarrierView, number: usize) -> Drawing {
     Drawing { svg, caption: caption(barrier, rocks.len()) }
 }
 
+/// What there is to say of a barrier that no rock reaches; none where one does.
+pub(super) fn nobody(barrier: &BarrierView) -> Option<String> {
+    let is_met = barrier.places.iter().any(|place| !place.rocks.is_empty());
+    (!is_met).then(|| format!("No rock arrives at barrier “{}”.", barrier.name))
+}
+
 fn caption(barrier: &BarrierView, arriving: usize) -> String {
+    let percentile = barrier.percentile.map_or(String::new(), |p| format!("P{p}"));
     let design = match barrier.design {
-        Some(_) => " The diamond is the design of its rule.",
-        None => "",
+        Some(_) => format!(
+            " The diamond is the design of its rule, from {percentile} with its factors; its bars are 95 % intervals."
+        ),
+        None if barrier.design_lacks > 0 => format!(
+            " No design value: {percentile} needs {} more {}.",
+            barrier.design_lacks,
+            format::counted(barrier.design_lacks, "rock that arrives", "rocks that arrive")
+        ),
+        None => String::new(),
     };
     let places = if barrier.places.len() > 1 {
-        ", at its place (blue) and at the other places of the scene. Below right: the same share at its own height against its \
-         place, positive to the left of its line, with Wilson's 95 % interval."
+        ", at its place (full) and at the other places of the scene. Below right: the same share at its own height against its \
+         place, with Wilson's 95 % interval."
     } else {
         "."
     };
     format!(
-        "Barrier “{}”: {} rocks arrive. Above: total energy and height of the highest point of each; inside the green frame it \
+        "Barrier “{}”: {} {}. Above: total energy and height of the highest point of each; inside the green frame it \
          stops them.{design} Below: share of the arriving rocks that a barrier of another height and the same capacity \
          would stop{places}",
         barrier.name,
-        format::decimal(arriving as f64, 0)
+        format::decimal(arriving as f64, 0),
+        format::counted(arriving, "rock arrives", "rocks arrive")
     )
 }
 
@@ -70,15 +85,16 @@ fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
 }
 
 fn cloud_panel(barrier: &BarrierView, rocks: &[(f64, f64)], (unit, size): (&str, f64)) -> Panel {
-    let (design_m, design_j) = barrier.design.unwrap_or((0.0, 0.0));
-    let energies =
-        rocks.iter().map(|rock| rock.1).chain([1.05 * barrier.capacity_j, 1.05 * design_j]);
+    let reach = |at: &Estimate| 1.05 * [at.value, at.high].into_iter().fold(0.0, f64::max);
+    let (design_m, design_j) =
+        barrier.design.map_or((0.0, 0.0), |of| (reach(&of.height_m), reach(&of.energy_j)));
+    let energies = rocks.iter().map(|rock| rock.1).chain([1.05 * barrier.capacity_j, design_j]);
     let tops = rocks.iter().map(|rock| rock.0).filter(|top| top.is_finite());
-    let tops = tops.chain([1.05 * barrier.height_m, 1.05 * design_m]);
+    let tops = tops.chain([1.05 * barrier.height_m, design_m]);
     let frame = Frame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + CLOUD_PX };
     let mut panel = Panel::new(
         frame,
-        Axis::from_zero(energies.map(|joule| joule / size), format!("Total energy ({unit})")),
+        Axis::energies(energies.map(|joule| joule / size), format!("Total energy ({unit})")),
         Axis::from_zero(tops, "Height of the highest point (m)"),
     );
     panel.frame.left += panel.room_left();
@@ -103,19 +119,30 @@ fn draw_cloud(
         .collect();
     paper.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     paper.outline(&stopped, Pen::full(GREEN, 1.6));
-    if let Some((height_m, joule)) = barrier.design {
-        let (x, y) = panel.at(joule / size, height_m);
-        paper.polygon(&[(x, y - 6.0), (x + 6.0, y), (x, y + 6.0), (x - 6.0, y)], VERMILLION, 1.0);
-        let label = if x > panel.frame.right - 60.0 {
-            Label::new("design", (x - 9.0, y)).right()
-        } else {
-            Label::new("design", (x + 9.0, y))
-        };
-        paper.text_on_rim(&label.coloured(INK));
+    if let Some(design) = barrier.design {
+        draw_design(paper, panel, &design, size);
     }
     panel.axes(paper);
     if rocks.is_empty() {
         panel.nothing(paper, "no rock arrives");
+    }
+}
+
+/// The design as a diamond with the intervals of its energy and its height.
+fn draw_design(paper: &Paper<'_>, panel: &Panel, design: &DesignView, size: f64) {
+    let (energy, height) = (design.energy_j.over(size), design.height_m);
+    let (x, y) = panel.at(energy.value, height.value);
+    let pen = Pen::full(VERMILLION, 1.4);
+    let end = |of: &Estimate, bound: f64| if bound.is_finite() { bound } else { of.value };
+    let across = [energy.low, energy.high].map(|at| (end(&energy, at), height.value));
+    let up = [height.low, height.high].map(|at| (energy.value, end(&height, at)));
+    panel.line(paper, &across, pen);
+    panel.line(paper, &up, pen);
+    paper.polygon(&[(x, y - 6.0), (x + 6.0, y), (x, y + 6.0), (x - 6.0, y)], VERMILLION, 1.0);
+    let at = |dx: f64, dy: f64| Label::new("design", (x + dx, y + dy)).coloured(INK);
+    let places = [at(9.0, -11.0), at(-9.0, -11.0).right(), at(9.0, 12.0), at(-9.0, 12.0).right()];
+    if let Some(label) = places.iter().find(|label| panel.frame.contains(&label.frame())) {
+        paper.text_on_rim(label);
     }
 }
 
@@ -137,7 +164,12 @@ fn lower_panels(barrier: &BarrierView, top: f64) -> (Panel, Option<Panel>) {
         panel
     };
     let heights = Axis::linear(0.0, 2.0 * barrier.height_m, "Height (m)");
-    let places = || Axis::linear(low, high, "Distance from its place (m)");
+    let title = match barrier.left_is_uphill {
+        Some(true) => "Distance from its place (m), uphill positive",
+        Some(false) => "Distance from its place (m), downhill positive",
+        None => "Distance from its place (m), left positive",
+    };
+    let places = || Axis::linear(low, high, title);
     (
         placed(frame(0.0, first), heights),
         has_places.then(|| placed(frame(half, RIGHT_PX), places())),
@@ -155,16 +187,19 @@ fn staircase(barrier: &BarrierView, place: &PlaceView, most_m: f64) -> Vec<(f64,
     [(0.0, 0.0)].into_iter().chain(steps).chain([(most_m, percent(tops.len()))]).collect()
 }
 
+/// Pen of a place: 0 is the barrier's own, the others follow in the order of the scene.
+fn pen_of(place: usize) -> Pen {
+    let Some(other) = place.checked_sub(1) else { return Pen::full(BLUE, 1.8) };
+    let pen = Pen::full(ELSEWHERE[other.min(ELSEWHERE.len() - 1)], 1.4);
+    if other % 2 == 0 { pen.dashed() } else { pen.dotted() }
+}
+
 fn draw_heights(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
     panel.grid(paper);
     panel.upright(paper, barrier.height_m, Pen::full(GREEN, 1.4));
     // its own place last, on top of the others
     for (k, place) in barrier.places.iter().enumerate().rev() {
-        let pen = match k {
-            0 => Pen::full(BLUE, 1.8),
-            _ => Pen::full(ELSEWHERE[(k - 1).min(ELSEWHERE.len() - 1)], 1.2).dashed(),
-        };
-        panel.line(paper, &staircase(barrier, place, panel.x.high), pen);
+        panel.line(paper, &staircase(barrier, place, panel.x.high), pen_of(k));
     }
     panel.axes(paper);
 }
@@ -180,10 +215,12 @@ fn draw_places(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
         if share.of == 0 {
             continue;
         }
-        let colour = if k == 0 { BLUE } else { ELSEWHERE[(k - 1).min(ELSEWHERE.len() - 1)] };
         let at = |percent: f64| panel.at(place.offset_m, percent);
         paper.line(&[at(100.0 * share.low_95), at(100.0 * share.high_95)], Pen::full(INK, 1.2));
-        paper.disc(at(100.0 * share.share), 4.0, colour);
+        // its pen in the other panel: colours alone do not tell them apart
+        let (x, y) = at(100.0 * share.share);
+        paper.line(&[(x - 16.0, y), (x + 16.0, y)], pen_of(k));
+        paper.disc((x, y), 4.0, pen_of(k).colour);
     }
     panel.axes(paper);
 }

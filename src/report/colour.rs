@@ -17,10 +17,14 @@ pub const BLUE: RGBColor = RGBColor(0, 114, 178);
 pub const SKY: RGBColor = RGBColor(86, 180, 233);
 /// Okabe–Ito bluish green.
 pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+/// A darker green: text that belongs to something green.
+pub const DARK_GREEN: RGBColor = RGBColor(0, 96, 70);
 /// Okabe–Ito orange.
 pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
 /// Okabe–Ito vermillion.
 pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+/// A darker vermillion: the densest class of deposits.
+pub const DARK_VERMILLION: RGBColor = RGBColor(140, 45, 0);
 /// Okabe–Ito reddish purple.
 pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
 

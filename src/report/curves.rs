@@ -29,7 +29,7 @@ pub struct Curves {
 }
 
 const HEIGHT_PX: f64 = 260.0;
-const TOP_PX: f64 = 12.0;
+const TOP_PX: f64 = 24.0;
 
 impl Curves {
     /// Nothing to draw yet.
@@ -65,8 +65,10 @@ impl Curves {
             x = around(x, frame.width() / scale);
             y = around(y, frame.height() / scale);
         }
-        let panel =
+        let mut panel =
             Panel::new(frame, Axis::linear(x.0, x.1, self.x), Axis::linear(y.0, y.1, self.y));
+        // long labels need more than the usual room
+        panel.frame.left = panel.frame.left.max(panel.room_left());
         let size = (WIDTH_PX, TOP_PX + HEIGHT_PX + FOOT_PX);
         paint(name, size, &self.title, |paper| {
             panel.grid(paper);
@@ -77,7 +79,7 @@ impl Curves {
                 panel.line(paper, line, Pen::full(BLUE, 1.0));
             }
             for line in &self.others {
-                panel.line(paper, line, Pen::full(ORANGE, 1.0).dashed());
+                panel.line(paper, line, Pen::full(ORANGE, 1.4).dashed());
             }
             for &(x, y, radius) in &self.discs {
                 let px = radius * frame.height() / (panel.y.high - panel.y.low);
@@ -94,12 +96,14 @@ impl Curves {
     }
 
     fn key(&self, paper: &Paper<'_>, panel: &Panel) {
-        let mut x = panel.frame.left + 10.0;
-        for (name, colour) in self.names.iter().flatten().zip([BLUE, ORANGE]) {
-            let y = panel.frame.top + 12.0;
-            paper.disc((x, y), 4.0, colour);
-            paper.text(&Label::new(*name, (x + 9.0, y)));
-            x += 9.0 + text_width(name, SMALL) + 18.0;
+        let mut x = panel.frame.left;
+        let pens = [Pen::full(BLUE, 1.4), Pen::full(ORANGE, 1.6).dashed()];
+        for (name, pen) in self.names.iter().flatten().zip(pens) {
+            // above the frame: no curve runs there
+            let y = panel.frame.top - 10.0;
+            paper.line(&[(x, y), (x + 20.0, y)], pen);
+            paper.text(&Label::new(*name, (x + 25.0, y)));
+            x += 25.0 + text_width(name, SMALL) + 18.0;
         }
     }
 }

@@ -5,9 +5,9 @@ use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{Quantity, Report};
+use super::input::{Quantity, Report, kilo};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
+use super::paper::{Label, NORMAL, Paper, Pen, SMALL, bold_width, fitted, paint, text_width};
 use super::svg::path::Frame;
 
 /// What is shown, left to right, top to bottom.
@@ -48,7 +48,8 @@ pub(super) fn draw(report: &Report) -> Drawing {
         }
     });
     let caption = "Distributions over all releases of each rock's largest value. The energies reach their \
-                   largest values at different instants, so they do not add up. Lines: P50 full, P95 dashed, P99 dotted.";
+                   largest values at different instants, so they do not add up; their axes are logarithmic. Lines: P50 full, P95 \
+                   dashed, P99 dotted. “+n →”: so many rocks lie beyond the end of the axis.";
     Drawing { svg, caption: caption.to_owned() }
 }
 
@@ -69,8 +70,14 @@ impl<'a> Distribution<'a> {
         let si: Vec<f64> = report.releases.iter().map(|fall| quantity.of(fall)).collect();
         let finite = si.iter().copied().filter(|v| v.is_finite());
         let largest = finite.reduce(f64::max).unwrap_or(0.0);
-        let (unit, unit_size) = quantity.unit(largest);
-        let bins = Histogram::of(&si.iter().map(|v| v / unit_size).collect::<Vec<_>>());
+        let (unit, unit_size) =
+            if quantity.is_energy() { kilo(largest) } else { quantity.unit(largest) };
+        let values: Vec<f64> = si.iter().map(|v| v / unit_size).collect();
+        let bins = match quantity {
+            _ if quantity.is_energy() => Histogram::of_ratios(&values),
+            Quantity::ReachAngle => Histogram::of(&values),
+            _ => Histogram::clipped(&values),
+        };
         let tallest = percent_of(bins.largest(), si.len());
         let y = Axis::from_zero([1.02 * tallest], "Releases (%)");
         let panel = Panel::new(frame, bins.axis(&titled(quantity.name(), unit)), y);
@@ -84,9 +91,14 @@ impl<'a> Distribution<'a> {
         self.bins.bars(paper, &self.panel, total);
         let mut words = self.percentiles(paper);
         if total > 0 {
-            words.push(format!("max {}", format::significant(self.largest / self.unit_size, 3)));
+            words.push(format!("max {}", format::short(self.largest / self.unit_size)));
         }
         self.panel.axes(paper);
+        if self.bins.beyond > 0 {
+            let Frame { right, top, .. } = self.panel.frame;
+            let words = format!("+{} →", format::decimal(self.bins.beyond as f64, 0));
+            paper.text_on_rim(&Label::new(words, (right - 4.0, top + 10.0)).right().coloured(GREY));
+        }
         let above = Frame { top: self.panel.frame.top - head_px, ..self.panel.frame };
         head(paper, &above, self.quantity.name(), &words.join(" · "));
         if self.bins.counts.is_empty() {
@@ -103,7 +115,8 @@ impl<'a> Distribution<'a> {
             let Some(quantile) = found.filter(|q| q.at.value.is_finite()) else { continue };
             let value = quantile.at.value / self.unit_size;
             self.panel.upright(paper, value, pen);
-            words.push(format!("P{:.0} {}", 100.0 * probability, format::significant(value, 3)));
+            let sign = format::sign(quantile.at.is);
+            words.push(format!("P{:.0} {sign}{}", 100.0 * probability, format::short(value)));
         }
         words
     }
@@ -112,9 +125,10 @@ impl<'a> Distribution<'a> {
 /// Name left and numbers right, in two lines where they do not fit in one.
 fn head(paper: &Paper<'_>, frame: &Frame, name: &str, words: &str) {
     let y = frame.top;
-    let fits = text_width(name, NORMAL) * 1.06 + text_width(words, SMALL) + 8.0 < frame.width();
+    let fits = bold_width(name, NORMAL) + text_width(words, SMALL) + 8.0 < frame.width();
     paper.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));
-    let y = if fits { y } else { y + 14.0 };
+    let y = if fits { y } else { y + 15.0 };
+    let words = fitted(words, SMALL, frame.width());
     paper.text(&Label::new(words, (frame.right, y)).right().coloured(GREY));
 }
 

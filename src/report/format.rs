@@ -1,5 +1,7 @@
 //! Numbers and text as a reader expects them: thin-space thousands, a true minus, raised powers.
 
+use super::input::Is;
+
 /// Stands between groups of three digits.
 const THIN_SPACE: char = '\u{2009}';
 const MINUS: char = '\u{2212}';
@@ -52,6 +54,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// Three significant digits; from a hundred thousand on as a power of ten.
+pub fn short(value: f64) -> String {
+    if value.abs() >= 1e5 { scientific(value, 2) } else { significant(value, 3) }
+}
+
 /// The nearest number with so many significant digits.
 pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{:.*e}", digits.max(1) - 1, value).parse().unwrap_or(value)
@@ -88,6 +95,20 @@ pub fn lowered(raised: char) -> Option<char> {
     }
     let digit = RAISED.iter().position(|&c| c == raised)?;
     char::from_digit(digit as u32, 10)
+}
+
+/// Stands before a number that is only a bound.
+pub fn sign(is: Is) -> &'static str {
+    match is {
+        Is::Value | Is::Lacking(_) => "",
+        Is::AtLeast => "≥\u{2009}",
+        Is::AtMost => "≤\u{2009}",
+    }
+}
+
+/// One or many of something, by the number of them.
+pub fn counted<'a>(count: usize, one: &'a str, many: &'a str) -> &'a str {
+    if count == 1 { one } else { many }
 }
 
 /// Two written bounds as an interval; one that is no number leaves it open.

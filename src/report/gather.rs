@@ -1,16 +1,20 @@
 //! The report's numbers, gathered from the result files of a run: a report drawn again is the same report.
 
 mod annual;
+mod arrivals;
 mod barriers;
 mod lines;
+mod maps;
 mod measured;
 
 use super::input::{
-    BandPoint, Estimate, Fall, Path, Point, Quantile, Quantity, Report, Row, StopShare, Table, Text,
+    About, BandPoint, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row, StopShare,
+    Table, Text,
 };
 use super::raster::GroundRaster;
+use super::{format, plausibility};
 use crate::error::Result;
-use crate::hazard::{self, Exceedance, Hazard, PERCENTS, Percentile, Sample, StopKind};
+use crate::hazard::{self, Exceedance, Hazard, Open, PERCENTS, Percentile, Sample, StopKind};
 use crate::output::PathRow;
 use crate::output::Results;
 use crate::rock::Vec3;
@@ -36,11 +40,12 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let hazard = &results.hazard;
     let releases =
         results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
-    Ok(Report {
+    let lines = lines::lines(results, ground.as_ref())?;
+    let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
+    let mut report = Report {
         text: text_of(results),
         releases,
         paths: paths_of(results)?,
-        ground,
         runout_exceedance: band(&hazard.sample(hazard::Quantity::Runout).exceedance()),
         quantiles: TABLED.map(|(here, there)| (here, quantiles(hazard, there))).into(),
         stops: StopKind::ALL
@@ -49,20 +54,61 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
             .map(|kind| stop_share(hazard, kind))
             .collect(),
         headline: headline(hazard),
+        arrivals: arrivals::tables(results, &order),
+        zone: results.summary.site.release.clone(),
+        further_zones: results.summary.site.further_releases.clone(),
+        marks: lines::marks(results),
         tables: [table(hazard)]
             .into_iter()
             .chain(annual::tables(results))
             .chain(lines::tables(results))
-            .chain(barriers::tables(results))
+            .chain(barriers::tables(results, ground.as_ref()))
             .chain(measured::tables(results)?)
             .collect(),
-        lines: lines::lines(results)?,
+        lines,
         annual: annual::views(results),
-        barriers: barriers::views(results)?,
-        maps: lines::maps(results)?,
-        observed: measured::observed(results)?,
         has_view: false,
-    })
+        barriers: barriers::views(results, ground.as_ref())?,
+        maps: maps::maps(results)?,
+        observed: measured::observed(results)?,
+        ground,
+        checks: Vec::new(),
+    };
+    report.checks = plausibility::checks(&report, results);
+    let failed = report.checks.iter().filter(|check| !check.passes);
+    let failed: Vec<String> =
+        failed.map(|check| format!("{}: {}", check.name, check.found)).collect();
+    report.text.warnings = [warnings_first(hazard), report.text.warnings, failed].concat();
+    Ok(report)
+}
+
+/// What rocks that left the terrain do to the numbers, before anything else.
+pub(super) fn warnings_first(hazard: &Hazard) -> Vec<String> {
+    let left = hazard.ended(StopKind::LeftTerrain);
+    let late = hazard.ended(StopKind::TimeUp);
+    let said = |share: &hazard::Proportion, what: &str, remedy: &str| {
+        format!(
+            "{} of {} rocks ({}) {what}: their runout is a lower and their reach angle an upper bound, and so is every percentile that they decide (≥, ≤; no interval on that side). {remedy}",
+            format::decimal(share.count as f64, 0),
+            format::decimal(share.of as f64, 0),
+            format::percent(share.share, usize::from(share.share < 0.1)),
+        )
+    };
+    let left = (left.count > 0).then(|| {
+        said(&left, "left the terrain", "Give terrain that reaches farther if they matter.")
+    });
+    let late = (late.count > 0).then(|| {
+        said(&late, "were still moving when their time was up", "Give a longer [solver] longest_s.")
+    });
+    let spent = hazard.ended(StopKind::OverBudget);
+    let spent = (spent.count > 0).then(|| {
+        said(
+            &spent,
+            "were still moving when their budget of work was spent",
+            "Ask why: see how the rocks ended.",
+        )
+    });
+    left.into_iter().chain(late).chain(spent).collect()
 }
 
 /// The exceedance curve with its band upright: the intervals of the percentiles lie along x, figures want them along y.
@@ -72,13 +118,10 @@ fn band(curve: &[Exceedance]) -> Vec<BandPoint> {
         curve.iter().filter_map(|at| Some((at.high_95?, at.share))).collect();
     let point = |at: &Exceedance| BandPoint {
         x: at.value,
-        y: Estimate {
-            value: at.share,
-            low: share_at(&low, at.value),
-            high: share_at(&high, at.value),
-        },
+        y: Estimate::new(at.share, share_at(&low, at.value), share_at(&high, at.value)),
     };
-    curve.iter().map(point).collect()
+    // where rocks that left the terrain decide, there is no curve
+    curve.iter().filter(|at| !at.censored).map(point).collect()
 }
 
 /// Share at `x` on a curve of points that rise in x and fall in share: 1 before the curve, 0 after it.
@@ -92,11 +135,25 @@ fn share_at(curve: &[(f64, f64)], x: f64) -> f64 {
 }
 
 fn estimate(value: f64, low: Option<f64>, high: Option<f64>) -> Estimate {
-    Estimate { value, low: low.unwrap_or(f64::NAN), high: high.unwrap_or(f64::NAN) }
+    Estimate::new(value, low.unwrap_or(f64::NAN), high.unwrap_or(f64::NAN))
 }
 
-fn of_percentile(percentile: &Percentile) -> Estimate {
-    estimate(percentile.value, percentile.low_95, percentile.high_95)
+/// A percentile of so many rocks, whose true values may be open on one side; too few rocks give none.
+fn of_percentile(found: &Percentile, (rocks, open): (usize, Option<Open>)) -> Estimate {
+    if rocks < found.needs {
+        return Estimate::lacking(found.needs - rocks);
+    }
+    let is = match (found.censored, open) {
+        (true, Some(Open::Below)) => Is::AtMost,
+        (true, _) => Is::AtLeast,
+        (false, _) => Is::Value,
+    };
+    Estimate { is, ..estimate(found.value, found.low_95, found.high_95) }
+}
+
+/// Percentile `p` (0..1) of a sample whose true values may be open on one side; none of nothing.
+fn percentile_of(sample: &Sample, p: f64, open: Option<Open>) -> Option<Estimate> {
+    Some(of_percentile(&sample.percentile(p)?, (sample.values().len(), open)))
 }
 
 fn stop_of(kind: StopKind) -> Stop {
@@ -152,9 +209,8 @@ fn quantiles(hazard: &Hazard, quantity: hazard::Quantity) -> Vec<Quantile> {
     let sample = hazard.sample(quantity);
     let one = |percent: u8| {
         let probability = f64::from(percent) / 100.0;
-        sample
-            .percentile(probability)
-            .map(|found| Quantile { probability, at: of_percentile(&found) })
+        let at = percentile_of(&sample, probability, quantity.open())?;
+        at.value.is_finite().then_some(Quantile { probability, at })
     };
     PERCENTS.into_iter().filter_map(one).collect()
 }
@@ -179,17 +235,19 @@ pub(super) fn headline(hazard: &Hazard) -> Vec<Row> {
         ("Maximum bounce height, 95 %", MaxHeight, 0.95, "m"),
     ];
     let row = |(name, quantity, p, unit): (&str, hazard::Quantity, f64, &str)| {
-        let found = hazard.sample(quantity).percentile(p)?;
-        Some(Row { name: name.to_owned(), estimate: of_percentile(&found), unit: unit.to_owned() })
+        let estimate = percentile_of(&hazard.sample(quantity), p, quantity.open())?;
+        Some(Row { name: name.to_owned(), estimate, unit: unit.to_owned() })
     };
     asked.into_iter().filter_map(row).collect()
 }
 
 fn table(hazard: &Hazard) -> Table {
-    let rows = TABLED.map(|(here, there)| (here.name(), here, hazard.sample(there)));
+    let rows = TABLED.map(|(here, there)| (here.name(), here, hazard.sample(there), there.open()));
+    let rocks = hazard.rocks();
     let note = format!(
-        "Conditional on release, over {} rocks. Percentiles with 95 % intervals ({}); a bound that the sample is too small for is left open.",
-        hazard.rocks(),
+        "Conditional on release, over {} {}. Percentiles with 95 % intervals ({}); an end that the sample is too small for is left open.",
+        format::decimal(rocks as f64, 0),
+        format::counted(rocks, "rock", "rocks"),
         if hazard.weights().is_some() {
             "weighted by what each rock stands for, Woodruff's"
         } else {
@@ -199,30 +257,45 @@ fn table(hazard: &Hazard) -> Table {
     statistics_table("Statistics over all releases", note, &rows)
 }
 
-/// An estimate in a unit so many times as large.
-fn scaled_by(x: Estimate, size: f64) -> Estimate {
-    Estimate { value: x.value / size, low: x.low / size, high: x.high / size }
-}
+/// What a row of a table of statistics is made from: name, the quantity whose unit it has, values, and on which side
+/// true values may lie.
+type StatisticsRow<'a> = (&'a str, Quantity, Sample, Option<Open>);
 
-/// A table of mean, percentiles and maximum: name, the quantity whose unit it has, and the values of each row.
-fn statistics_table(title: &str, note: String, rows: &[(&str, Quantity, Sample)]) -> Table {
-    let percents = PERCENTS.map(|percent| format!("{percent} %"));
+/// A table of mean, percentiles and maximum; energies all in one unit.
+fn statistics_table(title: &str, note: String, rows: &[StatisticsRow<'_>]) -> Table {
+    let percents = PERCENTS.map(|percent| format!("{percent}\u{2009}%"));
     let columns =
         ["mean".to_owned()].into_iter().chain(percents).chain(["maximum".to_owned()]).collect();
-    let rows = rows.iter().map(|(name, like, sample)| {
-        let (unit, size) = like.unit(sample.values().last().copied().unwrap_or(0.0));
-        let scaled = |x: Estimate| scaled_by(x, size);
-        let mean = sample.mean().map(|mean| estimate(mean.value, mean.low_95, mean.high_95));
-        let most = sample.values().last().map(|&most| estimate(most, None, None));
-        let middle = PERCENTS.map(|percent| {
-            sample.percentile(f64::from(percent) / 100.0).map(|found| of_percentile(&found))
-        });
-        let cells =
-            [mean].into_iter().chain(middle).chain([most]).map(|cell| cell.map(scaled)).collect();
+    let largest = |sample: &Sample| sample.values().last().copied().unwrap_or(0.0);
+    let energies = rows.iter().filter(|(_, like, ..)| like.is_energy());
+    let most_j = energies.map(|(.., sample, _)| largest(sample)).fold(0.0, f64::max);
+    let rows = rows.iter().map(|(name, like, sample, open)| {
+        let (unit, size) = like.unit(if like.is_energy() { most_j } else { largest(sample) });
+        let is = match (sample.bounds() > 0, open) {
+            (true, Some(Open::Below)) => Is::AtMost,
+            (true, _) => Is::AtLeast,
+            (false, _) => Is::Value,
+        };
+        let mean = sample
+            .mean()
+            .map(|mean| Estimate { is, ..estimate(mean.value, mean.low_95, mean.high_95) });
+        let most = sample.values().last().map(|&most| Estimate { is, ..Estimate::plain(most) });
+        let middle =
+            PERCENTS.map(|percent| percentile_of(sample, f64::from(percent) / 100.0, *open));
+        let cells = [mean].into_iter().chain(middle).chain([most]);
         let name = if unit.is_empty() { (*name).to_owned() } else { format!("{name} ({unit})") };
-        (name, cells)
+        (name, cells.map(|cell| cell.map(|x| x.over(size))).collect())
     });
-    Table { title: title.to_owned(), note, columns, rows: rows.collect() }
+    let about = About::Rocks;
+    Table { title: title.to_owned(), note, columns, rows: rows.collect(), about }
+}
+
+/// Warnings that concern rocks above a speed, where some came so fast.
+fn fast_warnings(results: &Results) -> Vec<String> {
+    let speeds = results.hazard.sample(hazard::Quantity::MaxSpeed);
+    let fastest = speeds.values().last().copied().unwrap_or(0.0);
+    let all = &results.summary.site.fast_warnings;
+    all.iter().filter(|one| fastest > one.above_m_s).map(|one| one.text.clone()).collect()
 }
 
 fn text_of(results: &Results) -> Text {
@@ -249,8 +322,12 @@ fn text_of(results: &Results) -> Text {
             .join("; "),
         parameter_source: summary.sources[1].clone(),
         plan: summary.plan.clone(),
-        warnings: [&summary.warnings[..], &summary.totals.warnings(results.hazard.rocks())]
-            .concat(),
+        warnings: [
+            &summary.warnings[..],
+            &fast_warnings(results)[..],
+            &summary.totals.warnings(results.hazard.rocks()),
+        ]
+        .concat(),
         mesh_health: lines(&summary.mesh_health),
         seed: summary.identity.seed,
         version: summary.identity.version.clone(),

@@ -4,6 +4,7 @@ use super::axis::{Axis, nice_step};
 use super::colour::SKY;
 use super::panel::Panel;
 use super::paper::Paper;
+use crate::math;
 
 /// Most and least number of bins over the range of the values.
 const MOST_BINS: f64 = 40.0;
@@ -20,7 +21,16 @@ pub(super) struct Histogram {
     pub(super) counts: Vec<usize>,
     /// Values that are not finite and in no bin.
     pub(super) left_out: usize,
+    /// Values beyond the last bin.
+    pub(super) beyond: usize,
+    /// Whether `from` and `width` are powers of ten.
+    is_log: bool,
 }
+
+/// Share of the values that a clipped histogram shows.
+const SHOWN: f64 = 0.995;
+/// A histogram is clipped where the largest value lies farther out than this many times what is shown.
+const FAR: f64 = 1.3;
 
 impl Histogram {
     /// Bins of round width, about √n of them.
@@ -28,7 +38,14 @@ impl Histogram {
         let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         let left_out = values.len() - finite.len();
         let Some((low, high)) = range(&finite) else {
-            return Self { from: 0.0, width: 1.0, counts: Vec::new(), left_out };
+            return Self {
+                from: 0.0,
+                width: 1.0,
+                counts: Vec::new(),
+                left_out,
+                beyond: 0,
+                is_log: false,
+            };
         };
         let bins = (finite.len() as f64).sqrt().clamp(LEAST_BINS, MOST_BINS);
         let width = nice_step(spread(low, high) / bins);
@@ -38,7 +55,37 @@ impl Histogram {
         for &v in &finite {
             counts[bin(v)] += 1;
         }
-        Self { from, width, counts, left_out }
+        Self { from, width, counts, left_out, beyond: 0, is_log: false }
+    }
+
+    /// Bins up to the 99.5th percentile where the rest lies far out; how many lie beyond is counted.
+    pub(super) fn clipped(values: &[f64]) -> Self {
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let shown = ((SHOWN * sorted.len() as f64).ceil() as usize).min(sorted.len());
+        let (Some(&last), Some(&most)) =
+            (shown.checked_sub(1).and_then(|k| sorted.get(k)), sorted.last())
+        else {
+            return Self::of(values);
+        };
+        if last <= 0.0 || most < FAR * last {
+            return Self::of(values);
+        }
+        let beyond = sorted.iter().filter(|v| **v > last).count();
+        let shown: Vec<f64> = values.iter().copied().filter(|v| *v <= last).collect();
+        let left_out = values.iter().filter(|v| !v.is_finite()).count();
+        Self { left_out, beyond, ..Self::of(&shown) }
+    }
+
+    /// Bins of equal ratio over the values above 0, from the half per cent on; the few smaller ones count in the first.
+    pub(super) fn of_ratios(values: &[f64]) -> Self {
+        let mut logs: Vec<f64> =
+            values.iter().filter(|v| v.is_finite() && **v > 0.0).map(|v| math::log10(*v)).collect();
+        logs.sort_by(f64::total_cmp);
+        let least = logs.get(((1.0 - SHOWN) * logs.len() as f64) as usize).copied();
+        let raised: Vec<f64> = logs.iter().map(|&v| v.max(least.unwrap_or(v))).collect();
+        let left_out = values.len() - logs.len();
+        Self { left_out, is_log: true, ..Self::of(&raised) }
     }
 
     /// Upper end of the last bin.
@@ -54,6 +101,9 @@ impl Histogram {
     /// An axis on which all bins and some paper around them fit.
     pub(super) fn axis(&self, title: &str) -> Axis {
         let (from, to) = (self.from, self.to().max(self.from + self.width));
+        if self.is_log {
+            return Axis::ratios(math::pow(10.0, from + 1e-6), math::pow(10.0, to - 1e-6), title);
+        }
         // a few bins do not fill the frame
         let missing = (LEAST_BINS - (to - from) / self.width).max(0.0);
         let margin = 0.5 * missing * self.width + 0.02 * (to - from);
@@ -65,8 +115,9 @@ impl Histogram {
     /// The bars, as shares of `total` in per cent.
     pub(super) fn bars(&self, paper: &Paper<'_>, panel: &Panel, total: usize) {
         for (i, &count) in self.counts.iter().enumerate() {
-            let from = self.from + i as f64 * self.width;
-            panel.bar(paper, (from, from + self.width), percent_of(count, total), SKY);
+            let ends = [i, i + 1].map(|k| self.from + k as f64 * self.width);
+            let [from, to] = if self.is_log { ends.map(|end| math::pow(10.0, end)) } else { ends };
+            panel.bar(paper, (from, to), percent_of(count, total), SKY);
         }
     }
 }
@@ -112,6 +163,10 @@ mod tests {
             let bins = Histogram::of(values);
             let counted: usize = bins.counts.iter().sum();
             assert_eq!(counted + bins.left_out, values.len(), "{values:?}");
+            for bins in [Histogram::clipped(values), Histogram::of_ratios(values)] {
+                let counted: usize = bins.counts.iter().sum();
+                assert_eq!(counted + bins.left_out + bins.beyond, values.len(), "{values:?}");
+            }
             assert!(bins.counts.len() < 200, "{} bins for {values:?}", bins.counts.len());
             assert!(bins.width > 0.0 && bins.from.is_finite());
         }

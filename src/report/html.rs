@@ -1,32 +1,65 @@
 //! The report page: one file, no scripts, nothing fetched; prints to A4.
+//!
+//! The first page answers: the map, what arrives at lines and barriers, and what must be known before the numbers are
+//! used. Then one chapter a question.
 
+mod tables;
 mod words;
 
+pub use tables::plain_headline;
+
+use super::barriers;
 use super::figure::{Drawing, Heading};
 use super::format::{self, escape};
-use super::input::{Estimate, Report, Row, Table, energy_unit};
-use crate::math;
+use super::input::{About, Check, Report};
+use super::lines;
 use crate::trajectory::Stop;
 use std::fmt::Write as _;
 use words::{GLOSSARY, METHOD, STYLE};
 
+/// What is drawn, in the order of the page.
+type Figures = [(Heading, Drawing)];
+
+/// A chapter: its anchor, what it asks, and its content.
+struct Chapter {
+    anchor: &'static str,
+    title: &'static str,
+    body: String,
+}
+
 /// The page with the figures inlined.
-pub fn page(report: &Report, figures: &[(Heading, Drawing)]) -> String {
-    let mut page = head(&report.text.title);
-    let parts = [
-        title_block(report),
-        warnings(report),
-        headline(report),
-        tables(report),
-        figure_section(figures),
-        method(report),
-        inputs(report),
-        plan(report),
-        quality(report),
-        glossary(),
-        footer(report),
+pub fn page(report: &Report, figures: &Figures) -> String {
+    let chapter = |anchor, title, body| Chapter { anchor, title, body };
+    let chapters = [
+        chapter("where", "Where do they go?", where_to(report, figures)),
+        chapter("how", "How fast and how high?", how_fast(report, figures)),
+        chapter("lines", "What arrives at each line?", at_lines(report, figures)),
+        chapter(
+            "barriers",
+            "What each barrier meets, and what passes it",
+            at_barriers(report, figures),
+        ),
+        chapter("year", "What does a year bring?", in_a_year(report, figures)),
+        chapter("sure", "How sure is that?", how_sure(report, figures)),
+        chapter("out", "What was computed, what was left out and why", plan(report)),
+        chapter("inputs", "Method and inputs", method(report) + &inputs(report)),
+        chapter("words", "Definitions", glossary()),
     ];
-    page.extend(parts);
+    let shown: Vec<&Chapter> = chapters.iter().filter(|one| !one.body.is_empty()).collect();
+    let mut page = head(&report.text.title);
+    page += &first_page(report, figures);
+    page += &contents(&shown);
+    for (number, one) in shown.iter().enumerate() {
+        let _ = write!(
+            page,
+            "<section id=\"{}\">\n<h2>{} {}</h2>\n{}</section>\n",
+            one.anchor,
+            number + 1,
+            escape(one.title),
+            one.body
+        );
+    }
+    page += &footer(report);
     page.push_str("</main>\n</body>\n</html>\n");
     page
 }
@@ -68,26 +101,65 @@ fn pairs(rows: &[(String, String)]) -> String {
     format!("<table class=\"pairs\">\n{}</table>\n", rows.iter().map(row).collect::<String>())
 }
 
-fn title_block(report: &Report) -> String {
+/// A note in small print; nothing of no words.
+fn note(words: &str) -> String {
+    if words.is_empty() {
+        String::new()
+    } else {
+        format!("<p class=\"note\">{}</p>\n", escape(words))
+    }
+}
+
+/// Site and question, the map, what arrives, and what must be known first.
+fn first_page(report: &Report, figures: &Figures) -> String {
     let text = &report.text;
     let subtitle = match text.subtitle.as_str() {
         "" => String::new(),
         words => format!("<p class=\"subtitle\">{}</p>\n", escape(words)),
     };
-    let count = format::decimal(report.releases.len() as f64, 0);
+    let count = |n: usize| format::decimal(n as f64, 0);
+    let facts = format!(
+        "{} {} · {} stored {} · seed {} · rockfall {}",
+        count(report.releases.len()),
+        format::counted(report.releases.len(), "release", "releases"),
+        count(report.paths.len()),
+        format::counted(report.paths.len(), "path", "paths"),
+        text.seed,
+        text.version
+    );
     let view = if report.has_view {
         " · <a href=\"view.html\">the slope in 3D</a> · <a href=\"view.glb\">view.glb</a>"
     } else {
         ""
     };
     format!(
-        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{count} releases · {} kept paths · seed {} · rockfall {}{view}</p>\n{}</header>\n",
+        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{}{view}</p>\n{}{}</header>\n{}{}<section id=\"answer\">\n{}{}</section>\n",
         escape(&text.title),
-        report.paths.len(),
-        text.seed,
-        escape(&text.version),
-        pairs(&text.title_block)
+        escape(&facts),
+        pairs(&text.title_block),
+        question(report),
+        warnings(report),
+        figure(figures, "plan.svg").replacen("<figure>", "<figure class=\"map\">", 1),
+        report.arrivals.iter().map(tables::table).collect::<String>(),
+        tables::headline(&report.headline),
     )
+}
+
+/// What was asked, in one sentence, from what the scene names.
+fn question(report: &Report) -> String {
+    let names = |is_barrier: bool| -> Vec<String> {
+        let marks = report.marks.iter().filter(|mark| mark.barrier.is_some() == is_barrier);
+        marks.map(|mark| format!("“{}”", mark.name)).collect()
+    };
+    let (lines, barriers) = (names(false), names(true));
+    let mut words = "How far do rocks from the release zone come, how fast and how high".to_owned();
+    if !lines.is_empty() {
+        let _ = write!(words, ", what arrives at {}", lines.join(", "));
+    }
+    if !barriers.is_empty() {
+        let _ = write!(words, ", and what do {} meet and let pass", barriers.join(", "));
+    }
+    format!("<p class=\"question\">{}?</p>\n", escape(&words))
 }
 
 fn warnings(report: &Report) -> String {
@@ -100,118 +172,113 @@ fn warnings(report: &Report) -> String {
     )
 }
 
-fn headline(report: &Report) -> String {
-    if report.headline.is_empty() {
+fn contents(chapters: &[&Chapter]) -> String {
+    let mut items = String::new();
+    for one in chapters {
+        let _ = writeln!(items, "<li><a href=\"#{}\">{}</a></li>", one.anchor, escape(one.title));
+    }
+    format!("<nav>\n<ol>\n{items}</ol>\n</nav>\n")
+}
+
+/// The figure of a file, numbered as it stands among all; nothing if it was not drawn.
+fn figure(figures: &Figures, file: &str) -> String {
+    let Some(at) = figures.iter().position(|(heading, _)| heading.file == file) else {
+        return String::new();
+    };
+    let (heading, drawing) = &figures[at];
+    format!(
+        "<figure>\n{}<figcaption><b>Figure {}. {}.</b> {}</figcaption>\n</figure>\n",
+        drawing.svg,
+        at + 1,
+        escape(&heading.title),
+        escape(&drawing.caption)
+    )
+}
+
+fn all(figures: &Figures, files: &[&str]) -> String {
+    files.iter().map(|file| figure(figures, file)).collect()
+}
+
+/// All tables about something.
+fn tables_about(report: &Report, about: About) -> String {
+    report.tables.iter().filter(|table| table.about == about).map(tables::table).collect()
+}
+
+fn where_to(report: &Report, figures: &Figures) -> String {
+    let files = [
+        "stops.svg",
+        "runout.svg",
+        "reach_angle.svg",
+        "maps.svg",
+        "maps_values.svg",
+        "measured.svg",
+    ];
+    all(figures, &files) + &tables_about(report, About::Measured)
+}
+
+fn how_fast(report: &Report, figures: &Figures) -> String {
+    all(figures, &["side.svg", "along.svg", "distributions.svg"])
+        + &tables_about(report, About::Rocks)
+}
+
+fn sentence(words: Option<String>) -> String {
+    words.map_or(String::new(), |words| format!("<p>{}</p>\n", escape(&words)))
+}
+
+fn at_lines(report: &Report, figures: &Figures) -> String {
+    let own = report.lines.iter().filter(|line| !line.is_barrier);
+    let each = own.map(|line| {
+        figure(figures, &format!("line_{}.svg", line.number)) + &sentence(lines::nobody(line))
+    });
+    figure(figures, "retention.svg")
+        + &each.collect::<String>()
+        + &tables_about(report, About::Lines)
+}
+
+fn at_barriers(report: &Report, figures: &Figures) -> String {
+    let each = report.barriers.iter().enumerate().map(|(number, barrier)| {
+        figure(figures, &format!("barrier_{}.svg", number + 1))
+            + &sentence(barriers::nobody(barrier))
+    });
+    each.collect::<String>() + &tables_about(report, About::Barriers)
+}
+
+fn in_a_year(report: &Report, figures: &Figures) -> String {
+    let numbers = 1..=report.annual.len();
+    let each = numbers.map(|number| figure(figures, &format!("annual_{number}.svg")));
+    each.collect::<String>() + &tables_about(report, About::Year)
+}
+
+fn how_sure(report: &Report, figures: &Figures) -> String {
+    let study = figure(figures, ERROR_STUDY);
+    let study = if study.is_empty() {
+        note(
+            "Sampling is what the intervals say. Errors of steps and mesh are not in them: `rockfall study error SCENE --out DIR/error`, with DIR the \
+             folder of these results, finds both and what they cost; `rockfall draw DIR` then shows its figure here.",
+        )
+    } else {
+        study
+    };
+    study + &checks(&report.checks) + &quality(report)
+}
+
+/// File of the figure that `rockfall study error` leaves.
+pub(super) const ERROR_STUDY: &str = "error.svg";
+
+fn checks(checks: &[Check]) -> String {
+    if checks.is_empty() {
         return String::new();
     }
-    let row = |row: &Row| {
-        let (estimate, unit) = in_short_unit(row);
-        let (value, interval) = in_words(&estimate);
+    let row = |check: &Check| {
         format!(
-            "<tr><th scope=\"row\">{}</th><td class=\"number\">{value}</td><td class=\"number\">{interval}</td><td>{}</td></tr>\n",
-            escape(&row.name),
-            escape(unit)
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>\n",
+            escape(&check.name),
+            if check.passes { "plausible" } else { "<b>look here</b>" },
+            escape(&check.found)
         )
     };
-    let rows: String = report.headline.iter().map(row).collect();
-    let body = format!(
-        "<table>\n<thead><tr><th>Quantity</th><th class=\"number\">Value</th><th class=\"number\">95 % interval</th><th>Unit</th></tr></thead>\n\
-         <tbody>\n{rows}</tbody>\n</table>\n\
-         <p class=\"note\">Intervals say how far chance in the sample moves a number. They do not say how well ground values and terrain are known.</p>\n"
-    );
-    section("Results", &body)
-}
-
-/// Each headline statistic with its interval, in columns for a terminal.
-pub fn plain_headline(rows: &[Row]) -> Vec<String> {
-    let words = |row: &Row| {
-        let (estimate, unit) = in_short_unit(row);
-        let (value, interval) = in_words(&estimate);
-        let unit = unit.to_owned();
-        let interval = match interval {
-            none if none == format::NO_NUMBER => "too few rocks for an interval".to_owned(),
-            interval => format!("95 % interval {interval}"),
-        };
-        (format!("{value} {unit}"), interval)
-    };
-    let wide = |text: &str| text.chars().count();
-    let name_width = rows.iter().map(|row| wide(&row.name)).max().unwrap_or(0);
-    let values: Vec<_> = rows.iter().map(words).collect();
-    let value_width = values.iter().map(|(value, _)| wide(value)).max().unwrap_or(0);
-    let line = |(row, (value, interval)): (&Row, &(String, String))| {
-        format!("{:<name_width$}  {value:>value_width$}  {interval}", row.name)
-    };
-    rows.iter().zip(&values).map(line).collect()
-}
-
-/// Joules as kJ or MJ where that is shorter; other units as they are.
-fn in_short_unit(row: &Row) -> (Estimate, &str) {
-    if row.unit != "J" {
-        return (row.estimate, &row.unit);
-    }
-    let (unit, size) = energy_unit(row.estimate.value);
-    let Estimate { value, low, high } = row.estimate;
-    (Estimate { value: value / size, low: low / size, high: high / size }, unit)
-}
-
-/// Value and interval with as many digits as the interval leaves meaningful.
-fn in_words(estimate: &Estimate) -> (String, String) {
-    let width = estimate.high - estimate.low;
-    if width.is_nan() && estimate.value.fract() == 0.0 && estimate.value.abs() < 1e7 {
-        // a count, or a number as it was written
-        return (format::decimal(estimate.value, 0), format::NO_NUMBER.to_owned());
-    }
-    let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
-        // the last digit is at most a fifth of the interval
-        let leading = math::log10(estimate.value.abs()).floor() - math::log10(0.2 * width).floor();
-        (leading as i32 + 1).clamp(3, 6) as usize
-    } else {
-        4
-    };
-    let bound = |v: f64| format::significant(format::rounded(v, digits), digits);
-    let value = bound(estimate.value);
-    let interval = format::interval(&bound(estimate.low), &bound(estimate.high));
-    (value, interval)
-}
-
-fn tables(report: &Report) -> String {
-    report.tables.iter().map(table).collect()
-}
-
-fn table(table: &Table) -> String {
-    let mut heads = String::new();
-    for column in &table.columns {
-        let _ = write!(heads, "<th class=\"number\">{}</th>", escape(column));
-    }
-    let mut rows = String::new();
-    for (name, cells) in &table.rows {
-        let _ = write!(rows, "<tr><th scope=\"row\">{}</th>", escape(name));
-        for cell in cells {
-            rows.push_str(&table_cell(cell.as_ref()));
-        }
-        rows.push_str("</tr>\n");
-    }
-    let note = match table.note.as_str() {
-        "" => String::new(),
-        words => format!("<p class=\"note\">{}</p>\n", escape(words)),
-    };
-    let body = format!(
-        "{note}<div class=\"wide\"><table class=\"dense\">\n<thead><tr><th></th>{heads}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
-    );
-    section(&table.title, &body)
-}
-
-fn table_cell(estimate: Option<&Estimate>) -> String {
-    let Some(estimate) = estimate else {
-        return format!("<td class=\"number\">{}</td>", format::NO_NUMBER);
-    };
-    let (value, interval) = in_words(estimate);
-    let below = if interval == format::NO_NUMBER {
-        String::new()
-    } else {
-        format!("<br><small>{interval}</small>")
-    };
-    format!("<td class=\"number\">{value}{below}</td>")
+    let rows: String = checks.iter().map(row).collect();
+    format!("<h3>Plausibility</h3>\n<table class=\"checks\">\n{rows}</table>\n")
 }
 
 pub(super) fn figure_section(figures: &[(Heading, Drawing)]) -> String {
@@ -231,7 +298,7 @@ pub(super) fn figure_section(figures: &[(Heading, Drawing)]) -> String {
 
 fn method(report: &Report) -> String {
     let scheme = escape(&report.text.scheme);
-    section("Method", &format!("<p>{} {scheme}</p>\n", METHOD.join(" ")))
+    format!("<p>{} {scheme}</p>\n", METHOD.join(" "))
 }
 
 fn inputs(report: &Report) -> String {
@@ -241,7 +308,7 @@ fn inputs(report: &Report) -> String {
         let lines: String = text.mesh_health.iter().map(|line| escape(line) + "\n").collect();
         let _ = write!(body, "<h3>Health of the meshes</h3>\n<pre>{lines}</pre>\n");
     }
-    section("Inputs", &body)
+    body
 }
 
 fn plan(report: &Report) -> String {
@@ -250,7 +317,7 @@ fn plan(report: &Report) -> String {
         return String::new();
     }
     let lines: String = lines.iter().map(|line| escape(line) + "\n").collect();
-    section("Plan: what was computed, what was left out and why", &format!("<pre>{lines}</pre>\n"))
+    format!("<pre>{lines}</pre>\n")
 }
 
 fn quality(report: &Report) -> String {
@@ -273,7 +340,7 @@ fn quality(report: &Report) -> String {
         row("Seed", text.seed.to_string()),
         row("Version", text.version.clone()),
     ];
-    section("Quality statement", &pairs(&rows))
+    format!("<h3>Quality statement</h3>\n{}", pairs(&rows))
 }
 
 fn glossary() -> String {
@@ -281,7 +348,7 @@ fn glossary() -> String {
         format!("<dt>{}</dt><dd>{}</dd>\n", escape(term), escape(meaning))
     };
     let entries: String = GLOSSARY.iter().map(entry).collect();
-    section("Definitions", &format!("<dl>\n{entries}</dl>\n"))
+    format!("<dl>\n{entries}</dl>\n")
 }
 
 fn footer(report: &Report) -> String {

@@ -1,7 +1,14 @@
 //! What a report is drawn from: plain numbers and text, filled by a run or read back from its result files.
 
+mod places;
+
+pub use places::{
+    AnnualView, BarrierView, Behind, CellMap, DesignView, Line, LinePoint, MapMark, Observed,
+    PlaceView,
+};
+
 use super::raster::GroundRaster;
-use crate::hazard::{Agreement, Way};
+use crate::output::Zone;
 use crate::trajectory::{PathState, Stop};
 use std::collections::BTreeMap;
 
@@ -24,6 +31,16 @@ pub struct Report {
     pub stops: Vec<StopShare>,
     /// Headline numbers.
     pub headline: Vec<Row>,
+    /// What arrives at lines and barriers, a row each: the first tables of the page.
+    pub arrivals: Vec<Table>,
+    /// Plausibility: what was looked at, what was found, whether it passes.
+    pub checks: Vec<Check>,
+    /// Where rocks are released.
+    pub zone: Zone,
+    /// Where further sources release theirs.
+    pub further_zones: Vec<Zone>,
+    /// Lines and barriers on the map.
+    pub marks: Vec<MapMark>,
     /// Further tables: one an evaluation line, for instance.
     pub tables: Vec<Table>,
     /// Evaluation lines, in the order of the scene.
@@ -130,15 +147,66 @@ pub struct Point {
     pub state: PathState,
 }
 
-/// A number with its confidence interval; a bound that the sample is too small for is not finite.
+/// A number with its confidence interval; an end that nothing bounds is not finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// The estimate.
+    /// The estimate; NaN where there is none.
     pub value: f64,
     /// Lower bound.
     pub low: f64,
     /// Upper bound.
     pub high: f64,
+    /// What the value is.
+    pub is: Is,
+}
+
+/// What an estimate says of the quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Is {
+    /// Its value.
+    #[default]
+    Value,
+    /// A lower bound: rocks that left the terrain would have gone on.
+    AtLeast,
+    /// An upper bound, for the same reason.
+    AtMost,
+    /// Nothing: so many rocks are missing.
+    Lacking(usize),
+}
+
+impl Estimate {
+    /// A value with its interval.
+    pub fn new(value: f64, low: f64, high: f64) -> Self {
+        Self { value, low, high, is: Is::Value }
+    }
+
+    /// A value without an interval.
+    pub fn plain(value: f64) -> Self {
+        Self::new(value, f64::NAN, f64::NAN)
+    }
+
+    /// No value, because so many rocks are missing.
+    pub fn lacking(rocks: usize) -> Self {
+        Self { is: Is::Lacking(rocks), ..Self::plain(f64::NAN) }
+    }
+
+    /// In a unit so many times as large.
+    #[must_use]
+    pub fn over(self, size: f64) -> Self {
+        let Self { value, low, high, is } = self;
+        Self { value: value / size, low: low / size, high: high / size, is }
+    }
+}
+
+/// One look at whether the whole is plausible.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Check {
+    /// What was looked at.
+    pub name: String,
+    /// What was found, and what is known from the field.
+    pub found: String,
+    /// Whether it passes; a check that does not is a warning.
+    pub passes: bool,
 }
 
 /// One point of a curve with a confidence band.
@@ -192,139 +260,24 @@ pub struct Table {
     pub columns: Vec<String>,
     /// Name with unit, and one cell a column (`None` = not available).
     pub rows: Vec<(String, Vec<Option<Estimate>>)>,
+    /// The chapter it belongs to.
+    pub about: About,
 }
 
-/// One barrier and the rocks that arrive at it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BarrierView {
-    /// Its name.
-    pub name: String,
-    /// Its height (m).
-    pub height_m: f64,
-    /// Energy that it takes (J).
-    pub capacity_j: f64,
-    /// Height (m) and energy (J) that its rule asks for.
-    pub design: Option<(f64, f64)>,
-    /// Its own place first, then others.
-    pub places: Vec<PlaceView>,
-}
-
-/// The rocks that arrive at one place of a barrier.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlaceView {
-    /// Distance from the barrier's own place (m), positive on the left of its line.
-    pub offset_m: f64,
-    /// Share of all releases that arrive (–).
-    pub arriving: f64,
-    /// Height of the highest point (m) and total energy (J) of each.
-    pub rocks: Vec<(f64, f64)>,
-}
-
-/// How often a year which energy is passed at a line or object.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AnnualView {
-    /// Its name.
-    pub name: String,
-    /// Whether it is an object.
-    pub is_object: bool,
-    /// λ(E ≥ x) (1/year) by rising `x` (J), as if there were no barrier.
-    pub without: Vec<BandPoint>,
-    /// The same of rocks that no barrier stops before; none where the scene has none.
-    pub with: Option<Vec<BandPoint>>,
-    /// Return periods asked for (years).
-    pub return_periods_years: Vec<f64>,
-}
-
-impl AnnualView {
-    /// Its curves.
-    pub(super) fn curves(&self) -> impl Iterator<Item = &Vec<BandPoint>> {
-        [&self.without].into_iter().chain(&self.with)
-    }
-}
-
-/// One evaluation line.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Line {
-    /// Its name.
-    pub name: String,
-    /// Its length (m).
-    pub length_m: f64,
-    /// All releases.
-    pub releases: usize,
-    /// Share of the releases that cross it.
-    pub reach: Estimate,
-    /// Rocks that cross it more than once.
-    pub crossing_again: usize,
-    /// First crossings.
-    pub crossings: Vec<LinePoint>,
-    /// Percentiles of total energy (J).
-    pub energy_quantiles: Vec<Quantile>,
-    /// Percentiles of height (m).
-    pub height_quantiles: Vec<Quantile>,
-    /// Share of the rocks that cross with more than `x` (J).
-    pub energy_exceedance: Vec<BandPoint>,
-    /// Share of the rocks that cross higher than `x` (m).
-    pub height_exceedance: Vec<BandPoint>,
-}
-
-/// One first crossing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinePoint {
-    /// Along the line (m).
-    pub along_m: f64,
-    /// Vertical height of the lowest point (m); NaN where there is no ground.
-    pub height_m: f64,
-    /// Total energy (J).
-    pub total_j: f64,
-}
-
-/// Measured ends beside the computed ones.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Observed {
-    /// Measured ways.
-    pub measured: Vec<Way>,
-    /// Computed ways, failed rocks left out.
-    pub computed: Vec<Way>,
-    /// How well they agree.
-    pub agreement: Agreement,
-}
-
-/// Maps cell by cell; cells that no rock reaches are left out.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct CellMap {
-    /// Western edge, map coordinates (m).
-    pub west_m: f64,
-    /// Southern edge, map coordinates (m).
-    pub south_m: f64,
-    /// Side of a cell (m).
-    pub cell_m: f64,
-    /// Number of columns; cell 0 is the most south-western, rows run east.
-    pub columns: u32,
-    /// Share of the releases that pass (–).
-    pub reach: Vec<(u32, f64)>,
-    /// Swiss class of intensity, 1 to 3.
-    pub intensity: Vec<(u32, f64)>,
-    /// Cells of each class.
-    pub intensity_cells: [usize; 3],
-}
-
-impl CellMap {
-    /// Middle of a cell, map coordinates (m).
-    pub fn centre_m(&self, cell: u32) -> (f64, f64) {
-        let at = |edge: f64, number: u32| edge + (f64::from(number) + 0.5) * self.cell_m;
-        (at(self.west_m, cell % self.columns), at(self.south_m, cell / self.columns))
-    }
-
-    /// West and east, south and north end of the cells reached, with a cell round them (m).
-    pub(super) fn extent(&self) -> ((f64, f64), (f64, f64)) {
-        let empty = (f64::INFINITY, f64::NEG_INFINITY);
-        let wider = |r: (f64, f64), v: f64| {
-            (r.0.min(v - 1.5 * self.cell_m), r.1.max(v + 1.5 * self.cell_m))
-        };
-        let centres = self.reach.iter().map(|(cell, _)| self.centre_m(*cell));
-        let (x, y) = centres.fold((empty, empty), |(x, y), c| (wider(x, c.0), wider(y, c.1)));
-        if x.0 < x.1 { (x, y) } else { ((0.0, 1.0), (0.0, 1.0)) }
-    }
+/// What a table is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum About {
+    /// All rocks along their ways.
+    #[default]
+    Rocks,
+    /// Evaluation lines.
+    Lines,
+    /// Barriers.
+    Barriers,
+    /// Measured ends.
+    Measured,
+    /// What a year brings.
+    Year,
 }
 
 /// What is measured of every release.
@@ -377,6 +330,11 @@ impl Quantity {
         }
     }
 
+    /// Whether it is an energy.
+    pub fn is_energy(self) -> bool {
+        matches!(self, Self::Translational | Self::Rotational | Self::Total)
+    }
+
     /// Unit and its size in SI that suit values up to `largest` (SI).
     pub fn unit(self, largest: f64) -> (&'static str, f64) {
         match self {
@@ -387,6 +345,11 @@ impl Quantity {
             Self::Translational | Self::Rotational | Self::Total => energy_unit(largest),
         }
     }
+}
+
+/// J or kJ: on a logarithmic axis thousands of kilojoules are read more easily than thousandths of megajoules.
+pub(super) fn kilo(largest_j: f64) -> (&'static str, f64) {
+    if largest_j >= 2e3 { ("kJ", 1e3) } else { ("J", 1.0) }
 }
 
 /// J, kJ or MJ, whichever keeps numbers up to `largest_j` short.

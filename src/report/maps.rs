@@ -1,50 +1,117 @@
-//! Maps in the report: how likely rocks come, with what intensity, and where they stay.
+//! Maps in the report: how likely rocks come, with what intensity, energy and height, and where they stay.
 
-use super::axis::Axis;
-use super::colour::{self, GREY, INK, ORANGE, SKY, VERMILLION};
+use super::axis::{Axis, round_step};
+use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{CellMap, Report};
+use super::input::{CellMap, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, paint};
+use super::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use super::plan_view::ground;
+use super::site;
 use super::svg::path::{Frame, Spot};
+use crate::math;
 use plotters::style::RGBColor;
 
-const TOP_PX: f64 = 26.0;
-const KEY_PX: f64 = 26.0;
-const TALLEST_PX: f64 = 460.0;
-/// Classes of reach probability: upper ends (–).
-const REACH: [f64; 5] = [0.001, 0.01, 0.1, 0.3, 1.0];
+const TOP_PX: f64 = 24.0;
+/// Height of one line of a key (px).
+const KEY_PX: f64 = 16.0;
+const TALLEST_PX: f64 = 400.0;
+/// Upper ends of the classes of a share of the releases (–).
+const SHARES: [f64; 5] = [0.001, 0.01, 0.1, 0.3, 1.0];
 /// Colours of the Swiss classes: weak, medium, strong.
 const INTENSITY: [RGBColor; 3] = [SKY, ORANGE, VERMILLION];
+/// Classes of a map of values: the scale is read at a glance.
+const CLASSES: usize = 5;
+
+/// One map: its cells by class, and what the classes are called.
+struct Layer {
+    title: String,
+    cells: Vec<(u32, usize)>,
+    classes: Vec<(String, RGBColor)>,
+}
+
+impl Layer {
+    /// Shares of the releases in fixed classes.
+    fn of_shares(title: &str, values: &[(u32, f64)]) -> Self {
+        let class = |value: f64| SHARES.iter().position(|limit| value <= *limit);
+        let name =
+            |limit: f64| format!("≤\u{2009}{}", format::percent(limit, usize::from(limit < 0.01)));
+        let classes = SHARES.iter().enumerate();
+        Self {
+            title: title.to_owned(),
+            cells: values.iter().map(|&(cell, v)| (cell, class(v).unwrap_or(4))).collect(),
+            classes: classes.map(|(k, limit)| (name(*limit), shade(k))).collect(),
+        }
+    }
+
+    /// Swiss classes.
+    fn of_intensity(values: &[(u32, f64)]) -> Self {
+        let names = ["< 30\u{2009}kJ", "30–300\u{2009}kJ", "> 300\u{2009}kJ"];
+        Self {
+            title: "Intensity: energy P95".to_owned(),
+            cells: values.iter().map(|&(cell, class)| (cell, class as usize - 1)).collect(),
+            classes: names.iter().zip(INTENSITY).map(|(n, c)| ((*n).to_owned(), c)).collect(),
+        }
+    }
+
+    /// Values in classes that grow from one to the next, the last one reaching the largest: a few large values do not leave
+    /// all others in one class.
+    fn of_values(
+        title: &str,
+        values: &[(u32, f64)],
+        (unit, size): (&str, f64),
+        steps: &[f64],
+    ) -> Self {
+        let most = values.iter().map(|(_, v)| v / size).fold(0.0, f64::max);
+        let mut ends = [round_step(most, steps); CLASSES];
+        for k in (0..CLASSES - 1).rev() {
+            // just below the class above
+            ends[k] = largest_below(ends[k + 1], steps);
+        }
+        let class = |v: f64| {
+            ends.iter().position(|end| v / size <= end * (1.0 + 1e-9)).unwrap_or(CLASSES - 1)
+        };
+        let name = |k: usize| format!("≤\u{2009}{}", format::plain(format::rounded(ends[k], 3)));
+        Self {
+            title: format!("{title} ({unit})"),
+            cells: values.iter().map(|&(cell, v)| (cell, class(v))).collect(),
+            classes: (0..CLASSES).map(|k| (name(k), shade(k))).collect(),
+        }
+    }
+
+    /// Counts in classes that grow threefold.
+    fn of_counts(title: &str, values: &[(u32, f64)]) -> Self {
+        let ends = [1.0, 3.0, 10.0, 30.0];
+        let class = |v: f64| ends.iter().position(|end| v <= *end).unwrap_or(ends.len());
+        let names = ["1", "2–3", "4–10", "11–30", "> 30"];
+        Self {
+            title: title.to_owned(),
+            cells: values.iter().map(|&(cell, v)| (cell, class(v))).collect(),
+            classes: names.iter().enumerate().map(|(k, n)| ((*n).to_owned(), shade(k))).collect(),
+        }
+    }
+}
+
+/// The largest of some mantissas (1 first, rising) times a power of ten that is below a value of this kind.
+fn largest_below(value: f64, mantissas: &[f64]) -> f64 {
+    let power = math::pow(10.0, math::log10(value).floor());
+    let below = mantissas.iter().rev().map(|mantissa| mantissa * power);
+    let last = mantissas.last().copied().unwrap_or(1.0);
+    below.into_iter().find(|b| *b < value * (1.0 - 1e-9)).unwrap_or(0.1 * last * power)
+}
+
+/// Colour of one of [`CLASSES`].
+fn shade(class: usize) -> RGBColor {
+    colour::sequential(class as f64 / (CLASSES - 1) as f64)
+}
 
 /// Draws reach probability and intensity beside each other.
 pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
-    let panels = panels(maps);
-    let bottom = panels[0].frame.bottom + FOOT_PX + KEY_PX;
-    let svg = paint("maps", (WIDTH_PX, bottom), "Maps", |paper| {
-        for (k, panel) in panels.iter().enumerate() {
-            let (title, keys) = if k == 0 {
-                ("Reach probability", reach_keys())
-            } else {
-                ("Intensity (largest energy)", intensity_keys())
-            };
-            let at = (panel.frame.left, panel.frame.top - 10.0);
-            paper.text(&Label::new(title, at).bold().sized(NORMAL));
-            paper.clip(&format!("part{k}"), &panel.frame, || {
-                if let Some(raster) = &report.ground {
-                    let _ = ground::draw(paper, panel, raster);
-                }
-                for (class, (_, colour)) in keys.iter().enumerate() {
-                    let values = if k == 0 { &maps.reach } else { &maps.intensity };
-                    cells(paper, panel, maps, (values, k == 0, class), *colour);
-                }
-            });
-            panel.axes(paper);
-            key(paper, panel, &keys);
-        }
-    });
+    let layers =
+        [Layer::of_shares("Reach probability", &maps.reach), Layer::of_intensity(&maps.intensity)];
+    let svg =
+        draw_layers("maps", "Maps of reach probability and intensity", (report, maps), &layers);
     let share = |count: usize| {
         let all: usize = maps.intensity_cells.iter().sum();
         format::percent(count as f64 / all.max(1) as f64, 0)
@@ -52,78 +119,142 @@ pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
     let [weak, medium, strong] = maps.intensity_cells.map(share);
     let caption = format!(
         "Maps of {} m cells. Left: share of the releases that pass each cell (conditional on release). Right: Swiss \
-         classes of intensity by the largest total energy of any rock in the cell: weak below 30 kJ ({weak} of the \
+         classes of intensity by the 95th percentile of total energy of the rocks that pass: weak below 30 kJ ({weak} of the \
          cells reached), medium 30 to 300 kJ ({medium}), strong above ({strong}). All layers lie in maps/ as ASCII grid and GeoTIFF.",
         format::plain(maps.cell_m)
     );
     Drawing { svg, caption }
 }
 
-fn reach_keys() -> Vec<(String, RGBColor)> {
-    let name = |limit: f64| format!("≤ {}", format::percent(limit, usize::from(limit < 0.01)));
-    let colour = |k: usize| colour::sequential(k as f64 / (REACH.len() - 1) as f64);
-    REACH.iter().enumerate().map(|(k, limit)| (name(*limit), colour(k))).collect()
+/// Draws energy, height, deposits and the probability of more than a weak intensity.
+pub(super) fn draw_values(report: &Report, maps: &CellMap) -> Drawing {
+    let most_j = maps.energy_j.iter().map(|(_, v)| *v).fold(0.0, f64::max);
+    let layers = [
+        Layer::of_values("Total energy P95", &maps.energy_j, energy_unit(most_j), &[1.0, 3.0]),
+        Layer::of_values("Bounce height P95", &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
+        Layer::of_counts("Rocks at rest in a cell", &maps.deposits),
+        Layer::of_shares("Probability of 30\u{2009}kJ or more", &maps.exceeds),
+    ];
+    let svg =
+        draw_layers("maps-values", "Maps of energy, height and deposits", (report, maps), &layers);
+    let caption = "Above: 95th percentiles over the rocks that pass each cell, of each one's largest total energy and largest \
+                   height in it. Below left: where rocks came to rest. Below right: share of the releases that pass with a total \
+                   energy of 30 kJ or more, a medium or strong intensity (conditional on release).";
+    Drawing { svg, caption: caption.to_owned() }
 }
 
-fn intensity_keys() -> Vec<(String, RGBColor)> {
-    ["weak", "medium", "strong"].iter().zip(INTENSITY).map(|(n, c)| ((*n).to_owned(), c)).collect()
+fn draw_layers(
+    name: &str,
+    title: &str,
+    (report, maps): (&Report, &CellMap),
+    layers: &[Layer],
+) -> String {
+    let (panels, bottom) = panels(maps, layers);
+    paint(name, (WIDTH_PX, bottom), title, |paper| {
+        for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
+            let at = (panel.frame.left, panel.frame.top - 9.0);
+            paper.text(&Label::new(layer.title.clone(), at).bold().sized(NORMAL));
+            paper.clip(&format!("part{k}"), &panel.frame, || {
+                if let Some(raster) = &report.ground {
+                    ground::shade(paper, panel, raster);
+                }
+                for (class, (_, colour)) in layer.classes.iter().enumerate() {
+                    cells(paper, panel, maps, (layer, class), *colour);
+                }
+                site::zones(paper, panel, report);
+                site::marks(paper, panel, report);
+            });
+            panel.axes(paper);
+            key(paper, panel, layer);
+        }
+    })
 }
 
-/// Two equal frames over all cells reached, at equal scale.
-fn panels(maps: &CellMap) -> [Panel; 2] {
+/// Equal frames over all cells reached, two beside each other, at equal scale; and the height of the sheet.
+fn panels(maps: &CellMap, layers: &[Layer]) -> (Vec<Panel>, f64) {
     let (mut x, mut y) = maps.extent();
-    let room = 76.0;
-    let widest = 0.5 * WIDTH_PX - room - 8.0;
+    let half = 0.5 * WIDTH_PX;
+    let square = Frame { left: 0.0, top: 0.0, right: 240.0, bottom: 240.0 };
+    let axes = |x: (f64, f64), y: (f64, f64)| {
+        (Axis::linear(x.0, x.1, "Easting (m)"), Axis::linear(y.0, y.1, "Northing (m)"))
+    };
+    // seven digits of a northing need their room
+    let (across, up) = axes(x, y);
+    let room = Panel::new(square, across, up).room_left();
+    let widest = half - room - 8.0;
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     // a slender map is given some ground beside it
     let more = 0.5 * (widest / scale - (x.1 - x.0)).max(0.0);
     x = (x.0 - more, x.1 + more);
     let least = 0.5 * (150.0 / scale - (y.1 - y.0)).max(0.0);
     y = (y.0 - least, y.1 + least);
-    [0.0, 0.5 * WIDTH_PX].map(|left| {
-        let frame = Frame {
-            left: left + room,
-            top: TOP_PX,
-            right: left + room + widest,
-            bottom: TOP_PX + scale * (y.1 - y.0),
-        };
-        let names = if left == 0.0 { ("Easting (m)", "Northing (m)") } else { ("Easting (m)", "") };
-        Panel::new(frame, Axis::linear(x.0, x.1, names.0), Axis::linear(y.0, y.1, names.1))
-    })
+    let height = scale * (y.1 - y.0);
+    let mut panels = Vec::new();
+    let mut top = TOP_PX;
+    for row in layers.chunks(2) {
+        for left in [0.0, half].into_iter().take(row.len()) {
+            let frame =
+                Frame { left: left + room, top, right: left + room + widest, bottom: top + height };
+            let (across, up) = axes(x, y);
+            panels.push(Panel::new(frame, across, up));
+        }
+        let lines = row.iter().map(|layer| key_places(layer, widest).1).max().unwrap_or(1);
+        top += height + FOOT_PX + 6.0 + lines as f64 * KEY_PX + TOP_PX + 4.0;
+    }
+    (panels, top - TOP_PX)
 }
 
+/// The cells of one class; neighbours in a row are one rectangle.
 fn cells(
     paper: &Paper<'_>,
     panel: &Panel,
     maps: &CellMap,
-    (values, by_limit, class): (&[(u32, f64)], bool, usize),
+    (layer, class): (&Layer, usize),
     colour: RGBColor,
 ) {
-    let class_of = |value: f64| {
-        if by_limit {
-            REACH.iter().position(|limit| value <= *limit).unwrap_or(REACH.len() - 1)
-        } else {
-            value as usize - 1
+    let mut runs: Vec<(u32, u32)> = Vec::new();
+    for &(cell, _) in layer.cells.iter().filter(|(_, of)| *of == class) {
+        match runs.last_mut() {
+            Some((first, count))
+                if *first + *count == cell && cell / maps.columns == *first / maps.columns =>
+            {
+                *count += 1;
+            }
+            _ => runs.push((cell, 1)),
         }
+    }
+    let half_m = 0.5 * maps.cell_m;
+    let corners = |(first, count): (u32, u32)| -> (Spot, Spot) {
+        let ((x0, y), (x1, _)) = (maps.centre_m(first), maps.centre_m(first + count - 1));
+        (panel.at(x0 - half_m, y + half_m), panel.at(x1 + half_m, y - half_m))
     };
-    let spots: Vec<Spot> = values
-        .iter()
-        .filter(|(_, value)| class_of(*value) == class)
-        .map(|(cell, _)| maps.centre_m(*cell))
-        .map(|(x, y)| panel.at(x, y))
-        .collect();
-    let half = 0.5 * maps.cell_m / (panel.x.high - panel.x.low) * panel.frame.width();
-    paper.group(r#"opacity="0.8""#, || paper.squares(&spots, half + 0.05, colour));
+    let bars: Vec<(Spot, Spot)> = runs.into_iter().map(corners).collect();
+    paper.group(r#"opacity="0.8""#, || paper.rectangles(&bars, colour));
 }
 
-fn key(paper: &Paper<'_>, panel: &Panel, keys: &[(String, RGBColor)]) {
-    let y = panel.frame.bottom + FOOT_PX + 10.0;
-    let mut x = panel.frame.left;
-    for (name, colour) in keys {
+/// Where each entry of a key stands, from the left end and by line, and how many lines there are.
+fn key_places(layer: &Layer, width_px: f64) -> (Vec<(f64, usize)>, usize) {
+    let (mut x, mut line) = (0.0, 0);
+    let mut places = Vec::new();
+    for (name, _) in &layer.classes {
+        let width = 13.0 + text_width(name, SMALL);
+        if x > 0.0 && x + width > width_px {
+            (x, line) = (0.0, line + 1);
+        }
+        places.push((x, line));
+        x += width + 9.0;
+    }
+    (places, line + 1)
+}
+
+fn key(paper: &Paper<'_>, panel: &Panel, layer: &Layer) {
+    let top = panel.frame.bottom + FOOT_PX + 6.0;
+    let (places, _) = key_places(layer, panel.frame.width());
+    for ((name, colour), (x, line)) in layer.classes.iter().zip(places) {
+        let (x, y) = (panel.frame.left + x, top + (line as f64 + 0.5) * KEY_PX);
         let patch = Frame { left: x, right: x + 10.0, top: y - 5.0, bottom: y + 5.0 };
         paper.fill(&patch, *colour, 0.8);
         paper.outline(&patch, Pen::full(INK, 0.4));
-        paper.text(&Label::new(name.clone(), (x + 13.0, y)).coloured(GREY));
-        x += 20.0 + super::paper::text_width(name, SMALL);
+        paper.text(&Label::new(name.clone(), (x + 13.0, y)));
     }
 }

@@ -9,6 +9,7 @@
 //! Nothing is computed here that a reader would quote: estimates and intervals come in as [`input`] has them; only the
 //! bins of histograms and the envelopes along the fall line are found for display.
 
+mod along_paths;
 mod annual;
 pub mod axis;
 mod barriers;
@@ -30,10 +31,12 @@ mod measured;
 pub mod panel;
 pub mod paper;
 mod plan_view;
+mod plausibility;
 pub mod raster;
 mod reach_angle;
 mod runout;
 mod side_view;
+mod site;
 mod stops;
 pub mod svg;
 pub mod view;
@@ -56,6 +59,9 @@ use view::mesh::Mesh;
 pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     let ground = GroundRaster::from_terrain(terrain, GROUND_CELLS);
     ground.write(&results.dir)?;
+    if results.summary.maps.is_some() {
+        output::write_terrain(&results.dir, terrain, results.summary.site.mesh_origin_m)?;
+    }
     view::write(results, Mesh::of(terrain), Some(&ground))?;
     draw_all(results, Some(ground))
 }
@@ -68,6 +74,12 @@ pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
     let ground = GroundRaster::read(shard)?;
     if let Some(ground) = &ground {
         ground.write(&results.dir)?;
+    }
+    // what the run at once would have written beside its maps
+    let terrain = "maps/terrain.vtk";
+    let (from, to) = (shard.join(terrain), results.dir.join(terrain));
+    if results.summary.maps.is_some() && from.exists() {
+        fs::copy(&from, &to).map_err(Error::file("write", &to))?;
     }
     if let Some(mesh) = view::mesh_in(shard)? {
         view::write(results, mesh, ground.as_ref())?;
@@ -97,7 +109,8 @@ fn draw_all(results: &Results, ground: Option<GroundRaster>) -> Result<()> {
 
 /// Each headline statistic of the rocks with its 95 % interval, line by line, and what the computation warns of.
 pub fn headline(hazard: &Hazard) -> Vec<String> {
-    let warnings = hazard.totals.warnings(hazard.rocks());
+    let warnings =
+        [gather::warnings_first(hazard), hazard.totals.warnings(hazard.rocks())].concat();
     let mut lines = html::plain_headline(&gather::headline(hazard));
     lines.extend(warnings.iter().map(|warning| format!("warning: {warning}")));
     lines
@@ -113,7 +126,8 @@ const GROUND_CELLS: usize = 400;
 pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
-    let drawn = drawings(report);
+    let mut drawn = drawings(report);
+    drawn.extend(error_study(dir));
     let names: Vec<&str> = drawn.iter().map(|(heading, _)| heading.file.as_str()).collect();
     output::announce_figures(dir, &names)?;
     for (heading, drawing) in &drawn {
@@ -122,7 +136,21 @@ pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     write_whole(&dir.join("report.html"), html::page(report, &drawn).as_bytes())
 }
 
-/// All figures, drawn.
+/// The figure that `rockfall study error` has left in `error/` below the results, if it has.
+fn error_study(dir: &Path) -> Option<(Heading, Drawing)> {
+    let file = html::ERROR_STUDY;
+    let svg = fs::read_to_string(dir.join("error").join(file)).ok()?;
+    let title = "Error against run time".to_owned();
+    let caption = "Errors of the 95th percentiles from chance in the sample, from the steps and, where it was studied, from the \
+                   mesh, over the run time that they cost, as `rockfall study error` found them.";
+    let heading = Heading { file: file.to_owned(), title };
+    Some((
+        heading,
+        Drawing { svg: svg[svg.find("<svg")?..].to_owned(), caption: caption.to_owned() },
+    ))
+}
+
+/// All figures, drawn. Lines and barriers that no rock reaches have a sentence on the page and no figure.
 pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
     let heading =
         |file: &str, title: &str| Heading { file: file.to_owned(), title: title.to_owned() };
@@ -130,6 +158,9 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         .iter()
         .map(|figure| (heading(figure.file, figure.title), (figure.draw)(report)))
         .collect();
+    if let Some(drawing) = along_paths::draw(report) {
+        drawn.push((heading("along.svg", "Along the way"), drawing));
+    }
     if let Some(observed) = &report.observed {
         drawn.push((
             heading("measured.svg", "Measured and computed"),
@@ -137,7 +168,9 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         ));
     }
     if let Some(cells) = &report.maps {
-        drawn.push((heading("maps.svg", "Maps"), maps::draw(report, cells)));
+        drawn.push((heading("maps.svg", "Reach and intensity"), maps::draw(report, cells)));
+        let values = maps::draw_values(report, cells);
+        drawn.push((heading("maps_values.svg", "Energy, height and deposits"), values));
     }
     if report.lines.len() > 1 {
         drawn.push((heading("retention.svg", "Retention"), lines::retention(&report.lines)));
@@ -147,13 +180,16 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         let title = format!("Frequency a year at “{}”", view.name);
         drawn.push((heading(&file, &title), annual::draw(view, number + 1)));
     }
-    for (number, line) in report.lines.iter().enumerate() {
+    // what passes a barrier's line stands in the barrier's own figure
+    let own = report.lines.iter().filter(|line| !line.is_barrier);
+    for line in own.filter(|line| lines::nobody(line).is_none()) {
         // names of lines may hold anything: files are numbered
-        let file = format!("line_{}.svg", number + 1);
+        let file = format!("line_{}.svg", line.number);
         let title = format!("Evaluation line “{}”", line.name);
-        drawn.push((heading(&file, &title), lines::draw(line, number + 1)));
+        drawn.push((heading(&file, &title), lines::draw(line)));
     }
-    for (number, barrier) in report.barriers.iter().enumerate() {
+    let barriers = report.barriers.iter().enumerate();
+    for (number, barrier) in barriers.filter(|(_, one)| barriers::nobody(one).is_none()) {
         let file = format!("barrier_{}.svg", number + 1);
         let title = format!("Barrier “{}”", barrier.name);
         drawn.push((heading(&file, &title), barriers::draw(barrier, number + 1)));

@@ -1,23 +1,31 @@
 //! The sheet a figure is drawn on: plotters shapes in pixels, plus groups, images and haloed text.
 
+mod label;
+
+pub use label::{Label, bold_width, fitted, text_width};
+
 use super::colour::{self, INK, WHITE};
+use super::format::escape;
 use super::svg::path::{self, Frame, Spot, tenths};
-use super::svg::{Canvas, FRAGMENT_MARK, TENTHS, document, metrics};
+use super::svg::{Canvas, DEPTH, FRAGMENT_MARK, TENTHS, document};
+use label::TAIL_GAP;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
 use plotters::element::{
     Circle, CoordMapper, Drawable, PathElement, PointCollection, Polygon, Rectangle, Text,
 };
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{
-    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle,
-};
+use plotters::style::text_anchor::HPos;
+use plotters::style::{Color, FontDesc, FontFamily, FontStyle, RGBColor, ShapeStyle, TextStyle};
+use std::cell::RefCell;
 use std::fmt::Write as _;
 
 /// Size of small text: tick labels, notes (px; 0.75 pt each).
 pub const SMALL: f64 = 10.5;
 /// Size of axis titles and panel heads (px).
 pub const NORMAL: f64 = 11.5;
+
+/// How many forms of marks there are: disc, square, diamond, triangle.
+const SHAPES: usize = 4;
 
 /// How a line looks.
 #[derive(Debug, Clone, Copy)]
@@ -51,102 +59,6 @@ impl Pen {
     }
 }
 
-/// A piece of text and where it stands.
-#[derive(Clone)]
-#[allow(missing_debug_implementations, reason = "a plotters anchor has none")]
-pub struct Label {
-    text: String,
-    at: Spot,
-    size_px: f64,
-    colour: RGBColor,
-    is_bold: bool,
-    turn: FontTransform,
-    anchor: Pos,
-}
-
-impl Label {
-    /// Small dark text that starts at `at`, centred in height.
-    pub fn new(text: impl Into<String>, at: Spot) -> Self {
-        let anchor = Pos::new(HPos::Left, VPos::Center);
-        let turn = FontTransform::None;
-        Self { text: text.into(), at, size_px: SMALL, colour: INK, is_bold: false, turn, anchor }
-    }
-
-    /// Ends at its place.
-    #[must_use]
-    pub fn right(mut self) -> Self {
-        self.anchor.h_pos = HPos::Right;
-        self
-    }
-
-    /// Has its middle at its place.
-    #[must_use]
-    pub fn centred(mut self) -> Self {
-        self.anchor.h_pos = HPos::Center;
-        self
-    }
-
-    /// Hangs below its place.
-    #[must_use]
-    pub fn below(mut self) -> Self {
-        self.anchor.v_pos = VPos::Top;
-        self
-    }
-
-    /// Stands above its place.
-    #[must_use]
-    pub fn above(mut self) -> Self {
-        self.anchor.v_pos = VPos::Bottom;
-        self
-    }
-
-    /// In another size (px).
-    #[must_use]
-    pub fn sized(mut self, size_px: f64) -> Self {
-        self.size_px = size_px;
-        self
-    }
-
-    /// In another colour.
-    #[must_use]
-    pub fn coloured(mut self, colour: RGBColor) -> Self {
-        self.colour = colour;
-        self
-    }
-
-    /// In bold.
-    #[must_use]
-    pub fn bold(mut self) -> Self {
-        self.is_bold = true;
-        self
-    }
-
-    /// Reads from bottom to top.
-    #[must_use]
-    pub fn upwards(mut self) -> Self {
-        self.turn = FontTransform::Rotate270;
-        self
-    }
-
-    /// Whether there is nothing to write.
-    pub fn is_empty(&self) -> bool {
-        self.text.is_empty()
-    }
-
-    fn style(&self) -> TextStyle<'static> {
-        let face = if self.is_bold { FontStyle::Bold } else { FontStyle::Normal };
-        FontDesc::new(FontFamily::SansSerif, self.size_px * TENTHS, face)
-            .transform(self.turn.clone())
-            .color(&self.colour)
-            .pos(self.anchor)
-    }
-}
-
-/// Width of a text (px).
-pub fn text_width(text: &str, size_px: f64) -> f64 {
-    metrics::width_em(text) * size_px
-}
-
 /// Draws one figure and returns the SVG file.
 ///
 /// `name` starts every id, so that figures can stand on one page.
@@ -158,7 +70,8 @@ pub fn paint(
 ) -> String {
     let mut body = String::new();
     let canvas = Canvas::new(&mut body, size_px);
-    let paper = Paper { area: canvas.into_drawing_area(), name, size_px };
+    let boxes = RefCell::default();
+    let paper = Paper { area: canvas.into_drawing_area(), name, size_px, boxes };
     draw(&paper);
     drop(paper);
     document(&body, size_px, title)
@@ -170,6 +83,8 @@ pub struct Paper<'a> {
     area: DrawingArea<Canvas<'a>, Shift>,
     name: &'a str,
     size_px: (f64, f64),
+    /// Room that texts have taken.
+    boxes: RefCell<Vec<Frame>>,
 }
 
 impl<'a> Paper<'a> {
@@ -259,6 +174,29 @@ impl<'a> Paper<'a> {
         self.put(&Circle::new(tenths(centre), radius, ShapeStyle::from(fill).filled()));
     }
 
+    /// A mark of one of [`SHAPES`] forms: series are told apart without colour.
+    pub fn mark(&self, shape: usize, (x, y): Spot, radius_px: f64, fill: RGBColor) {
+        let r = 1.2 * radius_px;
+        match shape % SHAPES {
+            0 => self.disc((x, y), radius_px, fill),
+            1 => self.polygon(
+                &[(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)],
+                fill,
+                1.0,
+            ),
+            2 => self.polygon(
+                &[(x, y - 1.4 * r), (x + 1.4 * r, y), (x, y + 1.4 * r), (x - 1.4 * r, y)],
+                fill,
+                1.0,
+            ),
+            _ => self.polygon(
+                &[(x, y - 1.3 * r), (x + 1.3 * r, y + r), (x - 1.3 * r, y + r)],
+                fill,
+                1.0,
+            ),
+        }
+    }
+
     /// Dots of one size in one path: hundreds of thousands stay small.
     pub fn dots(&self, centres: &[Spot], radius_px: f64, colour: RGBColor) {
         let mut data = String::new();
@@ -285,6 +223,17 @@ impl<'a> Paper<'a> {
         }
     }
 
+    /// Rectangles between two corners each in one path.
+    pub fn rectangles(&self, corners: &[(Spot, Spot)], colour: RGBColor) {
+        let mut data = String::new();
+        for &(a, b) in corners {
+            path::append_rectangle(&mut data, a, b);
+        }
+        if !data.is_empty() {
+            self.fragment(&format!(r#"<path d="{data}" fill="{}"/>"#, colour::hex(colour)));
+        }
+    }
+
     /// Many lines in one path of one style.
     pub fn lines(&self, lines: &[Vec<Spot>], pen: Pen) {
         let mut data = String::new();
@@ -303,13 +252,54 @@ impl<'a> Paper<'a> {
 
     /// Text.
     pub fn text(&self, label: &Label) {
-        self.put(&Text::new(label.text.clone(), tenths(label.at), label.style()));
+        self.take(label.frame());
+        self.write(label);
+    }
+
+    /// Keeps room free of later texts.
+    pub fn take(&self, frame: Frame) {
+        self.boxes.borrow_mut().push(frame);
+    }
+
+    /// Whether no text stands in a room, nor nearer than 2 px.
+    pub fn is_free(&self, frame: &Frame) -> bool {
+        let near = Frame {
+            left: frame.left - 2.0,
+            top: frame.top - 2.0,
+            right: frame.right + 2.0,
+            bottom: frame.bottom + 2.0,
+        };
+        !self.boxes.borrow().iter().any(|taken| taken.meets(&near))
+    }
+
+    fn write(&self, label: &Label) {
+        if label.tail.is_empty() {
+            self.put(&Text::new(label.text.clone(), tenths(label.at), label.style()));
+            return;
+        }
+        let room = label.frame();
+        let (x, y) = tenths((label.at.0, room.bottom - DEPTH * label.size_px));
+        let anchor = match label.anchor.h_pos {
+            HPos::Left => "start",
+            HPos::Center => "middle",
+            HPos::Right => "end",
+        };
+        let weight = if label.is_bold { "bold" } else { "normal" };
+        let size = (label.size_px * TENTHS).round();
+        self.fragment(&format!(
+            r#"<text x="{x}" y="{y}" font-size="{size}" text-anchor="{anchor}"><tspan font-weight="{weight}" fill="{}">{}</tspan><tspan dx="{}" fill="{}">{}</tspan></text>"#,
+            colour::hex(label.colour),
+            escape(&label.text),
+            (TAIL_GAP * size).round(),
+            colour::hex(if label.colour == WHITE { WHITE } else { colour::GREY }),
+            escape(&label.tail)
+        ));
     }
 
     /// Text on a white rim, readable over anything. Two elements: not every reader knows `paint-order`.
     pub fn text_on_rim(&self, label: &Label) {
         let rim = Label { colour: WHITE, ..label.clone() };
-        self.group(r##"stroke="#fff" stroke-width="30""##, || self.text(&rim));
+        self.group(r##"stroke="#fff" stroke-width="30""##, || self.write(&rim));
         self.text(label);
     }
 
@@ -317,7 +307,11 @@ impl<'a> Paper<'a> {
     pub fn text_turned(&self, label: &Label, degrees: f64) {
         let (x, y) = tenths(label.at);
         let turn = format!(r#"transform="rotate({degrees:.1} {x} {y})""#);
-        self.group(&turn, || self.text_on_rim(label));
+        let rim = Label { colour: WHITE, ..label.clone() };
+        self.group(&turn, || {
+            self.group(r##"stroke="#fff" stroke-width="30""##, || self.write(&rim));
+            self.write(label);
+        });
     }
 
     /// A vertical bar whose colour runs through the sequential scale from its lower to its upper end.

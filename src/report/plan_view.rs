@@ -1,19 +1,20 @@
-//! The map: ground, trees, paths coloured by speed, releases and deposits.
+//! The map: ground, trees, paths coloured by speed, where rocks are released and stay, lines and barriers.
 
 mod furniture;
 pub(super) mod ground;
 
 use super::axis::Axis;
-use super::colour::{self, BLUE, INK, ORANGE, PURPLE, VERMILLION, WHITE};
+use super::colour::{self, BLUE, DARK_VERMILLION, ORANGE, PURPLE, VERMILLION, WHITE};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::input::Report;
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Paper, Pen, paint};
+use super::site;
 use super::svg::path::{Frame, Spot, clipped, thinned};
 use crate::math;
 use crate::trajectory::Stop;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Tallest map (px): with the stop reasons and both captions it fits an A4 page.
 const TALLEST_PX: f64 = 580.0;
@@ -23,6 +24,11 @@ const LOWEST_PX: f64 = 190.0;
 const RIGHT_PX: f64 = 84.0;
 /// Paper around what is shown, as a share of its size.
 const MARGIN: f64 = 0.06;
+/// How far beside the rocks lines and barriers are followed, as a share of the size of what is shown.
+const BESIDE: f64 = 0.3;
+/// Side of a square of deposits (px), and rocks in it from which it is drawn with each opacity.
+const DEPOSIT_PX: f64 = 3.0;
+const DEPOSITS: [(usize, f64); 4] = [(1, 0.35), (3, 0.55), (10, 0.8), (30, 1.0)];
 /// Steps of the colour scale along a path: finer ones cannot be told apart on a thin line.
 const SPEED_CLASSES: usize = 14;
 const TOLERANCE_PX: f64 = 0.15;
@@ -39,15 +45,19 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let fastest = fastest_m_s(report);
     let mut contours = None;
     let svg = paint("plan", (WIDTH_PX, height), "Plan view", |paper| {
+        let names = site::places(paper, &panel, report);
         paper.clip("map", &panel.frame, || {
             if let Some(ground) = &report.ground {
                 contours = ground::draw(paper, &panel, ground);
             }
             paths(paper, &panel, report, fastest);
-            marks(paper, &panel, report);
+            ends(paper, &panel, report);
+            site::zones(paper, &panel, report);
+            site::marks(paper, &panel, report);
             if let Some(contours) = &contours {
                 contours.labels(paper);
             }
+            site::names(paper, &names);
         });
         if report.releases.is_empty() && report.ground.is_none() {
             panel.nothing(paper, "no release, no ground");
@@ -59,9 +69,15 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let interval = contours
         .map_or(String::new(), |c| format!(" Contour interval {} m.", format::plain(c.interval_m)));
     let caption = format!(
-        "Plan view in map coordinates, at equal scale. {} of {} paths drawn; colour gives the speed of the centre.{interval}",
-        report.paths.len(),
-        format::decimal(report.releases.len() as f64, 0)
+        "Plan view in map coordinates, at equal scale. Drawn are the paths of {} of {} releases; colour gives the speed of the \
+         centre.{}{interval}",
+        format::decimal(report.paths.len() as f64, 0),
+        format::decimal(report.releases.len() as f64, 0),
+        if at_rest(report).count() > MANY {
+            " Where many rocks came to rest, squares are the darker the more of them lie there."
+        } else {
+            ""
+        }
     );
     Drawing { svg, caption }
 }
@@ -96,6 +112,15 @@ fn extent(report: &Report) -> (Range, Range) {
     let empty = (f64::INFINITY, f64::NEG_INFINITY);
     let wider = |r: Range, v: f64| (r.0.min(v), r.1.max(v));
     let (mut x, mut y) = places.fold((empty, empty), |(x, y), p| (wider(x, p[0]), wider(y, p[1])));
+    if x.0 <= x.1 {
+        // lines and barriers are seen too, but one far off does not make the rocks small
+        let reach = BESIDE * (x.1 - x.0).max(y.1 - y.0);
+        let (x0, y0) = (x, y);
+        let near = |v: f64, r: Range| v.clamp(r.0 - reach, r.1 + reach);
+        for &[cx, cy] in report.marks.iter().flat_map(|mark| &mark.corners_m) {
+            (x, y) = (wider(x, near(cx, x0)), wider(y, near(cy, y0)));
+        }
+    }
     if x.0 > x.1 {
         (x, y) = report.ground.as_ref().map_or(((0.0, 1.0), (0.0, 1.0)), |g| {
             ((g.west_m, g.east_m()), (g.south_m, g.north_m()))
@@ -166,15 +191,54 @@ fn paths(paper: &Paper<'_>, panel: &Panel, report: &Report, fastest_m_s: f64) {
     }
 }
 
-/// Releases, and ends by stop reason.
-fn marks(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+fn at_rest(report: &Report) -> impl Iterator<Item = [f64; 3]> + '_ {
+    let at_rest = report.releases.iter().filter(|fall| fall.stop == Stop::AtRest);
+    at_rest.map(|fall| fall.end_m)
+}
+
+/// Ends by stop reason; deposits as density where they are many.
+fn ends(paper: &Paper<'_>, panel: &Panel, report: &Report) {
     let radius = if report.releases.len() > MANY { 1.3 } else { 2.6 };
-    for kind in ENDS {
+    let is_crowd = at_rest(report).count() > MANY;
+    if is_crowd {
+        deposits(paper, panel, report);
+    }
+    for kind in ENDS.into_iter().filter(|kind| !(is_crowd && *kind == Mark::AtRest)) {
         let ends = report.releases.iter().filter(|fall| Mark::of(&fall.stop) == kind);
         kind.draw(paper, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
     }
-    let starts = report.releases.iter().map(|fall| fall.start_m);
-    Mark::Release.draw(paper, &apart(panel, starts, 0.8 * radius), radius);
+}
+
+/// Squares that are the darker the more rocks lie in them.
+fn deposits(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+    let mut cells: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+    for end in at_rest(report) {
+        let (x, y) = panel.at(end[0], end[1]);
+        if panel.frame.holds((x, y)) {
+            let cell = ((x / DEPOSIT_PX).floor() as i64, (y / DEPOSIT_PX).floor() as i64);
+            *cells.entry(cell).or_default() += 1;
+        }
+    }
+    for (class, &(from, opacity)) in DEPOSITS.iter().enumerate() {
+        let to = DEPOSITS.get(class + 1).map_or(usize::MAX, |next| next.0);
+        let of_class = cells.iter().filter(|(_, count)| (from..to).contains(count));
+        let middle = |cell: i64| (cell as f64 + 0.5) * DEPOSIT_PX;
+        let spots: Vec<Spot> = of_class.map(|(&(x, y), _)| (middle(x), middle(y))).collect();
+        let colour = if class + 1 == DEPOSITS.len() { DARK_VERMILLION } else { VERMILLION };
+        paper.group(&format!(r#"opacity="{opacity}""#), || {
+            paper.squares(&spots, 0.5 * DEPOSIT_PX, colour);
+        });
+    }
+}
+
+/// A square of each class beside the other, for the key.
+fn density_symbol(paper: &Paper<'_>, at: Spot) {
+    for (class, (_, opacity)) in DEPOSITS.iter().enumerate() {
+        let x = at.0 + (class as f64 - 1.5) * 4.0;
+        let frame = Frame { left: x - 2.0, right: x + 2.0, top: at.1 - 3.0, bottom: at.1 + 3.0 };
+        let colour = if class + 1 == DEPOSITS.len() { DARK_VERMILLION } else { VERMILLION };
+        paper.fill(&frame, colour, *opacity);
+    }
 }
 
 /// Places inside the frame, one for each little square of `raster_px`: what lies on top of each other is drawn once.
@@ -186,10 +250,9 @@ fn apart(panel: &Panel, places: impl Iterator<Item = [f64; 3]>, raster_px: f64) 
     cells.into_iter().map(|(x, y)| (x as f64 * raster_px, y as f64 * raster_px)).collect()
 }
 
-/// How a release or an end is shown: form and colour, so that a grey print keeps them apart.
+/// How an end is shown: form and colour, so that a grey print keeps them apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mark {
-    Release,
     AtRest,
     LeftTerrain,
     TimeUp,
@@ -213,7 +276,6 @@ impl Mark {
     fn draw(self, paper: &Paper<'_>, spots: &[Spot], radius: f64) {
         let rim = radius + 0.6;
         match self {
-            Self::Release => paper.dots(spots, radius - 0.2, INK),
             Self::AtRest => {
                 paper.dots(spots, rim, WHITE);
                 paper.dots(spots, radius, VERMILLION);

@@ -1,45 +1,88 @@
 //! The reach angle against what is observed in the field.
 
 use super::axis::Axis;
-use super::colour::{GREY, ORANGE};
+use super::colour::{INK, ORANGE, VERMILLION};
 use super::distributions::Distribution;
 use super::figure::{Drawing, WIDTH_PX};
-use super::input::{Quantity, Report};
+use super::format;
+use super::input::{Is, Quantity, Report};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, Paper, Pen, paint};
+use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
 
 /// Where medians of observed events lie (degrees): lowest, highest, kind of slope.
-const OBSERVED: [(f64, f64, &str); 2] =
+pub(super) const OBSERVED: [(f64, f64, &str); 2] =
     [(20.0, 40.0, "low slope above a meadow"), (32.0, 35.0, "high talus slope")];
 const PLOT_PX: f64 = 150.0;
-const TOP_PX: f64 = 60.0;
+const TOP_PX: f64 = 48.0;
+/// Opacity of each band.
+const SHADES: [f64; 2] = [0.16, 0.34];
+
+/// The median; none without rocks.
+pub(super) fn median(report: &Report) -> Option<(f64, Is)> {
+    let known = report.quantiles.get(&Quantity::ReachAngle)?;
+    let found = known.iter().find(|q| (q.probability - 0.5).abs() < 1e-9)?;
+    found.at.value.is_finite().then_some((found.at.value, found.at.is))
+}
+
+/// Whether a median lies where those of some observed events lie.
+pub(super) fn is_observed(degrees: f64) -> bool {
+    OBSERVED.iter().any(|(low, high, _)| (*low..=*high).contains(&degrees))
+}
 
 /// Draws the histogram over the bands.
 pub(super) fn draw(report: &Report) -> Drawing {
     let frame = Frame { left: 56.0, right: WIDTH_PX - 16.0, top: TOP_PX, bottom: TOP_PX + PLOT_PX };
     let mut angles = Distribution::of(report, Quantity::ReachAngle, frame);
     let x = &angles.panel.x;
-    // both bands stay in sight, with room for their names
+    // both bands stay in sight
     angles.panel.x = Axis::linear(x.low.min(10.0), x.high.max(50.0), x.title.clone());
     let svg = paint("reach", (WIDTH_PX, frame.bottom + FOOT_PX), "Reach angle", |paper| {
-        for (line, band) in OBSERVED.iter().enumerate() {
-            observed(paper, &angles.panel, band, line);
+        for (band, shade) in OBSERVED.iter().zip(SHADES) {
+            shaded(paper, &angles.panel, band, shade);
         }
-        angles.draw(paper, 50.0);
+        angles.draw(paper, 36.0);
+        key(paper, &angles.panel);
     });
-    let caption = "Reach angle (Fahrböschung), atan(drop / runout), from release to end. Shaded: where the medians of observed \
-                   events lie. A median outside both asks for a look at friction, rolling friction and stop rule.";
-    Drawing { svg, caption: caption.to_owned() }
+    let verdict = match median(report) {
+        Some((at, is)) if is_observed(at) => format!(
+            "The median of {}{}° lies where such medians are observed.",
+            format::sign(is),
+            format::significant(at, 3)
+        ),
+        Some((at, is)) => format!(
+            "The median of {}{}° lies outside both: look at friction, rolling friction, the stop rule and the terrain.",
+            format::sign(is),
+            format::significant(at, 3)
+        ),
+        None => String::new(),
+    };
+    let caption = format!(
+        "Reach angle (Fahrböschung), atan(drop / runout), from release to end. Shaded: where the medians of observed events \
+         lie. Rocks that left the terrain would have gone on: theirs is an upper bound. {verdict}"
+    );
+    Drawing { svg, caption }
 }
 
-/// A shaded band with a bracket above the frame that names it.
-fn observed(paper: &Paper<'_>, panel: &Panel, &(low, high, name): &(f64, f64, &str), line: usize) {
+fn shaded(paper: &Paper<'_>, panel: &Panel, &(low, high, _): &(f64, f64, &str), shade: f64) {
     let (left, right) = (panel.at(low, 0.0).0, panel.at(high, 0.0).0);
-    paper.fill(&Frame { left, right, ..panel.frame }, ORANGE, 0.16);
-    let y = panel.frame.top - 26.0 + 16.0 * line as f64;
-    let bracket = [(left, y + 4.0), (left, y), (right, y), (right, y + 4.0)];
-    paper.line(&bracket, Pen::full(ORANGE, 1.2));
-    let words = format!("{name}: {low} to {high}°");
-    paper.text(&Label::new(words, (left - 7.0, y)).right().coloured(GREY));
+    paper.fill(&Frame { left, right, ..panel.frame }, ORANGE, shade);
+    for x in [left, right] {
+        let side = [(x, panel.frame.top), (x, panel.frame.bottom)];
+        paper.line(&side, Pen { opacity: 0.6, ..Pen::full(VERMILLION, 0.7) });
+    }
+}
+
+/// The bands by name, in a line of their own above the frame.
+fn key(paper: &Paper<'_>, panel: &Panel) {
+    let y = panel.frame.top - 12.0;
+    let mut x = panel.frame.left;
+    for ((low, high, name), shade) in OBSERVED.iter().zip(SHADES) {
+        let patch = Frame { left: x, right: x + 16.0, top: y - 5.0, bottom: y + 5.0 };
+        paper.fill(&patch, ORANGE, shade);
+        paper.outline(&patch, Pen::full(INK, 0.4));
+        let words = format!("{name}: {low} to {high}°");
+        x += 22.0 + text_width(&words, SMALL) + 22.0;
+        paper.text(&Label::new(words, (patch.right + 5.0, y)));
+    }
 }

@@ -1,14 +1,15 @@
 //! How far the rocks ran: exceedance with its band above, histogram below.
 
 use super::axis::Axis;
-use super::colour::{BLUE, GREY, INK, SKY, VERMILLION};
+use super::colour::{BLUE, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{Quantile, Quantity, Report};
+use super::input::{Fall, Is, Quantile, Quantity, Report};
 use super::panel::{FOOT_PX, Panel, align};
-use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
+use super::paper::{Label, Paper, Pen, SMALL, paint};
 use super::svg::path::Frame;
+use crate::trajectory::Stop;
 
 const TOP_PX: f64 = 12.0;
 const UPPER_PX: f64 = 220.0;
@@ -36,23 +37,73 @@ pub(super) fn draw(report: &Report) -> Drawing {
         }
         mark(paper, &upper, quantiles);
         values(paper, &upper, report, quantiles);
+        open_end(paper, &upper, report);
         upper.axes_above_another(paper);
         lower.axes(paper);
         if runouts.is_empty() {
             lower.nothing(paper, "no release");
         }
     });
-    Drawing { svg, caption: caption(&bins, runouts.len()) }
+    Drawing { svg, caption: caption(report, &bins) }
 }
 
-fn caption(bins: &Histogram, count: usize) -> String {
+/// Rocks whose runout is only a lower bound.
+fn open_rocks(report: &Report) -> usize {
+    let is_open =
+        |fall: &&Fall| matches!(fall.stop, Stop::LeftTerrain | Stop::TimeUp | Stop::OverBudget);
+    report.releases.iter().filter(is_open).count()
+}
+
+/// Says beside the end of a curve why it ends: beyond, rocks that left the terrain decide.
+fn open_end(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+    let open = open_rocks(report);
+    let last = report.runout_exceedance.last();
+    let Some(last) =
+        last.filter(|last| open > 0 && last.y.value * report.releases.len() as f64 > 1.5)
+    else {
+        return;
+    };
+    let (x, y) = panel.at(last.x, last.y.value);
+    if !panel.frame.holds((x, y)) {
+        return;
+    }
+    paper.line(&[(x, y - 7.0), (x, y + 7.0)], Pen::full(BLUE, 1.6));
+    paper.line(&[(x, y), (x + 14.0, y)], Pen::full(BLUE, 1.2).dotted());
+    let words = format!("{} left or still moving: beyond, only ≥", format::decimal(open as f64, 0));
+    let candidates = [14.0, -14.0, 28.0, -28.0, 42.0, 56.0].into_iter().flat_map(|dy| {
+        let at = |dx: f64| Label::new(words.clone(), (x + dx, y + dy)).coloured(BLUE);
+        [at(6.0), at(-6.0).right(), at(0.0).centred()]
+    });
+    let on_curve = |room: &Frame| {
+        let mut spots = report.runout_exceedance.iter().map(|p| panel.at(p.x, p.y.value));
+        spots.any(|spot| room.holds(spot))
+    };
+    let free = |label: &Label| {
+        let room = label.frame();
+        panel.frame.contains(&room) && paper.is_free(&room) && !on_curve(&room)
+    };
+    if let Some(label) = candidates.into_iter().find(free) {
+        paper.text_on_rim(&label);
+    }
+}
+
+fn caption(report: &Report, bins: &Histogram) -> String {
+    let count = report.releases.len();
+    let open = match open_rocks(report) {
+        0 => String::new(),
+        n => format!(
+            " {} of them left the terrain or were still moving: their runout is at least what is counted here, percentiles that \
+             they decide are lower bounds (≥), and the curve ends where they do.",
+            format::decimal(n as f64, 0)
+        ),
+    };
     let left_out = match bins.left_out {
         0 => String::new(),
         n => format!(" {n} runouts are not finite and in no bin."),
     };
     format!(
         "Horizontal distance from release to end. Above: share of the {} releases that run out farther, with its 95 % band; \
-         bars give the 95 % interval of the marked percentiles. Below: share of releases per {} m.{left_out}",
+         bars give the 95 % interval of the marked percentiles. Below: share of releases per {} m.{open}{left_out}",
         format::decimal(count as f64, 0),
         format::plain(bins.width)
     )
@@ -66,7 +117,9 @@ fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
     }
     let least = report.runout_exceedance.iter().map(|p| p.y.value).filter(|&y| y > 0.0);
     let y = if count >= MANY {
-        let least = least.fold(0.1, f64::min).max(1e-4);
+        let marked = report.quantiles.get(&Quantity::Runout).into_iter().flatten();
+        let marked = marked.map(|quantile| 0.999 * (1.0 - quantile.probability));
+        let least = least.chain(marked).fold(0.1, f64::min).max(1e-4);
         Axis::log(least, 1.0, "Share running farther")
     } else {
         Axis::linear(0.0, 1.0, "Share running farther")
@@ -114,12 +167,18 @@ fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
         whisker(paper, (end(quantile.at.low), end(quantile.at.high)), y);
         paper.disc((x, y), 3.0, VERMILLION);
         // the curve falls: above and to the right of a point is free, below and to the left too
-        let label = if x + 40.0 < panel.frame.right {
-            Label::new(name(quantile), (x + 6.0, y - 10.0))
-        } else {
-            Label::new(name(quantile), (x - 6.0, y - 10.0)).right()
+        let words = match quantile.at.is {
+            Is::AtLeast => format!("{}\u{2009}≥", name(quantile)),
+            _ => name(quantile),
         };
-        paper.text_on_rim(&label.bold());
+        let at = |dx: f64, dy: f64| Label::new(words.clone(), (x + dx, y + dy)).bold();
+        let candidates =
+            [at(6.0, -10.0), at(-6.0, -10.0).right(), at(-6.0, 11.0).right(), at(6.0, 11.0)];
+        let fits =
+            |label: &Label| panel.frame.contains(&label.frame()) && paper.is_free(&label.frame());
+        if let Some(label) = candidates.into_iter().find(fits) {
+            paper.text_on_rim(&label);
+        }
     }
 }
 
@@ -137,29 +196,34 @@ fn whisker(paper: &Paper<'_>, (low, high): (f64, f64), y: f64) {
 
 /// Values and intervals, one line each, in the free corner.
 fn values(paper: &Paper<'_>, panel: &Panel, report: &Report, quantiles: &[Quantile]) {
-    let lines: Vec<(String, String)> = quantiles.iter().map(in_words).collect();
-    let width = |text: &String| text_width(text, SMALL);
-    let heads = lines.iter().map(|(head, _)| 1.06 * width(head) + 8.0).fold(0.0, f64::max);
-    let tails = lines.iter().map(|(_, tail)| width(tail)).fold(0.0, f64::max);
     let line_px = SMALL + 5.0;
-    let frame = panel.frame;
-    let (left, top) = if is_low_in_the_middle(panel, report) {
-        (frame.right - heads - tails - 12.0, frame.top + 14.0)
-    } else {
-        (frame.left + 12.0, frame.bottom - line_px * lines.len() as f64)
+    let lines = |left: f64, top: f64| -> Vec<Label> {
+        let line = |(i, quantile): (usize, &Quantile)| {
+            let (head, tail) = in_words(quantile);
+            Label::new(head, (left, top + line_px * i as f64)).bold().followed_by(tail)
+        };
+        quantiles.iter().enumerate().map(line).collect()
     };
-    for (i, (head, tail)) in lines.into_iter().enumerate() {
-        let y = top + line_px * i as f64;
-        paper.text_on_rim(&Label::new(head, (left, y)).bold());
-        paper.text_on_rim(&Label::new(tail, (left + heads, y)).coloured(GREY));
+    let widest = lines(0.0, 0.0).iter().map(Label::width_px).fold(0.0, f64::max);
+    let (frame, tall) = (panel.frame, line_px * quantiles.len() as f64);
+    let corners = [
+        (frame.right - widest - 12.0, frame.top + 14.0),
+        (frame.left + 12.0, frame.bottom - tall),
+        (frame.left + 12.0, frame.top + 14.0),
+        (frame.right - widest - 12.0, frame.bottom - tall),
+    ];
+    // the corner that the curve leaves free and no other text stands in
+    let crowd = |(left, top): (f64, f64)| {
+        let room = Frame { left, top: top - line_px, right: left + widest, bottom: top + tall };
+        let on_curve =
+            report.runout_exceedance.iter().filter(|p| room.holds(panel.at(p.x, p.y.value)));
+        let taken = lines(left, top).iter().filter(|label| !paper.is_free(&label.frame())).count();
+        on_curve.count() + 1000 * taken
+    };
+    let best = corners.into_iter().min_by_key(|&corner| crowd(corner));
+    for label in best.map_or(Vec::new(), |(left, top)| lines(left, top)) {
+        paper.text_on_rim(&label);
     }
-}
-
-/// Whether the curve passes below the middle of the panel: then the upper right corner is free, else the lower left one.
-fn is_low_in_the_middle(panel: &Panel, report: &Report) -> bool {
-    let middle = 0.5 * (panel.x.low + panel.x.high);
-    let at = report.runout_exceedance.iter().find(|p| p.x >= middle);
-    at.is_none_or(|p| panel.y.share(p.y.value) < 0.5)
 }
 
 /// Name and value, and the interval.
@@ -167,8 +231,9 @@ fn in_words(quantile: &Quantile) -> (String, String) {
     let at = quantile.at;
     let number = |value: f64| format::significant(value, 4);
     let tail = match format::interval(&number(at.low), &number(at.high)) {
-        none if none == format::NO_NUMBER => "too few rocks for an interval".to_owned(),
+        none if none == format::NO_NUMBER => String::new(),
         interval => interval,
     };
-    (format!("{} {} m", name(quantile), number(at.value)), tail)
+    let sign = format::sign(at.is);
+    (format!("{} {sign}{}\u{2009}m", name(quantile), number(at.value)), tail)
 }

@@ -3,25 +3,29 @@
 mod along;
 
 use super::axis::Axis;
-use super::colour::{BLUE, GREY, SKY};
+use super::colour::{BLUE, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{Path, Report};
+use super::input::{Fall, MapMark, Path, Report};
 use super::panel::{FOOT_PX, Panel, align};
-use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
+use super::paper::{Label, Paper, Pen, SMALL, fitted, paint, text_width};
 use super::svg::path::{Frame, Spot};
 use crate::math;
 use along::{Envelope, FallLine};
 use plotters::style::RGBColor;
 
-const TOP_PX: f64 = 10.0;
+/// Room above the profile for the names of lines and barriers (px).
+const TOP_PX: f64 = 24.0;
 /// Least and greatest height of the profile (px).
-const PROFILE_PX: (f64, f64) = (130.0, 400.0);
+const PROFILE_PX: (f64, f64) = (130.0, 480.0);
 /// Height of each of the two lower panels (px).
 const LOWER_PX: f64 = 100.0;
-const GAP_PX: f64 = 26.0;
+const GAP_PX: f64 = 28.0;
+const RIGHT_PX: f64 = WIDTH_PX - 16.0;
 const GROUND_FILL: RGBColor = RGBColor(205, 198, 188);
 const GROUND_LINE: RGBColor = RGBColor(94, 78, 62);
+/// Largest of all rocks, those without a stored path too.
+const ALL: Pen = Pen::full(VERMILLION, 1.2).dashed();
 
 /// Draws the profile and the two envelopes over one x axis.
 pub(super) fn draw(report: &Report) -> Drawing {
@@ -30,26 +34,34 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let height = view.speed.frame.bottom + FOOT_PX;
     let svg = paint("side", (WIDTH_PX, height), "Side view", |paper| {
         view.profile(paper, report, &line);
-        let shown = [(&view.height, &view.heights), (&view.speed, &view.speeds)];
-        for (panel, envelope) in shown {
-            draw_envelope(paper, panel, envelope);
+        let shown = [
+            (&view.height, &view.heights, largest(report, |fall| fall.max_height_m)),
+            (&view.speed, &view.speeds, largest(report, |fall| fall.max_speed_m_s)),
+        ];
+        for (panel, envelope, largest) in shown {
+            draw_envelope(paper, panel, envelope, largest);
         }
         view.height.axes_above_another(paper);
         view.speed.axes(paper);
+        view.marks(paper, report, &line);
     });
     Drawing { svg, caption: caption(report, &line, &view) }
 }
 
+/// Largest value of all releases; none of nothing.
+fn largest(report: &Report, of: fn(&Fall) -> f64) -> Option<f64> {
+    report.releases.iter().map(of).filter(|value| value.is_finite()).reduce(f64::max)
+}
+
 fn caption(report: &Report, line: &FallLine, view: &View) -> String {
-    let scale = match view.exaggeration {
-        e if (e - 1.0).abs() < 0.01 => "heights and distances at the same scale".to_owned(),
-        e => format!("heights drawn {} times as large as distances", format::significant(e, 2)),
-    };
+    let count = |n: usize| format::decimal(n as f64, 0);
     format!(
-        "Side view of {} paths projected on the mean fall line, which runs {} from the mean release ({}); {scale}. The ground line is cut along \
-         the fall line; the shaded strip spans the ground under the paths beside it. Lower panels: each path's largest value \
-         within steps of {} m; P95 and maximum over paths.",
-        report.paths.len(),
+        "Side view of the stored paths of {} of {} releases, projected on the mean fall line, which runs {} from the mean release \
+         ({}); heights and distances at the same scale. Brown: median of the ground under the paths themselves; shaded: its \
+         lowest to highest. Lower panels: each stored path's largest value within steps of {} m, P95 and maximum over the paths; \
+         bounce height is measured from the ground right below each rock. Dashed: the largest of all releases.",
+        count(report.paths.len()),
+        count(report.releases.len()),
         line.compass(),
         line.bearing_words(),
         format::plain(view.heights.step_m),
@@ -63,35 +75,47 @@ struct View {
     speed: Panel,
     heights: Envelope,
     speeds: Envelope,
-    exaggeration: f64,
 }
 
 impl View {
     fn of(report: &Report, line: &FallLine) -> Self {
         let (along, z) = line.extent(report);
-        let heights = Envelope::of(report, line, along, |p| p.clearance_m);
+        let heights = Envelope::of(report, line, along, |p| {
+            if p.clearance_m < 0.0 { 0.0 } else { p.clearance_m }
+        });
         let speeds = Envelope::of(report, line, along, |p| p.speed_m_s);
         let title = "Distance along the mean fall line (m)";
         let x = Axis::linear(along.0, along.1, title);
         let mut ground = stacked(TOP_PX, PROFILE_PX.0, &x, Axis::linear(z.0, z.1, "Height (m)"));
         let titles = ["Bounce height (m)", "Speed (m/s)"];
-        let axes = [&heights, &speeds].map(|e| Axis::from_zero(e.most.iter().copied(), ""));
-        let [mut height, mut speed] = [0, 1].map(|i| {
-            stacked(0.0, LOWER_PX, &x, Axis { title: titles[i].to_owned(), ..axes[i].clone() })
-        });
+        let most =
+            [largest(report, |fall| fall.max_height_m), largest(report, |fall| fall.max_speed_m_s)];
+        let axis = |i: usize, envelope: &Envelope| {
+            let all = most[i].map(|most| 1.04 * most);
+            Axis::from_zero(envelope.most.iter().copied().chain(all), titles[i])
+        };
+        let (mut height, mut speed) = (
+            stacked(0.0, LOWER_PX, &x, axis(0, &heights)),
+            stacked(0.0, LOWER_PX, &x, axis(1, &speeds)),
+        );
         align([&mut ground, &mut height, &mut speed]);
-        let exaggeration = fit_height(&mut ground);
+        to_scale(&mut ground);
+        for panel in [&mut height, &mut speed] {
+            panel.frame.right = ground.frame.right;
+        }
         place_below(&ground, &mut height);
         place_below(&height, &mut speed);
-        Self { ground, height, speed, heights, speeds, exaggeration }
+        Self { ground, height, speed, heights, speeds }
     }
 
     fn profile(&self, paper: &Paper<'_>, report: &Report, line: &FallLine) {
         let panel = &self.ground;
-        if let Some(ground) = &report.ground {
-            let strip = line.strip(report, ground, (panel.x.low, panel.x.high));
-            panel.band(paper, &strip, GROUND_FILL, 0.6);
-        }
+        let below = report.ground.as_ref().map_or(Vec::new(), |ground| {
+            line.ground_below(report, ground, (panel.x.low, panel.x.high))
+        });
+        let strip: Vec<(f64, f64, f64)> =
+            below.iter().map(|&[s, low, _, high]| (s, low, high)).collect();
+        panel.band(paper, &strip, GROUND_FILL, 0.6);
         let on_paper = |path: &Path| {
             let way = path.points.iter().map(|p| (line.along(p.place_m), p.place_m[2]));
             panel.on_paper(&way.collect::<Vec<_>>())
@@ -102,34 +126,67 @@ impl View {
         for path in &paths {
             paper.line(path, Pen { opacity, ..Pen::full(BLUE, 0.7) });
         }
-        if let Some(ground) = &report.ground {
-            let cut = line.profile(ground, (panel.x.low, panel.x.high));
-            panel.line(paper, &cut, Pen::full(GROUND_LINE, 1.5));
-        }
+        let median: Vec<(f64, f64)> = below.iter().map(|&[s, _, z, _]| (s, z)).collect();
+        panel.line(paper, &median, Pen::full(GROUND_LINE, 1.5));
         if report.paths.is_empty() {
             panel.nothing(paper, "no path kept");
         }
         panel.axes_above_another(paper);
     }
+
+    /// Where lines and barriers stand, through all panels, named above.
+    fn marks(&self, paper: &Paper<'_>, report: &Report, line: &FallLine) {
+        let place = |mark: &MapMark| Some((line.meets(&mark.corners_m)?, mark.clone()));
+        let mut marks: Vec<(f64, MapMark)> = report.marks.iter().filter_map(place).collect();
+        marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let inside = self.ground.x.low..=self.ground.x.high;
+        for (at, mark) in marks.into_iter().filter(|(at, _)| inside.contains(at)) {
+            let colour = if mark.barrier.is_some() { super::colour::DARK_GREEN } else { INK };
+            let pen = Pen::full(colour, if mark.barrier.is_some() { 1.6 } else { 0.9 });
+            let pen = if mark.barrier.is_some() { pen } else { pen.dotted() };
+            for panel in [&self.ground, &self.height, &self.speed] {
+                panel.upright(paper, at, pen);
+            }
+            let x = self.ground.at(at, self.ground.y.low).0;
+            name_above(paper, &self.ground.frame, (x, &mark.name), colour);
+        }
+    }
+}
+
+/// The name of a mark above the frame, or in it where a neighbour's stands above already.
+fn name_above(paper: &Paper<'_>, frame: &Frame, (x, name): (f64, &str), colour: RGBColor) {
+    let words = fitted(name, SMALL, 0.4 * frame.width());
+    let rows = [frame.top - 9.0, frame.top + 10.0, frame.top + 24.0, frame.top + 38.0];
+    let candidates = rows.into_iter().flat_map(|y| {
+        [
+            Label::new(words.clone(), (x, y)).centred(),
+            Label::new(words.clone(), (x - 4.0, y)).right(),
+            Label::new(words.clone(), (x + 4.0, y)),
+        ]
+    });
+    let free = |label: &Label| {
+        let room = label.frame();
+        room.left >= frame.left && room.right <= frame.right && paper.is_free(&room)
+    };
+    if let Some(label) = candidates.into_iter().find(free) {
+        paper.text_on_rim(&label.coloured(colour));
+    }
 }
 
 fn stacked(top: f64, height: f64, x: &Axis, y: Axis) -> Panel {
-    let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + height };
+    let frame = Frame { left: 0.0, top, right: RIGHT_PX, bottom: top + height };
     Panel::new(frame, x.clone(), y)
 }
 
-/// Gives the profile the height of equal scale, within limits; returns the exaggeration of heights.
-fn fit_height(panel: &mut Panel) -> f64 {
-    let px_per_m = panel.frame.width() / (panel.x.high - panel.x.low);
-    let equal = px_per_m * (panel.y.high - panel.y.low);
-    let height = equal.clamp(PROFILE_PX.0, PROFILE_PX.1);
+/// Gives the profile one scale in both directions: what is too high for the page becomes narrower.
+fn to_scale(panel: &mut Panel) {
+    let (wide, high) = (panel.x.high - panel.x.low, panel.y.high - panel.y.low);
+    let px_per_m = (panel.frame.width() / wide).min(PROFILE_PX.1 / high);
+    panel.frame.right = panel.frame.left + px_per_m * wide;
+    let height = (px_per_m * high).max(PROFILE_PX.0);
     panel.frame.bottom = panel.frame.top + height;
-    if equal < PROFILE_PX.0 {
-        // a low profile keeps its scale and shows more sky instead
-        panel.y.high = panel.y.low + height / px_per_m;
-        return 1.0;
-    }
-    height / equal
+    // a low profile shows more sky instead
+    panel.y.high = panel.y.low + height / px_per_m;
 }
 
 fn place_below(above: &Panel, panel: &mut Panel) {
@@ -139,7 +196,7 @@ fn place_below(above: &Panel, panel: &mut Panel) {
 }
 
 /// The maximum as a light area of steps, P95 as a heavy line, named above the frame.
-fn draw_envelope(paper: &Paper<'_>, panel: &Panel, envelope: &Envelope) {
+fn draw_envelope(paper: &Paper<'_>, panel: &Panel, envelope: &Envelope, largest: Option<f64>) {
     panel.grid(paper);
     let steps = |values: &[f64]| -> Vec<(f64, f64)> {
         let ends = |i: usize| [i, i + 1].map(|k| envelope.from_m + k as f64 * envelope.step_m);
@@ -152,6 +209,9 @@ fn draw_envelope(paper: &Paper<'_>, panel: &Panel, envelope: &Envelope) {
     }
     for run in runs_of_numbers(&steps(&envelope.p95)) {
         panel.line(paper, &run, Pen::full(BLUE, 1.6));
+    }
+    if let Some(largest) = largest {
+        panel.line(paper, &[(panel.x.low, largest), (panel.x.high, largest)], ALL);
     }
     key(paper, panel);
     if envelope.most.iter().all(|v| v.is_nan()) {
@@ -167,10 +227,12 @@ fn runs_of_numbers(line: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
 fn key(paper: &Paper<'_>, panel: &Panel) {
     let y = panel.frame.top - 9.0;
     let mut right = panel.frame.right;
-    for (name, pen) in [("maximum", Pen::full(SKY, 1.6)), ("P95", Pen::full(BLUE, 1.8))] {
+    for (name, pen) in
+        [("largest of all", ALL), ("maximum", Pen::full(SKY, 1.6)), ("P95", Pen::full(BLUE, 1.8))]
+    {
         paper.text(&Label::new(name, (right, y)).right().coloured(GREY));
         let end = right - text_width(name, SMALL) - 5.0;
         paper.line(&[(end - 16.0, y), (end, y)], pen);
-        right = end - 30.0;
+        right = end - 28.0;
     }
 }

@@ -1,12 +1,12 @@
 //! Why the rocks ended, as counts and shares.
 
 use super::axis::Axis;
-use super::colour::{GREY, INK, SKY};
+use super::colour::{INK, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::input::{Report, StopShare};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, Paper, Pen, paint, text_width};
+use super::paper::{Label, Paper, Pen, paint};
 use super::svg::path::Frame;
 use crate::math;
 use crate::trajectory::Stop;
@@ -15,7 +15,7 @@ const LINE_PX: f64 = 30.0;
 const BAR_PX: f64 = 15.0;
 const LEFT_PX: f64 = 110.0;
 /// Room right of the bars for count, share and interval (px).
-const RIGHT_PX: f64 = 210.0;
+const RIGHT_PX: f64 = 250.0;
 const TOP_PX: f64 = 8.0;
 
 /// Draws the bars.
@@ -23,7 +23,10 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let lines = report.stops.len().max(1) as f64;
     let bottom = TOP_PX + lines * LINE_PX;
     let frame = Frame { left: LEFT_PX, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom };
-    let x = Axis::linear(0.0, 100.0, "Share of releases (%)");
+    let ends = report.stops.iter().flat_map(|share| [share.share.value, share.share.high]);
+    // the axis ends where the longest bar and its interval do
+    let most = Axis::from_zero(ends.map(|share| 100.0 * share), "").high.min(100.0);
+    let x = Axis::linear(0.0, most, "Share of releases (%)");
     let panel = Panel::new(frame, x, Axis::linear(0.0, lines, ""));
     let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), "Stop reasons", |paper| {
         panel.grid_upright(paper);
@@ -55,7 +58,7 @@ pub(super) fn name(stop: &Stop) -> &'static str {
 
 fn bar(paper: &Paper<'_>, panel: &Panel, line: usize, share: &StopShare) {
     let y = panel.frame.top + (line as f64 + 0.5) * LINE_PX;
-    let at = |share: f64| panel.at((100.0 * share).clamp(0.0, 100.0), 0.0).0;
+    let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let percent = share.share;
     if percent.value > 0.0 {
         let (left, right) = (panel.frame.left, at(percent.value));
@@ -75,11 +78,9 @@ fn bar(paper: &Paper<'_>, panel: &Panel, line: usize, share: &StopShare) {
     let decimals = decimals_for(percent.high - percent.low);
     let words = format!("{count} ({})", format::percent(percent.value, decimals));
     let x = panel.frame.right + 10.0;
-    let after = x + text_width(&words, super::paper::SMALL) + 8.0;
-    paper.text(&Label::new(words, (x, y)));
     let bound = |share: f64| format::percent(share, decimals);
     let interval = format::interval(&bound(percent.low), &bound(percent.high));
-    paper.text(&Label::new(interval, (after, y)).coloured(GREY));
+    paper.text(&Label::new(words, (x, y)).followed_by(interval));
 }
 
 /// Decimals of a percentage that an interval of some width (share) leaves meaningful.

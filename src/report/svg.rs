@@ -24,13 +24,13 @@ pub const TENTHS: f64 = 10.0;
 /// A text that starts with this mark is not text but a fragment of SVG, copied as it stands.
 pub const FRAGMENT_MARK: char = '\u{1}';
 
-/// Fonts in order of wish; set once on the root. All have the widths of Helvetica.
-const FONTS: &str = "Helvetica, Arial, 'Liberation Sans', sans-serif";
+/// Fonts in order of wish; set once on the root. Room is kept for the widest of them, see [`metrics`].
+const FONTS: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
 /// Height of capitals and figures over the font size (Helvetica: 718/1000).
-const CAP_HEIGHT: f64 = 0.718;
+pub(super) const CAP_HEIGHT: f64 = 0.718;
 /// Depth of the letters below the baseline over the font size (Helvetica: 207/1000).
-const DEPTH: f64 = 0.207;
+pub(super) const DEPTH: f64 = 0.207;
 /// Size of a raised figure over the font size, and how far it is raised.
 const RAISED_SIZE: f64 = 0.72;
 const RAISED_BY: f64 = 0.36;
@@ -262,12 +262,12 @@ fn hex(colour: BackendColor) -> String {
 /// `title` is what a screen reader says and what a browser shows on hovering.
 pub fn document(body: &str, size_px: (f64, f64), title: &str) -> String {
     let (width, height) = (size_px.0.round(), size_px.1.round());
+    let (wide, high) = (width * TENTHS, height * TENTHS);
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {} {}\" role=\"img\" \
-         font-family=\"{FONTS}\" stroke-linejoin=\"round\">\n<title>{}</title>\n{body}</svg>\n",
-        width * TENTHS,
-        height * TENTHS,
+         width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {wide} {high}\" role=\"img\" \
+         font-family=\"{FONTS}\" stroke-linejoin=\"round\">\n<title>{}</title>\n\
+         <rect x=\"0\" y=\"0\" width=\"{wide}\" height=\"{high}\" fill=\"#ffffff\"/>\n{body}</svg>\n",
         escape(title)
     )
 }

@@ -1,6 +1,6 @@
 //! `runout.p95 < 1.0 m`: a statistic and how narrow its confidence interval shall be.
 
-use crate::hazard::{PERCENTS, Percentile, Quantity, Sample};
+use crate::hazard::{Hazard, Open, PERCENTS, Percentile, Quantity, Sample};
 use std::fmt;
 use std::str::FromStr;
 
@@ -43,6 +43,27 @@ impl Aim {
     /// Width of the interval; `None` with too few rocks.
     pub fn width_of(found: &Percentile) -> Option<f64> {
         Some(found.high_95? - found.low_95?)
+    }
+
+    /// Why more releases do not help: rocks that were seen only in part decide this percentile, and its interval is open
+    /// on their side however many there are.
+    pub fn refusal(&self, hazard: &Hazard) -> Option<String> {
+        let sample = hazard.sample(self.quantity);
+        let found = sample.percentile(f64::from(self.percent) / 100.0)?;
+        let is_open = match self.quantity.open()? {
+            Open::Above => found.high_95.is_none(),
+            Open::Below => found.low_95.is_none(),
+        };
+        let enough = sample.values().len() >= 2 * found.needs;
+        (found.censored || (is_open && enough && sample.bounds() > 0)).then(|| {
+            format!(
+                "--until \"{self}\": {} of {} rocks left the terrain or ran out of time, so that p{} of {} is only a bound and no number of releases narrows it; give terrain that reaches farther, a longer [solver] longest_s, or aim at a smaller percentile",
+                sample.bounds(),
+                sample.values().len(),
+                self.percent,
+                self.name
+            )
+        })
     }
 
     /// How many releases the width of the interval of `values`, found with `done`, lets expect; 0 when it is narrow enough or

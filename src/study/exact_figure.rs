@@ -28,6 +28,16 @@ pub(super) fn colour(scheme: Scheme) -> RGBColor {
     }
 }
 
+/// The form of a scheme's marks.
+fn shape(scheme: Scheme) -> usize {
+    match scheme {
+        Scheme::Adaptive => 0,
+        Scheme::Dda => 1,
+        Scheme::Reference => 2,
+        Scheme::Rigid => 3,
+    }
+}
+
 /// Draws one case.
 pub(super) fn draw(study: &CaseStudy) -> String {
     let points = || study.curves.iter().flat_map(|curve| &curve.points);
@@ -40,7 +50,7 @@ pub(super) fn draw(study: &CaseStudy) -> String {
     let frame =
         Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
     let x = Axis::log(fast, slow, "Run time (s)");
-    let mut panel = Panel::new(frame, x, Axis::log(least, most, "Error (–)"));
+    let mut panel = Panel::new(frame, x, Axis::log(least, most, "Error of the result (–)"));
     panel.frame.left = panel.room_left();
     paint(study.case.name, (WIDTH_PX, panel.frame.bottom + FOOT_PX), study.case.title, |paper| {
         paper.text(&Label::new(study.case.title, (panel.frame.left, 12.0)).sized(NORMAL).bold());
@@ -64,7 +74,7 @@ fn draw_curve(paper: &Paper<'_>, panel: &Panel, curve: &Curve) {
     let values: Vec<(f64, f64)> = finite.map(|p| (p.seconds, shown(p.error))).collect();
     panel.line(paper, &values, Pen::full(ink, 1.4));
     for &(x, y) in &values {
-        paper.disc(panel.at(x, y), 2.6, ink);
+        paper.mark(shape(curve.rungs.scheme), panel.at(x, y), 2.6, ink);
     }
 }
 
@@ -76,7 +86,7 @@ fn key(paper: &Paper<'_>, panel: &Panel, study: &CaseStudy) {
         let scheme = curve.rungs.scheme;
         let middle = y;
         paper.line(&[(left, middle), (left + 18.0, middle)], Pen::full(colour(scheme), 1.4));
-        paper.disc((left + 9.0, middle), 2.6, colour(scheme));
+        paper.mark(shape(scheme), (left + 9.0, middle), 2.6, colour(scheme));
         paper.text(&Label::new(scheme.name(), (left + 24.0, y)).bold());
         paper.text(
             &Label::new(order_in_words(curve), (left + 24.0, y + SMALL + 3.0)).coloured(GREY),

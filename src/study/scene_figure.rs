@@ -64,7 +64,7 @@ fn panel(
     let most = errors().fold(least, f64::max);
     let subject = &study.subjects[statistic.subject];
     let (name, unit) = (&subject.name, subject.unit);
-    let y = Axis::log(least.max(1e-3 * most), most, format!("P{SHOWN} {name} ({unit})"));
+    let y = Axis::log(least.max(1e-3 * most), most, format!("Error of P{SHOWN} {name} ({unit})"));
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
     let title = if is_last { "Run time of the whole ensemble on this machine (s)" } else { "" };
     let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
@@ -109,11 +109,11 @@ fn draw_statistic(paper: &Paper<'_>, panel: &Panel, study: &SceneStudy, statisti
     let sampled = sampling(study, statistic);
     panel.line(paper, &sampled, Pen::full(BLUE, 1.4));
     for &(t, error) in &sampled {
-        paper.disc(panel.at(t, error), 2.4, BLUE);
+        paper.mark(0, panel.at(t, error), 2.4, BLUE);
     }
     let steps = steps(study, statistic);
     let meshes = meshes(study, statistic);
-    for (bars, ink) in [(&steps, VERMILLION), (&meshes, GREEN)] {
+    for (shape, (bars, ink)) in [(&steps, VERMILLION), (&meshes, GREEN)].into_iter().enumerate() {
         let middle: Vec<(f64, f64)> =
             bars.iter().map(|&(t, error, _)| (t, inside(error))).collect();
         panel.line(paper, &middle, Pen::full(ink, 1.4));
@@ -121,7 +121,7 @@ fn draw_statistic(paper: &Paper<'_>, panel: &Panel, study: &SceneStudy, statisti
             let (spot, end) = (panel.at(t, inside(error)), panel.at(t, inside(most)));
             paper.line(&[spot, end], Pen::full(ink, 0.8));
             paper.line(&[(end.0 - 3.0, end.1), (end.0 + 3.0, end.1)], Pen::full(ink, 0.8));
-            paper.disc(spot, 2.4, ink);
+            paper.mark(1 + shape, spot, 2.4, ink);
         }
     }
     let own_steps = panel.at(steps[study.own].0, inside(steps[study.own].1));
@@ -143,13 +143,17 @@ fn key(paper: &Paper<'_>, first: Option<&Panel>, with_meshes: bool) {
     let ring = Frame { left: own_x - 15.0, right: own_x - 5.0, top: 7.0, bottom: 17.0 };
     paper.outline(&ring, Pen::full(INK, 1.0));
     paper.text(&Label::new(own, (own_x, 12.0)).coloured(GREY));
-    for (ink, words, is_there) in [
-        (BLUE, "sampling: half the 95 % interval of the first n releases", true),
+    for (shape, (ink, words, is_there)) in [
+        (BLUE, "sampling: half the 95 % interval", true),
         (VERMILLION, "steps: estimate and 95 % bound", true),
         (GREEN, "mesh: the same", with_meshes),
-    ] {
+    ]
+    .into_iter()
+    .enumerate()
+    {
         if is_there {
             paper.line(&[(x, 30.0), (x + 18.0, 30.0)], Pen::full(ink, 1.4));
+            paper.mark(shape, (x + 9.0, 30.0), 2.4, ink);
             paper.text(&Label::new(words, (x + 23.0, 30.0)));
             x += 23.0 + text_width(words, SMALL) + 16.0;
         }

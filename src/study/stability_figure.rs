@@ -91,7 +91,7 @@ fn cells(paper: &Paper<'_>, panel: &Panel, map: &Map) {
 fn key(paper: &Paper<'_>) {
     let mut x = LEFT_PX;
     for (verdict, words) in [
-        (Verdict::Accurate, "accurate: within 2 % of the approach speed"),
+        (Verdict::Accurate, "accurate: within 2 %"),
         (Verdict::Stable, "stable: finite, no energy gained"),
         (Verdict::Unstable, "unstable"),
     ] {
@@ -103,6 +103,6 @@ fn key(paper: &Paper<'_>) {
         paper.text(&Label::new(words, (x + 19.0, 14.0)));
         x += 19.0 + text_width(words, SMALL) + 18.0;
     }
-    let words = "Rebound over approach speed of a rock of 0.5 m at 5 m/s; exact 0.50, less on soft springs (weight).";
+    let words = "Rebound over approach speed of a rock of 0.5 m at 5 m/s; exact 0.50, less on soft springs.";
     paper.text(&Label::new(words, (LEFT_PX, 32.0)).coloured(GREY));
 }

@@ -5,7 +5,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rockfall::hazard::{Asked, LineInfo, MapFrame};
-use rockfall::output::{Identity, RunInfo};
+use rockfall::output::{Identity, RunInfo, Site, Zone};
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::trajectory::{
     Crossing, Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState, Stop,
@@ -29,6 +29,12 @@ pub fn info(releases: usize) -> RunInfo {
             of_releases: releases,
         },
         origin_m: Vec3::new(2_600_000.0, 1_200_000.0, 0.0),
+        site: Site {
+            mesh_origin_m: [2_600_000.0, 1_200_000.0, 0.0],
+            release: Zone::Line(vec![[2_600_000.0, 1_200_000.0], [2_600_010.0, 1_200_000.0]]),
+            further_releases: Vec::new(),
+            fast_warnings: vec![],
+        },
         ground_of_sheet: vec!["rock".to_owned(), "trunk, \"old\"".to_owned()],
         lines: [("road", 40.0), ("fence, \"upper\"", 35.5)]
             .map(|(name, length_m)| LineInfo {

@@ -5,7 +5,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rockfall::report::input::{
-    BandPoint, Estimate, Fall, Path, Point, Quantile, Quantity, Report, Row, StopShare, Table, Text,
+    About, BandPoint, Estimate, Fall, Path, Point, Quantile, Quantity, Report, Row, StopShare,
+    Table, Text,
 };
 use rockfall::report::raster::GroundRaster;
 use rockfall::rock::Vec3;
@@ -204,14 +205,14 @@ fn quantile(sorted: &[f64], p: f64) -> Estimate {
     let at = |rank: f64| {
         if rank < 0.0 || rank >= n { f64::NAN } else { sorted[rank as usize] }
     };
-    Estimate { value: at((n * p - 1e-9).floor()), low: at(n * p - half), high: at(n * p + half) }
+    Estimate::new(at((n * p - 1e-9).floor()), at(n * p - half), at(n * p + half))
 }
 
 fn wilson(count: f64, n: f64) -> Estimate {
     let (z, p) = (1.96, count / n.max(1.0));
     let middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
     let half = z / (1.0 + z * z / n) * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
-    Estimate { value: p, low: (middle - half).max(0.0), high: (middle + half).min(1.0) }
+    Estimate::new(p, (middle - half).max(0.0), (middle + half).min(1.0))
 }
 
 fn exceedance(sorted: &[f64]) -> Vec<BandPoint> {
@@ -256,6 +257,7 @@ fn line_table(report: &Report) -> Table {
         (name.to_owned(), cells.chain([None]).collect())
     };
     Table {
+        about: About::Lines,
         title: "Line “road”".to_owned(),
         note: "812 first crossings by 1000 releases; 3 rocks cross more than once.".to_owned(),
         columns: ["P50", "P95", "P99", "Maximum"].map(str::to_owned).to_vec(),

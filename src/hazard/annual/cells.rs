@@ -11,6 +11,10 @@ use super::{Asked, Matrix};
 pub struct YearMap {
     /// File name without ending.
     pub file: String,
+    /// What its values are, in words.
+    pub name: String,
+    /// Their unit; empty of a pure number.
+    pub unit: &'static str,
     /// Whether it is an end of an interval.
     pub is_bound: bool,
     /// Cells and values, rising by cell.
@@ -25,11 +29,15 @@ pub fn year_maps(maps: &Maps, asked: &Asked, releases: usize) -> Vec<YearMap> {
     let Some(frequency) = &asked.frequency else { return Vec::new() };
     let weights = frequency.weights(releases);
     let (energies, periods) = (frequency.energies_j(), frequency.return_periods_years());
-    let mut names = vec!["frequency_per_year".to_owned()];
-    names
-        .extend(energies.iter().map(|joule| format!("frequency_above_{}kj_per_year", joule / 1e3)));
-    names.extend(periods.iter().map(|years| format!("energy_T{years}_j")));
-    let mut layers: Vec<YearMap> = names.iter().flat_map(|name| with_bounds(name)).collect();
+    let mut layers = with_bounds("frequency_per_year", "Passages a year", "1/year").to_vec();
+    for kj in energies.iter().map(|joule| joule / 1e3) {
+        let words = format!("Passages a year with {kj} kJ or more");
+        layers.extend(with_bounds(&format!("frequency_above_{kj}kj_per_year"), &words, "1/year"));
+    }
+    for years in periods {
+        let words = format!("Total energy of return period {years} years");
+        layers.extend(with_bounds(&format!("energy_T{years}_j"), &words, "J"));
+    }
     let ceilings = Ceilings::of(&weights, &asked.most_j);
     let least = || [0.0].iter().chain(energies);
     let limits: Vec<Limits> =
@@ -66,7 +74,13 @@ pub fn year_maps(maps: &Maps, asked: &Asked, releases: usize) -> Vec<YearMap> {
         }
     }
     if asked.matrix.is_some() {
-        layers.push(YearMap { file: Matrix::FILE.to_owned(), is_bound: false, values: levels });
+        layers.push(YearMap {
+            file: Matrix::FILE.to_owned(),
+            name: "Level of hazard".to_owned(),
+            unit: "",
+            is_bound: false,
+            values: levels,
+        });
     }
     layers
 }
@@ -76,9 +90,15 @@ impl Matrix {
     pub const FILE: &str = "hazard_level";
 }
 
-fn with_bounds(name: &str) -> [YearMap; 3] {
-    ["", "_low_95", "_high_95"].map(|end| YearMap {
-        file: format!("{name}{end}"),
+fn with_bounds(file: &str, name: &str, unit: &'static str) -> [YearMap; 3] {
+    let ends = [("", ""), ("_low_95", ", lower"), ("_high_95", ", upper")];
+    ends.map(|(end, which)| YearMap {
+        file: format!("{file}{end}"),
+        name: match which {
+            "" => name.to_owned(),
+            which => format!("{name}{which} end of the 95 % interval"),
+        },
+        unit,
         is_bound: !end.is_empty(),
         values: Vec::new(),
     })

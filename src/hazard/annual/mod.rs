@@ -13,8 +13,8 @@ mod risk;
 pub use cells::{YearMap, year_maps};
 pub use curve::{ExceedancePoint, ReturnEnergy};
 pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, annual};
-pub use rate::Rate;
 pub(in crate::hazard) use rate::proportion;
+pub use rate::{Rate, share_of};
 pub use risk::{Object, Risk, RiskKind, Vehicles};
 
 use crate::frequency::Frequency;

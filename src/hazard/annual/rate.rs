@@ -229,6 +229,14 @@ fn interval(value: f64, variance: f64, &Limits { most, heaviest }: &Limits) -> [
     [most * wilson(share, most / weight).0, most * wilson(share, most / wider).1]
 }
 
+/// Share of all events that some releases stand for.
+pub fn share_of(weights: &Weights, releases: impl Iterator<Item = usize>) -> Proportion {
+    if weights.are_equal() {
+        return Proportion::new(releases.count(), weights.all_rocks());
+    }
+    proportion(weights, releases.map(|release| (weights.stratum_of(release) as u16, 1)))
+}
+
 /// Share of all events that some rocks stand for, given by their number in each stratum.
 pub(in crate::hazard) fn proportion(
     weights: &Weights,

@@ -1,6 +1,6 @@
 //! Shares and values of the rocks that arrive, by what each of them stands for.
 
-use super::super::annual::proportion;
+use super::super::annual::share_of;
 use super::super::proportion::Proportion;
 use super::super::sample::Sample;
 use super::{Arrival, Barrier};
@@ -26,11 +26,14 @@ pub(super) fn stopped_at(
 
 /// Share of all releases, by what they stand for, that arrive.
 pub(super) fn arriving(rocks: &[Arrival], weights: &Weights) -> Proportion {
-    let strata = rocks.iter().map(|rock| (weights.stratum_of(rock.release) as u16, 1));
-    proportion(weights, strata)
+    share_of(weights, rocks.iter().map(|rock| rock.release))
 }
 
 /// Values of rocks, each with what the rock stands for.
-pub(super) fn sample(rocks: &[Arrival], weights: &Weights, of: impl Fn(&Arrival) -> f64) -> Sample {
+pub(in crate::hazard) fn sample(
+    rocks: &[Arrival],
+    weights: &Weights,
+    of: impl Fn(&Arrival) -> f64,
+) -> Sample {
     Sample::weighted(rocks.iter().map(|rock| (of(rock), weights.of_release(rock.release))))
 }

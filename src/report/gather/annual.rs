@@ -1,7 +1,7 @@
 //! What a year brings, from the summary: tables and curves. Every title says that its numbers are a year.
 
 use super::super::format;
-use super::super::input::{AnnualView, BandPoint, Estimate, Table};
+use super::super::input::{About, AnnualView, BandPoint, Estimate, Table};
 use super::estimate;
 use crate::hazard::{
     Annual, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk,
@@ -79,6 +79,7 @@ fn passages(annual: &Annual, place: &AnnualPlace) -> Table {
         "change with exponent (1/a)",
     ];
     Table {
+        about: About::Year,
         title: format!("How often a year: {}", named(place)),
         note: format!(
             "Numbers a year unless the column says otherwise: {} events a year at the sources times the share of their rocks that come. \
@@ -103,11 +104,7 @@ fn of(rate: &Rate, map: impl Fn(f64) -> f64) -> Estimate {
 
 fn cells(rate: &Rate, annual: &Annual) -> Vec<Option<Estimate>> {
     let period = |per_year: f64| if per_year > 0.0 { 1.0 / per_year } else { f64::NAN };
-    let years = Estimate {
-        value: period(rate.per_year),
-        low: period(rate.high_95),
-        high: period(rate.low_95),
-    };
+    let years = Estimate::new(period(rate.per_year), period(rate.high_95), period(rate.low_95));
     vec![
         Some(of(rate, |x| x)),
         Some(years),
@@ -134,6 +131,7 @@ fn returns(place: &AnnualPlace) -> Table {
         both(place).flat_map(|(which, figures)| figures.returns.iter().map(move |r| (which, r)));
     let columns = ["total energy (kJ)", "change with ln(rate) (kJ)", "change with exponent (kJ)"];
     Table {
+        about: About::Year,
         title: format!("Energy of return periods: {}", named(place)),
         note: "Passed with at least that energy once in so many years on average; no number where rocks come more seldom. The 95 % \
                interval is that of the frequency, read along the energy; where too few rocks bound it, it is open."
@@ -156,6 +154,7 @@ fn risks(place: &AnnualPlace) -> Option<Table> {
     let rows: Vec<_> = all.map(row).collect();
     let columns = ["a year (1/a)", "change with ln(rate) (1/a)", "change with exponent (1/a)"];
     (!rows.is_empty()).then(|| Table {
+        about: About::Year,
         title: format!("Risk a year: {}", named(place)),
         note: "Hits a year × presence × vulnerability. The interval is that of the hits: presence and vulnerability are taken as \
                written in the scene. What is tolerable is not said here."

@@ -1,6 +1,6 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
-use super::super::input::{Estimate, Observed, Table};
+use super::super::input::{About, Estimate, Observed, Table};
 use super::estimate;
 use crate::calibrate::{Calibration, Measure, Told, Trial};
 use crate::error::Result;
@@ -37,6 +37,7 @@ pub(super) fn tables(results: &Results) -> Result<Vec<Table>> {
     let mut tables = Vec::new();
     if let Some(observed) = observed(results)? {
         tables.push(Table {
+            about: About::Measured,
             title: "Agreement with measured ends".to_owned(),
             note: format!(
                 "{} measured and {} computed rocks. KS: largest difference of the two distributions of runout; equal ones \
@@ -65,6 +66,7 @@ fn calibration(found: &Calibration) -> Table {
     };
     let (first, second) = (&found.first, &found.second);
     Table {
+        about: About::Measured,
         title: "Calibration and what it is worth".to_owned(),
         note: format!(
             "{} trials of {} releases on each half of the measured rocks; a value counts only on the half that it was not fitted to.",
@@ -92,6 +94,7 @@ fn told(found: &Calibration) -> Table {
         (format!("{}{doubt}", told.name), vec![Some(value)])
     };
     Table {
+        about: About::Measured,
         title: "What the measured ends tell".to_owned(),
         note: format!(
             "Values fitted on all {} measured ends, with 95 % intervals from ends drawn again; throws of one block are alike, so that they are worth {:.0} independent ones.",
@@ -115,6 +118,7 @@ fn spread(found: &Calibration) -> Table {
         (format!("{}: {}", measure.scene, measure.what), cells)
     };
     Table {
+        about: About::Measured,
         title: "Ends of the fit".to_owned(),
         note: "Computed less measured with its 95 % interval, from measured ends drawn again."
             .to_owned(),
@@ -133,5 +137,5 @@ fn cells(of: &Agreement) -> Vec<Option<Estimate>> {
         of.measured_side_m,
         of.computed_side_m,
     ];
-    numbers.map(|value| Some(estimate(value, None, None))).into()
+    numbers.map(|value| Some(Estimate::plain(value))).into()
 }

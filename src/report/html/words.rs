@@ -11,7 +11,7 @@ pub(super) const METHOD: [&str; 4] = [
 ];
 
 /// What the terms mean here.
-pub(super) const GLOSSARY: [(&str, &str); 22] = [
+pub(super) const GLOSSARY: [(&str, &str); 24] = [
     (
         "Percentile",
         "Over rocks, of each rock's value: its largest along the way, or at its first crossing of a line. On maps: of each rock's \
@@ -21,6 +21,17 @@ pub(super) const GLOSSARY: [(&str, &str); 22] = [
         "95 % interval",
         "For percentiles from order statistics, which assumes no distribution; for shares Wilson's interval. It covers chance \
          in the sample only.",
+    ),
+    (
+        "≥ and ≤",
+        "The number is a bound: rocks that left the terrain, or were still moving when their time was up, would have gone on. Their \
+         runout is at least, their reach angle at most what was seen; a percentile that they decide is a bound too and has no \
+         interval on that side. The truth lies there however the rocks would have gone on.",
+    ),
+    (
+        "With and without barriers",
+        "Without: all rocks that cross the line. With: those that no barrier stops before it. A rock that a barrier lets through keeps \
+         its energy.",
     ),
     ("Runout", "Horizontal distance from release to end."),
     (
@@ -68,11 +79,13 @@ pub(super) const GLOSSARY: [(&str, &str); 22] = [
     (
         "Design energy, design height",
         "A percentile over the rocks that arrive, times the partial factors that are printed one by one, and for the height plus the \
-         free height. Factors on the speed enter the energy squared.",
+         free height. Factors on the speed enter the energy squared. P95 needs 59 rocks, P99 299: with fewer there is none. The interval \
+         is that of the percentile.",
     ),
     (
         "Intensity",
-        "Swiss classes of the largest total energy in a cell: weak below 30 kJ, medium 30 to 300 kJ, strong above 300 kJ.",
+        "Swiss classes of the 95th percentile of total energy of the rocks that pass a cell: weak below 30 kJ, medium 30 to 300 kJ, \
+         strong above 300 kJ. The largest energy would grow with the number of releases.",
     ),
     (
         "Conditional on release, a year",
@@ -111,15 +124,21 @@ pub(super) const STYLE: &str = "\
 body { margin: 0; background: #fff; color: #222; font: 15px/1.5 Helvetica, Arial, 'Liberation Sans', sans-serif; }
 main { max-width: 900px; margin: 0 auto; padding: 36px 24px 48px; }
 h1 { font-size: 27px; line-height: 1.2; margin: 0 0 6px; overflow-wrap: anywhere; }
-h2 { font-size: 18px; margin: 34px 0 8px; padding-bottom: 3px; border-bottom: 1px solid #bbb; }
-h3 { font-size: 15px; margin: 18px 0 4px; }
+h2 { font-size: 19px; margin: 38px 0 10px; padding-bottom: 3px; border-bottom: 1px solid #bbb; }
+h3 { font-size: 15px; margin: 20px 0 4px; }
+.question { font-size: 16px; margin: 8px 0 0; }
+nav { margin: 26px 0 0; padding: 10px 16px; background: #f5f5f3; font-size: 14px; }
+nav ol { margin: 0; padding-left: 22px; columns: 2; column-gap: 32px; }
+a { color: #0072b2; text-decoration: none; }
+.checks th { width: 110px; font-weight: normal; color: #555; }
+.checks td:nth-child(2) { white-space: nowrap; }
 p { margin: 0 0 10px; }
 .subtitle { font-size: 17px; color: #555; }
 .facts, .note, footer, small { color: #666; }
 .facts, .note { font-size: 13px; }
 .warnings { margin: 22px 0; padding: 10px 16px; border-left: 5px solid #d55e00; background: #fdf1e8; }
 .warnings h2 { margin: 0 0 4px; border: 0; font-size: 16px; }
-.warnings ul { margin: 0; }
+.warnings ul { margin: 0; font-size: 14px; }
 ul { margin: 0 0 10px; padding-left: 22px; }
 li, td, th, dd, figcaption { overflow-wrap: anywhere; }
 table { border-collapse: collapse; width: 100%; font-size: 14px; }
@@ -141,11 +160,13 @@ pre { margin: 0; padding: 10px 12px; background: #f5f5f3; font: 12.5px/1.5 'Libe
 dt { font-weight: bold; margin-top: 8px; }
 dd { margin: 0 0 4px 0; }
 footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-size: 12px; overflow-wrap: anywhere; }
-@page { size: A4; margin: 13mm 15mm 14mm; }
+@page { size: A4; margin: 13mm 15mm 16mm; @bottom-right { content: counter(page) ' / ' counter(pages); font: 8pt Helvetica, Arial, sans-serif; color: #666; } }
 @media print {
   body { font-size: 10pt; }
   main { max-width: none; padding: 0; }
-  h2, h3, .note, thead { break-after: avoid; }
+  h2, h3, thead { break-after: avoid; }
+  .note { break-before: avoid; }
+  h2 { margin-top: 8mm; }
   .dense { break-inside: avoid; font-size: 8pt; }
   .dense th, .dense td { padding-right: 5px; }
   .dense tbody th { min-width: 24mm; }
@@ -154,6 +175,13 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   dt { break-after: avoid; }
   .wide { overflow: visible; }
   figure { margin: 3mm 0 5mm; }
+  figure svg { max-height: 205mm; }
+  .map svg { max-height: 138mm; }
+  .map { margin: 2mm 0; }
+  .warnings { margin: 3mm 0; padding: 2mm 4mm; }
+  .warnings ul { font-size: 8.5pt; }
+  .question { font-size: 10.5pt; }
+  nav { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   figcaption { font-size: 8.5pt; }
   pre { font-size: 7.8pt; }
   pre, .warnings { print-color-adjust: exact; -webkit-print-color-adjust: exact; }

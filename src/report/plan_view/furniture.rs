@@ -1,12 +1,14 @@
 //! What a map carries beside itself: north arrow, scale bar, colour bar and the key of its marks.
 
 use super::{Mark, RIGHT_PX};
+use crate::output::Zone;
 use crate::report::axis::{Axis, nice_step};
 use crate::report::colour::{GREEN, INK, WHITE};
 use crate::report::format;
 use crate::report::input::Report;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, text_width};
+use crate::report::site;
 use crate::report::svg::path::Frame;
 
 const LINE_PX: f64 = 17.0;
@@ -76,6 +78,10 @@ pub(super) struct Key {
 
 enum Symbol {
     Mark(Mark),
+    Density,
+    Zone(Zone),
+    Line,
+    Barrier,
     Tree,
 }
 
@@ -85,7 +91,7 @@ impl Key {
         let mut entries = Vec::new();
         if !report.releases.is_empty() {
             let count = format::decimal(report.releases.len() as f64, 0);
-            entries.push((Symbol::Mark(Mark::Release), format!("release ({count})")));
+            entries.push((Symbol::Zone(report.zone.clone()), format!("release ({count})")));
         }
         let names = [
             (Mark::AtRest, "at rest"),
@@ -97,7 +103,15 @@ impl Key {
             let count = report.releases.iter().filter(|f| Mark::of(&f.stop) == mark).count();
             if count > 0 {
                 let text = format!("{name} ({})", format::decimal(count as f64, 0));
-                entries.push((Symbol::Mark(mark), text));
+                let is_density = mark == Mark::AtRest && count > super::MANY;
+                entries.push((if is_density { Symbol::Density } else { Symbol::Mark(mark) }, text));
+            }
+        }
+        for (symbol, name, is_barrier) in
+            [(Symbol::Line, "evaluation line", false), (Symbol::Barrier, "barrier", true)]
+        {
+            if report.marks.iter().any(|mark| mark.barrier.is_some() == is_barrier) {
+                entries.push((symbol, name.to_owned()));
             }
         }
         if report.ground.as_ref().is_some_and(|g| g.trees.contains(&true)) {
@@ -111,7 +125,7 @@ impl Key {
         let (mut line, mut x) = (0, 0.0);
         let mut places = Vec::new();
         for (_, text) in &self.entries {
-            let width = 14.0 + text_width(text, SMALL) + 20.0;
+            let width = 14.0 + text_width(text, SMALL) + 24.0;
             if x > 0.0 && x + width > width_px {
                 (line, x) = (line + 1, 0.0);
             }
@@ -129,12 +143,16 @@ impl Key {
         for ((symbol, text), (line, x)) in
             self.entries.iter().zip(self.places(paper.size_px().0 - left))
         {
-            let at = (left + x, top + (line as f64 + 0.5) * LINE_PX);
+            let at = (left + x + 7.0, top + (line as f64 + 0.5) * LINE_PX);
             match symbol {
+                Symbol::Density => super::density_symbol(paper, at),
                 Symbol::Mark(mark) => mark.draw(paper, &[at], 3.0),
+                Symbol::Zone(zone) => site::zone_symbol(paper, at, zone),
+                Symbol::Line => site::symbol(paper, at, false),
+                Symbol::Barrier => site::symbol(paper, at, true),
                 Symbol::Tree => paper.disc(at, 3.0, GREEN),
             }
-            paper.text(&Label::new(text.clone(), (at.0 + 9.0, at.1)));
+            paper.text(&Label::new(text.clone(), (at.0 + 12.0, at.1)));
         }
     }
 }

@@ -7,9 +7,9 @@ use crate::report::contour::Field;
 use crate::report::format;
 use crate::report::hillshade;
 use crate::report::panel::Panel;
-use crate::report::paper::{Label, Paper, Pen};
+use crate::report::paper::{Label, Paper, Pen, text_width};
 use crate::report::raster::GroundRaster;
-use crate::report::svg::path::{Spot, clipped, thinned};
+use crate::report::svg::path::{Frame, Spot, clipped, thinned};
 use plotters::style::RGBColor;
 use std::collections::BTreeMap;
 
@@ -25,6 +25,8 @@ const INDEX_EVERY: i64 = 5;
 const SHORTEST_PX: f64 = 14.0;
 /// Least distance between two labels (px).
 const LABELS_APART_PX: f64 = 90.0;
+/// Size of the heights on contours (px).
+const LABEL_PX: f64 = 9.0;
 /// Stems smaller than this are drawn as discs (px).
 const SMALL_STEM_PX: f64 = 4.0;
 const LINE: RGBColor = RGBColor(122, 104, 84);
@@ -39,7 +41,7 @@ impl Contours {
     /// Heights on the index contours, upright to read.
     pub(super) fn labels(&self, paper: &Paper<'_>) {
         for (at, degrees, text) in &self.labels {
-            let label = Label::new(text.clone(), *at).centred().sized(9.0).coloured(LINE);
+            let label = Label::new(text.clone(), *at).centred().sized(LABEL_PX).coloured(LINE);
             paper.text_turned(&label, *degrees);
         }
     }
@@ -55,6 +57,12 @@ pub(in crate::report) fn draw(
     let contours = contours(paper, panel, ground);
     trees(paper, panel, ground);
     contours
+}
+
+/// Draws the shape of the ground and its trees, without contours.
+pub(in crate::report) fn shade(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) {
+    paper.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
+    trees(paper, panel, ground);
 }
 
 /// Map coordinates of a place on the paper (m).
@@ -108,11 +116,18 @@ fn contours(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<C
             .collect();
         let is_index = i % INDEX_EVERY == 0;
         let pen = Pen { opacity: 0.75, ..Pen::full(LINE, if is_index { 0.9 } else { 0.4 }) };
-        paper.lines(&lines, pen);
-        if is_index {
+        let lines = if is_index {
             let decimals = (-math::log10(interval_m).floor()).max(0.0) as usize;
-            label_lines(panel, &lines, &format::decimal(level_m, decimals), &mut labels);
-        }
+            let text = format::decimal(level_m, decimals);
+            let before = labels.len();
+            label_lines((paper, panel), &lines, &text, &mut labels);
+            // a line does not run through its own label
+            let radius = 0.5 * text_width(&text, LABEL_PX) + 2.0;
+            labels[before..].iter().fold(lines, |lines, (at, ..)| outside(&lines, *at, radius))
+        } else {
+            lines
+        };
+        paper.lines(&lines, pen);
     }
     Some(Contours { interval_m, labels })
 }
@@ -121,9 +136,48 @@ fn length(line: &[Spot]) -> f64 {
     line.windows(2).map(|s| math::hypot(s[1].0 - s[0].0, s[1].1 - s[0].1)).sum()
 }
 
+/// The parts of some lines outside a circle.
+fn outside(lines: &[Vec<Spot>], at: Spot, radius: f64) -> Vec<Vec<Spot>> {
+    let mut parts: Vec<Vec<Spot>> = Vec::new();
+    for line in lines {
+        let mut part: Vec<Spot> = Vec::new();
+        for pair in line.windows(2) {
+            for (a, b) in pieces_outside(pair[0], pair[1], at, radius) {
+                if part.last() != Some(&a) {
+                    parts.push(std::mem::replace(&mut part, vec![a]));
+                }
+                part.push(b);
+            }
+        }
+        parts.push(part);
+    }
+    parts.retain(|part| part.len() > 1);
+    parts
+}
+
+/// What a circle leaves of a segment.
+fn pieces_outside(a: Spot, b: Spot, at: Spot, radius: f64) -> Vec<(Spot, Spot)> {
+    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+    let (ex, ey) = (a.0 - at.0, a.1 - at.1);
+    // |a + t (b − a) − at|² = radius²
+    let (p, q) = (dx * dx + dy * dy, ex * dx + ey * dy);
+    let root2 = q * q - p * (ex * ex + ey * ey - radius * radius);
+    if p == 0.0 || root2 <= 0.0 {
+        return vec![(a, b)];
+    }
+    let (enter, leave) = ((-q - root2.sqrt()) / p, (-q + root2.sqrt()) / p);
+    let on = |t: f64| (a.0 + t * dx, a.1 + t * dy);
+    let first = (enter > 0.0).then(|| (a, if enter < 1.0 { on(enter) } else { b }));
+    let second = (leave < 1.0 && enter < 1.0).then(|| (if leave > 0.0 { on(leave) } else { a }, b));
+    match (first, second) {
+        (Some(first), Some(second)) if first.1 == b || second.0 == a => vec![(a, b)],
+        (first, second) => first.into_iter().chain(second).collect(),
+    }
+}
+
 /// Puts one label on each long line, at its longest straight piece that is far from other labels and from the frame.
 fn label_lines(
-    panel: &Panel,
+    (paper, panel): (&Paper<'_>, &Panel),
     lines: &[Vec<Spot>],
     text: &str,
     labels: &mut Vec<(Spot, f64, String)>,
@@ -137,7 +191,16 @@ fn label_lines(
                 .min(at.1 - frame.top)
                 .min(frame.bottom - at.1);
             let nearest = labels.iter().map(|(p, ..)| math::hypot(p.0 - at.0, p.1 - at.1));
-            from_edge > 22.0 && nearest.fold(f64::INFINITY, f64::min) > LABELS_APART_PX
+            let half = 0.5 * text_width(text, LABEL_PX);
+            let room = Frame {
+                left: at.0 - half,
+                right: at.0 + half,
+                top: at.1 - half,
+                bottom: at.1 + half,
+            };
+            paper.is_free(&room)
+                && from_edge > half + 4.0
+                && nearest.fold(f64::INFINITY, f64::min) > LABELS_APART_PX
         };
         let free = line.windows(2).filter(|&s| is_free(middle(s)));
         let best = free.max_by(|a, b| length(a).total_cmp(&length(b)));

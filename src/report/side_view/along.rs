@@ -7,10 +7,8 @@ use crate::report::raster::GroundRaster;
 
 /// Steps aimed at along the line.
 const STEPS: f64 = 50.0;
-/// Cuts of the ground across the width of the paths.
-const CUTS: usize = 15;
-/// Places at which a profile is taken: more than there are pixels.
-const PLACES: usize = 800;
+/// Places at which the ground below the paths is taken.
+const PLACES: f64 = 160.0;
 const POINTS_OF_COMPASS: [&str; 8] =
     ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
 
@@ -84,57 +82,55 @@ impl FallLine {
         let along = range.along.unwrap_or((0.0, 1.0));
         let margin = (0.03 * (along.1 - along.0)).max(0.02);
         let along = (along.0 - margin, along.1 + margin);
-        if let Some(ground) = &report.ground {
-            for (x, z) in self.profile(ground, along) {
-                if z.is_finite() {
-                    range.take(x, z);
-                }
-            }
-        }
         let z = range.z.unwrap_or((0.0, 1.0));
         let margin = (0.05 * (z.1 - z.0)).max(0.02 * (along.1 - along.0));
         (along, (z.0 - margin, z.1 + margin))
     }
 
-    /// The ground along the line: (distance, height); NaN where there is none.
-    pub(super) fn profile(&self, ground: &GroundRaster, along: (f64, f64)) -> Vec<(f64, f64)> {
-        self.cut(ground, along, 0.0)
-    }
-
-    fn cut(&self, ground: &GroundRaster, (from, to): (f64, f64), aside: f64) -> Vec<(f64, f64)> {
-        let height = |i: usize| {
-            let s = from + (to - from) * i as f64 / PLACES as f64;
-            let x = self.from.0 + s * self.way.0 - aside * self.way.1;
-            let y = self.from.1 + s * self.way.1 + aside * self.way.0;
-            (s, ground.height_at(x, y))
-        };
-        (0..=PLACES).map(height).collect()
-    }
-
-    /// Lowest and highest ground within the width of the paths: (distance, low, high).
-    pub(super) fn strip(
+    /// The ground under the paths themselves: (distance, lowest, median, highest) at steps along the line.
+    ///
+    /// The ground along one cut is not where the rocks are: on a curved slope they would seem to fly or to dig.
+    pub(super) fn ground_below(
         &self,
         report: &Report,
         ground: &GroundRaster,
-        along: (f64, f64),
-    ) -> Vec<(f64, f64, f64)> {
-        let asides =
-            report.paths.iter().flat_map(|path| path.points.iter().map(|p| self.aside(p.place_m)));
-        let finite = asides.filter(|a| a.is_finite());
-        let (right, left) = finite.fold((0.0_f64, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
-        let cuts = (0..=CUTS).map(|i| right + (left - right) * i as f64 / CUTS as f64);
-        let mut strip: Vec<(f64, f64, f64)> = Vec::new();
-        for aside in cuts {
-            for (i, (s, z)) in self.cut(ground, along, aside).into_iter().enumerate() {
-                match strip.get_mut(i) {
-                    // `min` and `max` ignore the NaN of a place without ground
-                    Some(at) => (at.1, at.2) = (at.1.min(z), at.2.max(z)),
-                    None => strip.push((s, z, z)),
-                }
+        (from, to): (f64, f64),
+    ) -> Vec<[f64; 4]> {
+        let step = (to - from) / PLACES;
+        let mut heights: Vec<Vec<f64>> = vec![Vec::new(); PLACES as usize + 1];
+        let mut take = |place: [f64; 3]| {
+            let k = (self.along(place) - from) / step;
+            let z = ground.height_at(place[0], place[1]);
+            if z.is_finite() && k >= 0.0 {
+                heights.get_mut(k as usize).into_iter().for_each(|all| all.push(z));
+            }
+        };
+        for pair in report.paths.iter().flat_map(|path| path.points.windows(2)) {
+            let (a, b) = (pair[0].place_m, pair[1].place_m);
+            let pieces = ((self.along(b) - self.along(a)).abs() / step).ceil();
+            // a point that is no number gives no piece
+            for k in 0..(pieces.min(PLACES) as usize).max(1) {
+                let share = k as f64 / pieces.max(1.0);
+                take([0, 1, 2].map(|axis| a[axis] + share * (b[axis] - a[axis])));
             }
         }
-        strip.retain(|(_, low, high)| low.is_finite() && high.is_finite());
-        strip
+        let row = |(k, all): (usize, &mut Vec<f64>)| {
+            all.sort_by(f64::total_cmp);
+            let (low, high) = (all.first()?, all.last()?);
+            Some([from + (k as f64 + 0.5) * step, *low, all[all.len() / 2], *high])
+        };
+        heights.iter_mut().enumerate().filter_map(row).collect()
+    }
+
+    /// Where a line of the map crosses the fall line, as the distance along it (m); none where it does not.
+    pub(super) fn meets(&self, corners_m: &[[f64; 2]]) -> Option<f64> {
+        corners_m.windows(2).find_map(|pair| {
+            let [a, b] = [pair[0], pair[1]].map(|[x, y]| [x, y, 0.0]);
+            let (left, right) = (self.aside(a), self.aside(b));
+            let share = left / (left - right);
+            (left * right <= 0.0 && share.is_finite())
+                .then(|| self.along(a) + share * (self.along(b) - self.along(a)))
+        })
     }
 }
 

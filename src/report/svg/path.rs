@@ -30,6 +30,22 @@ impl Frame {
         self.bottom - self.top
     }
 
+    /// Whether two frames share room.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    /// Whether another frame lies inside.
+    pub fn contains(&self, other: &Self) -> bool {
+        self.left <= other.left
+            && other.right <= self.right
+            && self.top <= other.top
+            && other.bottom <= self.bottom
+    }
+
     /// Whether a point lies inside or on the edge.
     pub fn holds(&self, (x, y): Spot) -> bool {
         (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
@@ -67,6 +83,13 @@ pub fn append_square(data: &mut String, (x, y): Spot, half_px: f64) {
     let side = tenths((2.0 * half_px, 0.0)).0;
     append_pair(data, 'M', left, top);
     let _ = write!(data, "h{side}v{side}h-{side}z");
+}
+
+/// Appends a closed rectangle between two corners.
+pub fn append_rectangle(data: &mut String, a: Spot, b: Spot) {
+    let ((x0, y0), (x1, y1)) = (tenths(a), tenths(b));
+    append_pair(data, 'M', x0, y0);
+    let _ = write!(data, "h{}v{}h{}z", x1 - x0, y1 - y0, x0 - x1);
 }
 
 fn append_pair(data: &mut String, command: char, x: i32, y: i32) {

@@ -4,7 +4,7 @@ use super::machine::OwnTime;
 use super::slope::Slope;
 use crate::error::{Error, Result};
 use crate::hazard::Asked;
-use crate::output::{Identity, Mode, Output, RunInfo};
+use crate::output::{Identity, Mode, Output, RunInfo, Site};
 use crate::report;
 use crate::terrain::{Sheet, Terrain};
 use crate::trajectory::Trajectory;
@@ -70,6 +70,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         title: "Benchmark".to_owned(),
         identity,
         origin_m: terrain.origin_m,
+        site: Site::default(),
         ground_of_sheet: terrain.sheets.iter().map(ground).collect(),
         lines: Vec::new(),
         maps: None,

@@ -1,0 +1,195 @@
+//! What arrives at the evaluation lines, without barriers and with them: the risk that remains.
+
+use super::annual::share_of;
+use super::barriers::{Arrival, Barrier};
+use super::lines::{CrossingRow, LineInfo, LineQuantity};
+use super::proportion::Proportion;
+use super::sample::Sample;
+use super::totals::Largest;
+use super::{Statistic, statistic};
+use crate::frequency::Weights;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// Rocks that pass an evaluation line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Passing {
+    /// Their share of all releases.
+    pub reach: Proportion,
+    /// Total energy at the first crossing (J).
+    pub energy_j: Statistic,
+    /// Vertical height of the lowest point at the first crossing (m).
+    pub height_m: Statistic,
+}
+
+/// An evaluation line without and with the barriers that rocks meet before it.
+///
+/// A rock that a barrier lets through keeps its energy: what a torn net takes from it is not counted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    /// Name of the line.
+    pub line: String,
+    /// Barriers that at least one rock meets on its way to the line, in the order of the scene.
+    pub behind: Vec<String>,
+    /// As if there were no barrier.
+    pub without: Passing,
+    /// Without the rocks that a barrier stops before the line.
+    pub with: Passing,
+}
+
+/// Which rows of one rock no barrier has stopped it before, in the order of the rows given.
+pub fn unstopped(barriers: &[Barrier], rock: &[CrossingRow]) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..rock.len()).collect();
+    order.sort_by(|&a, &b| rock[a].time_s.total_cmp(&rock[b].time_s));
+    let mut passes = vec![true; rock.len()];
+    let mut is_stopped = false;
+    for row in order {
+        passes[row] = !is_stopped;
+        let met = barriers.iter().find(|barrier| barrier.name == rock[row].line);
+        is_stopped |= met.is_some_and(|barrier| {
+            Arrival::of(&rock[row]).is_stopped(barrier.height_m, barrier.capacity_j)
+        });
+    }
+    passes
+}
+
+/// Values of the rocks that pass one line: without barriers, and with them.
+#[derive(Default)]
+struct Seen {
+    behind: BTreeSet<usize>,
+    rows: [Vec<CrossingRow>; 2],
+}
+
+/// Every line of the scene that is no barrier's, without and with barriers; `rows` are first crossings, release by
+/// release, each rock with what it stands for. Empty where no barrier stands.
+///
+/// # Errors
+/// Passes on what reading a row says.
+pub fn residual<E>(
+    barriers: &[Barrier],
+    lines: &[LineInfo],
+    rows: impl Iterator<Item = Result<CrossingRow, E>>,
+    weights: &Weights,
+) -> Result<Vec<Residual>, E> {
+    let is_plain = |line: &&LineInfo| {
+        !line.of_barrier && barriers.iter().all(|barrier| barrier.name != line.name)
+    };
+    let lines: Vec<&LineInfo> = lines.iter().filter(is_plain).collect();
+    if barriers.is_empty() || lines.is_empty() {
+        return Ok(Vec::new());
+    }
+    let mut seen: Vec<Seen> = lines.iter().map(|_| Seen::default()).collect();
+    let mut rock: Vec<CrossingRow> = Vec::new();
+    for row in rows {
+        let row = row?;
+        if rock.first().is_some_and(|first| first.index != row.index) {
+            take(barriers, &lines, &mut rock, &mut seen);
+        }
+        rock.push(row);
+    }
+    take(barriers, &lines, &mut rock, &mut seen);
+    let said = |(line, seen): (&&LineInfo, Seen)| Residual {
+        line: line.name.clone(),
+        behind: seen.behind.iter().map(|&which| barriers[which].name.clone()).collect(),
+        without: passing(&seen.rows[0], weights),
+        with: passing(&seen.rows[1], weights),
+    };
+    Ok(lines.iter().zip(seen).map(said).collect())
+}
+
+fn take(barriers: &[Barrier], lines: &[&LineInfo], rock: &mut Vec<CrossingRow>, seen: &mut [Seen]) {
+    let passes = unstopped(barriers, rock);
+    for (row, passes) in rock.iter().zip(passes) {
+        let Some(at) = lines.iter().position(|line| line.name == row.line) else { continue };
+        let before = rock.iter().filter(|other| other.time_s < row.time_s);
+        let met = before.filter_map(|other| barriers.iter().position(|b| b.name == other.line));
+        seen[at].behind.extend(met);
+        seen[at].rows[0].push(row.clone());
+        if passes {
+            seen[at].rows[1].push(row.clone());
+        }
+    }
+    rock.clear();
+}
+
+fn passing(rows: &[CrossingRow], weights: &Weights) -> Passing {
+    let of = |quantity: LineQuantity| {
+        let mut largest = None;
+        for row in rows {
+            Largest::update(&mut largest, row.index, quantity.of(row));
+        }
+        let each = rows.iter().map(|row| (quantity.of(row), weights.of_release(row.index)));
+        statistic(&Sample::weighted(each), largest)
+    };
+    Passing {
+        reach: share_of(weights, rows.iter().map(|row| row.index)),
+        energy_j: of(LineQuantity::Total),
+        height_m: of(LineQuantity::Height),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::convert::Infallible;
+
+    fn row(index: usize, line: &str, time_s: f64, total_j: f64) -> CrossingRow {
+        CrossingRow {
+            index,
+            line: line.to_owned(),
+            time_s,
+            along_m: 0.0,
+            height_m: 0.1,
+            speed_m_s: 1.0,
+            translational_j: total_j,
+            rotational_j: 0.0,
+            height_normal_m: 0.1,
+            descent_deg: 0.0,
+            mass_kg: 1.0,
+            radius_m: 0.5,
+            times: 1,
+            position_m: [0.0; 3],
+        }
+    }
+
+    /// By hand: the net holds 100 J. Rock 0 passes the path above the net and is stopped by it, rock 1 breaks through,
+    /// rock 2 meets the road first and the net behind it, rock 3 never meets the net.
+    #[test]
+    fn what_a_net_stops_does_not_arrive_behind_it() {
+        let net = Barrier {
+            name: "net".to_owned(),
+            height_m: 3.0,
+            capacity_j: 100.0,
+            design: None,
+            elsewhere: vec![],
+        };
+        let line = |name: &str| LineInfo {
+            name: name.to_owned(),
+            length_m: 1.0,
+            corners_m: vec![],
+            of_barrier: false,
+        };
+        let rows = [
+            row(0, "path", 1.0, 40.0),
+            row(0, "road", 3.0, 60.0),
+            row(0, "net", 2.0, 50.0),
+            row(1, "road", 3.0, 400.0),
+            row(1, "net", 2.0, 500.0),
+            row(2, "road", 1.0, 30.0),
+            row(2, "net", 2.0, 20.0),
+            row(3, "road", 1.0, 10.0),
+        ];
+        let lines = [line("path"), line("road"), line("net")];
+        let rows = rows.into_iter().map(Ok::<_, Infallible>);
+        let found = residual(&[net], &lines, rows, &Weights::equal(8)).unwrap();
+        assert_eq!(found.len(), 2, "a barrier's own line is none of them");
+        let counts = |at: &Residual| (at.without.reach.count, at.with.reach.count);
+        assert_eq!((counts(&found[0]), counts(&found[1])), ((1, 1), (4, 3)));
+        assert_eq!(found[0].behind, Vec::<String>::new());
+        assert_eq!(found[1].behind, ["net"]);
+        assert_eq!(found[1].with.reach.of, 8);
+        let most = |of: &Statistic| of.max.unwrap().value;
+        assert!((most(&found[1].with.energy_j) - 400.0).abs() < 1e-12);
+        assert_eq!(found[1].without.energy_j.rocks, 4);
+    }
+}

@@ -1,0 +1,53 @@
+//! Where things stand on the map, and what is said only once rocks have fallen.
+
+use crate::plan::FastWarning;
+use serde::{Deserialize, Serialize};
+
+/// Where meshes and releases lie, in map coordinates.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Site {
+    /// Map position of the mesh files' (0, 0, 0) (m).
+    pub mesh_origin_m: [f64; 3],
+    /// Where rocks are released.
+    pub release: Zone,
+    /// Where further sources release theirs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub further_releases: Vec<Zone>,
+    /// What the user should know if rocks come so fast.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fast_warnings: Vec<FastWarning>,
+}
+
+impl Site {
+    /// Every place where rocks are released.
+    pub fn zones(&self) -> impl Iterator<Item = &Zone> {
+        std::iter::once(&self.release).chain(&self.further_releases)
+    }
+}
+
+/// Where rocks are released, in plan view (m).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", content = "corners_m", rename_all = "snake_case")]
+pub enum Zone {
+    /// From these points.
+    Points(Vec<[f64; 2]>),
+    /// Along a line.
+    Line(Vec<[f64; 2]>),
+    /// Over an area.
+    Polygon(Vec<[f64; 2]>),
+}
+
+impl Default for Zone {
+    fn default() -> Self {
+        Self::Points(Vec::new())
+    }
+}
+
+impl Zone {
+    /// Its corners or points (m).
+    pub fn corners_m(&self) -> &[[f64; 2]] {
+        match self {
+            Self::Points(corners) | Self::Line(corners) | Self::Polygon(corners) => corners,
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Numbers that look like another unit: allowed, but most likely a slip.
+
+use crate::scene::Scene;
+
+/// Densities of rock (kg/m³): pumice is lighter, ore heavier.
+const ROCK_KG_M3: [f64; 2] = [1000.0, 5000.0];
+/// Friction angle below which a number is rather in radians (degrees): π/2 and a little.
+const RADIANS: f64 = 1.6;
+/// Capacity below which a number is rather in kJ (J): nets are tested from 100 kJ on (EAD 340059).
+const LEAST_NET_J: f64 = 10e3;
+/// Radius of the largest single rocks (m): above, a number is rather in cm or mm.
+const LARGEST_M: f64 = 20.0;
+/// Codes that EPSG gives to coordinate systems.
+const EPSG: std::ops::RangeInclusive<u32> = 1024..=32_767;
+/// Runs of codes that EPSG gives to geographic systems, whose coordinates are degrees, and the most used single ones.
+const GEOGRAPHIC: [std::ops::RangeInclusive<u32>; 6] =
+    [4120..=4389, 4600..=4646, 4657..=4763, 4490..=4490, 4937..=4937, 4979..=4979];
+
+/// What looks like a slip of units.
+pub(super) fn of(scene: &Scene) -> Vec<String> {
+    let mut found = Vec::new();
+    found.extend(density(scene.rocks.density_kg_m3));
+    let largest_m = scene.rocks.radius_m().reckoned()[2];
+    if largest_m > LARGEST_M {
+        found.push(format!(
+            "[rocks] radius_m reaches {largest_m:.4}: larger than any single rock; is it in cm or mm? write metres"
+        ));
+    }
+    for (name, ground) in &scene.grounds {
+        let (low, high) = ground.friction_angle_deg.support();
+        if low > 0.0 && high <= RADIANS {
+            found.push(format!(
+                "[grounds.{name}] friction_angle_deg = {high} is next to no friction; is it in radians? that would be {:.1}",
+                high.to_degrees()
+            ));
+        }
+    }
+    for barrier in scene.barriers.iter().filter(|barrier| barrier.capacity_j < LEAST_NET_J) {
+        found.push(format!(
+            "[[barriers]] \"{}\" capacity_j = {} takes next to nothing; is it in kJ? write {:e}",
+            barrier.name,
+            barrier.capacity_j,
+            1e3 * barrier.capacity_j
+        ));
+    }
+    found.extend(scene.epsg.and_then(epsg));
+    found
+}
+
+fn density(found: f64) -> Option<String> {
+    let [least, most] = ROCK_KG_M3;
+    let is_likely = |times: f64| (least..=most).contains(&(times * found));
+    if is_likely(1.0) {
+        return None;
+    }
+    let hint = if is_likely(1e3) {
+        format!("; is it in t/m³? write {}", 1e3 * found)
+    } else {
+        String::new()
+    };
+    Some(format!("[rocks] density_kg_m3 = {found}: rock has about 2700{hint}"))
+}
+
+fn epsg(code: u32) -> Option<String> {
+    if !EPSG.contains(&code) {
+        return Some(format!(
+            "epsg = {code} is no code of EPSG ({} to {}): rasters are written without a system",
+            EPSG.start(),
+            EPSG.end()
+        ));
+    }
+    GEOGRAPHIC.iter().any(|run| run.contains(&code)).then(|| {
+        format!(
+            "epsg = {code} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)"
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the issue found in scenes, and what must not be taken for a slip.
+    #[test]
+    fn slips_are_seen_and_usual_values_are_not() {
+        assert!(density(2.7).is_some_and(|said| said.contains("write 2700")));
+        assert!(density(2700.0).is_none() && density(1800.0).is_none());
+        assert!(density(27_000.0).is_some());
+        for wrong in [99_999, 4326, 4258, 4150, 0] {
+            assert!(epsg(wrong).is_some(), "{wrong}");
+        }
+        for right in [2056, 21_781, 31_287, 25_832, 32_632, 3857, 5972, 2154] {
+            assert!(epsg(right).is_none(), "{right}");
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Tables of estimates: numbers with as many digits as their intervals leave meaningful.
+
+use super::note;
+use crate::math;
+use crate::report::format::{self, escape};
+use crate::report::input::{Estimate, Is, Row, Table, energy_unit};
+use std::fmt::Write as _;
+
+/// The headline statistics of all rocks.
+pub(super) fn headline(rows: &[Row]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let row = |row: &Row| {
+        let (estimate, unit) = in_short_unit(row);
+        let (value, interval) = in_words(&estimate);
+        format!(
+            "<tr><th scope=\"row\">{}</th><td class=\"number\">{value}</td><td class=\"number\">{interval}</td><td>{}</td></tr>\n",
+            escape(&row.name),
+            escape(unit)
+        )
+    };
+    let rows: String = rows.iter().map(row).collect();
+    format!(
+        "<table>\n<thead><tr><th>All rocks</th><th class=\"number\">Value</th><th class=\"number\">95\u{2009}% interval</th><th>Unit</th></tr></thead>\n\
+         <tbody>\n{rows}</tbody>\n</table>\n{}",
+        note(
+            "Intervals say how far chance in the sample moves a number. They do not say how well ground values and terrain are known."
+        )
+    )
+}
+
+/// Each headline statistic with its interval, in columns for a terminal.
+pub fn plain_headline(rows: &[Row]) -> Vec<String> {
+    let words = |row: &Row| {
+        let (estimate, unit) = in_short_unit(row);
+        let (value, interval) = in_words(&estimate);
+        let interval = match (estimate.is, interval) {
+            (Is::Lacking(_), lacking) => lacking,
+            (_, none) if none == format::NO_NUMBER => "too few rocks for an interval".to_owned(),
+            (_, interval) => format!("95 % interval {interval}"),
+        };
+        (format!("{value} {unit}"), interval)
+    };
+    let wide = |text: &str| text.chars().count();
+    let name_width = rows.iter().map(|row| wide(&row.name)).max().unwrap_or(0);
+    let values: Vec<_> = rows.iter().map(words).collect();
+    let value_width = values.iter().map(|(value, _)| wide(value)).max().unwrap_or(0);
+    let line = |(row, (value, interval)): (&Row, &(String, String))| {
+        format!("{:<name_width$}  {value:>value_width$}  {interval}", row.name)
+    };
+    rows.iter().zip(&values).map(line).collect()
+}
+
+/// Joules as kJ or MJ where that is shorter; other units as they are.
+fn in_short_unit(row: &Row) -> (Estimate, &str) {
+    if row.unit != "J" {
+        return (row.estimate, &row.unit);
+    }
+    let (unit, size) = energy_unit(row.estimate.value);
+    (row.estimate.over(size), unit)
+}
+
+/// Value and interval with as many digits as the interval leaves meaningful; a bound carries its sign, and what too few
+/// rocks cannot give says how many are missing.
+fn in_words(estimate: &Estimate) -> (String, String) {
+    if let Is::Lacking(rocks) = estimate.is {
+        let words = format::counted(rocks, "more rock needed", "more rocks needed");
+        return (format::NO_NUMBER.to_owned(), format!("{rocks} {words}"));
+    }
+    let sign = format::sign(estimate.is);
+    let width = estimate.high - estimate.low;
+    if width.is_nan() && estimate.value.fract() == 0.0 && estimate.value.abs() < 1e7 {
+        // a count, or a number as it was written
+        let value = format!("{sign}{}", format::decimal(estimate.value, 0));
+        return (value, one_sided(estimate, |v| format::significant(v, 4)));
+    }
+    let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
+        // the last digit is at most a fifth of the interval
+        let leading = math::log10(estimate.value.abs()).floor() - math::log10(0.2 * width).floor();
+        (leading as i32 + 1).clamp(3, 5) as usize
+    } else {
+        4
+    };
+    let bound = like(estimate.value, digits);
+    (format!("{sign}{}", bound(estimate.value)), one_sided(estimate, bound))
+}
+
+/// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.
+fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
+    let exponent = if value == 0.0 { 0.0 } else { math::log10(value.abs()).floor() };
+    let last = exponent - digits as f64 + 1.0;
+    move |v| {
+        if !(-4.0..9.0).contains(&exponent) {
+            return format::significant(format::rounded(v, digits), digits);
+        }
+        let place = math::pow(10.0, last.max(0.0));
+        format::decimal(
+            if last > 0.0 { (v / place).round() * place } else { v },
+            (-last).max(0.0) as usize,
+        )
+    }
+}
+
+fn one_sided(estimate: &Estimate, bound: impl Fn(f64) -> String) -> String {
+    format::interval(&bound(estimate.low), &bound(estimate.high))
+}
+
+/// A table with its heading and note.
+pub(super) fn table(table: &Table) -> String {
+    let mut heads = String::new();
+    for column in &table.columns {
+        let _ = write!(heads, "<th class=\"number\">{}</th>", escape(column));
+    }
+    let mut rows = String::new();
+    for (name, cells) in &table.rows {
+        let _ = write!(rows, "<tr><th scope=\"row\">{}</th>", escape(name));
+        for cell in cells {
+            rows.push_str(&table_cell(cell.as_ref()));
+        }
+        rows.push_str("</tr>\n");
+    }
+    format!(
+        "<h3>{}</h3>\n<div class=\"wide\"><table class=\"dense\">\n<thead><tr><th></th>{heads}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n{}",
+        escape(&table.title),
+        note(&table.note)
+    )
+}
+
+fn table_cell(estimate: Option<&Estimate>) -> String {
+    let Some(estimate) = estimate else {
+        return format!("<td class=\"number\">{}</td>", format::NO_NUMBER);
+    };
+    let (value, interval) = in_words(estimate);
+    let below = if interval == format::NO_NUMBER {
+        String::new()
+    } else {
+        format!("<br><small>{interval}</small>")
+    };
+    format!("<td class=\"number\">{value}{below}</td>")
+}

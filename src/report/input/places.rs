@@ -1,0 +1,196 @@
+//! Lines, barriers, maps and measured ends: what belongs to a place.
+
+use super::{BandPoint, Estimate, Quantile};
+use crate::hazard::{Agreement, Way};
+
+/// One barrier and the rocks that arrive at it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BarrierView {
+    /// Its name.
+    pub name: String,
+    /// Its height (m).
+    pub height_m: f64,
+    /// Energy that it takes (J).
+    pub capacity_j: f64,
+    /// What its rule asks for.
+    pub design: Option<DesignView>,
+    /// Rocks missing for a design value.
+    pub design_lacks: usize,
+    /// Percentile of its rule (per cent); none without a rule.
+    pub percentile: Option<f64>,
+    /// Whether the left of its line is uphill; none where the ground does not say.
+    pub left_is_uphill: Option<bool>,
+    /// Its own place first, then others.
+    pub places: Vec<PlaceView>,
+}
+
+/// What a rule asks of a barrier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DesignView {
+    /// Height (m).
+    pub height_m: Estimate,
+    /// Energy (J).
+    pub energy_j: Estimate,
+}
+
+/// The rocks that arrive at one place of a barrier.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaceView {
+    /// Distance from the barrier's own place (m), positive on the left of its line.
+    pub offset_m: f64,
+    /// Share of all releases that arrive (–).
+    pub arriving: f64,
+    /// Height of the highest point (m) and total energy (J) of each.
+    pub rocks: Vec<(f64, f64)>,
+}
+
+/// How often a year which energy is passed at a line or object.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnnualView {
+    /// Its name.
+    pub name: String,
+    /// Whether it is an object.
+    pub is_object: bool,
+    /// λ(E ≥ x) (1/year) by rising `x` (J), as if there were no barrier.
+    pub without: Vec<BandPoint>,
+    /// The same of rocks that no barrier stops before; none where the scene has none.
+    pub with: Option<Vec<BandPoint>>,
+    /// Return periods asked for (years).
+    pub return_periods_years: Vec<f64>,
+}
+
+impl AnnualView {
+    /// Its curves.
+    pub(in crate::report) fn curves(&self) -> impl Iterator<Item = &Vec<BandPoint>> {
+        [&self.without].into_iter().chain(&self.with)
+    }
+}
+
+/// One evaluation line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Its name.
+    pub name: String,
+    /// Its number in the scene, from 1: that of its figure's file.
+    pub number: usize,
+    /// Whether a barrier stands on it.
+    pub is_barrier: bool,
+    /// Mean height of the ground along it (m); NaN where there is none. Lines stand in downslope order.
+    pub elevation_m: f64,
+    /// Its length (m).
+    pub length_m: f64,
+    /// All releases.
+    pub releases: usize,
+    /// Share of the releases that cross it.
+    pub reach: Estimate,
+    /// Rocks that cross it more than once.
+    pub crossing_again: usize,
+    /// First crossings.
+    pub crossings: Vec<LinePoint>,
+    /// Percentiles of total energy (J).
+    pub energy_quantiles: Vec<Quantile>,
+    /// Percentiles of height (m).
+    pub height_quantiles: Vec<Quantile>,
+    /// Share of all releases that cross with more than `x` (J).
+    pub energy_exceedance: Vec<BandPoint>,
+    /// Share of all releases that cross higher than `x` (m).
+    pub height_exceedance: Vec<BandPoint>,
+    /// What is left by the barriers before it; none where rocks meet no barrier before.
+    pub behind: Option<Behind>,
+}
+
+/// What passes a line when the barriers before it have stopped what they can.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Behind {
+    /// The barriers.
+    pub barriers: Vec<String>,
+    /// Share of the releases that still cross.
+    pub reach: Estimate,
+    /// Share of all releases that still cross with more than `x` (J).
+    pub energy_exceedance: Vec<BandPoint>,
+    /// Share of all releases that still cross higher than `x` (m).
+    pub height_exceedance: Vec<BandPoint>,
+}
+
+/// A line or a barrier on the map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapMark {
+    /// Its name.
+    pub name: String,
+    /// Its corners, map coordinates (m).
+    pub corners_m: Vec<[f64; 2]>,
+    /// Height (m) and capacity (J) of a barrier; none of a line.
+    pub barrier: Option<(f64, f64)>,
+}
+
+/// One first crossing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinePoint {
+    /// Release number.
+    pub release: usize,
+    /// Along the line (m).
+    pub along_m: f64,
+    /// Vertical height of the lowest point (m); NaN where there is no ground.
+    pub height_m: f64,
+    /// Total energy (J).
+    pub total_j: f64,
+    /// Whether no barrier has stopped the rock before.
+    pub passes: bool,
+}
+
+/// Measured ends beside the computed ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observed {
+    /// Measured ways.
+    pub measured: Vec<Way>,
+    /// Computed ways, failed rocks left out.
+    pub computed: Vec<Way>,
+    /// How well they agree.
+    pub agreement: Agreement,
+}
+
+/// Maps cell by cell; cells that no rock reaches are left out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CellMap {
+    /// Western edge, map coordinates (m).
+    pub west_m: f64,
+    /// Southern edge, map coordinates (m).
+    pub south_m: f64,
+    /// Side of a cell (m).
+    pub cell_m: f64,
+    /// Number of columns; cell 0 is the most south-western, rows run east.
+    pub columns: u32,
+    /// Share of the releases that pass (–).
+    pub reach: Vec<(u32, f64)>,
+    /// Swiss class of the 95th percentile of energy, 1 to 3.
+    pub intensity: Vec<(u32, f64)>,
+    /// 95th percentile of total energy (J).
+    pub energy_j: Vec<(u32, f64)>,
+    /// 95th percentile of bounce height (m).
+    pub height_m: Vec<(u32, f64)>,
+    /// Rocks at rest.
+    pub deposits: Vec<(u32, f64)>,
+    /// Share of the releases that pass with 30 kJ or more (–).
+    pub exceeds: Vec<(u32, f64)>,
+    /// Cells of each class.
+    pub intensity_cells: [usize; 3],
+}
+
+impl CellMap {
+    /// Middle of a cell, map coordinates (m).
+    pub fn centre_m(&self, cell: u32) -> (f64, f64) {
+        let at = |edge: f64, number: u32| edge + (f64::from(number) + 0.5) * self.cell_m;
+        (at(self.west_m, cell % self.columns), at(self.south_m, cell / self.columns))
+    }
+
+    /// West and east, south and north end of the cells reached, with a cell round them (m).
+    pub(in crate::report) fn extent(&self) -> ((f64, f64), (f64, f64)) {
+        let empty = (f64::INFINITY, f64::NEG_INFINITY);
+        let wider = |r: (f64, f64), v: f64| {
+            (r.0.min(v - 1.5 * self.cell_m), r.1.max(v + 1.5 * self.cell_m))
+        };
+        let centres = self.reach.iter().map(|(cell, _)| self.centre_m(*cell));
+        let (x, y) = centres.fold((empty, empty), |(x, y), c| (wider(x, c.0), wider(y, c.1)));
+        if x.0 < x.1 { (x, y) } else { ((0.0, 1.0), (0.0, 1.0)) }
+    }
+}

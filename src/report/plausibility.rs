@@ -1,0 +1,227 @@
+//! Whether the whole looks like rockfall: what was looked at, what was found, what is known from the field.
+
+use super::format;
+use super::input::{Check, Is, Report};
+use super::raster::GroundRaster;
+use super::reach_angle;
+use crate::output::Results;
+use crate::trajectory::Stop;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// Speed that single blocks seldom pass (m/s).
+const FAST_M_S: f64 = 40.0;
+/// Share of the rocks that may be faster (–): a few wild ones in a large sample are no sign of a wrong model.
+const FEW: f64 = 0.001;
+/// Depth of a closed hollow of the ground from which it holds a rock (m).
+const HOLLOW_M: f64 = 0.2;
+/// Share of the rocks at rest that may lie in closed hollows (–).
+const IN_HOLLOWS: f64 = 0.25;
+/// Edge of the triangles over the diameter of the rocks (–) from which the ground is smooth for them.
+const COARSE: f64 = 5.0;
+/// Share of the area of all deposits on which half of them may lie (–).
+const CROWDED: f64 = 0.1;
+/// Rocks at rest from which on their crowding says something.
+const MANY: usize = 400;
+/// Rocks from which on a median says something.
+const ENOUGH: usize = 20;
+
+/// All checks that can be made.
+pub(super) fn checks(report: &Report, results: &Results) -> Vec<Check> {
+    let mut checks = Vec::new();
+    if report.releases.len() >= ENOUGH {
+        checks.extend(reach(report));
+        checks.extend(speed(report));
+        checks.extend(report.ground.as_ref().and_then(|ground| hollows(report, ground)));
+    }
+    checks.extend(mesh(results));
+    checks
+}
+
+fn check(name: &str, found: String, passes: bool) -> Check {
+    Check { name: name.to_owned(), found, passes }
+}
+
+fn reach(report: &Report) -> Option<Check> {
+    let (median, is) = reach_angle::median(report)?;
+    // an upper bound above the bands proves nothing wrong
+    let passes = reach_angle::is_observed(median) || (is == Is::AtMost && median > 40.0);
+    let found = format!(
+        "median {}{}°; medians of observed events lie at 32 to 35° on high talus slopes and at 20 to 40° where a low slope meets a meadow",
+        format::sign(is),
+        format::significant(median, 3)
+    );
+    Some(check("Reach angle", found, passes))
+}
+
+fn speed(report: &Report) -> Option<Check> {
+    let speeds = report.releases.iter().map(|fall| fall.max_speed_m_s).filter(|v| v.is_finite());
+    let fast = speeds.clone().filter(|speed| *speed > FAST_M_S).count();
+    let fastest = speeds.reduce(f64::max)?;
+    let all = report.releases.len();
+    let found = if fast == 0 {
+        format!("fastest {} m/s", format::significant(fastest, 3))
+    } else {
+        format!(
+            "fastest {} m/s; {} of {} {} above {FAST_M_S} m/s, which single blocks seldom pass",
+            format::significant(fastest, 3),
+            format::decimal(fast as f64, 0),
+            format::decimal(all as f64, 0),
+            format::counted(fast, "rock comes", "rocks come")
+        )
+    };
+    Some(check("Speed", found, fast as f64 <= FEW * all as f64))
+}
+
+fn hollows(report: &Report, ground: &GroundRaster) -> Option<Check> {
+    let depth = depths(ground);
+    let at_rest: Vec<[f64; 3]> = report
+        .releases
+        .iter()
+        .filter(|fall| fall.stop == Stop::AtRest)
+        .map(|fall| fall.end_m)
+        .collect();
+    if at_rest.len() < ENOUGH {
+        return None;
+    }
+    let held = at_rest.iter().filter(|end| depth.at(ground, end) > HOLLOW_M).count();
+    let share = held as f64 / at_rest.len() as f64;
+    let (half_m2, all_m2) = areas_m2(ground, &at_rest);
+    let number = |value: f64| format::significant(value, 2);
+    let mut found = format!(
+        "{} of {} rocks at rest ({}) lie in hollows of the mesh without an outlet, deeper than {HOLLOW_M} m; half of all lie on {} of the {} m² that hold them all",
+        format::decimal(held as f64, 0),
+        format::decimal(at_rest.len() as f64, 0),
+        format::percent(share, 0),
+        number(half_m2),
+        number(all_m2)
+    );
+    let is_crowded = at_rest.len() >= MANY && half_m2 < CROWDED * all_m2;
+    let passes = share <= IN_HOLLOWS && !is_crowded;
+    if !passes {
+        found += ": pits and creases of the terrain model, unless they are there on the slope; they shorten the runout";
+    }
+    Some(check("Deposits", found, passes))
+}
+
+/// Area of the fewest cells that hold half of the rocks, and of all cells that hold one (m²).
+fn areas_m2(ground: &GroundRaster, ends: &[[f64; 3]]) -> (f64, f64) {
+    let mut counts: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+    for end in ends {
+        let cell = [end[0] / ground.cell_m, end[1] / ground.cell_m].map(|x| x.floor() as i64);
+        *counts.entry((cell[0], cell[1])).or_default() += 1;
+    }
+    let mut sizes: Vec<usize> = counts.into_values().collect();
+    sizes.sort_unstable_by_key(|count| Reverse(*count));
+    let mut held = 0;
+    let half = sizes.iter().take_while(|count| {
+        let is_open = 2 * held < ends.len();
+        held += **count;
+        is_open
+    });
+    let area = |cells: usize| cells as f64 * ground.cell_m * ground.cell_m;
+    (area(half.count()), area(sizes.len()))
+}
+
+/// How deep water would stand in every cell.
+struct Depths(Vec<f64>);
+
+impl Depths {
+    fn at(&self, ground: &GroundRaster, end: &[f64; 3]) -> f64 {
+        let column = ((end[0] - ground.west_m) / ground.cell_m).floor();
+        let row = ((end[1] - ground.south_m) / ground.cell_m).floor();
+        if !(column >= 0.0 && row >= 0.0 && column < ground.columns as f64) {
+            return 0.0;
+        }
+        self.0.get(row as usize * ground.columns + column as usize).copied().unwrap_or(0.0)
+    }
+}
+
+/// Fills the ground from its edges inwards, lowest outlet first (priority flood, Barnes et al. 2014).
+fn depths(ground: &GroundRaster) -> Depths {
+    let (columns, rows) = (ground.columns, ground.rows());
+    let mut level = vec![f64::NAN; ground.height_m.len()];
+    // heights as whole numbers of a tenth of a millimetre: a heap needs an order
+    let key = |z: f64| (z * 1e4).round() as i64;
+    let mut open: BinaryHeap<Reverse<(i64, usize)>> = BinaryHeap::new();
+    let neighbours = |cell: usize| {
+        let (column, row) = (cell % columns, cell / columns);
+        [
+            (column > 0).then(|| cell - 1),
+            (column + 1 < columns).then(|| cell + 1),
+            (row > 0).then(|| cell - columns),
+            (row + 1 < rows).then(|| cell + columns),
+        ]
+    };
+    for (cell, &z) in ground.height_m.iter().enumerate() {
+        let is_edge =
+            neighbours(cell).iter().any(|next| next.is_none_or(|n| ground.height_m[n].is_nan()));
+        if z.is_finite() && is_edge {
+            level[cell] = z;
+            open.push(Reverse((key(z), cell)));
+        }
+    }
+    while let Some(Reverse((_, cell))) = open.pop() {
+        for next in neighbours(cell).into_iter().flatten() {
+            let z = ground.height_m[next];
+            if level[next].is_nan() && z.is_finite() {
+                level[next] = z.max(level[cell]);
+                open.push(Reverse((key(level[next]), next)));
+            }
+        }
+    }
+    let depth = level.iter().zip(&ground.height_m).map(|(level, z)| level - z);
+    Depths(depth.map(|depth| if depth.is_finite() { depth } else { 0.0 }).collect())
+}
+
+/// The mesh against the rocks; both as they stand in the summary.
+fn mesh(results: &Results) -> Option<Check> {
+    let edges = results.summary.mesh_health.get("edge_quantiles_m")?;
+    let median_m = edges.get(2)?.as_f64()?;
+    let radii = results.rows().ok()?.filter_map(Result::ok).map(|row| row.radius_m);
+    let mut radii: Vec<f64> = radii.filter(|radius| radius.is_finite()).collect();
+    radii.sort_by(f64::total_cmp);
+    let diameter_m = 2.0 * *radii.get(radii.len() / 2)?;
+    let times = median_m / diameter_m;
+    let found = format!(
+        "median edge of the triangles {} m, {} times the diameter of the median rock ({} m){}",
+        format::significant(median_m, 2),
+        format::significant(times, 2),
+        format::significant(diameter_m, 2),
+        if times > COARSE {
+            ": steps, boulders and gullies that would stop or throw such rocks are not in it; roughness_deg stands for them, or a finer survey"
+        } else {
+            ""
+        }
+    );
+    Some(check("Mesh", found, times <= COARSE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A slope with one pit of 1 m: rocks in the pit lie 1 m below its outlet, all others in none.
+    #[test]
+    fn water_stands_in_a_pit_up_to_its_outlet() {
+        let columns = 20;
+        let height = |cell: usize| {
+            let (column, row) = (cell % columns, cell / columns);
+            // the outlet of (10, 10) is its lower neighbour at row 9
+            row as f64 - if (column, row) == (10, 10) { 2.0 } else { 0.0 }
+        };
+        let ground = GroundRaster {
+            west_m: 100.0,
+            south_m: 200.0,
+            cell_m: 2.0,
+            columns,
+            height_m: (0..columns * 20).map(height).collect(),
+            trees: vec![false; columns * 20],
+        };
+        let depth = depths(&ground);
+        let at = |x: f64, y: f64| depth.at(&ground, &[x, y, 0.0]);
+        assert!((at(121.0, 221.0) - 1.0).abs() < 1e-3, "{}", at(121.0, 221.0));
+        assert!(at(119.0, 221.0).abs() < 1e-3 && at(99.0, 221.0).abs() < 1e-12);
+        assert!(depth.0.iter().filter(|depth| **depth > 1e-3).count() == 1);
+    }
+}

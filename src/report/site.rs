@@ -1,0 +1,172 @@
+//! What stands on the map beside the rocks: release zone, evaluation lines and barriers, with their names.
+
+use super::colour::{GREEN, INK, WHITE};
+use super::format;
+use super::input::{MapMark, Quantity, Report};
+use super::panel::Panel;
+use super::paper::{Label, Paper, Pen, SMALL, fitted};
+use super::svg::path::{Frame, Spot, clipped};
+use crate::math;
+use crate::output::Zone;
+
+/// Pens of the marks; all lie on a white rim, to be seen over anything.
+const LINE: Pen = Pen::full(INK, 1.5);
+const BARRIER: Pen = Pen::full(GREEN, 2.6);
+const ZONE: Pen = Pen::full(INK, 1.2).dashed();
+/// Distance and length of the teeth of a barrier (px).
+const TOOTH_PX: (f64, f64) = (9.0, 4.0);
+/// More release points than this are told by their key alone.
+const MOST_POINTS: usize = 200;
+/// Gap between a line and its name (px).
+const GAP_PX: f64 = 8.0;
+
+/// Draws the zones of release.
+pub(super) fn zones(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+    for one in std::iter::once(&report.zone).chain(&report.further_zones) {
+        zone(paper, panel, one);
+    }
+}
+
+fn zone(paper: &Paper<'_>, panel: &Panel, zone: &Zone) {
+    let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
+    match zone {
+        Zone::Points(_) if spots.len() <= MOST_POINTS => {
+            for &spot in spots.iter().filter(|&&spot| panel.frame.holds(spot)) {
+                paper.disc(spot, 2.6, INK);
+                paper.disc(spot, 1.6, WHITE);
+            }
+        }
+        Zone::Points(_) => paper.dots(&spots, 0.9, INK),
+        Zone::Polygon(_) | Zone::Line(_) => {
+            if matches!(zone, Zone::Polygon(_)) {
+                spots.extend(spots.first().copied());
+            }
+            for part in clipped(&spots, &panel.frame) {
+                paper.line(&part, Pen { opacity: 0.7, ..Pen::full(WHITE, 3.0) });
+                paper.line(&part, ZONE);
+            }
+        }
+    }
+}
+
+/// Draws lines and barriers.
+pub(super) fn marks(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+    for mark in &report.marks {
+        for part in on_paper(panel, mark) {
+            let pen = if mark.barrier.is_some() { BARRIER } else { LINE };
+            paper.line(&part, Pen { opacity: 0.8, ..Pen::full(WHITE, pen.width_px + 2.2) });
+            paper.line(&part, pen);
+            if mark.barrier.is_some() {
+                paper.lines(&teeth(&part), Pen::full(GREEN, 1.2));
+            }
+        }
+    }
+}
+
+/// The parts of a mark inside the frame.
+fn on_paper(panel: &Panel, mark: &MapMark) -> Vec<Vec<Spot>> {
+    let spots: Vec<Spot> = mark.corners_m.iter().map(|&[x, y]| panel.at(x, y)).collect();
+    clipped(&spots, &panel.frame)
+}
+
+/// Short strokes across a line: a net is told from a line without colour.
+fn teeth(part: &[Spot]) -> Vec<Vec<Spot>> {
+    let (apart, long) = TOOTH_PX;
+    let tooth = |pair: &[Spot]| -> Vec<Vec<Spot>> {
+        let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
+        let length = math::hypot(x1 - x0, y1 - y0).max(1e-9);
+        let (dx, dy) = ((x1 - x0) / length, (y1 - y0) / length);
+        (0..(length / apart) as usize)
+            .map(|k| apart * (k as f64 + 0.5))
+            .map(|s| {
+                let (x, y) = (x0 + s * dx, y0 + s * dy);
+                vec![(x + long * dy, y - long * dx), (x - long * dy, y + long * dx)]
+            })
+            .collect()
+    };
+    part.windows(2).flat_map(tooth).collect()
+}
+
+/// Name of a mark, with height and capacity of a barrier.
+pub(super) fn in_words(mark: &MapMark) -> String {
+    let Some((height_m, capacity_j)) = mark.barrier else { return mark.name.clone() };
+    let (unit, size) = Quantity::Total.unit(capacity_j);
+    format!(
+        "{}: {}\u{2009}m, {}\u{2009}{unit}",
+        mark.name,
+        format::significant(height_m, 2),
+        format::significant(capacity_j / size, 3)
+    )
+}
+
+/// Finds room for the names of lines and barriers beside them and keeps it free; they are drawn with [`names`] when all
+/// else is.
+pub(super) fn places(paper: &Paper<'_>, panel: &Panel, report: &Report) -> Vec<Label> {
+    let inner = Frame {
+        left: panel.frame.left + 3.0,
+        right: panel.frame.right - 3.0,
+        top: panel.frame.top + 3.0,
+        bottom: panel.frame.bottom - 3.0,
+    };
+    let place = |mark: &MapMark| {
+        let words = fitted(&in_words(mark), SMALL, 0.6 * panel.frame.width());
+        let colour = if mark.barrier.is_some() { super::colour::DARK_GREEN } else { INK };
+        let parts = on_paper(panel, mark);
+        let candidates = parts.iter().flat_map(|part| beside(part, &words));
+        let found = candidates.map(|label| label.bold().coloured(colour)).find(|label| {
+            let frame = label.frame();
+            inner.contains(&frame) && paper.is_free(&frame)
+        })?;
+        paper.take(found.frame());
+        Some(found)
+    };
+    report.marks.iter().filter_map(place).collect()
+}
+
+/// Places for a name: above and below both ends and the middle.
+fn beside(part: &[Spot], words: &str) -> Vec<Label> {
+    let (Some(&first), Some(&last)) = (part.first(), part.last()) else { return Vec::new() };
+    let (left, right) = if first.0 <= last.0 { (first, last) } else { (last, first) };
+    let middle = part[part.len() / 2];
+    let at = |(x, y): Spot, by: f64| Label::new(words, (x, y + by));
+    [-GAP_PX, GAP_PX]
+        .into_iter()
+        .flat_map(|by| {
+            [
+                at((right.0 - 4.0, right.1), by).right(),
+                at((left.0 + 4.0, left.1), by),
+                at(middle, by).centred(),
+                at((middle.0 + 6.0, middle.1), by),
+                at((middle.0 - 6.0, middle.1), by).right(),
+            ]
+        })
+        .collect()
+}
+
+/// Writes the names.
+pub(super) fn names(paper: &Paper<'_>, labels: &[Label]) {
+    for label in labels {
+        paper.text_on_rim(label);
+    }
+}
+
+/// A short piece of each kind of mark, for a key.
+pub(super) fn symbol(paper: &Paper<'_>, at: Spot, is_barrier: bool) {
+    let part = [(at.0 - 7.0, at.1), (at.0 + 7.0, at.1)];
+    paper.line(&part, if is_barrier { BARRIER } else { LINE });
+    if is_barrier {
+        let tooth = |x: f64| vec![(x, at.1 - TOOTH_PX.1), (x, at.1 + TOOTH_PX.1)];
+        paper.lines(&[tooth(at.0 - 3.5), tooth(at.0 + 3.5)], Pen::full(GREEN, 1.2));
+    }
+}
+
+/// A short piece of the zone's outline, for a key.
+pub(super) fn zone_symbol(paper: &Paper<'_>, at: Spot, zone: &Zone) {
+    match zone {
+        Zone::Points(_) => {
+            paper.disc(at, 2.6, INK);
+            paper.disc(at, 1.6, WHITE);
+        }
+        _ => paper.line(&[(at.0 - 7.0, at.1), (at.0 + 7.0, at.1)], ZONE),
+    }
+}
