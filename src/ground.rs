@@ -145,6 +145,7 @@ impl Law {
     /// with it the restitution, does not depend on how many patches there are.
     #[must_use]
     #[inline]
+    #[expect(clippy::float_cmp, reason = "a single point has exactly these")]
     pub fn of_patch(&self, gain2: f64, share: f64) -> Self {
         if gain2 == 1.0 && share == 1.0 {
             return *self;

@@ -144,7 +144,7 @@ fn the_plane_kernel_is_the_general_law() {
             let tolerance_m_s = if scheme == Scheme::Reference { 1e-8 } else { 0.05 };
             let capture_speed_m_s = Some(0.02);
             let case =
-                Case { scheme, ground, plane_impacts, tolerance_m_s, capture_speed_m_s, ..CASE };
+                Case { scheme, tolerance_m_s, plane_impacts, ground, capture_speed_m_s, ..CASE };
             let run = case.run(&floor, start, 5e-3);
             assert!(run.ledger.rise_j <= 1e-9 * run.released_j, "{index}: {:?}", run.ledger);
             (run.end.velocity_m_s, run.end.spin_rad_s * ROCK.radius_m)

@@ -59,6 +59,7 @@ pub struct Touch {
 impl Touch {
     /// Whether it is one point of one face, whose plane tells everything.
     #[inline]
+    #[expect(clippy::float_cmp, reason = "a single point has exactly 1")]
     pub fn is_on_plane(&self) -> bool {
         self.feature.kind == FeatureKind::Face && self.gain2 == 1.0
     }

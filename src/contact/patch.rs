@@ -78,10 +78,10 @@ impl Patches {
         self.join(terrain, radius);
         for k in 0..self.pressed.len() {
             let patch = &self.pressed[k];
-            if patch.parent as usize == k {
-                if let Some(touch) = patch.touch(radius) {
-                    found(touch);
-                }
+            if patch.parent as usize == k
+                && let Some(touch) = patch.touch(radius)
+            {
+                found(touch);
             }
         }
     }

@@ -7,10 +7,8 @@
 
 use super::adaptive::{Advance, Stuck, TRAVEL};
 use super::grip::{Grip, Loss, Rate, TOUCH, World, longest_step};
-use super::impact::{Followed, Plane};
 use super::stage::End;
 use crate::contact::hold::{HOLDS, carry};
-use crate::contact::{FeatureKind, Touch};
 use crate::math;
 use crate::rock::Vec3;
 
@@ -130,54 +128,11 @@ impl Grip {
         self.impact.left > 0.0 && self.holds.iter().any(|hold| !hold.captured)
     }
 
-    /// All of an impact on one plane, if it is one: nothing else can be touched as far as the rock gets, springs are
-    /// unstretched, and the rock comes out again within `h_max` (s). `tolerance` as in [`Self::step_impact`].
-    #[inline(never)]
-    pub(crate) fn bounce(
-        &mut self,
-        world: &World,
-        tolerance: f64,
-        h_max: f64,
-        done: &mut Advance,
-    ) -> bool {
-        let [hold] = &self.holds[..] else { return false };
-        let (face, is_face) = (hold.feature.id, hold.feature.kind == FeatureKind::Face);
-        let begins = !hold.closed && is_face;
-        if !begins || self.may_yield || self.touches.iter().any(|touch| self.is_sunk(world, touch))
-        {
-            return false;
-        }
-        let (n, triangle) = (hold.n, hold.triangle);
-        let plane = Plane::new(&world.body, world.law(triangle), tolerance);
-        let Followed::Left(rebound) = plane.follow(&n, &self.v, &self.w) else { return false };
-        let along = rebound.shift_m - n * n.dot(&rebound.shift_m);
-        let way = math::hypot(along.norm(), rebound.deepest_m);
-        let is_known = way <= self.near.room_m(&self.c);
-        if rebound.time_s > h_max || !is_known || !self.near.is_plane_within(face, &self.c, way) {
-            return false;
-        }
-        self.c += rebound.shift_m;
-        (self.v, self.w) = (rebound.velocity_m_s, rebound.spin_rad_s);
-        self.holds.clear();
-        self.fresh = false;
-        self.impact.forget();
-        done.dt = rebound.time_s;
-        done.steps = u64::from(rebound.effort.steps);
-        done.rejected = u64::from(rebound.effort.rejected);
-        done.loss = rebound.loss.on(world, triangle);
-        true
-    }
-
-    fn is_sunk(&self, world: &World, touch: &Touch) -> bool {
-        world.body.radius - touch.distance_m > 2.0 * TOUCH * world.body.radius
-    }
-
     /// One accepted step of an impact, of at most `h_max` (s), in contacts of at most `omega` (rad/s); `tolerance` is the local
     /// error allowed relative to the speed of the impact.
     ///
     /// # Errors
     /// [`Stuck`] if the motion is no longer finite.
-    #[inline(never)]
     pub(crate) fn step_impact(
         &mut self,
         world: &World,

@@ -1,6 +1,7 @@
 //! One implicit step of a rock in contact.
 
 pub mod adaptive;
+mod bounce;
 pub mod dda;
 pub(crate) mod explicit;
 pub(crate) mod flat;

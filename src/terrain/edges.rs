@@ -76,6 +76,11 @@ impl Edges {
         &self.triangles[self.starts[edge] as usize..self.starts[edge + 1] as usize]
     }
 
+    /// How many triangles lie on an edge.
+    pub fn count_on(&self, edge: u32) -> i32 {
+        i32::try_from(self.triangles_on(edge).len()).unwrap_or(i32::MAX)
+    }
+
     /// The edges with one triangle only.
     pub fn borders(&self) -> Vec<u32> {
         (0..self.len() as u32).filter(|&edge| self.triangles_on(edge).len() == 1).collect()

@@ -139,11 +139,13 @@ impl Features {
                 self.edges_at[*place as usize] = edge as u32;
                 *place += 1;
                 // w(edge) = 1 − its triangles
-                weight[from as usize] += self.edges.triangles_on(edge as u32).len() as i32 - 1;
+                weight[from as usize] += self.edges.count_on(edge as u32) - 1;
             }
         }
         for corners in triangles {
-            corners.iter().for_each(|&vertex| weight[vertex as usize] -= 1);
+            for &vertex in corners {
+                weight[vertex as usize] -= 1;
+            }
         }
         let narrow = |weight: i32| weight.clamp(i8::MIN.into(), i8::MAX.into()) as i8;
         self.vertex_weight = weight.into_iter().map(narrow).collect();

@@ -59,13 +59,12 @@ impl Fall<'_> {
                 && (facet.centre - self.grip.c).norm() < length_m
                 && faces(&facet.turn)
         });
-        let turn = match known {
-            Some(facet) => facet.turn,
-            None => {
-                let Some(turn) = draw(self.chance, &normal, most, &v) else { return };
-                self.roughness.facet = Some(Facet { centre: self.grip.c, ground, turn });
-                turn
-            }
+        let turn = if let Some(facet) = known {
+            facet.turn
+        } else {
+            let Some(turn) = draw(self.chance, &normal, most, &v) else { return };
+            self.roughness.facet = Some(Facet { centre: self.grip.c, ground, turn });
+            turn
         };
         self.turn_rock(&turn.inverse());
         self.roughness.tilt = Some(Tilt { turn, until_s });
