@@ -36,13 +36,13 @@ pub(crate) fn net(rocks: usize) -> BarrierView {
 
 /// A line that so many rocks cross; every third is stopped by a barrier before.
 fn line(number: usize, name: &str, rocks: usize) -> Line {
-    let energy = |k: usize| 400.0 * 1.07_f64.powi(k as i32 % 120);
+    let energy = |k: usize| 400.0 * 1.07_f64.powi((k % 120) as i32);
     let point = |k: usize| LinePoint {
         release: k,
         along_m: (k * 7 % 60) as f64,
         height_m: 0.02 * (k % 90) as f64 - 0.01,
         total_j: energy(k),
-        passes: k % 3 != 0,
+        passes: !k.is_multiple_of(3),
     };
     let share = |k: usize| Estimate::new(1.0 / (k + 2) as f64, 0.5 / (k + 2) as f64, 0.9);
     let curve = |size: f64| -> Vec<BandPoint> {
