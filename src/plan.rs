@@ -181,7 +181,7 @@ impl Plan {
         releases.try_out(&terrain, &mut warnings)?;
         stiffness::check(scene, &terrain, &mut fast_warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
-        flutter(&step, &mut warnings);
+        slips::flutter(&step, &mut warnings);
         let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
         stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
@@ -385,17 +385,4 @@ fn tree_triangles(terrain: &Terrain) -> Option<usize> {
 
 fn can_exceed_0(value: Option<&Distribution>) -> bool {
     value.is_some_and(|value| value.support().1 > 0.0)
-}
-
-/// A tolerance above twice the capture speed lets slow rocks flutter for ever.
-fn flutter(step: &Settings, warnings: &mut Vec<String>) {
-    if let Some(capture) =
-        step.capture_speed_m_s.filter(|capture| step.tolerance_m_s > 2.0 * capture)
-    {
-        warnings.push(format!(
-            "capture_speed_m_s = {capture} is below half the tolerance of {} m/s: slow rocks may flutter and never come to rest; write {} or more",
-            step.tolerance_m_s,
-            0.5 * step.tolerance_m_s
-        ));
-    }
 }

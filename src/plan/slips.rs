@@ -1,6 +1,7 @@
 //! Numbers that look like another unit: allowed, but most likely a slip.
 
 use crate::scene::Scene;
+use crate::step::Settings;
 
 /// Densities of rock (kg/m³): pumice is lighter, ore heavier.
 const ROCK_KG_M3: [f64; 2] = [1000.0, 5000.0];
@@ -74,6 +75,19 @@ fn epsg(code: u32) -> Option<String> {
             "epsg = {code} is a geographic system in degrees; coordinates are metres here: name the projected system of the meshes, as 2056 (LV95)"
         )
     })
+}
+
+/// A tolerance above twice the capture speed lets slow rocks flutter for ever.
+pub(super) fn flutter(step: &Settings, warnings: &mut Vec<String>) {
+    if let Some(capture) =
+        step.capture_speed_m_s.filter(|capture| step.tolerance_m_s > 2.0 * capture)
+    {
+        warnings.push(format!(
+            "capture_speed_m_s = {capture} is below half the tolerance of {} m/s: slow rocks may flutter and never come to rest; write {} or more",
+            step.tolerance_m_s,
+            0.5 * step.tolerance_m_s
+        ));
+    }
 }
 
 #[cfg(test)]
