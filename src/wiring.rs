@@ -16,7 +16,6 @@ use rockfall::terrain::grid::Grid;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
 use rockfall::terrain::stl::write_binary;
-use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain, make};
 use rockfall::trajectory::{self, Scratch};
 use std::ops::Range;
@@ -347,11 +346,7 @@ pub(crate) fn mesh_of_stems(
 
 /// A mesh file as it stands.
 fn slope_source(path: &Path) -> Source {
-    Source {
-        sheet: Sheet { path: path.to_owned(), ground: 0, is_tree: false },
-        up: Up::default(),
-        scale: 1.0,
-    }
+    Source::stl(Sheet { path: path.to_owned(), ground: 0, is_tree: false })
 }
 
 /// Writes one of the made slopes and shapes.

@@ -157,6 +157,7 @@ impl Scene {
             },
             up: mesh.up,
             scale: mesh.scale,
+            options: None,
         };
         let slope = self.terrain.iter().map(|mesh| source(mesh, false));
         slope.chain(self.trees.iter().map(|mesh| source(mesh, true))).collect()
