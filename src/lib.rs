@@ -17,6 +17,7 @@ pub mod clock;
 pub mod chance;
 pub mod rock;
 // world
+pub mod gis;
 pub mod ground;
 pub mod terrain;
 // physics

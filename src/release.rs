@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::flight::{Landing, Parabola, leap};
 use crate::ground::Ground;
 use crate::rock::{Motion, Rock, Vec3};
-use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene};
+use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, Zones};
 use crate::terrain::Terrain;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::Triangle;
@@ -35,6 +35,8 @@ pub enum Where {
     Line(Polyline),
     /// Uniform over an area.
     Area(Area),
+    /// Over zones, each with its share.
+    Zones(Zones),
 }
 
 /// All releases of a scene; draws any of them, in any order.
@@ -61,12 +63,13 @@ impl Releases {
     /// coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
         let asked = &scene.release;
-        let place = match (&asked.points_m, &asked.line_m, &asked.polygon_m) {
-            (Some(points), None, None) => Where::Points(points.clone()),
-            (None, Some(line), None) => Where::Line(line.clone()),
-            (None, None, Some(area)) => Where::Area(area.clone()),
+        let place = match (&asked.points_m, &asked.line_m, &asked.polygon_m, &asked.zone_list) {
+            (Some(points), None, None, None) => Where::Points(points.clone()),
+            (None, Some(line), None, None) => Where::Line(line.clone()),
+            (None, None, Some(area), None) => Where::Area(area.clone()),
+            (None, None, None, Some(zones)) => Where::Zones(zones.clone()),
             _ => {
-                let remedy = "write exactly one of points_m, line_m and polygon_m";
+                let remedy = "write exactly one of points_m, line_m, polygon_m and zones";
                 return Err(Error::input(
                     &scene.file,
                     "[release]",
@@ -87,10 +90,8 @@ impl Releases {
             density_kg_m3: scene.rocks.density_kg_m3,
             grounds: scene.grounds.values().cloned().collect(),
         };
-        let (key, corners_m) = releases.place.corners_m();
-        for (number, corner) in corners_m.into_iter().enumerate() {
-            let who = format!("[release] {key}, entry {}", number + 1);
-            releases.ground_m(terrain, corner, &who)?;
+        for (who, corner) in releases.place.corners_m() {
+            releases.ground_m(terrain, corner, &format!("[release] {who}"))?;
         }
         if let Where::Points(points) = &releases.place {
             for index in 0..points.len().min(asked.count) {
@@ -103,6 +104,15 @@ impl Releases {
     /// Where rocks are released.
     pub fn place(&self) -> &Where {
         &self.place
+    }
+
+    /// The zone from which release `index` starts, by its place in [`Zones::list`]; none where the scene has no zones.
+    pub fn zone_of(&self, index: usize) -> Option<usize> {
+        let Where::Zones(zones) = &self.place else { return None };
+        let mut chance = stream(self.seed, Purpose::Place, index);
+        // the place within the zone is drawn first
+        let [.., which] = [0; 4].map(|_| unit(&mut chance));
+        Some(zones.pick(which))
     }
 
     /// Draws release `index`: the same alone, resumed, or among a million.
@@ -140,6 +150,7 @@ impl Releases {
             }
             Where::Line(line) => (line.at(even[0]), None),
             Where::Area(area) => (area.at(even), None),
+            Where::Zones(zones) => (zones.list()[zones.pick(unit(&mut chance))].at(even), None),
         };
         let ground_m = self.ground_m(terrain, at_m, &release_name(index))?;
         let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(&mut chance));
@@ -201,12 +212,25 @@ impl Releases {
 }
 
 impl Where {
-    /// The scene's key and its points or corners in plan view (m), map coordinates.
-    fn corners_m(&self) -> (&'static str, Vec<Corner>) {
+    /// Its points or corners in plan view (m), map coordinates, each with the scene's key and entry that it stands in.
+    fn corners_m(&self) -> Vec<(String, Corner)> {
+        let numbered = |key: &str, corners: &mut dyn Iterator<Item = Corner>| {
+            let named = |(number, corner)| (format!("{key}, entry {number}"), corner);
+            (1..).zip(corners).map(named).collect()
+        };
         match self {
-            Self::Points(points) => ("points_m", points.iter().map(|point| point.at_m).collect()),
-            Self::Line(line) => ("line_m", line.corners_m().to_vec()),
-            Self::Area(area) => ("polygon_m", area.corners_m().to_vec()),
+            Self::Points(points) => {
+                numbered("points_m", &mut points.iter().map(|point| point.at_m))
+            }
+            Self::Line(line) => numbered("line_m", &mut line.corners_m().iter().copied()),
+            Self::Area(area) => numbered("polygon_m", &mut area.corners_m().iter().copied()),
+            Self::Zones(zones) => {
+                let each = zones.list().iter().flat_map(|zone| {
+                    let who = format!("zones, feature {}", zone.feature);
+                    zone.corners_m().into_iter().map(move |corner| (who.clone(), corner))
+                });
+                each.collect()
+            }
         }
     }
 }

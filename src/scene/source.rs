@@ -21,7 +21,7 @@ pub(super) struct Lookup<'a> {
 const TABLES: [&str; 3] = ["grounds", "rocks", "release"];
 
 /// Tables of which a scene may have several.
-const LISTS: [&str; 4] = ["terrain", "trees", "lines", "barriers"];
+const LISTS: [&str; 5] = ["terrain", "trees", "lines", "barriers", "ground_zones"];
 
 /// One value of the file.
 struct Node {

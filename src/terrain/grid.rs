@@ -57,8 +57,7 @@ impl Grid {
     /// The origin is subtracted from the corner before a cell's place is added: no digit of the grid is lost to the size
     /// of map coordinates.
     pub fn facets(&self, map_origin_m: Vec3) -> Vec<Facet> {
-        let corner_m =
-            [self.corner_m[0] - map_origin_m.x, self.corner_m[1] - map_origin_m.y];
+        let corner_m = [self.corner_m[0] - map_origin_m.x, self.corner_m[1] - map_origin_m.y];
         triangulate(self.columns, self.rows, |column, row_from_south| {
             let z = self.value(column, self.rows - 1 - row_from_south)?;
             let [x, y] = [(corner_m[0], column), (corner_m[1], row_from_south)]
@@ -252,16 +251,15 @@ pub fn triangulate(
     point: impl Fn(usize, usize) -> Option<Vec3>,
 ) -> Vec<Facet> {
     let cells = || {
-        let of_row = move |row: usize| (0..columns.saturating_sub(1)).map(move |column| (column, row));
+        let of_row =
+            move |row: usize| (0..columns.saturating_sub(1)).map(move |column| (column, row));
         (0..rows.saturating_sub(1)).flat_map(of_row)
     };
     let around = |(column, row): (usize, usize)| {
         [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| point(column + i, row + j))
     };
     // Counted first: millions of facets are not moved about while the list grows.
-    let count = |corners: [Option<Vec3>; 4]| {
-        corners.iter().flatten().count().saturating_sub(2)
-    };
+    let count = |corners: [Option<Vec3>; 4]| corners.iter().flatten().count().saturating_sub(2);
     let mut facets = Vec::with_capacity(cells().map(|cell| count(around(cell))).sum());
     for cell in cells() {
         facets.extend(cut(around(cell)).into_iter().flatten());
@@ -288,6 +286,9 @@ fn cut(around: [Option<Vec3>; 4]) -> [Option<Facet>; 2] {
 }
 
 mod window;
+
+#[cfg(feature = "cloud")]
+pub(super) use window::distance;
 
 #[cfg(test)]
 mod tests;

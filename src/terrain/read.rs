@@ -44,7 +44,12 @@ impl Source {
         }
         if !is_mesh && (self.up != Up::Z || (self.scale - 1.0).abs() > 0.0) {
             let remedy = "remove up and scale: elevation models are in metres, z up";
-            return Err(Error::input(path, "up, scale", "found them beside an elevation model", remedy));
+            return Err(Error::input(
+                path,
+                "up, scale",
+                "found them beside an elevation model",
+                remedy,
+            ));
         }
         Ok(loaded)
     }
@@ -108,11 +113,8 @@ impl Terrain {
             }
         }
         drop(soups);
-        let terrain = Self {
-            epsg,
-            patched: layer.map(|layer| layer.done),
-            ..Self::new(welded, sheets)
-        };
+        let terrain =
+            Self { epsg, patched: layer.map(|layer| layer.done), ..Self::new(welded, sheets) };
         Ok((terrain, health))
     }
 }
@@ -161,9 +163,13 @@ fn sheets_of(sheets: &mut Vec<Sheet>, number: usize, grounds: &[u16]) -> Result<
         }
     }
     if sheets.len() > usize::from(u16::MAX) {
-        return Err(Error::Request(format!("the terrain has more than {} sheets; join files or zones", u16::MAX)));
+        return Err(Error::Request(format!(
+            "the terrain has more than {} sheets; join files or zones",
+            u16::MAX
+        )));
     }
-    let sheet = |ground: &u16| known.iter().find(|(other, _)| other == ground).map_or(number, |k| k.1);
+    let sheet =
+        |ground: &u16| known.iter().find(|(other, _)| other == ground).map_or(number, |k| k.1);
     Ok(grounds.iter().map(|ground| sheet(ground) as u16).collect())
 }
 

@@ -102,7 +102,9 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
         Some(Format::Obj) => obj::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Cloud) => read_cloud(path, options),
         Some(Format::Ascii | Format::Binary) | None => {
-            if let Some((_, kind, command)) = ELSEWHERE.iter().find(|(mark, ..)| head.starts_with(mark)) {
+            if let Some((_, kind, command)) =
+                ELSEWHERE.iter().find(|(mark, ..)| head.starts_with(mark))
+            {
                 let remedy = format!("write it as GeoTIFF: {command} {} out.tif", path.display());
                 return Err(Error::input(path, "start", format!("found {kind}"), remedy));
             }

@@ -47,7 +47,12 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Soup> {
         }
     }
     if soup.facets.is_empty() {
-        return Err(wrong(file, "mesh", "the file holds no face", "export the mesh with its faces"));
+        return Err(wrong(
+            file,
+            "mesh",
+            "the file holds no face",
+            "export the mesh with its faces",
+        ));
     }
     Ok(soup)
 }

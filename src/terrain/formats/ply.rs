@@ -147,7 +147,12 @@ fn header(bytes: &[u8], file: &Path) -> Result<(Coding, Vec<Element>, usize)> {
         }
     }
     let Some(coding) = coding else {
-        return Err(wrong(file, "header", "found no `format`", "write `format ascii 1.0` or a binary one"));
+        return Err(wrong(
+            file,
+            "header",
+            "found no `format`",
+            "write `format ascii 1.0` or a binary one",
+        ));
     };
     elements.retain(|element| !element.properties.is_empty());
     Ok((coding, elements, at))
@@ -195,9 +200,15 @@ fn vertices(element: &Element, numbers: &mut Numbers, soup: &mut Soup) -> Result
     Ok(corners)
 }
 
-fn faces(element: &Element, numbers: &mut Numbers, corners: &[Vec3], soup: &mut Soup) -> Result<()> {
+fn faces(
+    element: &Element,
+    numbers: &mut Numbers,
+    corners: &[Vec3],
+    soup: &mut Soup,
+) -> Result<()> {
     let is_ring = |property: &Property| {
-        property.count.is_some() && ["vertex_indices", "vertex_index"].contains(&property.name.as_str())
+        property.count.is_some()
+            && ["vertex_indices", "vertex_index"].contains(&property.name.as_str())
     };
     let Some(ring) = element.properties.iter().position(is_ring) else {
         let remedy = "write `property list uchar int vertex_indices`";
@@ -255,13 +266,22 @@ impl Numbers<'_> {
         };
         if self.coding == Coding::Text {
             let rest = &self.bytes[self.at..];
-            let start = rest.iter().position(|byte| !byte.is_ascii_whitespace()).ok_or_else(cut_off)?;
-            let length = rest[start..].iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len() - start);
+            let start =
+                rest.iter().position(|byte| !byte.is_ascii_whitespace()).ok_or_else(cut_off)?;
+            let length = rest[start..]
+                .iter()
+                .position(u8::is_ascii_whitespace)
+                .unwrap_or(rest.len() - start);
             let word = &rest[start..start + length];
             self.at += start + length;
             return parsed(word).ok_or_else(|| {
                 let found = format!("`{}` is no number", String::from_utf8_lossy(word));
-                wrong(self.file, format!("element {}", element.name), found, "write numbers like 1063.95")
+                wrong(
+                    self.file,
+                    format!("element {}", element.name),
+                    found,
+                    "write numbers like 1063.95",
+                )
             });
         }
         let taken = self.bytes.get(self.at..self.at + kind.bytes()).ok_or_else(cut_off)?;

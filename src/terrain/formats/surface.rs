@@ -77,7 +77,8 @@ impl Loaded {
 }
 
 fn unreached(file: &Path, loaded: &Loaded) -> Error {
-    let what = if matches!(loaded, Loaded::Mesh(_)) { "a mesh, which is not cropped" } else { "no cell" };
+    let what =
+        if matches!(loaded, Loaded::Mesh(_)) { "a mesh, which is not cropped" } else { "no cell" };
     let remedy = "write crop for elevation models and point clouds that hold the places of release";
     Error::input(file, "crop", format!("found {what} below the places of release"), remedy)
 }
@@ -96,7 +97,9 @@ fn of_grid(
         grid = grid.cropped(box_m);
         if grid.columns < FEWEST || grid.rows < FEWEST {
             let [west, south, east, north] = whole;
-            let found = format!("found no cells of the file there: it has {west}..{east} east, {south}..{north} north");
+            let found = format!(
+                "found no cells of the file there: it has {west}..{east} east, {south}..{north} north"
+            );
             return Err(Error::input(file, "crop", found, "write map coordinates inside the file"));
         }
         let [west, south, east, north] = outline(&grid);
@@ -108,23 +111,33 @@ fn of_grid(
     if let Some(cell_m) = resample_m {
         if cell_m < grid.cell_m {
             let found = format!("found {cell_m} m, finer than its cells of {} m", grid.cell_m);
-            let remedy = format!("write {} or more: finer cells would hold nothing new", grid.cell_m);
+            let remedy =
+                format!("write {} or more: finer cells would hold nothing new", grid.cell_m);
             return Err(Error::input(file, "resample_m", found, remedy));
         }
         grid = grid.resampled(cell_m);
-        note(format!("coarsened to {} x {} cells of {cell_m} m, each the mean of what it covers", grid.columns, grid.rows));
+        note(format!(
+            "coarsened to {} x {} cells of {cell_m} m, each the mean of what it covers",
+            grid.columns, grid.rows
+        ));
     }
     let holes = grid.holes();
     note(format!("{holes} cells without data, left as holes"));
     if grid.columns * grid.rows > MOST_CELLS {
         let found = format!("found {} cells", grid.columns * grid.rows);
-        let remedy = format!("write crop or resample_m in the scene: at most {MOST_CELLS} are used");
+        let remedy =
+            format!("write crop or resample_m in the scene: at most {MOST_CELLS} are used");
         return Err(Error::input(file, "cells", found, remedy));
     }
     soup.facets = grid.facets(map_origin_m);
     if soup.facets.is_empty() {
         let remedy = "write a file whose cells have data, three neighbours or more";
-        return Err(Error::input(file, "cells", "found no triangle between cells with data", remedy));
+        return Err(Error::input(
+            file,
+            "cells",
+            "found no triangle between cells with data",
+            remedy,
+        ));
     }
     Ok(soup)
 }

@@ -84,8 +84,10 @@ impl Place {
             (first as u32, (end - first) as u32)
         };
         let [x, y] = self.first_m;
-        let (first_column, columns) = span((west - x) / self.cell_m, (east - x) / self.cell_m, width);
-        let (low, high) = if self.northward { (south - y, north - y) } else { (y - north, y - south) };
+        let (first_column, columns) =
+            span((west - x) / self.cell_m, (east - x) / self.cell_m, width);
+        let (low, high) =
+            if self.northward { (south - y, north - y) } else { (y - north, y - south) };
         let (first_row, rows) = span(low / self.cell_m, high / self.cell_m, height);
         [first_column, first_row, columns, rows]
     }
@@ -128,7 +130,11 @@ impl Place {
 }
 
 /// Position and size of the first pixel: x, width, y, height (m); a height below 0 runs south.
-fn transform<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path, warp: &str) -> Result<[f64; 4]> {
+fn transform<R: Read + Seek>(
+    decoder: &mut Decoder<R>,
+    file: &Path,
+    warp: &str,
+) -> Result<[f64; 4]> {
     let mut list = |number: u16| {
         let found = decoder.find_tag(Tag::from_u16_exhaustive(number));
         found.ok().flatten().and_then(|value| value.into_f64_vec().ok())
@@ -149,9 +155,10 @@ fn transform<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path, warp: &str) 
     }
     match (scale.as_deref(), ties.as_deref()) {
         (Some([dx, dy, ..]), Some([i, j, _, x, y, _])) => Ok([x - i * dx, *dx, y + j * dy, -dy]),
-        (Some(_), Some(_)) | (None, Some(_)) => {
-            refused("ModelTiepoint", "found control points instead of one tie point and a pixel scale")
-        }
+        (Some(_), Some(_)) | (None, Some(_)) => refused(
+            "ModelTiepoint",
+            "found control points instead of one tie point and a pixel scale",
+        ),
         _ => {
             let remedy = format!(
                 "write where it lies: {} -a_srs EPSG:CODE -a_ullr WEST NORTH EAST SOUTH",
@@ -166,7 +173,8 @@ fn transform<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path, warp: &str) 
 fn unscaled<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path) -> Result<()> {
     let tag = Tag::from_u16_exhaustive(tag::GDAL_METADATA);
     let text = decoder.find_tag(tag).ok().flatten().and_then(|value| value.into_string().ok());
-    let scaled = |text: &String| ["role=\"scale\"", "role=\"offset\""].iter().any(|w| text.contains(w));
+    let scaled =
+        |text: &String| ["role=\"scale\"", "role=\"offset\""].iter().any(|w| text.contains(w));
     if !text.as_ref().is_some_and(scaled) {
         return Ok(());
     }
@@ -176,7 +184,9 @@ fn unscaled<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path) -> Result<()>
 
 fn nodata<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path) -> Result<Option<f64>> {
     let tag = Tag::from_u16_exhaustive(tag::GDAL_NODATA);
-    let Some(value) = decoder.find_tag(tag).map_err(|why| damaged(file, &why))? else { return Ok(None) };
+    let Some(value) = decoder.find_tag(tag).map_err(|why| damaged(file, &why))? else {
+        return Ok(None);
+    };
     let text = value.into_string().unwrap_or_default();
     let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
     match text.parse() {
@@ -217,16 +227,29 @@ impl GeoKeys {
         let refused = |place: &str, found: String| Err(Error::input(file, place, found, warp));
         match self.get(key::MODEL_TYPE) {
             Some(GEOGRAPHIC) => {
-                return refused("GTModelType", "found longitude and latitude, which are no metres".into());
+                return refused(
+                    "GTModelType",
+                    "found longitude and latitude, which are no metres".into(),
+                );
             }
             Some(GEOCENTRIC) => {
-                return refused("GTModelType", "found geocentric coordinates, which have no up".into());
+                return refused(
+                    "GTModelType",
+                    "found geocentric coordinates, which have no up".into(),
+                );
             }
             _ => {}
         }
-        for (name, key) in [("ProjLinearUnits", key::LINEAR_UNITS), ("VerticalUnits", key::VERTICAL_UNITS)] {
-            if let Some(unit) = self.get(key).filter(|unit| ![0, METRE, USER_DEFINED].contains(unit)) {
-                return refused(name, format!("found the unit EPSG:{unit}, not metres (EPSG:{METRE})"));
+        for (name, key) in
+            [("ProjLinearUnits", key::LINEAR_UNITS), ("VerticalUnits", key::VERTICAL_UNITS)]
+        {
+            if let Some(unit) =
+                self.get(key).filter(|unit| ![0, METRE, USER_DEFINED].contains(unit))
+            {
+                return refused(
+                    name,
+                    format!("found the unit EPSG:{unit}, not metres (EPSG:{METRE})"),
+                );
             }
         }
         Ok(())

@@ -25,7 +25,8 @@ impl Grid {
             let end = ((high / self.cell_m).ceil() + 1.0).clamp(first, count as f64);
             first as usize..end as usize
         };
-        let (columns, up) = (span(west - x, east - x, self.columns), span(south - y, north - y, self.rows));
+        let (columns, up) =
+            (span(west - x, east - x, self.columns), span(south - y, north - y, self.rows));
         // rows are counted from the north
         let rows = self.rows - up.end..self.rows - up.start;
         let values = rows.clone().flat_map(|row| {
@@ -52,7 +53,9 @@ impl Grid {
         let mut values = Vec::with_capacity(columns * rows);
         for row in (0..rows).rev() {
             for column in 0..columns {
-                values.push(self.mean([column, row].map(|at| [at as f64 * ratio, (at + 1) as f64 * ratio])));
+                values.push(
+                    self.mean([column, row].map(|at| [at as f64 * ratio, (at + 1) as f64 * ratio])),
+                );
             }
         }
         Self { columns, rows, corner_m: self.corner_m, cell_m, values }
@@ -61,10 +64,12 @@ impl Grid {
     /// Mean over a span of columns and one of rows from the south, both in cells.
     fn mean(&self, [columns, rows]: [[f64; 2]; 2]) -> Option<f64> {
         let cells = |[low, high]: [f64; 2], count: usize| {
-            let (low, high) = ((low + ROUNDING).floor() as usize, ((high - ROUNDING).ceil() as usize).min(count));
+            let (low, high) =
+                ((low + ROUNDING).floor() as usize, ((high - ROUNDING).ceil() as usize).min(count));
             low..high
         };
-        let share = |[low, high]: [f64; 2], cell: usize| high.min(cell as f64 + 1.0) - low.max(cell as f64);
+        let share =
+            |[low, high]: [f64; 2], cell: usize| high.min(cell as f64 + 1.0) - low.max(cell as f64);
         let (mut sum, mut weight, mut whole) = (0.0, 0.0, 0.0);
         for row in cells(rows, self.rows) {
             for column in cells(columns, self.columns) {
@@ -104,7 +109,7 @@ impl Grid {
 }
 
 /// Distance from a point to a box, 0 inside (m).
-fn distance([west, south, east, north]: BoxM, [x, y]: [f64; 2]) -> f64 {
+pub(in crate::terrain) fn distance([west, south, east, north]: BoxM, [x, y]: [f64; 2]) -> f64 {
     let beyond = |low: f64, at: f64, high: f64| (low - at).max(at - high).max(0.0);
     beyond(west, x, east).hypot(beyond(south, y, north))
 }

@@ -58,7 +58,8 @@ impl Borders {
             return 0..0;
         }
         // a strip more on each side for rounding
-        let (first, end) = ((strip(low_m) - 1.0).clamp(0.0, last), (strip(high_m) + 1.0).clamp(0.0, last));
+        let (first, end) =
+            ((strip(low_m) - 1.0).clamp(0.0, last), (strip(high_m) + 1.0).clamp(0.0, last));
         first as usize..end as usize + 1
     }
 
@@ -67,7 +68,8 @@ impl Borders {
         let mut found = None;
         // Sides stand in a strip more on each side than they touch: the point's own holds all at its height.
         let strip = (at[1] - self.south_m) / self.strip_m;
-        let strip = self.strips.get(strip.floor().clamp(0.0, self.strips.len() as f64 - 1.0) as usize)?;
+        let strip =
+            self.strips.get(strip.floor().clamp(0.0, self.strips.len() as f64 - 1.0) as usize)?;
         let (mut zone, mut inside) = (u32::MAX, false);
         for &number in strip {
             let [a, b] = self.sides[number as usize];

@@ -37,7 +37,11 @@ pub(super) struct Drawing {
 ///
 /// # Errors
 /// More nodes than can be handled: their number.
-pub(super) fn cut(facet: &Facet, corners: [Corner; 3], borders: &Borders) -> Result<Vec<Facet>, usize> {
+pub(super) fn cut(
+    facet: &Facet,
+    corners: [Corner; 3],
+    borders: &Borders,
+) -> Result<Vec<Facet>, usize> {
     let near = borders.near(corners);
     if near.is_empty() {
         return Ok(Vec::new());

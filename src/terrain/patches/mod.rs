@@ -121,7 +121,12 @@ impl Layer {
         Ok(grounds)
     }
 
-    fn count(&mut self, pieces: &[Facet], (whole, base): (u16, u16), placed: &dyn Fn(Vec3) -> Vec3) {
+    fn count(
+        &mut self,
+        pieces: &[Facet],
+        (whole, base): (u16, u16),
+        placed: &dyn Fn(Vec3) -> Vec3,
+    ) {
         if pieces.is_empty() {
             return;
         }

@@ -6,7 +6,8 @@ use super::{Corner, side};
 
 /// All triangles of a drawing, anticlockwise, by their nodes.
 pub(super) fn triangulate(drawing: &Drawing) -> Vec<[usize; 3]> {
-    let mut graph = Graph { at: drawing.nodes.iter().map(|node| node.at).collect(), lines: Vec::new() };
+    let mut graph =
+        Graph { at: drawing.nodes.iter().map(|node| node.at).collect(), lines: Vec::new() };
     for k in 0..3 {
         graph.lines.extend(outline(drawing, k));
     }
@@ -37,9 +38,8 @@ fn candidates(drawing: &Drawing) -> Vec<[usize; 2]> {
     let nodes = &drawing.nodes;
     let apart = |i: usize, j: usize| !(0..3).any(|k| nodes[i].on[k] && nodes[j].on[k]);
     let pairs = (0..nodes.len()).flat_map(|i| (i + 1..nodes.len()).map(move |j| [i, j]));
-    let mut pairs: Vec<[usize; 2]> = pairs
-        .filter(|&[i, j]| apart(i, j) && !drawing.lines.contains(&[i, j]))
-        .collect();
+    let mut pairs: Vec<[usize; 2]> =
+        pairs.filter(|&[i, j]| apart(i, j) && !drawing.lines.contains(&[i, j])).collect();
     let length = |[i, j]: [usize; 2]| {
         let (a, b) = (nodes[i].at, nodes[j].at);
         (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)
