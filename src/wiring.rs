@@ -12,7 +12,7 @@ use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::scene::{BarrierTable, DesignTable, Scene};
 use rockfall::study::aim::Aim;
-use rockfall::terrain::grid::Grid;
+use rockfall::terrain::formats;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
 use rockfall::terrain::stl::write_binary;
@@ -104,6 +104,7 @@ pub(crate) fn run(
         }
         let results = output.finish()?;
         let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) else {
+            output::write_drawings(&order.out, plan)?;
             report::draw_run(&results, &plan.terrain)?;
             return Ok(Ended::Complete(report::headline(&results.hazard)));
         };
@@ -304,9 +305,9 @@ pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
     Ok(health.to_string())
 }
 
-/// Turns an ESRI ASCII grid into an STL file; says what was subtracted.
+/// Turns a GeoTIFF or an ESRI ASCII grid into an STL file; says what was subtracted.
 pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
-    let grid = Grid::read(grid)?;
+    let grid = formats::read_grid(grid)?;
     let origin_m = grid.map_origin_m();
     let facets = grid.facets(origin_m);
     write_binary(out, &facets)?;

@@ -112,8 +112,9 @@ pub(super) fn is_result(path: &Path) -> bool {
     match ending.as_str() {
         // the ground that figures are drawn on stands beside the maps
         "asc" if ["ground", "trees"].contains(&stem.as_str()) => true,
+        "tif" if stem == "ground" => true,
         "asc" | "tif" => Layer::ALL.iter().any(|layer| layer.file() == stem),
-        "geojson" => ["ends", "paths"].contains(&stem.as_str()),
+        "geojson" => ["ends", "paths", "zones", "lines"].contains(&stem.as_str()),
         "vtk" => stem == "paths",
         STATE => stem.parse::<usize>().is_ok(),
         _ => false,

@@ -14,6 +14,7 @@ mod read;
 mod rows;
 mod summary;
 mod table;
+mod used;
 mod vector;
 mod whole;
 
@@ -25,6 +26,7 @@ pub use progress::Identity;
 pub use read::{Results, read};
 pub use rows::{ImpactRow, PathRow};
 pub use summary::{Run, Summary};
+pub use used::{copy_used, write_drawings, write_ground};
 pub use whole::write_whole;
 
 use crate::error::{Error, Result};

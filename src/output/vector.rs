@@ -62,14 +62,14 @@ pub(super) fn write_paths(
 ///
 /// RFC 7946 knows longitude and latitude only. The older member `crs` says that these are map coordinates; GDAL and
 /// QGIS read it.
-struct Features<'a> {
+pub(super) struct Features<'a> {
     path: &'a Path,
     file: BufWriter<File>,
     is_first: bool,
 }
 
 impl<'a> Features<'a> {
-    fn create(path: &'a Path, epsg: Option<u32>) -> Result<Self> {
+    pub(super) fn create(path: &'a Path, epsg: Option<u32>) -> Result<Self> {
         let file = File::create(path).map_err(Error::file("create", path))?;
         let mut features = Self { path, file: BufWriter::new(file), is_first: true };
         let crs = epsg.map_or(String::new(), |code| {
@@ -84,7 +84,11 @@ impl<'a> Features<'a> {
         self.file.write_all(text.as_bytes()).map_err(Error::file("write", self.path))
     }
 
-    fn add(&mut self, geometry: &serde_json::Value, properties: &serde_json::Value) -> Result<()> {
+    pub(super) fn add(
+        &mut self,
+        geometry: &serde_json::Value,
+        properties: &serde_json::Value,
+    ) -> Result<()> {
         let comma = if std::mem::replace(&mut self.is_first, false) { "" } else { ",\n" };
         let feature = json!({ "type": "Feature", "geometry": geometry, "properties": properties });
         self.put(&format!("{comma}{feature}"))
@@ -98,7 +102,7 @@ impl<'a> Features<'a> {
         self.add(&geometry, &json!({ "index": index }))
     }
 
-    fn finish(mut self) -> Result<()> {
+    pub(super) fn finish(mut self) -> Result<()> {
         self.put("\n]}\n")?;
         self.file.flush().map_err(Error::file("write", self.path))
     }

@@ -51,6 +51,8 @@ use std::path::Path;
 pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     let ground = GroundRaster::from_terrain(terrain, GROUND_CELLS);
     ground.write(&results.dir)?;
+    let epsg = results.summary.maps.as_ref().and_then(|maps| maps.epsg);
+    GroundRaster::as_used(terrain).write_tif(&results.dir, epsg)?;
     draw(&gather::gather(results, Some(ground))?, &results.dir)
 }
 
@@ -63,6 +65,7 @@ pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
     if let Some(ground) = &ground {
         ground.write(&results.dir)?;
     }
+    output::copy_used(shard, &results.dir)?;
     draw(&gather::gather(results, ground)?, &results.dir)
 }
 

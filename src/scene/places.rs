@@ -112,6 +112,7 @@ impl TryFrom<Vec<Corner>> for Polyline {
 #[serde(try_from = "Corners", expecting = "a list of corners [x, y]")]
 pub struct Area {
     corners_m: Vec<Corner>,
+    holes_m: Vec<Vec<Corner>>,
     /// Its triangles, each with the area up to and including it (m²).
     triangles: Vec<([Corner; 3], f64)>,
 }
@@ -120,6 +121,11 @@ impl Area {
     /// Its corners (m), map coordinates.
     pub fn corners_m(&self) -> &[Corner] {
         &self.corners_m
+    }
+
+    /// Outlines of its holes (m), map coordinates.
+    pub fn holes_m(&self) -> &[Vec<Corner>] {
+        &self.holes_m
     }
 
     /// Its area (m²).
@@ -161,6 +167,7 @@ impl Area {
             let found = "found a hole that is not inside of its polygon, or meets another one";
             return Err(Flaw::new(found, ORDER));
         }
+        area.holes_m = holes_m.to_vec();
         Ok(area)
     }
 }
@@ -185,7 +192,7 @@ impl TryFrom<Vec<Corner>> for Area {
             return Err(Flaw::new(found, ORDER));
         }
         let triangles = ears(&corners_m)?;
-        Ok(Self { corners_m, triangles })
+        Ok(Self { corners_m, holes_m: Vec::new(), triangles })
     }
 }
 

@@ -113,6 +113,17 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
     }
 }
 
+/// Reads an elevation model: `GeoTIFF` or ESRI ASCII grid.
+///
+/// # Errors
+/// A file that cannot be read, or is none of them.
+pub fn read_grid(path: &Path) -> Result<Grid> {
+    match read(path, &Options::default())? {
+        Loaded::Grid { grid, .. } => Ok(grid),
+        _ => Err(wrong(path, "start", "found no grid", "write a GeoTIFF or an ESRI ASCII grid")),
+    }
+}
+
 #[cfg(feature = "cloud")]
 fn read_cloud(path: &Path, options: &Options) -> Result<Loaded> {
     cloud::read(path, options).map(Loaded::Cloud)

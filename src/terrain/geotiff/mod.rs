@@ -3,15 +3,15 @@
 //! The `tiff` crate decodes strips and tiles; the georeference is read here. Only the first image of a file counts: it is
 //! the one of full resolution, the others are overviews and masks of it.
 
+mod lzw;
 mod place;
-#[cfg(test)]
-mod tests;
 mod write;
 
 pub use write::{Image, encode};
 
 use crate::error::{Error, Result};
 use crate::terrain::grid::Grid;
+use lzw::Packed;
 use place::Place;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
@@ -88,7 +88,7 @@ pub fn parse<R: Read + Seek>(
         return Err(Error::input(file, "ImageWidth, ImageLength", found, remedy));
     }
     let window = place.window((width, height), box_m);
-    let mut heights = Heights::over(window);
+    let mut heights = Heights::over(window, most);
     heights.fill(&mut decoder, (width, height), &place, file)?;
     let grid = place.grid(heights.window, heights.values);
     Ok(Raster { grid, epsg: place.epsg })
@@ -101,12 +101,15 @@ type Window = [u32; 4];
 struct Heights {
     window: Window,
     values: Vec<Option<f64>>,
+    /// More than the file can hold.
+    most_cells: u64,
 }
 
 impl Heights {
-    fn over(window: Window) -> Self {
+    fn over(window: Window, most_cells: u64) -> Self {
         let [_, _, columns, rows] = window;
-        Self { window, values: vec![None; columns as usize * rows as usize] }
+        let values = vec![None; columns as usize * rows as usize];
+        Self { window, values, most_cells }
     }
 
     /// Decodes the strips or tiles that meet the window.
@@ -119,14 +122,21 @@ impl Heights {
     ) -> Result<()> {
         let [first_column, first_row, columns, rows] = self.window;
         let (wide, high) = decoder.chunk_dimensions();
-        if wide == 0 || high == 0 {
+        let most = self.most_cells;
+        if wide == 0 || high == 0 || u64::from(wide) * u64::from(high) > most {
             let remedy = format!("write it again: {}", translate(file));
-            return Err(Error::input(file, "strips", "found strips without rows", remedy));
+            return Err(Error::input(
+                file,
+                "strips",
+                "found strips or tiles of no size, or of more than the file holds",
+                remedy,
+            ));
         }
         if columns == 0 || rows == 0 {
             return Ok(());
         }
         let lengths = chunk_lengths(decoder);
+        let packed = Packed::of(decoder).map_err(|why| damaged(file, &why))?;
         let across = width.div_ceil(wide);
         for down in first_row / high..=(first_row + rows - 1) / high {
             for along in first_column / wide..=(first_column + columns - 1) / wide {
@@ -135,21 +145,27 @@ impl Heights {
                 if lengths.get(chunk as usize) == Some(&0) {
                     continue;
                 }
-                let decoded = decoder.read_chunk(chunk).map_err(|why| damaged(file, &why))?;
                 let corner = [along * wide, down * high];
-                let across = wide.min(width - corner[0]);
-                let down = high.min(height - corner[1]);
-                self.take(&decoded, (corner, [across, down]), place, file)?;
+                let inside = [wide.min(width - corner[0]), high.min(height - corner[1])];
+                let (decoded, row) = match &packed {
+                    Some(packed) => {
+                        let samples = packed.samples(decoder, chunk, [wide, high, inside[1]]);
+                        (samples.map(DecodingResult::F64), wide)
+                    }
+                    None => (decoder.read_chunk(chunk), inside[0]),
+                };
+                let decoded = decoded.map_err(|why| damaged(file, &why))?;
+                self.take(&decoded, (corner, inside, row), place, file)?;
             }
         }
         Ok(())
     }
 
-    /// Copies the part of a chunk that lies in the window.
+    /// Copies the part of a chunk that lies in the window; its rows are so many samples apart.
     fn take(
         &mut self,
         decoded: &DecodingResult,
-        (corner, [wide, high]): ([u32; 2], [u32; 2]),
+        (corner, [wide, high], row_samples): ([u32; 2], [u32; 2], u32),
         place: &Place,
         file: &Path,
     ) -> Result<()> {
@@ -159,7 +175,8 @@ impl Heights {
         let south = (corner[1] + high).min(first_row + rows);
         for row in corner[1].max(first_row)..south {
             for column in corner[0].max(first_column)..east {
-                let at = (row - corner[1]) as usize * wide as usize + (column - corner[0]) as usize;
+                let at = (row - corner[1]) as usize * row_samples as usize
+                    + (column - corner[0]) as usize;
                 let Some(height_m) = value(at) else { continue };
                 let to = (row - first_row) as usize * columns as usize
                     + (column - first_column) as usize;

@@ -155,7 +155,7 @@ fn transform<R: Read + Seek>(
     }
     match (scale.as_deref(), ties.as_deref()) {
         (Some([dx, dy, ..]), Some([i, j, _, x, y, _])) => Ok([x - i * dx, *dx, y + j * dy, -dy]),
-        (Some(_), Some(_)) | (None, Some(_)) => refused(
+        (_, Some(_)) => refused(
             "ModelTiepoint",
             "found control points instead of one tie point and a pixel scale",
         ),

@@ -1,0 +1,476 @@
+//! From the engineer's own files to the same results: elevation models beside STL, drawings beside typed coordinates.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod program;
+mod tiff;
+
+use program::{rockfall, same_results};
+use rockfall::plan::Plan;
+use rockfall::scene::Scene;
+use rockfall::terrain::grid::Grid;
+use rockfall::terrain::stl::write_ascii;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tiff::{DEFLATE, Kind, Spec, write};
+
+/// Columns and rows; cells of 2 m, so that places have few digits in binary.
+const SIZE: [usize; 2] = [31, 41];
+const SOUTH_M: f64 = 1_200_100.25 - 2.0 * SIZE[1] as f64;
+const ORIGIN: &str = "origin_m = [2600000.0, 1200000.0, 0.0]\n";
+
+/// A slope of about 40° down to the south, with humps; heights in quarters.
+fn height(column: usize, row: usize) -> f64 {
+    let hump = ((column * 7 + row * 13) % 5) as f64;
+    60.0 - 1.75 * row as f64 + 0.25 * hump
+}
+
+/// A scene over one terrain table; the rest is the same for all.
+fn scene(terrain: &str, more: &str) -> String {
+    let place = "line_m = [[2600010.5, 1200090.25], [2600050.5, 1200090.25]]";
+    let place = if more.contains("zones =") { "" } else { place };
+    let (release, rest) = more.split_once('|').unwrap_or(("", more));
+    format!(
+        "title = \"In\"\nseed = 5\nepsg = 2056\n{ORIGIN}[[terrain]]\nground = \"rock\"\n{terrain}\n\
+         [grounds.rock]\nnormal_stiffness_n_m = 1e9\nshear_stiffness_n_m = 0.25e9\nfriction_angle_deg = 33.0\nrestitution = 0.3\n\
+         rolling_friction = 0.4\n\
+         [grounds.scree]\nnormal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 2.5e7\nfriction_angle_deg = 36.0\nrestitution = 0.1\n\
+         rolling_friction = 0.6\n\
+         [rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.3\n\
+         [release]\ncount = 40\nheight_m = 0.5\nvelocity_m_s = [0.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n{place}\n{release}\n\
+         [maps]\ncell_m = 4.0\n[solver]\nlongest_s = 20.0\n{rest}\n"
+    )
+}
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn put(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Runs a scene and gives the folder of its results.
+    fn run(&self, name: &str, scene: &str) -> PathBuf {
+        let (file, out) = (self.put(&format!("{name}.toml"), scene), self.path(name));
+        let said =
+            rockfall(&["run", file.to_str().unwrap(), "--quiet", "--out", out.to_str().unwrap()]);
+        assert!(said.status.success(), "{name}: {}", String::from_utf8_lossy(&said.stderr));
+        out
+    }
+
+    fn plan(&self, scene: &str) -> String {
+        let file = self.put("plan.toml", scene);
+        let said = rockfall(&["plan", file.to_str().unwrap()]);
+        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+        String::from_utf8(said.stdout).unwrap()
+    }
+
+    fn refusal(&self, scene: &str) -> String {
+        let file = self.put("refused.toml", scene);
+        let said = rockfall(&["plan", file.to_str().unwrap()]);
+        let stderr = String::from_utf8(said.stderr).unwrap();
+        assert_eq!((said.status.code(), stderr.lines().count()), (Some(2), 1), "{stderr}");
+        stderr
+    }
+
+    /// The slope in every format of a mesh or a grid.
+    fn slope(&self) {
+        let tif = Spec {
+            tile: Some([16, 16]),
+            packing: DEFLATE,
+            predictor: 3,
+            ..Spec::new(Kind::F32, SIZE)
+        };
+        self.put("dem.tif", write(&[(&tif, &height)]));
+        let values =
+            (0..SIZE[1]).flat_map(|row| (0..SIZE[0]).map(move |column| Some(height(column, row))));
+        let grid = Grid {
+            columns: SIZE[0],
+            rows: SIZE[1],
+            corner_m: [2_600_000.5, SOUTH_M],
+            cell_m: 2.0,
+            values: values.collect(),
+        };
+        self.put("dem.asc", grid.text());
+        let facets = grid.facets([2_600_000.0, 1_200_000.0, 0.0].into());
+        write_ascii(&self.path("dem.stl"), "slope", &facets).unwrap();
+        let (mut obj, mut ply) = (String::new(), String::new());
+        for (number, facet) in facets.iter().enumerate() {
+            for corner in facet {
+                let line = format!("{} {} {}\n", corner.x, corner.y, corner.z);
+                obj += &format!("v {line}");
+                ply += &line;
+            }
+            obj += &format!("f {} {} {}\n", 3 * number + 1, 3 * number + 2, 3 * number + 3);
+        }
+        for number in 0..facets.len() {
+            ply += &format!("3 {} {} {}\n", 3 * number, 3 * number + 1, 3 * number + 2);
+        }
+        self.put("dem.obj", obj);
+        self.put("dem.ply", format!(
+            "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+             element face {}\nproperty list uchar int vertex_indices\nend_header\n{ply}",
+            3 * facets.len(), facets.len()
+        ));
+    }
+}
+
+fn table(out: &Path) -> String {
+    fs::read_to_string(out.join("releases.csv")).unwrap()
+}
+
+/// The same triangles give the same bytes, whatever file they come from.
+#[test]
+fn every_format_of_the_same_slope_gives_the_same_bytes() {
+    let dir = Folder::new();
+    dir.slope();
+    let stl = table(&dir.run("stl", &scene("mesh = \"dem.stl\"", "")));
+    assert_eq!(stl.lines().count(), 41);
+    for format in ["tif", "asc", "obj", "ply", "stl"] {
+        let found = table(
+            &dir.run(&format!("of_{format}"), &scene(&format!("file = \"dem.{format}\""), "")),
+        );
+        assert!(found == stl, "{format}");
+    }
+}
+
+fn zones(properties: [&str; 2]) -> String {
+    let square = |x: f64, y: f64| {
+        format!(
+            "[[[{x},{y}],[{},{y}],[{},{}],[{x},{}],[{x},{y}]]]",
+            x + 8.0,
+            x + 8.0,
+            y + 6.0,
+            y + 6.0
+        )
+    };
+    let feature = |properties: &str, coordinates: String| {
+        format!(
+            "{{\"type\":\"Feature\",\"properties\":{{{properties}}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":{coordinates}}}}}"
+        )
+    };
+    let (a, b) = (square(2_600_010.5, 1_200_080.25), square(2_600_040.25, 1_200_070.5));
+    format!(
+        "{{\"type\":\"FeatureCollection\",\"features\":[{},{}]}}",
+        feature(properties[0], a),
+        feature(properties[1], b)
+    )
+}
+
+/// Releases come from the zones in the share of their weights, lie in them, and know which one they are of.
+#[test]
+fn zones_share_the_releases_by_weight() {
+    let dir = Folder::new();
+    dir.slope();
+    dir.put(
+        "zones.geojson",
+        zones(["\"weight\":1", "\"weight\":3,\"volume_m3\":12.5,\"frequency_per_year\":0.25"]),
+    );
+    let text = scene("file = \"dem.tif\"", "zones = \"zones.geojson\"|");
+    let file = dir.put("scene.toml", &text);
+    let scene = Scene::read(&file).unwrap();
+    let list = scene.release.zone_list.as_ref().unwrap();
+    let [first, second] = list.list() else { panic!("two zones") };
+    assert_eq!(
+        (first.weight, second.volume_m3, second.frequency_per_year),
+        (Some(1.0), Some(12.5), Some(0.25))
+    );
+    assert!((list.share(0) - 0.25).abs() + (list.share(1) - 0.75).abs() < 1e-12);
+    let (terrain, _) = scene.read_terrain().unwrap();
+    let plan = Plan::compile(&scene, terrain).unwrap();
+    let count = 4000;
+    let mut seen = [0usize; 2];
+    for index in 0..count {
+        let zone = plan.releases.zone_of(index).unwrap();
+        let at = plan.release(index).unwrap().motion.position_m + plan.terrain.origin_m;
+        let x = if zone == 0 { 2_600_010.5 } else { 2_600_040.25 };
+        assert!((x..=x + 8.0).contains(&at.x), "{index} of zone {zone} at {at}");
+        seen[zone] += 1;
+    }
+    // within four standard deviations of the binomial
+    let deviation = (count as f64 * 0.25 * 0.75).sqrt();
+    assert!((seen[0] as f64 - 0.25 * count as f64).abs() < 4.0 * deviation, "{seen:?}");
+}
+
+/// What a run says of its zones can be named by a scene again, and gives the same releases; lines and barriers too.
+#[test]
+fn what_is_written_can_be_read_again() {
+    let dir = Folder::new();
+    dir.slope();
+    dir.put("zones.geojson", zones(["\"name\":\"a\"", "\"name\":\"b\""]));
+    let barrier = "[[lines]]\nname = \"road\"\npoints_m = [[2600002.0, 1200040.5], [2600060.0, 1200040.5]]\n\
+                   [[barriers]]\nname = \"net\"\npoints_m = [[2600002.0, 1200050.125], [2600060.0, 1200050.5]]\nheight_m = 3.0\ncapacity_j = 1e5\n";
+    let out = dir.run(
+        "first",
+        &scene("file = \"dem.tif\"", &format!("zones = \"zones.geojson\"|{barrier}")),
+    );
+    for name in ["zones.geojson", "lines.geojson", "ground.tif"] {
+        assert!(out.join("maps").join(name).exists(), "{name}");
+    }
+    let drawn = fs::read_to_string(out.join("maps/lines.geojson")).unwrap();
+    let net: String =
+        drawn.replace("\"name\":\"road\"", "\"name\":\"road\",\"height_m\":3.0,\"capacity_j\":1e5");
+    assert!(
+        drawn.contains("2600060.0,1200050.5") && drawn.contains("\"capacity_j\":100000.0"),
+        "{drawn}"
+    );
+    dir.put("nets.geojson", net);
+    let again = scene(
+        "file = \"dem.tif\"",
+        "zones = \"first/maps/zones.geojson\"|[[barriers]]\nfile = \"nets.geojson\"\n",
+    );
+    let again = dir.run("again", &again);
+    assert!(table(&again) == table(&out));
+    assert_eq!(
+        fs::read(again.join("maps/zones.geojson")).unwrap(),
+        fs::read(out.join("maps/zones.geojson")).unwrap()
+    );
+    // the ground as used is an elevation model: the program reads it
+    let plan = dir.plan(&scene("file = \"first/maps/ground.tif\"", ""));
+    assert!(plan.contains("GeoTIFF") && plan.contains("EPSG:2056"), "{plan}");
+}
+
+/// A release file as Shapefile or as GeoJSON: the same bytes in every result.
+#[test]
+fn a_shapefile_and_a_geojson_of_the_same_zones_give_the_same_bytes() {
+    const SCRIPT: &str = "import sys\ntry:\n    import pyogrio\nexcept ImportError:\n    print('none'); sys.exit()\n\
+                          pyogrio.write_dataframe if False else None\nimport pyogrio.raw as r\n\
+                          m, _, g, f = r.read(sys.argv[1])\n\
+                          r.write(sys.argv[2], geometry=g, field_data=f, fields=m['fields'], geometry_type='Polygon', crs='EPSG:2056', driver='ESRI Shapefile')\nprint('done')\n";
+    let dir = Folder::new();
+    dir.slope();
+    let drawn = dir.put("zones.geojson", zones(["\"weight\":1.5", "\"weight\":3"]));
+    let shp = dir.path("zones.shp");
+    let said = std::process::Command::new("python3")
+        .args(["-c", SCRIPT, drawn.to_str().unwrap(), shp.to_str().unwrap()])
+        .output();
+    if said.is_ok_and(|said| String::from_utf8_lossy(&said.stdout).contains("done")) {
+        eprintln!("the Shapefile is GDAL's");
+    } else {
+        eprintln!("skipped GDAL's Shapefile: python3 has no pyogrio; the one written here is read");
+        let ring =
+            |x: f64, y: f64| [[x, y], [x, y + 6.0], [x + 8.0, y + 6.0], [x + 8.0, y], [x, y]];
+        let rings = [ring(2_600_010.5, 1_200_080.25), ring(2_600_040.25, 1_200_070.5)];
+        dir.put("zones.shp", shapefile(&rings));
+        dir.put("zones.dbf", weights(&["1.5", "3"]));
+    }
+    let run = |file: &str| {
+        dir.run(
+            &file.replace('.', "_"),
+            &scene("file = \"dem.asc\"", &format!("zones = \"{file}\"|")),
+        )
+    };
+    assert!(table(&run("zones.shp")) == table(&run("zones.geojson")));
+}
+
+/// Polygons of five corners, clockwise as the format wants them.
+fn shapefile(rings: &[[[f64; 2]; 5]]) -> Vec<u8> {
+    let mut shp = 9994i32.to_be_bytes().to_vec();
+    shp.resize(100, 0);
+    for (number, ring) in (1i32..).zip(rings) {
+        let mut content = 5i32.to_le_bytes().to_vec();
+        content.resize(36, 0);
+        content.extend([1i32, 5, 0].iter().flat_map(|x| x.to_le_bytes()));
+        content.extend(ring.iter().flatten().flat_map(|x| x.to_le_bytes()));
+        shp.extend(number.to_be_bytes());
+        shp.extend((content.len() as i32 / 2).to_be_bytes());
+        shp.extend(content);
+    }
+    shp
+}
+
+/// A table with the column `weight`.
+fn weights(values: &[&str]) -> Vec<u8> {
+    let mut dbf = vec![3, 24, 1, 1];
+    dbf.extend((values.len() as u32).to_le_bytes());
+    dbf.extend([65, 0, 9, 0]);
+    dbf.resize(32, 0);
+    dbf.extend(b"weight\0\0\0\0\0N\0\0\0\0\x08");
+    dbf.resize(64, 0);
+    dbf.push(b'\r');
+    dbf.extend(values.iter().flat_map(|value| format!(" {value:>8}").into_bytes()));
+    dbf
+}
+
+/// The plan names every file with its size, crop and holes; every byte of them counts in the scene's hash.
+#[test]
+fn the_plan_names_the_files_and_the_hash_knows_them() {
+    let dir = Folder::new();
+    dir.slope();
+    dir.put("zones.geojson", zones(["", ""]));
+    dir.put("grounds.geojson", zones(["\"class\":\"scree\"", "\"class\":\"scree\""]));
+    let text = |cut: &str| {
+        scene(
+            "file = \"dem.tif\"\ncrop = { reach_angle_deg = 20.0, margin_m = 4.0 }\nresample_m = 4.0",
+            &format!(
+                "zones = \"zones.geojson\"|[[ground_zones]]\nfile = \"grounds.geojson\"\nground_from = \"class\"\n{cut}"
+            ),
+        )
+    };
+    let (whole, cut) = (dir.plan(&text("")), dir.plan(&text("cut = true")));
+    let bytes = fs::metadata(dir.path("dem.tif")).unwrap().len();
+    for part in [
+        format!("dem.tif, {bytes} bytes"),
+        "zones.geojson, ".to_owned(),
+        "grounds.geojson, ".to_owned(),
+        "31 x 41 cells of 2 m".to_owned(),
+        "cropped to ".to_owned(),
+        "coarsened to ".to_owned(),
+        "0 cells without data, left as holes".to_owned(),
+        "over 2 zones of ".to_owned(),
+        "left whole, each with the ground at its centroid".to_owned(),
+    ] {
+        assert!(whole.contains(&part), "{part}\n{whole}");
+    }
+    assert!(cut.contains("are cut into ") && cut.contains("96.0 m² in plan view"), "{cut}");
+    let hash = |scene: &str| Scene::read(&dir.put("hashed.toml", scene)).unwrap().hash;
+    let before = hash(&text(""));
+    dir.put("grounds.geojson", zones(["\"class\":\"rock\"", "\"class\":\"scree\""]));
+    assert_ne!(hash(&text("")), before);
+}
+
+/// Every rock is on the ground of its triangle, drawn or not; a run with zones of ground is the same again and in parts.
+#[test]
+fn a_run_with_everything_drawn_is_the_same_in_parts() {
+    let dir = Folder::new();
+    let out = |name: &str| dir.path(name).to_str().unwrap().to_owned();
+    let scene = "examples/tyrol_gis.toml";
+    let run = |more: &[&str]| {
+        let words = [&["run", scene, "--quiet", "--releases", "30"], more].concat();
+        let said = rockfall(&words);
+        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    };
+    run(&["--out", &out("whole")]);
+    run(&["--shard", "1/2", "--out", &out("a")]);
+    run(&["--shard", "2/2", "--threads", "1", "--out", &out("b")]);
+    let said = rockfall(&["merge", &out("a"), &out("b"), "--out", &out("merged")]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    same_results(&dir.path("whole"), &dir.path("merged"));
+}
+
+#[test]
+fn what_does_not_fit_together_is_refused() {
+    let dir = Folder::new();
+    dir.slope();
+    dir.put("zones.geojson", zones(["\"weight\":1", ""]));
+    dir.put("good.geojson", zones(["\"class\":\"scree\"", "\"class\":\"sand\""]));
+    dir.put(
+        "swiss.geojson",
+        zones(["", ""]).replacen('{', "{\"crs\":{\"properties\":{\"name\":\"EPSG:21781\"}},", 1),
+    );
+    let table = |table: &str| scene("file = \"dem.tif\"", &format!("\n{table}"));
+    for (text, parts) in [
+        (
+            scene("file = \"dem.tif\"", "").replace("epsg = 2056", "epsg = 21781"),
+            ["found EPSG:2056 where the scene has EPSG:21781", "gdalwarp"],
+        ),
+        (
+            scene("file = \"dem.tif\"\nmesh = \"dem.stl\"", ""),
+            ["[[terrain]] #1 file", "remove it, or remove mesh"],
+        ),
+        (scene("", ""), ["[[terrain]] #1 mesh", "write mesh = \"slope.stl\", or file"]),
+        (scene("mesh = \"dem.stl\"\nresample_m = 4.0", ""), ["resample_m", "write file = …"]),
+        (
+            scene("file = \"dem.stl\"\nresample_m = 4.0", ""),
+            ["crop, resample_m", "a mesh is taken as it is"],
+        ),
+        (
+            scene("file = \"dem.tif\"\nresample_m = 1.0", ""),
+            ["finer than its cells of 2 m", "write 2 or more"],
+        ),
+        (scene("file = \"dem.tif\"\nup = \"y\"", ""), ["up, scale", "remove up and scale"]),
+        (
+            scene("file = \"dem.tif\"\ncrop = { box_m = [0.0, 0.0, 10.0, 10.0] }", ""),
+            ["found no cells of the file there", "2600000.5..2600062.5 east"],
+        ),
+        (
+            scene("file = \"dem.tif\"\ncrop = { reach_angle_deg = 30.0 }", ""),
+            ["margin_m", "write what is kept"],
+        ),
+        (scene("file = \"none.tif\"", ""), ["[[terrain]] #1 file", "none.tif: No such file"]),
+        (
+            scene("file = \"dem.tif\"", "zones = \"none.geojson\"|"),
+            ["[release] zones", "none.geojson is not there"],
+        ),
+        (
+            scene("file = \"dem.tif\"", "zones = \"zones.geojson\"|"),
+            ["feature 2: found no weight", "for all zones or for none"],
+        ),
+        (
+            scene("file = \"dem.tif\"", "zones = \"swiss.geojson\"|"),
+            ["found EPSG:21781 where the scene has EPSG:2056", "ogr2ogr -t_srs EPSG:2056"],
+        ),
+        (
+            table("[[lines]]\nfile = \"good.geojson\"\n"),
+            ["feature 1: found polygons", "write lines"],
+        ),
+        (
+            table("[[barriers]]\nfile = \"good.geojson\"\npoints_m = [[0.0, 0.0], [1.0, 1.0]]\n"),
+            ["[[barriers]] #1 points_m", "remove it"],
+        ),
+        (
+            table("[[ground_zones]]\nfile = \"good.geojson\"\nground_from = \"class\"\n"),
+            ["feature 2: found the ground sand", "known here: rock, scree"],
+        ),
+        (
+            table("[[ground_zones]]\nfile = \"good.geojson\"\nground_from = \"kind\"\n"),
+            ["feature 1: found no property kind", "write the name of a ground"],
+        ),
+        (
+            table("[[ground_zones]]\nfile = \"good.geojson\"\n"),
+            ["[[ground_zones]] #1 ground_from", "write ground_from"],
+        ),
+    ] {
+        let said = dir.refusal(&text);
+        assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}\n{said}");
+    }
+}
+
+/// Stems from drawn points are those from the same list.
+#[test]
+fn stems_stand_where_points_are_drawn() {
+    let dir = Folder::new();
+    dir.slope();
+    let list = dir.put(
+        "trees.csv",
+        "x,y,dbh_m,height_m\n2600020.5,1200060.5,0.4,18\n2600031.25,1200050.0,0.6,22\n",
+    );
+    let point = |x: f64, y: f64, dbh: f64, height: f64| {
+        format!(
+            "{{\"type\":\"Feature\",\"properties\":{{\"dbh_m\":{dbh},\"height_m\":{height}}},\"geometry\":{{\"type\":\"Point\",\"coordinates\":[{x},{y}]}}}}"
+        )
+    };
+    let points =
+        [point(2_600_020.5, 1_200_060.5, 0.4, 18.0), point(2_600_031.25, 1_200_050.0, 0.6, 22.0)]
+            .join(",");
+    let drawn = dir.put(
+        "trees.geojson",
+        format!("{{\"type\":\"FeatureCollection\",\"features\":[{points}]}}"),
+    );
+    let stems = |list: &Path| {
+        let out = dir.path("stems.stl");
+        let slope = dir.path("dem.stl");
+        let words = [
+            "mesh",
+            "stems",
+            list.to_str().unwrap(),
+            slope.to_str().unwrap(),
+            out.to_str().unwrap(),
+            "--origin-m",
+            "2600000,1200000,0",
+        ];
+        let said = rockfall(&words);
+        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+        fs::read(out).unwrap()
+    };
+    assert!(stems(&list) == stems(&drawn));
+}
