@@ -7,7 +7,9 @@ use las::{Builder, Point, Writer};
 use rockfall::rock::Vec3;
 use rockfall::terrain::cloud::{self, Cloud};
 use rockfall::terrain::formats::Options;
+use rockfall::terrain::grid::Grid;
 use rockfall::terrain::read::Source;
+use rockfall::terrain::stl::write_ascii;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain};
 use std::io::Cursor;
@@ -36,10 +38,14 @@ fn points() -> Vec<Point> {
 }
 
 fn ground_m(x: f64, y: f64) -> f64 {
-    (50.0 + 0.5 * (x - 2_600_000.0) - 0.25 * (y - 1_200_000.0)) * 1.0
+    50.0 + 0.5 * (x - 2_600_000.0) - 0.25 * (y - 1_200_000.0)
 }
 
 fn written(is_compressed: bool) -> Vec<u8> {
+    file_of(points(), is_compressed)
+}
+
+fn file_of(points: Vec<Point>, is_compressed: bool) -> Vec<u8> {
     let mut builder = Builder::from((1, 4));
     builder.point_format = Format::new(6).unwrap();
     builder.point_format.is_compressed = is_compressed;
@@ -51,7 +57,7 @@ fn written(is_compressed: bool) -> Vec<u8> {
         (axis.scale, axis.offset) = (0.001, offset);
     }
     let mut writer = Writer::new(Cursor::new(Vec::new()), builder.into_header().unwrap()).unwrap();
-    for point in points() {
+    for point in points {
         writer.write_point(Point { gps_time: Some(0.0), ..point }).unwrap();
     }
     writer.into_inner().unwrap().into_inner()
@@ -119,4 +125,77 @@ fn a_damaged_or_empty_cloud_is_refused() {
         let _ = parse(whole[..length].to_vec(), &Options::default());
     }
     assert!(parse(whole[..300].to_vec(), &Options::default()).is_err());
+}
+
+/// A slope as STL and as points at the same corners: other diagonals, the same statistics.
+#[test]
+fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
+    let dir = tempfile::tempdir().unwrap();
+    let (columns, rows) = (31usize, 41usize);
+    let height = |column: usize, row: usize| {
+        60.0 - 1.75 * row as f64 + 0.25 * ((column * 7 + row * 13) % 5) as f64
+    };
+    let values =
+        (0..rows).flat_map(|row| (0..columns).map(move |column| Some(height(column, row))));
+    let corner_m = [2_600_000.0, 1_200_000.0];
+    let grid = Grid { columns, rows, corner_m, cell_m: 2.0, values: values.collect() };
+    write_ascii(&dir.path().join("slope.stl"), "slope", &grid.facets(Vec3::zeros())).unwrap();
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let points = cells.map(|(column, row)| {
+        let [x, y] = grid.centre_m(column, row);
+        Point {
+            x,
+            y,
+            z: height(column, row),
+            classification: Classification::Ground,
+            ..Point::default()
+        }
+    });
+    std::fs::write(dir.path().join("slope.laz"), file_of(points.collect(), true)).unwrap();
+    let runouts = |terrain: &str| -> Vec<f64> {
+        let scene = format!(
+            "title = \"Cloud\"\nseed = 5\n[[terrain]]\nground = \"rock\"\n{terrain}\n\
+             [grounds.rock]\nnormal_stiffness_n_m = 1e9\nshear_stiffness_n_m = 0.25e9\nfriction_angle_deg = 33.0\n\
+             restitution = 0.3\nrolling_friction = 0.6\nroughness_deg = 5.0\n\
+             [rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.3\n\
+             [release]\ncount = 400\nheight_m = 0.5\nvelocity_m_s = [0.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+             line_m = [[2600010.0, 1200075.0], [2600050.0, 1200075.0]]\n[record]\npaths = 0\n"
+        );
+        let (file, out) = (dir.path().join("scene.toml"), dir.path().join("out"));
+        std::fs::write(&file, scene).unwrap();
+        let program = std::process::Command::new(env!("CARGO_BIN_EXE_rockfall"))
+            .args([
+                "run",
+                file.to_str().unwrap(),
+                "--quiet",
+                "--overwrite",
+                "--out",
+                out.to_str().unwrap(),
+            ])
+            .output()
+            .unwrap();
+        assert!(program.status.success(), "{}", String::from_utf8_lossy(&program.stderr));
+        let table = std::fs::read_to_string(out.join("releases.csv")).unwrap();
+        let column =
+            table.lines().next().unwrap().split(',').position(|name| name == "runout_m").unwrap();
+        table
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').nth(column).unwrap().parse().unwrap())
+            .collect()
+    };
+    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
+    let variance = |all: &[f64]| {
+        all.iter().map(|x| (x - mean(all)).powi(2)).sum::<f64>() / (all.len() - 1) as f64
+    };
+    let (mesh, cloud) =
+        (runouts("mesh = \"slope.stl\""), runouts("file = \"slope.laz\"\nresample_m = 2.0"));
+    let difference = mean(&mesh) - mean(&cloud);
+    // four standard errors of the difference of two means
+    let error = ((variance(&mesh) + variance(&cloud)) / mesh.len() as f64).sqrt();
+    assert!(
+        mean(&mesh) > 10.0 && difference.abs() < 4.0 * error,
+        "{difference} of {}, {error}",
+        mean(&mesh)
+    );
 }

@@ -1,128 +1,18 @@
 //! From the engineer's own files to the same results: elevation models beside STL, drawings beside typed coordinates.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking")]
 
+mod drawn;
 mod program;
+mod site;
 mod tiff;
 
+use drawn::{shapefile, weights, zones};
 use program::{rockfall, same_results};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
-use rockfall::terrain::grid::Grid;
-use rockfall::terrain::stl::write_ascii;
+use site::{Folder, scene};
 use std::fs;
-use std::path::{Path, PathBuf};
-use tiff::{DEFLATE, Kind, Spec, write};
-
-/// Columns and rows; cells of 2 m, so that places have few digits in binary.
-const SIZE: [usize; 2] = [31, 41];
-const SOUTH_M: f64 = 1_200_100.25 - 2.0 * SIZE[1] as f64;
-const ORIGIN: &str = "origin_m = [2600000.0, 1200000.0, 0.0]\n";
-
-/// A slope of about 40° down to the south, with humps; heights in quarters.
-fn height(column: usize, row: usize) -> f64 {
-    let hump = ((column * 7 + row * 13) % 5) as f64;
-    60.0 - 1.75 * row as f64 + 0.25 * hump
-}
-
-/// A scene over one terrain table; the rest is the same for all.
-fn scene(terrain: &str, more: &str) -> String {
-    let place = "line_m = [[2600010.5, 1200090.25], [2600050.5, 1200090.25]]";
-    let place = if more.contains("zones =") { "" } else { place };
-    let (release, rest) = more.split_once('|').unwrap_or(("", more));
-    format!(
-        "title = \"In\"\nseed = 5\nepsg = 2056\n{ORIGIN}[[terrain]]\nground = \"rock\"\n{terrain}\n\
-         [grounds.rock]\nnormal_stiffness_n_m = 1e9\nshear_stiffness_n_m = 0.25e9\nfriction_angle_deg = 33.0\nrestitution = 0.3\n\
-         rolling_friction = 0.4\n\
-         [grounds.scree]\nnormal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 2.5e7\nfriction_angle_deg = 36.0\nrestitution = 0.1\n\
-         rolling_friction = 0.6\n\
-         [rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.3\n\
-         [release]\ncount = 40\nheight_m = 0.5\nvelocity_m_s = [0.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n{place}\n{release}\n\
-         [maps]\ncell_m = 4.0\n[solver]\nlongest_s = 20.0\n{rest}\n"
-    )
-}
-
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn put(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.path().join(name);
-        fs::write(&path, bytes).unwrap();
-        path
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    /// Runs a scene and gives the folder of its results.
-    fn run(&self, name: &str, scene: &str) -> PathBuf {
-        let (file, out) = (self.put(&format!("{name}.toml"), scene), self.path(name));
-        let said =
-            rockfall(&["run", file.to_str().unwrap(), "--quiet", "--out", out.to_str().unwrap()]);
-        assert!(said.status.success(), "{name}: {}", String::from_utf8_lossy(&said.stderr));
-        out
-    }
-
-    fn plan(&self, scene: &str) -> String {
-        let file = self.put("plan.toml", scene);
-        let said = rockfall(&["plan", file.to_str().unwrap()]);
-        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-        String::from_utf8(said.stdout).unwrap()
-    }
-
-    fn refusal(&self, scene: &str) -> String {
-        let file = self.put("refused.toml", scene);
-        let said = rockfall(&["plan", file.to_str().unwrap()]);
-        let stderr = String::from_utf8(said.stderr).unwrap();
-        assert_eq!((said.status.code(), stderr.lines().count()), (Some(2), 1), "{stderr}");
-        stderr
-    }
-
-    /// The slope in every format of a mesh or a grid.
-    fn slope(&self) {
-        let tif = Spec {
-            tile: Some([16, 16]),
-            packing: DEFLATE,
-            predictor: 3,
-            ..Spec::new(Kind::F32, SIZE)
-        };
-        self.put("dem.tif", write(&[(&tif, &height)]));
-        let values =
-            (0..SIZE[1]).flat_map(|row| (0..SIZE[0]).map(move |column| Some(height(column, row))));
-        let grid = Grid {
-            columns: SIZE[0],
-            rows: SIZE[1],
-            corner_m: [2_600_000.5, SOUTH_M],
-            cell_m: 2.0,
-            values: values.collect(),
-        };
-        self.put("dem.asc", grid.text());
-        let facets = grid.facets([2_600_000.0, 1_200_000.0, 0.0].into());
-        write_ascii(&self.path("dem.stl"), "slope", &facets).unwrap();
-        let (mut obj, mut ply) = (String::new(), String::new());
-        for (number, facet) in facets.iter().enumerate() {
-            for corner in facet {
-                let line = format!("{} {} {}\n", corner.x, corner.y, corner.z);
-                obj += &format!("v {line}");
-                ply += &line;
-            }
-            obj += &format!("f {} {} {}\n", 3 * number + 1, 3 * number + 2, 3 * number + 3);
-        }
-        for number in 0..facets.len() {
-            ply += &format!("3 {} {} {}\n", 3 * number, 3 * number + 1, 3 * number + 2);
-        }
-        self.put("dem.obj", obj);
-        self.put("dem.ply", format!(
-            "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
-             element face {}\nproperty list uchar int vertex_indices\nend_header\n{ply}",
-            3 * facets.len(), facets.len()
-        ));
-    }
-}
+use std::path::Path;
 
 fn table(out: &Path) -> String {
     fs::read_to_string(out.join("releases.csv")).unwrap()
@@ -141,29 +31,6 @@ fn every_format_of_the_same_slope_gives_the_same_bytes() {
         );
         assert!(found == stl, "{format}");
     }
-}
-
-fn zones(properties: [&str; 2]) -> String {
-    let square = |x: f64, y: f64| {
-        format!(
-            "[[[{x},{y}],[{},{y}],[{},{}],[{x},{}],[{x},{y}]]]",
-            x + 8.0,
-            x + 8.0,
-            y + 6.0,
-            y + 6.0
-        )
-    };
-    let feature = |properties: &str, coordinates: String| {
-        format!(
-            "{{\"type\":\"Feature\",\"properties\":{{{properties}}},\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":{coordinates}}}}}"
-        )
-    };
-    let (a, b) = (square(2_600_010.5, 1_200_080.25), square(2_600_040.25, 1_200_070.5));
-    format!(
-        "{{\"type\":\"FeatureCollection\",\"features\":[{},{}]}}",
-        feature(properties[0], a),
-        feature(properties[1], b)
-    )
 }
 
 /// Releases come from the zones in the share of their weights, lie in them, and know which one they are of.
@@ -270,35 +137,6 @@ fn a_shapefile_and_a_geojson_of_the_same_zones_give_the_same_bytes() {
         )
     };
     assert!(table(&run("zones.shp")) == table(&run("zones.geojson")));
-}
-
-/// Polygons of five corners, clockwise as the format wants them.
-fn shapefile(rings: &[[[f64; 2]; 5]]) -> Vec<u8> {
-    let mut shp = 9994i32.to_be_bytes().to_vec();
-    shp.resize(100, 0);
-    for (number, ring) in (1i32..).zip(rings) {
-        let mut content = 5i32.to_le_bytes().to_vec();
-        content.resize(36, 0);
-        content.extend([1i32, 5, 0].iter().flat_map(|x| x.to_le_bytes()));
-        content.extend(ring.iter().flatten().flat_map(|x| x.to_le_bytes()));
-        shp.extend(number.to_be_bytes());
-        shp.extend((content.len() as i32 / 2).to_be_bytes());
-        shp.extend(content);
-    }
-    shp
-}
-
-/// A table with the column `weight`.
-fn weights(values: &[&str]) -> Vec<u8> {
-    let mut dbf = vec![3, 24, 1, 1];
-    dbf.extend((values.len() as u32).to_le_bytes());
-    dbf.extend([65, 0, 9, 0]);
-    dbf.resize(32, 0);
-    dbf.extend(b"weight\0\0\0\0\0N\0\0\0\0\x08");
-    dbf.resize(64, 0);
-    dbf.push(b'\r');
-    dbf.extend(values.iter().flat_map(|value| format!(" {value:>8}").into_bytes()));
-    dbf
 }
 
 /// The plan names every file with its size, crop and holes; every byte of them counts in the scene's hash.

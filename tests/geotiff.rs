@@ -54,12 +54,12 @@ fn combinations() -> Vec<Spec> {
                         [(false, false), (true, false), (false, true), (true, true)]
                     {
                         let spec = Spec {
-                            packing,
-                            predictor,
-                            tile,
-                            rows_per_strip,
                             big_endian,
                             big_tiff,
+                            tile,
+                            rows_per_strip,
+                            packing,
+                            predictor,
                             ..Spec::new(kind, SIZE)
                         };
                         all.extend(fits.then_some(spec));

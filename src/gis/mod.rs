@@ -113,13 +113,11 @@ impl Feature {
             Some(Value::Number(number)) => Some(*number),
             Some(Value::Text(text)) => text.trim().parse().ok(),
         };
-        match number.filter(|number| *number > 0.0 && number.is_finite()) {
-            Some(number) => Ok(Some(number)),
-            None => {
-                let found = format!("found {name} = {}", self.text(name).unwrap_or_default());
-                Err(self.wrong(file, found, "write a number above 0, or leave the property out"))
-            }
+        if let Some(number) = number.filter(|number| *number > 0.0 && number.is_finite()) {
+            return Ok(Some(number));
         }
+        let found = format!("found {name} = {}", self.text(name).unwrap_or_default());
+        Err(self.wrong(file, found, "write a number above 0, or leave the property out"))
     }
 
     /// Something is wrong with this feature.

@@ -100,7 +100,7 @@ fn holed_shapefile() -> (Vec<u8>, Vec<u8>) {
     let mut shp = 9994i32.to_be_bytes().to_vec();
     shp.resize(100, 0);
     shp.extend(1i32.to_be_bytes());
-    shp.extend((content.len() as i32 / 2).to_be_bytes());
+    shp.extend((content.len() as u32 / 2).to_be_bytes());
     shp.extend(content);
     let columns: [(&[u8], u8, u8); 3] =
         [(b"name", b'C', 6), (b"weight", b'N', 8), (b"frequency_", b'F', 10)];

@@ -26,7 +26,7 @@ fn code(text: &str) -> Option<u32> {
         let at = compact.rfind(mark)?;
         Some(&compact[at + mark.len()..])
     });
-    let rest = at.last()?;
+    let rest = at.max_by_key(|rest| std::cmp::Reverse(rest.len()))?;
     let digits = rest.trim_start_matches('"');
     let end = digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len());
     // of a part if more than the closing brackets of two levels follows

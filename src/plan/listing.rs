@@ -239,8 +239,13 @@ fn files(terrain: &Terrain) -> usize {
     paths.len()
 }
 
-fn input_file(InputFile { path, bytes }: &InputFile) -> String {
-    format!("{}, {} bytes", path.display(), bytes)
+fn input_file(InputFile { path, bytes, assumed }: &InputFile) -> String {
+    let system = match assumed.as_deref() {
+        None => String::new(),
+        Some("") => "; names no system of coordinates: taken as the scene's".to_owned(),
+        Some(name) => format!("; its system “{name}” has no EPSG code: taken as the scene's"),
+    };
+    format!("{}, {bytes} bytes{system}", path.display())
 }
 
 /// What zones of ground have done; both answers are counted, cutting triangles and leaving them whole.

@@ -16,7 +16,13 @@ pub struct InputFile {
     pub path: PathBuf,
     /// Its length.
     pub bytes: u64,
+    /// Of a drawing whose coordinates were taken as the scene's without an EPSG code that says so: the name of its system,
+    /// empty where it names none.
+    pub assumed: Option<String>,
 }
+
+/// The table, the entry of a list, and the key that name a file.
+type Named = (&'static str, Option<usize>, &'static str);
 
 impl Scene {
     /// Paths as seen from the working directory.
@@ -122,7 +128,7 @@ impl Scene {
             let length = std::fs::File::open(path)
                 .and_then(|mut file| std::io::copy(&mut file, &mut hash))?;
             hash.update(length.to_le_bytes());
-            inputs.push(InputFile { path: path.to_owned(), bytes: length });
+            inputs.push(InputFile { path: path.to_owned(), bytes: length, assumed: None });
             Ok(())
         };
         self.each_mesh(|mesh| take(mesh.path()).map_err(|error| unreadable(mesh, &error)))?;
@@ -141,13 +147,20 @@ impl Scene {
                 })?;
             }
         }
+        for input in &mut inputs {
+            let is_drawing = self.drawings().iter().any(|(_, file)| *file == input.path);
+            let layer = if is_drawing { gis::read(&input.path).ok() } else { None };
+            input.assumed = layer
+                .filter(|layer| layer.epsg.is_none())
+                .map(|layer| layer.system.unwrap_or_default());
+        }
         self.inputs = inputs;
         Ok(format!("{:x}", hash.finalize()))
     }
 
     /// Files with drawings: table, entry and key that name them.
-    fn drawings(&self) -> Vec<((&'static str, Option<usize>, &'static str), &Path)> {
-        let mut all: Vec<((&'static str, Option<usize>, &'static str), &Path)> = Vec::new();
+    fn drawings(&self) -> Vec<(Named, &Path)> {
+        let mut all: Vec<(Named, &Path)> = Vec::new();
         for (index, line) in self.line_entries.iter().enumerate() {
             all.extend(
                 line.file.iter().map(|file| (("lines", Some(index), "file"), file.as_path())),

@@ -1,4 +1,6 @@
-//! GeoTIFFs written byte by byte, so that every layout and packing can be tried without another program.
+//! `GeoTIFF` files written byte by byte, so that every layout and packing can be tried without another program.
+
+#![allow(missing_docs, dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use std::io::Write;
 
@@ -145,7 +147,7 @@ impl Spec {
                 let held = column < inside[0] && row < inside[1];
                 self.kind.bits(if held { value(x + column, y + row) } else { 7.0 })
             };
-            bytes.extend(self.row((0..wide).map(sample).collect()));
+            bytes.extend(self.row(&(0..wide).map(sample).collect::<Vec<_>>()));
         }
         match self.packing {
             PLAIN => bytes,
@@ -165,7 +167,7 @@ impl Spec {
         }
     }
 
-    fn row(&self, samples: Vec<Vec<u8>>) -> Vec<u8> {
+    fn row(&self, samples: &[Vec<u8>]) -> Vec<u8> {
         let bytes = self.kind.bytes();
         if self.predictor == 3 {
             // the most significant bytes first, then the next ones …, then differences of bytes

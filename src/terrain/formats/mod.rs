@@ -118,10 +118,10 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
 /// # Errors
 /// A file that cannot be read, or is none of them.
 pub fn read_grid(path: &Path) -> Result<Grid> {
-    match read(path, &Options::default())? {
-        Loaded::Grid { grid, .. } => Ok(grid),
-        _ => Err(wrong(path, "start", "found no grid", "write a GeoTIFF or an ESRI ASCII grid")),
+    if let Loaded::Grid { grid, .. } = read(path, &Options::default())? {
+        return Ok(grid);
     }
+    Err(wrong(path, "start", "found no grid", "write a GeoTIFF or an ESRI ASCII grid"))
 }
 
 #[cfg(feature = "cloud")]

@@ -9,8 +9,8 @@ use std::path::Path;
 /// Whether bytes begin like an OBJ file: it has no mark of its own.
 pub(super) fn begins_like_obj(bytes: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
-    let words = head.lines().filter_map(|line| line.split_ascii_whitespace().next());
-    let first = words.filter(|word| !word.starts_with('#')).next();
+    let mut words = head.lines().filter_map(|line| line.split_ascii_whitespace().next());
+    let first = words.find(|word| !word.starts_with('#'));
     first.is_some_and(|word| ["v", "vn", "vt", "o", "g", "s", "mtllib", "usemtl"].contains(&word))
 }
 
@@ -60,7 +60,11 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Soup> {
 /// The corner that `7`, `7/1`, `7//3` or, counted from the end, `-1` names.
 fn corner(corners: &[Vec3], word: &[u8]) -> Option<Vec3> {
     let number = word.split(|&byte| byte == b'/').next()?;
-    let number: i64 = std::str::from_utf8(number).ok()?.parse().ok()?;
-    let index = if number < 0 { corners.len() as i64 + number } else { number - 1 };
-    corners.get(usize::try_from(index).ok()?).copied()
+    let number: isize = std::str::from_utf8(number).ok()?.parse().ok()?;
+    let index = if number < 0 {
+        corners.len().checked_add_signed(number)?
+    } else {
+        usize::try_from(number - 1).ok()?
+    };
+    corners.get(index).copied()
 }

@@ -236,6 +236,7 @@ fn damaged(file: &Path, why: &TiffError) -> Error {
 }
 
 /// Why a number is no height.
+#[derive(Clone, Copy)]
 enum Implausible {
     Infinite,
     Undeclared,

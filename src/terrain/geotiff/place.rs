@@ -114,8 +114,10 @@ impl Place {
     /// A height, or none where the file says so.
     pub(super) fn height_m(&self, found: f64) -> std::result::Result<Option<f64>, Implausible> {
         // A no-data value in few digits stands for the same 32-bit number.
-        let is_nodata =
-            |nodata: f64| found.to_bits() == nodata.to_bits() || found as f32 == nodata as f32;
+        let is_nodata = |nodata: f64| {
+            found.to_bits() == nodata.to_bits()
+                || (found as f32).to_bits() == (nodata as f32).to_bits()
+        };
         if found.is_nan() || self.nodata.is_some_and(is_nodata) {
             return Ok(None);
         }
@@ -189,13 +191,11 @@ fn nodata<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path) -> Result<Optio
     };
     let text = value.into_string().unwrap_or_default();
     let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
-    match text.parse() {
-        Ok(number) => Ok(Some(number)),
-        Err(_) => {
-            let remedy = format!("write a number: gdal_edit.py -a_nodata -9999 {}", file.display());
-            Err(Error::input(file, "GDAL_NODATA", format!("found `{text}`"), remedy))
-        }
+    if let Ok(number) = text.parse() {
+        return Ok(Some(number));
     }
+    let remedy = format!("write a number: gdal_edit.py -a_nodata -9999 {}", file.display());
+    Err(Error::input(file, "GDAL_NODATA", format!("found `{text}`"), remedy))
 }
 
 /// The directory of keys: key, tag of its value, count, value or offset.

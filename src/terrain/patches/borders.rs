@@ -1,6 +1,6 @@
 //! The sides of all zones, sorted into strips from south to north.
 
-use super::{Corner, Patch, side};
+use super::{Corner, Patch, exact_side};
 
 /// Strips at most: a strip is as high as it takes to hold a few sides.
 const MOST_STRIPS: usize = 4096;
@@ -27,7 +27,7 @@ impl Borders {
             for ring in &patch.rings_m {
                 for (k, &from) in ring.iter().enumerate() {
                     let to = ring[(k + 1) % ring.len()];
-                    if from != to {
+                    if is_other(from, to) {
                         sides.push(if before(from, to) { [from, to] } else { [to, from] });
                         zone_of.push(zone);
                     }
@@ -82,7 +82,7 @@ impl Borders {
             // half-open, so that a corner counts once
             if (a[1] <= at[1]) != (b[1] <= at[1]) {
                 let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
-                inside ^= side(low, high, at) > 0.0;
+                inside ^= exact_side(low, high, at) > 0.0;
             }
         }
         if inside {
@@ -110,6 +110,11 @@ impl Borders {
         sides.dedup();
         sides
     }
+}
+
+/// Whether two corners differ, in any digit.
+pub(super) fn is_other([ax, ay]: Corner, [bx, by]: Corner) -> bool {
+    (ax - bx).abs() > 0.0 || (ay - by).abs() > 0.0
 }
 
 /// Whether a corner lies west of another, or south where both are as far west.

@@ -5,14 +5,14 @@
 
 use super::borders::{Borders, before};
 use super::triangulate::triangulate;
-use super::{Corner, area_m2, side};
+use super::{Corner, SNAP_M, area_m2, side};
 use crate::rock::Vec3;
 use crate::terrain::stl::Facet;
 
 /// Nodes in one triangle at most: the work grows with their third power.
 const MOST_NODES: usize = 1000;
 /// Pieces must cover their triangle to this share of its area (–), or it stays whole.
-const COVERED: f64 = 1e-6;
+const COVERED: f64 = 1e-4;
 
 /// A point in or on the triangle.
 #[derive(Debug, Clone, Copy)]
@@ -100,7 +100,7 @@ impl Drawing {
         for k in 0..3 {
             let (a, b) = (self.corner(k), self.corner(k + 1));
             let (from_a, from_b) = (side(p, q, a), side(p, q, b));
-            let (from_p, from_q) = (side(a, b, p), side(a, b, q));
+            let (from_p, from_q) = (self.from_edge(k, p), self.from_edge(k, q));
             if opposite(from_a, from_b) && opposite(from_p, from_q) {
                 let node = self.crossing(k, [p, q]);
                 hits.push((from_p / (from_p - from_q), node));
@@ -127,7 +127,7 @@ impl Drawing {
     }
 
     fn node(&mut self, node: Node) -> usize {
-        let known = self.nodes.iter().position(|known| known.at == node.at);
+        let known = self.nodes.iter().position(|known| near(known.at, node.at));
         known.unwrap_or_else(|| {
             self.nodes.push(node);
             self.nodes.len() - 1
@@ -136,19 +136,28 @@ impl Drawing {
 
     /// The node of a point that lies in the triangle or on its edges.
     fn inside(&mut self, at: Corner) -> Option<usize> {
-        let from = [0, 1, 2].map(|k| side(self.corner(k), self.corner(k + 1), at));
+        if let Some(corner) = (0..3).find(|&k| near(self.corner(k), at)) {
+            return Some(corner);
+        }
+        let from = [0, 1, 2].map(|k| self.from_edge(k, at));
         if from.iter().any(|&area| area < 0.0) {
             return None;
         }
         let on = from.map(is_zero);
-        let point = match on.iter().position(|&on| on) {
-            Some(k) => {
-                let (low, high) = self.sorted(k);
-                low.point + share_of([low.at, high.at], at) * (high.point - low.point)
-            }
-            None => self.blend(from),
+        let Some(k) = on.iter().position(|&on| on) else {
+            return Some(self.node(Node { at, point: self.blend(from), on }));
         };
-        Some(self.node(Node { at, point, on }))
+        // snapped onto the edge, at the same place for both of its triangles
+        let (low, high) = self.sorted(k);
+        let share = share_of([low.at, high.at], at);
+        let at = between(low.at, high.at, share);
+        Some(self.node(Node { at, point: low.point + share * (high.point - low.point), on }))
+    }
+
+    /// On which side of an edge a place lies, to the same bits for both of its triangles: positive inside.
+    fn from_edge(&self, k: usize, at: Corner) -> f64 {
+        let (a, b) = (self.corner(k), self.corner(k + 1));
+        if before(a, b) { side(a, b, at) } else { -side(b, a, at) }
     }
 
     /// The point of the file above a place inside; `from` are the areas over the edges.
@@ -169,7 +178,7 @@ impl Drawing {
         let (low, high) = self.sorted(k);
         let (from_low, from_high) = (side(p, q, low.at), side(p, q, high.at));
         let share = from_low / (from_low - from_high);
-        let at = [0, 1].map(|axis| low.at[axis] + share * (high.at[axis] - low.at[axis]));
+        let at = between(low.at, high.at, share);
         let mut on = [false; 3];
         on[k] = true;
         self.node(Node { at, point: low.point + share * (high.point - low.point), on })
@@ -211,19 +220,31 @@ impl Drawing {
         let (from, to) = (self.nodes[k].at, self.nodes[l].at);
         let (from_i, from_j) = (side(from, to, ends[0]), side(from, to, ends[1]));
         let share = from_i / (from_i - from_j);
-        let at = [0, 1].map(|axis| ends[0][axis] + share * (ends[1][axis] - ends[0][axis]));
+        let at = between(ends[0], ends[1], share);
         let [one, two] = [self.nodes[i].point, self.nodes[j].point];
         let made = self.node(Node { at, point: one + share * (two - one), on: [false; 3] });
         // rounding may have put it on an end: then it breaks nothing
         (made != i && made != j).then(|| {
             if made != k && made != l {
                 let at = self.lines.iter().position(|line| *line == [k, l]);
-                at.into_iter().for_each(|at| self.lines[at] = [k.min(made), k.max(made)]);
-                self.add_line([made, l]);
+                if let Some(at) = at {
+                    self.lines[at] = [k.min(made), k.max(made)];
+                    self.add_line([made, l]);
+                }
             }
             made
         })
     }
+}
+
+/// Whether two places are one.
+fn near([ax, ay]: Corner, [bx, by]: Corner) -> bool {
+    (ax - bx).hypot(ay - by) <= SNAP_M
+}
+
+/// The place at a share of the way (–).
+fn between(from: Corner, to: Corner, share: f64) -> Corner {
+    [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
 }
 
 fn is_zero(area: f64) -> bool {
@@ -240,7 +261,7 @@ pub(super) fn cross([a, b]: [Corner; 2], [c, d]: [Corner; 2]) -> bool {
     opposite(side(a, b, c), side(a, b, d)) && opposite(side(c, d, a), side(c, d, b))
 }
 
-/// Whether a point lies exactly on a line, between its ends.
+/// Whether a point lies on a line, between its ends.
 pub(super) fn lies_within([a, b]: [Corner; 2], p: Corner) -> bool {
     let share = share_of([a, b], p);
     is_zero(side(a, b, p)) && share > 0.0 && share < 1.0

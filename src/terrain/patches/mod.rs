@@ -160,8 +160,19 @@ fn area_m2([a, b, c]: [Corner; 3]) -> f64 {
     0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs()
 }
 
-/// On which side of the line from `a` to `b` a point lies: positive on the left, exact in sign (Shewchuk 1997).
+/// How near a point lies to a line that it is taken to lie on it (m): drawings are snapped to corners and edges of a grid in
+/// decimal digits, which come back a little beside them. Ten times the rounding of map coordinates, far below any survey.
+const SNAP_M: f64 = 1e-7;
+
+/// On which side of the line from `a` to `b` a point lies: positive on the left, exact in sign (Shewchuk 1997), 0 within
+/// [`SNAP_M`] of it. Twice the area of the triangle (m²).
 fn side(a: Corner, b: Corner, p: Corner) -> f64 {
+    let area = exact_side(a, b, p);
+    if area.abs() <= SNAP_M * (b[0] - a[0]).hypot(b[1] - a[1]) { 0.0 } else { area }
+}
+
+/// The same without a margin.
+fn exact_side(a: Corner, b: Corner, p: Corner) -> f64 {
     let coord = |[x, y]: Corner| robust::Coord { x, y };
     robust::orient2d(coord(a), coord(b), coord(p))
 }
