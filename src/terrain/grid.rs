@@ -236,6 +236,14 @@ pub(super) fn begins_like_grid(bytes: &[u8]) -> bool {
     word.is_some_and(|word| KEYWORDS.iter().any(|known| known.eq_ignore_ascii_case(word)))
 }
 
+/// A part was asked for in which a file has no cells; `outline` is what it has: west, south, east, north (m).
+pub(super) fn nothing_there(file: &Path, [west, south, east, north]: [f64; 4]) -> Error {
+    let found = format!(
+        "found no cells of the file there: it has {west}..{east} east, {south}..{north} north"
+    );
+    Error::input(file, "crop", found, "write map coordinates inside the file")
+}
+
 fn clipped(line: &str) -> String {
     line.chars().take(40).collect()
 }

@@ -3,7 +3,7 @@
 use super::{Crop, Loaded, Options, wider};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
-use crate::terrain::grid::Grid;
+use crate::terrain::grid::{Grid, nothing_there};
 use crate::terrain::stl::{Format, Soup};
 use std::path::Path;
 
@@ -96,11 +96,7 @@ fn of_grid(
         let whole = outline(&grid);
         grid = grid.cropped(box_m);
         if grid.columns < FEWEST || grid.rows < FEWEST {
-            let [west, south, east, north] = whole;
-            let found = format!(
-                "found no cells of the file there: it has {west}..{east} east, {south}..{north} north"
-            );
-            return Err(Error::input(file, "crop", found, "write map coordinates inside the file"));
+            return Err(nothing_there(file, whole));
         }
         let [west, south, east, north] = outline(&grid);
         note(format!(

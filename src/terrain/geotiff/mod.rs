@@ -10,7 +10,7 @@ mod write;
 pub use write::{Image, encode};
 
 use crate::error::{Error, Result};
-use crate::terrain::grid::Grid;
+use crate::terrain::grid::{self, Grid};
 use lzw::Packed;
 use place::Place;
 use std::fs::File;
@@ -88,6 +88,9 @@ pub fn parse<R: Read + Seek>(
         return Err(Error::input(file, "ImageWidth, ImageLength", found, remedy));
     }
     let window = place.window((width, height), box_m);
+    if box_m.is_some() && (window[2] < 2 || window[3] < 2) {
+        return Err(grid::nothing_there(file, place.outline((width, height))));
+    }
     let mut heights = Heights::over(window, most);
     heights.fill(&mut decoder, (width, height), &place, file)?;
     let grid = place.grid(heights.window, heights.values);

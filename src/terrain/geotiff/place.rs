@@ -92,6 +92,13 @@ impl Place {
         [first_column, first_row, columns, rows]
     }
 
+    /// West, south, east and north of the whole image (m).
+    pub(super) fn outline(&self, (width, height): (u32, u32)) -> [f64; 4] {
+        let [x, y] = self.first_m;
+        let (wide, high) = (f64::from(width) * self.cell_m, f64::from(height) * self.cell_m);
+        if self.northward { [x, y, x + wide, y + high] } else { [x, y - high, x + wide, y] }
+    }
+
     /// The grid of a window, northern row first.
     pub(super) fn grid(&self, window: Window, mut values: Vec<Option<f64>>) -> Grid {
         let [first_column, first_row, columns, rows] = window;
