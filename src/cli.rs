@@ -1,8 +1,8 @@
 //! The command line: what is asked, what is said, and the exit status. Only this file prints.
 
-#![expect(clippy::print_stderr, reason = "this is the face of the program")]
-
+mod signals;
 mod study;
+mod words;
 
 use crate::wiring::{self, Ended, Order, Part};
 use clap::{Args, Parser, Subcommand};
@@ -10,15 +10,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;
-use rockfall::scene::{MOST_RELEASES, Scene};
+use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
 use rockfall::study::verify::Verification;
+use rockfall::terrain::weld::Up;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit status when a check failed.
 const CHECK_FAILED: u8 = 1;
@@ -26,9 +25,6 @@ const CHECK_FAILED: u8 = 1;
 const WRONG_INPUT: u8 = 2;
 /// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
 const INTERRUPTED: u8 = 130;
-
-/// Most worker threads: more than any machine has; a slip of the key must not start a hundred thousand.
-const MOST_THREADS: usize = 4096;
 
 /// Rockfall hazard on triangle meshes, with the numerical error beside every number.
 #[derive(Debug, Parser)]
@@ -89,6 +85,9 @@ enum MeshCommand {
         /// STL files
         #[arg(required = true)]
         files: Vec<PathBuf>,
+        /// Which axis of the files points up, as `up` in the scene: with y, (x, y, z) becomes (x, -z, y)
+        #[arg(long, value_name = "z|y", value_parser = words::up, default_value = "z")]
+        up: Up,
     },
     /// Turn a GeoTIFF or an ESRI ASCII grid into STL; subtract the map origin and print it
     FromGrid {
@@ -126,20 +125,22 @@ enum MeshCommand {
 
 #[derive(Debug, Args)]
 struct CalibrateArgs {
-    /// Scene file (TOML) with a table [calibrate]
-    scene: PathBuf,
-    /// Folder for calibration.csv and calibration.json [default: reports/<scene name>]
+    /// Scene files (TOML) with a table [calibrate]; several are fitted together, the first says what is varied
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Folder for trials, result and fitted scenes [default: reports/<first scene's name>]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Releases of each trial
-    #[arg(long, value_name = "N", value_parser = at_least_1, default_value = "400")]
+    #[arg(long, value_name = "N", value_parser = words::of_a_trial, default_value = "400")]
     releases: usize,
     /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    #[arg(long, value_name = "N", value_parser = words::at_least_1)]
     threads: Option<usize>,
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a word of the command line")]
 struct RunArgs {
     /// Scene file (TOML)
     scene: PathBuf,
@@ -147,19 +148,19 @@ struct RunArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Number of releases, instead of the scene's
-    #[arg(long, value_name = "N", value_parser = at_least_1)]
+    #[arg(long, value_name = "N", value_parser = words::at_least_1)]
     releases: Option<usize>,
     /// Seed, instead of the scene's
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = threads)]
+    #[arg(long, value_name = "N", value_parser = words::threads)]
     threads: Option<usize>,
     /// One release alone, with its full path recorded
     #[arg(long, value_name = "I", conflicts_with = "resume")]
     only: Option<usize>,
     /// The K-th of N parts of the releases, K from 1 to N; `rockfall merge` puts them together
-    #[arg(long, value_name = "K/N", value_parser = shard, conflicts_with = "only")]
+    #[arg(long, value_name = "K/N", value_parser = words::shard, conflicts_with = "only")]
     shard: Option<Part>,
     /// Go on with more releases until a 95 % interval is narrower, as in "runout.p95 < 1.0 m"
     #[arg(long, value_name = "AIM", conflicts_with_all = ["only", "shard"])]
@@ -170,6 +171,9 @@ struct RunArgs {
     /// Replace the results in the folder
     #[arg(long)]
     overwrite: bool,
+    /// Run also what takes more memory or disk than the plan allows
+    #[arg(long, short)]
+    yes: bool,
     /// Print nothing but errors
     #[arg(long, short)]
     quiet: bool,
@@ -177,6 +181,7 @@ struct RunArgs {
 
 /// Reads the command line, does what it asks and answers with the exit status.
 pub(crate) fn main() -> ExitCode {
+    signals::outlive_file_limits();
     let done = match Asked::parse().command {
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
@@ -186,7 +191,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
         Command::Calibrate(args) => calibrate(&args),
         Command::Study(command) => study::study(&command),
-        Command::Mesh(MeshCommand::Check { files }) => wiring::check_meshes(&files).map(say),
+        Command::Mesh(MeshCommand::Check { files, up }) => {
+            wiring::check_meshes(&files, up).map(say)
+        }
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
             wiring::mesh_from_grid(&grid, &out).map(say)
         }
@@ -196,22 +203,27 @@ pub(crate) fn main() -> ExitCode {
         Command::Mesh(MeshCommand::Make { kind, out }) => wiring::make_mesh(&kind, &out).map(say),
     };
     done.unwrap_or_else(|error| {
-        eprintln!("error: {error}");
+        complain(format_args!("error: {error}"));
         ExitCode::from(WRONG_INPUT)
     })
 }
 
 fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
-    let scene = Scene::read(&args.scene)?;
-    let name = args.scene.file_stem().unwrap_or_default();
+    let scenes = args.scenes.iter().map(|scene| Scene::read(scene));
+    let scenes = scenes.collect::<Result<Vec<_>>>()?;
+    let name = args.scenes[0].file_stem().unwrap_or_default();
     let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
-    wiring::calibrate(&scene, (args.releases, args.threads), &out).map(say)
+    let bar = bar(rockfall::calibrate::planned(&scenes[0]), "trials");
+    let said = wiring::calibrate(&scenes, (args.releases, args.threads), &out, || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(say(said))
 }
 
 fn plan(scene: &Path) -> Result<ExitCode> {
     let scene = Scene::read(scene)?;
     let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
+    wiring::read_measured(&plan)?;
     Ok(say(format!("{health}\n{plan}")))
 }
 
@@ -223,7 +235,7 @@ fn verify(out: &Path) -> Result<ExitCode> {
 }
 
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
-    let mode = if overwrite { Mode::Overwrite } else { Mode::Fresh };
+    let mode = if overwrite { Mode::Overwrite } else { Mode::Merge };
     wiring::merge(shards, out, mode)?;
     Ok(say(format!("results in {}", out.display())))
 }
@@ -232,15 +244,24 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
     let (terrain, health) = scene.read_terrain()?;
     let mut plan = Plan::compile(&scene, terrain)?;
+    let order = args.order();
+    if !args.yes {
+        plan.cost(order.part.range(plan.count).len()).check()?;
+    }
     if !args.quiet {
         say(&plan);
     }
-    let order = args.order();
     let bar = args.progress(order.part.range(plan.count).len());
-    let ended = wiring::run(&mut plan, &health, &order, stop_at_ctrl_c, |done, asked| {
-        bar.set_length(asked as u64);
-        bar.set_position(done as u64);
-    })?;
+    let ended = wiring::run(
+        &mut plan,
+        &health,
+        &order,
+        |flag| signals::stop_at(&flag),
+        |done, asked| {
+            bar.set_length(asked as u64);
+            bar.set_position(done as u64);
+        },
+    )?;
     match ended {
         Ended::Interrupted(done, asked) => {
             bar.abandon();
@@ -322,11 +343,7 @@ impl RunArgs {
         if self.quiet {
             return ProgressBar::hidden();
         }
-        let bar = ProgressBar::new(asked as u64);
-        match ProgressStyle::with_template("{bar:40} {pos}/{len} rocks, {per_sec}, {eta} left") {
-            Ok(style) => bar.with_style(style),
-            Err(_) => bar,
-        }
+        bar(asked, "rocks")
     }
 
     /// Says how to go on.
@@ -336,9 +353,19 @@ impl RunArgs {
         if !self.resume {
             words.push("--resume".to_owned());
         }
-        eprintln!("interrupted: {done} of {asked} releases are written");
-        eprintln!("go on with: rockfall {}", words.join(" "));
+        complain(format_args!("interrupted: {done} of {asked} releases are written"));
+        complain(format_args!("go on with: rockfall {}", words.join(" ")));
         ExitCode::from(INTERRUPTED)
+    }
+}
+
+/// A bar over so many things.
+fn bar(asked: usize, what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(asked as u64);
+    let looks = format!("{{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
+    match ProgressStyle::with_template(&looks) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
     }
 }
 
@@ -351,16 +378,9 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-/// Ctrl-C or SIGTERM raises the flag: the chunk in hand is finished and written before anything ends.
-/// The second one ends at once: what is on the disk is good whenever a run is cut off.
-fn stop_at_ctrl_c(flag: Arc<AtomicBool>) -> Result<()> {
-    let stop = move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED.into());
-        }
-    };
-    ctrlc::set_handler(stop)
-        .map_err(|error| Error::Request(format!("cannot watch for Ctrl-C: {error}")))
+/// Says what is wrong; where even that cannot be written (a full disk, nobody there) the status must do.
+fn complain(text: impl Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Prints; a reader that has gone away (`rockfall plan … | head`) is no error.
@@ -369,31 +389,9 @@ fn say(text: impl Display) -> ExitCode {
     let mut out = std::io::stdout().lock();
     match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            eprintln!("error: cannot print: {error}");
+            complain(format_args!("error: cannot print: {error}"));
             ExitCode::from(WRONG_INPUT)
         }
         _ => ExitCode::SUCCESS,
-    }
-}
-
-fn shard(text: &str) -> std::result::Result<Part, String> {
-    let numbers = text.split_once('/').map(|(number, of)| (number.parse(), of.parse()));
-    match numbers {
-        Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Part::Shard { number, of }),
-        _ => Err("write K/N, K from 1 to N: 3/16 is the third of 16 parts".to_owned()),
-    }
-}
-
-fn threads(text: &str) -> std::result::Result<usize, String> {
-    match text.parse() {
-        Ok(number) if (1..=MOST_THREADS).contains(&number) => Ok(number),
-        _ => Err(format!("write a whole number from 1 to {MOST_THREADS}")),
-    }
-}
-
-fn at_least_1(text: &str) -> std::result::Result<usize, String> {
-    match text.parse() {
-        Ok(number) if (1..=MOST_RELEASES).contains(&number) => Ok(number),
-        _ => Err(format!("write a whole number from 1 to {MOST_RELEASES}")),
     }
 }

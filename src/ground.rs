@@ -1,5 +1,6 @@
 //! How a ground answers a rock: springs, friction, damping from restitution, rolling friction, roughness.
 
+use crate::math;
 use crate::rock::Rock;
 use std::f64::consts::{PI, TAU};
 
@@ -18,6 +19,8 @@ pub struct Ground {
     pub rolling_friction: f64,
     /// Largest random tilt of the contact normal at an impact (rad), 0 = none.
     pub roughness_rad: f64,
+    /// Way over which one tilted facet reaches (m), positive; `None` = the radius of the rock.
+    pub roughness_length_m: Option<f64>,
 }
 
 /// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.
@@ -60,6 +63,8 @@ pub struct Law {
     pub restitution: f64,
     /// Largest random tilt of the normal (rad).
     pub roughness_rad: f64,
+    /// Way over which one tilted facet reaches (m).
+    pub roughness_length_m: f64,
     /// `√(p_N/m)` (rad/s).
     pub omega: f64,
 }
@@ -90,6 +95,7 @@ impl Law {
         capture_m_s: 0.0,
         restitution: 0.0,
         roughness_rad: 0.0,
+        roughness_length_m: 0.0,
         omega: 0.0,
     };
 
@@ -122,12 +128,33 @@ impl Law {
             // The contact point's mass along the surface is 2/7 m.
             c_s: 2.0 * damped * (p_s * m * 2.0 / 7.0).sqrt(),
             c_r: 2.0 * (k_r * 1.4 * m).sqrt() * radius,
-            friction: ground.friction_angle_rad.tan(),
+            friction: math::tan(ground.friction_angle_rad),
             rolling_m: ground.rolling_friction * radius,
             capture_m_s: capture.own_m_s.unwrap_or_else(|| physical.max(least)),
             restitution: ground.restitution.unwrap_or(1.0),
             roughness_rad: ground.roughness_rad,
+            roughness_length_m: ground.roughness_length_m.unwrap_or(radius),
             omega,
+        }
+    }
+}
+
+impl Law {
+    /// The same law for a patch of stiffness `gain2 = |a|²` (–) among several that are pressed at once: its effective mass is
+    /// `m/|a|²`, so `c_N` goes with `|a|`, and parallel dashpots take `share` of theirs (–), so that the damping ratio, and
+    /// with it the restitution, does not depend on how many patches there are.
+    #[must_use]
+    #[inline]
+    pub fn of_patch(&self, gain2: f64, share: f64) -> Self {
+        if gain2 == 1.0 && share == 1.0 {
+            return *self;
+        }
+        let gain = gain2.sqrt();
+        Self {
+            p_n: self.p_n * gain2,
+            c_n: self.c_n * (gain * share),
+            c_n_captured: self.c_n_captured * (gain * share),
+            ..*self
         }
     }
 }
@@ -141,11 +168,11 @@ pub fn restitution(zeta: f64) -> f64 {
     let angle_over_sine = if off.abs() < 1e-9 {
         1.0 + off / 6.0
     } else if off > 0.0 {
-        zeta.acos() / off.sqrt()
+        math::acos(zeta) / off.sqrt()
     } else {
-        zeta.acosh() / (-off).sqrt()
+        math::acosh(zeta) / (-off).sqrt()
     };
-    (-2.0 * zeta * angle_over_sine).exp()
+    math::exp(-2.0 * zeta * angle_over_sine)
 }
 
 /// The damping ratio ζ that gives restitution `e` (0..1), the inverse of [`restitution`] by bisection.
@@ -182,8 +209,8 @@ pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
     let wd = omega * (1.0 - zeta * zeta).sqrt();
     let (x0, b) = (g_n / (omega * omega), (v - al * g_n / (omega * omega)) / wd);
     let state = |t: f64| {
-        let (s, c) = (wd * t).sin_cos();
-        let fade = (-al * t).exp();
+        let (s, c) = math::sin_cos(wd * t);
+        let fade = math::exp(-al * t);
         let x = x0 + fade * (b * s - x0 * c);
         let speed = fade * ((b * wd + al * x0) * c + (x0 * wd - al * b) * s);
         (x, speed)
@@ -227,9 +254,9 @@ fn first_trough(p: f64, zeta: f64) -> (f64, f64) {
     let wd = (1.0 - zeta * zeta).sqrt();
     let (off, slope) = (2.0 * zeta * p - 1.0, p + 2.0 * zeta * (1.0 - 2.0 * zeta * p));
     let across = -(slope + zeta * off) / wd;
-    let low = PI - (zeta / wd).atan();
-    let t = (low - across.atan2(off)).rem_euclid(TAU) / wd;
-    (t, 1.0 + off.hypot(across) * (-zeta * t).exp() * low.cos())
+    let low = PI - math::atan(zeta / wd);
+    let t = (low - math::atan2(across, off)).rem_euclid(TAU) / wd;
+    (t, 1.0 + math::hypot(off, across) * math::exp(-zeta * t) * math::cos(low))
 }
 
 /// What restitution asks of the normal dashpot.

@@ -10,9 +10,12 @@
 //!
 //! The modules below stand in the order of the floors of a house: each uses only modules above it in the list.
 //! SI units and `f64` throughout; z points up. The library prints nothing.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 // words
 pub mod error;
+pub mod math;
+pub mod file;
 pub mod clock;
 pub mod chance;
 pub mod rock;

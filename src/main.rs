@@ -1,4 +1,5 @@
 //! The `rockfall` command.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod cli;
 mod wiring;

@@ -1,11 +1,14 @@
 //! What a scene needs and what it leaves out, each with its reason; compiled once, shared by all threads.
 
+mod apart;
+mod cost;
 mod grounds;
 mod inputs;
 mod listing;
 mod stiffness;
 mod watch;
 
+pub use cost::Cost;
 pub use stiffness::OwnDissipation;
 pub use watch::{Curtain, Lattice, Piece, Watch};
 
@@ -13,12 +16,10 @@ use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
-use crate::release::{self, Release, Releases};
+use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, InputFile, Polyline, RecordTable, Scene, SolverTable};
 use crate::step::{Scheme, Settings};
-use crate::terrain::Terrain;
-use crate::terrain::patches::Patched;
-use crate::terrain::stems::Stems;
+use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
 use std::path::PathBuf;
 
@@ -70,7 +71,7 @@ pub struct Plan {
     pub scene_file: PathBuf,
     /// SHA-256 (hexadecimal) of the scene's text and its mesh files.
     pub scene_hash: String,
-    /// Version of this crate.
+    /// Version of this crate, and after the + the fingerprint of its sources.
     pub version: &'static str,
     /// EPSG code of the map coordinates.
     pub epsg: Option<u32>,
@@ -132,6 +133,8 @@ pub struct Plan {
     pub maps: Part<Lattice>,
     /// Grounds with values of the catalogue: name, what was taken, source.
     pub catalogued: Vec<String>,
+    /// Up to which slope each ground stops a rolling sphere, in words.
+    pub rolling_stops: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
     /// What went in, as name and value.
@@ -169,31 +172,32 @@ impl Plan {
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings(&scene.solver);
+        grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
         let mut warnings = grounds::unused(scene, &terrain);
+        releases.try_out(&terrain, &mut warnings)?;
         stiffness::check(scene, &terrain, &mut warnings)?;
         let own_dissipation = stiffness::own_dissipation(scene, step.step_s, &mut warnings);
-        flutter(&step, &mut warnings);
+        stiffness::flutter(&step, &mut warnings);
+        let longest_s = scene.solver.longest_s.unwrap_or(LONGEST_S);
+        stiffness::too_short(&step, longest_s, &mut warnings);
         let values = || scene.grounds.values();
         let between = scene.release.together.then(|| between_rocks(scene)).flatten();
         let rolls = values().any(|ground| can_exceed_0(ground.rolling_friction.as_ref()));
         let is_rough = values().any(|ground| can_exceed_0(ground.roughness_deg.as_ref()));
-        Ok(Self {
+        let plan = Self {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
             scene_hash: scene.hash.clone(),
-            version: env!("CARGO_PKG_VERSION"),
+            version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
             epsg: scene.epsg.or(terrain.epsg),
             seed: scene.seed,
             count: scene.release.count,
             releases,
             radii_m: scene.rocks.radius_m.reckoned(),
             input_files: scene.inputs.clone(),
-            ground_zones: Part::when(
-                terrain.patched.clone(),
-                "the scene has none, every file has one ground",
-            ),
+            ground_zones: Part::when(terrain.patched.clone(), "every file has one ground"),
             ground_names: scene.grounds.keys().cloned().collect(),
             gravity_m_s2: scene.gravity_m_s2,
             step,
@@ -203,7 +207,7 @@ impl Plan {
                 speed_m_s: scene.solver.rest_speed_m_s.unwrap_or(REST_SPEED_M_S),
                 time_s: scene.solver.rest_time_s.unwrap_or(REST_TIME_S),
             },
-            longest_s: scene.solver.longest_s.unwrap_or(LONGEST_S),
+            longest_s,
             trees: Part::when(tree_triangles(&terrain), "the scene has none"),
             breaking: Part::when(
                 terrain.stems.as_ref().map(Stems::count),
@@ -223,7 +227,7 @@ impl Plan {
                 "one rock has 6 unknowns, a dense factor is enough",
             ),
             bonds: bonds(scene),
-            paths: paths(&scene.record, scene.release.count),
+            paths: paths(&scene.record),
             impacts: Part::when(
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
@@ -244,10 +248,15 @@ impl Plan {
                 inputs::ground_source(scene, &grounds::catalogued(scene)),
             ],
             catalogued: grounds::catalogued(scene),
+            rolling_stops: grounds::rolling_stops(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             terrain,
-        })
+        };
+        if plan.rock_against_rock.is_kept() {
+            plan.world()?;
+        }
+        Ok(plan)
     }
 
     /// Draws release `index`, a pure function of scene, seed and index.
@@ -256,6 +265,14 @@ impl Plan {
     /// No ground below the point drawn, or a rock that starts inside the ground or a tree.
     pub fn release(&self, index: usize) -> Result<Release> {
         self.releases.release(&self.terrain, index)
+    }
+
+    /// The same, or what is known of a rock that finds no place to start from.
+    ///
+    /// # Errors
+    /// As [`Self::release`].
+    pub fn try_release(&self, index: usize) -> std::result::Result<Release, Box<Lost>> {
+        self.releases.try_release(&self.terrain, index)
     }
 
     /// What every rock is watched for.
@@ -270,17 +287,25 @@ impl Plan {
     /// the answer.
     #[must_use]
     pub fn keep_everything(self) -> Self {
-        let triangles = if let Part::Kept(triangles) = self.trees { triangles } else { 0 };
-        let step_s = if let Part::Kept(paths) = &self.paths { paths.step_s } else { PATH_STEP_S };
+        let plan = self.without_kernels();
+        let triangles = if let Part::Kept(triangles) = plan.trees { triangles } else { 0 };
+        let step_s = if let Part::Kept(paths) = &plan.paths { paths.step_s } else { PATH_STEP_S };
         Self {
             trees: Part::Kept(triangles),
             rolling: Part::Kept(()),
             roughness: Part::Kept(()),
-            paths: Part::Kept(Paths { first: self.count, step_s }),
+            paths: Part::Kept(Paths { first: plan.count, step_s }),
             impacts: Part::Kept(()),
-            terrain: self.terrain.with_every_feature(),
-            ..self
+            terrain: plan.terrain.with_every_feature(),
+            ..plan
         }
+    }
+
+    /// The same plan with every impact followed step by step: the same motion within the error allowed.
+    #[must_use]
+    pub fn without_kernels(mut self) -> Self {
+        self.step.plane_impacts = false;
+        self
     }
 }
 
@@ -299,6 +324,7 @@ fn settings(solver: &SolverTable) -> Settings {
         tolerance_m_s: solver.tolerance_m_s.unwrap_or(tolerance_m_s),
         step_s: solver.step_s.unwrap_or(step_s),
         shear_memory: solver.shear_memory.unwrap_or(true),
+        plane_impacts: matches!(scheme, Scheme::Adaptive | Scheme::Reference),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
 }
@@ -312,6 +338,7 @@ fn between_rocks(scene: &Scene) -> Option<Ground> {
         restitution: contact.restitution,
         rolling_friction: 0.0,
         roughness_rad: 0.0,
+        roughness_length_m: None,
     })
 }
 
@@ -330,8 +357,9 @@ fn bonds(scene: &Scene) -> Part<Strength> {
     )
 }
 
-fn paths(record: &RecordTable, count: usize) -> Part<Paths> {
-    let first = record.paths.unwrap_or(PATHS).min(count);
+/// Not cut to the number of releases: a run that goes on with more keeps as many paths as one that asked for them at once.
+fn paths(record: &RecordTable) -> Part<Paths> {
+    let first = record.paths.unwrap_or(PATHS);
     let step_s = record.path_step_s.unwrap_or(PATH_STEP_S);
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
 }
@@ -368,17 +396,4 @@ fn tree_triangles(terrain: &Terrain) -> Option<usize> {
 
 fn can_exceed_0(value: Option<&Distribution>) -> bool {
     value.is_some_and(|value| value.support().1 > 0.0)
-}
-
-/// A tolerance above twice the capture speed lets slow rocks flutter for ever.
-fn flutter(step: &Settings, warnings: &mut Vec<String>) {
-    if let Some(capture) =
-        step.capture_speed_m_s.filter(|capture| step.tolerance_m_s > 2.0 * capture)
-    {
-        warnings.push(format!(
-            "capture_speed_m_s = {capture} is below half the tolerance of {} m/s: slow rocks may flutter and never come to rest; write {} or more",
-            step.tolerance_m_s,
-            0.5 * step.tolerance_m_s
-        ));
-    }
 }

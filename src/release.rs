@@ -1,19 +1,30 @@
 //! Rock number i: drawn from the scene, the seed and i, and put on the terrain.
 
-use crate::chance::{Distribution, Purpose, stream, unit};
+mod clear;
+mod tried;
+
+use crate::chance::{Chance, Distribution, Purpose, stream, unit};
 use crate::error::{Error, Result};
-use crate::flight::{Landing, Parabola, leap};
 use crate::ground::Ground;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, Zones};
 use crate::terrain::Terrain;
-use parry3d_f64::query::PointQuery;
-use parry3d_f64::shape::Triangle;
+use clear::{clear_of, distance_m};
 use std::path::PathBuf;
 
 /// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
 /// six or seven digits, and so deep a spring holds no energy worth naming.
-const TYPED_DEPTH: f64 = 1e-6;
+pub(crate) const TYPED_DEPTH: f64 = 1e-6;
+
+/// Places drawn for one release on a line or in an area before it is given up: where a tenth of the zone can be used, one
+/// release in 40 000 is.
+const MOST_DRAWS: usize = 100;
+/// Narrower in plan view than this (m), meshes are walls or dust, no ground.
+pub(crate) const NO_WIDTH_M: f64 = 1e-3;
+/// Why a release cannot be made.
+const NO_GROUND: &str = "no ground below";
+/// Why a release cannot be made.
+const IN_GROUND: &str = "in the ground or a tree";
 
 /// One release, drawn: a pure function of scene, seed and index.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +35,19 @@ pub struct Release {
     pub motion: Motion,
     /// Ground values, in the order of the scene's grounds.
     pub grounds: Vec<Ground>,
+}
+
+/// A release that cannot be made: the rock, and where it was to start (NaN what is not known of it).
+#[derive(Debug)]
+pub struct Lost {
+    /// The rock.
+    pub rock: Rock,
+    /// Where it was to start (local coordinates).
+    pub start: Motion,
+    /// Why not, in few words.
+    pub why: &'static str,
+    /// The message for its user.
+    error: Error,
 }
 
 /// Where rocks are released, in map coordinates.
@@ -50,6 +74,8 @@ pub struct Releases {
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
     radius_m: Distribution,
+    /// Radii of a table's blocks, taken in turn with their places (m); empty if they are drawn.
+    radii_m: Vec<f64>,
     density_kg_m3: f64,
     grounds: Vec<GroundTable>,
 }
@@ -63,20 +89,10 @@ impl Releases {
     /// coordinates.
     pub fn compile(scene: &Scene, terrain: &Terrain) -> Result<Self> {
         let asked = &scene.release;
-        let place = match (&asked.points_m, &asked.line_m, &asked.polygon_m, &asked.zone_list) {
-            (Some(points), None, None, None) => Where::Points(points.clone()),
-            (None, Some(line), None, None) => Where::Line(line.clone()),
-            (None, None, Some(area), None) => Where::Area(area.clone()),
-            (None, None, None, Some(zones)) => Where::Zones(zones.clone()),
-            _ => {
-                let remedy = "write exactly one of points_m, line_m, polygon_m and zones";
-                return Err(Error::input(
-                    &scene.file,
-                    "[release]",
-                    "found none or several",
-                    remedy,
-                ));
-            }
+        let place = if asked.blocks.is_empty() {
+            Self::place_asked(scene)?
+        } else {
+            Where::Points(asked.blocks.iter().map(Point::of_block).collect())
         };
         let releases = Self {
             file: scene.file.clone(),
@@ -87,11 +103,12 @@ impl Releases {
             velocity_m_s: asked.velocity_m_s.clone(),
             spin_rad_s: asked.spin_rad_s.clone(),
             radius_m: scene.rocks.radius_m.clone(),
+            radii_m: asked.blocks.iter().map_while(|block| block.radius_m).collect(),
             density_kg_m3: scene.rocks.density_kg_m3,
             grounds: scene.grounds.values().cloned().collect(),
         };
-        for (who, corner) in releases.place.corners_m() {
-            releases.ground_m(terrain, corner, &format!("[release] {who}"))?;
+        for (number, (who, corner)) in releases.place.corners_m().into_iter().enumerate() {
+            releases.check_corner(terrain, number, corner, &format!("[release] {who}"))?;
         }
         if let Where::Points(points) = &releases.place {
             for index in 0..points.len().min(asked.count) {
@@ -101,6 +118,20 @@ impl Releases {
         Ok(releases)
     }
 
+    fn place_asked(scene: &Scene) -> Result<Where> {
+        let asked = &scene.release;
+        match (&asked.points_m, &asked.line_m, &asked.polygon_m, &asked.zone_list) {
+            (Some(points), None, None, None) => Ok(Where::Points(points.clone())),
+            (None, Some(line), None, None) => Ok(Where::Line(line.clone())),
+            (None, None, Some(area), None) => Ok(Where::Area(area.clone())),
+            (None, None, None, Some(zones)) => Ok(Where::Zones(zones.clone())),
+            _ => {
+                let remedy = "write exactly one of points_m, line_m, polygon_m, table and zones";
+                Err(Error::input(&scene.file, "[release]", "found none or several", remedy))
+            }
+        }
+    }
+
     /// Where rocks are released.
     pub fn place(&self) -> &Where {
         &self.place
@@ -108,11 +139,27 @@ impl Releases {
 
     /// The zone from which release `index` starts, by its place in [`Zones::list`]; none where the scene has no zones.
     pub fn zone_of(&self, index: usize) -> Option<usize> {
+        self.draw_zone(&mut stream(self.seed, Purpose::Place, index))
+    }
+
+    /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
+    /// one, so that every zone keeps its share.
+    fn draw_zone(&self, chance: &mut Chance) -> Option<usize> {
         let Where::Zones(zones) = &self.place else { return None };
-        let mut chance = stream(self.seed, Purpose::Place, index);
-        // the place within the zone is drawn first
-        let [.., which] = [0; 4].map(|_| unit(&mut chance));
-        Some(zones.pick(which))
+        Some(zones.pick(unit(chance)))
+    }
+
+    /// Looks for ground below an entry of the place, or beside a centre that is given with its height.
+    fn check_corner(&self, terrain: &Terrain, entry: usize, at_m: Corner, who: &str) -> Result<()> {
+        let Where::Points(points) = &self.place else {
+            return self.ground_m(terrain, at_m, who).map(|_| ());
+        };
+        let Some(z) = points[entry].height_m else {
+            return self.ground_m(terrain, at_m, who).map(|_| ());
+        };
+        let [x, y] = local(terrain, at_m);
+        let radius_m = self.unplaced(entry).rock.radius_m;
+        self.check_held(terrain, (Vec3::new(x, y, z - terrain.origin_m.z), radius_m), at_m, who)
     }
 
     /// Draws release `index`: the same alone, resumed, or among a million.
@@ -121,45 +168,123 @@ impl Releases {
     /// No ground below the point drawn, or a rock that starts inside ground or tree, with index and
     /// coordinates.
     pub fn release(&self, terrain: &Terrain, index: usize) -> Result<Release> {
+        self.try_release(terrain, index).map_err(|lost| lost.error)
+    }
+
+    /// The same, or what is known of a rock that finds no place to start from.
+    ///
+    /// # Errors
+    /// As [`Self::release`].
+    pub fn try_release(
+        &self,
+        terrain: &Terrain,
+        index: usize,
+    ) -> std::result::Result<Release, Box<Lost>> {
+        self.place_rock(terrain, index).0
+    }
+
+    /// Draws a rock and a place for it. On a line or in an area a place without ground, or without room for the rock,
+    /// is drawn again: rocks are released uniformly over what is left. Says how many places were drawn.
+    fn place_rock(
+        &self,
+        terrain: &Terrain,
+        index: usize,
+    ) -> (std::result::Result<Release, Box<Lost>>, usize) {
+        let mut release = self.unplaced(index);
+        let mut chance = stream(self.seed, Purpose::Place, index);
+        let draws = if matches!(self.place, Where::Points(_)) { 1 } else { MOST_DRAWS };
+        let zone = self.draw_zone(&mut chance).unwrap_or_default();
+        let mut lost = None;
+        for drawn in 1..=draws {
+            let at_m = self.draw_place(&mut chance, (index, zone));
+            let why = match self.centre(terrain, (at_m, release.rock.radius_m), &mut chance, index)
+            {
+                Ok(centre) => {
+                    release.motion.position_m = centre;
+                    match self.check_clear(terrain, index, &release) {
+                        Ok(()) => return (Ok(release), drawn),
+                        Err(error) => (IN_GROUND, error),
+                    }
+                }
+                Err(error) => {
+                    let [x, y] = local(terrain, at_m.0);
+                    release.motion.position_m = Vec3::new(x, y, f64::NAN);
+                    (NO_GROUND, error)
+                }
+            };
+            let (rock, start) = (release.rock, release.motion);
+            lost.get_or_insert(Box::new(Lost { rock, start, why: why.0, error: why.1 }));
+        }
+        // at least one place was drawn
+        (lost.map_or(Ok(release), Err), draws)
+    }
+
+    /// Everything of a release but its place.
+    fn unplaced(&self, index: usize) -> Release {
         let grounds = self.draw_grounds(index);
-        let rock = Rock {
-            radius_m: self.radius_m.draw(&mut stream(self.seed, Purpose::Size, index)),
-            density_kg_m3: self.density_kg_m3,
+        let radius_m = if self.radii_m.is_empty() {
+            self.radius_m.draw(&mut stream(self.seed, Purpose::Size, index))
+        } else {
+            self.radii_m[index % self.radii_m.len()]
         };
+        let rock = Rock { radius_m, density_kg_m3: self.density_kg_m3 };
         let mut chance = stream(self.seed, Purpose::Start, index);
         let mut vector = |from: &[Distribution; 3]| {
             let [x, y, z] = from;
             Vec3::new(x.draw(&mut chance), y.draw(&mut chance), z.draw(&mut chance))
         };
         let (velocity_m_s, spin_rad_s) = (vector(&self.velocity_m_s), vector(&self.spin_rad_s));
-        let position_m = self.draw_centre(terrain, rock.radius_m, index)?;
-        let motion = Motion { time_s: 0.0, position_m, velocity_m_s, spin_rad_s };
-        let release = Release { rock, motion, grounds };
-        self.check_clear(terrain, index, &release)?;
-        Ok(release)
+        let motion = Motion { time_s: 0.0, position_m: Vec3::zeros(), velocity_m_s, spin_rad_s };
+        Release { rock, motion, grounds }
     }
 
-    /// The centre of a rock (m, local).
-    fn draw_centre(&self, terrain: &Terrain, radius_m: f64, index: usize) -> Result<Vec3> {
-        let mut chance = stream(self.seed, Purpose::Place, index);
-        let even = [0; 3].map(|_| unit(&mut chance));
-        let (at_m, fixed_m) = match &self.place {
+    /// A place on the map, in a zone if there are some, and the height of the rock's centre where it is given.
+    fn draw_place(&self, chance: &mut Chance, of: (usize, usize)) -> (Corner, Option<f64>) {
+        let (index, zone) = of;
+        let even = [0; 3].map(|_| unit(chance));
+        match &self.place {
             Where::Points(points) => {
                 let point = &points[index % points.len()];
                 (point.at_m, point.height_m)
             }
             Where::Line(line) => (line.at(even[0]), None),
             Where::Area(area) => (area.at(even), None),
-            Where::Zones(zones) => (zones.list()[zones.pick(unit(&mut chance))].at(even), None),
-        };
-        let ground_m = self.ground_m(terrain, at_m, &release_name(index))?;
-        let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(&mut chance));
-        let height_m = fixed_m.map(|z| z - terrain.origin_m.z);
+            Where::Zones(zones) => (zones.list()[zone].at(even), None),
+        }
+    }
+
+    /// The centre of a rock over a place (m, local).
+    fn centre(
+        &self,
+        terrain: &Terrain,
+        ((at_m, fixed_m), radius_m): ((Corner, Option<f64>), f64),
+        chance: &mut Chance,
+        index: usize,
+    ) -> Result<Vec3> {
         let [x, y] = local(terrain, at_m);
-        Ok(match height_m {
-            Some(z) => Vec3::new(x, y, z),
-            None => clear_of(terrain, Vec3::new(x, y, ground_m + gap_m + radius_m), radius_m),
-        })
+        if let Some(z) = fixed_m.map(|z| z - terrain.origin_m.z) {
+            let centre = Vec3::new(x, y, z);
+            self.check_held(terrain, (centre, radius_m), at_m, &release_name(index))?;
+            return Ok(centre);
+        }
+        let ground_m = self.ground_m(terrain, at_m, &release_name(index))?;
+        let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(chance));
+        Ok(clear_of(terrain, Vec3::new(x, y, ground_m + gap_m + radius_m), radius_m))
+    }
+
+    /// A centre given with its height may hang beyond the edge of the terrain where the rock touches it.
+    fn check_held(
+        &self,
+        terrain: &Terrain,
+        (centre, radius_m): (Vec3, f64),
+        at_m: Corner,
+        who: &str,
+    ) -> Result<()> {
+        let reach_m = radius_m * (1.0 + TYPED_DEPTH);
+        if distance_m(terrain, &centre, reach_m) < reach_m {
+            return Ok(());
+        }
+        self.ground_m(terrain, at_m, who).map(|_| ())
     }
 
     /// Height of the ground at a place of the map (m, local).
@@ -178,7 +303,9 @@ impl Releases {
         let pressed_m =
             rock.mass_kg() * self.gravity_m_s2 / stiffness.fold(f64::INFINITY, f64::min);
         let depth_m = rock.radius_m - distance_m(terrain, centre, rock.radius_m);
-        let buried = terrain.ground_under(centre.x, centre.y, centre.z).is_none();
+        // beyond the edge there is no ground to be under
+        let buried = terrain.ground_under(centre.x, centre.y, centre.z).is_none()
+            && terrain.ground_below(centre.x, centre.y).is_some();
         if depth_m <= 2.0 * pressed_m + TYPED_DEPTH * rock.radius_m && !buried {
             return Ok(());
         }
@@ -198,14 +325,23 @@ impl Releases {
 
     fn draw_grounds(&self, index: usize) -> Vec<Ground> {
         let mut chance = stream(self.seed, Purpose::Grounds, index);
-        let mut draw = |from: &Distribution| from.draw(&mut chance);
+        // How a block rolls is its shape, which it keeps: the same quantile on every ground.
+        let mut character = None;
         let draw_ground = |table: &GroundTable| Ground {
-            normal_stiffness_n_m: draw(&table.normal_stiffness_n_m),
-            shear_stiffness_n_m: draw(&table.shear_stiffness_n_m),
-            friction_angle_rad: draw(&table.friction_angle_deg).to_radians(),
-            restitution: table.restitution.as_ref().map(&mut draw),
-            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, &mut draw),
-            roughness_rad: table.roughness_deg.as_ref().map_or(0.0, &mut draw).to_radians(),
+            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut chance),
+            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut chance),
+            friction_angle_rad: table.friction_angle_deg.draw(&mut chance).to_radians(),
+            restitution: table.restitution.as_ref().map(|e| e.draw(&mut chance)),
+            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
+                let drawn = unit(&mut chance);
+                rolling.quantile(*character.get_or_insert(drawn))
+            }),
+            roughness_rad: table
+                .roughness_deg
+                .as_ref()
+                .map_or(0.0, |angle| angle.draw(&mut chance))
+                .to_radians(),
+            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut chance)),
         };
         self.grounds.iter().map(draw_ground).collect()
     }
@@ -247,39 +383,17 @@ fn local(terrain: &Terrain, [x, y]: Corner) -> Corner {
 /// What to write instead of a place outside: the box of the terrain on the map.
 pub(crate) fn outside(terrain: &Terrain) -> String {
     let (low, high) = terrain.index.bounds();
+    let narrowest_m = (high.x - low.x).min(high.y - low.y);
+    if narrowest_m < NO_WIDTH_M {
+        return format!(
+            "the meshes cover no ground in plan view (their box is {:.3e} x {:.3e} m): add a slope below, or look at up and scale",
+            high.x - low.x,
+            high.y - low.y
+        );
+    }
     let (low, high) = (low + terrain.origin_m, high + terrain.origin_m);
     format!(
         "write map coordinates on the slope; its box is {}..{} east, {}..{} north",
         low.x, high.x, low.y, high.y
     )
-}
-
-/// A rock over steep ground may be in it although its lowest point is clear: then it is lifted, straight up, until it
-/// just touches. The place itself where it is clear already, or where no such height is near.
-fn clear_of(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
-    if distance_m(terrain, &centre, radius_m) >= radius_m {
-        return centre;
-    }
-    let start = centre + Vec3::z() * (LIFT * radius_m);
-    let down = Parabola { start, velocity: -Vec3::z(), gravity: 0.0, radius: radius_m };
-    match leap(terrain, &down, LIFT * radius_m, &mut 0) {
-        Landing::Touch(way_m) if way_m > 0.0 => start - Vec3::z() * way_m,
-        _ => centre,
-    }
-}
-
-/// A rock in steep ground is lifted by up to this many radii (–): enough for slopes up to 80°.
-const LIFT: f64 = 6.0;
-
-/// Distance from a point to the nearest triangle (m), or `reach_m` when none is nearer.
-fn distance_m(terrain: &Terrain, point: &Vec3, reach_m: f64) -> f64 {
-    let mut nearest = reach_m;
-    terrain.index.near(point, reach_m, |start, count| {
-        for triangle in start..start + count {
-            let [a, b, c] = terrain.corners_m(triangle).map(Into::into);
-            let distance = Triangle::new(a, b, c).distance_to_local_point((*point).into(), true);
-            nearest = nearest.min(distance);
-        }
-    });
-    nearest
 }

@@ -2,9 +2,10 @@
 
 pub(crate) mod study;
 
-use rockfall::calibrate::{self, Trial};
+use rockfall::calibrate::{self, Ends, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
+use rockfall::file;
 use rockfall::hazard::{Barrier, Elsewhere, Hazard, LineInfo, MapFrame, Rule, Way};
 use rockfall::output::{self, Identity, Mode, Output, RunInfo};
 use rockfall::plan::{self, Curtain, Plan};
@@ -16,6 +17,7 @@ use rockfall::terrain::formats;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
 use rockfall::terrain::stl::write_binary;
+use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain, make};
 use rockfall::trajectory::{self, Scratch};
 use std::ops::Range;
@@ -102,14 +104,16 @@ pub(crate) fn run(
         if done < asked.len() {
             return Ok(Ended::Interrupted(done, asked.len()));
         }
+        // Only the last round is finished: until then the folder keeps what the next one goes on from.
+        if let Some(releases) = more(order.until.as_ref(), output.hazard(), plan.count)? {
+            plan.count = releases;
+            mode = Mode::Extend;
+            continue;
+        }
         let results = output.finish()?;
-        let Some(releases) = more(order.until.as_ref(), &results.hazard, plan.count) else {
-            output::write_drawings(&order.out, plan)?;
-            report::draw_run(&results, &plan.terrain)?;
-            return Ok(Ended::Complete(report::headline(&results.hazard)));
-        };
-        plan.count = releases;
-        mode = Mode::Extend;
+        output::write_drawings(&order.out, plan)?;
+        report::draw_run(&results, &plan.terrain)?;
+        return Ok(Ended::Complete(report::headline(&results.hazard)));
     }
 }
 
@@ -141,6 +145,7 @@ fn compute(
             Ok(())
         })?;
     }
+    output.keep()?;
     Ok(output)
 }
 
@@ -164,14 +169,23 @@ fn beside<T: Send>(
     })
 }
 
-/// How many releases the aim still asks for; none when it is reached, or out of reach.
-fn more(until: Option<&Aim>, hazard: &Hazard, done: usize) -> Option<usize> {
-    let aim = until?;
-    let next = aim.next(hazard.values(aim.quantity), done)?;
-    (done < MOST_RELEASES).then(|| next.min(MOST_RELEASES))
+/// How many releases the aim still asks for; none when it is reached.
+///
+/// # Errors
+/// If it is out of reach: the rounds before stay, and can be finished without the aim.
+fn more(until: Option<&Aim>, hazard: &Hazard, done: usize) -> Result<Option<usize>> {
+    let Some(aim) = until else { return Ok(None) };
+    let values = hazard.values(aim.quantity);
+    let needed = aim.needs(values, done);
+    if needed > MOST_RELEASES as f64 {
+        return Err(Error::Request(format!(
+            "--until \"{aim}\": {done} releases are written, and about {needed:.0e} would be needed; write a wider interval, or finish these with --releases {done} --resume"
+        )));
+    }
+    Ok(aim.next(values, done).map(|next| next.min(MOST_RELEASES)))
 }
 
-/// An aim that more releases than this would not reach is given up: their values take a gigabyte.
+/// An aim that needs more releases than this is given up: their values take a gigabyte.
 const MOST_RELEASES: usize = 10_000_000;
 
 fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) -> Result<RunInfo> {
@@ -199,9 +213,10 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         lines: line_infos(plan),
         maps: map_frame(plan),
         barriers: barriers(plan),
-        observed: plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)?,
+        observed: read_measured(plan)?,
         keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
+        is_shard: matches!(order.part, Part::Shard { .. }),
         threads: ensemble.threads(),
         plan: plan.lines(),
         inputs: plan.inputs.clone(),
@@ -210,6 +225,11 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         warnings: plan.warnings.clone(),
         mesh_health,
     })
+}
+
+/// The measured ends that a plan compares with; none if it names none.
+pub(crate) fn read_measured(plan: &Plan) -> Result<Vec<Way>> {
+    plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)
 }
 
 fn line_infos(plan: &Plan) -> Vec<LineInfo> {
@@ -268,23 +288,28 @@ fn map_frame(plan: &Plan) -> Option<MapFrame> {
     })
 }
 
-/// Calibrates a scene, writes all trials into `out` and says what was found.
+/// Calibrates scenes together, writes all trials and the fitted scenes into `out` and says what was found.
 pub(crate) fn calibrate(
-    scene: &Scene,
+    scenes: &[Scene],
     (releases, threads): (usize, Option<usize>),
     out: &Path,
+    progress: impl Fn(),
 ) -> Result<String> {
     let ensemble = Ensemble::new(threads)?;
-    let mut trials: Vec<(usize, Trial)> = Vec::new();
-    let found = calibrate::calibrate(scene, &ensemble, releases, &mut |half, trial| {
-        trials.push((half, trial.clone()));
+    let mut trials: Vec<(Ends, Trial)> = Vec::new();
+    let found = calibrate::calibrate(scenes, &ensemble, releases, &mut |ends, trial| {
+        trials.push((ends, trial.clone()));
+        progress();
     })?;
-    output::write_calibration(out, &found, &trials)?;
-    Ok(format!(
-        "{found}
-all trials in {}",
-        out.join("calibration.csv").display()
-    ))
+    let vary = scenes[0].calibrate.as_ref().map_or(&[][..], |table| &table.vary);
+    let mut fitted = Vec::new();
+    for scene in scenes {
+        let name = scene.file.file_stem().unwrap_or_default().to_string_lossy();
+        fitted.push((format!("{name}_fitted.toml"), calibrate::fitted_scene(scene, vary, &found)?));
+    }
+    output::write_calibration(out, &found, (&trials, &fitted))?;
+    let out = out.display();
+    Ok(format!("{found}all trials in {out}/calibration.csv, fitted scenes beside it"))
 }
 
 /// Puts the shards of a run together, and draws the report.
@@ -299,15 +324,19 @@ pub(crate) fn draw(dir: &Path) -> Result<()> {
 }
 
 /// Health of mesh files as they will be welded, in words.
-pub(crate) fn check_meshes(files: &[PathBuf]) -> Result<String> {
-    let sources: Vec<Source> = files.iter().map(|path| slope_source(path)).collect();
+pub(crate) fn check_meshes(files: &[PathBuf], up: Up) -> Result<String> {
+    let source = |path: &PathBuf| Source { up, ..slope_source(path) };
+    let sources: Vec<Source> = files.iter().map(source).collect();
     let (_, health) = Terrain::read(&sources, Vec3::zeros(), None)?;
     Ok(health.to_string())
 }
 
 /// Turns a GeoTIFF or an ESRI ASCII grid into an STL file; says what was subtracted.
 pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
-    let grid = formats::read_grid(grid)?;
+    file::keep_inputs(out, &[grid])?;
+    let read = formats::read_grid(grid)?;
+    read.check_slope(grid)?;
+    let grid = read;
     let origin_m = grid.map_origin_m();
     let facets = grid.facets(origin_m);
     write_binary(out, &facets)?;
@@ -327,6 +356,7 @@ pub(crate) fn mesh_of_stems(
     out: &Path,
     origin_m: Option<&[f64]>,
 ) -> Result<String> {
+    file::keep_inputs(out, &[list, slope])?;
     let map_origin_m = match origin_m {
         None => Vec3::zeros(),
         Some(&[x, y, z]) if [x, y, z].iter().all(|m| m.is_finite()) => Vec3::new(x, y, z),

@@ -50,6 +50,7 @@ impl World {
             tolerance_m_s: 1e-4,
             step_s: 1e-5,
             shear_memory: true,
+            plane_impacts: true,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
         let course = Course {

@@ -4,6 +4,7 @@ use super::normal::Truncated;
 use super::written::{Lognormal, Normal};
 use super::{Chance, unit};
 use crate::error::Flaw;
+use crate::math;
 
 /// Largest number that a scene may hold, in whatever unit: what is computed from greater ones may overflow, and nothing on
 /// a slope comes near it.
@@ -99,7 +100,7 @@ impl Distribution {
             Shape::Fixed(value) => *value,
             Shape::Uniform { low, high } => low * (1.0 - p) + high * p,
             Shape::Normal(normal) => normal.quantile(p),
-            Shape::Lognormal { log, low, high } => libm::exp(log.quantile(p)).clamp(*low, *high),
+            Shape::Lognormal { log, low, high } => math::exp(log.quantile(p)).clamp(*low, *high),
             Shape::Triangular { low, mode, high } => triangular([*low, *mode, *high], p),
             Shape::Values(values) => {
                 let target = p * values[values.len() - 1].1;
@@ -149,7 +150,7 @@ impl Distribution {
         let [low, high] = bounds(min, max)?;
         // the distribution never reaches 0, and a rock of radius 0 is none
         let low = low.max(f64::MIN_POSITIVE);
-        let log = Truncated::new([libm::log(median), sigma], [low, high].map(libm::log))?;
+        let log = Truncated::new([math::ln(median), sigma], [low, high].map(math::ln))?;
         Ok(Self { shape: Shape::Lognormal { log, low, high } })
     }
 
@@ -166,6 +167,14 @@ impl Distribution {
             ));
         }
         Ok(Self { shape: Shape::Triangular { low, mode, high } })
+    }
+
+    /// One of the values, each as often as any other.
+    ///
+    /// # Errors
+    /// No value, or one that is not finite.
+    pub fn listed(values: Vec<f64>) -> Result<Self, Flaw> {
+        Self::values(values, None)
     }
 
     pub(super) fn values(values: Vec<f64>, weights: Option<Vec<f64>>) -> Result<Self, Flaw> {
@@ -187,7 +196,10 @@ impl Distribution {
         }
         let mut sum = 0.0;
         let weighted = values.into_iter().zip(weights).filter(|(_, weight)| *weight > 0.0);
-        let summed = weighted.map(|(value, weight)| {
+        let mut weighted: Vec<(f64, f64)> = weighted.collect();
+        // rising, so that a quantile is one; stable, so that the same list gives the same draws
+        weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let summed = weighted.into_iter().map(|(value, weight)| {
             sum += weight;
             (value, sum)
         });

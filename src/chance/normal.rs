@@ -3,6 +3,7 @@
 //! Exponential, logarithm and error function come from `libm`, so that a draw has the same bits on every platform.
 
 use crate::error::Flaw;
+use crate::math;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// A normal distribution between two bounds, either of which may be infinite.
@@ -50,7 +51,7 @@ impl Truncated {
 
 /// Probability that a standard normal number is below `z`, accurate in the lower tail.
 fn probability_below(z: f64) -> f64 {
-    0.5 * libm::erfc(-z * FRAC_1_SQRT_2)
+    0.5 * math::erfc(-z * FRAC_1_SQRT_2)
 }
 
 /// Inverse of [`probability_below`] for 0 < `p` ≤ 1/2.
@@ -58,12 +59,12 @@ fn probability_below(z: f64) -> f64 {
 /// Starts from the rational approximation 26.2.23 of Abramowitz and Stegun (error below 4.5e-4) and
 /// takes two steps of Halley, each of which cubes the error.
 fn lower_quantile(p: f64) -> f64 {
-    let t = (-2.0 * libm::log(p)).sqrt();
+    let t = (-2.0 * math::ln(p)).sqrt();
     let above = 2.515_517 + t * (0.802_853 + t * 0.010_328);
     let below = 1.0 + t * (1.432_788 + t * (0.189_269 + t * 0.001_308));
     let mut z = above / below - t;
     for _ in 0..2 {
-        let off = (probability_below(z) - p) * (2.0 * PI).sqrt() * libm::exp(0.5 * z * z);
+        let off = (probability_below(z) - p) * (2.0 * PI).sqrt() * math::exp(0.5 * z * z);
         z -= off / (1.0 + 0.5 * z * off);
     }
     z

@@ -1,6 +1,7 @@
 //! `rockfall study`.
 
-use super::{CHECK_FAILED, at_least_1, say};
+use super::words::at_least_1;
+use super::{CHECK_FAILED, say};
 use crate::wiring::study::{self as wiring, SceneOrder};
 use clap::{Args, Subcommand};
 use rockfall::error::Result;

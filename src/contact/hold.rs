@@ -63,6 +63,20 @@ pub fn carry(x: Vec3, from: &Vec3, to: &Vec3) -> Vec3 {
     if from == to { x } else { x - (from + to) * (to.dot(&x) / (1.0 + from.dot(to))) }
 }
 
+impl Hold {
+    /// Takes over the stretches of a contact that has merged into this one. They never store more than both did before:
+    /// `ξ = (ξ_A + ξ_B) min(1, √((ξ_A² + ξ_B²)/|ξ_A + ξ_B|²))`, and the same for rolling.
+    fn absorb(&mut self, other: &Self) {
+        let both = |one: Vec3, other: Vec3| {
+            let (sum, most2) = (one + other, one.norm_squared() + other.norm_squared());
+            let size2 = sum.norm_squared();
+            if size2 > most2 { sum * (most2 / size2).sqrt() } else { sum }
+        };
+        self.shear = both(self.shear, carry(other.shear, &other.n, &self.n));
+        self.roll = both(self.roll, other.roll);
+    }
+}
+
 /// The memories of one rock, without allocation.
 #[derive(Debug, Clone)]
 pub struct Holds {
@@ -87,6 +101,14 @@ impl Holds {
     pub fn restore(&mut self, holds: &[Hold]) {
         self.len = holds.len().min(HOLDS);
         self.list[..self.len].copy_from_slice(&holds[..self.len]);
+    }
+
+    /// Adds one, if there is room.
+    pub fn push(&mut self, hold: Hold) {
+        if self.len < HOLDS {
+            self.list[self.len] = hold;
+            self.len += 1;
+        }
     }
 
     /// Forgets all after the first `len`.
@@ -119,6 +141,26 @@ impl Holds {
             self.len = place + 1;
             place
         })
+    }
+
+    /// Hands the stretches of every contact that is no more to the one that it merged into: `heir` names its feature.
+    /// Whether there was any.
+    pub fn merge_lost(&mut self, heir: impl Fn(Feature) -> Option<Feature>) -> bool {
+        let mut merged = false;
+        for k in 0..self.len {
+            let lost = self.list[k];
+            if lost.closed || lost.shear == Vec3::zeros() && lost.roll == Vec3::zeros() {
+                continue;
+            }
+            let Some(feature) = heir(lost.feature) else { continue };
+            let holds = &mut self.list[..self.len];
+            if let Some(hold) = holds.iter_mut().find(|hold| hold.closed && hold.feature == feature)
+            {
+                hold.absorb(&lost);
+                merged = true;
+            }
+        }
+        merged
     }
 
     /// Keeps only the memories that `keep` wants, in order.

@@ -4,6 +4,7 @@ pub mod closest;
 pub mod hold;
 pub mod near;
 pub mod pair;
+mod patch;
 pub mod submatrix;
 
 use crate::rock::Vec3;
@@ -39,17 +40,28 @@ impl Feature {
     pub const NONE: Self = Self { kind: FeatureKind::Face, id: u32::MAX };
 }
 
-/// A strict local minimum of the distance from the centre to the mesh.
+/// Where a ball touches the mesh or presses into it: a patch ([`patch`]), nearly always a single nearest point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touch {
-    /// Where on the mesh.
+    /// What of the mesh is nearest.
     pub feature: Feature,
     /// Triangle whose sheet and ground it answers with.
     pub triangle: u32,
     /// Unit normal from the mesh to the centre; the paper's `V` is its opposite.
     pub normal: Vec3,
-    /// Distance from the centre to the mesh (m); pressed in when smaller than the radius.
+    /// Distance from the centre to the mesh (m); pressed in when smaller than the radius. For a patch of several points
+    /// that of the point contact that acts like it.
     pub distance_m: f64,
+    /// `|a|²`: stiffness of the patch relative to that of a single point (–), 1 for a single point.
+    pub gain2: f64,
+}
+
+impl Touch {
+    /// Whether it is one point of one face, whose plane tells everything.
+    #[inline]
+    pub fn is_on_plane(&self) -> bool {
+        self.feature.kind == FeatureKind::Face && self.gain2 == 1.0
+    }
 }
 
 /// The touches of one rock, without allocation.
@@ -66,6 +78,7 @@ impl Default for Touches {
             triangle: 0,
             normal: Vec3::zeros(),
             distance_m: f64::INFINITY,
+            gain2: 1.0,
         };
         Self { list: [none; MOST], len: 0 }
     }
@@ -82,7 +95,7 @@ impl Touches {
     #[inline]
     pub fn slide_to(&mut self, terrain: &Terrain, centre: &Vec3) -> bool {
         let touches = &mut self.list[..self.len];
-        if touches.iter().any(|touch| touch.feature.kind != FeatureKind::Face) {
+        if touches.iter().any(|touch| !touch.is_on_plane()) {
             return false;
         }
         for touch in touches {
@@ -97,6 +110,18 @@ impl Touches {
         let mut kept = 0;
         for k in 0..self.len {
             if self.list[k].distance_m < reach {
+                self.list[kept] = self.list[k];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
+    /// Forgets those that are nearer than `reach` (m).
+    fn drop_nearer(&mut self, reach: f64) {
+        let mut kept = 0;
+        for k in 0..self.len {
+            if self.list[k].distance_m >= reach {
                 self.list[kept] = self.list[k];
                 kept += 1;
             }

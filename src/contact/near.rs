@@ -1,13 +1,17 @@
-//! Finding contacts: the strict local minima of the distance from a rock's centre to the mesh.
+//! Finding contacts: where a ball touches, the strict local minima of the distance from its centre to the mesh; where it
+//! presses into a fold, patches.
 //!
 //! Around a place, the features that could touch anywhere within a margin are collected once and asked many times.
 //! A face touches where the centre's foot lies inside it; an edge where the centre stands outside of every face on
 //! it; a vertex where the centre stands behind every edge at it. Flat and hollow edges fail by themselves, from
-//! either side of a sheet, and every contact belongs to one feature.
+//! either side of a sheet, and every contact belongs to one feature. Only where a saddle of the distance is inside the
+//! ball too – a hollow edge that holds the foot of the centre on both its faces, or a vertex among such – can several
+//! minima belong together: then [`super::patch`] tells.
 
 mod take;
 
 use super::closest::closest_on;
+use super::patch::Patches;
 use super::{Feature, Touch, Touches};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
@@ -48,6 +52,16 @@ struct NearCorner {
     p: Vec3,
     /// Range of edge directions in `rays`.
     rays: (u32, u32),
+    at_border: bool,
+}
+
+/// A place where the distance may have a saddle or a maximum inside the ball.
+#[derive(Debug, Clone, Copy)]
+enum NearSaddle {
+    /// A hollow edge from `a`, with its direction and length (m) and its range of outward face normals in `rays`.
+    Edge { a: Vec3, along: Vec3, length: f64, rays: (u32, u32) },
+    /// A vertex.
+    Vertex { id: u32, p: Vec3 },
 }
 
 impl NearFace {
@@ -65,6 +79,7 @@ impl NearFace {
             triangle: self.id,
             normal: if height < 0.0 { -self.n } else { self.n },
             distance_m: height.abs(),
+            gain2: 1.0,
         }
     }
 }
@@ -79,8 +94,10 @@ pub struct Near {
     faces: Vec<NearFace>,
     edges: Vec<NearEdge>,
     corners: Vec<NearCorner>,
+    saddles: Vec<NearSaddle>,
+    patches: Patches,
     rays: Vec<Vec3>,
-    /// All triangles within reach; only looked at when a border is near.
+    /// All triangles within reach; only looked at when a border or a saddle is near.
     sheets: Vec<u32>,
     /// Stems that have given way: they touch nothing any more.
     pub gone: Vec<u32>,
@@ -94,6 +111,8 @@ impl Default for Near {
             faces: Vec::with_capacity(64),
             edges: Vec::with_capacity(64),
             corners: Vec::with_capacity(64),
+            saddles: Vec::with_capacity(64),
+            patches: Patches::with_room(),
             rays: Vec::with_capacity(512),
             sheets: Vec::with_capacity(256),
             ..Self::empty()
@@ -112,6 +131,8 @@ impl Near {
             faces: Vec::new(),
             edges: Vec::new(),
             corners: Vec::new(),
+            saddles: Vec::new(),
+            patches: Patches::default(),
             rays: Vec::new(),
             sheets: Vec::new(),
             gone: Vec::new(),
@@ -139,6 +160,7 @@ impl Near {
         self.faces.clear();
         self.edges.clear();
         self.corners.clear();
+        self.saddles.clear();
         self.rays.clear();
         self.sheets.clear();
         terrain.index.near(centre, self.reach, |start, count| {
@@ -170,15 +192,62 @@ impl Near {
     #[inline]
     pub fn plane(&self) -> Option<u32> {
         match &self.faces[..] {
-            [face] if self.edges.is_empty() && self.corners.is_empty() => Some(face.id),
+            [face]
+                if self.edges.is_empty() && self.corners.is_empty() && self.saddles.is_empty() =>
+            {
+                Some(face.id)
+            }
             _ => None,
         }
     }
 
-    /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners.
+    /// Whether a rock touches nothing but the plane of `face`, however many triangles that is, wherever its centre goes up to
+    /// `way` (m) from `centre`: distances change no faster than the centre moves.
+    pub fn is_plane_within(&self, face: u32, centre: &Vec3, way: f64) -> bool {
+        let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
+        let reach = self.radius + way;
+        let flat = SLACK * self.radius;
+        let in_plane = |p: &Vec3| own.n.dot(&(p - own.a)).abs() <= flat;
+        let lies_flat = |rays: (u32, u32)| {
+            let rays = &self.rays[rays.0 as usize..rays.1 as usize];
+            rays.len() > 1 && rays.iter().all(|ray| own.n.dot(ray).abs() <= SLACK)
+        };
+        let outward = |rays: (u32, u32), off: &Vec3, side: f64| {
+            let rays = &self.rays[rays.0 as usize..rays.1 as usize];
+            rays.iter().all(|ray| side * ray.dot(off) >= -way)
+        };
+        self.faces.iter().all(|other| {
+            let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
+            turned <= SLACK * SLACK && in_plane(&other.a)
+                || other.n.dot(&(centre - other.a)).abs() >= reach
+                || !other.holds_foot_of(centre, way)
+        }) && self.edges.iter().all(|edge| {
+            let to = centre - edge.a;
+            let off = to - edge.along * edge.along.dot(&to).clamp(0.0, edge.length);
+            off.norm_squared() >= reach * reach
+                || !outward(edge.rays, &off, 1.0)
+                || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.a)
+        }) && self.corners.iter().all(|corner| {
+            (centre - corner.p).norm_squared() >= reach * reach
+                || !corner.at_border && lies_flat(corner.rays) && in_plane(&corner.p)
+        }) && self.saddles.iter().all(|saddle| match saddle {
+            NearSaddle::Edge { a, along, length, rays } => {
+                let to = centre - a;
+                let off = to - along * along.dot(&to).clamp(0.0, *length);
+                off.norm_squared() >= reach * reach
+                    || rays.0 < rays.1 && !outward(*rays, &off, -1.0)
+                    || lies_flat(*rays) && in_plane(a)
+            }
+            NearSaddle::Vertex { p, .. } => (centre - p).norm_squared() >= reach * reach,
+        })
+    }
+
+    /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners; where a
+    /// saddle is inside the ball, the patches that it presses into after those that it does not reach yet.
     #[inline]
-    pub fn touches(&self, terrain: &Terrain, centre: &Vec3, reach: f64, touches: &mut Touches) {
+    pub fn touches(&mut self, terrain: &Terrain, centre: &Vec3, reach: f64, touches: &mut Touches) {
         touches.clear();
+        self.patches.clear();
         for face in &self.faces {
             if let Some(height) = self.height_over(face, centre, reach) {
                 self.merge(face.touch(height), centre, touches);
@@ -194,6 +263,64 @@ impl Near {
                 self.merge(touch, centre, touches);
             }
         }
+        if self.has_saddle(terrain, centre) {
+            self.gather(terrain, centre, touches);
+        }
+    }
+
+    /// Whether a saddle or a maximum of the distance is inside the ball.
+    #[inline]
+    fn has_saddle(&self, terrain: &Terrain, centre: &Vec3) -> bool {
+        self.saddles.iter().any(|saddle| match saddle {
+            NearSaddle::Edge { a, along, length, rays } => {
+                let to = centre - a;
+                let s = along.dot(&to);
+                let off = to - along * s;
+                let slack = SLACK * self.radius;
+                let outward = &self.rays[rays.0 as usize..rays.1 as usize];
+                // beyond its ends the edge is as near as its vertices, and those are asked by themselves
+                s >= -slack
+                    && s <= length + slack
+                    && off.norm_squared() < self.radius * self.radius
+                    && outward.iter().all(|out| out.dot(&off) <= slack)
+            }
+            NearSaddle::Vertex { id, p } => {
+                let off = centre - p;
+                off.norm_squared() < self.radius * self.radius
+                    && !terrain.features.is_regular(
+                        *id,
+                        &off,
+                        SLACK * self.radius,
+                        &terrain.vertices_m,
+                    )
+            }
+        })
+    }
+
+    /// The feature under which the patch that holds `feature` was found by the last look, if there was one.
+    pub fn patch_holding(&self, terrain: &Terrain, feature: Feature) -> Option<Feature> {
+        self.patches.holding(terrain, feature)
+    }
+
+    /// Puts the patches in place of the touches that the ball presses into.
+    #[cold]
+    fn gather(&mut self, terrain: &Terrain, centre: &Vec3, touches: &mut Touches) {
+        touches.drop_nearer(self.radius);
+        let mut patches = std::mem::take(&mut self.patches);
+        patches.find(terrain, &self.sheets, (centre, self.radius), |touch: Touch| {
+            let foot = centre - touch.normal * touch.distance_m;
+            let features = &terrain.features;
+            let at_border = match touch.feature.kind {
+                FeatureKind::Face => false,
+                FeatureKind::Edge => features.edges.triangles_on(touch.feature.id).len() == 1,
+                FeatureKind::Vertex => features.is_border_vertex(touch.feature.id),
+            };
+            let covered = at_border && self.is_covered(terrain, &foot, centre, touch.distance_m);
+            if !covered {
+                self.merge(touch, centre, touches);
+            }
+        });
+        self.patches = patches;
     }
 
     /// Whether the foot of `centre` is still on `face`, one of those collected.
@@ -208,6 +335,7 @@ impl Near {
     pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
         let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
         faces.all(|other| other.id == face || self.height_over(other, centre, reach).is_none())
+            && !self.has_saddle(terrain, centre)
             && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
             && self
                 .corners
@@ -252,7 +380,9 @@ impl Near {
         }
         let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
         let normal = off / distance;
-        Some(Touch { feature, triangle: edge.triangle, normal, distance_m: distance })
+        let touch =
+            Touch { feature, triangle: edge.triangle, normal, distance_m: distance, gain2: 1.0 };
+        Some(touch)
     }
 
     #[inline]
@@ -272,13 +402,15 @@ impl Near {
         let rays = &self.rays[corner.rays.0 as usize..corner.rays.1 as usize];
         if distance <= SLACK * self.radius
             || rays.iter().any(|along| along.dot(&off) > SLACK * distance)
-            || self.is_covered(terrain, &corner.p, centre, distance)
+            || corner.at_border && self.is_covered(terrain, &corner.p, centre, distance)
         {
             return None;
         }
         let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
         let normal = off / distance;
-        Some(Touch { feature, triangle: corner.triangle, normal, distance_m: distance })
+        let touch =
+            Touch { feature, triangle: corner.triangle, normal, distance_m: distance, gain2: 1.0 };
+        Some(touch)
     }
 
     /// Whether another triangle runs through `foot` and comes nearer to the centre: then the border or corner at

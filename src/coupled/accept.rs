@@ -1,11 +1,13 @@
 //! The end of an accepted step: memories, bonds, angular momentum.
 
-use super::cluster::{Cluster, Done};
+use super::cluster::{Cluster, Done, Given};
+use super::member::Member;
 use crate::contact::hold::carry;
 use crate::contact::pair::{Bond, Tie, between};
+use crate::math;
 use crate::rock::Vec3;
 use crate::step::adaptive;
-use crate::step::grip::Loss;
+use crate::step::grip::{Loss, World};
 use crate::step::law::within;
 use crate::step::tableau::Tableau;
 use nalgebra::Matrix3;
@@ -18,10 +20,17 @@ impl Cluster<'_> {
         for member in &mut self.members {
             let mut loss = Loss::default();
             let end = member.end;
-            adaptive::accept(tableau, &mut member.grip, &end, dt, &mut loss);
+            let Member { grip, body, laws, .. } = &mut **member;
+            let world = World { terrain: self.terrain, body: *body, laws };
+            adaptive::accept(&world, tableau, grip, (&end, dt), &mut loss);
+            // a merged contact acts otherwise than its rates say
+            self.fresh &= grip.fresh;
             done.losses.push(loss);
-            let sums = (0..tableau.stages).map(|k| dt * tableau.work_weight(k) * member.given[k]);
-            done.given_j.push(sums.sum());
+            let mut given = Given::default();
+            for k in 0..tableau.stages {
+                given.add(&member.given[k], dt * tableau.work_weight(k));
+            }
+            done.given.push(given);
             member.given[0] = member.given[tableau.stages - 1];
         }
         done.broken = self.accept_ties(tableau, dt);
@@ -55,7 +64,7 @@ impl Cluster<'_> {
             let stretch = bridge.stretch(hh);
             // The spring turns with the two rocks about their line.
             let turn = 0.5 * dt * (a.grip.w + b.grip.w).dot(&bridge.n);
-            let turned = |x: Vec3| x * turn.cos() + bridge.n.cross(&x) * turn.sin();
+            let turned = |x: Vec3| x * math::cos(turn) + bridge.n.cross(&x) * math::sin(turn);
             (tie.push, tie.drag, tie.n) = (bridge.push, bridge.drag, bridge.n);
             tie.captured = bridge.captured;
             tie.closed = bridge.push > 0.0 || distance < a.body.radius + b.body.radius;

@@ -1,5 +1,6 @@
 //! Which rocks are near each other: grids of several sizes, one for each octave of radii.
 
+use crate::math;
 use crate::rock::Vec3;
 
 /// A ball that holds a rock wherever it may go for a while.
@@ -23,8 +24,9 @@ const AHEAD: [[i64; 2]; 5] = [[0, 0], [0, 1], [1, -1], [1, 0], [1, 1]];
 /// Each ball lies in one cell of the grid whose cells are between one and two of its diameters wide, and is compared
 /// with its neighbours there and in coarser grids: the work is near-linear in the number of balls, whatever their sizes.
 pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
+    let grids = Grids::of(balls);
     let mut entries: Vec<Entry> =
-        balls.iter().zip(0..).map(|(ball, k)| entry(ball, level(ball), k)).collect();
+        balls.iter().zip(0..).map(|(ball, k)| entry(ball, grids.level(ball), k)).collect();
     entries.sort_unstable();
     let mut levels: Vec<i32> = entries.iter().map(|entry| entry.0).collect();
     levels.dedup();
@@ -49,7 +51,36 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
 
 /// Octave of the cells a ball lies in: they are at least as wide as the ball.
 fn level(ball: &Ball) -> i32 {
-    (2.0 * ball.radius).log2().ceil() as i32
+    math::log2(2.0 * ball.radius).ceil() as i32
+}
+
+/// A grid in which fewer than this share of the balls of the next coarser one lie is worth more than it costs (–).
+const RARE: usize = 8;
+
+/// Which octaves have a grid of their own: one that is not much finer than one with many balls has none.
+struct Grids(Vec<(i32, i32)>);
+
+impl Grids {
+    fn of(balls: &[Ball]) -> Self {
+        let mut levels: Vec<i32> = balls.iter().map(level).collect();
+        levels.sort_unstable();
+        let mut grids: Vec<(i32, i32)> = Vec::new();
+        // from the coarsest down: the level, the grid it shares, and how many balls that has
+        let mut shared: Option<(i32, usize)> = None;
+        for chunk in levels.chunk_by(|a, b| a == b).rev() {
+            let (own, count) = (chunk[0], chunk.len());
+            let joins = shared.filter(|(grid, balls)| grid - own == 1 && RARE * balls >= count);
+            let (grid, balls) = joins.unwrap_or((own, 0));
+            shared = Some((grid, balls + count));
+            grids.push((own, grid));
+        }
+        Self(grids)
+    }
+
+    fn level(&self, ball: &Ball) -> i32 {
+        let own = level(ball);
+        self.0.iter().find(|known| known.0 == own).map_or(own, |known| known.1)
+    }
 }
 
 fn entry(ball: &Ball, level: i32, k: u32) -> Entry {

@@ -17,6 +17,39 @@ pub(super) const TOUCH: f64 = 1e-9;
 /// Overload at which a bond does not simply break: the step is cut to find the moment.
 const OVERLOAD: f64 = 0.05;
 
+/// Energy that a rock gives away through its contacts with other rocks (J), or power (W).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Given {
+    /// Its half of what those contacts take.
+    pub lost: f64,
+    /// Handed on to the other rocks, negative if received.
+    pub passed_on: f64,
+}
+
+impl Given {
+    /// Of the two ends of a contact, from the work that each does on it.
+    pub(super) fn of_ends([a, b]: [f64; 2]) -> [Self; 2] {
+        let lost = 0.5 * (a + b);
+        [Self { lost, passed_on: a - lost }, Self { lost, passed_on: b - lost }]
+    }
+
+    /// The same of impulses over a whole step, in which friction that turns round may seem to work: that is the step's error.
+    pub(super) fn of_impulses(work: [f64; 2]) -> [Self; 2] {
+        Self::of_ends(work).map(|one| Self { lost: one.lost.max(0.0), ..one })
+    }
+
+    /// Adds `other` times `factor`.
+    pub(super) fn add(&mut self, other: &Self, factor: f64) {
+        self.lost += factor * other.lost;
+        self.passed_on += factor * other.passed_on;
+    }
+
+    /// All of it.
+    pub fn sum(&self) -> f64 {
+        self.lost + self.passed_on
+    }
+}
+
 /// What one step did.
 #[derive(Debug, Clone, Default)]
 pub struct Done {
@@ -24,8 +57,8 @@ pub struct Done {
     pub dt: f64,
     /// Energy lost to the ground, for each rock (J).
     pub losses: Vec<Loss>,
-    /// Energy given to other rocks, for each rock (J), negative if received.
-    pub given_j: Vec<f64>,
+    /// Energy given to other rocks, for each rock (J).
+    pub given: Vec<Given>,
     /// Steps tried and thrown away.
     pub rejected: u64,
     /// Impacts on the mesh (`rigid`; with the others the memory of a contact tells).

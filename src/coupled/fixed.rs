@@ -1,6 +1,6 @@
 //! Scheme `dda` for an island: the paper's step at a fixed time step, open–close iteration over all contacts.
 
-use super::cluster::{Cluster, Done};
+use super::cluster::{Cluster, Done, Given};
 use super::link::Link;
 use super::member::Member;
 use crate::contact::Touch;
@@ -30,7 +30,7 @@ impl Cluster<'_> {
         let mut done = Done { dt, unsettled: !settled, ..Done::default() };
         for (member, before) in self.members.iter_mut().zip(before) {
             done.losses.push(member.carry_on(terrain, dt, &before)?);
-            done.given_j.push(0.0);
+            done.given.push(Given::default());
         }
         self.remember(&links, &mut done)?;
         Ok(done)
@@ -132,8 +132,9 @@ impl Cluster<'_> {
             if link.depth(d) > DEEPEST * least[0].min(least[1]) {
                 return Err(Stuck::SankIn);
             }
-            for k in 0..2 {
-                done.given_j[link.ends[k]] -= link.work(k, d);
+            let given = Given::of_ends([-link.work(0, d), -link.work(1, d)]);
+            for (end, given) in link.ends.into_iter().zip(given) {
+                done.given[end].add(&given, 1.0);
             }
             done.broken += u64::from(link.remember(d, &mut self.ties[link.tie]));
         }
@@ -187,8 +188,8 @@ impl Member {
         let v = grip.v;
         let hold = grip.hold_of(&world, k, taken, &v);
         let touch = Touch { distance_m, ..grip.touches[k] };
-        let law = world.law(touch.triangle);
-        joints.push(Contact::new(&step, law, &touch, (hold, &grip.holds[hold])));
+        let law = world.law_of(&grip.touches, k);
+        joints.push(Contact::new(&step, &law, &touch, (hold, &grip.holds[hold])));
     }
 
     /// Adds the contacts that the step ran into; whether there are any.
@@ -226,6 +227,7 @@ impl Member {
             loss.add(&joint.loss(&d).on(&world, joint.triangle), 1.0);
             joint.remember(&d, &mut grip.holds[joint.hold]);
         }
+        grip.merge_lost(&world);
         grip.holds.retain(|hold| hold.closed);
         grip.c += d.fixed_rows::<3>(0);
         grip.v += body.gravity * dt + kick.fixed_rows::<3>(0);

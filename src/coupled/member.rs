@@ -1,6 +1,7 @@
 //! One rock of an island.
 
 use super::bridge::Motion;
+use super::cluster::Given;
 use crate::contact::Feature;
 use crate::contact::hold::Hold;
 use crate::contact::submatrix::Vec6;
@@ -39,7 +40,7 @@ pub struct Member {
     /// Forces of the last solution, to start the next from.
     pub(super) kept: Vec<(Feature, f64, Vec3, Vec3)>,
     /// Power given to other rocks at each stage (W).
-    pub(super) given: [f64; STAGES],
+    pub(super) given: [Given; STAGES],
     pub(super) known: usize,
     /// Contacts with the mesh in a fixed step.
     pub(super) joints: Vec<Contact>,
@@ -108,7 +109,7 @@ impl Member {
             now: zero,
             end,
             kept: Vec::new(),
-            given: [0.0; STAGES],
+            given: [Given::default(); STAGES],
             known: 0,
             joints: Vec::new(),
             ways: [Vec6::zeros(); 2],

@@ -18,6 +18,6 @@ mod rigid;
 mod stage;
 mod sweeps;
 
-pub use cluster::{Cluster, Done};
+pub use cluster::{Cluster, Done, Given};
 pub use member::{Member, Memory, Seat};
 pub use rigid::{Hit, TRAVEL};

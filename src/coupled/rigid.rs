@@ -12,7 +12,7 @@ mod strike;
 mod sustain;
 mod sweep;
 
-use super::cluster::{Cluster, Done};
+use super::cluster::{Cluster, Done, Given};
 use super::member::{Member, Seat};
 use crate::contact::pair::{Tie, between};
 use crate::rock::Vec3;
@@ -24,7 +24,7 @@ use ball::{Ball, Foot, Knot};
 use std::collections::BinaryHeap;
 pub use strike::Hit;
 use strike::{Due, Scene};
-use sweep::Asked;
+use sweep::{Asked, Lean};
 
 /// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
 /// contact that is slid over meanwhile is off by the square of half of this.
@@ -37,7 +37,7 @@ pub(super) struct Pile {
     feet: Vec<Foot>,
     knots: Vec<Knot>,
     losses: Vec<Loss>,
-    given_j: Vec<f64>,
+    given: Vec<Given>,
     hits: Vec<Hit>,
     due: BinaryHeap<Due>,
     /// Which ties had a blow.
@@ -47,6 +47,9 @@ pub(super) struct Pile {
     links: Vec<u32>,
     /// Contacts that one of their rocks has changed since.
     asked: Asked,
+    lean: Lean,
+    /// What the normal impulses of sustained contacts took in this step (J).
+    taken_j: f64,
     places: Vec<Vec3>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
@@ -80,7 +83,7 @@ impl Cluster<'_> {
         let done = Done {
             dt,
             losses: std::mem::take(&mut pile.losses),
-            given_j: std::mem::take(&mut pile.given_j),
+            given: std::mem::take(&mut pile.given),
             hits: std::mem::take(&mut pile.hits),
             unsettled: !(settled && struck),
             ..Done::default()
@@ -108,7 +111,8 @@ impl Cluster<'_> {
             let [a, b] = knot.ends.map(|k| &pile.balls[k]);
             (tie.push, tie.drag) = (knot.push / dt, knot.drag / dt);
             tie.slides = knot.drag.norm() >= knot.friction * knot.push * (1.0 - 1e-9);
-            tie.closed |= tie.captured && tie.is_slow(&(a.v - b.v));
+            // what carried in this step is where the next begins to look for what carries
+            tie.closed |= tie.is_slow(&(a.v - b.v));
         }
         let mut feet = pile.feet.iter().filter(|foot| foot.push > 0.0).peekable();
         for (k, (member, ball)) in self.members.iter_mut().zip(&pile.balls).enumerate() {
@@ -163,7 +167,12 @@ fn alone(
     let world = World { terrain, body: member.body, laws: &member.laws };
     let done = crate::step::rigid::advance(&world, &mut member.grip, longest, h_max)?;
     member.flying = member.grip.is_free();
-    Ok(Done { dt: done.dt, losses: vec![done.loss], given_j: vec![0.0], ..Done::default() })
+    Ok(Done {
+        dt: done.dt,
+        losses: vec![done.loss],
+        given: vec![Given::default()],
+        ..Done::default()
+    })
 }
 
 impl Tie {
@@ -190,8 +199,8 @@ impl Pile {
         self.balls.extend(members.iter().map(ball));
         self.losses.clear();
         self.losses.resize(members.len(), Loss::default());
-        self.given_j.clear();
-        self.given_j.resize(members.len(), 0.0);
+        self.given.clear();
+        self.given.resize(members.len(), Given::default());
         self.struck.clear();
         self.struck.resize(ties.len(), false);
         self.hits.clear();
@@ -224,12 +233,13 @@ impl Member {
 }
 
 impl Foot {
-    /// Energy that the impulses take (J), at a mean velocity and spin.
+    /// Energy that the impulses take (J), at a mean velocity and spin. Friction that turns round within a step may seem to
+    /// work: that is the step's error.
     fn loss(&self, world: &World, (v, w): &(Vec3, Vec3)) -> Loss {
         let loss = Loss {
-            friction: -self.drag.dot(&world.body.slip(&self.n, v, w)),
+            friction: (-self.drag.dot(&world.body.slip(&self.n, v, w))).max(0.0),
             damping: -self.push * self.n.dot(v),
-            rolling: -self.turn.dot(w),
+            rolling: (-self.turn.dot(w)).max(0.0),
             trees: 0.0,
         };
         loss.on(world, self.triangle)

@@ -1,7 +1,7 @@
 //! One implicit stage of an island, and the rates at its start.
 
 use super::bridge::Bridge;
-use super::cluster::{Cluster, TOUCH};
+use super::cluster::{Cluster, Given, TOUCH};
 use super::member::Member;
 use crate::contact::hold::carry;
 use crate::rock::Vec3;
@@ -75,7 +75,7 @@ impl Cluster<'_> {
 
     fn store(&mut self, i: usize, hh: f64) {
         for member in &mut self.members {
-            member.given[i] = 0.0;
+            member.given[i] = Given::default();
         }
         for (rates, tie) in self.tie_rates.iter_mut().zip(&self.ties) {
             rates[i] = Vec3::zeros();
@@ -87,10 +87,13 @@ impl Cluster<'_> {
             let rate = (bridge.stretch(hh) - bridge.shear) / hh;
             self.tie_rates[bridge.tie][i] = carry(rate, &bridge.n, &from);
             self.tie_forces[bridge.tie] = (bridge.push, bridge.drag);
-            for k in 0..2 {
-                let member = &mut self.members[bridge.ends[k]];
+            let power = |k: usize| {
+                let (v, w) = &self.members[bridge.ends[k]].now;
                 let (force, moment) = bridge.load(k);
-                member.given[i] -= force.dot(&member.now.0) + moment.dot(&member.now.1);
+                -force.dot(v) - moment.dot(w)
+            };
+            for (end, given) in bridge.ends.into_iter().zip(Given::of_ends([power(0), power(1)])) {
+                self.members[end].given[i].add(&given, 1.0);
             }
         }
         for member in &mut self.members {
@@ -104,7 +107,7 @@ impl Cluster<'_> {
             let Member { grip, body, laws, .. } = &mut **member;
             let world = World { terrain: self.terrain, body: *body, laws };
             grip.rates_now(&world);
-            member.given[0] = 0.0;
+            member.given[0] = Given::default();
         }
         for (k, tie) in self.ties.iter_mut().enumerate() {
             self.tie_rates[k][0] = Vec3::zeros();
@@ -124,13 +127,18 @@ impl Cluster<'_> {
             bridge.shear = carry(tie.shear, &tie.n, &bridge.n);
             let rate = bridge.act_now([&motions[0], &motions[1]]);
             self.tie_rates[k][0] = carry(rate, &bridge.n, &tie.n);
+            let power = |k: usize| {
+                let (force, moment) = bridge.load(k);
+                -force.dot(&motions[k].0) - moment.dot(&motions[k].1)
+            };
+            let given = Given::of_ends([power(0), power(1)]);
             for end in 0..2 {
                 let member = &mut *self.members[ends[end]];
                 let (force, moment) = bridge.load(end);
                 let rate = &mut member.grip.rates[0];
                 rate.v += force / member.body.mass;
                 rate.w += moment / member.body.inertia;
-                member.given[0] -= force.dot(&motions[end].0) + moment.dot(&motions[end].1);
+                member.given[0].add(&given[end], 1.0);
             }
         }
         self.fresh = true;

@@ -5,6 +5,7 @@
 //! resumed run gives the same maps.
 
 use super::row::StopKind;
+use crate::math;
 use crate::trajectory::Visit;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -55,7 +56,7 @@ struct Counts(Vec<(u16, u32)>);
 /// Class of a value: 0 up to [`SMALLEST`], then equal ratios. 65535 classes reach beyond any f64.
 fn class_of(value: f64) -> u16 {
     if value > SMALLEST {
-        (libm::log(value / SMALLEST) / RATIO.ln()).floor().min(65_534.0) as u16 + 1
+        (math::ln(value / SMALLEST) / math::ln(RATIO)).floor().min(65_534.0) as u16 + 1
     } else {
         0
     }
@@ -63,7 +64,7 @@ fn class_of(value: f64) -> u16 {
 
 /// The value that stands for a class: the geometric middle of its ends, 0 for the first.
 fn middle_of(class: u16) -> f64 {
-    if class == 0 { 0.0 } else { SMALLEST * libm::pow(RATIO, f64::from(class) - 0.5) }
+    if class == 0 { 0.0 } else { SMALLEST * math::pow(RATIO, f64::from(class) - 0.5) }
 }
 
 impl Counts {
@@ -101,6 +102,7 @@ impl Counts {
 
 /// What is known of one cell.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(from = "Packed", into = "Packed")]
 struct Cell {
     passages: u32,
     deposits: u32,
@@ -108,6 +110,22 @@ struct Cell {
     largest_m: f64,
     totals_j: Counts,
     heights_m: Counts,
+}
+
+/// A cell on the disk: in the order of its fields, without their names, which would be most of it.
+type Packed = (u32, u32, f64, f64, Counts, Counts);
+
+impl From<Packed> for Cell {
+    fn from((passages, deposits, largest_j, largest_m, totals_j, heights_m): Packed) -> Self {
+        Self { passages, deposits, largest_j, largest_m, totals_j, heights_m }
+    }
+}
+
+impl From<Cell> for Packed {
+    fn from(cell: Cell) -> Self {
+        let Cell { passages, deposits, largest_j, largest_m, totals_j, heights_m } = cell;
+        (passages, deposits, largest_j, largest_m, totals_j, heights_m)
+    }
 }
 
 impl Cell {
@@ -205,6 +223,11 @@ impl Maps {
     /// Goes on from what earlier rocks left.
     pub fn new(frame: MapFrame, state: MapState) -> Self {
         Self { frame, cells: state.0.into_iter().collect() }
+    }
+
+    /// Cells that rocks have passed so far.
+    pub fn known_cells(&self) -> usize {
+        self.cells.len()
     }
 
     /// What a resumed run needs.

@@ -21,7 +21,7 @@ pub use barriers::{
 };
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
-pub use observed::{Agreement, Way};
+pub use observed::{Agreement, Spread, Way, effective};
 pub use proportion::Proportion;
 pub use quantile::{Percentile, Ranks};
 pub use quantity::Quantity;
@@ -38,8 +38,8 @@ pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 
 /// All rocks so far.
 ///
-/// The statistics are over all rocks but the failed: a failed rock has a row and is counted, but where it
-/// stopped is where the computation did. A rock that left the terrain or ran out of time counts with what it
+/// The statistics are over all rocks but the failed and the never released: these have a row and are counted, but
+/// where they stopped is where the computation did. A rock that left the terrain or ran out of time or work counts with what it
 /// had done until then; its runout is a lower bound.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hazard {
@@ -76,7 +76,7 @@ impl Hazard {
     pub fn add(&mut self, row: &Row) {
         *self.stops.entry(row.stop).or_default() += 1;
         Largest::update(&mut self.largest_balance_error, row.index, row.energy_balance_error);
-        if row.stop == StopKind::Failed {
+        if !row.stop.counts() {
             return;
         }
         for (slot, quantity) in Quantity::ALL.into_iter().enumerate() {
@@ -86,7 +86,7 @@ impl Hazard {
         }
     }
 
-    /// Rocks added so far, failed ones included.
+    /// Rocks added so far, failed and never released ones included.
     pub fn rocks(&self) -> usize {
         self.stops.values().sum()
     }

@@ -1,8 +1,14 @@
 //! Measured ends of rocks beside computed ones.
 
-use super::row::{Row, StopKind};
+mod spread;
+
+pub use spread::{Spread, effective};
+
+use super::row::Row;
 use super::sample::Sample;
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_TEXT};
+use crate::math;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -52,7 +58,7 @@ impl Way {
     /// Horizontal distance from release to end (m).
     pub fn runout_m(&self) -> f64 {
         let [x, y] = self.vector_m();
-        x.hypot(y)
+        math::hypot(x, y)
     }
 
     fn vector_m(&self) -> [f64; 2] {
@@ -62,8 +68,7 @@ impl Way {
     /// The way of a computed rock; a failed one has none.
     pub fn of(row: &Row) -> Option<Self> {
         let flat = |[x, y, _]: [f64; 3]| [x, y];
-        let ended = row.stop != StopKind::Failed;
-        ended.then(|| Self { start_m: flat(row.start_m), end_m: flat(row.end_m) })
+        row.stop.counts().then(|| Self { start_m: flat(row.start_m), end_m: flat(row.end_m) })
     }
 
     /// Reads measured ways from a CSV file with the columns `release_x_m`, `release_y_m`, `x_m`, `y_m`.
@@ -76,7 +81,7 @@ impl Way {
             let remedy = "write numbers in the columns release_x_m, release_y_m, x_m, y_m";
             Error::input(path, format!("line {line}"), why.to_string(), remedy)
         };
-        let file = std::fs::File::open(path).map_err(Error::file("read", path))?;
+        let file = file::open(path, LONGEST_TEXT)?;
         let mut reader = csv::Reader::from_reader(file);
         let way = |row: Measured| Self {
             start_m: [row.release_x_m, row.release_y_m],
@@ -93,7 +98,51 @@ impl Way {
     }
 }
 
+/// The column that tells which throws are of one block.
+#[derive(Debug, Deserialize)]
+struct Thrown {
+    #[serde(alias = "block_id")]
+    block: String,
+}
+
+impl Way {
+    /// The block of each measured end, from the column `block` or `block_id`; empty where there is none.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn read_blocks(path: &Path) -> Result<Vec<String>> {
+        let file = file::open(path, LONGEST_TEXT)?;
+        let rows = csv::Reader::from_reader(file).into_deserialize();
+        let blocks = rows.map(|row: csv::Result<Thrown>| row.ok().map(|thrown| thrown.block));
+        Ok(blocks.collect::<Option<_>>().unwrap_or_default())
+    }
+}
+
 impl Agreement {
+    /// Agreements on several slopes as one: means by the number of measured rocks; none of none.
+    pub fn joined(each: &[Self]) -> Option<Self> {
+        let [first, rest @ ..] = each else { return None };
+        if rest.is_empty() {
+            return Some(*first);
+        }
+        let measured: usize = each.iter().map(|one| one.measured).sum();
+        let mean = |of: fn(&Self) -> f64| {
+            let weighted = each.iter().map(|one| one.measured as f64 * of(one));
+            weighted.sum::<f64>() / measured as f64
+        };
+        Some(Self {
+            measured,
+            computed: each.iter().map(|one| one.computed).sum(),
+            measured_mean_m: mean(|one| one.measured_mean_m),
+            computed_mean_m: mean(|one| one.computed_mean_m),
+            ks: mean(|one| one.ks),
+            ks_limit: mean(|one| one.ks_limit),
+            area_m: mean(|one| one.area_m),
+            measured_side_m: mean(|one| one.measured_side_m),
+            computed_side_m: mean(|one| one.computed_side_m),
+        })
+    }
+
     /// Compares measured and computed ways; none if either is empty.
     pub fn of(measured: &[Way], computed: &[Way]) -> Option<Self> {
         let runouts = |ways: &[Way]| Sample::of(ways.iter().map(Way::runout_m));
@@ -131,7 +180,7 @@ fn distances(one: &[f64], other: &[f64]) -> (f64, f64) {
 /// Unit vector of the mean way.
 fn mean_direction(ways: &[Way]) -> [f64; 2] {
     let sum = ways.iter().map(Way::vector_m).fold([0.0, 0.0], |s, v| [s[0] + v[0], s[1] + v[1]]);
-    let length = sum[0].hypot(sum[1]).max(f64::MIN_POSITIVE);
+    let length = math::hypot(sum[0], sum[1]).max(f64::MIN_POSITIVE);
     [sum[0] / length, sum[1] / length]
 }
 

@@ -4,6 +4,7 @@
 //! of the values. So the `l`-th and `u`-th smallest value enclose `q_p` with probability `P(l ≤ B < u)`
 //! (Conover, Practical Nonparametric Statistics, section 3.2). The probabilities are summed, not approximated.
 
+use crate::math;
 use serde::{Deserialize, Serialize};
 
 /// Chance that an interval misses on one side: half of 1 − 95 %.
@@ -56,7 +57,7 @@ fn interpolated(sorted: &[f64], p: f64) -> Option<f64> {
 
 /// Fewest rocks of which the largest value bounds percentile `p` with 95 % confidence: `pⁿ ≤ 0.05`.
 fn needed(p: f64) -> usize {
-    (WHOLE_TAIL.ln() / p.ln()).ceil() as usize
+    (math::ln(WHOLE_TAIL) / math::ln(p)).ceil() as usize
 }
 
 /// Which of `n` sorted values bound a percentile, counted from 1; none where no value does.

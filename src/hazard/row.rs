@@ -63,6 +63,10 @@ pub struct Row {
     pub trees_j: f64,
     /// What the numerics lost (positive) or gained (negative) beside the rest (J).
     pub remainder_j: f64,
+    /// Energy lost in contacts with other rocks, half of what each takes (J).
+    pub others_j: f64,
+    /// Energy handed on to other rocks, negative if received (J).
+    pub passed_on_j: f64,
 }
 
 /// [`Stop`] without the reason of a failure.
@@ -75,13 +79,34 @@ pub enum StopKind {
     LeftTerrain,
     /// Still moving at the longest simulated time.
     TimeUp,
+    /// Still moving when its budget of work was spent.
+    OverBudget,
     /// The computation could not go on.
     Failed,
+    /// Never began: no place was found where it could start.
+    NotReleased,
 }
 
 impl StopKind {
     /// All of them, in the order of tables.
-    pub const ALL: [Self; 4] = [Self::AtRest, Self::LeftTerrain, Self::TimeUp, Self::Failed];
+    pub const ALL: [Self; 6] = [
+        Self::AtRest,
+        Self::LeftTerrain,
+        Self::TimeUp,
+        Self::OverBudget,
+        Self::Failed,
+        Self::NotReleased,
+    ];
+
+    /// Whether the rock's way says something of rocks: it began, and was computed as far as it was followed.
+    pub fn counts(self) -> bool {
+        !matches!(self, Self::Failed | Self::NotReleased)
+    }
+
+    /// Whether no sound run ends a rock so: what never happened then needs no line in a table.
+    pub fn is_unusual(self) -> bool {
+        matches!(self, Self::OverBudget | Self::NotReleased)
+    }
 
     /// Its word in `releases.csv` and `summary.json`.
     pub fn word(self) -> &'static str {
@@ -89,6 +114,8 @@ impl StopKind {
             Self::AtRest => "at_rest",
             Self::LeftTerrain => "left_terrain",
             Self::TimeUp => "time_up",
+            Self::OverBudget => "over_budget",
+            Self::NotReleased => "not_released",
             Self::Failed => "failed",
         }
     }
@@ -100,6 +127,8 @@ impl From<&Stop> for StopKind {
             Stop::AtRest => Self::AtRest,
             Stop::LeftTerrain => Self::LeftTerrain,
             Stop::TimeUp => Self::TimeUp,
+            Stop::OverBudget => Self::OverBudget,
+            Stop::NotReleased(_) => Self::NotReleased,
             Stop::Failed(_) => Self::Failed,
         }
     }
@@ -107,7 +136,7 @@ impl From<&Stop> for StopKind {
 
 impl Row {
     /// Columns of `releases.csv`, in order; a vector takes three.
-    pub const COLUMNS: [&'static str; 36] = [
+    pub const COLUMNS: [&'static str; 38] = [
         "index",
         "stop",
         "time_s",
@@ -144,6 +173,8 @@ impl Row {
         "rolling_j",
         "trees_j",
         "remainder_j",
+        "others_j",
+        "passed_on_j",
     ];
 
     /// The row of one journey; `origin_m` is the map position of the local (0, 0, 0).
@@ -178,6 +209,8 @@ impl Row {
             rolling_j: fall.ledger.rolling_j,
             trees_j: fall.ledger.trees_j,
             remainder_j: fall.ledger.remainder_j,
+            others_j: fall.ledger.others_j,
+            passed_on_j: fall.ledger.passed_on_j,
         }
     }
 }

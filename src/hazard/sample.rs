@@ -2,6 +2,7 @@
 
 use super::proportion::NORMAL_95;
 use super::quantile::Percentile;
+use crate::math;
 use serde::{Deserialize, Serialize};
 
 /// Values of one quantity in ascending order; what is not a finite number is left out.
@@ -113,7 +114,7 @@ impl Sample {
     fn bar_width(&self, least: f64, most: f64) -> f64 {
         let range = most - least;
         let quarter = |p| self.percentile(p).map_or(0.0, |quarter| quarter.value);
-        let wanted = 2.0 * (quarter(0.75) - quarter(0.25)) / (self.sorted.len() as f64).cbrt();
+        let wanted = 2.0 * (quarter(0.75) - quarter(0.25)) / math::cbrt(self.sorted.len() as f64);
         let width = wanted.clamp(range / BARS.1, range / BARS.0);
         // All values equal: one bar, wide enough to be told from its neighbours in f64.
         if width > 0.0 { round_up(width) } else { round_up(least.abs().max(1.0) * 1e-3) }
@@ -122,7 +123,7 @@ impl Sample {
 
 /// The next of 1, 2, 5 times a power of ten.
 fn round_up(width: f64) -> f64 {
-    let power = 10_f64.powf(width.log10().floor());
+    let power = math::pow(10_f64, math::log10(width).floor());
     [1.0, 2.0, 5.0]
         .map(|step| step * power)
         .into_iter()
@@ -133,6 +134,6 @@ fn round_up(width: f64) -> f64 {
 /// Shares at which a curve of `n` rocks is drawn: every half per cent, then ten a decade down to `1/n`.
 fn shares(n: usize) -> Vec<f64> {
     let body = (1..200).rev().map(|step| f64::from(step) / 200.0);
-    let tail = (24..).map(|tenth| 10_f64.powf(-f64::from(tenth) / 10.0));
+    let tail = (24..).map(|tenth| math::pow(10_f64, -f64::from(tenth) / 10.0));
     body.chain(tail.take_while(|share| share * n as f64 >= 1.0)).collect()
 }

@@ -1,31 +1,43 @@
 //! What a calibration found: every trial as a row, the result as JSON.
 
 use super::whole::{read_json, write_json, write_whole};
-use crate::calibrate::{Calibration, Trial};
+use crate::calibrate::{Calibration, Ends, Trial};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
 use std::path::Path;
 
+/// A fitted scene: name of its file, and its text.
+type Fitted = (String, String);
+
 const RESULT: &str = "calibration.json";
 
-/// Writes `calibration.csv` (every trial with its half) and `calibration.json`.
+/// Writes `calibration.csv` (every trial with the half that it was fitted to), `calibration.json`, and the fitted scenes
+/// under their names.
 ///
 /// # Errors
 /// A folder or file that cannot be written.
-pub fn write_calibration(dir: &Path, found: &Calibration, trials: &[(usize, Trial)]) -> Result<()> {
+pub fn write_calibration(
+    dir: &Path,
+    found: &Calibration,
+    (trials, fitted): (&[(Ends, Trial)], &[Fitted]),
+) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     let mut text = format!(
         "half,{},fit_area_m,fit_ks,fit_mean_m,apart_area_m,apart_ks,apart_mean_m\n",
         found.names.join(",")
     );
-    for (half, trial) in trials {
+    for (ends, trial) in trials {
+        let half = match ends {
+            Ends::Half(half) => (half + 1).to_string(),
+            Ends::All => "all".to_owned(),
+        };
         let values: Vec<String> = trial.values.iter().map(f64::to_string).collect();
         let (fit, apart) = (&trial.fitted, &trial.kept_apart);
         // writing to a string cannot fail
         let _ = writeln!(
             text,
             "{},{},{},{},{},{},{},{}",
-            half + 1,
+            half,
             values.join(","),
             fit.area_m,
             fit.ks,
@@ -34,6 +46,9 @@ pub fn write_calibration(dir: &Path, found: &Calibration, trials: &[(usize, Tria
             apart.ks,
             apart.computed_mean_m
         );
+    }
+    for (name, scene) in fitted {
+        write_whole(&dir.join(name), scene.as_bytes())?;
     }
     write_whole(&dir.join("calibration.csv"), text.as_bytes())?;
     write_json(&dir.join(RESULT), found)

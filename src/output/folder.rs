@@ -1,32 +1,50 @@
 //! What a result folder holds already, and whether a run may use it.
 
-use super::progress::{Identity, Progress};
+use super::claim::Claim;
+use super::progress::{Identity, PROGRESS, Progress};
 use super::summary::{SUMMARY, Summary};
-use super::whole::as_whole;
+use super::whole::{as_whole, write_whole};
 use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
+use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
 /// Result files besides `progress.json`.
 const FILES: [&str; 6] = [RELEASES, PATHS, IMPACTS, CROSSINGS, "report.html", SUMMARY];
-/// Folder of the figures: every SVG file in it belongs to the results.
+/// Folder of the figures.
 const FIGURES: &str = "figures";
+/// File in it that names those which belong to the results.
+const DRAWN: &str = ".drawn";
 
-/// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from.
-pub(super) fn prepare(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
-    let found = if mode == Mode::Overwrite { None } else { look(dir, info, mode)? };
+/// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from. What is made anew the `claim`
+/// removes again if nothing comes of it.
+pub(super) fn prepare(
+    dir: &Path,
+    (info, mode): (&RunInfo, Mode),
+    claim: &mut Claim,
+) -> Result<Option<Progress>> {
+    let found = look(dir, info, mode)?;
     if found.is_none() {
         // First of all the folder says whose it is: killed at any moment from here on, the run can be resumed.
         Progress::none_of(info).write(dir)?;
         clear(dir)?;
+        let maps = dir.join(maps::FOLDER);
+        let folder = (!maps.exists()).then(|| maps.clone());
+        let files = TABLES.iter().map(|name| dir.join(name));
+        let state = std::iter::once(maps::state_path(dir, 0));
+        let all = folder.into_iter().chain(state).chain(files).chain([dir.join(PROGRESS)]);
+        all.for_each(|path| claim.made(path));
     }
     Ok(found)
 }
 
 /// The run to go on with; none when the folder may be emptied. An error when it must not be touched.
-fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
+pub(super) fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
+    if mode == Mode::Overwrite {
+        return Ok(None);
+    }
     let summary = Summary::read(dir)?;
     let finished = summary.is_some();
     let found = match (Progress::read(dir)?, summary) {
@@ -48,6 +66,11 @@ fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
             "take another --out or replace them with --overwrite",
         );
     }
+    let goes_on = mode == Mode::Extend && found.done < info.identity.releases;
+    if goes_on && info.maps.is_some() && !maps::has_state(dir, found.done) {
+        // A finished run has thrown away what its maps would go on from: its rocks are computed once more, the same.
+        return Ok(None);
+    }
     match mode {
         Mode::Resume | Mode::Extend if old.version != info.identity.version => {
             let both = format!(
@@ -57,11 +80,20 @@ fn look(dir: &Path, info: &RunInfo, mode: Mode) -> Result<Option<Progress>> {
             refuse(dir, &both, "go on with that version or start again with --overwrite")
         }
         Mode::Resume | Mode::Extend => Ok(Some(found)),
-        _ if finished => Ok(None),
+        _ if finished => refuse(
+            dir,
+            "holds the finished results of this very run",
+            "take another --out or replace them with --overwrite",
+        ),
         _ => {
             let how_far =
                 format!("holds {} of {} releases of an interrupted run", found.done, old.releases);
-            refuse(dir, &how_far, "go on with --resume or start again with --overwrite")
+            let remedy = if mode == Mode::Merge {
+                "take another --out or replace them with --overwrite"
+            } else {
+                "go on with --resume or start again with --overwrite"
+            };
+            refuse(dir, &how_far, remedy)
         }
     }
 }
@@ -89,10 +121,11 @@ pub fn releases_in(dir: &Path) -> Result<Option<usize>> {
 
 /// A finished run seen as one that has nothing left to do.
 fn finished_run(dir: &Path, summary: Summary) -> Progress {
-    let Summary { title, identity, totals, run, .. } = summary;
+    let Summary { title, identity, totals, run, bytes: finished, .. } = summary;
     let length = |name: &str| Some((name.to_owned(), fs::metadata(dir.join(name)).ok()?.len()));
     let bytes = TABLES.into_iter().filter_map(length).collect();
-    Progress { title, done: identity.releases, identity, bytes, totals, seconds: run.seconds }
+    let (done, seconds) = (identity.releases, run.seconds);
+    Progress { title, identity, done, bytes, totals, seconds, finished }
 }
 
 /// A folder that says nothing of its results must hold none.
@@ -114,6 +147,33 @@ fn unclaimed(dir: &Path) -> Result<Option<Progress>> {
     )
 }
 
+/// Says which figures the results are about to be drawn in: they, and no others in their folder, go with the results.
+///
+/// # Errors
+///
+/// If the folder cannot be written.
+pub fn announce_figures(dir: &Path, names: &[&str]) -> Result<()> {
+    let mut all = drawn(dir)?;
+    all.extend(names.iter().map(|name| (*name).to_owned()));
+    all.sort();
+    all.dedup();
+    let figures = dir.join(FIGURES);
+    fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
+    write_whole(&figures.join(DRAWN), (all.join("\n") + "\n").as_bytes())
+}
+
+/// Names of the figures that have been drawn.
+fn drawn(dir: &Path) -> Result<Vec<String>> {
+    let path = dir.join(FIGURES).join(DRAWN);
+    match fs::read_to_string(&path) {
+        Ok(text) => Ok(text.lines().map(str::to_owned).collect()),
+        Err(why) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&why.kind()) => {
+            Ok(Vec::new())
+        }
+        Err(why) => Err(Error::file("read", &path)(why)),
+    }
+}
+
 fn is_figure(path: &Path) -> bool {
     as_whole(path).extension().is_some_and(|ending| ending == "svg")
 }
@@ -124,7 +184,13 @@ fn refuse(dir: &Path, found: &str, remedy: &str) -> Result<Option<Progress>> {
 
 /// Removes the results of an earlier run, and no other file: what is drawn must never mix two runs.
 fn clear(dir: &Path) -> Result<()> {
-    remove_all(&dir.join(FIGURES), is_figure)?;
+    let drawn = drawn(dir)?;
+    let figures = dir.join(FIGURES);
+    remove_all(&figures, |path| {
+        let whole = as_whole(path);
+        let name = whole.file_name().and_then(OsStr::to_str);
+        name.is_some_and(|name| name == DRAWN || drawn.iter().any(|known| known == name))
+    })?;
     remove_all(&dir.join(maps::FOLDER), maps::is_result)?;
     FILES.iter().try_for_each(|name| remove(&dir.join(name)))
 }

@@ -71,7 +71,7 @@ fn geotiff(frame: &MapFrame, cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
 }
 
 /// Where the maps after so many rocks wait for a resumed run.
-fn state_path(dir: &Path, done: usize) -> PathBuf {
+pub(super) fn state_path(dir: &Path, done: usize) -> PathBuf {
     dir.join(FOLDER).join(format!("{done}.{STATE}"))
 }
 

@@ -95,6 +95,7 @@ impl Shard {
             observed,
             keeps_paths: keeps(PATHS),
             keeps_impacts: keeps(IMPACTS),
+            is_shard: false,
             threads: shards.iter().map(|shard| shard.summary.run.threads).max().unwrap_or(0),
             plan,
             inputs,

@@ -9,6 +9,7 @@ mod claim;
 mod folder;
 mod maps;
 mod merge;
+mod opened;
 mod progress;
 mod read;
 mod rows;
@@ -20,7 +21,7 @@ mod whole;
 
 pub use calibration::{read_calibration, write_calibration};
 pub use claim::Claim;
-pub use folder::releases_in;
+pub use folder::{announce_figures, releases_in};
 pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
@@ -31,16 +32,15 @@ pub use whole::write_whole;
 
 use crate::error::{Error, Result};
 use crate::hazard;
-use crate::hazard::{
-    Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, MapState, Maps, Row, Way,
-};
+use crate::hazard::{Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way};
 use crate::rock::Vec3;
 use crate::trajectory::Trajectory;
+use opened::{open, open_maps};
 use progress::{PROGRESS, Progress};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use table::Table;
 
 const RELEASES: &str = "releases.csv";
@@ -72,6 +72,8 @@ pub struct RunInfo {
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.
     pub keeps_impacts: bool,
+    /// Whether [`merge`] is to put it together with others, were it the only one.
+    pub is_shard: bool,
     /// Worker threads.
     pub threads: usize,
     /// The lines of the plan: what is computed, what is left out and why.
@@ -91,8 +93,10 @@ pub struct RunInfo {
 /// What to do with results that the folder holds already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Refuse them, unless they are the finished results of the very same run.
+    /// Refuse them.
     Fresh,
+    /// The same for parts that are put together, where there is nothing to go on with.
+    Merge,
     /// Go on with them; start when there are none; nothing is left to do when they are complete.
     Resume,
     /// The same, also where they are the first of the releases asked for.
@@ -118,7 +122,15 @@ pub struct Output {
     begun: Instant,
     /// Time that earlier sessions took (s).
     seconds_before: f64,
+    /// When the last mark was set, and how long that took; none while all is marked.
+    marked: (Instant, Duration),
+    is_marked: bool,
 }
+
+/// Cells of maps above which their state is not put on the disk after every chunk.
+const MANY_CELLS: usize = 50_000;
+/// With so many cells, time between two marks over the time that one takes (–).
+const MARK_SHARE: u32 = 20;
 
 impl Output {
     /// Opens the folder `dir`, which is made if it is not there, for the run described by `info`.
@@ -128,8 +140,10 @@ impl Output {
     /// If the folder holds results that `mode` does not allow to touch, cannot be written, or is being written by
     /// another process.
     pub fn create(info: RunInfo, dir: &Path, mode: Mode) -> Result<Self> {
-        let claim = Claim::on(dir)?;
-        let found = folder::prepare(dir, &info, mode)?;
+        // looked at before it is touched: a folder that is refused stays as it is
+        folder::look(dir, &info, mode)?;
+        let mut claim = Claim::on(dir)?;
+        let found = folder::prepare(dir, (&info, mode), &mut claim)?;
         let bytes = found.as_ref().map(|found| &found.bytes);
         let releases = open(dir, RELEASES, &Row::COLUMNS, bytes)?;
         let paths =
@@ -148,9 +162,14 @@ impl Output {
         let maps = open_maps(dir, &info, found.as_ref())?;
         let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
         let mut hazard = Hazard::default();
+        // finished results are whole: nothing is marked, and what follows changes none of their rows
+        let mut is_marked = false;
         if let Some(found) = found {
             hazard.totals = found.totals;
             read::recall(dir, &info.identity, found.done, &mut hazard)?;
+            read::check_lengths(dir, &found.finished)?;
+            is_marked = !found.finished.is_empty() && found.done == info.identity.releases;
+            claim.keep();
         }
         let dir = dir.to_owned();
         let begun = Instant::now();
@@ -167,8 +186,10 @@ impl Output {
             maps,
             begun,
             seconds_before,
+            marked: (begun, Duration::ZERO),
+            is_marked,
         };
-        output.mark()?;
+        output.keep()?;
         Ok(output)
     }
 
@@ -184,7 +205,7 @@ impl Output {
     }
 
     /// Writes the next journeys, which must be the first of [`Self::remaining`], in order; when it returns they
-    /// are on the disk.
+    /// are on the disk, unless fine maps are drawn, see [`Self::keep`].
     ///
     /// # Errors
     ///
@@ -207,7 +228,33 @@ impl Output {
             self.hazard.add(&row);
             self.hazard.totals.add(fall);
         }
-        self.mark()
+        self.is_marked = false;
+        let (last, took) = self.marked;
+        let many = self.maps.as_ref().is_some_and(|maps| maps.known_cells() > MANY_CELLS);
+        if many && last.elapsed() < took * MARK_SHARE {
+            return Ok(());
+        }
+        self.keep()
+    }
+
+    /// Puts on the disk what [`Self::write`] has not yet: with fine maps it does so only now and then, because their
+    /// state is as long as they are.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::write`].
+    pub fn keep(&mut self) -> Result<()> {
+        if self.is_marked {
+            return Ok(());
+        }
+        let begun = Instant::now();
+        self.mark()?;
+        self.marked = (Instant::now(), begun.elapsed());
+        self.is_marked = true;
+        if self.hazard.rocks() > 0 {
+            self.claim.keep();
+        }
+        Ok(())
     }
 
     /// Writes the summary and gives the results as they are on the disk. Of a part of a run the progress stays:
@@ -226,7 +273,9 @@ impl Output {
             )));
         }
         let seconds = self.seconds();
-        let is_part = self.info.identity.is_part();
+        let is_part = self.info.is_shard || self.info.identity.is_part();
+        self.claim.keep();
+        let bytes = self.lengths()?;
         let done = self.hazard.rocks();
         if let Some(maps) = &self.maps {
             maps::write(&self.dir, maps, done)?;
@@ -235,6 +284,7 @@ impl Output {
         let barriers = hazard::judge(&self.info.barriers, crossings, done)?;
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
         summary.barriers = barriers;
+        summary.bytes = bytes;
         summary.write(&self.dir)?;
         self.hazard.totals = summary.totals.clone();
         let results = Results {
@@ -289,10 +339,15 @@ impl Output {
         std::iter::once((RELEASES, releases)).chain(kept)
     }
 
+    /// Puts all rows on the disk; the lengths of the tables (bytes).
+    fn lengths(&mut self) -> Result<BTreeMap<String, u64>> {
+        let length = |(name, table): (&str, &mut Table)| Ok((name.to_owned(), table.sync()?));
+        self.tables().map(length).collect()
+    }
+
     /// Puts all rows on the disk, and then says that they are there.
     fn mark(&mut self) -> Result<()> {
-        let length = |(name, table): (&str, &mut Table)| Ok((name.to_owned(), table.sync()?));
-        let bytes: BTreeMap<String, u64> = self.tables().map(length).collect::<Result<_>>()?;
+        let bytes = self.lengths()?;
         let done = self.hazard.rocks();
         if let Some(maps) = &self.maps {
             maps::write_state(&self.dir, maps, done)?;
@@ -304,6 +359,7 @@ impl Output {
             bytes,
             totals: self.hazard.totals.clone(),
             seconds: self.seconds(),
+            finished: BTreeMap::new(),
         };
         progress.write(&self.dir)?;
         // The state before is of use until the progress says otherwise.
@@ -312,40 +368,5 @@ impl Output {
 
     fn seconds(&self) -> f64 {
         self.seconds_before + self.begun.elapsed().as_secs_f64()
-    }
-}
-
-/// The maps so far; none when they are not asked for or complete.
-fn open_maps(dir: &Path, info: &RunInfo, found: Option<&Progress>) -> Result<Option<Maps>> {
-    let Some(frame) = info.maps else { return Ok(None) };
-    let state = match found {
-        None => MapState::default(),
-        Some(found)
-            if found.done == found.identity.releases && !maps::has_state(dir, found.done) =>
-        {
-            return Ok(None);
-        }
-        Some(found) => maps::read_state(dir, found.done)?,
-    };
-    Ok(Some(Maps::new(frame, state)))
-}
-
-/// Opens one table: new, or behind the rows that are known to be good.
-fn open(
-    dir: &Path,
-    name: &str,
-    columns: &[&str],
-    bytes: Option<&BTreeMap<String, u64>>,
-) -> Result<Table> {
-    let path = dir.join(name);
-    match bytes.map(|bytes| bytes.get(name)) {
-        None => Table::create(path, columns),
-        Some(Some(&bytes)) => Table::go_on(path, bytes),
-        Some(None) => Err(Error::input(
-            &dir.join(PROGRESS),
-            "bytes",
-            format!("no length of {name}"),
-            "restore the file as it was written, or start again with --overwrite",
-        )),
     }
 }

@@ -17,7 +17,7 @@ pub(super) const PROGRESS: &str = "progress.json";
 pub struct Identity {
     /// Hash of the scene file and of its meshes.
     pub scene_hash: String,
-    /// Version of rockfall.
+    /// Version of rockfall, and after the + the fingerprint of its sources.
     pub version: String,
     /// Seed in force (scene or command line).
     pub seed: u64,
@@ -79,6 +79,9 @@ pub(super) struct Progress {
     pub(super) totals: Totals,
     /// Time spent so far (s).
     pub(super) seconds: f64,
+    /// Of a finished run, the lengths of the tables as they were written (bytes).
+    #[serde(skip)]
+    pub(super) finished: BTreeMap<String, u64>,
 }
 
 impl Progress {
@@ -91,6 +94,7 @@ impl Progress {
             bytes: BTreeMap::new(),
             totals: Totals::default(),
             seconds: 0.0,
+            finished: BTreeMap::new(),
         }
     }
 

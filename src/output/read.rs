@@ -8,6 +8,7 @@ use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
 use crate::hazard::{CrossingRow, Hazard, Line, Row};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The complete results in a folder.
@@ -58,6 +59,7 @@ pub fn read(dir: &Path) -> Result<Results> {
     let mut lines: Vec<Line> =
         summary.lines.iter().map(|line| Line::new(line.info.clone())).collect();
     recall_lines(dir, &mut lines)?;
+    check_lengths(dir, &summary.bytes)?;
     Ok(Results { dir: dir.to_owned(), summary, hazard, lines, claim: None })
 }
 
@@ -157,6 +159,23 @@ pub(super) fn recall(
         rows if rows == done => Ok(()),
         rows => Err(broken(dir, format!("{rows} rows instead of {done}"))),
     }
+}
+
+/// Every table must be as long as when the run was finished.
+pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Result<()> {
+    for (name, written) in written {
+        let path = dir.join(name);
+        let found = std::fs::metadata(&path).map_err(Error::file("read", &path))?.len();
+        if found != *written {
+            return Err(Error::input(
+                &path,
+                "length",
+                format!("found {found} bytes where the run had written {written}"),
+                "restore the file as it was written, or run again with --overwrite",
+            ));
+        }
+    }
+    Ok(())
 }
 
 fn releases(dir: &Path) -> Result<impl Iterator<Item = Result<Row>> + use<>> {

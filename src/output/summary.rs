@@ -79,6 +79,9 @@ pub struct Summary {
     /// Failures by reason, effort, energy ledger, largest rise of energy.
     #[serde(flatten)]
     pub totals: Totals,
+    /// Length of each table (bytes): rows that are missing later are noticed.
+    #[serde(default)]
+    pub bytes: BTreeMap<String, u64>,
     /// What was computed, what was left out and why.
     pub plan: Vec<String>,
     /// What went in, as name and value.
@@ -126,6 +129,7 @@ impl Summary {
             largest_energy_balance_error: hazard.largest_balance_error(),
             totals: hazard.totals.rounded(),
             origin_m: info.origin_m.into(),
+            bytes: BTreeMap::new(),
             plan: info.plan,
             inputs: info.inputs,
             title_block: info.title_block,

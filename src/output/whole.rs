@@ -66,7 +66,9 @@ pub(super) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 pub(super) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>> {
     let text = match fs::read(path) {
         Ok(text) => text,
-        Err(why) if why.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(why) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&why.kind()) => {
+            return Ok(None);
+        }
         Err(why) => return Err(Error::file("read", path)(why)),
     };
     serde_json::from_slice(&text).map(Some).map_err(|why| {

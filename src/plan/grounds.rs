@@ -1,6 +1,8 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
 use crate::error::{Error, Result};
+use crate::math;
+use crate::release::NO_WIDTH_M;
 use crate::scene::{GroundTable, Scene, known_ground};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -30,6 +32,46 @@ pub(super) fn stems(scene: &Scene, terrain: &Terrain) -> Result<Option<Stems>> {
     })
 }
 
+/// Refuses meshes so small that nothing can fall on them: their unit is another, most likely.
+pub(super) fn check_size(scene: &Scene, terrain: &Terrain) -> Result<()> {
+    let (low, high) = terrain.index.bounds();
+    let size_m = (high - low).max();
+    if size_m >= NO_WIDTH_M {
+        return Ok(());
+    }
+    let found = format!("found meshes of {size_m:.1e} m in all");
+    let remedy = "write scale = metres in one unit of the file";
+    Err(Error::input(&scene.file, "[[terrain]] scale", found, remedy))
+}
+
+/// The steepest slope on which each ground stops a rolling sphere: `tan θ` = rolling friction.
+pub(super) fn rolling_stops(scene: &Scene) -> Vec<String> {
+    let stops = |(name, ground): (&String, &GroundTable)| {
+        let Some(rolling) = ground.rolling_friction.as_ref() else {
+            return format!("{name}: on no slope, it has no rolling friction");
+        };
+        let [least, middle, most] = rolling.reckoned().map(|value| math::atan(value).to_degrees());
+        let spread =
+            if most > least { format!(" ({least:.1}° to {most:.1}°)") } else { String::new() };
+        format!("{name}: on slopes of up to {middle:.1}°{spread}")
+    };
+    scene.grounds.iter().map(stops).collect()
+}
+
+/// Warns of grounds of the catalogue under a slope on which nothing stops a sphere.
+fn endless_rolling(scene: &Scene) -> impl Iterator<Item = String> {
+    let lies = |name: &str| scene.terrain.iter().any(|mesh| mesh.ground == name);
+    scene.grounds.iter().filter_map(move |(name, ground)| {
+        let known = known_ground(ground.like.as_deref()?)?;
+        (ground.rolling_friction.is_none() && lies(name)).then(|| {
+            format!(
+                "[grounds.{name}] like {}: its source has no rolling friction, and without any nothing stops a sphere that rolls; write rolling_friction",
+                known.name
+            )
+        })
+    })
+}
+
 /// Warnings about grounds and keys that nothing answers with.
 pub(super) fn unused(scene: &Scene, terrain: &Terrain) -> Vec<String> {
     let used = |index: usize| terrain.sheets.iter().any(|sheet| usize::from(sheet.ground) == index);
@@ -45,5 +87,5 @@ pub(super) fn unused(scene: &Scene, terrain: &Terrain) -> Vec<String> {
             None
         }
     };
-    scene.grounds.iter().enumerate().filter_map(wrong).collect()
+    scene.grounds.iter().enumerate().filter_map(wrong).chain(endless_rolling(scene)).collect()
 }

@@ -38,6 +38,7 @@ fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, Strin
     say("restitution", ground.restitution.as_ref(), "");
     say("rolling friction", ground.rolling_friction.as_ref(), "");
     say("roughness", ground.roughness_deg.as_ref(), "°");
+    say("roughness length", ground.roughness_length_m.as_ref(), "m");
     say("gives way above", ground.breaks_above_j.as_ref(), " J");
     if let Some(known) = ground.like.as_deref().and_then(known_ground) {
         parts.push(format!("like {}", known.name));

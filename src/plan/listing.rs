@@ -54,6 +54,7 @@ impl Plan {
             barriers,
             maps,
             catalogued,
+            rolling_stops,
             deposits,
             inputs: _,      // with the report
             title_block: _, // with the report
@@ -90,8 +91,9 @@ impl Plan {
                 format!("{speed:.4} m/s on {name}, {whose}: slower impacts do not rebound"),
             );
         }
+        list.line("impacts on one plane", plane_impacts(step));
         list.lines("own dissipation", self.dissipation());
-        list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s"));
+        list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
         list.part("breaking stems", breaking, |stems| {
             format!("{stems}, each whole again for the next rock")
@@ -100,6 +102,7 @@ impl Plan {
         list.line("orientation", format!("left out: {}", never(orientation)));
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
+        list.lines("rolling stops", rolling_stops.iter().cloned());
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
@@ -117,7 +120,7 @@ impl Plan {
             )
         });
         list.part("paths", paths, |Paths { first, step_s }| {
-            format!("kept for {first} of {count} releases, every {step_s} s")
+            format!("kept for {} of {count} releases, every {step_s} s", first.min(count))
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
         list.part("lines", lines, |lines| {
@@ -135,6 +138,9 @@ impl Plan {
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
         });
+        let cost = self.cost(*count);
+        let asks = if cost.is_modest() { "" } else { "; runs with --yes only" };
+        list.line("at most", format!("{cost}{asks}"));
         if let Some(file) = deposits {
             list.line("compared with", format!("measured ends in {}", file.display()));
         }
@@ -297,6 +303,15 @@ fn one_world(scheme: Scheme, ground: &Ground) -> String {
 fn map([x, y, z]: [f64; 3], epsg: Option<u32>) -> String {
     let code = epsg.map_or_else(|| "no EPSG code".to_owned(), |code| format!("EPSG:{code}"));
     format!("origin ({x}, {y}, {z}) m subtracted, {code}")
+}
+
+fn plane_impacts(step: &Settings) -> &'static str {
+    match (step.scheme, step.plane_impacts) {
+        (Scheme::Rigid, _) => "in no time: the limit of stiff springs",
+        (Scheme::Dda, _) => "left out: the fixed step knows no other",
+        (_, true) => "followed as a whole, in their own time; all others step by step",
+        (_, false) => "left out: every impact is followed step by step",
+    }
 }
 
 fn scheme(step: &Settings) -> String {

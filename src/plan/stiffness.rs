@@ -69,6 +69,31 @@ fn phase_warning(ground: &str, (radius_m, phase): (f64, f64), step_s: f64) -> Op
     ))
 }
 
+/// A tolerance above twice the capture speed lets slow rocks flutter for ever.
+pub(super) fn flutter(step: &Settings, warnings: &mut Vec<String>) {
+    if let Some(capture) =
+        step.capture_speed_m_s.filter(|capture| step.tolerance_m_s > 2.0 * capture)
+    {
+        warnings.push(format!(
+            "capture_speed_m_s = {capture} is below half the tolerance of {} m/s: slow rocks may flutter and never come to rest; write {} or more",
+            step.tolerance_m_s,
+            0.5 * step.tolerance_m_s
+        ));
+    }
+}
+
+/// A fixed step so short that a rock may spend its budget of work before its time is up.
+pub(super) fn too_short(step: &Settings, longest_s: f64, warnings: &mut Vec<String>) {
+    let most = step.scheme.most_work() as f64;
+    if step.scheme == Scheme::Dda && longest_s > most * step.step_s {
+        warnings.push(format!(
+            "step_s = {:e} lets a rock fall for {:.3} s at most before its budget of {most} steps is spent; write a longer step, or a longest_s below that",
+            step.step_s,
+            most * step.step_s
+        ));
+    }
+}
+
 /// Speed below which the median rock does not rebound from each ground (m/s).
 pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
     let capture = Capture {
@@ -86,6 +111,7 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
             restitution: table.restitution.as_ref().map(median),
             rolling_friction: 0.0,
             roughness_rad: 0.0,
+            roughness_length_m: None,
         };
         let damping = Damping::of(ground.restitution);
         Law::new(&ground, &damping, &rock, &capture).capture_m_s

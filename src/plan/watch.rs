@@ -1,6 +1,7 @@
 //! What is watched along every rock's way: evaluation lines and the cells of maps, in local coordinates.
 
 use crate::error::{Error, Result};
+use crate::math;
 use crate::rock::Vec3;
 use crate::scene::{Corner, MapsTable, Polyline};
 use crate::terrain::Terrain;
@@ -31,7 +32,7 @@ pub struct Piece {
 impl Piece {
     /// Its length (m), positive.
     pub fn length_m(&self) -> f64 {
-        self.way_m[0].hypot(self.way_m[1])
+        math::hypot(self.way_m[0], self.way_m[1])
     }
 
     /// Distance of a point from the line through the piece (m), positive on its left.

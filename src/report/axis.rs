@@ -1,6 +1,7 @@
 //! Ranges of numbers: ticks at steps of 1, 2, 2.5 and 5, linear or logarithmic.
 
 use super::format;
+use crate::math;
 
 /// One tick.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,9 +36,14 @@ impl Axis {
     pub fn log(low: f64, high: f64, title: impl Into<String>) -> Self {
         let high = if high.is_finite() && high > 0.0 { high } else { 1.0 };
         let low = if low.is_finite() && low > 0.0 { low.min(high) } else { 1e-6 * high };
-        let (down, up) = (low.log10() + 1e-9, high.log10() - 1e-9);
+        let (down, up) = (math::log10(low) + 1e-9, math::log10(high) - 1e-9);
         let (down, up) = (down.floor(), up.ceil().max(down.floor() + 1.0));
-        Self { low: 10f64.powf(down), high: 10f64.powf(up), is_log: true, title: title.into() }
+        Self {
+            low: math::pow(10f64, down),
+            high: math::pow(10f64, up),
+            is_log: true,
+            title: title.into(),
+        }
     }
 
     /// A linear axis from 0 (or a negative least value) to a round number not below the largest of `values`.
@@ -52,7 +58,8 @@ impl Axis {
     /// Where a value lies: 0 at the lower end, 1 at the upper.
     pub fn share(&self, value: f64) -> f64 {
         if self.is_log {
-            (value.log10() - self.low.log10()) / (self.high.log10() - self.low.log10())
+            (math::log10(value) - math::log10(self.low))
+                / (math::log10(self.high) - math::log10(self.low))
         } else {
             (value - self.low) / (self.high - self.low)
         }
@@ -73,7 +80,8 @@ impl Axis {
     }
 
     fn log_ticks(&self, count: usize) -> Vec<Tick> {
-        let (down, up) = (self.low.log10().round() as i32, self.high.log10().round() as i32);
+        let (down, up) =
+            (math::log10(self.low).round() as i32, math::log10(self.high).round() as i32);
         let every = (f64::from(up - down) / count.max(1) as f64).ceil().max(1.0) as i32;
         let mut ticks = Vec::new();
         for exponent in down..=up {
@@ -113,7 +121,7 @@ pub fn round_step(rough: f64, mantissas: &[f64]) -> f64 {
     if !(rough.is_finite() && rough > 0.0) {
         return 1.0;
     }
-    let exponent = rough.log10().floor() as i32;
+    let exponent = math::log10(rough).floor() as i32;
     // a negative power as a quotient: 25 / 1000 is the double nearest to 0.025, 25 · 0.001 is not
     let scaled = |mantissa: f64| match exponent {
         e if e < 0 => mantissa / 10f64.powi(-e),

@@ -42,7 +42,11 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         ground,
         runout_exceedance: band(&hazard.sample(hazard::Quantity::Runout).exceedance()),
         quantiles: TABLED.map(|(here, there)| (here, quantiles(hazard, there))).into(),
-        stops: StopKind::ALL.map(|kind| stop_share(hazard, kind)).into(),
+        stops: StopKind::ALL
+            .into_iter()
+            .filter(|kind| !kind.is_unusual() || hazard.ended(*kind).count > 0)
+            .map(|kind| stop_share(hazard, kind))
+            .collect(),
         headline: headline(hazard),
         tables: [table(hazard)]
             .into_iter()
@@ -96,6 +100,8 @@ fn stop_of(kind: StopKind) -> Stop {
         StopKind::AtRest => Stop::AtRest,
         StopKind::LeftTerrain => Stop::LeftTerrain,
         StopKind::TimeUp => Stop::TimeUp,
+        StopKind::OverBudget => Stop::OverBudget,
+        StopKind::NotReleased => Stop::NotReleased(""),
         StopKind::Failed => Stop::Failed(String::new()),
     }
 }

@@ -5,6 +5,7 @@ mod words;
 use super::figure::{Drawing, Heading};
 use super::format::{self, escape};
 use super::input::{Estimate, Report, Row, Table, energy_unit};
+use crate::math;
 use crate::trajectory::Stop;
 use std::fmt::Write as _;
 use words::{GLOSSARY, METHOD, STYLE};
@@ -157,7 +158,7 @@ fn in_words(estimate: &Estimate) -> (String, String) {
     }
     let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
         // the last digit is at most a fifth of the interval
-        let leading = estimate.value.abs().log10().floor() - (0.2 * width).log10().floor();
+        let leading = math::log10(estimate.value.abs()).floor() - math::log10(0.2 * width).floor();
         (leading as i32 + 1).clamp(3, 6) as usize
     } else {
         4

@@ -98,6 +98,8 @@ pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
     let drawn = drawings(report);
+    let names: Vec<&str> = drawn.iter().map(|(heading, _)| heading.file.as_str()).collect();
+    output::announce_figures(dir, &names)?;
     for (heading, drawing) in &drawn {
         write_whole(&figures.join(&heading.file), drawing.svg.as_bytes())?;
     }

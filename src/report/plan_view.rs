@@ -11,6 +11,7 @@ use super::input::Report;
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Paper, Pen, paint};
 use super::svg::path::{Frame, Spot, clipped, thinned};
+use crate::math;
 use crate::trajectory::Stop;
 use std::collections::BTreeSet;
 
@@ -157,7 +158,7 @@ fn paths(paper: &Paper<'_>, panel: &Panel, report: &Report, fastest_m_s: f64) {
         }
     }
     let many = report.paths.len() as f64;
-    let width_px = (2.2 - 0.5 * many.max(1.0).log10()).clamp(0.8, 1.8);
+    let width_px = (2.2 - 0.5 * math::log10(many.max(1.0))).clamp(0.8, 1.8);
     let opacity = if many > 100.0 { 0.75 } else { 0.95 };
     for (i, lines) in classes.iter().enumerate() {
         let colour = colour::sequential((i as f64 + 0.5) / SPEED_CLASSES as f64);
@@ -203,8 +204,8 @@ impl Mark {
         match stop {
             Stop::AtRest => Self::AtRest,
             Stop::LeftTerrain => Self::LeftTerrain,
-            Stop::TimeUp => Self::TimeUp,
-            Stop::Failed(_) => Self::Failed,
+            Stop::TimeUp | Stop::OverBudget => Self::TimeUp,
+            Stop::Failed(_) | Stop::NotReleased(_) => Self::Failed,
         }
     }
 

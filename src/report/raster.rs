@@ -3,6 +3,7 @@
 mod ascii;
 mod cover;
 
+use crate::math;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
@@ -186,7 +187,7 @@ fn bounds_of(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Option<Bounds> {
 
 /// Decimals that resolve a thousandth of a cell.
 fn decimals_for(cell_m: f64) -> i32 {
-    (3.0 - cell_m.log10().floor()).clamp(0.0, 9.0) as i32
+    (3.0 - math::log10(cell_m).floor()).clamp(0.0, 9.0) as i32
 }
 
 /// The double nearest to a number of few decimals: its printed form is short and reads back to the same double.

@@ -10,6 +10,7 @@ use super::input::{Path, Report};
 use super::panel::{FOOT_PX, Panel, align};
 use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::{Frame, Spot};
+use crate::math;
 use along::{Envelope, FallLine};
 use plotters::style::RGBColor;
 
@@ -97,7 +98,7 @@ impl View {
         };
         let paths: Vec<Vec<Spot>> = report.paths.iter().flat_map(on_paper).collect();
         // one line a path, so that many of them add up to a darker blue
-        let opacity = (1.0 - 0.3 * (report.paths.len().max(1) as f64).log10()).clamp(0.2, 0.9);
+        let opacity = (1.0 - 0.3 * math::log10(report.paths.len().max(1) as f64)).clamp(0.2, 0.9);
         for path in &paths {
             paper.line(path, Pen { opacity, ..Pen::full(BLUE, 0.7) });
         }

@@ -8,6 +8,7 @@ use super::input::{Report, StopShare};
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Label, Paper, Pen, paint, text_width};
 use super::svg::path::Frame;
+use crate::math;
 use crate::trajectory::Stop;
 
 const LINE_PX: f64 = 30.0;
@@ -46,6 +47,8 @@ pub(super) fn name(stop: &Stop) -> &'static str {
         Stop::AtRest => "at rest",
         Stop::LeftTerrain => "left the terrain",
         Stop::TimeUp => "time up",
+        Stop::OverBudget => "over budget",
+        Stop::NotReleased(_) => "not released",
         Stop::Failed(_) => "failed",
     }
 }
@@ -81,6 +84,6 @@ fn bar(paper: &Paper<'_>, panel: &Panel, line: usize, share: &StopShare) {
 
 /// Decimals of a percentage that an interval of some width (share) leaves meaningful.
 fn decimals_for(width: f64) -> usize {
-    let leading = (100.0 * width).log10().floor();
+    let leading = math::log10(100.0 * width).floor();
     if leading.is_finite() { (1.0 - leading).clamp(1.0, 4.0) as usize } else { 1 }
 }

@@ -68,6 +68,8 @@ pub(super) enum Allowed {
     Share,
     /// 0..90 degrees without 90 itself.
     Slope,
+    /// Both ends included; what is beyond means nothing on a slope, and may take for ever.
+    Between(f64, f64),
 }
 
 impl Allowed {
@@ -79,15 +81,17 @@ impl Allowed {
                 Self::Positive => low > 0.0,
                 Self::Share => low >= 0.0 && high <= 1.0,
                 Self::Slope => low >= 0.0 && high < 90.0,
+                Self::Between(least, most) => least <= low && high <= most,
             }
     }
 
-    fn in_words(self) -> &'static str {
+    fn in_words(self) -> String {
         match self {
-            Self::NotNegative => "write a number of 0 or more",
-            Self::Positive => "write a number above 0",
-            Self::Share => "write a value in 0..1",
-            Self::Slope => "write a value in 0..90",
+            Self::NotNegative => "write a number of 0 or more".to_owned(),
+            Self::Positive => "write a number above 0".to_owned(),
+            Self::Share => "write a value in 0..1".to_owned(),
+            Self::Slope => "write a value in 0..90".to_owned(),
+            Self::Between(least, most) => format!("write a value in {least:?}..{most:?}"),
         }
     }
 }
@@ -132,6 +136,8 @@ pub(super) fn check_names(tables: &[(&str, Vec<&str>)]) -> Checked {
                 "write a name; it stands in tables and files"
             } else if known.contains(&name) {
                 "write another name: an entry before has the same"
+            } else if is_formula(name) {
+                FORMULA
             } else {
                 known.push(name);
                 continue;
@@ -140,6 +146,15 @@ pub(super) fn check_names(tables: &[(&str, Vec<&str>)]) -> Checked {
         }
     }
     Ok(())
+}
+
+/// What to do about a name that a spreadsheet takes for a formula: it stands in CSV files.
+pub(super) const FORMULA: &str =
+    "write a name that does not begin with =, +, - or @: spreadsheets take that for a formula";
+
+/// Whether a spreadsheet takes a name for a formula.
+pub(super) fn is_formula(name: &str) -> bool {
+    name.starts_with(['=', '+', '-', '@', '\t', '\r'])
 }
 
 /// The known word that looks most like the one written, if any is near.

@@ -5,8 +5,10 @@ use super::refusal::Refusal;
 use super::zones::Zones;
 use super::{MeshFile, Scene};
 use crate::error::Error;
+use crate::file::{self, LONGEST_MESH};
 use crate::gis;
 use sha2::{Digest, Sha256};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// A file that went into the results.
@@ -33,7 +35,7 @@ impl Scene {
         let drawn = drawn.chain(self.barrier_entries.iter_mut().map(|barrier| &mut barrier.file));
         let deposits = self.calibrate.iter_mut().map(|table| &mut table.deposits);
         let grounds = self.ground_zones.iter_mut().map(|zones| &mut zones.file);
-        let zones = std::iter::once(&mut self.release.zones);
+        let zones = [&mut self.release.zones, &mut self.release.table];
         let paths = meshes.chain(drawn).chain(zones).flatten().chain(deposits).chain(grounds);
         paths.for_each(|path| *path = folder.join(&*path));
     }
@@ -124,25 +126,32 @@ impl Scene {
         hash.update(text);
         hash.update((text.len() as u64).to_le_bytes());
         let mut inputs = Vec::new();
-        let mut take = |path: &Path| -> std::io::Result<()> {
-            let length = std::fs::File::open(path)
-                .and_then(|mut file| std::io::copy(&mut file, &mut hash))?;
+        let mut take = |path: &Path| -> std::result::Result<(), String> {
+            let file = file::open(path, LONGEST_MESH).map_err(|error| match error {
+                Error::File { file, source, .. } => format!("{}: {source}", file.display()),
+                other => other.to_string(),
+            })?;
+            let length = std::io::copy(&mut file.take(LONGEST_MESH), &mut hash)
+                .map_err(|error| format!("{}: {error}", path.display()))?;
             hash.update(length.to_le_bytes());
             inputs.push(InputFile { path: path.to_owned(), bytes: length, assumed: None });
             Ok(())
         };
-        self.each_mesh(|mesh| take(mesh.path()).map_err(|error| unreadable(mesh, &error)))?;
-        for (trail, file) in self.drawings() {
-            for file in gis::files(file) {
-                take(&file).map_err(|error| {
-                    let remedy = format!(
-                        "write the path of a file that can be read; {}: {error}",
-                        file.display()
-                    );
-                    let about = Complaint::about(trail.2, remedy);
-                    match trail.1 {
-                        Some(index) => about.in_entry(index).inside(trail.0),
-                        None => about.inside(trail.0),
+        self.each_mesh(|mesh| take(mesh.path()).map_err(|why| unreadable(mesh, &why)))?;
+        for ((table, key), path) in self.tables() {
+            take(path).map_err(|why| {
+                let remedy = "write the path of a CSV file as seen from the scene file";
+                Complaint::about(key, format!("{remedy}; {why}")).inside(table)
+            })?;
+        }
+        for ((table, index, key), path) in self.drawings() {
+            for path in gis::files(path) {
+                take(&path).map_err(|why| {
+                    let remedy = "write the path of a file that can be read";
+                    let about = Complaint::about(key, format!("{remedy}; {why}"));
+                    match index {
+                        Some(index) => about.in_entry(index).inside(table),
+                        None => about.inside(table),
                     }
                 })?;
             }
@@ -156,6 +165,13 @@ impl Scene {
         }
         self.inputs = inputs;
         Ok(format!("{:x}", hash.finalize()))
+    }
+
+    /// CSV files: table and key that name them.
+    fn tables(&self) -> Vec<((&'static str, &'static str), &Path)> {
+        let blocks = self.release.table.iter().map(|path| (("release", "table"), path.as_path()));
+        let ends = self.calibrate.iter();
+        blocks.chain(ends.map(|c| (("calibrate", "deposits"), c.deposits.as_path()))).collect()
     }
 
     /// Files with drawings: table, entry and key that name them.
@@ -181,13 +197,11 @@ impl Scene {
     }
 }
 
-fn unreadable(mesh: &MeshFile, error: &std::io::Error) -> Complaint {
-    let path = mesh.path().display();
+fn unreadable(mesh: &MeshFile, why: &str) -> Complaint {
     let (key, what) = if mesh.file.is_some() {
         ("file", "an elevation model or mesh")
     } else {
         ("mesh", "an STL file")
     };
-    let remedy = format!("write the path of {what} as seen from the scene file; {path}: {error}");
-    Complaint::about(key, remedy)
+    Complaint::about(key, format!("write the path of {what} as seen from the scene file; {why}"))
 }

@@ -24,6 +24,8 @@ pub struct GroundTable {
     pub rolling_friction: Option<Distribution>,
     /// Largest random tilt of the contact normal at an impact (degrees), 0..90; absent = none.
     pub roughness_deg: Option<Distribution>,
+    /// Way over which one tilted facet of a rough ground reaches (m), positive; absent = the radius of the rock.
+    pub roughness_length_m: Option<Distribution>,
     /// Trees only: energy that a stem takes before it gives way to a rock (J), positive; absent = it stands for good.
     pub breaks_above_j: Option<Distribution>,
 }
@@ -55,6 +57,7 @@ impl GroundTable {
             ("restitution", &self.restitution, Allowed::Share),
             ("rolling_friction", &self.rolling_friction, Allowed::NotNegative),
             ("roughness_deg", &self.roughness_deg, Allowed::Slope),
+            ("roughness_length_m", &self.roughness_length_m, Allowed::Positive),
             ("breaks_above_j", &self.breaks_above_j, Allowed::Positive),
         ];
         for (key, value, allowed) in may_be_absent {

@@ -2,6 +2,7 @@
 
 use super::geometry::{Corner, meet, twice_area};
 use crate::error::Flaw;
+use crate::math;
 
 /// The outline with its holes joined to it, anticlockwise.
 ///
@@ -38,7 +39,7 @@ fn bridge(ring: &[Corner], holes: &[Vec<Corner>]) -> Option<(usize, usize)> {
     let hole = &holes[0];
     let from = (0..hole.len()).max_by(|&i, &j| hole[i][0].total_cmp(&hole[j][0]))?;
     let end = hole[from];
-    let far = |at: usize| (ring[at][0] - end[0]).hypot(ring[at][1] - end[1]);
+    let far = |at: usize| math::hypot(ring[at][0] - end[0], ring[at][1] - end[1]);
     let mut ats: Vec<usize> = (0..ring.len()).collect();
     ats.sort_by(|&one, &other| far(one).total_cmp(&far(other)));
     let sides = |ring: &[Corner]| -> Vec<[Corner; 2]> {

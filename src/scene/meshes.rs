@@ -2,6 +2,7 @@
 
 use super::check::{Allowed, Checked, Complaint, number, optional, suggest};
 use super::places::finite;
+use crate::math;
 use crate::terrain::formats::{Crop, Options};
 use crate::terrain::weld::Up;
 use serde::Deserialize;
@@ -155,7 +156,7 @@ impl CropTable {
         match (self.box_m, self.reach_angle_deg) {
             (Some(box_m), _) => Crop::Box(box_m, margin_m),
             (None, angle) => {
-                let slope = angle.unwrap_or_default().to_radians().tan();
+                let slope = math::tan(angle.unwrap_or_default().to_radians());
                 Crop::Reach { starts: starts.to_vec(), slope, margin_m }
             }
         }

@@ -4,6 +4,7 @@
 //! here is either numerics, filled in and printed by the plan, or an error.
 
 mod barrier;
+mod blocks;
 mod calibrate;
 mod catalogue;
 mod check;
@@ -18,6 +19,7 @@ mod places;
 mod record;
 mod refusal;
 mod release;
+mod rewrite;
 mod rocks;
 mod solver;
 mod source;
@@ -25,6 +27,7 @@ mod wording;
 mod zones;
 
 pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
+pub use blocks::Block;
 pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use drawn::{BarrierEntry, LineEntry};
@@ -35,18 +38,19 @@ pub use meshes::{CropTable, MeshFile, MeshTable};
 pub use places::{Area, Corner, Point, Polyline};
 pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
+pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 pub use zones::{Zone, ZonePlace, Zones};
 
-use crate::chance::entries;
+use crate::chance::{Distribution, entries};
 use crate::error::{Error, Result};
 use crate::step::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::patches::Patches;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
-use check::{Allowed, Checked, Complaint, check_names, number};
+use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
 use places::FARTHEST_M;
 use refusal::Refusal;
 use serde::Deserialize;
@@ -139,8 +143,9 @@ impl Scene {
     /// Whatever is wrong with the scene, with file, table, key and line; a file that is not there; a drawing that cannot be
     /// used.
     pub fn read(file: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(file).map_err(Error::file("read", file))?;
+        let text = crate::file::read_text(file)?;
         let mut scene = Self::parse(&text, file)?;
+        scene.read_blocks()?;
         let refuse = |wrong| Lookup::of(file, &text).refuse(wrong);
         scene.take_drawn().map_err(|wrong| match wrong {
             Refusal::Key(complaint) => refuse(*complaint),
@@ -167,6 +172,28 @@ impl Scene {
         scene.settle_paths(file.parent().unwrap_or(Path::new("")));
         file.clone_into(&mut scene.file);
         Ok(scene)
+    }
+
+    /// Reads the blocks of the release table; their radii, where they are there, are those of the scene.
+    fn read_blocks(&mut self) -> Result<()> {
+        let Some(table) = &self.release.table else { return Ok(()) };
+        let has_height = self.release.height_m.is_some();
+        let blocks = blocks::read(table, has_height, self.rocks.density_kg_m3)?;
+        let radii_m: Vec<f64> = blocks.iter().filter_map(|block| block.radius_m).collect();
+        if !radii_m.is_empty() {
+            let refuse = |flaw: crate::error::Flaw| {
+                Error::input(table, "radius_m or mass_kg", flaw.found, flaw.remedy)
+            };
+            let radius_m = Distribution::listed(radii_m).map_err(refuse)?;
+            self.rocks.radius_m = radius_m;
+            let wrong = |wrong: Complaint| {
+                let found = wrong.found.unwrap_or_else(|| "found another".to_owned());
+                Error::input(table, "radius_m or mass_kg", found, wrong.remedy)
+            };
+            self.rocks.check().map_err(wrong)?;
+        }
+        self.release.blocks = blocks;
+        Ok(())
     }
 
     /// Position of a ground in the scene's list of grounds.
@@ -218,6 +245,11 @@ impl Scene {
         self.check_meshes()?;
         let scheme = self.solver.scheme();
         for (name, ground) in &self.grounds {
+            if is_formula(name) {
+                return Err(Complaint::about(name, FORMULA)
+                    .finding(format!("found the name {name}"))
+                    .inside("grounds"));
+            }
             ground.check(scheme).map_err(|wrong| wrong.inside(name).inside("grounds"))?;
         }
         self.rocks.check().map_err(|wrong| wrong.inside("rocks"))?;

@@ -1,10 +1,12 @@
 //! Points, polylines and areas in plan view, in map coordinates; valid by construction.
 
+use super::blocks::Block;
 pub use super::geometry::Corner;
 use super::geometry::{meet, minus, twice_area};
 use super::holes::bridged;
 use crate::chance::Entries;
 use crate::error::Flaw;
+use crate::math;
 use serde::Deserialize;
 
 /// A point of release.
@@ -15,6 +17,13 @@ pub struct Point {
     pub at_m: Corner,
     /// Height of the rock's centre (m), map coordinates; absent = reckoned from the ground below.
     pub height_m: Option<f64>,
+}
+
+impl Point {
+    /// The place of a block of a table.
+    pub fn of_block(block: &Block) -> Self {
+        Self { at_m: block.at_m, height_m: block.height_m }
+    }
 }
 
 impl TryFrom<Vec<f64>> for Point {
@@ -59,7 +68,7 @@ impl Polyline {
         let pieces = self.corners_m.windows(2).map(|pair| minus(pair[1], pair[0]));
         let left: Vec<Corner> = pieces
             .map(|[x, y]| {
-                let length = x.hypot(y);
+                let length = math::hypot(x, y);
                 [-y / length, x / length]
             })
             .collect();
@@ -101,7 +110,7 @@ impl TryFrom<Vec<Corner>> for Polyline {
         let mut along_m = vec![0.0];
         for pair in corners_m.windows(2) {
             let step = minus(pair[1], pair[0]);
-            along_m.push(along_m[along_m.len() - 1] + step[0].hypot(step[1]));
+            along_m.push(along_m[along_m.len() - 1] + math::hypot(step[0], step[1]));
         }
         Ok(Self { corners_m, along_m })
     }
@@ -371,27 +380,5 @@ mod tests {
             assert!((found[0] - x).abs() + (found[1] - y).abs() < 1e-15, "{p}: {found:?}");
         }
         assert!(Polyline::try_from(vec![[1.0, 1.0], [1.0, 1.0]]).is_err());
-    }
-
-    /// Two holes, one seen past the other: their area is left out, and no point falls into them.
-    #[test]
-    fn holes_are_left_out() {
-        let square = |low: f64, side: f64| {
-            vec![[low, low], [low + side, low], [low + side, low + side], [low, low + side]]
-        };
-        let holed = Area::with_holes(square(0.0, 10.0), &[square(3.0, 2.0), square(6.0, 2.0)]);
-        let holed = holed.unwrap();
-        assert!((holed.area_m2() - 92.0).abs() < 1e-12);
-        for k in 0..5000u32 {
-            let even = [0.618_033_988_75, 0.754_877_666_25, 0.569_840_290_99];
-            let [x, y] = holed.at(even.map(|step| (f64::from(k) * step).fract()));
-            let inside = |low: f64| x > low && x < low + 2.0 && y > low && y < low + 2.0;
-            assert!((0.0..=10.0).contains(&x) && (0.0..=10.0).contains(&y));
-            assert!(!inside(3.0) && !inside(6.0), "({x}, {y})");
-        }
-        // a hole that reaches out, and one in the other
-        for holes in [[square(9.0, 2.0), square(3.0, 2.0)], [square(3.0, 4.0), square(4.0, 1.0)]] {
-            assert!(Area::with_holes(square(0.0, 10.0), &holes).is_err());
-        }
     }
 }

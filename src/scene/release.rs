@@ -1,5 +1,6 @@
 //! `[release]`.
 
+use super::blocks::Block;
 use super::check::{Allowed, Checked, Complaint, drawn};
 use super::places::{Area, Corner, Point, Polyline};
 use super::zones::Zones;
@@ -30,6 +31,11 @@ pub struct ReleaseTable {
     pub line_m: Option<Polyline>,
     /// Where: uniform over an area in map coordinates (m).
     pub polygon_m: Option<Area>,
+    /// Where: blocks one by one, from a CSV file; once a [`Scene`](super::Scene) is read, as seen from the working directory.
+    pub table: Option<PathBuf>,
+    /// The blocks of the table, once a scene is read.
+    #[serde(skip)]
+    pub blocks: Vec<Block>,
     /// Where: points, lines or polygons of a GeoJSON file or Shapefile.
     pub zones: Option<PathBuf>,
     /// What that file holds, once the scene is read.
@@ -43,7 +49,7 @@ pub const MOST_RELEASES: usize = 1_000_000_000;
 /// Boxes that a cell is compared with at most, see [`ReleaseTable::boxes_m`].
 const MOST_BOXES: usize = 64;
 
-const WHERE: &str = "write exactly one of points_m, line_m, polygon_m and zones";
+const WHERE: &str = "write exactly one of points_m, line_m, polygon_m, table and zones";
 
 impl ReleaseTable {
     pub(super) fn check(&self) -> Checked {
@@ -57,6 +63,7 @@ impl ReleaseTable {
             ("points_m", self.points_m.is_some()),
             ("line_m", self.line_m.is_some()),
             ("polygon_m", self.polygon_m.is_some()),
+            ("table", self.table.is_some()),
             ("zones", self.zones.is_some()),
         ];
         let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
@@ -76,6 +83,9 @@ impl ReleaseTable {
         let single = |corners: &[Corner]| box_of(corners).into_iter().collect::<Vec<_>>();
         let boxes: Vec<[f64; 4]> =
             match (&self.points_m, &self.line_m, &self.polygon_m, &self.zone_list) {
+                _ if !self.blocks.is_empty() => {
+                    self.blocks.iter().filter_map(|block| box_of(&[block.at_m])).collect()
+                }
                 (Some(points), ..) => {
                     points.iter().filter_map(|point| box_of(&[point.at_m])).collect()
                 }
@@ -107,6 +117,8 @@ impl ReleaseTable {
                 "remove it, or write the points as [x, y]: their third coordinate already says how high",
             )),
             Some(height) => drawn("height_m", height, Allowed::NotNegative, ""),
+            // the table is read later, and must have heights then
+            None if self.table.is_some() => Ok(()),
             None if !points.is_empty() && points.iter().all(|point| placed(&point)) => Ok(()),
             None => Err(Complaint::missing(
                 "height_m",

@@ -37,7 +37,10 @@ pub struct RockContact {
 impl Rocks {
     pub(super) fn check(&self) -> Checked {
         number("density_kg_m3", self.density_kg_m3, Allowed::Positive, "rock is near 2700")?;
+        let density = Allowed::Between(1.0, 1e5);
+        number("density_kg_m3", self.density_kg_m3, density, "rock is near 2700")?;
         drawn("radius_m", &self.radius_m, Allowed::Positive, "")?;
+        drawn("radius_m", &self.radius_m, Allowed::Between(1e-3, 1e3), "")?;
         match &self.contact {
             Some(contact) => contact.check().map_err(|wrong| wrong.inside("contact")),
             None => Ok(()),

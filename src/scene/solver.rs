@@ -26,8 +26,9 @@ pub struct SolverTable {
     pub rest_time_s: Option<f64>,
 }
 
-/// Shorter steps (s) are lost in the digits of the time after a minute of fall.
-const SHORTEST_STEP_S: f64 = 1e-12;
+/// Shorter steps (s) of `dda` take a thousand rocks' work for one; those of `rigid` gain nothing below a thousand times as
+/// much.
+const SHORTEST_STEP_S: f64 = 1e-9;
 
 impl SolverTable {
     /// The scheme in force.
@@ -74,10 +75,16 @@ impl SolverTable {
         ] {
             optional(key, value, allowed, "")?;
         }
-        let too_short = |step_s: &f64| *step_s < SHORTEST_STEP_S;
+        let shortest_s = if self.scheme() == Scheme::Rigid { 1e-6 } else { SHORTEST_STEP_S };
+        let too_short = |step_s: &f64| *step_s < shortest_s;
         if self.step_s.as_ref().is_some_and(too_short) {
-            return Err(Complaint::about("step_s", format!("write {SHORTEST_STEP_S:e} or more")));
+            return Err(Complaint::about("step_s", format!("write {shortest_s:e} or more")));
         }
+        // what is beyond means nothing: rounding of the speeds, days of fall
+        optional("tolerance_m_s", self.tolerance_m_s, Allowed::Between(1e-9, 10.0), "")?;
+        optional("longest_s", self.longest_s, Allowed::Between(1e-3, 1e5), "")?;
+        optional("rest_time_s", self.rest_time_s, Allowed::Between(1e-6, 1e5), "")?;
+        optional("rest_speed_m_s", self.rest_speed_m_s, Allowed::Between(1e-6, 10.0), "")?;
         Ok(())
     }
 }

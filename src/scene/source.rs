@@ -45,6 +45,24 @@ impl<'a> Lookup<'a> {
         Self { file, text, is_toml: root.is_ok(), nodes }
     }
 
+    /// Where the value at the end of a trail stands; of a table with a header where the header stands.
+    pub(super) fn value_at(&self, trail: &[Step]) -> Option<Range<usize>> {
+        self.node(trail).map(|node| node.value.clone())
+    }
+
+    /// Where paths of files stand.
+    pub(super) fn paths(&self) -> impl Iterator<Item = Range<usize>> {
+        let is_path = |node: &&Node| match &node.trail[..] {
+            [Step::Key(table), Step::Entry(_), Step::Key(key)] => {
+                ["terrain", "trees"].contains(&table.as_str()) && key == "mesh"
+            }
+            [Step::Key(table), Step::Key(key)] => [("calibrate", "deposits"), ("release", "table")]
+                .contains(&(table.as_str(), key.as_str())),
+            _ => false,
+        };
+        self.nodes.iter().filter(is_path).map(|node| node.value.clone())
+    }
+
     /// The message for a complaint of the scene's own checks.
     pub(super) fn refuse(&self, complaint: Complaint) -> Error {
         let place = self.place(&complaint.trail);

@@ -195,3 +195,30 @@ fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
     }
     Ok(list.iter().map(Zone::size).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two holes, one seen past the other: their area is left out, and no point falls into them.
+    #[test]
+    fn holes_are_left_out() {
+        let square = |low: f64, side: f64| {
+            vec![[low, low], [low + side, low], [low + side, low + side], [low, low + side]]
+        };
+        let holed = Area::with_holes(square(0.0, 10.0), &[square(3.0, 2.0), square(6.0, 2.0)]);
+        let holed = holed.unwrap();
+        assert!((holed.area_m2() - 92.0).abs() < 1e-12);
+        for k in 0..5000u32 {
+            let even = [0.618_033_988_75, 0.754_877_666_25, 0.569_840_290_99];
+            let [x, y] = holed.at(even.map(|step| (f64::from(k) * step).fract()));
+            let inside = |low: f64| x > low && x < low + 2.0 && y > low && y < low + 2.0;
+            assert!((0.0..=10.0).contains(&x) && (0.0..=10.0).contains(&y));
+            assert!(!inside(3.0) && !inside(6.0), "({x}, {y})");
+        }
+        // a hole that reaches out, and one in the other
+        for holes in [[square(9.0, 2.0), square(3.0, 2.0)], [square(3.0, 4.0), square(4.0, 1.0)]] {
+            assert!(Area::with_holes(square(0.0, 10.0), &holes).is_err());
+        }
+    }
+}

@@ -3,7 +3,9 @@
 use super::grip::{Grip, Loss, World};
 use super::stage::End;
 use super::tableau::Tableau;
+use super::{Scheme, Settings};
 use crate::contact::hold::carry;
+use crate::math;
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
 pub(crate) const ONSET: f64 = 0.3;
@@ -57,8 +59,38 @@ pub struct Advance {
 pub struct Control {
     /// The tableau.
     pub tableau: &'static Tableau,
-    /// Local error allowed (m/s).
+    /// Local error allowed in lasting contact (m/s) …
     pub tolerance: f64,
+    /// … and in an impact (–, relative to its speed).
+    pub impact: f64,
+    /// Whether an impact on one plane is followed as a whole.
+    pub plane_impacts: bool,
+}
+
+/// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most.
+const IMPACT: (f64, f64) = (4e-3, 2e-4);
+/// The same for the reference.
+const IMPACT_OF_REFERENCE: f64 = 1e-10;
+/// Local error allowed in lasting contact, whatever is asked for (–, relative to √(g R), the speed of a rock that tips over
+/// an edge).
+const PIVOT: f64 = 0.02;
+
+impl Control {
+    /// The control of a rock in `world`.
+    pub fn new(tableau: &'static Tableau, settings: &Settings, world: &World) -> Self {
+        let own = (world.body.gravity.norm() * world.body.radius).sqrt();
+        let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
+        let impact = match settings.scheme {
+            Scheme::Reference => IMPACT_OF_REFERENCE,
+            _ => (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1),
+        };
+        Self {
+            tableau,
+            tolerance: settings.tolerance_m_s.min(relative),
+            impact,
+            plane_impacts: settings.plane_impacts,
+        }
+    }
 }
 
 /// First step after a touch (s).
@@ -85,6 +117,14 @@ pub fn advance(
     h_max: f64,
 ) -> Result<Advance, Stuck> {
     let mut done = Advance::default();
+    if grip.is_rebounding() {
+        grip.leave_plane(world);
+        if control.plane_impacts && grip.bounce(world, control.impact, h_max, &mut done) {
+            return Ok(done);
+        }
+        let omega = stiffest(world, grip);
+        return grip.step_impact(world, (omega, control.impact), h_max, &mut done).map(|()| done);
+    }
     if let Some(settled) = grip.step_on_plane(world, control, (h, h_max), &mut done) {
         return settled.map(|()| done);
     }
@@ -98,7 +138,7 @@ pub fn advance(
     done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
     done.steps = 1;
     if let Some(end) = trial.end {
-        accept(control.tableau, grip, &end, done.dt, &mut done.loss);
+        accept(world, control.tableau, grip, (&end, done.dt), &mut done.loss);
     }
     Ok(done)
 }
@@ -241,7 +281,7 @@ pub(crate) fn pressed_j(grip: &Grip, end: &End, hh: f64) -> f64 {
 }
 
 fn grown(control: &Control, dt: f64, error: f64) -> f64 {
-    dt * (SAFETY * error.powf(-control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
+    dt * (SAFETY * math::pow(error, -control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
 }
 
 /// Longest step that cannot jump over a feature (s).
@@ -284,7 +324,13 @@ fn attempt(
 }
 
 /// Takes over the step's end: motion, memories, losses.
-pub(crate) fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, loss: &mut Loss) {
+pub(crate) fn accept(
+    world: &World,
+    tableau: &Tableau,
+    grip: &mut Grip,
+    (end, dt): (&End, f64),
+    loss: &mut Loss,
+) {
     for k in 0..tableau.stages {
         loss.add(&grip.rates[k].loss, dt * tableau.work_weight(k));
     }
@@ -307,6 +353,8 @@ pub(crate) fn accept(tableau: &Tableau, grip: &mut Grip, end: &End, dt: f64, los
         hold.slides = spot.drag.norm() >= spot.law.friction * spot.push * (1.0 - 1e-9);
         hold.closed = spot.is_closed(&end.v, hh);
     }
+    grip.fresh = !grip.merge_lost(world);
+    let next = &mut grip.rates[0];
     let mut kept = 0;
     for k in 0..grip.holds.len() {
         if grip.holds[k].closed {

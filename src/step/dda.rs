@@ -21,6 +21,7 @@ use super::grip::{Grip, Loss, World};
 use super::law::Body;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
 use crate::contact::{MOST, Touch};
+use crate::math;
 use crate::rock::Vec3;
 use contact::{Contact, Shape, Step};
 use nalgebra::{Cholesky, U6};
@@ -52,10 +53,10 @@ pub fn own_restitution(phase: f64) -> f64 {
     if phase >= SINGLE_STEP_PHASE {
         return (q - 1.0) / (q + 1.0);
     }
-    let angle = ((2.0 - q) / (2.0 * (1.0 + q).sqrt())).acos();
+    let angle = math::acos((2.0 - q) / (2.0 * (1.0 + q).sqrt()));
     let steps = (PI / angle).ceil() - 1.0;
-    let (sine, cosine) = (steps * angle).sin_cos();
-    (1.0 + q).powf(-0.5 * steps) * ((q / (8.0 - q)).sqrt() * sine - cosine)
+    let (sine, cosine) = math::sin_cos(steps * angle);
+    math::pow(1.0 + q, -0.5 * steps) * ((q / (8.0 - q)).sqrt() * sine - cosine)
 }
 
 /// The fixed step of one contact episode.
@@ -157,9 +158,9 @@ fn add_contact(world: &World, step: &Step, grip: &mut Grip, (k, distance_m): (us
     let v = grip.v;
     let hold = grip.hold_of(world, k, grip.bench.taken, &v);
     let touch = Touch { distance_m, ..grip.touches[k] };
-    let law = world.law(touch.triangle);
+    let law = world.law_of(&grip.touches, k);
     let bench = &mut grip.bench;
-    bench.contacts[bench.count] = Contact::new(step, law, &touch, (hold, &grip.holds[hold]));
+    bench.contacts[bench.count] = Contact::new(step, &law, &touch, (hold, &grip.holds[hold]));
     bench.count += 1;
     bench.taken |= 1 << hold;
 }
@@ -298,6 +299,7 @@ fn carry_on(world: &World, grip: &mut Grip, d: &Vec6, kick: &Vec6, dt: f64) {
     for contact in grip.bench.contacts() {
         contact.remember(d, &mut grip.holds[contact.hold]);
     }
+    grip.merge_lost(world);
     grip.holds.retain(|hold| hold.closed);
     grip.c += d.fixed_rows::<3>(0);
     grip.v += world.body.gravity * dt + kick.fixed_rows::<3>(0);

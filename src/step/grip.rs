@@ -1,6 +1,7 @@
 //! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
 
 use super::dda::Bench;
+use super::explicit::Explicit;
 use super::flat::Flat;
 use super::law::{Body, Spot};
 use super::slide::Mode;
@@ -32,11 +33,39 @@ impl World<'_> {
         &self.laws[self.terrain.sheets[sheet as usize].ground as usize]
     }
 
-    /// Whether a contact too slow to rebound.
+    /// Whether a contact is too slow to rebound.
     #[inline]
     pub fn captures(&self, touch: &Touch, v: &Vec3) -> bool {
         -touch.normal.dot(v) < self.law(touch.triangle).capture_m_s
     }
+
+    /// Slowest approach that is an impact to be followed in its own time (m/s): slower than that a rock just presses.
+    fn least_impact_m_s(&self) -> f64 {
+        LEAST_IMPACT * (self.body.gravity.norm() * self.body.radius).sqrt()
+    }
+
+    /// The law of touch `k` among others of the same instant.
+    #[inline]
+    pub fn law_of(&self, touches: &[Touch], k: usize) -> Law {
+        let touch = &touches[k];
+        let law = self.law(touch.triangle);
+        if touches.len() == 1 {
+            return law.of_patch(touch.gain2, 1.0);
+        }
+        law.of_patch(touch.gain2, dashpot_share(touches, k, self.body.radius))
+    }
+}
+
+/// What each dashpot takes of its own damping where several patches are pressed at once (–):
+/// `1/√(Σ_j max(0, n̂_i·n̂_j)²)` over those pressed. `n` parallel ones damp like one; at right angles nothing changes.
+fn dashpot_share(touches: &[Touch], k: usize, radius: f64) -> f64 {
+    let normal = &touches[k].normal;
+    let others = touches
+        .iter()
+        .enumerate()
+        .filter(|(j, other)| *j != k && other.distance_m < radius)
+        .map(|(_, other)| normal.dot(&other.normal).max(0.0).powi(2));
+    1.0 / (1.0 + others.sum::<f64>()).sqrt()
 }
 
 /// Power that goes into contacts (W) by kind, or energy (J) once summed over time. What springs store is counted
@@ -106,6 +135,13 @@ impl Rate {
         self.roll[..holds].copy_from_slice(&from.roll[..holds]);
     }
 
+    /// Forgets the rates of the first `holds` springs.
+    #[inline]
+    pub fn clear(&mut self, holds: usize) {
+        self.shear[..holds].fill(Vec3::zeros());
+        self.roll[..holds].fill(Vec3::zeros());
+    }
+
     /// No change.
     pub const NONE: Self = Self {
         c: Vec3::new(0.0, 0.0, 0.0),
@@ -146,6 +182,14 @@ pub struct Grip {
     pub spot_count: usize,
     /// The same of a rock on one plane.
     pub flat: Flat,
+    /// An impact in its own time.
+    pub(crate) impact: Explicit,
+    /// Contacts that are about to be struck anew within an episode (`rigid`).
+    pub struck: Holds,
+    /// Whether what is touched may give way: it is asked step by step.
+    pub may_yield: bool,
+    /// Whether the blow in hand has been announced (`rigid`).
+    pub(crate) is_struck: bool,
     /// Work space of the fixed step.
     pub bench: Bench,
     /// Contact sweeps done.
@@ -164,6 +208,9 @@ const IMPACT_WAY: f64 = 1.3;
 const SLACK: f64 = 0.1;
 /// A gap this small is a touch (–, relative to R): rounding of the leap.
 pub const TOUCH: f64 = 1e-9;
+
+/// An approach slower than this is no impact (–, relative to `√(g R)`).
+const LEAST_IMPACT: f64 = 1e-3;
 
 impl Default for Grip {
     fn default() -> Self {
@@ -190,6 +237,10 @@ impl Grip {
             spots: [Spot::NONE; MOST],
             spot_count: 0,
             flat: Flat::default(),
+            impact: Explicit::default(),
+            struck: Holds::default(),
+            is_struck: true,
+            may_yield: false,
             bench: Bench::default(),
             sweeps: 0,
             clocks: Clocks::default(),
@@ -204,6 +255,9 @@ impl Grip {
         self.holds.clear();
         self.fresh = false;
         self.flat.forget();
+        self.impact.forget();
+        self.struck.clear();
+        self.is_struck = true;
         // Nothing of the rock before, not even a guess, may tell.
         self.spots.iter_mut().for_each(|spot| spot.mode = Mode::default());
         if !self.near.covers(&c) {
@@ -211,8 +265,13 @@ impl Grip {
             self.near.collect(world.terrain, &c, r, margin, SLACK * r);
         }
         self.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        // An impact rebounds or not as a whole, by its fastest approach.
+        let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
         for (k, touch) in self.touches.iter().enumerate() {
-            self.holds.find(touch, &self.touches, (1 << k) - 1, || world.captures(touch, &v));
+            self.holds.find(touch, &self.touches, (1 << k) - 1, || captured);
+            if !captured {
+                self.impact.meet(-touch.normal.dot(&v), world.least_impact_m_s());
+            }
         }
     }
 
@@ -269,13 +328,33 @@ impl Grip {
     #[inline]
     pub fn hold_of(&mut self, world: &World, k: usize, taken: u32, v: &Vec3) -> usize {
         let (before, touch) = (self.holds.len(), &self.touches[k]);
-        let hold = self.holds.find(touch, &self.touches, taken, || world.captures(touch, v));
+        // What is born while an impact rebounds belongs to it, however slow it is.
+        let rebounds = self.holds.iter().any(|hold| !hold.captured);
+        let slow = world.captures(touch, v);
+        let hold = self.holds.find(touch, &self.touches, taken, || slow && !rebounds);
         if hold >= before {
+            if !slow {
+                self.impact.meet(-touch.normal.dot(v), world.least_impact_m_s());
+            }
             for rate in &mut self.rates {
                 (rate.shear[hold], rate.roll[hold]) = (Vec3::zeros(), Vec3::zeros());
             }
         }
         hold
+    }
+
+    /// Hands the springs of contacts that merged into others to those; whether there were any.
+    pub(crate) fn merge_lost(&mut self, world: &World) -> bool {
+        let Self { holds, near, .. } = self;
+        holds.merge_lost(|feature| near.patch_holding(world.terrain, feature))
+    }
+
+    /// Gives the rock another velocity and spin in the middle of a contact; its springs stay as they are.
+    pub fn redirect(&mut self, world: &World, v: Vec3, w: Vec3) {
+        self.leave_plane(world);
+        (self.v, self.w) = (v, w);
+        self.fresh = false;
+        self.impact.restart();
     }
 
     /// Whether nothing presses on the rock any more.
@@ -310,7 +389,7 @@ impl Grip {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
             let pen = (world.body.radius - touch.distance_m).max(0.0);
-            let pressed = 0.5 * world.law(touch.triangle).p_n * pen * pen;
+            let pressed = 0.5 * world.law(touch.triangle).p_n * touch.gain2 * pen * pen;
             stored
                 .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
         }

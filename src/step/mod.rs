@@ -2,8 +2,10 @@
 
 pub mod adaptive;
 pub mod dda;
+pub(crate) mod explicit;
 pub(crate) mod flat;
 pub mod grip;
+pub(crate) mod impact;
 pub(crate) mod joint;
 pub mod law;
 pub mod rigid;
@@ -39,6 +41,15 @@ impl Scheme {
             Self::Rigid => "rigid",
         }
     }
+
+    /// Budget of work of one rock: steps, accepted or not, and flights. A minute of fall takes a few thousand, with the
+    /// paper's fixed step of 1e-5 s six million.
+    pub const fn most_work(self) -> u64 {
+        match self {
+            Self::Dda => 20_000_000,
+            Self::Adaptive | Self::Reference | Self::Rigid => 5_000_000,
+        }
+    }
 }
 
 /// Settings of the step, all in force (defaults already filled in by the plan).
@@ -52,6 +63,8 @@ pub struct Settings {
     pub step_s: f64,
     /// `dda`: whether the shear spring remembers its stretch (false = as printed in the paper).
     pub shear_memory: bool,
+    /// Whether an impact on one plane is followed as a whole; if not, step by step like any other (`adaptive`, `reference`).
+    pub plane_impacts: bool,
     /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
     pub capture_speed_m_s: Option<f64>,
 }
@@ -76,7 +89,7 @@ impl Stepper {
             Scheme::Dda => return Self::Dda(dda::Fixed::new(settings, world, grip)),
             Scheme::Adaptive => &TR_BDF2,
         };
-        let control = Control { tableau, tolerance: settings.tolerance_m_s };
+        let control = Control::new(tableau, settings, world);
         Self::Controlled(control, adaptive::first_step(world, grip))
     }
 }

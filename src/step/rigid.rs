@@ -1,4 +1,4 @@
-//! Scheme `rigid`: the limit of stiff springs. Impacts are a map, sustained contact is stepped in velocities.
+//! Scheme `rigid`: the limit of stiff springs. Impacts take no time, sustained contact is stepped in velocities.
 //!
 //! Friction and rolling friction are impulses bounded by the normal impulse; several contacts are swept
 //! (projected Gauss–Seidel, after Moreau). What each impulse takes is booked by the mean velocity it acts on, so
@@ -6,8 +6,10 @@
 
 use super::adaptive::{Advance, Stuck};
 use super::grip::{Grip, Loss, TOUCH, World};
+use super::impact::{Struck, throw};
 use super::law::Body;
 use super::slide::{Answers, Frame, Mode, Pair};
+use crate::contact::hold::Hold;
 use crate::contact::{MOST, Touch};
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -19,6 +21,8 @@ const LEAST_M_S: f64 = 1e-6;
 const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
+/// Local error of an impact followed in its own time (–, relative to its speed).
+const IMPACT: f64 = 2e-5;
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
@@ -163,11 +167,20 @@ impl<'w> Blows<'w> {
 pub fn advance(world: &World, grip: &mut Grip, longest: f64, h_max: f64) -> Result<Advance, Stuck> {
     let mut done = Advance { steps: 1, ..Advance::default() };
     let c = grip.c;
+    grip.struck.clear();
     grip.look_ahead_again(world, &c);
     if hits(world, grip) {
         grip.look(world, &c, world.body.radius * (1.0 + TOUCH));
-        impact(world, grip, &mut done);
+        if grip.is_struck {
+            impact(world, grip, &mut done);
+        } else {
+            // Strikes anew within an episode: the driver hears of it before it happens, as it does of the first.
+            strike(world, grip);
+            done.steps = 0;
+        }
+        grip.is_struck = !grip.is_struck;
     } else {
+        grip.is_struck = false;
         step(world, grip, longest.min(h_max), &mut done);
     }
     let finite = grip.c.iter().chain(grip.v.iter()).chain(grip.w.iter()).all(|x| x.is_finite());
@@ -190,30 +203,43 @@ fn is_fast(world: &World, touch: &Touch, v: &Vec3) -> bool {
     -touch.normal.dot(v) >= capture_m_s(world.law(touch.triangle))
 }
 
-/// The impact map: `v_n → −e v_n` for fast touches, no rebound for slow ones.
+/// Notes the contacts of the last look that are about to be struck.
+fn strike(world: &World, grip: &mut Grip) {
+    let touches = grip.touches;
+    let mut taken = 0;
+    for touch in touches.iter() {
+        let captured = !is_fast(world, touch, &grip.v);
+        let hold = grip.holds.find(touch, &touches, taken, || captured);
+        taken |= 1 << hold;
+        let hold = &mut grip.holds[hold];
+        hold.announced = true;
+        if !captured {
+            let struck = Hold { announced: false, captured, ..*hold };
+            grip.struck.push(struck);
+        }
+    }
+}
+
+/// The impact: the limit of stiff springs of the same law, with the geometry of the instant ([`super::impact`]). Contacts too
+/// slow to rebound take part and give nothing back.
 fn impact(world: &World, grip: &mut Grip, done: &mut Advance) {
     let (v, w, touches) = (grip.v, grip.w, grip.touches);
-    for (k, touch) in touches.iter().enumerate() {
-        grip.holds.find(touch, &touches, (1 << k) - 1, || !is_fast(world, touch, &v));
-    }
-    let mut elastic = 1.0;
-    // Several contacts at once may throw the rock off with more than it had (Newton's rule is not Poisson's):
-    // then the same blow without rebound, which never does.
-    loop {
-        let mut blows = Blows::of(world, grip, |blow, _| {
-            let vn = blow.n.dot(&v);
-            if -vn < capture_m_s(blow.law) { 0.0 } else { -elastic * blow.law.restitution * vn }
-        });
-        let after = blows.solve(&world.body, v, w, &mut grip.sweeps);
-        let energy = |v: &Vec3, w: &Vec3| {
-            world.body.mass * v.norm_squared() + world.body.inertia * w.norm_squared()
+    let mut struck = [Struck::none(); MOST];
+    for (struck, touch) in struck.iter_mut().zip(touches.iter()) {
+        *struck = Struck {
+            normal: touch.normal,
+            law: world.law(touch.triangle),
+            stiffness_scale: touch.gain2,
+            captured: !is_fast(world, touch, &v),
         };
-        if elastic == 0.0 || energy(&after.0, &after.1) <= energy(&v, &w) * (1.0 + 1e-14) {
-            blows.apply(world, grip, after, &mut done.loss);
-            break;
-        }
-        elastic = 0.0;
     }
+    let thrown = throw(&world.body, &struck[..touches.len()], (&v, &w), IMPACT);
+    (grip.v, grip.w) = (thrown.velocity_m_s, thrown.spin_rad_s);
+    for (loss, touch) in thrown.loss.iter().zip(touches.iter()) {
+        done.loss.add(&loss.on(world, touch.triangle), 1.0);
+    }
+    done.steps = u64::from(thrown.effort.steps).max(1);
+    done.rejected = u64::from(thrown.effort.rejected);
     remember(world, grip, |_| true);
 }
 

@@ -3,7 +3,6 @@
 use super::grip::{Grip, Loss, Rate, TOUCH, World};
 use super::law::{self, Spot, within};
 use super::tableau::Tableau;
-use crate::contact::FeatureKind;
 use crate::contact::hold::carry;
 use crate::rock::Vec3;
 
@@ -14,7 +13,7 @@ pub(crate) const AGREED: f64 = 1e-9;
 
 impl Spot {
     /// Power that goes into the contact (W) at velocity `v` and spin `w`: what its springs store is counted in.
-    fn loss(&self, world: &World, v: &Vec3, w: &Vec3, shear_rate: &Vec3) -> Loss {
+    pub(super) fn loss(&self, world: &World, v: &Vec3, w: &Vec3, shear_rate: &Vec3) -> Loss {
         let slip = world.body.slip(&self.n, v, w);
         let friction = self.drag.dot(&(slip - shear_rate));
         let damping = self.drag.dot(shear_rate) - self.push * self.n.dot(v);
@@ -27,7 +26,7 @@ impl Spot {
     }
 
     /// Forces at the present state, for the explicit first stage; returns the rates of shear and rolling springs.
-    fn act_now(&mut self, world: &World, v: &Vec3, w: &Vec3) -> (Vec3, Vec3) {
+    pub(super) fn act_now(&mut self, world: &World, v: &Vec3, w: &Vec3) -> (Vec3, Vec3) {
         let law = &self.law;
         self.push = (law.p_n * self.pen - self.c_n * self.n.dot(v)).max(0.0);
         let held = self.shear * law.p_s;
@@ -104,9 +103,7 @@ impl Grip {
         let spots = &self.spots[..self.spot_count];
         spots.len() == self.touches.len()
             && spots.iter().zip(self.touches.iter()).all(|(spot, touch)| {
-                touch.feature.kind == FeatureKind::Face
-                    && touch.feature == spot.feature
-                    && touch.normal == spot.n
+                touch.is_on_plane() && touch.feature == spot.feature && touch.normal == spot.n
             })
     }
 
@@ -138,9 +135,9 @@ impl Grip {
     }
 
     /// The spot of touch `k` with the stretches of its memory and no penetration yet.
-    fn spot_of(&self, world: &World, k: usize, hold: usize) -> Spot {
+    pub(super) fn spot_of(&self, world: &World, k: usize, hold: usize) -> Spot {
         let (touch, memory) = (&self.touches[k], &self.holds[hold]);
-        let law = *world.law(touch.triangle);
+        let law = world.law_of(&self.touches, k);
         Spot {
             hold,
             feature: touch.feature,

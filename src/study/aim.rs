@@ -18,6 +18,9 @@ const NAMES: [(&str, Quantity, &str); 8] = [
 /// Units that stand for a thousand or a million joules.
 const MULTIPLES: [(&str, &str, f64); 2] = [("kJ", "J", 1e3), ("MJ", "J", 1e6)];
 
+/// Narrowest interval that can be aimed at (SI).
+const NARROWEST: f64 = 1e-3;
+
 /// A percentile and the width that its 95 % interval must stay below.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aim {
@@ -40,6 +43,14 @@ impl Aim {
     /// Width of the interval; `None` with too few rocks.
     pub fn width_of(found: &Percentile) -> Option<f64> {
         Some(found.high_95? - found.low_95?)
+    }
+
+    /// How many releases the width of the interval of `values`, found with `done`, lets expect; 0 when it is narrow enough or
+    /// not yet known.
+    pub fn needs(&self, values: &[f64], done: usize) -> f64 {
+        let found = self.percentile(values);
+        let width = found.as_ref().and_then(Self::width_of).filter(|width| *width >= self.width);
+        width.map_or(0.0, |width| done as f64 * (width / self.width) * (width / self.width))
     }
 
     /// How many releases to go on to after `done` that gave `values`; `None` when the interval is narrow enough.
@@ -100,6 +111,11 @@ impl FromStr for Aim {
         if !(number > 0.0 && number.is_finite()) {
             return Err(usage(&number.to_string()));
         }
+        if number * times < NARROWEST {
+            return Err(format!(
+                "found {number:e} {found}; write {NARROWEST:e} {unit} or more: no figure on a slope is known so well"
+            ));
+        }
         Ok(Self { quantity, percent, width: number * times, name, unit })
     }
 }
@@ -124,6 +140,7 @@ mod tests {
             "runout.p95 < 1",
             "runout.p95 < -1 m",
             "runout.p95 < NaN m",
+            "runout.p95 < 1e-300 m",
         ] {
             let told = wrong.parse::<Aim>().unwrap_err();
             assert!(told.contains("found"), "{wrong}: {told}");

@@ -2,6 +2,7 @@
 
 use crate::chance::{Purpose, stream};
 use crate::ground::Ground;
+use crate::math;
 use crate::plan::RestRule;
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
@@ -26,6 +27,7 @@ pub const GROUND: Ground = Ground {
     restitution: Some(0.5),
     rolling_friction: 0.0,
     roughness_rad: 0.0,
+    roughness_length_m: None,
 };
 
 /// Corners closer than this are one (m): made meshes repeat theirs to rounding.
@@ -95,7 +97,8 @@ impl Setup {
 
     /// How deep the weight presses one spring where the ground is inclined at `angle_rad` (m).
     pub fn pressed_m(&self, angle_rad: f64) -> f64 {
-        self.rock.mass_kg() * self.gravity_m_s2 * angle_rad.cos() / self.ground.normal_stiffness_n_m
+        self.rock.mass_kg() * self.gravity_m_s2 * math::cos(angle_rad)
+            / self.ground.normal_stiffness_n_m
     }
 }
 
@@ -119,6 +122,7 @@ pub fn settings(scheme: Scheme, fineness: f64, capture_speed_m_s: Option<f64>) -
         tolerance_m_s: if by_tolerance { fineness } else { 0.0 },
         step_s: if by_tolerance { f64::INFINITY } else { fineness },
         shear_memory: true,
+        plane_impacts: true,
         capture_speed_m_s,
     }
 }

@@ -6,6 +6,7 @@ mod pivot;
 mod starts;
 
 use super::bench::{SETUP, Setup, settings, terrain};
+use crate::math;
 use crate::rock::Vec3;
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
@@ -113,7 +114,7 @@ impl Case {
                 "only the first steps, which must resolve the springs, are as coarse as the local error allows",
             ),
             (Scheme::Adaptive, _) => (
-                0.2 * self.growth() * step.tolerance_m_s.powf(2.0 / 3.0),
+                0.2 * self.growth() * math::pow(step.tolerance_m_s, 2.0 / 3.0),
                 "second order under a third-order local error: tolerance to the power 2/3, times what the motion itself makes of an error",
             ),
             (Scheme::Reference, _) => (

@@ -3,6 +3,7 @@
 use super::bench::goes_by_tolerance;
 use super::cases::{CASES, Case};
 use super::speed::machine::OwnTime;
+use crate::math;
 use crate::step::Scheme;
 use crate::terrain::Terrain;
 use crate::trajectory::{Effort, Scratch, Trajectory};
@@ -151,7 +152,7 @@ impl Curve {
             .points
             .iter()
             .filter(shows)
-            .map(|point| ((point.effort.steps as f64).ln(), point.error.ln()))
+            .map(|point| (math::ln(point.effort.steps as f64), math::ln(point.error)))
             .collect();
         if logs.len() < 3 {
             return None;

@@ -7,6 +7,7 @@
 use super::bench::{Setup, settings};
 use super::cases::{Case, has_springs, rolling_off_an_edge};
 use crate::ground::{Capture, Damping, Law};
+use crate::math;
 use crate::report::axis::Axis;
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
@@ -90,7 +91,10 @@ fn stepper(scheme: Scheme, world: &World, grip: &mut Grip, dt: f64) -> Stepper {
             return Stepper::new(&settings(scheme, dt, None), world, grip);
         }
     };
-    Stepper::Controlled(Control { tableau, tolerance: f64::INFINITY }, dt)
+    Stepper::Controlled(
+        Control { tableau, tolerance: f64::INFINITY, impact: f64::INFINITY, plane_impacts: false },
+        dt,
+    )
 }
 
 impl Ladder {
@@ -104,7 +108,7 @@ impl Ladder {
             falls
         });
         let logs: Vec<(f64, f64)> =
-            falling.map(|&(steps, error)| (f64::from(steps).ln(), error.ln())).collect();
+            falling.map(|&(steps, error)| (math::ln(f64::from(steps)), math::ln(error))).collect();
         let logs = &logs[logs.len().saturating_sub(FINEST)..];
         let n = logs.len() as f64;
         let (x, y) = logs.iter().fold((0.0, 0.0), |(x, y), log| (x + log.0 / n, y + log.1 / n));

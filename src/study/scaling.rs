@@ -4,6 +4,7 @@ use super::bench::{GRAVITY_M_S2, terrain};
 use super::speed::machine::{OwnTime, status_bytes};
 use crate::contact::pair::Strength;
 use crate::ground::Ground;
+use crate::math;
 use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
@@ -24,6 +25,7 @@ const GROUND: Ground = Ground {
     restitution: Some(0.5),
     rolling_friction: 0.05,
     roughness_rad: 0.0,
+    roughness_length_m: None,
 };
 /// Distance of the spheres at the start (m), as in example 3.
 const SPACING_M: f64 = 0.12;
@@ -183,6 +185,7 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         tolerance_m_s: if scheme == Scheme::Rigid { 0.0 } else { TOLERANCE_M_S },
         step_s: if scheme == Scheme::Rigid { STEPS_S.1 } else { STEPS_S.0 },
         shear_memory: true,
+        plane_impacts: true,
         capture_speed_m_s: None,
     };
     let course = Course {
@@ -290,7 +293,7 @@ fn resident_bytes(key: &str) -> Option<u64> {
 
 /// Exponent `b` of `y ~ xᵇ` by least squares over the logarithms; `None` below two points.
 pub(super) fn exponent(points: &[(f64, f64)]) -> Option<f64> {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (math::ln(*x), math::ln(*y))).collect();
     let count = logs.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / count;
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));

@@ -9,7 +9,8 @@ use super::speed::machine::Busy;
 use super::spread::{Interval, Ladder, Paired};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
-use crate::hazard::{Percentile, Row, StopKind};
+use crate::hazard::{Percentile, Row};
+use crate::math;
 use crate::plan::{Part, Plan};
 use crate::step::{Scheme, Settings};
 use crate::terrain::Terrain;
@@ -281,7 +282,7 @@ impl Rung {
     }
 
     fn add(&mut self, subjects: &[Subject], row: &Row, fall: &Trajectory) {
-        let failed = row.stop == StopKind::Failed;
+        let failed = !row.stop.counts();
         self.failed += usize::from(failed);
         self.rise_j = self.rise_j.max(fall.ledger.rise_j);
         self.effort.add(&fall.effort);
@@ -314,14 +315,14 @@ impl Statistic {
 
     /// Error of the steps under a setting so much coarser than the scene's own, signed.
     pub fn step_error(&self, relative: f64, scheme: Scheme) -> Interval {
-        let times = relative.powf(ladder_of(scheme).1);
+        let times = math::pow(relative, ladder_of(scheme).1);
         let Interval { value, low, high } = self.ladder.own_error;
         Interval { value: value * times, low: low * times, high: high * times }
     }
 
     /// Error of a mesh, signed; nothing where it is not known.
     pub fn mesh_error_of(&self, mesh: &Mesh) -> Interval {
-        let times = mesh.times.powf(MESH_ORDER);
+        let times = math::pow(mesh.times, MESH_ORDER);
         let own = self.meshes.as_ref().map(|meshes| meshes.own_error);
         let Interval { value, low, high } =
             own.unwrap_or(Interval { value: 0.0, low: 0.0, high: 0.0 });
@@ -335,7 +336,10 @@ impl Statistic {
 
     /// All errors of the scene's own setting that are known together, root of the sum of squares.
     pub fn total_error(&self) -> Option<f64> {
-        Some(self.sampling_error()?.hypot(self.ladder.own_error.value).hypot(self.mesh_error()))
+        Some(math::hypot(
+            math::hypot(self.sampling_error()?, self.ladder.own_error.value),
+            self.mesh_error(),
+        ))
     }
 }
 

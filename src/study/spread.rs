@@ -1,6 +1,7 @@
 //! Statistics of the same rocks under several settings: how far chance moves them, alone and against each other.
 
 use crate::chance::{Purpose, stream, unit};
+use crate::math;
 
 /// Times that the rocks are drawn again: the ends of a 95 % interval are then known to a tenth of its width.
 const DRAWS: usize = 400;
@@ -85,7 +86,7 @@ impl Paired {
     ///
     /// All settings keep the same rocks in every draw: what chance does to all of them alike drops out.
     pub fn ladder(&self, p: f64, relative: &[f64], order: f64, seed: u64) -> Ladder {
-        let x: Vec<f64> = relative.iter().map(|fine| fine.powf(order)).collect();
+        let x: Vec<f64> = relative.iter().map(|fine| math::pow(*fine, order)).collect();
         let values = self.percentiles(p, &vec![1; self.rocks]);
         let (limit, slope) = fit(&x, &values);
         let mut draws = [Vec::with_capacity(DRAWS), Vec::with_capacity(DRAWS)];

@@ -2,6 +2,7 @@
 
 use super::bench::goes_by_tolerance;
 use super::stability::{Map, Verdict};
+use crate::math;
 use crate::report::axis::Axis;
 use crate::report::colour::{GREEN, GREY, INK, ORANGE, PURPLE, WHITE};
 use crate::report::figure::WIDTH_PX;
@@ -48,7 +49,7 @@ fn panel(map: &Map, row: usize) -> Panel {
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
     let name = if goes_by_tolerance(map.scheme) { "Tolerance (m/s)" } else { "Step (s)" };
     let around = |values: &[f64], title: &str| {
-        let end = |value: f64| value.log10().round();
+        let end = |value: f64| math::log10(value).round();
         Axis::linear(end(values[0]) - 0.5, end(values[values.len() - 1]) + 0.5, title)
     };
     let frame = Frame { left: LEFT_PX, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
@@ -59,13 +60,13 @@ fn panel(map: &Map, row: usize) -> Panel {
 /// Labels in the middle of each column and row, titles beyond.
 fn axes(paper: &Paper<'_>, panel: &Panel, map: &Map) {
     let Frame { left, top, right, bottom } = panel.frame;
-    let label = |value: f64| format::power_of_ten(value.log10().round() as i32);
+    let label = |value: f64| format::power_of_ten(math::log10(value).round() as i32);
     for &stiffness in &map.stiffness_n_m {
-        let x = panel.at(stiffness.log10().round(), panel.y.low).0;
+        let x = panel.at(math::log10(stiffness).round(), panel.y.low).0;
         paper.text(&Label::new(label(stiffness), (x, bottom + 5.0)).below().centred());
     }
     for &fineness in &map.fineness {
-        let y = panel.at(panel.x.low, fineness.log10().round()).1;
+        let y = panel.at(panel.x.low, math::log10(fineness).round()).1;
         paper.text(&Label::new(label(fineness), (left - 6.0, y)).right());
     }
     let title = |words: &str, at: (f64, f64)| Label::new(words, at).centred().sized(NORMAL);
@@ -76,7 +77,7 @@ fn axes(paper: &Paper<'_>, panel: &Panel, map: &Map) {
 
 fn cells(paper: &Paper<'_>, panel: &Panel, map: &Map) {
     for cell in &map.cells {
-        let (x, y) = (cell.stiffness_n_m.log10().round(), cell.fineness.log10().round());
+        let (x, y) = (math::log10(cell.stiffness_n_m).round(), math::log10(cell.fineness).round());
         let (left, bottom) = panel.at(x - 0.5, y - 0.5);
         let (right, top) = panel.at(x + 0.5, y + 0.5);
         let frame = Frame { left, top, right, bottom };

@@ -7,6 +7,7 @@ mod paper;
 pub use paper::{EXAMPLES, Example};
 
 use crate::error::{Error, Result};
+use crate::math;
 use crate::output::write_whole;
 use crate::report::curves::Curves;
 use crate::step::Scheme;
@@ -141,7 +142,7 @@ impl Verification {
 /// Six digits, without an exponent where that reads well.
 fn written(value: f64) -> String {
     if value == 0.0 || (1e-3..1e7).contains(&value.abs()) {
-        let digits = (5 - value.abs().max(1e-3).log10().floor() as i32).max(0) as usize;
+        let digits = (5 - math::log10(value.abs().max(1e-3)).floor() as i32).max(0) as usize;
         let text = format!("{value:.digits$}");
         let short = if text.contains('.') { text.trim_end_matches('0') } else { &text };
         short.trim_end_matches('.').to_owned()

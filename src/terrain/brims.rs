@@ -30,6 +30,8 @@ pub struct Brim {
     pub least_front: f32,
     /// Least depth behind the plane when one of `back` is touched (–, relative to its distance).
     pub least_back: f32,
+    /// Corners (bits 0–2) that it is asked for where a ball presses into them: each that is not flat belongs to one triangle.
+    pub vertices: u8,
 }
 
 /// From where a feature can be touched, seen from its owner's plane: at least so high (–, relative to the distance).
@@ -89,6 +91,7 @@ impl Brim {
         anywhere: 0,
         least_front: f32::INFINITY,
         least_back: f32::INFINITY,
+        vertices: 0,
     };
 
     /// Adds a feature.

@@ -93,9 +93,14 @@ pub struct Features {
     pub edges: Edges,
     /// What each triangle owns. Every touchable edge and corner has one owner.
     pub brims: Vec<Brim>,
-    /// Neighbours of vertex `v` along edges: `around[starts[v]..starts[v + 1]]`.
+    /// Neighbours of vertex `v` along edges: `around[starts[v]..starts[v + 1]]`, …
     starts: Vec<u32>,
     around: Vec<u32>,
+    /// … and those edges.
+    edges_at: Vec<u32>,
+    /// Weight of every vertex in the energy of a ball pressed into the mesh (–): `1 − Σ w` over the triangles (1) and
+    /// edges (1 − its triangles) that hold it.
+    pub vertex_weight: Vec<i8>,
     /// Share of the edges that are flat (–, 0..1).
     pub flat_share: f64,
     /// How many are left out.
@@ -108,13 +113,13 @@ impl Features {
         let faces =
             triangles.iter().map(|t| Face::new(t.map(|v| vertices_m[v as usize]))).collect();
         let mut features = Self { faces, edges: Edges::of(triangles), ..Self::default() };
-        features.link(vertices_m.len());
+        features.link(vertices_m.len(), triangles);
         features.own(vertices_m, triangles);
         features
     }
 
     /// Lists the neighbours of every vertex.
-    fn link(&mut self, vertices: usize) {
+    fn link(&mut self, vertices: usize, triangles: &[[u32; 3]]) {
         let mut starts = vec![0u32; vertices + 1];
         for &[a, b] in &self.edges.ends {
             starts[a as usize + 1] += 1;
@@ -125,14 +130,66 @@ impl Features {
         }
         let mut fill = starts.clone();
         self.around = vec![0; 2 * self.edges.len()];
-        for &[a, b] in &self.edges.ends {
+        self.edges_at = vec![0; 2 * self.edges.len()];
+        let mut weight = vec![1i32; vertices];
+        for (edge, &[a, b]) in self.edges.ends.iter().enumerate() {
             for (from, to) in [(a, b), (b, a)] {
                 let place = &mut fill[from as usize];
                 self.around[*place as usize] = to;
+                self.edges_at[*place as usize] = edge as u32;
                 *place += 1;
+                // w(edge) = 1 − its triangles
+                weight[from as usize] += self.edges.triangles_on(edge as u32).len() as i32 - 1;
             }
         }
+        for corners in triangles {
+            corners.iter().for_each(|&vertex| weight[vertex as usize] -= 1);
+        }
+        let narrow = |weight: i32| weight.clamp(i8::MIN.into(), i8::MAX.into()) as i8;
+        self.vertex_weight = weight.into_iter().map(narrow).collect();
         self.starts = starts;
+    }
+
+    /// Whether the distance from a centre at `off` from a vertex has neither saddle nor maximum there: of the edges around
+    /// it, those that come nearer form one group, or none. `slack_m` (m) is on the side of saddles.
+    pub fn is_regular(&self, vertex: u32, off: &Vec3, slack_m: f64, vertices_m: &[Vec3]) -> bool {
+        let place = vertices_m[vertex as usize];
+        let (first, last) = (self.starts[vertex as usize], self.starts[vertex as usize + 1]);
+        let rises = |k: u32| {
+            let along = vertices_m[self.around[k as usize] as usize] - place;
+            let ahead = along.dot(off);
+            let unsure = ahead * ahead <= slack_m * slack_m * along.norm_squared();
+            (ahead > 0.0, unsure)
+        };
+        let mut up = 0;
+        for k in first..last {
+            match rises(k) {
+                (_, true) => return false,
+                (is_up, _) => up += i32::from(is_up),
+            }
+        }
+        // χ of what comes nearer: edges less the triangles between two of them
+        up == 0 || up - self.faces_with_both_up(vertex, &|k| rises(k).0) == 1
+    }
+
+    fn faces_with_both_up(&self, vertex: u32, is_up: &dyn Fn(u32) -> bool) -> i32 {
+        let (first, last) = (self.starts[vertex as usize], self.starts[vertex as usize + 1]);
+        let mut both = 0;
+        for one in (first..last).filter(|&k| is_up(k)) {
+            for &t in self.edges.triangles_on(self.edges_at[one as usize]) {
+                let sides = &self.edges.of_triangle[t as usize];
+                let other = (one + 1..last).find(|&k| sides.contains(&self.edges_at[k as usize]));
+                both += i32::from(other.is_some_and(is_up));
+            }
+        }
+        both
+    }
+
+    /// Whether a vertex lies on a border of its sheet.
+    pub fn is_border_vertex(&self, vertex: u32) -> bool {
+        let v = vertex as usize;
+        let edges = &self.edges_at[self.starts[v] as usize..self.starts[v + 1] as usize];
+        edges.iter().any(|&edge| self.edges.triangles_on(edge).len() == 1)
     }
 
     /// Gives every touchable edge and corner to the first triangle on it.
@@ -145,6 +202,7 @@ impl Features {
             corner[b as usize] = true;
         }
         let sharp = corner.iter().filter(|sharp| **sharp).count();
+        let mut pressed = corner.clone();
         let mut along = Vec::new();
         for vertex in 0..corner.len() as u32 {
             corner[vertex as usize] &= self.is_within_reach(vertex, vertices_m, &mut along);
@@ -164,6 +222,13 @@ impl Features {
         self.brims = rows
             .map(|(t, (&owned, corners))| self.brim(t as u32, owned, (corners, vertices_m)))
             .collect();
+        for (brim, corners) in self.brims.iter_mut().zip(triangles) {
+            for (k, &vertex) in corners.iter().enumerate() {
+                if std::mem::take(&mut pressed[vertex as usize]) {
+                    brim.vertices |= 1 << k;
+                }
+            }
+        }
     }
 
     /// Gives what is kept to the first triangle on it: bits 0–2 its edges, bits 3–5 its corners.
@@ -226,6 +291,8 @@ impl Features {
             + size_of_val::<[Brim]>(&self.brims)
             + size_of_val::<[u32]>(&self.starts)
             + size_of_val::<[u32]>(&self.around)
+            + size_of_val::<[u32]>(&self.edges_at)
+            + size_of_val::<[i8]>(&self.vertex_weight)
             + self.edges.bytes()
     }
 

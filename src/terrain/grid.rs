@@ -1,6 +1,7 @@
 //! ESRI ASCII grids, and triangles from grids of heights.
 
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_MESH};
 use crate::rock::Vec3;
 use crate::terrain::stl::Facet;
 use std::fmt::Write;
@@ -20,6 +21,15 @@ pub struct Grid {
     /// Values row by row, the northern row first; `None` = no data.
     pub values: Vec<Option<f64>>,
 }
+
+/// Sides of cells that a slope may have (m).
+const SMALLEST_CELL_M: f64 = 1e-3;
+/// Sides of cells that a slope may have (m).
+const LARGEST_CELL_M: f64 = 1e5;
+/// Coordinates farther out (m) are no place on Earth.
+const FARTHEST_M: f64 = 1e8;
+/// Heights beyond this (m) are no height on Earth.
+const HIGHEST_M: f64 = 1e5;
 
 /// Number written for "no data".
 const NODATA: f64 = -9999.0;
@@ -66,12 +76,47 @@ impl Grid {
         })
     }
 
+    /// Whether it can be a slope: cells and heights of this world, and at least one triangle.
+    ///
+    /// # Errors
+    /// If not, with what is wrong.
+    pub fn check_slope(&self, file: &Path) -> Result<()> {
+        let wrong = |place: &str, found: String, remedy: &str| {
+            Err(Error::input(file, place, found, remedy))
+        };
+        if !(SMALLEST_CELL_M..=LARGEST_CELL_M).contains(&self.cell_m) {
+            let found = format!("found {:e}", self.cell_m);
+            return wrong("cellsize", found, "write metres, from 0.001 to 100000");
+        }
+        if let Some(far) = self.corner_m.iter().find(|m| m.abs() > FARTHEST_M) {
+            let found = format!("found {far:e}");
+            return wrong("xllcorner, yllcorner", found, "write map coordinates within 1e8 m");
+        }
+        if let Some(high) = self.values.iter().flatten().find(|m| m.abs() > HIGHEST_M) {
+            let remedy = "write metres within 100000, and NODATA_value where there is none";
+            return wrong("heights", format!("found {high:e}"), remedy);
+        }
+        let heights = self.values.iter().flatten().count();
+        if self.facets(Vec3::zeros()).is_empty() {
+            let found = format!(
+                "found {heights} heights in {} x {} cells, and no three that make a triangle",
+                self.columns, self.rows
+            );
+            return wrong(
+                "heights",
+                found,
+                "write a grid of at least 2 x 2 heights beside each other",
+            );
+        }
+        Ok(())
+    }
+
     /// Reads an ESRI ASCII grid: `xllcorner` or `xllcenter`, keywords in any case and order.
     ///
     /// # Errors
     /// A missing or unknown keyword, or a number that is missing, superfluous or unreadable, with its line.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
+        let bytes = file::read(path, LONGEST_MESH)?;
         Self::parse(&String::from_utf8_lossy(&bytes), path)
     }
 

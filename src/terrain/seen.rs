@@ -79,6 +79,16 @@ impl<'a> Seen<'a> {
             && (past <= 0.0 || past * past <= near2)
     }
 
+    /// Whether the centre, moved by up to `near`, can be abreast of side `k`, inside of the triangle and no further than
+    /// `reach` (m) from it.
+    #[inline]
+    pub(crate) fn may_press_edge(&self, k: usize, (near, reach): (f64, f64)) -> bool {
+        let (beyond, length2) = (self.beyond[k], self.length2[k]);
+        let near2 = near * near * length2 * (1.0 + ROUNDING);
+        let far2 = (reach * reach * (1.0 + ROUNDING) - self.height * self.height) * length2;
+        (beyond <= 0.0 || beyond * beyond <= near2) && beyond * beyond <= far2 * (1.0 + ROUNDING)
+    }
+
     /// Whether the centre, moved by up to `near`, can be behind both sides at corner `k` and no further than `reach` (m)
     /// from the corner along either.
     #[inline]

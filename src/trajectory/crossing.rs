@@ -2,6 +2,7 @@
 
 use super::journey::between;
 use crate::flight::Parabola;
+use crate::math;
 use crate::plan::{Curtain, Piece};
 use crate::rock::{Motion, Rock};
 use crate::scene::Corner;
@@ -29,7 +30,7 @@ impl Crossing {
     /// Slope of the path against the horizontal (degrees), positive downwards, −90..90.
     pub fn descent_deg(&self) -> f64 {
         let v = self.motion.velocity_m_s;
-        (-v.z).atan2(v.x.hypot(v.y)).to_degrees()
+        math::atan2(-v.z, math::hypot(v.x, v.y)).to_degrees()
     }
 }
 

@@ -1,11 +1,12 @@
 //! The fall itself: leap, touch, step, stop.
 
+use super::calm::Calm;
 use super::journey::{Journey, Keep};
+use super::roughness::Roughness;
 use super::stems::Strain;
 use super::{Stop, Trajectory};
-use crate::chance::{Chance, Purpose, stream, unit};
+use crate::chance::{Chance, Purpose, stream};
 use crate::clock::{Clocks, Piece};
-use crate::contact::Touch;
 use crate::error::Result;
 use crate::flight::{Landing, Parabola, leap_past};
 use crate::ground::{Capture, Damping, Law};
@@ -16,8 +17,7 @@ use crate::step::grip::{Grip, Loss, World};
 use crate::step::law::Body;
 use crate::step::{self, Scheme, Settings, Stepper};
 use crate::terrain::Terrain;
-use nalgebra::{Rotation3, Unit};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// What all rocks of a scene have in common.
@@ -73,12 +73,8 @@ impl Scratch {
     }
 }
 
-/// Steps after which a rock is given up: it counts as failed.
-const MOST_STEPS: u64 = 100_000_000;
 /// An impact is over after so many contact times (–), whether the rock has left or not.
 pub(super) const IMPACT_TIMES: f64 = 3.0;
-/// Tilts drawn until the rough surface faces the rock; after that the impact is smooth.
-const TILTS: u32 = 8;
 
 /// Follows one rock from its release to its stop.
 pub fn follow(
@@ -108,6 +104,7 @@ pub fn follow(
         grip: &mut scratch.grip,
         strain: &mut scratch.strain,
         chance,
+        roughness: Roughness::default(),
         journey: Journey::new(course.terrain, release.rock, release.motion, (keep, course.watch)),
     };
     // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
@@ -123,15 +120,20 @@ pub fn follow(
 
 /// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
 ///
+/// A release that cannot be made (off the terrain, or inside the ground) ends where it should have begun.
+///
 /// # Errors
-/// The release cannot be made: off the terrain, or inside the ground.
+/// None today; a caller must be ready for one.
 pub fn fall(
     plan: &Plan,
     index: usize,
     paths: Option<&Range<usize>>,
     scratch: &mut Scratch,
 ) -> Result<Trajectory> {
-    let release = plan.release(index)?;
+    let release = match plan.try_release(index) {
+        Ok(release) => release,
+        Err(lost) => return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.why)),
+    };
     let mut chance = stream(plan.seed, Purpose::Impacts, index);
     let fallen =
         follow(&Course::of(plan), &release, kept(plan, index, paths), &mut chance, scratch);
@@ -168,7 +170,8 @@ pub(super) struct Fall<'a> {
     pub(super) world: World<'a>,
     pub(super) grip: &'a mut Grip,
     pub(super) strain: &'a mut Strain,
-    chance: &'a mut Chance,
+    pub(super) chance: &'a mut Chance,
+    pub(super) roughness: Roughness,
     pub(super) journey: Journey<'a>,
 }
 
@@ -202,12 +205,21 @@ impl Fall<'_> {
             Landing::Leaves(t) => (t, Some(Stop::LeftTerrain)),
             Landing::Flies => (left, Some(Stop::TimeUp)),
         };
+        // a touch at the very end of the time comes too late
+        let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
         self.grip.clocks.stop(Piece::Leap, begun);
         self.journey.effort.leaps += 1;
         let begun = self.grip.clocks.now();
         self.journey.fly(&flight, dt);
         self.grip.clocks.stop(Piece::NotesInFlight, begun);
-        stop
+        // flights count too: between two plates a rock may fly without end and without getting on in time
+        stop.or_else(|| self.over_budget())
+    }
+
+    /// Whether the rock has had all the work it may have.
+    fn over_budget(&self) -> Option<Stop> {
+        let most = self.course.step.scheme.most_work();
+        (self.journey.effort.work() > most).then_some(Stop::OverBudget)
     }
 
     /// Goes on in contact until the rock is free again or stops.
@@ -215,11 +227,6 @@ impl Fall<'_> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.journey.now;
         self.grip.begin(&self.world, c, v, w);
         self.announce();
-        let tilt = self.tilt();
-        if let Some(tilt) = &tilt {
-            (self.grip.v, self.grip.w) = (tilt.inverse() * v, tilt.inverse() * w);
-        }
-        let began_s = self.journey.now.time_s;
         let before_j = self.total_j();
         let lost_before_j = self.journey.lost_j();
         // those of the look that `begin` has just taken
@@ -234,12 +241,7 @@ impl Fall<'_> {
         self.journey.pay(&held, 1.0);
         self.journey.ledger.rise_j =
             self.journey.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
-        let lasted = self.journey.now.time_s - began_s;
-        if let Some(tilt) = tilt.filter(|_| stop.is_none() && lasted <= self.impact_time()) {
-            (self.grip.v, self.grip.w) = (tilt * self.grip.v, tilt * self.grip.w);
-            (self.journey.now.velocity_m_s, self.journey.now.spin_rad_s) =
-                (self.grip.v, self.grip.w);
-        }
+        self.leave_facet();
         self.journey.end_impact();
         stop
     }
@@ -256,7 +258,7 @@ impl Fall<'_> {
     }
 
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
-        let mut quiet_s = 0.0;
+        let mut calm = Calm::from(self.grip.c);
         loop {
             let left = self.course.longest_s - self.journey.now.time_s;
             self.strike();
@@ -264,6 +266,8 @@ impl Fall<'_> {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
+            // before its losses are paid, and with the speed before
+            self.announce();
             let effort = &mut self.journey.effort;
             effort.steps += done.steps;
             effort.rejected += done.rejected;
@@ -278,82 +282,59 @@ impl Fall<'_> {
             };
             let slides = self.grip.holds.iter().any(|hold| hold.slides);
             let begun = self.grip.clocks.now();
-            self.announce();
             self.journey.step(to, slides);
+            self.leave_facet_in_time();
             self.journey.end_impact_in_time();
             self.grip.clocks.stop(Piece::NotesInContact, begun);
+            let time_up = (done.dt >= left).then_some(Stop::TimeUp);
+            let ends = time_up.or_else(|| self.over_budget());
             if self.grip.is_free() {
-                return None;
+                return ends;
             }
-            let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.world.body.radius);
-            quiet_s = if slow < self.course.rest.speed_m_s { quiet_s + done.dt } else { 0.0 };
-            if quiet_s >= self.course.rest.time_s {
+            calm.note(done.dt, &to, self.world.body.radius, &self.course.rest);
+            if calm.rests() {
                 return Some(Stop::AtRest);
             }
-            if done.dt >= left {
-                return Some(Stop::TimeUp);
-            }
-            if self.journey.effort.steps > MOST_STEPS {
-                return Some(Stop::Failed(format!("no rest after {MOST_STEPS} steps")));
+            if ends.is_some() {
+                return ends;
             }
         }
     }
 
-    /// Notes down impacts that have just begun.
+    /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
     fn announce(&mut self) {
-        if self.grip.holds.iter().all(|hold| hold.announced) {
+        if self.grip.struck.is_empty() && self.grip.holds.iter().all(|hold| hold.announced) {
             return;
         }
         let radius = self.world.body.radius;
         let until_s = self.journey.now.time_s + self.impact_time();
-        for hold in self.grip.holds.iter_mut().filter(|hold| !hold.announced) {
+        let mut fastest: Option<(f64, Vec3, u32)> = None;
+        let Grip { holds, struck, c, .. } = &mut *self.grip;
+        for hold in holds.iter_mut().chain(struck.iter_mut()).filter(|hold| !hold.announced) {
             hold.announced = true;
-            if !hold.captured {
-                let point = self.grip.c - hold.n * radius;
-                self.journey.begin_impact(point, hold.feature.kind, hold.triangle, until_s);
+            if hold.captured {
+                continue;
             }
+            let point = *c - hold.n * radius;
+            self.journey.begin_impact(point, hold.feature.kind, hold.triangle, until_s);
+            let speed = -hold.n.dot(&self.journey.now.velocity_m_s);
+            if speed > fastest.map_or(0.0, |(known, ..)| known) {
+                fastest = Some((speed, hold.n, hold.triangle));
+            }
+        }
+        if let Some((_, normal, triangle)) = fastest {
+            self.meet_facet(normal, triangle, until_s);
         }
     }
 
-    /// The longest an impact is taken to last (s).
+    /// The longest an impact is taken to last (s): in the rigid limit no time at all.
     fn impact_time(&self) -> f64 {
+        if self.is_rigid() {
+            return 0.0;
+        }
         let omegas = self.grip.holds.iter().map(|hold| self.world.law(hold.triangle).omega);
         let slowest = omegas.fold(f64::INFINITY, f64::min);
         IMPACT_TIMES * PI / slowest
-    }
-
-    /// A random tilt of the surface for an impact on rough ground.
-    ///
-    /// The rock is turned against it, hits the smooth surface and is turned back when it leaves: the same as a hit
-    /// on the tilted facet, and turning keeps every joule.
-    fn tilt(&mut self) -> Option<Rotation3<f64>> {
-        let v = self.grip.v;
-        let touch: Touch = *self
-            .grip
-            .touches
-            .iter()
-            .filter(|touch| {
-                self.world.law(touch.triangle).roughness_rad > 0.0
-                    && !self.world.captures(touch, &v)
-            })
-            .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))?;
-        let most = self.world.law(touch.triangle).roughness_rad;
-        let beside = if touch.normal.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
-        let across = touch.normal.cross(&beside);
-        for _ in 0..TILTS {
-            let turn = Rotation3::from_axis_angle(
-                &Unit::new_normalize(touch.normal),
-                TAU * unit(self.chance),
-            );
-            let tilt = Rotation3::from_axis_angle(
-                &Unit::new_normalize(turn * across),
-                most * unit(self.chance),
-            );
-            if (tilt * touch.normal).dot(&v) < 0.0 {
-                return Some(tilt);
-            }
-        }
-        None
     }
 
     /// Mechanical energy of the rock in contact (J), weight included.

@@ -256,7 +256,8 @@ impl<'a> Journey<'a> {
     /// All losses so far (J).
     pub(super) fn lost_j(&self) -> f64 {
         let ledger = &self.ledger;
-        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j + ledger.others_j
+        let slope_j = ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j;
+        slope_j + ledger.others_j + ledger.passed_on_j
     }
 }
 

@@ -1,13 +1,16 @@
 //! One rock from release to rest: leap, touch, step, stop.
 
+mod calm;
 mod crossing;
 mod fall;
 mod journey;
+mod roughness;
 mod stems;
 mod together;
 mod visit;
 
 pub use crate::contact::FeatureKind;
+use crate::math;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +31,10 @@ pub enum Stop {
     LeftTerrain,
     /// Still moving at the longest simulated time.
     TimeUp,
+    /// Still moving when its budget of work was spent, see [`Effort::work`].
+    OverBudget,
+    /// Never began: no place was found where it could start; the reason is kept and counted.
+    NotReleased(&'static str),
     /// The computation could not go on; the reason is kept and counted.
     Failed(String),
 }
@@ -50,6 +57,11 @@ pub struct Effort {
 }
 
 impl Effort {
+    /// What is held against a rock's budget: steps, accepted or not, and flights.
+    pub fn work(&self) -> u64 {
+        self.steps + self.rejected + self.leaps
+    }
+
     /// Adds what another rock cost. Every field is named, so that a new counter does not compile until it is summed.
     pub fn add(&mut self, one: &Self) {
         let Self { steps, rejected, leaps, sweeps, triangles, unsettled } = *one;
@@ -62,7 +74,8 @@ impl Effort {
     }
 }
 
-/// Where the energy went (J). All entries but `others_j` and `remainder_j` are ≥ 0.
+/// Where the energy went (J): all but `rise_j` add up to what the rock lost. All entries but `passed_on_j` and
+/// `remainder_j` are ≥ 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ledger {
     /// Sliding friction against the slope.
@@ -73,9 +86,12 @@ pub struct Ledger {
     pub rolling_j: f64,
     /// Everything lost in contacts with trees.
     pub trees_j: f64,
-    /// Given to other rocks and to the springs between them, negative if received; 0 for a rock alone.
+    /// Lost in contacts with other rocks, half of what each takes; 0 for a rock alone.
     #[serde(default)]
     pub others_j: f64,
+    /// Handed on to other rocks, negative if received; 0 for a rock alone, and in sum over a world.
+    #[serde(default)]
+    pub passed_on_j: f64,
     /// What the numerics lost (positive) or gained (negative).
     pub remainder_j: f64,
     /// Largest rise of mechanical energy seen over one contact episode (J), ≥ 0; 0 in exact arithmetic.
@@ -175,10 +191,31 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
+    /// A release that could not be made: a row like any other, with nothing in it but the rock and its place.
+    pub fn not_released(index: usize, rock: Rock, start: Motion, why: &'static str) -> Self {
+        Self {
+            index,
+            rock,
+            start,
+            end: start,
+            stop: Stop::NotReleased(why),
+            extremes: Extremes::default(),
+            impact_count: 0,
+            tree_impact_count: 0,
+            impacts: Vec::new(),
+            path: Vec::new(),
+            crossings: Vec::new(),
+            visits: Vec::new(),
+            ledger: Ledger::default(),
+            released_j: 0.0,
+            effort: Effort::default(),
+        }
+    }
+
     /// Horizontal distance from release to end (m).
     pub fn runout_m(&self) -> f64 {
         let way = self.end.position_m - self.start.position_m;
-        way.x.hypot(way.y)
+        math::hypot(way.x, way.y)
     }
 
     /// Height lost from release to end (m), positive downwards.
@@ -188,7 +225,7 @@ impl Trajectory {
 
     /// Reach angle (Fahrböschung) `atan(drop/runout)` (degrees).
     pub fn reach_angle_deg(&self) -> f64 {
-        self.drop_m().atan2(self.runout_m()).to_degrees()
+        math::atan2(self.drop_m(), self.runout_m()).to_degrees()
     }
 
     /// `|numerical remainder| / energy released` (–).

@@ -72,6 +72,10 @@ impl<'a> Fall<'a> {
         let terrain: &'a Terrain = self.course.terrain;
         let Some(stems) = terrain.stems.as_ref() else { return };
         self.strain.look(terrain, stems, &self.grip.holds);
+        let motion_j = self.grip.motion_j(&self.world.body);
+        let pressed = self.strain.pressed;
+        self.grip.may_yield =
+            pressed.is_some_and(|stem| self.strain.left_j(stems, stem) <= 1.1 * motion_j);
         if self.course.step.scheme != Scheme::Rigid {
             return;
         }

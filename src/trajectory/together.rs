@@ -13,11 +13,11 @@ mod rover;
 mod split;
 mod wide;
 
+use super::calm::Calm;
 use super::fall::{Course, kept};
 use super::journey::{Journey, Keep};
 use super::{Stop, Trajectory};
 use crate::contact::pair::{Bond, Strength, Tie, between};
-use crate::coupled::broad::{Ball, overlapping};
 use crate::coupled::{Member, Seat};
 use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
@@ -43,6 +43,9 @@ pub struct Answer {
 /// six digits.
 const TOUCHING: f64 = 1e-4;
 
+/// Dashpots that are kept at hand.
+const KNOWN: usize = 16;
+
 /// One rock on its way.
 struct Rover<'a> {
     member: Seat,
@@ -50,8 +53,8 @@ struct Rover<'a> {
     state: State,
     /// When its flight ends (s), and how.
     lands: Option<(f64, Option<Stop>)>,
-    /// How long it has been slow (s).
-    quiet_s: f64,
+    /// Whether it is slow and gets no faster.
+    calm: Calm,
     /// Step its last island would have tried next (s).
     h: f64,
     /// Velocity when the window began, and the largest change of it since (m/s).
@@ -75,10 +78,6 @@ enum State {
     Gone(Stop),
 }
 
-/// Deepest overlap of two rocks at the start (–, relative to the smaller radius): deeper, their springs would shoot them
-/// apart.
-const DEEPEST_START: f64 = 0.01;
-
 /// All releases of a plan whose rocks share one world, in order; `None` if `stop` was raised before the end. A path is
 /// kept for the plan's first releases and for `paths`.
 ///
@@ -92,35 +91,12 @@ pub fn fall_together(
     let Part::Kept(ground) = &plan.rock_against_rock else {
         return Err(Error::Request("the rocks of this plan do not share one world".to_owned()));
     };
-    let releases =
-        (0..plan.count).map(|index| plan.release(index)).collect::<Result<Vec<Release>>>()?;
-    check_apart(plan, &releases)?;
+    let releases = plan.world()?;
     let none = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
     let strength = if let Part::Kept(strength) = plan.bonds { strength } else { none };
     let answer = Answer { ground: *ground, strength };
     let keep = |index| kept(plan, index, paths);
     Ok(follow_together(&Course::of(plan), &releases, &answer, keep, stop))
-}
-
-fn check_apart(plan: &Plan, releases: &[Release]) -> Result<()> {
-    let ball = |release: &Release| Ball {
-        centre: release.motion.position_m,
-        radius: release.rock.radius_m,
-    };
-    let balls: Vec<Ball> = releases.iter().map(ball).collect();
-    for (a, b) in overlapping(&balls) {
-        let [one, two] = [&balls[a as usize], &balls[b as usize]];
-        let overlap_m = one.radius + two.radius - (one.centre - two.centre).norm();
-        if overlap_m > DEEPEST_START * one.radius.min(two.radius) {
-            return Err(Error::input(
-                &plan.scene_file,
-                "[release]",
-                format!("found releases {a} and {b} to overlap by {overlap_m} m at the start"),
-                "write points that are at least the sum of two radii apart",
-            ));
-        }
-    }
-    Ok(())
 }
 
 /// Follows all rocks of one world to their stops, in the order of the releases; `None` if `stop` was raised.
@@ -156,10 +132,20 @@ pub fn follow_watched(
     keep: impl Fn(usize) -> Keep,
     (stop, see): (&AtomicBool, impl FnMut(f64, &Census)),
 ) -> Option<(Vec<Trajectory>, Census)> {
+    // Most scenes give all rocks the same ground: its dashpot is sought once.
+    let mut known: Vec<Damping> = Vec::new();
+    let mut damping = |restitution| {
+        let found = known.iter().find(|one| one.restitution == restitution).copied();
+        found.unwrap_or_else(|| {
+            known.insert(0, Damping::of(restitution));
+            known.truncate(KNOWN);
+            known[0]
+        })
+    };
     let rovers = releases
         .iter()
         .enumerate()
-        .map(|(k, release)| Some(Box::new(rover(course, release, keep(k)))))
+        .map(|(k, release)| Some(Box::new(rover(course, release, keep(k), &mut damping))))
         .collect();
     let mut crowd = Crowd::new(course, answer, rovers);
     crowd.bond(answer);
@@ -177,9 +163,14 @@ fn capture(course: &Course) -> Capture {
     }
 }
 
-fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
+fn rover<'a>(
+    course: &Course<'a>,
+    release: &Release,
+    keep: Keep,
+    damping: &mut impl FnMut(Option<f64>) -> Damping,
+) -> Rover<'a> {
     let laws = release.grounds.iter().map(|ground| {
-        Law::new(ground, &Damping::of(ground.restitution), &release.rock, &capture(course))
+        Law::new(ground, &damping(ground.restitution), &release.rock, &capture(course))
     });
     let motion = release.motion;
     let body = Body::new(&release.rock, course.gravity_m_s2);
@@ -189,7 +180,7 @@ fn rover<'a>(course: &Course<'a>, release: &Release, keep: Keep) -> Rover<'a> {
         journey: Journey::new(course.terrain, release.rock, motion, (keep, course.watch)),
         state: State::Moving,
         lands: None,
-        quiet_s: 0.0,
+        calm: Calm::from(motion.position_m),
         h: f64::INFINITY,
         off: (Vec3::zeros(), 0.0),
         foreseen_m_s: 0.0,

@@ -1,4 +1,4 @@
-//! Spheres that share one world in the rigid limit.
+//! Spheres that share one world.
 
 use super::{CASE, GROUND, terrain};
 use rockfall::contact::pair::Strength;
@@ -15,21 +15,27 @@ use std::sync::atomic::AtomicBool;
 /// Spheres in one world.
 #[derive(Clone, Copy)]
 pub struct World {
+    pub scheme: Scheme,
+    pub tolerance_m_s: f64,
     pub gravity_m_s2: f64,
     pub restitution: f64,
     pub friction_angle_rad: f64,
     pub step_s: f64,
     pub ground: Ground,
     pub rest_time_s: f64,
+    pub strength: Strength,
 }
 
 pub const WORLD: World = World {
+    scheme: Scheme::Rigid,
+    tolerance_m_s: 0.0,
     gravity_m_s2: 0.0,
     restitution: 0.5,
     friction_angle_rad: std::f64::consts::FRAC_PI_6,
     step_s: 0.01,
     ground: GROUND,
     rest_time_s: 0.3,
+    strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 },
 };
 
 /// A sphere: radius, density, centre, velocity, spin.
@@ -43,10 +49,11 @@ impl World {
         longest_s: f64,
     ) -> (Vec<Trajectory>, Census) {
         let step = Settings {
-            scheme: Scheme::Rigid,
-            tolerance_m_s: 0.0,
+            scheme: self.scheme,
+            tolerance_m_s: self.tolerance_m_s,
             step_s: self.step_s,
             shear_memory: true,
+            plane_impacts: true,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
         let course = Course {
@@ -73,7 +80,7 @@ impl World {
             friction_angle_rad: self.friction_angle_rad,
             ..GROUND
         };
-        let answer = Answer { ground, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
+        let answer = Answer { ground, strength: self.strength };
         let keep = |_| Keep { path_step_s: None, impacts: true };
         let never = AtomicBool::new(false);
         let (falls, census) = follow_counted(&course, &releases, &answer, keep, &never).unwrap();

@@ -50,6 +50,7 @@ pub fn info(releases: usize) -> RunInfo {
         observed: vec![],
         keeps_paths: true,
         keeps_impacts: true,
+        is_shard: false,
         threads: 2,
         plan: vec!["trees    left out: the scene has none".to_owned()],
         inputs: vec![("Rock density".to_owned(), "2700 kg/m³".to_owned())],

@@ -71,6 +71,37 @@ impl Ball {
     }
 }
 
+/// The impulses of one contact: normal (N s), along the surface (N s), of rolling (N m s).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Impulses(f64, Vec3, Vec3);
+
+impl Impulses {
+    pub(super) const NONE: Self = Self(0.0, Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 0.0));
+
+    pub(super) fn plus(&self, other: &Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1, self.2 + other.2)
+    }
+
+    pub(super) fn less(&self, other: &Self) -> Self {
+        Self(self.0 - other.0, self.1 - other.1, self.2 - other.2)
+    }
+
+    pub(super) fn times(&self, factor: f64) -> Self {
+        Self(self.0 * factor, self.1 * factor, self.2 * factor)
+    }
+
+    /// Square of its size, with the weight of each kind.
+    pub(super) fn square(&self, [n, t, r]: [f64; 3]) -> f64 {
+        n * self.0 * self.0 + t * self.1.norm_squared() + r * self.2.norm_squared()
+    }
+
+    /// Within the cone of friction with these caps over the normal impulse.
+    fn within(&self, caps: (f64, f64)) -> Self {
+        let push = self.0.max(0.0);
+        Self(push, within(self.1, caps.0 * push), within(self.2, caps.1 * push))
+    }
+}
+
 /// The contact of two rocks and its impulses.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Knot {
@@ -97,6 +128,19 @@ pub(super) struct Knot {
 }
 
 impl Knot {
+    pub(super) fn impulses(&self) -> Impulses {
+        Impulses(self.push, self.drag, Vec3::zeros())
+    }
+
+    /// Adds to its impulses what the cone allows, and acts with that.
+    pub(super) fn push_on(&mut self, step: &Impulses, a: &mut Ball, b: &mut Ball) {
+        let next = self.impulses().plus(step).within((self.friction, 0.0));
+        let change = Self { push: next.0 - self.push, drag: next.1 - self.drag, ..*self };
+        (self.push, self.drag) = (next.0, next.1);
+        a.take(&change.load(0));
+        b.take(&change.load(1));
+    }
+
     /// The contact of a tie's rocks with centres at `at`, without impulses.
     pub(super) fn new((tie, of): (usize, &Tie), balls: [&Ball; 2], at: [&Vec3; 2]) -> Self {
         let (n, distance) = between(at[0], at[1]);
@@ -210,6 +254,20 @@ impl Foot {
     #[inline]
     pub(super) fn load(&self, body: &Body) -> Motion {
         (self.n * self.push + self.drag, self.turn - self.n.cross(&self.drag) * body.radius)
+    }
+
+    pub(super) fn impulses(&self) -> Impulses {
+        Impulses(self.push, self.drag, self.turn)
+    }
+
+    /// Adds to its impulses what the cone allows, and acts with that.
+    pub(super) fn push_on(&mut self, step: &Impulses, ball: &mut Ball) {
+        let next = self.impulses().plus(step).within(self.caps);
+        let change = next.less(&self.impulses());
+        let change = Self { push: change.0, drag: change.1, turn: change.2, ..*self };
+        (self.push, self.drag, self.turn) = (next.0, next.1, next.2);
+        let load = change.load(&ball.body);
+        ball.take(&load);
     }
 
     /// Impulses for velocity `v` and spin `w` without this contact's own.

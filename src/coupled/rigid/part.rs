@@ -3,15 +3,28 @@
 use super::Pile;
 use super::ball::Ball;
 use super::strike::Scene;
-use crate::contact::pair::between;
+use crate::contact::pair::{Tie, between};
 use crate::coupled::member::Member;
 use crate::rock::Vec3;
 use crate::step::grip::{TOUCH, World};
 
-/// Overlap of two rocks that is left alone (–, relative to the smaller radius): rest that is swept to a tolerance.
-const SLACK: f64 = 1e-5;
-/// Sweeps over what overlaps.
-const SWEEPS: u32 = 8;
+/// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller
+/// radius).
+const SLACK: (f64, f64) = (1e-8, 1e-5);
+/// Layers of rocks that press there (–).
+const LAYERS: f64 = 4.0;
+/// Sweeps over what overlaps, at most.
+const SWEEPS: u32 = 30;
+
+impl Tie {
+    /// Overlap that is left alone (m).
+    fn slack_m(&self, balls: [&Ball; 2]) -> f64 {
+        let weight = |ball: &Ball| ball.body.mass * ball.body.gravity.norm();
+        let radius = balls[0].body.radius.min(balls[1].body.radius);
+        let pressed = LAYERS * (weight(balls[0]) + weight(balls[1])) / self.law.p_n;
+        pressed.clamp(SLACK.0 * radius, SLACK.1 * radius)
+    }
+}
 
 impl Pile {
     /// Moves apart what overlaps, each by its share of the mass; the height that a rock gains is paid by its motion.
@@ -24,12 +37,12 @@ impl Pile {
                 let ends = [tie.a as usize, tie.b as usize];
                 let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
                 let reach = a.body.radius + b.body.radius;
-                let allowed = reach - SLACK * a.body.radius.min(b.body.radius);
+                let allowed = reach - tie.slack_m([a, b]);
                 if (a.c - b.c).norm_squared() >= allowed * allowed {
                     continue;
                 }
                 let (n, distance) = between(&a.c, &b.c);
-                let way = n * ((reach - distance) / (a.inv.0 + b.inv.0));
+                let way = n * ((allowed - distance) / (a.inv.0 + b.inv.0));
                 a.c += way * a.inv.0;
                 b.c -= way * b.inv.0;
                 moved = true;
@@ -58,19 +71,18 @@ impl Pile {
         out.norm_squared() > (TOUCH * body.radius).powi(2)
     }
 
-    /// Takes the work of lifting out of the motion: of the rock itself, and what that lacks of all that are pushed.
+    /// Pays for the height that rocks gain, first with what normal impulses took of them in this step: what sinks in by the
+    /// error of a step loses its energy there, and has it back when it is lifted out. The rest is paid by motion.
+    /// (Paid by motion alone, the lifting of 1e-5 R would stop a heap that begins to slide.)
     fn pay_for_height(&mut self) {
-        let mut owed_j = 0.0;
+        let mut net_j = 0.0;
         for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;
             let lifted_j = -ball.body.mass * ball.body.gravity.dot(&(ball.c - from));
-            if lifted_j > 0.0 {
-                let lacking_j = (lifted_j - ball.motion_j()).max(0.0);
-                ball.slow_down(lifted_j - lacking_j);
-                self.given_j[k] -= lacking_j;
-                owed_j += lacking_j;
-            }
+            self.given[k].passed_on -= lifted_j;
+            net_j += lifted_j;
         }
+        let owed_j = net_j - self.taken_j.max(0.0);
         if owed_j > 0.0 {
             self.pay_together(owed_j);
         }
@@ -82,11 +94,11 @@ impl Pile {
         let motion_j: f64 =
             self.balls.iter().filter(|ball| takes_part(ball)).map(Ball::motion_j).sum();
         let share = if motion_j > 0.0 { (owed_j / motion_j).min(1.0) } else { 0.0 };
-        for (ball, given_j) in self.balls.iter_mut().zip(&mut self.given_j) {
+        for (ball, given) in self.balls.iter_mut().zip(&mut self.given) {
             if takes_part(ball) {
                 let own_j = share * ball.motion_j();
                 ball.slow_down(own_j);
-                *given_j += own_j;
+                given.passed_on += own_j;
             }
         }
     }

@@ -9,7 +9,7 @@
 use super::Pile;
 use super::ball::{Ball, Foot, Knot};
 use crate::contact::pair::Tie;
-use crate::coupled::cluster::TOUCH;
+use crate::coupled::cluster::{Given, TOUCH};
 use crate::coupled::member::{Member, Seat};
 use crate::rock::Vec3;
 use crate::step::grip::World;
@@ -173,12 +173,16 @@ impl Pile {
         let before = [(a.v, a.w), (b.v, b.w)];
         let (mut one, mut two) = (*a, *b);
         knot.solve(&mut one, &mut two);
+        let mut given = [0.0; 2];
         for (k, ball) in [a, b].into_iter().enumerate() {
             let load = knot.load(k);
             ball.take_late(&load, s);
             let (v, w) = mean_late(ball, &before[k], s);
-            self.given_j[ends[k]] -= Ball::work_j(&load, &v, &w);
+            given[k] = -Ball::work_j(&load, &v, &w);
             ball.is_struck(s);
+        }
+        for (end, given) in ends.into_iter().zip(Given::of_ends(given)) {
+            self.given[end].add(&given, 1.0);
         }
         self.struck[place] = true;
     }

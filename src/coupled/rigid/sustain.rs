@@ -8,6 +8,7 @@
 use super::Pile;
 use super::ball::{Ball, Foot, Knot};
 use crate::contact::pair::{Tie, between};
+use crate::coupled::cluster::Given;
 use crate::coupled::member::Seat;
 use crate::rock::Vec3;
 use crate::step::grip::World;
@@ -15,11 +16,12 @@ use crate::step::rigid::capture_m_s;
 use crate::terrain::Terrain;
 
 /// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained
-/// one: not if it would be left faster than the capture speed, or closed so under weight. That is an impact, and found
-/// at the end of the step.
-fn is_sustained((gap, speed): (f64, f64), capture: f64, (weight, dt): (f64, f64)) -> bool {
+/// one: not if it is left or closed faster than the capture speed. That is an impact, and found at the end of the step. A
+/// gap that the capture speed closes within the step may close and no more: left alone, it would close under weight into
+/// an overlap.
+fn is_sustained((gap, speed): (f64, f64), capture: f64, dt: f64) -> bool {
     let fall = gap.max(0.0);
-    speed * speed + 2.0 * weight * fall < capture * capture && fall <= dt * capture
+    speed * speed < capture * capture && fall <= dt * capture
 }
 
 /// Normal speed wanted at the end of a step of length `dt` (s) from the gap in its middle and the speed at its start: an
@@ -59,9 +61,8 @@ impl Pile {
                 let law = world.law(touch.triangle);
                 let (speed, capture) = (touch.normal.dot(&ball.v), capture_m_s(law));
                 let gap = touch.distance_m - ball.body.radius;
-                let weight = ball.body.gravity.norm();
                 let start = (gap - 0.5 * dt * speed, speed);
-                if !is_sustained(start, capture, (weight, dt)) {
+                if !is_sustained(start, capture, dt) {
                     continue;
                 }
                 let place = (touch.feature, touch.triangle);
@@ -87,7 +88,7 @@ impl Pile {
             let gap = distance - a.body.radius - b.body.radius;
             let (speed, capture) = (n.dot(&(a.v - b.v)), capture_m_s(&tie.law));
             let start = (gap - 0.5 * dt * speed, speed);
-            if !is_sustained(start, capture, (a.body.gravity.norm(), dt)) {
+            if !is_sustained(start, capture, dt) {
                 continue;
             }
             let mut knot = Knot::new((k, tie), [a, b], [&at[0], &at[1]]);
@@ -116,15 +117,23 @@ impl Pile {
         let mean = |ball: &Ball| -> (Vec3, Vec3) {
             ((ball.v + ball.before.0) * 0.5, (ball.w + ball.before.1) * 0.5)
         };
+        self.taken_j = 0.0;
         for foot in self.feet.iter().filter(|foot| foot.push > 0.0) {
             let (member, ball) = (&members[foot.ball], &self.balls[foot.ball]);
             let world = World { terrain, body: member.body, laws: &member.laws };
-            self.losses[foot.ball].add(&foot.loss(&world, &mean(ball)), 1.0);
+            let motion = mean(ball);
+            self.losses[foot.ball].add(&foot.loss(&world, &motion), 1.0);
+            self.taken_j -= foot.push * foot.n.dot(&motion.0);
         }
         for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {
-            for k in 0..2 {
+            let [a, b] = knot.ends.map(|k| mean(&self.balls[k]).0);
+            self.taken_j -= knot.push * knot.n.dot(&(a - b));
+            let given = [0, 1].map(|k| {
                 let (v, w) = mean(&self.balls[knot.ends[k]]);
-                self.given_j[knot.ends[k]] -= Ball::work_j(&knot.load(k), &v, &w);
+                -Ball::work_j(&knot.load(k), &v, &w)
+            });
+            for (end, given) in knot.ends.into_iter().zip(Given::of_impulses(given)) {
+                self.given[end].add(&given, 1.0);
             }
         }
         for knot in self.knots.iter().filter(|knot| knot.push > 0.0) {

@@ -1,19 +1,30 @@
 //! Sweeps over the contacts of an island until their impulses have settled.
+//!
+//! A sweep hands a load on from rock to rock; alone it would take as many as the square of the heap's height. From one sweep
+//! to the next the impulses therefore go on in a conjugate direction: `x ← S(x) + β p`, `p ← S(x) − x + β p`, with `β` the
+//! ratio of the squares of the last two sweeps' changes, and anew where that is no less than 1 (nonsmooth nonlinear
+//! conjugate gradients, Silcowitz, Niebe and Erleben 2010). The last word is a sweep's.
 
 use super::Pile;
+use super::ball::Impulses;
 use crate::contact::pair::Tie;
 use crate::coupled::member::Seat;
 
 /// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
 /// others have settled and are passed over.
-const SWEEPS: (u32, u32) = (300, 3000);
+const SWEEPS: (u32, u32) = (1000, 3000);
 /// Sweeps that judge a jump, at most.
 const SWEEPS_AFTER: u32 = 30;
 /// Jumps after which the impulses have not settled.
 const JUMPS: u32 = 4;
 /// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
-/// over the speed of its slower rock (–).
-const SETTLED: (f64, f64) = (5e-3, 1e-3);
+/// over the speed of the fastest of its rocks and their neighbours (–).
+const SETTLED: (f64, f64) = (5e-3, 3e-2);
+/// The first of them where an island is small: there it costs next to nothing to tell friction that just holds from friction
+/// that just does not (–).
+const SETTLED_FEW: f64 = 1e-3;
+/// Rocks of a small island, at most.
+const FEW: usize = 64;
 /// The same over the capture speed, where there is hardly any weight (–).
 const SETTLED_OF_CAPTURE: f64 = 1e-6;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
@@ -24,11 +35,7 @@ impl Pile {
     /// the sweeps nearer to rest is taken back, and no other is tried.
     pub(super) fn settle(&mut self, (members, ties): (&mut [Seat], &[Tie]), dt: f64) -> bool {
         self.dt = dt;
-        for ball in &mut self.balls {
-            let weight = SETTLED.0 * ball.body.gravity.norm() * dt;
-            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
-            ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
-        }
+        self.allow();
         let mut change = self.sweep_on(SWEEPS.0);
         for _ in 0..JUMPS {
             if change <= 1.0 {
@@ -53,6 +60,23 @@ impl Pile {
         self.sweep_on(SWEEPS.1) <= 1.0
     }
 
+    /// What may still change at every rock: the less the slower it and its neighbours are.
+    fn allow(&mut self) {
+        let few = self.balls.len() <= FEW;
+        let of_weight = if few { SETTLED_FEW } else { SETTLED.0 };
+        for ball in &mut self.balls {
+            let weight = of_weight * ball.body.gravity.norm() * self.dt;
+            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
+            ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
+        }
+        for [a, b] in self.knots.iter().map(|knot| knot.ends) {
+            let speeds = [a, b].map(|k| SETTLED.1 * self.balls[k].before.0.norm());
+            let Ok([a, b]) = self.balls.get_disjoint_mut([a, b]) else { continue };
+            a.allowed_m_s = a.allowed_m_s.max(speeds[1]);
+            b.allowed_m_s = b.allowed_m_s.max(speeds[0]);
+        }
+    }
+
     /// Sweeps until nothing changes by more than is allowed, or so many times; the largest change of the last, over what
     /// is allowed (–).
     fn sweep_on(&mut self, most: u32) -> f64 {
@@ -60,14 +84,84 @@ impl Pile {
         self.lay_contacts();
         self.asked.all(count);
         let mut change = f64::INFINITY;
+        self.lean.begin(count);
         for k in 0..most {
             self.sweeps += 1;
             change = self.sweep(k % 2 == 1);
             if change <= 1.0 {
                 break;
             }
+            if k + 1 < most {
+                self.lean_on();
+            }
         }
         change
+    }
+
+    /// Goes on from a sweep's changes in the conjugate direction.
+    fn lean_on(&mut self) {
+        let list = std::mem::take(&mut self.lean.list);
+        let mut square = 0.0;
+        for &k in &list {
+            let (now, inv) = self.impulses(k as usize);
+            let change = now.less(&self.lean.of[k as usize].start);
+            square += change.square(inv);
+        }
+        let share = square / self.lean.square;
+        let leans = share < 1.0;
+        self.lean.square = square;
+        let map = self.lean.map;
+        self.lean.map += 1;
+        for &k in &list {
+            let (now, _) = self.impulses(k as usize);
+            let one = &mut self.lean.of[k as usize];
+            let change = now.less(&one.start);
+            if leans && one.led + 1 == map {
+                let step = one.way.times(share);
+                one.way = change.plus(&step);
+                self.push_on(k as usize, &step);
+            } else {
+                one.way = change;
+            }
+            self.lean.of[k as usize].led = map;
+        }
+        self.lean.list = list;
+        self.lean.list.clear();
+    }
+
+    /// The impulses of a contact, and the weights that make their squares energies.
+    fn impulses(&self, k: usize) -> (Impulses, [f64; 3]) {
+        let feet = self.feet.len();
+        if k < feet {
+            let foot = &self.feet[k];
+            let ball = &self.balls[foot.ball];
+            (foot.impulses(), [ball.inv.0, 3.5 * ball.inv.0, ball.inv.1])
+        } else {
+            let knot = &self.knots[k - feet];
+            (knot.impulses(), [knot.inv.0, knot.inv.1, 0.0])
+        }
+    }
+
+    /// Adds to the impulses of a contact what its cone allows.
+    fn push_on(&mut self, k: usize, step: &Impulses) {
+        let feet = self.feet.len();
+        if k < feet {
+            let foot = &mut self.feet[k];
+            let ball = &mut self.balls[foot.ball];
+            foot.push_on(step, ball);
+            ball.times += 1;
+            let end = foot.ball;
+            self.ask(end);
+        } else {
+            let knot = &mut self.knots[k - feet];
+            let ends = knot.ends;
+            if let Ok([a, b]) = self.balls.get_disjoint_mut(ends) {
+                knot.push_on(step, a, b);
+                (a.times, b.times) = (a.times + 1, b.times + 1);
+            }
+            self.ask(ends[0]);
+            self.ask(ends[1]);
+        }
     }
 
     /// One pass over the contacts that are asked, onwards or backwards; the largest change of speed, over what is allowed
@@ -86,7 +180,13 @@ impl Pile {
     fn sweep_contact(&mut self, k: usize) -> f64 {
         self.asked.remove(k);
         let feet = self.feet.len();
-        if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) }
+        let start =
+            if k < feet { self.feet[k].impulses() } else { self.knots[k - feet].impulses() };
+        let change = if k < feet { self.sweep_foot(k) } else { self.sweep_knot(k - feet) };
+        if change > STIRS {
+            self.lean.note(k, start);
+        }
+        change
     }
 
     /// The contacts of every rock.
@@ -136,6 +236,48 @@ impl Pile {
             self.ask(ends[1]);
         }
         change
+    }
+}
+
+/// The conjugate direction, contact by contact.
+#[derive(Debug, Default)]
+pub(super) struct Lean {
+    of: Vec<One>,
+    list: Vec<u32>,
+    /// Number of the sweep in hand.
+    map: u32,
+    /// Square of the changes of the one before.
+    square: f64,
+}
+
+/// One contact's part of it.
+#[derive(Debug, Clone, Copy)]
+struct One {
+    /// Impulses before the sweep in hand.
+    start: Impulses,
+    /// The direction.
+    way: Impulses,
+    /// Sweep of which `start` is, and after which `way` was found.
+    begun: u32,
+    led: u32,
+}
+
+impl Lean {
+    fn begin(&mut self, count: usize) {
+        let none = One { start: Impulses::NONE, way: Impulses::NONE, begun: 0, led: 0 };
+        self.of.clear();
+        self.of.resize(count, none);
+        self.list.clear();
+        self.map = 2;
+        self.square = 0.0;
+    }
+
+    fn note(&mut self, k: usize, start: Impulses) {
+        let one = &mut self.of[k];
+        if one.begun != self.map {
+            (one.begun, one.start) = (self.map, start);
+            self.list.push(k as u32);
+        }
     }
 }
 

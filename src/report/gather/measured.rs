@@ -2,7 +2,7 @@
 
 use super::super::input::{Estimate, Observed, Table};
 use super::estimate;
-use crate::calibrate::{Calibration, Trial};
+use crate::calibrate::{Calibration, Measure, Told, Trial};
 use crate::error::Result;
 use crate::hazard::{Agreement, Way};
 use crate::output::{Results, read_calibration};
@@ -47,7 +47,12 @@ pub(super) fn tables(results: &Results) -> Result<Vec<Table>> {
             rows: vec![("This run".to_owned(), cells(&observed.agreement))],
         });
     }
-    tables.extend(read_calibration(&results.dir)?.map(|found| calibration(&found)));
+    if let Some(found) = read_calibration(&results.dir)? {
+        tables.push(calibration(&found));
+        if !found.told.is_empty() {
+            tables.extend([told(&found), spread(&found)]);
+        }
+    }
     Ok(tables)
 }
 
@@ -72,7 +77,49 @@ fn calibration(found: &Calibration) -> Table {
             row("The same on the held-out half", first, &first.kept_apart),
             row("Fitted on the second half, seen on it", second, &second.fitted),
             row("The same on the held-out half", second, &second.kept_apart),
-        ],
+        ]
+        .into_iter()
+        .chain(found.whole.as_ref().map(|whole| row("Fitted on all", whole, &whole.all)))
+        .collect(),
+    }
+}
+
+/// How far the measured ends tell each value.
+fn told(found: &Calibration) -> Table {
+    let row = |told: &Told| {
+        let doubt = if told.is_told { "" } else { " (hardly told: other values fit as well)" };
+        let value = estimate(told.value, Some(told.low_95), Some(told.high_95));
+        (format!("{}{doubt}", told.name), vec![Some(value)])
+    };
+    Table {
+        title: "What the measured ends tell".to_owned(),
+        note: format!(
+            "Values fitted on all {} measured ends, with 95 % intervals from ends drawn again; throws of one block are alike, so that they are worth {:.0} independent ones.",
+            found.ends.0, found.ends.1
+        ),
+        columns: vec!["fitted".to_owned()],
+        rows: found.told.iter().map(row).collect(),
+    }
+}
+
+/// Where the ends of the fit lie and how they spread.
+fn spread(found: &Calibration) -> Table {
+    let row = |measure: &Measure| {
+        let difference = estimate(
+            measure.computed - measure.measured,
+            Some(measure.low_95),
+            Some(measure.high_95),
+        );
+        let plain = |value: f64| Some(estimate(value, None, None));
+        let cells = vec![plain(measure.measured), plain(measure.computed), Some(difference)];
+        (format!("{}: {}", measure.scene, measure.what), cells)
+    };
+    Table {
+        title: "Ends of the fit".to_owned(),
+        note: "Computed less measured with its 95 % interval, from measured ends drawn again."
+            .to_owned(),
+        columns: ["measured", "computed", "difference"].map(str::to_owned).into(),
+        rows: found.measures.iter().map(row).collect(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Hillshade, contours and trees of the map.
 
+use crate::math;
 use crate::report::axis::round_step;
 use crate::report::colour::{GREEN, WHITE};
 use crate::report::contour::Field;
@@ -109,7 +110,7 @@ fn contours(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<C
         let pen = Pen { opacity: 0.75, ..Pen::full(LINE, if is_index { 0.9 } else { 0.4 }) };
         paper.lines(&lines, pen);
         if is_index {
-            let decimals = (-interval_m.log10().floor()).max(0.0) as usize;
+            let decimals = (-math::log10(interval_m).floor()).max(0.0) as usize;
             label_lines(panel, &lines, &format::decimal(level_m, decimals), &mut labels);
         }
     }
@@ -117,7 +118,7 @@ fn contours(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<C
 }
 
 fn length(line: &[Spot]) -> f64 {
-    line.windows(2).map(|s| (s[1].0 - s[0].0).hypot(s[1].1 - s[0].1)).sum()
+    line.windows(2).map(|s| math::hypot(s[1].0 - s[0].0, s[1].1 - s[0].1)).sum()
 }
 
 /// Puts one label on each long line, at its longest straight piece that is far from other labels and from the frame.
@@ -135,13 +136,13 @@ fn label_lines(
                 .min(frame.right - at.0)
                 .min(at.1 - frame.top)
                 .min(frame.bottom - at.1);
-            let nearest = labels.iter().map(|(p, ..)| (p.0 - at.0).hypot(p.1 - at.1));
+            let nearest = labels.iter().map(|(p, ..)| math::hypot(p.0 - at.0, p.1 - at.1));
             from_edge > 22.0 && nearest.fold(f64::INFINITY, f64::min) > LABELS_APART_PX
         };
         let free = line.windows(2).filter(|&s| is_free(middle(s)));
         let best = free.max_by(|a, b| length(a).total_cmp(&length(b)));
         if let Some(piece) = best {
-            let rise = (piece[1].1 - piece[0].1).atan2(piece[1].0 - piece[0].0).to_degrees();
+            let rise = math::atan2(piece[1].1 - piece[0].1, piece[1].0 - piece[0].0).to_degrees();
             // text must not stand on its head
             let degrees = if rise.abs() > 90.0 { rise - 180.0 * rise.signum() } else { rise };
             labels.push((middle(piece), degrees, text.to_owned()));

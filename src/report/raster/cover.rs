@@ -1,6 +1,7 @@
 //! Which cells of a grid a triangle covers.
 
 use super::GroundRaster;
+use crate::math;
 
 /// Largest gap inside a ring of tree cells that is taken for wood (m²): a stem, not a clearing.
 const LARGEST_STEM_M2: f64 = 10.0;
@@ -70,7 +71,7 @@ impl Cover {
 
     fn mark_edge(&mut self, a: [f64; 3], b: [f64; 3]) {
         let (west, south, cell) = self.grid;
-        let length = (b[0] - a[0]).hypot(b[1] - a[1]) / cell;
+        let length = math::hypot(b[0] - a[0], b[1] - a[1]) / cell;
         // two samples a cell leave no gap between neighbours
         let steps = (2.0 * length).ceil().clamp(1.0, 4.0 * (self.size.0 + self.size.1) as f64);
         for i in 0..=steps as usize {

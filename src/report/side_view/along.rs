@@ -1,5 +1,6 @@
 //! The mean fall line, and what happens along it.
 
+use crate::math;
 use crate::report::axis::nice_step;
 use crate::report::input::{Point, Report};
 use crate::report::raster::GroundRaster;
@@ -37,7 +38,7 @@ impl FallLine {
             }
         }
         let (dx, dy) = (sums[2] - sums[0], sums[3] - sums[1]);
-        let length = dx.hypot(dy);
+        let length = math::hypot(dx, dy);
         let is_given = length > 1e-6;
         let way = if is_given { (dx / length, dy / length) } else { (1.0, 0.0) };
         Self { from: (sums[0], sums[1]), way, is_given }
@@ -55,7 +56,7 @@ impl FallLine {
 
     /// Bearing from north over east (degrees, 0..360).
     fn bearing_deg(&self) -> f64 {
-        self.way.0.atan2(self.way.1).to_degrees().rem_euclid(360.0)
+        math::atan2(self.way.0, self.way.1).to_degrees().rem_euclid(360.0)
     }
 
     /// Nearest point of the compass.

@@ -1,5 +1,6 @@
 //! Path data: relative, whole tenths, no doubled points; lines clipped to a frame and thinned.
 
+use crate::math;
 use std::fmt::Write as _;
 
 /// A point on paper (px, y downwards).
@@ -151,7 +152,7 @@ pub fn distance_to_segment(p: Spot, a: Spot, b: Spot) -> f64 {
     let length2 = dx * dx + dy * dy;
     let t = if length2 > 0.0 { ((p.0 - a.0) * dx + (p.1 - a.1) * dy) / length2 } else { 0.0 };
     let t = t.clamp(0.0, 1.0);
-    (p.0 - a.0 - t * dx).hypot(p.1 - a.1 - t * dy)
+    math::hypot(p.0 - a.0 - t * dx, p.1 - a.1 - t * dy)
 }
 
 #[cfg(test)]

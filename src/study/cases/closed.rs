@@ -4,6 +4,7 @@
 //! `ξ'' = G − k (p_s ξ + c_s ξ')/m`, `G = g sin α`, where `k = 1 + m R²/I = 7/2` for one contact and 9/2 for the two of
 //! a right-angled groove, and the centre moves as `s'' = G (1 − j/k) + (j/k) ξ''` with j contacts.
 
+use crate::math;
 use crate::study::bench::{GRAVITY_M_S2, Setup};
 
 /// A sphere that sticks from rest: its way along the plane after `t` (s) and the stretch of the spring (m).
@@ -11,7 +12,7 @@ use crate::study::bench::{GRAVITY_M_S2, Setup};
 /// The oscillation is critically damped for one contact (`c_s = 2 √(p_s 2m/7)`), over-damped for two. `t` must be long
 /// against the contact time: the stretch has then reached its rest value.
 pub(super) fn stuck_way_m(setup: &Setup, angle_rad: f64, contacts: f64, t: f64) -> f64 {
-    let pull = setup.gravity_m_s2 * angle_rad.sin();
+    let pull = setup.gravity_m_s2 * math::sin(angle_rad);
     let k = stuck_factor(contacts);
     let stretch = pull * setup.rock.mass_kg() / (k * setup.ground.shear_stiffness_n_m);
     0.5 * pull * (1.0 - contacts / k) * t * t + contacts / k * stretch
@@ -25,7 +26,7 @@ fn stuck_factor(contacts: f64) -> f64 {
 
 /// The same in the rigid limit.
 pub(super) fn rolled_way_m(angle_rad: f64, contacts: f64, t: f64) -> f64 {
-    0.5 * GRAVITY_M_S2 * angle_rad.sin() * (1.0 - contacts / stuck_factor(contacts)) * t * t
+    0.5 * GRAVITY_M_S2 * math::sin(angle_rad) * (1.0 - contacts / stuck_factor(contacts)) * t * t
 }
 
 /// Way (m) and spin (rad/s) after `t` (s) from rest on a plane too steep to roll.
@@ -34,16 +35,18 @@ pub(super) fn rolled_way_m(angle_rad: f64, contacts: f64, t: f64) -> f64 {
 /// millisecond; from then on everything is uniform. `has_springs` = false leaves that millisecond out.
 pub(super) fn slipped(setup: &Setup, angle_rad: f64, t: f64, has_springs: bool) -> (f64, f64) {
     let (g, r) = (setup.gravity_m_s2, setup.rock.radius_m);
-    let (pull, drag) =
-        (g * angle_rad.sin(), setup.ground.friction_angle_rad.tan() * g * angle_rad.cos());
+    let (pull, drag) = (
+        g * math::sin(angle_rad),
+        math::tan(setup.ground.friction_angle_rad) * g * math::cos(angle_rad),
+    );
     let omega = (3.5 * setup.ground.shear_stiffness_n_m / setup.rock.mass_kg()).sqrt();
     let tau = if has_springs {
-        zero_of(|tau| 1.0 + (tau - 1.0) * (-tau).exp() - 3.5 * drag / pull, 0.0, 1.0)
+        zero_of(|tau| 1.0 + (tau - 1.0) * math::exp(-tau) - 3.5 * drag / pull, 0.0, 1.0)
     } else {
         0.0
     };
     let begins = tau / omega;
-    let fade = (-tau).exp();
+    let fade = math::exp(-tau);
     let (stretch, rate) = (pull / omega.powi(2) * (1.0 - (1.0 + tau) * fade), pull * begins * fade);
     let way = 2.5 / 7.0 * pull * begins * begins + stretch / 3.5;
     let speed = 5.0 / 7.0 * pull * begins + rate / 3.5;
@@ -57,7 +60,7 @@ pub(super) fn slipped(setup: &Setup, angle_rad: f64, t: f64, has_springs: bool) 
 /// It slides with `a = −μ g` until `v = 5/7` of the push. The stretch `μ N/p_s` that the spring then holds is given
 /// back: the contact springs back by it, the centre by 2/7 of it.
 pub(super) fn skidded(setup: &Setup, v: f64, t: f64, has_springs: bool) -> (f64, f64) {
-    let drag = setup.ground.friction_angle_rad.tan() * setup.gravity_m_s2;
+    let drag = math::tan(setup.ground.friction_angle_rad) * setup.gravity_m_s2;
     let rolls = 2.0 / 7.0 * v / drag;
     let stretch = drag * setup.rock.mass_kg() / setup.ground.shear_stiffness_n_m;
     let back = if has_springs { stretch / 3.5 } else { 0.0 };
@@ -74,9 +77,9 @@ pub(super) fn struck(setup: &Setup, t: f64) -> ([f64; 3], [f64; 3]) {
     let touch = (fall + v.z) / g;
     let restitution = setup.ground.restitution.unwrap_or(1.0);
     let slip = [v.x - r * w.y, v.y + r * w.x];
-    let fast = slip[0].hypot(slip[1]);
+    let fast = math::hypot(slip[0], slip[1]);
     let stop = 2.0 / 7.0 * fast;
-    let most = setup.ground.friction_angle_rad.tan() * (1.0 + restitution) * fall;
+    let most = math::tan(setup.ground.friction_angle_rad) * (1.0 + restitution) * fall;
     let share = if fast > 0.0 { stop.min(most) / fast } else { 0.0 };
     let out = [v.x - share * slip[0], v.y - share * slip[1]];
     let left = t - touch;

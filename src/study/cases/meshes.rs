@@ -3,7 +3,6 @@
 use crate::rock::Vec3;
 use crate::terrain::make;
 use crate::terrain::stl::Facet;
-use nalgebra::Rotation3;
 
 /// Degrees as radians.
 pub(super) fn angle(degrees: f64) -> f64 {
@@ -17,7 +16,7 @@ pub(super) fn plane(degrees: f64) -> Vec<Facet> {
 
 /// Turned downwards in +y about the x axis.
 pub(super) fn tilted(facets: Vec<Facet>, degrees: f64) -> Vec<Facet> {
-    let down = Rotation3::from_axis_angle(&Vec3::x_axis(), -angle(degrees));
+    let down = crate::math::turn(&Vec3::x_axis(), -angle(degrees));
     facets.into_iter().map(|facet| facet.map(|corner| down * corner)).collect()
 }
 

@@ -4,6 +4,7 @@
 
 use super::closed::zero_of;
 use crate::ground::Damping;
+use crate::math;
 use crate::study::bench::{GRAVITY_M_S2, Setup};
 
 /// Explicit steps per radian of contact oscillation: the error of the orbit is then below 1e-9.
@@ -29,7 +30,7 @@ pub(super) fn on_springs(setup: &Setup, angle_rad: f64, t: f64) -> (f64, f64) {
             state[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
         }
     }
-    (state[0] * state[1].sin(), state[0] * state[1].cos())
+    (state[0] * math::sin(state[1]), state[0] * math::cos(state[1]))
 }
 
 fn after(state: &State, rate: &State, h: f64) -> State {
@@ -56,7 +57,7 @@ impl Law {
             radius: setup.rock.radius_m,
             inertia: setup.rock.inertia_kg_m2(),
             gravity: setup.gravity_m_s2,
-            friction: ground.friction_angle_rad.tan(),
+            friction: math::tan(ground.friction_angle_rad),
             stiff,
             damp: [
                 2.0 * ratio * (stiff[0] * mass).sqrt(),
@@ -78,8 +79,8 @@ impl Law {
         [
             r_rate,
             turn,
-            push / self.mass - g * angle.cos() + r * turn * turn,
-            (g * angle.sin() - drag / self.mass - 2.0 * r_rate * turn) / r,
+            push / self.mass - g * math::cos(angle) + r * turn * turn,
+            (g * math::sin(angle) - drag / self.mass - 2.0 * r_rate * turn) / r,
             drag * self.radius / self.inertia,
             (drag - self.stiff[1] * stretch) / self.damp[1],
         ]
@@ -91,7 +92,7 @@ impl Law {
 pub(super) fn rolling(radius_m: f64, angle_rad: f64, t: f64) -> (f64, f64) {
     const STEPS: usize = 10_000;
     let h = t / STEPS as f64;
-    let bend = |angle: f64| 5.0 / 7.0 * GRAVITY_M_S2 / radius_m * angle.sin();
+    let bend = |angle: f64| 5.0 / 7.0 * GRAVITY_M_S2 / radius_m * math::sin(angle);
     let (mut angle, mut rate) = (angle_rad, 0.0);
     for _ in 0..STEPS {
         let k1 = (rate, bend(angle));
@@ -101,7 +102,7 @@ pub(super) fn rolling(radius_m: f64, angle_rad: f64, t: f64) -> (f64, f64) {
         angle += h / 6.0 * (k1.0 + 2.0 * k2.0 + 2.0 * k3.0 + k4.0);
         rate += h / 6.0 * (k1.1 + 2.0 * k2.1 + 2.0 * k3.1 + k4.1);
     }
-    (radius_m * angle.sin(), radius_m * angle.cos())
+    (radius_m * math::sin(angle), radius_m * math::cos(angle))
 }
 
 /// The rigid limit: where the rock lifts off (angle, time, speed) from rest at 0.1 rad with R = 0.5 m.
@@ -118,14 +119,14 @@ impl Lift {
     /// Lift-off where `v² = g R cos θ`, from energy: `v² = b g R (cos θ₀ − cos θ)`, with b = 2 where the edge is
     /// smooth, 10/7 where the rock rolls. `time_s` is the integral of `dθ R/v`.
     pub(super) fn by_energy(radius_m: f64, from_rad: f64, b: f64, time_s: f64) -> Self {
-        let cos = b / (1.0 + b) * from_rad.cos();
+        let cos = b / (1.0 + b) * math::cos(from_rad);
         let speed_m_s = (GRAVITY_M_S2 * radius_m * cos).sqrt();
-        Self { angle_rad: zero_of(|angle| cos - angle.cos(), 0.0, 1.5), time_s, speed_m_s }
+        Self { angle_rad: zero_of(|angle| cos - math::cos(angle), 0.0, 1.5), time_s, speed_m_s }
     }
 
     /// Centre (x, z; m) at `t` (s), in flight since the lift-off.
     pub(super) fn then(&self, radius_m: f64, t: f64) -> (f64, f64) {
-        let (sin, cos) = self.angle_rad.sin_cos();
+        let (sin, cos) = math::sin_cos(self.angle_rad);
         let (left, v) = (t - self.time_s, self.speed_m_s);
         let fall = 0.5 * GRAVITY_M_S2 * left * left;
         (radius_m * sin + v * cos * left, radius_m * cos - v * sin * left - fall)

@@ -3,21 +3,21 @@
 use super::meshes::angle;
 use super::pivot::{self, Lift};
 use super::{CASES, Case, Measure, STILL};
+use crate::math;
 use crate::rock::Vec3;
 use crate::study::bench::{SETUP, Setup};
-use nalgebra::Rotation3;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// At rest above the origin of [`plane`], pressed in as the weight presses it.
 pub(super) fn lying(degrees: f64, has_springs: bool) -> Setup {
     let pressed = if has_springs { SETUP.pressed_m(angle(degrees)) } else { 0.0 };
-    let (sin, cos) = angle(degrees).sin_cos();
+    let (sin, cos) = math::sin_cos(angle(degrees));
     let height = SETUP.rock.radius_m - pressed;
     Setup { centre_m: Vec3::new(0.0, height * sin, height * cos), ..SETUP }
 }
 
 pub(super) fn slippery(setup: Setup) -> Setup {
-    let ground = crate::ground::Ground { friction_angle_rad: 0.2f64.atan(), ..setup.ground };
+    let ground = crate::ground::Ground { friction_angle_rad: math::atan(0.2f64), ..setup.ground };
     Setup { ground, ..setup }
 }
 
@@ -29,7 +29,7 @@ pub(super) fn tipping(degrees: f64, has_springs: bool) -> Setup {
     let ground = crate::ground::Ground { friction_angle_rad: angle(degrees), ..SETUP.ground };
     let pressed = if has_springs { SETUP.pressed_m(TIPPED_RAD) } else { 0.0 };
     let lever = SETUP.rock.radius_m - pressed;
-    let centre_m = Vec3::new(lever * TIPPED_RAD.sin(), 0.3, lever * TIPPED_RAD.cos());
+    let centre_m = Vec3::new(lever * math::sin(TIPPED_RAD), 0.3, lever * math::cos(TIPPED_RAD));
     Setup { ground, centre_m, ..SETUP }
 }
 
@@ -60,7 +60,7 @@ pub(super) fn in_groove(has_springs: bool) -> Setup {
     // Each wall carries N = m g cos 20°/√2; the axis sinks by √2 times what that presses.
     let sinks = if has_springs { SETUP.pressed_m(angle(20.0)) } else { 0.0 };
     let height = SETUP.rock.radius_m / FRAC_1_SQRT_2 - sinks;
-    let down = Rotation3::from_axis_angle(&Vec3::x_axis(), -angle(20.0));
+    let down = crate::math::turn(&Vec3::x_axis(), -angle(20.0));
     Setup { ground, centre_m: down * Vec3::new(0.0, -3.0, height), ..SETUP }
 }
 
@@ -74,7 +74,7 @@ pub(super) fn rigid_bounce_m() -> f64 {
 
 /// The end of a way (m) down a plane that falls in +y.
 pub(super) fn along(setup: &Setup, angle_rad: f64, way_m: f64) -> Vec<Measure> {
-    let end = setup.centre_m + Vec3::new(0.0, angle_rad.cos(), -angle_rad.sin()) * way_m;
+    let end = setup.centre_m + Vec3::new(0.0, math::cos(angle_rad), -math::sin(angle_rad)) * way_m;
     place(end.x, end.y, end.z)
 }
 

@@ -3,6 +3,7 @@
 use super::impacts::{floor, rebound_m_s};
 use super::{Notes, RISE, Way};
 use crate::ground::{Ground, damping_ratio, normal_impact};
+use crate::math;
 use crate::rock::Vec3;
 use crate::step::Scheme;
 use crate::step::dda::own_restitution;
@@ -51,13 +52,13 @@ pub(super) fn steps(way: &Way, notes: &mut Notes) {
             Scheme::Reference => (
                 "rebound over speed is that of the closed form",
                 exact(),
-                4.0 * way.fineness.powf(0.75),
+                4.0 * math::pow(way.fineness, 0.75),
             ),
             // as the exact cases have it: second order under a third-order local error
             Scheme::Adaptive => (
                 "rebound over speed is that of the closed form",
                 exact(),
-                0.5 * way.fineness.powf(2.0 / 3.0),
+                0.5 * math::pow(way.fineness, 2.0 / 3.0),
             ),
         };
         notes.hold(way, &setting, law, (rebound - exact).abs(), bound);
@@ -74,16 +75,16 @@ pub(super) fn memory(way: &Way, notes: &mut Notes) {
     let slope = terrain(make::jittered_plane(8.0, 8, angle));
     let height = SETUP.rock.radius_m - SETUP.pressed_m(angle);
     let ground = Ground { restitution: None, ..GROUND };
-    let centre_m = Vec3::new(0.1, height * angle.sin(), height * angle.cos());
+    let centre_m = Vec3::new(0.1, height * math::sin(angle), height * math::cos(angle));
     let setup = Setup { ground, centre_m, longest_s: 0.5, ..SETUP };
-    let pull_n = 2.0 / 7.0 * SETUP.rock.mass_kg() * GRAVITY_M_S2 * angle.sin();
+    let pull_n = 2.0 / 7.0 * SETUP.rock.mass_kg() * GRAVITY_M_S2 * math::sin(angle);
     for step_s in [1e-3, 1e-4] {
         for shear_memory in [false, true] {
             let mut step = settings(way.scheme, step_s, None);
             step.shear_memory = shear_memory;
             let journey = setup.follow(&slope, &step, &mut Scratch::default());
             let end = journey.end;
-            let along = end.velocity_m_s.y.hypot(end.velocity_m_s.z);
+            let along = math::hypot(end.velocity_m_s.y, end.velocity_m_s.z);
             let slip = along - SETUP.rock.radius_m * end.spin_rad_s.x.abs();
             let creep =
                 if shear_memory { 0.0 } else { pull_n / (GROUND.shear_stiffness_n_m * step_s) };

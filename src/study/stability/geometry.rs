@@ -1,6 +1,7 @@
 //! Meshes that are awkward: edges, corners, walls, slivers, seams, far away.
 
 use super::{Notes, Way, sprung};
+use crate::math;
 use crate::rock::{Rock, Vec3};
 use crate::study::bench::{GRAVITY_M_S2, ROCK, SETUP, Setup, terrain};
 use crate::terrain::make;
@@ -31,8 +32,8 @@ pub(super) fn edge_and_corner(way: &Way, notes: &mut Notes) {
     let planes = [false, true].map(|has_corner| terrain(level(has_corner)));
     for (setting, plane) in ["seam of a plane", "corner in a plane"].into_iter().zip(&planes) {
         let end = notes.follow(way, setting, &above, plane).end;
-        let sideways =
-            end.position_m.x.hypot(end.position_m.y) + end.velocity_m_s.x.hypot(end.velocity_m_s.y);
+        let sideways = math::hypot(end.position_m.x, end.position_m.y)
+            + math::hypot(end.velocity_m_s.x, end.velocity_m_s.y);
         notes.hold(way, setting, "sideways (m, m/s)", sideways, 1e-12);
     }
     let tip = terrain(make::tetrahedron(6.0));
@@ -63,7 +64,7 @@ pub(super) fn parallel_walls(way: &Way, notes: &mut Notes) {
             notes.hold(way, setting, "thrown sideways (m)", end.position_m.x.abs(), 2.0 * s);
             continue;
         }
-        let mu = SETUP.ground.friction_angle_rad.tan();
+        let mu = math::tan(SETUP.ground.friction_angle_rad);
         let held = 2.0 * mu * SETUP.ground.normal_stiffness_n_m * s / SETUP.rock.mass_kg();
         let way_m = 0.5 * (GRAVITY_M_S2 - held).max(0.0) * setup.longest_s.powi(2);
         // friction takes up to a millisecond to build up: until then it falls freely
@@ -136,7 +137,7 @@ pub(super) fn conflicting_sheets(way: &Way, notes: &mut Notes) {
         ..SETUP
     };
     let end = notes.follow(way, "", &setup, &terrain(both)).end.position_m;
-    let over_tilted = end.z * tilt.cos() + end.y * tilt.sin();
+    let over_tilted = end.z * math::cos(tilt) + end.y * math::sin(tilt);
     notes.hold(way, "", "depth in one of the sheets (m)", 0.5 - end.z.min(over_tilted), 0.01);
 }
 
@@ -165,7 +166,7 @@ pub(super) fn small_triangles(way: &Way, notes: &mut Notes) {
         way,
         "",
         "sideways (m)",
-        end.position_m.x.hypot(end.position_m.y) - 0.1f64.hypot(0.2),
+        math::hypot(end.position_m.x, end.position_m.y) - math::hypot(0.1f64, 0.2),
         1e-9,
     );
 }

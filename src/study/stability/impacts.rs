@@ -2,6 +2,7 @@
 
 use super::{Notes, Way, sprung};
 use crate::ground::{Ground, damping_ratio, normal_impact};
+use crate::math;
 use crate::rock::{Rock, Vec3};
 use crate::step::Scheme;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, terrain};
@@ -133,7 +134,7 @@ pub(super) fn thin_sheet(way: &Way, notes: &mut Notes) {
             .fold(f64::INFINITY, f64::min);
         let depth = SETUP.rock.radius_m - (lowest + floor.origin_m.z);
         // it falls another 0.1 m first
-        let bound = v.z.hypot((0.2 * GRAVITY_M_S2).sqrt()) / 841.0 + 3e-5;
+        let bound = math::hypot(v.z, (0.2 * GRAVITY_M_S2).sqrt()) / 841.0 + 3e-5;
         notes.hold(way, setting, "depth (m) within v_n/ω + 2 m g/p_N", depth, bound);
     }
 }

@@ -3,6 +3,7 @@
 use super::{Notes, RISE, Way, sprung};
 use crate::chance::{Purpose, stream, unit};
 use crate::ground::Ground;
+use crate::math;
 use crate::rock::{Rock, Vec3};
 use crate::step::Scheme;
 use crate::study::bench::{GROUND, ROCK, SETUP, Setup, settings, terrain};
@@ -21,12 +22,12 @@ pub(super) fn rest(way: &Way, notes: &mut Notes) {
     let longest_s = if way.scheme == Scheme::Dda { 10.0 } else { 3600.0 };
     let setup = Setup {
         ground,
-        centre_m: Vec3::new(0.0, height * angle.sin(), height * angle.cos()),
+        centre_m: Vec3::new(0.0, height * math::sin(angle), height * math::cos(angle)),
         longest_s,
         ..SETUP
     };
     let end = notes.follow(way, "on a slope of 20°", &setup, &slope).end;
-    let along = SETUP.rock.mass_kg() * SETUP.gravity_m_s2 * angle.sin();
+    let along = SETUP.rock.mass_kg() * SETUP.gravity_m_s2 * math::sin(angle);
     // the shear spring and, by the lever R, the rolling spring 0.1 p_s R²
     let wound = 11.0 * along / GROUND.shear_stiffness_n_m;
     notes.hold(
@@ -57,7 +58,7 @@ pub(super) fn rest(way: &Way, notes: &mut Notes) {
         way,
         "spinning on the spot",
         "moved sideways (m)",
-        (end.position_m.x - 0.1).hypot(end.position_m.y - 0.2),
+        math::hypot(end.position_m.x - 0.1, end.position_m.y - 0.2),
         1e-9,
     );
 }

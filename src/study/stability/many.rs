@@ -2,6 +2,7 @@
 
 use super::{Notes, RISE, Way, is_finite, same_bits};
 use crate::contact::pair::Strength;
+use crate::math;
 use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
@@ -139,7 +140,8 @@ pub(super) fn coincident(way: &Way, notes: &mut Notes) {
     let spheres = [(2700.0, 0.0, 1.0), (2700.0, 0.0, -1.0)];
     let falls = follow((way, notes, ""), &space, &spheres, (0.0, 0.1));
     let [a, b] = &falls[..] else { return };
-    let sideways = |fall: &Trajectory| fall.end.velocity_m_s.x.hypot(fall.end.velocity_m_s.y);
+    let sideways =
+        |fall: &Trajectory| math::hypot(fall.end.velocity_m_s.x, fall.end.velocity_m_s.y);
     notes.hold(way, "", "sideways (m/s)", sideways(a).max(sideways(b)), 0.0);
     let (up, down) = (a.end.velocity_m_s.z, b.end.velocity_m_s.z);
     notes.hold(way, "", "momentum, over that of one", (up + down).abs(), 1e-12);

@@ -25,6 +25,7 @@ const GROUND: Ground = Ground {
     restitution: Some(0.5),
     rolling_friction: 0.0,
     roughness_rad: 0.0,
+    roughness_length_m: None,
 };
 const G: f64 = 9.8;
 
@@ -89,6 +90,7 @@ fn rocks(
         tolerance_m_s: 1e-4,
         step_s: f64::INFINITY,
         shear_memory: true,
+        plane_impacts: true,
         capture_speed_m_s: None,
     };
     let rest = RestRule { speed_m_s: 0.02, time_s: 1.0 };

@@ -3,6 +3,7 @@
 use super::draw::{Line, heights, outline, side, speeds};
 use super::{Row, Verification, timed};
 use crate::error::{Error, Result};
+use crate::math;
 use crate::plan::Plan;
 use crate::report::curves::Curves;
 use crate::scene::Scene;
@@ -305,8 +306,9 @@ fn settles_at_step(path: &[PathPoint]) -> f64 {
 /// Step at which the sphere, settled before, is off the apex by 1 % of its radius.
 fn leaves_at_step(path: &[PathPoint]) -> f64 {
     const OFF_M: f64 = 0.01 * 0.032;
-    let off =
-        |point: &&PathPoint| point.motion.position_m.x.hypot(point.motion.position_m.y) > OFF_M;
+    let off = |point: &&PathPoint| {
+        math::hypot(point.motion.position_m.x, point.motion.position_m.y) > OFF_M
+    };
     path.iter().find(off).map_or(f64::NAN, |point| point.motion.time_s / STEP_S)
 }
 

@@ -1,6 +1,7 @@
 //! Parts of a grid, and the same in coarser cells.
 
 use super::Grid;
+use crate::math;
 
 /// A box on the map (m): west, south, east, north.
 type BoxM = [f64; 4];
@@ -111,5 +112,5 @@ impl Grid {
 /// Distance from a point to a box, 0 inside (m).
 pub(in crate::terrain) fn distance([west, south, east, north]: BoxM, [x, y]: [f64; 2]) -> f64 {
     let beyond = |low: f64, at: f64, high: f64| (low - at).max(at - high).max(0.0);
-    beyond(west, x, east).hypot(beyond(south, y, north))
+    math::hypot(beyond(west, x, east), beyond(south, y, north))
 }

@@ -2,6 +2,7 @@
 
 use super::stems::{Stem, prism, ring};
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_TEXT};
 use crate::gis::{self, Shape};
 use crate::terrain::Terrain;
 use crate::terrain::stl::Facet;
@@ -61,7 +62,7 @@ pub fn read_list(path: &Path) -> Result<Vec<(u64, Stem)>> {
     if is_drawn(path) {
         return read_drawn(path);
     }
-    let file = std::fs::File::open(path).map_err(Error::file("read", path))?;
+    let file = file::open(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers().cloned().unwrap_or_default();
     let mut stems = Vec::new();

@@ -1,6 +1,7 @@
 //! Simple shapes on which the motion of a sphere is known.
 
 use super::noise::hash;
+use crate::math;
 use crate::rock::Vec3;
 use crate::terrain::grid::triangulate;
 use crate::terrain::stl::Facet;
@@ -10,7 +11,7 @@ use crate::terrain::stl::Facet;
 ///
 /// Flat to rounding, but no two triangles are alike: a sphere that feels the seams shows it.
 pub fn jittered_plane(half_m: f64, cells: usize, angle_rad: f64) -> Vec<Facet> {
-    let (sin, cos) = angle_rad.sin_cos();
+    let (sin, cos) = math::sin_cos(angle_rad);
     let cell_m = 2.0 * half_m / cells as f64;
     let place = |seed: u64, i: usize, j: usize, along: usize| {
         let inner = (1..cells).contains(&i) && (1..cells).contains(&j);
@@ -26,7 +27,7 @@ pub fn jittered_plane(half_m: f64, cells: usize, angle_rad: f64) -> Vec<Facet> {
 /// Two planes that meet in the line x = z = 0, `2 half_m` long in y: flanks rise outwards at `angle_rad` over a width of
 /// `half_m` each, seen in plan.
 pub fn v_groove(half_m: f64, angle_rad: f64) -> Vec<Facet> {
-    let rise = angle_rad.tan();
+    let rise = math::tan(angle_rad);
     triangulate(3, 2, |i, j| {
         let (x, y) = ((i as f64 - 1.0) * half_m, (2.0 * j as f64 - 1.0) * half_m);
         Some(Vec3::new(x, y, x.abs() * rise))

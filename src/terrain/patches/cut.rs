@@ -6,6 +6,7 @@
 use super::borders::{Borders, before};
 use super::triangulate::triangulate;
 use super::{Corner, SNAP_M, area_m2, side};
+use crate::math;
 use crate::rock::Vec3;
 use crate::terrain::stl::Facet;
 
@@ -100,7 +101,7 @@ impl Drawing {
         for k in 0..3 {
             let (a, b) = (self.corner(k), self.corner(k + 1));
             let (from_a, from_b) = (side(p, q, a), side(p, q, b));
-            let (from_p, from_q) = (self.from_edge(k, p), self.from_edge(k, q));
+            let (from_p, from_q) = (self.edge_side(k, p), self.edge_side(k, q));
             if opposite(from_a, from_b) && opposite(from_p, from_q) {
                 let node = self.crossing(k, [p, q]);
                 hits.push((from_p / (from_p - from_q), node));
@@ -139,7 +140,7 @@ impl Drawing {
         if let Some(corner) = (0..3).find(|&k| near(self.corner(k), at)) {
             return Some(corner);
         }
-        let from = [0, 1, 2].map(|k| self.from_edge(k, at));
+        let from = [0, 1, 2].map(|k| self.edge_side(k, at));
         if from.iter().any(|&area| area < 0.0) {
             return None;
         }
@@ -155,7 +156,7 @@ impl Drawing {
     }
 
     /// On which side of an edge a place lies, to the same bits for both of its triangles: positive inside.
-    fn from_edge(&self, k: usize, at: Corner) -> f64 {
+    fn edge_side(&self, k: usize, at: Corner) -> f64 {
         let (a, b) = (self.corner(k), self.corner(k + 1));
         if before(a, b) { side(a, b, at) } else { -side(b, a, at) }
     }
@@ -239,7 +240,7 @@ impl Drawing {
 
 /// Whether two places are one.
 fn near([ax, ay]: Corner, [bx, by]: Corner) -> bool {
-    (ax - bx).hypot(ay - by) <= SNAP_M
+    math::hypot(ax - bx, ay - by) <= SNAP_M
 }
 
 /// The place at a share of the way (–).

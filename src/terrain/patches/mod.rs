@@ -12,6 +12,7 @@ mod tests;
 
 use super::stl::{Facet, Soup};
 use crate::error::{Error, Result};
+use crate::math;
 use crate::rock::Vec3;
 use borders::Borders;
 use cut::cut;
@@ -168,7 +169,7 @@ const SNAP_M: f64 = 1e-7;
 /// [`SNAP_M`] of it. Twice the area of the triangle (m²).
 fn side(a: Corner, b: Corner, p: Corner) -> f64 {
     let area = exact_side(a, b, p);
-    if area.abs() <= SNAP_M * (b[0] - a[0]).hypot(b[1] - a[1]) { 0.0 } else { area }
+    if area.abs() <= SNAP_M * math::hypot(b[0] - a[0], b[1] - a[1]) { 0.0 } else { area }
 }
 
 /// The same without a margin.

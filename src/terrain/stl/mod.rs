@@ -14,6 +14,7 @@ pub use binary::{binary_bytes, write_binary};
 pub use spacing::Spacing;
 
 use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_MESH};
 use crate::rock::Vec3;
 use std::path::Path;
 
@@ -115,8 +116,7 @@ impl Soup {
 /// # Errors
 /// A file that cannot be read, or [`parse`]'s.
 pub fn read(path: &Path) -> Result<Soup> {
-    let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
-    parse(bytes, path)
+    parse(file::read(path, LONGEST_MESH)?, path)
 }
 
 /// Reads the bytes of an STL file; `file` is for messages.
@@ -142,7 +142,12 @@ pub fn parse(bytes: Vec<u8>, file: &Path) -> Result<Soup> {
 }
 
 /// How other files begin that end up under the name of an STL file, and what to do about them.
-const OTHER_KINDS: [(&[u8], &str, &str); 12] = [
+const OTHER_KINDS: [(&[u8], &str, &str); 13] = [
+    (
+        b"version https://git-lfs",
+        "a pointer of Git LFS",
+        "fetch the file itself with `git lfs pull`",
+    ),
     (b"\xff\xfe", "text in UTF-16", "save it as UTF-8 or ASCII"),
     (b"\xfe\xff", "text in UTF-16", "save it as UTF-8 or ASCII"),
     (b"PK\x03\x04", "a ZIP archive", "unpack it and write the STL file in it"),

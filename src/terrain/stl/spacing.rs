@@ -65,6 +65,9 @@ impl Spacing {
 
 impl fmt::Display for Spacing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.largest_coordinate > f64::from(f32::MAX) {
+            return write!(f, "the largest, {:.3e}, is no 32-bit number", self.largest_coordinate);
+        }
         write!(
             f,
             "32-bit numbers are {:.2e} apart at the largest coordinate {:.1}, {:.2} % of the median edge {:.3}",

@@ -1,7 +1,7 @@
 //! All rocks of a world, and the windows of time they go through.
 
 use super::job::Job;
-use super::split::{Meetings, Place, is_busy, meetings_of_islands, place_of};
+use super::split::{Meetings, Place, is_busy, meetings_in_passing, meetings_of_islands, place_of};
 use super::wide::Wide;
 use super::{Answer, Census, Rover, State, TOUCHING, capture, law_between};
 use crate::contact::pair::Tie;
@@ -13,7 +13,6 @@ use crate::step::Scheme;
 use crate::trajectory::Trajectory;
 use crate::trajectory::fall::Course;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Way of the fastest rock in one window, relative to its radius (–): the islands stay small.
@@ -27,6 +26,8 @@ const SHORTEST_S: f64 = 1e-5;
 const RETURNS: usize = 16;
 /// Windows after which a new moment is kept to go back to.
 const WINDOWS: usize = 64;
+/// The same in the rigid limit, where a window is dear and a moment cheap beside it.
+const WINDOWS_RIGID: usize = 8;
 
 /// All rocks of a world.
 pub(super) struct Crowd<'a> {
@@ -34,8 +35,10 @@ pub(super) struct Crowd<'a> {
     answer: (Ground, Damping),
     capture: Capture,
     pub(super) rovers: Vec<Option<Box<Rover<'a>>>>,
-    /// Contacts and bonds, by the numbers of the rocks.
-    pub(super) ties: BTreeMap<(u32, u32), Tie>,
+    /// Contacts and bonds, in the order of the numbers of their rocks.
+    pub(super) ties: Vec<Tie>,
+    /// Who was near whom when that was asked last.
+    wide: Wide,
     pub(super) now_s: f64,
     pub(super) census: Census,
 }
@@ -51,7 +54,8 @@ impl<'a> Crowd<'a> {
             answer: (answer.ground, Damping::of(answer.ground.restitution)),
             capture: capture(course),
             rovers,
-            ties: BTreeMap::new(),
+            ties: Vec::new(),
+            wide: Wide::default(),
             now_s: 0.0,
             census: Census::default(),
         }
@@ -72,13 +76,15 @@ impl<'a> Crowd<'a> {
     }
 
     pub(super) fn tie(&mut self, tie: Tie) {
-        self.ties.insert((tie.a, tie.b), tie);
+        let place = self.ties.partition_point(|known| (known.a, known.b) < (tie.a, tie.b));
+        self.ties.insert(place, tie);
     }
 
-    /// A bonded rock does not fly.
+    /// A bonded rock does not fly: its contacts begin with the world.
     pub(super) fn hold(&mut self, k: u32) {
-        if let Some(rover) = &mut self.rovers[k as usize] {
-            rover.member.flying = false;
+        let course = self.course;
+        if let Some(rover) = self.rovers[k as usize].as_mut().filter(|rover| rover.member.flying) {
+            rover.land(course);
         }
     }
 
@@ -117,7 +123,7 @@ impl<'a> Crowd<'a> {
     /// Goes through the next windows, up to one in which a rock may have met one that it was not compared with; whether
     /// there was such a one, `None` if `stop` was raised.
     fn windows(&mut self, stop: &AtomicBool, see: &mut impl FnMut(f64, &Census)) -> Option<bool> {
-        for _ in 0..WINDOWS {
+        for _ in 0..if self.is_rigid() { WINDOWS_RIGID } else { WINDOWS } {
             if !self.is_under_way() {
                 break;
             }
@@ -146,7 +152,9 @@ impl<'a> Crowd<'a> {
         let dt = end_s - self.now_s;
         let place = |&k: &u32| place_of(self.rover(k), self.course, (self.now_s, dt));
         let places: Vec<Place> = present.iter().map(place).collect();
-        let mut meetings = self.meetings(&present, &places, dt);
+        let mut wide = std::mem::take(&mut self.wide);
+        let mut meetings = self.meetings(&mut wide, &present, &places, dt);
+        self.wide = wide;
         let jobs = self.jobs(&present, &mut meetings, end_s);
         let done: Vec<Job> = jobs
             .into_par_iter()
@@ -156,11 +164,14 @@ impl<'a> Crowd<'a> {
             })
             .collect();
         let mut missed = false;
+        // what was not lent stays
+        self.ties.retain(|tie| tie.a != tie.b);
         for job in done {
             missed |= job.missed;
             self.census.add(&job.census);
             self.take_back(job);
         }
+        self.ties.sort_unstable_by_key(|tie| (tie.a, tie.b));
         self.now_s = end_s;
         self.census.windows += 1;
         let after = |k: usize| {
@@ -198,10 +209,14 @@ impl<'a> Crowd<'a> {
     }
 
     /// Who may meet whom; numbers are places in `present`.
-    fn meetings(&self, present: &[u32], places: &[Place], dt: f64) -> Meetings {
+    fn meetings(&self, wide: &mut Wide, present: &[u32], places: &[Place], dt: f64) -> Meetings {
         let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
-        let held: Vec<(u32, u32)> = self.ties.keys().map(|&(a, b)| (at(a), at(b))).collect();
-        let mut wide = Wide::default();
+        let held: Vec<(u32, u32)> = self.ties.iter().map(|tie| (at(tie.a), at(tie.b))).collect();
+        if self.is_rigid() {
+            return meetings_in_passing(places, dt, &held, |reaches| {
+                wide.overlapping(places, reaches)
+            });
+        }
         meetings_of_islands(places, dt, |reaches| {
             let mut pairs = wide.overlapping(places, reaches);
             if !held.is_empty() {
@@ -224,14 +239,28 @@ impl<'a> Crowd<'a> {
             }
         }
         let mut ties: Vec<Vec<Tie>> = lists.iter().map(|_| Vec::new()).collect();
+        let mut known = 0;
         for &(a, b) in &meetings.pairs {
             let (number, place) = part[a as usize];
-            if number != usize::MAX {
-                let [one, two] = [a, b].map(|k| present[k as usize]);
-                let known = self.ties.remove(&(one, two));
-                let tie = known.unwrap_or_else(|| Tie::new(one, two, self.law(one, two)));
-                ties[number].push(Tie { a: place, b: part[b as usize].1, ..tie });
+            if number == usize::MAX {
+                continue;
             }
+            let [one, two] = [a, b].map(|k| present[k as usize]);
+            let before = |tie: &Tie| (tie.a, tie.b) < (one, two);
+            while self.ties.get(known).is_some_and(before) {
+                known += 1;
+            }
+            let lent = self.ties.get_mut(known).filter(|tie| (tie.a, tie.b) == (one, two));
+            let tie = if let Some(tie) = lent {
+                // the place of a tie that is lent: both ends one rock
+                let stays = Tie { b: tie.a, ..*tie };
+                std::mem::replace(tie, stays)
+            } else {
+                Tie::new(one, two, self.law(one, two))
+            };
+            // the ends of a lent tie keep the order of the list
+            known += usize::from(self.ties.get(known).is_some_and(|tie| tie.a == tie.b));
+            ties[number].push(Tie { a: place, b: part[b as usize].1, ..tie });
         }
         let mut jobs = Vec::with_capacity(lists.len());
         for (list, ties) in lists.into_iter().zip(ties) {
@@ -248,7 +277,7 @@ impl<'a> Crowd<'a> {
             let (a, b) = (ids[tie.a as usize], ids[tie.b as usize]);
             let gone = |k: u32| matches!(rovers[k as usize].state, State::Gone(_));
             if !gone(tie.a) && !gone(tie.b) {
-                self.ties.insert((a, b), Tie { a, b, ..tie });
+                self.ties.push(Tie { a, b, ..tie });
             }
         }
         for (&k, rover) in ids.iter().zip(rovers) {

@@ -5,7 +5,7 @@ mod rigid;
 use super::{Census, Rover, State};
 use crate::contact::pair::{Tie, meeting_s};
 use crate::coupled::islands::Islands;
-use crate::coupled::{Cluster, Done};
+use crate::coupled::{Cluster, Done, Given};
 use crate::step::Scheme;
 use crate::step::adaptive::{Control, ONSET, Stuck};
 use crate::step::grip::Loss;
@@ -23,7 +23,7 @@ const SOON_S: f64 = 1e-12;
 type Rovers<'a> = Vec<Box<Rover<'a>>>;
 
 /// How a rock notes a step with its losses (J), what it gave to others (J), and whether it slides.
-type Going<'a> = fn(&mut Rover<'a>, &Course, f64, (Loss, f64), bool);
+type Going<'a> = fn(&mut Rover<'a>, &Course, f64, (Loss, Given), bool);
 
 /// One island and its window.
 pub(super) struct Job<'a> {
@@ -160,6 +160,8 @@ impl<'a> Job<'a> {
         let control = Control {
             tableau: if self.course.step.scheme == Scheme::Reference { &ESDIRK4 } else { &TR_BDF2 },
             tolerance: self.course.step.tolerance_m_s,
+            impact: f64::INFINITY,
+            plane_impacts: false,
         };
         let now_s = self.now_s;
         self.rovers.iter_mut().for_each(|rover| rover.fly_to(self.course, now_s));
@@ -259,7 +261,7 @@ impl<'a> Job<'a> {
             effort.rejected += done.rejected;
             effort.sweeps += sweeps + jumps;
             effort.unsettled += u64::from(done.unsettled);
-            let given = (done.losses[k], done.given_j[k]);
+            let given = (done.losses[k], done.given[k]);
             go(rover, self.course, self.now_s, given, slides[k]);
             std::mem::swap(&mut rover.member, &mut cluster.members[k]);
         }
@@ -279,10 +281,9 @@ impl<'a> Job<'a> {
             islands.join(tie.a, tie.b);
         }
         for list in islands.lists() {
-            let rest = self.course.rest;
             let quiet = |k: &u32| {
                 let rover = &self.rovers[*k as usize];
-                rover.state == State::Moving && !rover.member.flying && rover.quiet_s >= rest.time_s
+                rover.state == State::Moving && !rover.member.flying && rover.calm.rests()
             };
             if list.iter().all(quiet) {
                 for k in list {

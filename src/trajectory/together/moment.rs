@@ -5,13 +5,13 @@ use super::crowd::Crowd;
 use super::{Rover, State, Stop};
 use crate::contact::pair::Tie;
 use crate::coupled::Memory;
+use crate::trajectory::calm::Calm;
 use crate::trajectory::journey::Mark;
-use std::collections::BTreeMap;
 
 /// All that later windows depend on.
 pub(super) struct Moment {
     rovers: Vec<Option<Kept>>,
-    ties: BTreeMap<(u32, u32), Tie>,
+    ties: Vec<Tie>,
     now_s: f64,
 }
 
@@ -21,7 +21,7 @@ pub(super) struct Kept {
     mark: Mark,
     state: State,
     lands: Option<(f64, Option<Stop>)>,
-    quiet_s: f64,
+    calm: Calm,
     h: f64,
     pressed_m_s: f64,
     began_j: (f64, f64),
@@ -34,7 +34,7 @@ impl Rover<'_> {
             mark: self.journey.mark(),
             state: self.state.clone(),
             lands: self.lands.clone(),
-            quiet_s: self.quiet_s,
+            calm: self.calm,
             h: self.h,
             pressed_m_s: self.pressed_m_s,
             began_j: self.began_j,
@@ -46,7 +46,7 @@ impl Rover<'_> {
         self.journey.go_back(&kept.mark);
         self.state.clone_from(&kept.state);
         self.lands.clone_from(&kept.lands);
-        (self.quiet_s, self.h, self.began_j) = (kept.quiet_s, kept.h, kept.began_j);
+        (self.calm, self.h, self.began_j) = (kept.calm, kept.h, kept.began_j);
         self.pressed_m_s = kept.pressed_m_s;
     }
 
@@ -75,7 +75,7 @@ impl Crowd<'_> {
                 rover.go_back(kept);
             }
         }
-        self.ties = moment.ties.clone();
+        self.ties.clone_from(&moment.ties);
         self.now_s = moment.now_s;
     }
 }

@@ -1,13 +1,14 @@
 //! One rock of a world: flying, touching, resting, and what is noted down of it.
 
 use super::{Rover, State};
-use crate::coupled::{Hit, Member};
+use crate::coupled::{Given, Hit, Member};
 use crate::flight::{Landing, Parabola, leap};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::step::Scheme;
 use crate::step::adaptive::ONSET;
 use crate::step::grip::{Loss, World};
+use crate::trajectory::calm::Calm;
 use crate::trajectory::fall::{Course, IMPACT_TIMES};
 use crate::trajectory::{PathState, Stop, Trajectory};
 use std::f64::consts::PI;
@@ -99,11 +100,16 @@ impl Rover<'_> {
         if self.member.flying {
             self.member.flying = false;
             self.lands = None;
-            self.quiet_s = 0.0;
+            self.calm = Calm::from(self.journey.now.position_m);
             self.member.grip.holds.clear();
             self.member.grip.stored = 0.0;
-            self.began_j = (self.total_j(course), self.journey.ledger.others_j);
+            self.began_j = (self.total_j(course), self.given_j());
         }
+    }
+
+    /// What others and the contacts with them have had so far (J).
+    fn given_j(&self) -> f64 {
+        self.journey.ledger.others_j + self.journey.ledger.passed_on_j
     }
 
     /// Touches the mesh.
@@ -113,6 +119,12 @@ impl Rover<'_> {
         let Member { grip, body, laws, .. } = &mut *self.member;
         let world = World { terrain: course.terrain, body: *body, laws };
         grip.begin(&world, c, v, w);
+        // A rock that is pressed in from the start has the energy of its springs, too.
+        if course.step.scheme != Scheme::Rigid {
+            let held = grip.stored_j(&world);
+            self.journey.pay(&held, 1.0);
+            self.began_j.0 += held.sum();
+        }
         let omega =
             grip.holds.iter().map(|hold| world.law(hold.triangle).omega).fold(0.0, f64::max);
         if omega > 0.0 {
@@ -134,7 +146,7 @@ impl Rover<'_> {
         &mut self,
         course: &Course,
         time_s: f64,
-        (loss, given_j): (Loss, f64),
+        (loss, given): (Loss, Given),
         slides: bool,
     ) {
         if matches!(self.state, State::Gone(_)) {
@@ -144,12 +156,12 @@ impl Rover<'_> {
         let was_flying = self.lands.is_some();
         self.announce(course);
         // A rock may be hit and let go within one step: then it flies another way.
-        let is_untouched = given_j == 0.0 && loss == Loss::default();
+        let is_untouched = given == Given::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
             self.journey.step_as(to, PathState::Flight);
             return;
         }
-        self.touch(course, to, (loss, given_j), (slides, was_flying));
+        self.touch(course, to, (loss, given), (slides, was_flying));
         if self.member.flying {
             self.look_ahead(course);
         }
@@ -160,7 +172,7 @@ impl Rover<'_> {
         &mut self,
         course: &Course,
         time_s: f64,
-        given: (Loss, f64),
+        given: (Loss, Given),
         slides: bool,
     ) {
         if matches!(self.state, State::Gone(_)) {
@@ -198,7 +210,7 @@ impl Rover<'_> {
         &mut self,
         course: &Course,
         to: Motion,
-        (loss, given_j): (Loss, f64),
+        (loss, given): (Loss, Given),
         (slides, was_flying): (bool, bool),
     ) {
         let before_j = self.total_j(course);
@@ -206,26 +218,26 @@ impl Rover<'_> {
         let slides = slides || self.member.grip.holds.iter().any(|hold| hold.slides);
         self.journey.step(to, slides);
         self.journey.pay(&loss, 1.0);
-        self.journey.ledger.others_j += given_j;
-        let change = self.total_j(course) - before_j + loss.sum() + given_j;
+        self.journey.ledger.others_j += given.lost;
+        self.journey.ledger.passed_on_j += given.passed_on;
+        let change = self.total_j(course) - before_j + loss.sum() + given.sum();
         self.journey.ledger.remainder_j -= change;
         self.journey.end_impact_in_time();
         if was_flying {
             self.lands = None;
-            self.quiet_s = 0.0;
-            self.began_j = (before_j, self.journey.ledger.others_j - given_j);
+            self.calm = Calm::from(self.journey.now.position_m);
+            self.began_j = (before_j, self.given_j() - given.sum());
         }
         if self.member.flying {
             self.end_episode(course);
         }
-        let slow = to.velocity_m_s.norm().max(to.spin_rad_s.norm() * self.member.body.radius);
-        self.quiet_s = if slow < course.rest.speed_m_s { self.quiet_s + dt } else { 0.0 };
+        self.calm.note(dt, &to, self.member.body.radius, &course.rest);
     }
 
     /// Largest rise of energy over the contact episode that ends now.
     pub(super) fn end_episode(&mut self, course: &Course) {
         self.journey.end_impact();
-        let given_j = self.journey.ledger.others_j - self.began_j.1;
+        let given_j = self.given_j() - self.began_j.1;
         let Member { grip, body, laws, .. } = &mut *self.member;
         let world = World { terrain: course.terrain, body: *body, laws };
         // The rigid limit has no springs, whatever the depth that rounding leaves.

@@ -13,6 +13,9 @@ const PASSES: usize = 3;
 /// Times that a hit is handed on within a short window.
 const HANDED_ON: usize = 1;
 
+/// … and within one that is long beside a contact.
+const LONG_HANDED_ON: usize = 4;
+
 /// A rock at a window's start.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
@@ -175,6 +178,36 @@ pub(super) fn meetings_of_islands(
     Meetings { pairs, islands, allowed }
 }
 
+/// Pairs that may touch and the islands they form where rocks pass each other: only what changes the velocity of one
+/// relative to the other brings them together, and a hit is handed on to the next few. `held` are pairs that touch or are
+/// bonded, in ascending order; `near` as for [`meetings_of_islands`].
+pub(super) fn meetings_in_passing(
+    places: &[Place],
+    dt: f64,
+    held: &[(u32, u32)],
+    near: impl FnOnce(&[f64]) -> Vec<(u32, u32)>,
+) -> Meetings {
+    let fastest = places.iter().map(Place::speed).fold(0.0, f64::max);
+    let reach = |place: &Place| {
+        let thrown = place.loose.max(place.foreseen).max(fastest);
+        place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + thrown) * dt
+    };
+    let mut pairs = near(&places.iter().map(reach).collect::<Vec<_>>());
+    if !held.is_empty() {
+        pairs.extend(held);
+        pairs.sort_unstable();
+        pairs.dedup();
+    }
+    let mut touching = held.iter().peekable();
+    let gap = |pair: &(u32, u32)| {
+        let touch = touching.next_if(|held| *held == pair).is_some();
+        let [a, b] = [pair.0, pair.1].map(|k| &places[k as usize]);
+        if touch { f64::NEG_INFINITY } else { nearest_gap(a, b, dt) }
+    };
+    let gaps: Vec<f64> = pairs.iter().map(gap).collect();
+    meetings_by_gaps(places, dt, (&pairs, &gaps), (LONG_HANDED_ON, 1.0))
+}
+
 fn joined(pairs: &[(u32, u32)], count: usize) -> Islands {
     let mut islands = Islands::alone(count);
     for &(a, b) in pairs {
@@ -212,15 +245,26 @@ fn meetings_of_neighbours(ties: &[Tie], places: &[Place], dt: f64) -> Meetings {
             }
         })
         .collect();
+    let pairs: Vec<(u32, u32)> = ties.iter().map(|tie| (tie.a, tie.b)).collect();
+    meetings_by_gaps(places, dt, (&pairs, &gaps), (HANDED_ON, LATE))
+}
+
+/// The same, given the nearest that each pair comes to each other on straight ways (m).
+fn meetings_by_gaps(
+    places: &[Place],
+    dt: f64,
+    (pairs, gaps): (&[(u32, u32)], &[f64]),
+    (handed_on, late): (usize, f64),
+) -> Meetings {
     let mut allowed: Vec<f64> =
         places.iter().map(|place| place.loose.max(place.foreseen)).collect();
     let meet = |allowed: &[f64]| -> Vec<(u32, u32)> {
-        let meets = |(tie, gap): &(&Tie, &f64)| {
-            **gap <= (allowed[tie.a as usize] + allowed[tie.b as usize]) * dt
+        let meets = |((a, b), gap): &(&(u32, u32), &f64)| {
+            **gap <= (allowed[*a as usize] + allowed[*b as usize]) * dt
         };
-        ties.iter().zip(&gaps).filter(meets).map(|(tie, _)| (tie.a, tie.b)).collect()
+        pairs.iter().zip(gaps).filter(meets).map(|(pair, _)| *pair).collect()
     };
-    for _ in 0..HANDED_ON {
+    for _ in 0..handed_on {
         let before = allowed.clone();
         for (a, b) in meet(&before) {
             for (k, other) in [(a as usize, b as usize), (b as usize, a as usize)] {
@@ -228,7 +272,7 @@ fn meetings_of_neighbours(ties: &[Tie], places: &[Place], dt: f64) -> Meetings {
                 // an elastic hit: twice the velocity of the common centre of mass
                 let share = 2.0 * its.mass / (own.mass + its.mass);
                 let closing = (own.velocity - its.velocity).norm() + before[other];
-                allowed[k] = allowed[k].max(own.loose + LATE * share * closing);
+                allowed[k] = allowed[k].max(own.loose + late * share * closing);
             }
         }
     }

@@ -1,0 +1,54 @@
+//! The fitted scene, written out.
+
+use super::{Calibration, put_all};
+use crate::chance::Distribution;
+use crate::error::{Error, Result};
+use crate::scene::{GroundTable, Scene, VaryKey, VaryTable, rewritten};
+
+/// The text of a scene with the fitted values of all ends in the place of its own, and with the paths of its files in
+/// full, so that it may stand anywhere.
+///
+/// # Errors
+/// A scene file that has changed meanwhile.
+pub fn fitted_scene(scene: &Scene, vary: &[VaryTable], found: &Calibration) -> Result<String> {
+    let values = found.whole.as_ref().map_or(&found.first.values, |whole| &whole.values);
+    let mut fitted = scene.clone();
+    put_all(&mut fitted, vary, values)?;
+    let mut changes = Vec::new();
+    for vary in vary {
+        let key = match vary.key {
+            VaryKey::RollingFrictionSpread => VaryKey::RollingFriction.name(),
+            key => key.name(),
+        };
+        let written = fitted.grounds.get(&vary.ground).and_then(|ground| value_of(ground, key));
+        let Some(value) = written else {
+            let why = format!("[grounds.{}] {key}: the fit gives it no value", vary.ground);
+            return Err(Error::Request(why));
+        };
+        changes.push((vary.ground.clone(), key, value));
+    }
+    changes.sort();
+    changes.dedup();
+    rewritten(&scene.file, &changes)
+}
+
+/// A value of a ground as a scene writes it.
+fn value_of(ground: &GroundTable, key: &str) -> Option<String> {
+    let value = match key {
+        "friction_angle_deg" => Some(&ground.friction_angle_deg),
+        "restitution" => ground.restitution.as_ref(),
+        "rolling_friction" => ground.rolling_friction.as_ref(),
+        _ => ground.roughness_deg.as_ref(),
+    };
+    value.map(written)
+}
+
+/// A number, or the triangle that a spread makes of it.
+fn written(value: &Distribution) -> String {
+    let short = |number: f64| format!("{:?}", (number * 1e6).round() / 1e6);
+    let (low, high) = value.support();
+    match value.as_fixed() {
+        Some(number) => short(number),
+        None => format!("{{ triangular = [{0}, {0}, {1}] }}", short(low), short(high)),
+    }
+}

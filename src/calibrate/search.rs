@@ -1,0 +1,288 @@
+//! The search: grids that narrow round the best values, even points where there are many values.
+
+use super::{Ends, Trial, put_all};
+use crate::ensemble::Ensemble;
+use crate::error::{Error, Result};
+use crate::hazard::{Agreement, Row, Way};
+use crate::plan::Plan;
+use crate::scene::{Scene, VaryTable};
+use crate::terrain::Terrain;
+use crate::trajectory::{Scratch, fall};
+
+/// Values tried of each quantity in the first grid, and in each refinement: of one or two quantities, and of three.
+const GRID: [[usize; 3]; 2] = [[6, 5, 5], [5, 4, 4]];
+/// Most quantities that a grid can be afforded for.
+const MOST_IN_A_GRID: usize = 3;
+/// Of more quantities: even points in each stage, and the share of the range that they lie in.
+const POINTS: [(usize, f64); 3] = [(200, 1.0), (80, 0.35), (80, 0.12)];
+/// Bases of the even points (Halton's sequence).
+const BASES: [usize; 6] = [2, 3, 5, 7, 11, 13];
+
+/// Trials of one search for so many values.
+pub(super) fn trials(values: usize) -> usize {
+    if values > MOST_IN_A_GRID {
+        return POINTS.iter().map(|(points, _)| points).sum();
+    }
+    GRID[usize::from(values > 2)].iter().map(|steps| steps.pow(values as u32)).sum()
+}
+
+/// Computed ways with their release numbers.
+pub(super) type Computed = Vec<(usize, Way)>;
+
+/// One scene and what was measured on it.
+pub(super) struct Site {
+    scene: Scene,
+    pub(super) measured: Vec<Way>,
+    /// The block that each measured end belongs to; empty if the file does not tell.
+    pub(super) blocks: Vec<String>,
+    terrain: Option<Terrain>,
+    /// Places of release, taken in turn: as many as measured ends, each end has its own.
+    places: usize,
+}
+
+/// The search over one set of ends after the other.
+pub(super) struct Search<'a> {
+    pub(super) sites: Vec<Site>,
+    pub(super) vary: &'a [VaryTable],
+    ensemble: &'a Ensemble,
+    /// Ends of the values tried so far, site by site: all searches begin with the same points.
+    pub(super) known: Vec<(Vec<f64>, Vec<Computed>)>,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        scenes: &[Scene],
+        vary: &'a [VaryTable],
+        ensemble: &'a Ensemble,
+        releases: usize,
+    ) -> Result<Self> {
+        let sites = scenes.iter().map(|scene| Site::of(scene, releases));
+        Ok(Self { sites: sites.collect::<Result<_>>()?, vary, ensemble, known: Vec::new() })
+    }
+
+    /// The values that bring the computed runouts nearest the measured ones.
+    pub(super) fn best(
+        &mut self,
+        ends: Ends,
+        tried: &mut dyn FnMut(Ends, &Trial),
+    ) -> Result<(Trial, usize)> {
+        let mut ranges: Vec<[f64; 2]> = self.vary.iter().map(|vary| [vary.from, vary.to]).collect();
+        let in_grid = ranges.len() <= MOST_IN_A_GRID;
+        let mut best: Option<Trial> = None;
+        let mut count = 0;
+        for stage in 0..3 {
+            let steps = GRID[usize::from(ranges.len() > 2)][stage];
+            let points =
+                if in_grid { grid(&ranges, steps) } else { even(&ranges, POINTS[stage].0) };
+            for values in points {
+                let trial = self.trial(&values, ends)?;
+                tried(ends, &trial);
+                count += 1;
+                if best.as_ref().is_none_or(|best| is_nearer(&trial.fitted, &best.fitted)) {
+                    best = Some(trial);
+                }
+            }
+            if let (Some(best), true) = (&best, stage < 2) {
+                ranges = if in_grid {
+                    nearer(&ranges, &best.values, steps, self.vary)
+                } else {
+                    around(&best.values, POINTS[stage + 1].1, self.vary)
+                };
+            }
+        }
+        best.map(|best| (best, count)).ok_or_else(|| self.nothing())
+    }
+
+    fn nothing(&self) -> Error {
+        let remedy = "release rocks that do not fail";
+        Error::input(&self.sites[0].scene.file, "[calibrate]", "found no computed end", remedy)
+    }
+
+    /// Compares all releases with these values with the measured ends.
+    pub(super) fn trial(&mut self, values: &[f64], ends: Ends) -> Result<Trial> {
+        let place = self.place(values)?;
+        let computed = &self.known[place].1;
+        let compare = |of: Ends| {
+            let sites = self.sites.iter().zip(computed);
+            let each = sites.map(|(site, computed)| site.compare(computed, of));
+            Agreement::joined(&each.collect::<Option<Vec<_>>>()?)
+        };
+        let apart = if let Ends::Half(half) = ends { Ends::Half(1 - half) } else { Ends::All };
+        let found = |of: Ends| compare(of).ok_or_else(|| self.nothing());
+        Ok(Trial {
+            values: values.to_vec(),
+            fitted: found(ends)?,
+            kept_apart: found(apart)?,
+            all: found(Ends::All)?,
+        })
+    }
+
+    /// Where the ends computed with these values stand; they are computed if they are not known.
+    pub(super) fn place(&mut self, values: &[f64]) -> Result<usize> {
+        if let Some(place) = self.known.iter().position(|(known, _)| known == values) {
+            return Ok(place);
+        }
+        let mut all = Vec::new();
+        for site in &mut self.sites {
+            put_all(&mut site.scene, self.vary, values)?;
+            all.push(site.compute(self.ensemble)?);
+        }
+        self.known.push((values.to_vec(), all));
+        Ok(self.known.len() - 1)
+    }
+}
+
+impl Site {
+    pub(super) fn title(&self) -> String {
+        self.scene.title.clone()
+    }
+
+    fn of(scene: &Scene, releases: usize) -> Result<Self> {
+        let deposits = scene.calibrate.as_ref().map(|table| table.deposits.as_path());
+        let (measured, blocks) = match deposits {
+            Some(deposits) => (Way::read(deposits)?, Way::read_blocks(deposits)?),
+            None => (Vec::new(), Vec::new()),
+        };
+        let (terrain, _) = scene.read_terrain()?;
+        let asked = &scene.release;
+        let places = asked.points_m.as_ref().map_or(asked.blocks.len(), Vec::len);
+        let mut scene = bare(scene, releases);
+        if places == measured.len() {
+            // every measured rock as often as any other
+            scene.release.count = releases.next_multiple_of(places);
+        }
+        Ok(Self { scene, measured, blocks, terrain: Some(terrain), places })
+    }
+
+    /// Computes all releases.
+    fn compute(&mut self, ensemble: &Ensemble) -> Result<Computed> {
+        let terrain = match self.terrain.take() {
+            Some(terrain) => terrain,
+            None => self.scene.read_terrain()?.0,
+        };
+        let plan = Plan::compile(&self.scene, terrain)?;
+        let origin_m = plan.terrain.origin_m;
+        let mut computed = Computed::new();
+        let one = |index: usize, scratch: &mut Scratch| fall(&plan, index, None, scratch);
+        for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {
+            let way = |fall| Way::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
+            computed.extend(falls?.iter().filter_map(way));
+        }
+        self.terrain = Some(plan.terrain);
+        Ok(computed)
+    }
+
+    /// Compares some of the ends. Where every measured rock has its release point, a half is computed from its own.
+    fn compare(&self, computed: &Computed, of: Ends) -> Option<Agreement> {
+        let rows = self.measured.len();
+        let wanted = |row: usize| match of {
+            Ends::Half(half) => row % 2 == half,
+            Ends::All => true,
+        };
+        let measured: Vec<Way> =
+            (0..rows).filter(|row| wanted(*row)).map(|row| self.measured[row]).collect();
+        let computed: Vec<Way> = computed
+            .iter()
+            .filter(|(index, _)| self.places != rows || wanted(index % rows))
+            .map(|(_, way)| *way)
+            .collect();
+        Agreement::of(&measured, &computed)
+    }
+}
+
+/// The scene without anything that a trial has no use for.
+fn bare(scene: &Scene, releases: usize) -> Scene {
+    let mut bare = scene.clone();
+    bare.release.count = releases;
+    (bare.record.paths, bare.record.impacts) = (Some(0), Some(false));
+    (bare.lines, bare.barriers, bare.maps) = (Vec::new(), Vec::new(), None);
+    bare
+}
+
+/// Whether the distributions of one comparison lie nearer than those of another.
+fn is_nearer(one: &Agreement, other: &Agreement) -> bool {
+    one.ks.total_cmp(&other.ks).then(one.area_m.total_cmp(&other.area_m)).is_lt()
+}
+
+/// All combinations of `steps` even values of each range, ends included.
+fn grid(ranges: &[[f64; 2]], steps: usize) -> Vec<Vec<f64>> {
+    ranges.iter().fold(vec![Vec::new()], |points, [from, to]| {
+        let value = |k: usize| from + (to - from) * k as f64 / (steps - 1) as f64;
+        let longer = |point: &Vec<f64>, k: usize| [&point[..], &[value(k)]].concat();
+        points.iter().flat_map(|point| (0..steps).map(move |k| longer(point, k))).collect()
+    })
+}
+
+/// Ranges of one step of the grid to both sides of the best values, inside what the scene allows.
+fn nearer(ranges: &[[f64; 2]], best: &[f64], steps: usize, allowed: &[VaryTable]) -> Vec<[f64; 2]> {
+    let range = |((range, best), allowed): ((&[f64; 2], &f64), &VaryTable)| {
+        let step = (range[1] - range[0]) / (steps - 1) as f64;
+        [(best - step).max(allowed.from), (best + step).min(allowed.to)]
+    };
+    ranges.iter().zip(best).zip(allowed).map(range).collect()
+}
+
+/// Points spread evenly over the ranges (Halton 1960): any number of them, in any number of dimensions up to six.
+fn even(ranges: &[[f64; 2]], count: usize) -> Vec<Vec<f64>> {
+    let share = |number: usize, base: usize| {
+        let (mut rest, mut step, mut sum) = (number, 1.0, 0.0);
+        while rest > 0 {
+            step /= base as f64;
+            sum += step * (rest % base) as f64;
+            rest /= base;
+        }
+        sum
+    };
+    let point = |number: usize| {
+        let axes = ranges.iter().zip(BASES);
+        axes.map(|([from, to], base)| from + (to - from) * share(number, base)).collect()
+    };
+    (1..=count).map(point).collect()
+}
+
+/// Ranges of a share of what is allowed around the best values.
+fn around(best: &[f64], share: f64, allowed: &[VaryTable]) -> Vec<[f64; 2]> {
+    let range = |(best, allowed): (&f64, &VaryTable)| {
+        let half = 0.5 * share * (allowed.to - allowed.from);
+        [(best - half).max(allowed.from), (best + half).min(allowed.to)]
+    };
+    best.iter().zip(allowed).map(range).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::VaryKey;
+
+    #[test]
+    fn a_grid_holds_all_corners_and_shrinks_inside_its_limits() {
+        let points = grid(&[[0.0, 1.0], [10.0, 20.0]], 3);
+        assert_eq!(points.len(), 9);
+        assert_eq!(points[0], [0.0, 10.0]);
+        assert_eq!(points[8], [1.0, 20.0]);
+        let vary = |from: f64, to: f64| VaryTable {
+            ground: String::new(),
+            key: VaryKey::Restitution,
+            from,
+            to,
+            before: from,
+        };
+        let allowed = [vary(0.0, 1.0), vary(10.0, 20.0)];
+        let next = nearer(&[[0.0, 1.0], [10.0, 20.0]], &[0.0, 15.0], 3, &allowed);
+        assert_eq!(next, [[0.0, 0.5], [10.0, 20.0]]);
+    }
+
+    /// Every eighth of the range of each of six values holds its share of the points.
+    #[test]
+    fn even_points_are_even_in_every_value() {
+        let points = even(&[[0.0, 1.0]; 6], 200);
+        for axis in 0..6 {
+            for eighth in 0..8 {
+                let inside = |point: &&Vec<f64>| (8.0 * point[axis]) as usize == eighth;
+                let count = points.iter().filter(inside).count();
+                assert!((20..=30).contains(&count), "axis {axis}, eighth {eighth}: {count}");
+            }
+        }
+        assert_eq!(trials(3), 125 + 64 + 64);
+    }
+}

@@ -1,0 +1,168 @@
+//! What a fit is worth: how far the measured ends tell the values, and how far computed ends lie from them.
+
+use super::search::{Search, Site};
+use crate::chance::{Chance, Purpose, stream, unit};
+use crate::error::Result;
+use crate::hazard::{Agreement, Spread, Way, effective};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// How often the measured ends are drawn again.
+const REDRAWS: usize = 200;
+/// Share of a value's range above which its interval tells nothing (–).
+const UNTOLD: f64 = 0.6;
+
+/// How far the measured ends tell one value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Told {
+    /// `ground.key`.
+    pub name: String,
+    /// The value that fits all ends best.
+    pub value: f64,
+    /// Lower end of the 95 % interval: of the values tried, those that fit ends drawn again best.
+    pub low_95: f64,
+    /// Its upper end.
+    pub high_95: f64,
+    /// Whether the interval leaves out a good part of the range.
+    pub is_told: bool,
+}
+
+/// One figure of the measured ends of a scene beside the computed one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Measure {
+    /// The scene.
+    pub scene: String,
+    /// What, with its unit.
+    pub what: String,
+    /// Of the measured ends.
+    pub measured: f64,
+    /// Of the computed ends.
+    pub computed: f64,
+    /// 95 % interval of computed less measured, from measured ends drawn again: lower end.
+    pub low_95: f64,
+    /// Its upper end.
+    pub high_95: f64,
+}
+
+/// Values, figures, and the number of ends with what they are worth.
+type Worth = (Vec<Told>, Vec<Measure>, (usize, f64));
+
+impl Search<'_> {
+    /// What the fit with these values is worth.
+    pub(super) fn worth(&mut self, values: &[f64], seed: u64) -> Result<Worth> {
+        let place = self.place(values)?;
+        let (mut ends, mut worth) = (0, 0.0);
+        for site in &self.sites {
+            ends += site.measured.len();
+            worth += site.effective();
+        }
+        Ok((self.told(values, seed), self.measures(place, seed), (ends, worth)))
+    }
+
+    /// The values that fit best when the measured ends are drawn again.
+    fn told(&self, values: &[f64], seed: u64) -> Vec<Told> {
+        let best = |redraw: usize| {
+            let mut chance = stream(seed, Purpose::Redraw, redraw);
+            let drawn: Vec<Vec<Way>> =
+                self.sites.iter().map(|site| site.redraw(&mut chance)).collect();
+            let distance = |computed: &[Vec<(usize, Way)>]| -> f64 {
+                let each = drawn.iter().zip(computed).filter_map(|(measured, computed)| {
+                    let ways: Vec<Way> = computed.iter().map(|(_, way)| *way).collect();
+                    Some(measured.len() as f64 * Agreement::of(measured, &ways)?.ks)
+                });
+                each.sum()
+            };
+            let distances: Vec<f64> =
+                self.known.iter().map(|(_, computed)| distance(computed)).collect();
+            let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+            // values that make no difference fit equally well, all of them
+            let ties =
+                self.known.iter().zip(distances).filter(move |(_, distance)| *distance <= least);
+            ties.map(|((values, _), _)| values.clone()).collect::<Vec<_>>()
+        };
+        let best: Vec<Vec<Vec<f64>>> = (0..REDRAWS).map(best).collect();
+        let ends = |at: usize| {
+            let extremes = |ties: &Vec<Vec<f64>>| {
+                let values = || ties.iter().map(|values| values[at]);
+                [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
+            };
+            best.iter().flat_map(extremes).collect()
+        };
+        let one = |(at, vary): (usize, &crate::scene::VaryTable)| {
+            let [low_95, high_95] = middle_95(ends(at));
+            let is_told = high_95 - low_95 < UNTOLD * (vary.to - vary.from);
+            let name = format!("{}.{}", vary.ground, vary.key.name());
+            Told { name, value: values[at], low_95, high_95, is_told }
+        };
+        self.vary.iter().enumerate().map(one).collect()
+    }
+
+    fn measures(&self, place: usize, seed: u64) -> Vec<Measure> {
+        let sites = self.sites.iter().zip(&self.known[place].1);
+        let of_site = |(site, computed): (&Site, &Vec<(usize, Way)>)| {
+            let computed: Vec<Way> = computed.iter().map(|(_, way)| *way).collect();
+            let found = Spread::figures(&site.measured, &computed);
+            let again: Vec<_> = (0..REDRAWS)
+                .map(|redraw| {
+                    let mut chance = stream(seed, Purpose::Redraw, redraw);
+                    Spread::figures(&site.redraw(&mut chance), &computed)
+                })
+                .collect();
+            let one = |(at, (what, measured, computed)): (usize, (&'static str, f64, f64))| {
+                let differences = again.iter().map(|figures| figures[at].2 - figures[at].1);
+                let [low_95, high_95] = middle_95(differences.collect());
+                let (scene, what) = (site.title(), what.to_owned());
+                Measure { scene, what, measured, computed, low_95, high_95 }
+            };
+            found.into_iter().enumerate().map(one).collect::<Vec<_>>()
+        };
+        sites.flat_map(of_site).collect()
+    }
+}
+
+impl Site {
+    /// Independent ends that the measured ones are worth.
+    fn effective(&self) -> f64 {
+        let runouts: Vec<f64> = self.measured.iter().map(Way::runout_m).collect();
+        effective(&runouts, &self.blocks)
+    }
+
+    /// As many measured ends as they are worth, drawn from them with replacement.
+    fn redraw(&self, chance: &mut Chance) -> Vec<Way> {
+        let count = (self.effective().round() as usize).max(2);
+        let rows = self.measured.len();
+        let row = |_| self.measured[((unit(chance) * rows as f64) as usize).min(rows - 1)];
+        (0..count).map(row).collect()
+    }
+}
+
+/// The interval that leaves a fortieth of the numbers on either side.
+fn middle_95(mut numbers: Vec<f64>) -> [f64; 2] {
+    numbers.sort_by(f64::total_cmp);
+    let at = |p: f64| {
+        let rank = (p * (numbers.len() as f64 - 1.0)).round() as usize;
+        numbers.get(rank).copied().unwrap_or(f64::NAN)
+    };
+    [at(0.025), at(0.975)]
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, value, low_95, high_95, is_told } = self;
+        write!(to, "{name} = {value:.4} (95 %: {low_95:.4} to {high_95:.4})")?;
+        if *is_told {
+            return Ok(());
+        }
+        write!(to, "; warning: the measured ends hardly tell it, other values fit as well")
+    }
+}
+
+impl fmt::Display for Measure {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { scene, what, measured, computed, low_95, high_95 } = self;
+        write!(
+            to,
+            "{scene}: {what} measured {measured:.2}, computed {computed:.2} (difference, 95 %: {low_95:.2} to {high_95:.2})"
+        )
+    }
+}

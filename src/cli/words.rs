@@ -1,0 +1,48 @@
+//! Words of the command line that are numbers.
+
+use crate::wiring::Part;
+use rockfall::scene::MOST_RELEASES;
+use rockfall::terrain::weld::Up;
+
+/// Most releases of one trial of a calibration: the ends of all trials are kept.
+const MOST_OF_A_TRIAL: usize = 100_000;
+
+/// Most worker threads: more than any machine has; a slip of the key must not start a hundred thousand.
+const MOST_THREADS: usize = 4096;
+
+pub(super) fn shard(text: &str) -> std::result::Result<Part, String> {
+    let numbers = text.split_once('/').map(|(number, of)| (number.parse(), of.parse()));
+    match numbers {
+        Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Part::Shard { number, of }),
+        _ => Err("write K/N, K from 1 to N: 3/16 is the third of 16 parts".to_owned()),
+    }
+}
+
+pub(super) fn threads(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(number) if (1..=MOST_THREADS).contains(&number) => Ok(number),
+        _ => Err(format!("write a whole number from 1 to {MOST_THREADS}")),
+    }
+}
+
+pub(super) fn of_a_trial(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(number) if (1..=MOST_OF_A_TRIAL).contains(&number) => Ok(number),
+        _ => Err(format!("write a whole number from 1 to {MOST_OF_A_TRIAL}")),
+    }
+}
+
+pub(super) fn at_least_1(text: &str) -> std::result::Result<usize, String> {
+    match text.parse() {
+        Ok(number) if (1..=MOST_RELEASES).contains(&number) => Ok(number),
+        _ => Err(format!("write a whole number from 1 to {MOST_RELEASES}")),
+    }
+}
+
+pub(super) fn up(text: &str) -> std::result::Result<Up, String> {
+    match text {
+        "z" => Ok(Up::Z),
+        "y" => Ok(Up::Y),
+        _ => Err("write z or y".to_owned()),
+    }
+}

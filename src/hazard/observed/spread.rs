@@ -1,0 +1,108 @@
+//! Where ends lie and how they spread, measured beside computed.
+
+use super::{Way, mean_direction};
+use crate::hazard::Sample;
+use crate::math;
+use std::collections::BTreeMap;
+
+/// Ends of one set of rocks along and across a direction.
+#[derive(Debug)]
+pub struct Spread {
+    mean_m: [f64; 2],
+    sd_m: [f64; 2],
+}
+
+impl Spread {
+    /// Figures of measured and computed ways: what, of the measured, of the computed.
+    pub fn figures(measured: &[Way], computed: &[Way]) -> Vec<(&'static str, f64, f64)> {
+        let along = mean_direction(measured);
+        let [one, two] = [measured, computed].map(|ways| Self::of(ways, along));
+        let runouts = |ways: &[Way]| Sample::of(ways.iter().map(Way::runout_m));
+        let [near, far] = [measured, computed].map(runouts);
+        let mean = |sample: &Sample| sample.mean().map_or(f64::NAN, |mean| mean.value);
+        let offset_m = math::hypot(two.mean_m[0] - one.mean_m[0], two.mean_m[1] - one.mean_m[1]);
+        let farthest_m = near.values().last().copied().unwrap_or(f64::NAN);
+        let beyond = far.values().iter().filter(|runout| **runout > farthest_m).count();
+        let share = beyond as f64 / far.values().len().max(1) as f64;
+        vec![
+            ("mean runout (m)", mean(&near), mean(&far)),
+            ("offset of the centroid (m)", 0.0, offset_m),
+            ("standard deviation along (m)", one.sd_m[0], two.sd_m[0]),
+            ("standard deviation across (m)", one.sd_m[1], two.sd_m[1]),
+            ("share past the farthest measured (–)", 0.0, share),
+        ]
+    }
+
+    fn of(ways: &[Way], [x, y]: [f64; 2]) -> Self {
+        let turned = |way: &Way| {
+            let [dx, dy] = way.vector_m();
+            [x * dx + y * dy, x * dy - y * dx]
+        };
+        let all: Vec<[f64; 2]> = ways.iter().map(turned).collect();
+        let n = all.len() as f64;
+        let mean_m = [0, 1].map(|axis| all.iter().map(|at| at[axis]).sum::<f64>() / n);
+        let sd_m = [0, 1].map(|axis| {
+            let off2 = all.iter().map(|at| (at[axis] - mean_m[axis]).powi(2)).sum::<f64>();
+            (off2 / (n - 1.0)).sqrt()
+        });
+        Self { mean_m, sd_m }
+    }
+}
+
+/// Independent values that values in groups are worth: `n / (1 + (m̄ − 1) ρ)` with the intraclass correlation ρ of a
+/// one-way analysis of variance (Donner and Koval 1980) and the mean size m̄ of a group. All of them without groups.
+pub fn effective(values: &[f64], groups: &[String]) -> f64 {
+    let n = values.len() as f64;
+    let mut sets: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for (value, group) in values.iter().zip(groups) {
+        sets.entry(group).or_default().push(*value);
+    }
+    let k = sets.len() as f64;
+    if groups.len() != values.len() || k < 2.0 || k >= n {
+        return n;
+    }
+    let mean = |set: &[f64]| set.iter().sum::<f64>() / set.len() as f64;
+    let whole = mean(values);
+    let among =
+        sets.values().map(|set| set.len() as f64 * (mean(set) - whole).powi(2)).sum::<f64>();
+    let within = |set: &Vec<f64>| set.iter().map(|value| (value - mean(set)).powi(2)).sum::<f64>();
+    let (among, within) = (among / (k - 1.0), sets.values().map(within).sum::<f64>() / (n - k));
+    let squares = sets.values().map(|set| (set.len() as f64).powi(2)).sum::<f64>();
+    let typical = (n - squares / n) / (k - 1.0);
+    let alike = ((among - within) / (among + (typical - 1.0) * within)).clamp(0.0, 1.0);
+    // no value is worth less than its group
+    (n / (1.0 + (n / k - 1.0) * alike)).max(k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn groups(sizes: &[usize]) -> Vec<String> {
+        let each = sizes.iter().enumerate();
+        each.flat_map(|(group, size)| vec![group.to_string(); *size]).collect()
+    }
+
+    /// Groups whose values are all alike are worth one each; groups that spread like the whole are worth all.
+    #[test]
+    fn groups_are_worth_what_they_differ_within() {
+        let alike = [1.0, 1.0, 1.0, 5.0, 5.0, 5.0, 9.0, 9.0];
+        assert!((effective(&alike, &groups(&[3, 3, 2])) - 3.0).abs() < 1e-12);
+        let mixed = [1.0, 5.0, 9.0, 1.0, 5.0, 9.0, 1.0, 9.0];
+        assert!((effective(&mixed, &groups(&[3, 3, 2])) - 8.0).abs() < 1e-12);
+        assert!((effective(&mixed, &[]) - 8.0).abs() < 1e-12);
+    }
+
+    /// By hand: ends at 10 and 20 m north, computed 3 m further east and 4 m further north, one of them beyond.
+    #[test]
+    fn figures_are_those_found_by_hand() {
+        let way = |x: f64, y: f64| Way { start_m: [1.0, 1.0], end_m: [1.0 + x, 1.0 + y] };
+        let figures =
+            Spread::figures(&[way(0.0, 10.0), way(0.0, 20.0)], &[way(3.0, 14.0), way(3.0, 24.0)]);
+        let value = |what: &str| figures.iter().find(|f| f.0.starts_with(what)).unwrap();
+        assert!((value("offset").2 - 5.0).abs() < 1e-12);
+        assert!((value("standard deviation along").1 - 50.0_f64.sqrt()).abs() < 1e-12);
+        assert!(value("standard deviation across").2.abs() < 1e-12);
+        assert!((value("share past").2 - 0.5).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,86 @@
+//! What rocks that share one world may do at the start: touch, and press on each other with their weight.
+
+use super::{Part, Plan};
+use crate::coupled::broad::{Ball, overlapping};
+use crate::error::{Error, Result};
+use crate::ground::Ground;
+use crate::release::{Release, TYPED_DEPTH};
+
+/// Overlap allowed over that which the weight above presses in (–): a wedge presses more than a column.
+const PRESSED: f64 = 2.0;
+
+impl Plan {
+    /// All releases, in order, of a plan whose rocks share one world.
+    ///
+    /// # Errors
+    /// As for [`Plan::release`], and rocks that overlap deeper than the weight on them would press them together.
+    pub fn world(&self) -> Result<Vec<Release>> {
+        let releases =
+            (0..self.count).map(|index| self.release(index)).collect::<Result<Vec<_>>>()?;
+        if let Part::Kept(ground) = &self.rock_against_rock {
+            check_apart(self, ground, &releases)?;
+        }
+        Ok(releases)
+    }
+}
+
+/// Refuses rocks that overlap deeper than the weight of those above would press them together: their springs would shoot
+/// them apart.
+fn check_apart(plan: &Plan, ground: &Ground, releases: &[Release]) -> Result<()> {
+    let ball = |release: &Release| Ball {
+        centre: release.motion.position_m,
+        radius: release.rock.radius_m,
+    };
+    let balls: Vec<Ball> = releases.iter().map(ball).collect();
+    let pairs = overlapping(&balls);
+    for &(a, b) in &pairs {
+        let [one, two] = [a, b].map(|k| &balls[k as usize]);
+        let overlap_m = one.radius + two.radius - (one.centre - two.centre).norm();
+        let typed_m = TYPED_DEPTH * one.radius.min(two.radius);
+        // without weight nothing presses: most pairs need not ask who stands on them
+        if overlap_m <= typed_m {
+            continue;
+        }
+        let carried_n = plan.gravity_m_s2 * carried_kg(&balls, &pairs, releases, (a, b));
+        let pressed_m = PRESSED * carried_n / ground.normal_stiffness_n_m;
+        if overlap_m > pressed_m + typed_m {
+            let [a_m, b_m] =
+                [one, two].map(|ball| <[f64; 3]>::from(ball.centre + plan.terrain.origin_m));
+            return Err(Error::input(
+                &plan.scene_file,
+                "[release]",
+                format!(
+                    "found releases {a} at {a_m:?} and {b} at {b_m:?} to overlap by {overlap_m:.2e} m at the start, where twice what their weight presses in, {pressed_m:.2e} m, is allowed"
+                ),
+                format!("write points that are at least {} m apart", one.radius + two.radius),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Mass of two rocks and of all that stands on them, directly or through others (kg).
+fn carried_kg(
+    balls: &[Ball],
+    pairs: &[(u32, u32)],
+    releases: &[Release],
+    (a, b): (u32, u32),
+) -> f64 {
+    let mut carried = vec![a, b];
+    let mut next = 0;
+    while let Some(&low) = carried.get(next) {
+        next += 1;
+        let above = |&(one, two): &(u32, u32)| {
+            let other = if one == low { two } else { one };
+            let touches = one == low || two == low;
+            let height_m = |k: u32| balls[k as usize].centre.z;
+            (touches && height_m(other) > height_m(low)).then_some(other)
+        };
+        for one in pairs.iter().filter_map(above) {
+            if !carried.contains(&one) {
+                carried.push(one);
+            }
+        }
+    }
+    carried.iter().map(|&k| releases[k as usize].rock.mass_kg()).sum()
+}

@@ -1,0 +1,120 @@
+//! What a run may take of memory and disk, reckoned before it begins.
+
+use super::{Part, Plan};
+use crate::error::{Error, Result};
+use std::fmt;
+
+/// Memory that a run may take unasked (bytes).
+const MOST_MEMORY: f64 = 2e9;
+/// Disk that a run may take unasked (bytes).
+const MOST_DISK: f64 = 10e9;
+
+/// A row of `releases.csv` (bytes).
+const ROW_DISK: f64 = 450.0;
+/// What the statistics keep of a release (bytes).
+const ROW_MEMORY: f64 = 220.0;
+/// A point of a path in `paths.csv`, GeoJSON and VTK together (bytes).
+const POINT_DISK: f64 = 350.0;
+/// A point of a path while the report is drawn (bytes).
+const POINT_MEMORY: f64 = 72.0;
+/// A point of a path while its rock falls (bytes).
+const FALLING_POINT_MEMORY: f64 = 104.0;
+/// Rocks that fall or wait for the disk at a time, at least.
+const IN_HAND: f64 = 64.0;
+/// A cell in all layers of the maps (bytes).
+const CELL_DISK: f64 = 100.0;
+/// A cell while a layer is written or read (bytes).
+const CELL_MEMORY: f64 = 60.0;
+/// A cell that rocks have passed (bytes).
+const PASSED_MEMORY: f64 = 250.0;
+/// A rock in a world with others (bytes).
+const TOGETHER_MEMORY: f64 = 6000.0;
+
+/// The most that a run may take; impacts, of which no one knows the number, are left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cost {
+    /// Rows of `releases.csv`.
+    pub releases: f64,
+    /// Rows of `paths.csv`, if all rocks fall until their time is up.
+    pub path_points: f64,
+    /// Cells of the maps.
+    pub cells: f64,
+    /// Results on the disk (bytes).
+    pub disk_bytes: f64,
+    /// Memory (bytes), the meshes aside.
+    pub memory_bytes: f64,
+}
+
+impl Plan {
+    /// What computing so many of its releases may take.
+    pub fn cost(&self, releases: usize) -> Cost {
+        let releases = releases as f64;
+        let (paths, points) = match &self.paths {
+            Part::Kept(paths) => (releases.min(paths.first as f64), self.longest_s / paths.step_s),
+            Part::LeftOut(_) => (0.0, 0.0),
+        };
+        let path_points = paths * (points + 2.0);
+        let cells = match &self.maps {
+            Part::Kept(map) => f64::from(map.columns) * f64::from(map.rows),
+            Part::LeftOut(_) => 0.0,
+        };
+        let together = if self.rock_against_rock.is_kept() { TOGETHER_MEMORY } else { 0.0 };
+        // a rock passes the map from side to side a few times at most
+        let passed = match &self.maps {
+            Part::Kept(map) => cells.min(4.0 * releases * f64::from(map.columns + map.rows)),
+            Part::LeftOut(_) => 0.0,
+        };
+        Cost {
+            releases,
+            path_points,
+            cells,
+            disk_bytes: ROW_DISK * releases + POINT_DISK * path_points + CELL_DISK * cells,
+            memory_bytes: (ROW_MEMORY + together) * releases
+                + POINT_MEMORY * path_points
+                + FALLING_POINT_MEMORY * points * paths.min(IN_HAND)
+                + CELL_MEMORY * cells
+                + PASSED_MEMORY * passed,
+        }
+    }
+}
+
+impl Cost {
+    /// Whether a run may take it unasked.
+    pub fn is_modest(&self) -> bool {
+        self.memory_bytes <= MOST_MEMORY && self.disk_bytes <= MOST_DISK
+    }
+
+    /// Refuses what is beyond the limits.
+    ///
+    /// # Errors
+    /// More memory or disk than a run may take unasked.
+    pub fn check(&self) -> Result<()> {
+        if self.is_modest() {
+            return Ok(());
+        }
+        Err(Error::Request(format!(
+            "found a run that may take {self}; write fewer releases, [record] paths or a longer path_step_s, or larger cells of [maps], or say --yes (asked above {} of memory or {} of disk)",
+            size(MOST_MEMORY),
+            size(MOST_DISK)
+        )))
+    }
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { releases, path_points, cells, disk_bytes, memory_bytes } = *self;
+        write!(
+            to,
+            "{} of memory and {} of disk: {releases} releases, up to {path_points:.0} points of paths, {cells} cells of maps",
+            size(memory_bytes),
+            size(disk_bytes)
+        )
+    }
+}
+
+fn size(bytes: f64) -> String {
+    match bytes {
+        _ if bytes >= 1e9 => format!("{:.1} GB", bytes / 1e9),
+        _ => format!("{:.0} MB", (bytes / 1e6).ceil()),
+    }
+}

@@ -1,0 +1,100 @@
+//! `[release] table`: blocks one by one, from a CSV file.
+
+use crate::error::{Error, Result};
+use crate::file::{self, LONGEST_TEXT};
+use std::f64::consts::PI;
+use std::path::Path;
+
+/// One block of a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block {
+    /// Place in plan view (m), map coordinates.
+    pub at_m: [f64; 2],
+    /// Height of the centre (m), map coordinates; none if `height_m` of the scene says how high.
+    pub height_m: Option<f64>,
+    /// Radius (m); none if the scene's `radius_m` is drawn.
+    pub radius_m: Option<f64>,
+}
+
+/// Columns of a place, the first that are there: a file of measured ends has the ends under the plain names.
+const PLACES: [[&str; 3]; 2] =
+    [["release_x_m", "release_y_m", "release_z_m"], ["x_m", "y_m", "z_m"]];
+const REMEDY: &str =
+    "write numbers under release_x_m, release_y_m (or x_m, y_m), and radius_m or mass_kg if known";
+
+/// Columns of a table by their number.
+struct Columns {
+    x: usize,
+    y: usize,
+    z: Option<usize>,
+    radius: Option<usize>,
+    mass: Option<usize>,
+}
+
+/// Reads a table. With `has_height` the scene says how high blocks lie, else the table must; a mass becomes the radius of
+/// a sphere of the density (kg/m³).
+///
+/// # Errors
+/// A file that cannot be read, a row without these numbers, no row at all.
+pub(super) fn read(path: &Path, has_height: bool, density_kg_m3: f64) -> Result<Vec<Block>> {
+    let wrong =
+        |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
+    let file = file::open(path, LONGEST_TEXT)?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+    let headers = reader.headers().cloned().unwrap_or_default();
+    let columns = Columns::of(&headers, has_height).map_err(|found| wrong(1, found))?;
+    let mut blocks = Vec::new();
+    for row in reader.records() {
+        let row = row.map_err(|why| {
+            wrong(why.position().map_or(1, csv::Position::line), format!("found {why}"))
+        })?;
+        let line = row.position().map_or(1, csv::Position::line);
+        let block = columns.block(&row, density_kg_m3).map_err(|found| wrong(line, found))?;
+        blocks.push(block);
+    }
+    if blocks.is_empty() {
+        return Err(Error::input(path, "rows", "found no block", REMEDY));
+    }
+    Ok(blocks)
+}
+
+impl Columns {
+    fn of(headers: &csv::StringRecord, has_height: bool) -> std::result::Result<Self, String> {
+        let at = |name: &str| headers.iter().position(|header| header == name);
+        let lacks =
+            || format!("found the columns {}", headers.iter().collect::<Vec<_>>().join(", "));
+        let names = PLACES.iter().find(|names| at(names[0]).is_some()).ok_or_else(lacks)?;
+        let [x, y, z] = names.map(at);
+        let (Some(x), Some(y)) = (x, y) else { return Err(lacks()) };
+        let z = z.filter(|_| !has_height);
+        if z.is_none() && !has_height {
+            return Err(format!("found no column {} and no height_m in the scene", names[2]));
+        }
+        Ok(Self { x, y, z, radius: at("radius_m"), mass: at("mass_kg") })
+    }
+
+    fn block(
+        &self,
+        row: &csv::StringRecord,
+        density_kg_m3: f64,
+    ) -> std::result::Result<Block, String> {
+        let number = |column: usize| {
+            let text = row.get(column).unwrap_or_default();
+            let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+            number.ok_or_else(|| format!("found `{text}`"))
+        };
+        let size = |column: usize| match number(column)? {
+            size if size > 0.0 => Ok(size),
+            size => Err(format!("found {size}")),
+        };
+        let radius_m = match (self.radius, self.mass) {
+            (Some(radius), _) => Some(size(radius)?),
+            (None, Some(mass)) => {
+                Some(crate::math::cbrt(size(mass)? / (density_kg_m3 * 4.0 / 3.0 * PI)))
+            }
+            (None, None) => None,
+        };
+        let height_m = self.z.map(number).transpose()?;
+        Ok(Block { at_m: [number(self.x)?, number(self.y)?], height_m, radius_m })
+    }
+}
