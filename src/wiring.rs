@@ -17,7 +17,7 @@ use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
-use rockfall::terrain::grid::Grid;
+use rockfall::terrain::formats;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
 use rockfall::terrain::stl::write_binary;
@@ -116,6 +116,7 @@ pub(crate) fn run(
             continue;
         }
         let results = output.finish()?;
+        output::write_drawings(&order.out, plan)?;
         report::draw_run(&results, &plan.terrain)?;
         return Ok(Ended::Complete(report::headline(&results.hazard)));
     }
@@ -284,10 +285,10 @@ pub(crate) fn check_meshes(files: &[PathBuf], up: Up) -> Result<String> {
     Ok(health.to_string())
 }
 
-/// Turns an ESRI ASCII grid into an STL file; says what was subtracted.
+/// Turns a GeoTIFF or an ESRI ASCII grid into an STL file; says what was subtracted.
 pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
     file::keep_inputs(out, &[grid])?;
-    let read = Grid::read(grid)?;
+    let read = formats::read_grid(grid)?;
     read.check_slope(grid)?;
     let grid = read;
     let origin_m = grid.map_origin_m();
@@ -330,11 +331,7 @@ pub(crate) fn mesh_of_stems(
 
 /// A mesh file as it stands.
 fn slope_source(path: &Path) -> Source {
-    Source {
-        sheet: Sheet { path: path.to_owned(), ground: 0, is_tree: false },
-        up: Up::default(),
-        scale: 1.0,
-    }
+    Source::stl(Sheet { path: path.to_owned(), ground: 0, is_tree: false })
 }
 
 /// Writes one of the made slopes and shapes.

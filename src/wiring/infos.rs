@@ -4,21 +4,35 @@ use rockfall::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
 use rockfall::output::{Site, Zone};
 use rockfall::plan::{self, Curtain, Plan};
 use rockfall::release::Where;
-use rockfall::scene::{BarrierTable, DesignTable};
+use rockfall::scene::{self, Area, BarrierTable, DesignTable, Polyline, ZonePlace};
 
 /// Where meshes and releases lie.
 pub(super) fn site(plan: &Plan) -> Site {
-    let zone = |place: &Where| match place {
-        Where::Points(points) => Zone::Points(points.iter().map(|point| point.at_m).collect()),
-        Where::Line(line) => Zone::Line(line.corners_m().to_vec()),
-        Where::Area(area) => Zone::Polygon(area.corners_m().to_vec()),
-    };
-    let mut zones = plan.releases.places().iter().map(zone);
+    let mut zones = plan.releases.places().iter().flat_map(zones);
     Site {
         mesh_origin_m: plan.mesh_origin_m,
         release: zones.next().unwrap_or_default(),
         further_releases: zones.collect(),
         fast_warnings: plan.fast_warnings.clone(),
+    }
+}
+
+/// Outlines of a place of release.
+fn zones(place: &Where) -> Vec<Zone> {
+    let line = |line: &Polyline| Zone::Line(line.corners_m().to_vec());
+    let area = |area: &Area| Zone::Polygon(area.corners_m().to_vec());
+    let drawn = |one: &scene::Zone| match &one.place {
+        ZonePlace::Points(points) => vec![Zone::Points(points.clone())],
+        ZonePlace::Lines(lines) => lines.iter().map(line).collect(),
+        ZonePlace::Areas(areas) => areas.iter().map(area).collect(),
+    };
+    match place {
+        Where::Points(points) => {
+            vec![Zone::Points(points.iter().map(|point| point.at_m).collect())]
+        }
+        Where::Line(one) => vec![line(one)],
+        Where::Area(one) => vec![area(one)],
+        Where::Zones(zones) => zones.list().iter().flat_map(drawn).collect(),
     }
 }
 
