@@ -92,16 +92,16 @@ enum MeshCommand {
         #[arg(long, value_name = "z|y", value_parser = words::up, default_value = "z")]
         up: Up,
     },
-    /// Turn an ESRI ASCII grid into STL; subtract the map origin and print it
+    /// Turn a GeoTIFF or an ESRI ASCII grid into STL; subtract the map origin and print it
     FromGrid {
-        /// Grid (.asc)
+        /// Elevation model (.tif, .asc)
         grid: PathBuf,
         /// STL file to write
         out: PathBuf,
     },
     /// Turn a list of trees into stems that stand on a slope
     Stems {
-        /// List (CSV) with the columns `x, y, dbh_m, height_m`
+        /// List (CSV) with the columns `x, y, dbh_m, height_m`, or GeoJSON or Shapefile points with `dbh_m` and `height_m`
         list: PathBuf,
         /// The slope's STL file
         terrain: PathBuf,

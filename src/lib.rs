@@ -21,6 +21,7 @@ pub mod chance;
 pub mod rock;
 pub mod frequency;
 // world
+pub mod gis;
 pub mod ground;
 pub mod terrain;
 // physics

@@ -20,10 +20,11 @@ use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::release::{self, Lost, Release, Releases};
-use crate::scene::{BarrierTable, ObjectTable, Polyline, RecordTable, Scene, SolverTable};
+use crate::scene::{
+    BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene, SolverTable,
+};
 use crate::step::{Scheme, Settings};
-use crate::terrain::Terrain;
-use crate::terrain::stems::Stems;
+use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
 use std::path::PathBuf;
 
@@ -91,6 +92,10 @@ pub struct Plan {
     pub radii_m: [f64; 3],
     /// The meshes.
     pub terrain: Terrain,
+    /// The files that went in.
+    pub input_files: Vec<InputFile>,
+    /// Grounds by polygon, and what they have done to the triangles.
+    pub ground_zones: Part<Patched>,
     /// Names of the grounds, in the order of [`Release::grounds`].
     pub ground_names: Vec<String>,
     /// Gravity (m/s²), 0 or more, along −z.
@@ -203,11 +208,13 @@ impl Plan {
             scene_hash: scene.hash.clone(),
             version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
             mesh_origin_m: scene.origin_m,
-            epsg: scene.epsg,
+            epsg: scene.epsg.or(terrain.epsg),
             seed: scene.seed,
             count: scene.release.count,
             releases,
             radii_m: scene.rocks.radius_m().reckoned(),
+            input_files: scene.inputs.clone(),
+            ground_zones: Part::when(terrain.patched.clone(), "every file has one ground"),
             ground_names: scene.grounds.keys().cloned().collect(),
             gravity_m_s2: scene.gravity_m_s2,
             step,

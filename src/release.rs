@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::frequency::Frequency;
 use crate::ground::Ground;
 use crate::rock::{Motion, Rock, Vec3};
-use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable};
+use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
 use clear::{clear_of, distance_m};
 use std::path::PathBuf;
@@ -61,6 +61,8 @@ pub enum Where {
     Line(Polyline),
     /// Uniform over an area.
     Area(Area),
+    /// Over zones, each with its share.
+    Zones(Zones),
 }
 
 /// All releases of a scene; draws any of them, in any order.
@@ -122,6 +124,18 @@ impl Releases {
         Ok(releases)
     }
 
+    /// The zone from which release `index` starts, by its place in [`Zones::list`]; none where the scene has no zones.
+    pub fn zone_of(&self, index: usize) -> Option<usize> {
+        self.draw_zone(&mut stream(self.seed, Purpose::Place, index), index)
+    }
+
+    /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
+    /// one, so that every zone keeps its share.
+    fn draw_zone(&self, chance: &mut Chance, index: usize) -> Option<usize> {
+        let Where::Zones(zones) = self.place_of(index).0 else { return None };
+        Some(zones.pick(unit(chance)))
+    }
+
     /// Looks for ground below an entry of the place, or beside a centre that is given with its height.
     fn check_corner(
         &self,
@@ -173,9 +187,10 @@ impl Releases {
         let mut chance = stream(self.seed, Purpose::Place, index);
         let is_fixed = matches!(self.place_of(index).0, Where::Points(_));
         let draws = if is_fixed { 1 } else { MOST_DRAWS };
+        let zone = self.draw_zone(&mut chance, index).unwrap_or_default();
         let mut lost = None;
         for drawn in 1..=draws {
-            let at_m = self.draw_place(&mut chance, index);
+            let at_m = self.draw_place(&mut chance, (index, zone));
             let why = match self.centre(terrain, (at_m, release.rock.radius_m), &mut chance, index)
             {
                 Ok(centre) => {
@@ -212,8 +227,9 @@ impl Releases {
         Release { rock, motion, grounds }
     }
 
-    /// A place on the map, and the height of the rock's centre where it is given.
-    fn draw_place(&self, chance: &mut Chance, index: usize) -> (Corner, Option<f64>) {
+    /// A place on the map, in a zone if there are some, and the height of the rock's centre where it is given.
+    fn draw_place(&self, chance: &mut Chance, of: (usize, usize)) -> (Corner, Option<f64>) {
+        let (index, zone) = of;
         let even = [0; 3].map(|_| unit(chance));
         let (place, turn) = self.place_of(index);
         match place {
@@ -223,6 +239,7 @@ impl Releases {
             }
             Where::Line(line) => (line.at(even[0]), None),
             Where::Area(area) => (area.at(even), None),
+            Where::Zones(zones) => (zones.list()[zone].at(even), None),
         }
     }
 

@@ -1,22 +1,23 @@
 //! Where the commands meet the floors that compute: running releases, drawing results, meshes.
 
 pub(crate) mod compare;
+mod infos;
 pub(crate) mod study;
 mod year;
 
+use infos::{barriers, line_infos, map_frame, site};
 use rockfall::calibrate::{self, Ends, Trial};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::file;
-use rockfall::hazard::{Barrier, Elsewhere, Hazard, LineInfo, MapFrame, Rule, Way};
-use rockfall::output::{self, Identity, Mode, Output, RunInfo, Site, Zone};
-use rockfall::plan::{self, Curtain, Plan};
-use rockfall::release::Where;
+use rockfall::hazard::{Hazard, Way};
+use rockfall::output::{self, Identity, Mode, Output, RunInfo};
+use rockfall::plan::Plan;
 use rockfall::report;
 use rockfall::rock::Vec3;
-use rockfall::scene::{BarrierTable, DesignTable, Scene};
+use rockfall::scene::Scene;
 use rockfall::study::aim::Aim;
-use rockfall::terrain::grid::Grid;
+use rockfall::terrain::formats;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
 use rockfall::terrain::stl::write_binary;
@@ -115,6 +116,7 @@ pub(crate) fn run(
             continue;
         }
         let results = output.finish()?;
+        output::write_drawings(&order.out, plan)?;
         report::draw_run(&results, &plan.terrain)?;
         return Ok(Ended::Complete(report::headline(&results.hazard)));
     }
@@ -235,81 +237,9 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
     })
 }
 
-/// Where meshes and releases lie.
-fn site(plan: &Plan) -> Site {
-    let zone = |place: &Where| match place {
-        Where::Points(points) => Zone::Points(points.iter().map(|point| point.at_m).collect()),
-        Where::Line(line) => Zone::Line(line.corners_m().to_vec()),
-        Where::Area(area) => Zone::Polygon(area.corners_m().to_vec()),
-    };
-    let mut zones = plan.releases.places().iter().map(zone);
-    Site {
-        mesh_origin_m: plan.mesh_origin_m,
-        release: zones.next().unwrap_or_default(),
-        further_releases: zones.collect(),
-        fast_warnings: plan.fast_warnings.clone(),
-    }
-}
-
 /// The measured ends that a plan compares with; none if it names none.
 pub(crate) fn read_measured(plan: &Plan) -> Result<Vec<Way>> {
     plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)
-}
-
-fn line_infos(plan: &Plan) -> Vec<LineInfo> {
-    let plan::Part::Kept(tables) = &plan.barriers else { return infos(plan, &[]) };
-    let moved: Vec<String> =
-        tables.iter().flat_map(BarrierTable::elsewhere).map(|(_, name, _)| name).collect();
-    infos(plan, &moved)
-}
-
-/// All lines; the `moved` ones are other places of barriers.
-fn infos(plan: &Plan, moved: &[String]) -> Vec<LineInfo> {
-    let info = |line: &Curtain| LineInfo {
-        name: line.name.clone(),
-        length_m: line.length_m(),
-        corners_m: line.corners_m(plan.terrain.origin_m),
-        of_barrier: moved.contains(&line.name),
-    };
-    plan.watch().lines.iter().map(info).collect()
-}
-
-fn barriers(plan: &Plan) -> Vec<Barrier> {
-    let plan::Part::Kept(tables) = &plan.barriers else { return Vec::new() };
-    let rule = |rule: &DesignTable| Rule {
-        standard: rule.standard().map(str::to_owned),
-        percentile: rule.percentile(),
-        speed_factors: rule.speed_factors(),
-        mass_factors: rule.mass_factors.clone(),
-        height_factors: rule.height_factors(),
-        free_height_m: rule.free_height_m,
-        free_distance_m: rule.free_distance_m(),
-    };
-    let barrier = |table: &BarrierTable| Barrier {
-        name: table.name.clone(),
-        height_m: table.height_m,
-        capacity_j: table.capacity_j,
-        design: table.design.as_ref().map(rule),
-        elsewhere: table
-            .elsewhere()
-            .map(|(offset_m, line, _)| Elsewhere { offset_m, line })
-            .collect(),
-    };
-    tables.iter().map(barrier).collect()
-}
-
-fn map_frame(plan: &Plan) -> Option<MapFrame> {
-    let cells = plan.watch().cells?;
-    // edges lie at multiples of the cell: the digits that the origin cost come back
-    let whole = |edge_m: f64| (edge_m / cells.cell_m).round() * cells.cell_m;
-    Some(MapFrame {
-        west_m: whole(cells.west_m + plan.terrain.origin_m.x),
-        south_m: whole(cells.south_m + plan.terrain.origin_m.y),
-        cell_m: cells.cell_m,
-        columns: cells.columns,
-        rows: cells.rows,
-        epsg: plan.epsg,
-    })
 }
 
 /// Calibrates scenes together, writes all trials and the fitted scenes into `out` and says what was found.
@@ -355,10 +285,10 @@ pub(crate) fn check_meshes(files: &[PathBuf], up: Up) -> Result<String> {
     Ok(health.to_string())
 }
 
-/// Turns an ESRI ASCII grid into an STL file; says what was subtracted.
+/// Turns a GeoTIFF or an ESRI ASCII grid into an STL file; says what was subtracted.
 pub(crate) fn mesh_from_grid(grid: &Path, out: &Path) -> Result<String> {
     file::keep_inputs(out, &[grid])?;
-    let read = Grid::read(grid)?;
+    let read = formats::read_grid(grid)?;
     read.check_slope(grid)?;
     let grid = read;
     let origin_m = grid.map_origin_m();
@@ -401,11 +331,7 @@ pub(crate) fn mesh_of_stems(
 
 /// A mesh file as it stands.
 fn slope_source(path: &Path) -> Source {
-    Source {
-        sheet: Sheet { path: path.to_owned(), ground: 0, is_tree: false },
-        up: Up::default(),
-        scale: 1.0,
-    }
+    Source::stl(Sheet { path: path.to_owned(), ground: 0, is_tree: false })
 }
 
 /// Writes one of the made slopes and shapes.

@@ -163,7 +163,7 @@ const READ_BOX: &str = "
 import struct, sys
 data = open(sys.argv[1], 'rb').read()
 head, rest = data.split(b'POINTS ', 1)
-line, rest = rest.split(b'\n', 1)
+line, rest = rest.split(b'\\n', 1)
 count = int(line.split()[0])
 points = struct.unpack('>%dd' % (3 * count), rest[:24 * count])
 print(*[min(points[k::3]) for k in range(3)], *[max(points[k::3]) for k in range(3)])

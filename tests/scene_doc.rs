@@ -44,6 +44,12 @@ fn every_known_key_stands_in_the_documentation() {
         ("top", "seed = 2017\n", ""),
         ("terrain", "[[terrain]]\n", ""),
         ("terrain", "[[trees]]\n", ""),
+        (
+            "terrain.crop",
+            "[terrain.crop]\n",
+            "[[terrain]]\nground = \"talus\"\nfile = \"a.tif\"\n[terrain.crop]\n",
+        ),
+        ("ground_zones", "[[ground_zones]]\n", "[[ground_zones]]\nfile = \"a.geojson\"\n"),
         ("mesh", "[mesh]\n", "[mesh]\n"),
         ("grounds", "[grounds.talus]\n", ""),
         ("rocks", "[rocks]\n", ""),

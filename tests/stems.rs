@@ -283,7 +283,7 @@ fn stems_from_a_list_stand_in_the_slope() {
 /// Height of a slope file (m) and its terrain.
 fn slope_at(file: &str, x: f64, y: f64) -> (f64, Terrain) {
     let sheet = Sheet { path: file.into(), ground: 0, is_tree: false };
-    let source = rockfall::terrain::read::Source { sheet, up: Up::Z, scale: 1.0 };
+    let source = rockfall::terrain::read::Source::stl(sheet);
     let (terrain, _) = Terrain::read(&[source], Vec3::zeros(), None).unwrap();
     let origin = terrain.origin_m;
     (terrain.ground_below(x - origin.x, y - origin.y).unwrap() + origin.z, terrain)

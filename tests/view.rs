@@ -39,6 +39,7 @@ fn terrain(files: &[(&str, bool)], origin_m: Vec3) -> Terrain {
         sheet: Sheet { path: file.into(), ground: 0, is_tree },
         up: Up::default(),
         scale: 1.0,
+        options: None,
     };
     let sources: Vec<Source> = files.iter().map(source).collect();
     Terrain::read(&sources, origin_m, None).unwrap().0

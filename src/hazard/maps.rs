@@ -99,7 +99,8 @@ impl Cell {
         let reaches = |above: &&Strata| {
             if weights.are_equal() {
                 let rank = (0.95 * f64::from(self.passages)).ceil().max(1.0);
-                return f64::from(above.rocks()) >= f64::from(self.passages) - rank + 1.0;
+                let needed = (f64::from(self.passages) - rank + 1.0).max(1.0);
+                return f64::from(above.rocks()) >= needed;
             }
             let strata = self.totals_j.entries().iter();
             let all = strata.map(|&(_, s, n)| weights.of_stratum(usize::from(s)) * f64::from(n));

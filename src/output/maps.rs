@@ -4,15 +4,11 @@ use super::whole::{as_whole, write_whole};
 use crate::error::{Error, Result};
 use crate::frequency::Weights;
 use crate::hazard::{Asked, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
+use crate::terrain::geotiff::{Image, encode};
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
-use tiff::encoder::colortype::Gray32Float;
-use tiff::encoder::compression::DeflateLevel;
-use tiff::encoder::{Compression, TiffEncoder};
-use tiff::tags::Tag;
 
 /// Folder of the rasters below the result folder.
 pub(super) const FOLDER: &str = "maps";
@@ -102,45 +98,19 @@ fn ascii(frame: &MapFrame, cells: &[f32]) -> String {
     text
 }
 
-/// One deflated band of 32-bit floats with the keys of OGC 19-008r4 (GeoTIFF 1.1): pixel is area, projected system by
-/// its EPSG code where one is given. Name and unit of the band stand where GDAL keeps them.
-fn geotiff(
-    frame: &MapFrame,
-    (name, unit): (&str, &str),
-    cells: &[f32],
-) -> tiff::TiffResult<Vec<u8>> {
-    const GDAL_METADATA: u16 = 42_112;
-    const GEO_KEY_DIRECTORY: u16 = 34_735;
-    const MODEL_PIXEL_SCALE: u16 = 33_550;
-    const MODEL_TIEPOINT: u16 = 33_922;
-    const GDAL_NODATA: u16 = 42_113;
-    let mut bytes = Cursor::new(Vec::new());
-    let mut file = TiffEncoder::new(&mut bytes)?
-        .with_compression(Compression::Deflate(DeflateLevel::default()));
-    let mut image = file.new_image::<Gray32Float>(frame.columns, frame.rows)?;
+fn geotiff(frame: &MapFrame, said: (&str, &str), cells: &[f32]) -> tiff::TiffResult<Vec<u8>> {
     let north_m = frame.south_m + f64::from(frame.rows) * frame.cell_m;
-    let tie = [0.0, 0.0, 0.0, frame.west_m, north_m, 0.0];
-    let tags = image.encoder();
-    tags.write_tag(Tag::Unknown(MODEL_PIXEL_SCALE), &[frame.cell_m, frame.cell_m, 0.0][..])?;
-    tags.write_tag(Tag::Unknown(MODEL_TIEPOINT), &tie[..])?;
-    // GTModelType projected, GTRasterType pixel is area, ProjectedCRS
-    let keys: Vec<u16> = match frame.epsg.and_then(|code| u16::try_from(code).ok()) {
-        Some(code) => vec![1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, code],
-        None => vec![1, 1, 0, 1, 1025, 0, 1, 1],
-    };
-    tags.write_tag(Tag::Unknown(GEO_KEY_DIRECTORY), &keys[..])?;
-    let unit = match unit {
-        "" => String::new(),
-        unit => format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>"),
-    };
-    let said = format!(
-        "<GDALMetadata><Item name=\"DESCRIPTION\" sample=\"0\" role=\"description\">{name}</Item>{unit}</GDALMetadata>"
-    );
-    tags.write_tag(Tag::Unknown(GDAL_METADATA), said.as_str())?;
-    tags.write_tag(Tag::Unknown(GDAL_NODATA), "-9999")?;
     let values: Vec<f32> = rows(frame, cells).flatten().copied().collect();
-    image.write_data(&values)?;
-    Ok(bytes.into_inner())
+    encode(&Image {
+        corner_m: [frame.west_m, north_m],
+        cell_m: frame.cell_m,
+        columns: frame.columns,
+        rows: frame.rows,
+        epsg: frame.epsg,
+        nodata: NO_DATA,
+        said: Some(said),
+        values: &values,
+    })
 }
 
 /// Where the maps after so many rocks wait for a resumed run.
@@ -185,10 +155,10 @@ pub(super) fn is_result(path: &Path) -> bool {
     match ending.as_str() {
         // the ground that figures are drawn on stands beside the maps
         "asc" if ["ground", "trees"].contains(&stem.as_str()) => true,
+        "tif" if stem == "ground" => true,
         "asc" | "tif" => Layer::ALL.iter().any(|layer| layer.file() == stem) || is_of_year(&stem),
-        "geojson" => {
-            ["ends", "paths", "lines", "barriers", "release_zone"].contains(&stem.as_str())
-        }
+        "geojson" => ["ends", "paths", "lines", "barriers", "release_zone", "zones", "scene_lines"]
+            .contains(&stem.as_str()),
         "vtk" => ["paths", "terrain"].contains(&stem.as_str()),
         STATE => stem.parse::<usize>().is_ok(),
         _ => false,

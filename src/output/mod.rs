@@ -17,6 +17,7 @@ mod rows;
 mod site;
 mod summary;
 mod table;
+mod used;
 mod vector;
 mod whole;
 
@@ -29,6 +30,7 @@ pub use read::{Results, read};
 pub use rows::{ImpactRow, PathRow};
 pub use site::{Site, Zone};
 pub use summary::{Run, Summary};
+pub use used::{copy_used, write_drawings, write_ground};
 pub use vector::write_terrain;
 pub use whole::write_whole;
 

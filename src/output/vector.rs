@@ -177,7 +177,7 @@ fn geometry(zone: &Zone) -> Value {
 ///
 /// RFC 7946 knows longitude and latitude only. The older member `crs` says that these are map coordinates; GDAL and
 /// QGIS read it.
-struct Features {
+pub(super) struct Features {
     path: PathBuf,
     /// None: there is nothing to write, and no file.
     file: Option<BufWriter<File>>,
@@ -185,7 +185,7 @@ struct Features {
 }
 
 impl Features {
-    fn create(path: &Path, epsg: Option<u32>) -> Result<Self> {
+    pub(super) fn create(path: &Path, epsg: Option<u32>) -> Result<Self> {
         Self::create_if(true, path.to_owned(), epsg)
     }
 
@@ -206,13 +206,17 @@ impl Features {
         file.write_all(text.as_bytes()).map_err(Error::file("write", &self.path))
     }
 
-    fn add(&mut self, geometry: &serde_json::Value, properties: &serde_json::Value) -> Result<()> {
+    pub(super) fn add(
+        &mut self,
+        geometry: &serde_json::Value,
+        properties: &serde_json::Value,
+    ) -> Result<()> {
         let comma = if std::mem::replace(&mut self.is_first, false) { "" } else { ",\n" };
         let feature = json!({ "type": "Feature", "geometry": geometry, "properties": properties });
         self.put(&format!("{comma}{feature}"))
     }
 
-    fn finish(mut self) -> Result<()> {
+    pub(super) fn finish(mut self) -> Result<()> {
         self.put("\n]}\n")?;
         let Some(file) = &mut self.file else { return Ok(()) };
         file.flush().map_err(Error::file("write", &self.path))

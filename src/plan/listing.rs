@@ -3,10 +3,12 @@
 use super::{Curtain, Part, Paths, Plan, RestRule, annual};
 use crate::ground::Ground;
 use crate::release::Where;
-use crate::scene::{BarrierTable, ObjectTable};
+use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
 use crate::step::dda::own_restitution;
 use crate::step::{Scheme, Settings};
+use crate::terrain::Terrain;
 use crate::terrain::features::Count;
+use crate::terrain::patches::Patched;
 use std::convert::Infallible;
 use std::fmt;
 
@@ -29,6 +31,8 @@ impl Plan {
             releases,
             radii_m: [smallest_m, median_m, largest_m],
             terrain,
+            input_files,
+            ground_zones,
             ground_names,
             gravity_m_s2,
             step,
@@ -73,8 +77,10 @@ impl Plan {
         );
         list.line(
             "terrain",
-            format!("{} triangles in {} files", terrain.triangles.len(), terrain.sheets.len()),
+            format!("{} triangles in {} files", terrain.triangles.len(), files(terrain)),
         );
+        list.lines("input file", input_files.iter().map(input_file));
+        list.part("ground zones", ground_zones, zones_of_ground);
         list.line("map", map(terrain.origin_m.into(), *epsg));
         list.line("gravity", format!("{gravity_m_s2} m/s²"));
         list.line("grounds", format!("{}: {}", ground_names.len(), ground_names.join(", ")));
@@ -245,6 +251,53 @@ fn place(place: &Where) -> String {
         Where::Points(points) => format!("from {} points in turn", points.len()),
         Where::Line(line) => format!("along a line of {:.1} m", line.length_m()),
         Where::Area(area) => format!("over an area of {:.1} m²", area.area_m2()),
+        Where::Zones(zones) => {
+            let file = zones.file.display();
+            format!("over {} zones of {file}, {}", zones.list().len(), shared_by(zones))
+        }
+    }
+}
+
+/// Files of the terrain; one with several grounds has several sheets.
+fn files(terrain: &Terrain) -> usize {
+    let mut paths: Vec<_> =
+        terrain.sheets.iter().map(|sheet| (&sheet.path, sheet.is_tree)).collect();
+    paths.sort();
+    paths.dedup();
+    paths.len()
+}
+
+fn input_file(InputFile { path, bytes, assumed }: &InputFile) -> String {
+    let system = match assumed.as_deref() {
+        None => String::new(),
+        Some("") => "; names no system of coordinates: taken as the scene's".to_owned(),
+        Some(name) => format!("; its system “{name}” has no EPSG code: taken as the scene's"),
+    };
+    format!("{}, {bytes} bytes{system}", path.display())
+}
+
+/// What zones of ground have done; both answers are counted, cutting triangles and leaving them whole.
+fn zones_of_ground(done: &Patched) -> String {
+    let Patched { zones, laid_m2, crossed, pieces, other_side_m2, is_cut } = done;
+    let cut = if *is_cut {
+        format!("cut into {pieces}, by which {other_side_m2:.1} m² change hands")
+    } else {
+        format!(
+            "left whole, each with the ground at its centroid; cut = true would make {pieces} of them, and {other_side_m2:.1} m² would change hands"
+        )
+    };
+    format!(
+        "{zones}, {laid_m2:.1} m² in plan view; {crossed} triangles crossed by a border are {cut}"
+    )
+}
+
+/// By what zones share the releases.
+fn shared_by(zones: &Zones) -> &'static str {
+    match zones.list().first() {
+        Some(Zone { weight: Some(_), .. }) => "shared by their weights",
+        Some(Zone { place: ZonePlace::Points(_), .. }) => "shared by their numbers of points",
+        Some(Zone { place: ZonePlace::Lines(_), .. }) => "shared by their lengths",
+        _ => "shared by their areas",
     }
 }
 

@@ -10,8 +10,14 @@ use crate::terrain::Terrain;
 impl Releases {
     pub(super) fn place_asked(scene: &Scene) -> Result<Where> {
         let asked = &scene.release;
-        Where::one_of((&asked.points_m, &asked.line_m, &asked.polygon_m)).ok_or_else(|| {
-            let remedy = "write exactly one of points_m, line_m and polygon_m";
+        let drawn = (&asked.points_m, &asked.line_m, &asked.polygon_m);
+        let place = match &asked.zone_list {
+            None => Where::one_of(drawn),
+            Some(zones) if drawn == (&None, &None, &None) => Some(Where::Zones(zones.clone())),
+            Some(_) => None,
+        };
+        place.ok_or_else(|| {
+            let remedy = "write exactly one of points_m, line_m, polygon_m, table and zones";
             Error::input(&scene.file, "[release]", "found none or several", remedy)
         })
     }
@@ -24,10 +30,8 @@ impl Releases {
             } else {
                 "[release]".to_owned()
             };
-            let (key, corners_m) = place.corners_m();
-            for (number, corner) in corners_m.into_iter().enumerate() {
-                let who = format!("{table} {key}, entry {}", number + 1);
-                self.check_corner(terrain, (place, number), corner, &who)?;
+            for (number, (who, corner)) in place.corners_m().into_iter().enumerate() {
+                self.check_corner(terrain, (place, number), corner, &format!("{table} {who}"))?;
             }
         }
         Ok(())
@@ -86,12 +90,25 @@ impl Where {
         }
     }
 
-    /// The scene's key and its points or corners in plan view (m), map coordinates.
-    fn corners_m(&self) -> (&'static str, Vec<Corner>) {
+    /// Its points or corners in plan view (m), map coordinates, each with the scene's key and entry that it stands in.
+    fn corners_m(&self) -> Vec<(String, Corner)> {
+        let numbered = |key: &str, corners: &mut dyn Iterator<Item = Corner>| {
+            let named = |(number, corner)| (format!("{key}, entry {number}"), corner);
+            (1..).zip(corners).map(named).collect()
+        };
         match self {
-            Self::Points(points) => ("points_m", points.iter().map(|point| point.at_m).collect()),
-            Self::Line(line) => ("line_m", line.corners_m().to_vec()),
-            Self::Area(area) => ("polygon_m", area.corners_m().to_vec()),
+            Self::Points(points) => {
+                numbered("points_m", &mut points.iter().map(|point| point.at_m))
+            }
+            Self::Line(line) => numbered("line_m", &mut line.corners_m().iter().copied()),
+            Self::Area(area) => numbered("polygon_m", &mut area.corners_m().iter().copied()),
+            Self::Zones(zones) => {
+                let each = zones.list().iter().flat_map(|zone| {
+                    let who = format!("zones, feature {}", zone.feature);
+                    zone.corners_m().into_iter().map(move |corner| (who.clone(), corner))
+                });
+                each.collect()
+            }
         }
     }
 }

@@ -59,6 +59,8 @@ use view::mesh::Mesh;
 pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     let ground = GroundRaster::from_terrain(terrain, GROUND_CELLS);
     ground.write(&results.dir)?;
+    let epsg = results.summary.maps.as_ref().and_then(|maps| maps.epsg);
+    GroundRaster::as_used(terrain).write_tif(&results.dir, epsg)?;
     if results.summary.maps.is_some() {
         output::write_terrain(&results.dir, terrain, results.summary.site.mesh_origin_m)?;
     }
@@ -75,6 +77,7 @@ pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
     if let Some(ground) = &ground {
         ground.write(&results.dir)?;
     }
+    output::copy_used(shard, &results.dir)?;
     // what the run at once would have written beside its maps
     let terrain = "maps/terrain.vtk";
     let (from, to) = (shard.join(terrain), results.dir.join(terrain));

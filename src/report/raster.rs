@@ -26,6 +26,10 @@ pub struct GroundRaster {
     pub trees: Vec<bool>,
 }
 
+/// Cells along the longer side of the ground as it was used: fewer would hide what a map shows, more fill the disk.
+const FEWEST_CELLS: usize = 400;
+const MOST_CELLS: usize = 2000;
+
 /// What stands round a raster: the smallest box of some vertices.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
@@ -34,6 +38,13 @@ struct Bounds {
 }
 
 impl GroundRaster {
+    /// The ground of a terrain in cells about as fine as its triangles, for a GIS.
+    pub fn as_used(terrain: &Terrain) -> Self {
+        // two triangles a cell of a square model
+        let across = (terrain.triangles.len() as f64 / 2.0).sqrt() as usize;
+        Self::from_terrain(terrain, across.clamp(FEWEST_CELLS, MOST_CELLS))
+    }
+
     /// The ground of a terrain on about `cells` cells along the longer side.
     ///
     /// Sheets of trees give the tree cells, all others the heights: the highest where sheets lie above each other. Heights are rounded to

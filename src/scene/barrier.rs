@@ -6,8 +6,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// A barrier over a line of the map: judged on the rocks that cross it, it changes no rock's way.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table with name, points_m, height_m and capacity_j")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BarrierTable {
     /// Name in the results; the crossings of its line carry it too.
     pub name: String,
@@ -18,7 +17,6 @@ pub struct BarrierTable {
     /// Energy that it takes (J), positive.
     pub capacity_j: f64,
     /// Other places to try it at: distances from its own (m), positive on the left of its line.
-    #[serde(default)]
     pub offsets_m: Vec<f64>,
     /// How a design is derived.
     pub design: Option<DesignTable>,

@@ -8,26 +8,36 @@ mod blocks;
 mod calibrate;
 mod catalogue;
 mod check;
+mod drawn;
+mod files;
 mod frequency;
+mod geometry;
+mod ground_zones;
 mod grounds;
+mod holes;
 mod meshes;
 mod object;
 mod places;
 mod record;
+mod refusal;
 mod release;
 mod rewrite;
 mod rocks;
 mod solver;
 mod source;
 mod wording;
+mod zones;
 
 pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
 pub use blocks::Block;
 pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
+pub use drawn::{BarrierEntry, LineEntry};
+pub use files::InputFile;
 pub use frequency::{ClassTable, FrequencyTable, MatrixTable, SourceTable};
+pub use ground_zones::GroundZones;
 pub use grounds::GroundTable;
-pub use meshes::{MeshFile, MeshTable};
+pub use meshes::{CropTable, MeshFile, MeshTable};
 pub use object::{ObjectTable, VehiclesTable};
 pub use places::{Area, Corner, Point, Polyline};
 pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
@@ -35,22 +45,22 @@ pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
+pub use zones::{Zone, ZonePlace, Zones};
 
 use crate::chance::{Distribution, entries};
 use crate::error::{Error, Result};
-use crate::file::{self, LONGEST_MESH};
 use crate::frequency::Frequency;
 use crate::step::Scheme;
 use crate::terrain::health::Health;
+use crate::terrain::patches::Patches;
 use crate::terrain::read::Source;
 use crate::terrain::{Sheet, Terrain};
 use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
 use places::FARTHEST_M;
+use refusal::Refusal;
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 use source::Lookup;
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// A scene file.
@@ -90,12 +100,15 @@ pub struct Scene {
     /// What is kept.
     #[serde(default)]
     pub record: RecordTable,
-    /// Evaluation lines.
+    /// Evaluation lines as they are written.
+    #[serde(default, rename = "lines")]
+    pub line_entries: Vec<LineEntry>,
+    /// Barriers as they are written.
+    #[serde(default, rename = "barriers")]
+    pub barrier_entries: Vec<BarrierEntry>,
+    /// Grounds by polygon.
     #[serde(default)]
-    pub lines: Vec<LineTable>,
-    /// Barriers, judged on what crosses them.
-    #[serde(default)]
-    pub barriers: Vec<BarrierTable>,
+    pub ground_zones: Vec<GroundZones>,
     /// Roads, paths and houses that rocks may hit.
     #[serde(default)]
     pub objects: Vec<ObjectTable>,
@@ -114,6 +127,18 @@ pub struct Scene {
     /// SHA-256 (hexadecimal) of the scene's text and of the bytes of every file that it names.
     #[serde(skip)]
     pub hash: String,
+    /// Those files.
+    #[serde(skip)]
+    pub inputs: Vec<InputFile>,
+    /// Evaluation lines; those of files once the scene is read.
+    #[serde(skip)]
+    pub lines: Vec<LineTable>,
+    /// Barriers, judged on what crosses them; those of files once the scene is read.
+    #[serde(skip)]
+    pub barriers: Vec<BarrierTable>,
+    /// Polygons of `ground_zones`, once the scene is read.
+    #[serde(skip)]
+    pub patches: Patches,
 }
 
 /// Gravity when a scene does not name it (m/s²); the interface's one default of the world.
@@ -122,20 +147,27 @@ fn standard_gravity_m_s2() -> f64 {
 }
 
 impl Scene {
-    /// Reads and checks a scene file and takes the fingerprint of its meshes.
+    /// Reads and checks a scene file, the drawings that it names, and takes the fingerprint of all files.
     ///
     /// # Errors
-    /// Whatever is wrong with the scene, with file, table, key and line; a mesh file that is not there.
+    /// Whatever is wrong with the scene, with file, table, key and line; a file that is not there; a drawing that cannot be
+    /// used.
     pub fn read(file: &Path) -> Result<Self> {
         let text = crate::file::read_text(file)?;
         let mut scene = Self::parse(&text, file)?;
         scene.read_blocks()?;
-        scene.hash =
-            scene.fingerprint(&text).map_err(|wrong| Lookup::of(file, &text).refuse(wrong))?;
+        let refuse = |wrong| Lookup::of(file, &text).refuse(wrong);
+        scene.take_drawn().map_err(|wrong| match wrong {
+            Refusal::Key(complaint) => refuse(*complaint),
+            Refusal::File(error) => error,
+        })?;
+        let again = "found a name that a line or barrier before has";
+        scene.check_lines().map_err(|wrong| refuse(wrong.finding(again)))?;
+        scene.hash = scene.fingerprint(&text).map_err(refuse)?;
         Ok(scene)
     }
 
-    /// Reads and checks a scene's text; its meshes are not looked at and the hash stays empty.
+    /// Reads and checks a scene's text; the files that it names are not looked at and the hash stays empty.
     /// Relative paths in it are seen from the folder of `file`.
     ///
     /// # Errors
@@ -148,16 +180,7 @@ impl Scene {
             .and_then(|()| scene.check())
             .map_err(|wrong| Lookup::of(file, text).refuse(wrong))?;
         scene.rocks.take_sizes(scene.sources().as_ref());
-        let folder = file.parent().unwrap_or(Path::new(""));
-        for mesh in scene.terrain.iter_mut().chain(&mut scene.trees) {
-            mesh.mesh = folder.join(&mesh.mesh);
-        }
-        if let Some(table) = &mut scene.release.table {
-            *table = folder.join(&*table);
-        }
-        if let Some(calibrate) = &mut scene.calibrate {
-            calibrate.deposits = folder.join(&calibrate.deposits);
-        }
+        scene.settle_paths(file.parent().unwrap_or(Path::new("")));
         file.clone_into(&mut scene.file);
         Ok(scene)
     }
@@ -194,17 +217,19 @@ impl Scene {
         self.frequency.as_ref().and_then(FrequencyTable::compile)
     }
 
-    /// The mesh files of slope and trees, ready for [`Terrain::read`].
+    /// The files of slope and trees, ready for [`Terrain::read`].
     pub fn mesh_sources(&self) -> Vec<Source> {
+        let starts = self.release.boxes_m();
         let source = |mesh: &MeshFile, is_tree| Source {
             sheet: Sheet {
-                path: mesh.mesh.clone(),
+                path: mesh.path().to_owned(),
                 // the check has made sure that the ground is known
                 ground: self.ground_index(&mesh.ground).unwrap_or_default() as u16,
                 is_tree,
             },
             up: mesh.up,
             scale: mesh.scale,
+            options: mesh.options(&starts, self.epsg),
         };
         let slope = self.terrain.iter().map(|mesh| source(mesh, false));
         slope.chain(self.trees.iter().map(|mesh| source(mesh, true))).collect()
@@ -215,7 +240,8 @@ impl Scene {
     /// # Errors
     /// See [`Terrain::read`].
     pub fn read_terrain(&self) -> Result<(Terrain, Health)> {
-        Terrain::read(&self.mesh_sources(), self.origin_m.into(), self.mesh.weld_tolerance_m)
+        let (sources, tolerance_m) = (self.mesh_sources(), self.mesh.weld_tolerance_m);
+        Terrain::read_patched(&sources, self.origin_m.into(), tolerance_m, &self.patches)
     }
 
     /// Fills in what grounds leave to the catalogue.
@@ -226,7 +252,7 @@ impl Scene {
         Ok(())
     }
 
-    fn check(&self) -> Checked {
+    fn check(&mut self) -> Checked {
         number("gravity_m_s2", self.gravity_m_s2, Allowed::NotNegative, "9.81 on Earth")?;
         if places::finite(&self.origin_m).is_err() {
             let remedy = format!("write three finite numbers within {FARTHEST_M:e}");
@@ -257,12 +283,27 @@ impl Scene {
         self.release.check(placed).map_err(|wrong| wrong.inside("release"))?;
         self.solver.check().map_err(|wrong| wrong.inside("solver"))?;
         self.record.check().map_err(|wrong| wrong.inside("record"))?;
-        for (index, barrier) in self.barriers.iter().enumerate() {
-            barrier.check().map_err(|wrong| wrong.in_entry(index).inside("barriers"))?;
+        self.take_written()?;
+        self.check_lines()?;
+        let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
+        for (index, zones) in self.ground_zones.iter().enumerate() {
+            zones.check(&grounds).map_err(|wrong| wrong.in_entry(index).inside("ground_zones"))?;
         }
         for (index, object) in self.objects.iter().enumerate() {
             object.check().map_err(|wrong| wrong.in_entry(index).inside("objects"))?;
         }
+        if let Some(calibrate) = &self.calibrate {
+            let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
+            calibrate.check(&grounds).map_err(|wrong| wrong.inside("calibrate"))?;
+        }
+        if let Some(maps) = &self.maps {
+            maps.check().map_err(|wrong| wrong.inside("maps"))?;
+        }
+        self.check_together()
+    }
+
+    /// Names of lines and barriers, and of the other places of barriers.
+    fn check_lines(&self) -> Checked {
         let lines = self.lines.iter().map(|line| line.name.as_str());
         let barriers = self.barriers.iter().map(|barrier| barrier.name.as_str());
         let objects = self.objects.iter().map(|object| object.name.as_str());
@@ -287,14 +328,7 @@ impl Scene {
                     .inside("barriers"));
             }
         }
-        if let Some(calibrate) = &self.calibrate {
-            let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
-            calibrate.check(&grounds).map_err(|wrong| wrong.inside("calibrate"))?;
-        }
-        if let Some(maps) = &self.maps {
-            maps.check().map_err(|wrong| wrong.inside("maps"))?;
-        }
-        self.check_together()
+        Ok(())
     }
 
     fn check_meshes(&self) -> Checked {
@@ -361,38 +395,4 @@ impl Scene {
         }
         Ok(())
     }
-
-    /// Hash over text, mesh files and measured ends, each followed by its length so that no two scenes run together.
-    fn fingerprint(&self, text: &str) -> std::result::Result<String, Complaint> {
-        let mut hash = Sha256::new();
-        hash.update(text);
-        hash.update((text.len() as u64).to_le_bytes());
-        self.each_mesh(|mesh| {
-            let remedy = "write the path of an STL file as seen from the scene file";
-            take_in(&mut hash, "mesh", &mesh.mesh, remedy)
-        })?;
-        if let Some(table) = &self.release.table {
-            let remedy = "write the path of a CSV file as seen from the scene file";
-            take_in(&mut hash, "table", table, remedy).map_err(|wrong| wrong.inside("release"))?;
-        }
-        if let Some(calibrate) = &self.calibrate {
-            let remedy = "write the path of a CSV file as seen from the scene file";
-            take_in(&mut hash, "deposits", &calibrate.deposits, remedy)
-                .map_err(|wrong| wrong.inside("calibrate"))?;
-        }
-        Ok(format!("{:x}", hash.finalize()))
-    }
-}
-
-/// Adds a file and its length to a hash.
-fn take_in(hash: &mut Sha256, key: &str, path: &Path, remedy: &str) -> Checked {
-    let wrong = |why: String| Complaint::about(key, format!("{remedy}; {why}"));
-    let file = file::open(path, LONGEST_MESH).map_err(|error| match error {
-        Error::File { file, source, .. } => wrong(format!("{}: {source}", file.display())),
-        other => wrong(other.to_string()),
-    })?;
-    let length = std::io::copy(&mut file.take(LONGEST_MESH), hash)
-        .map_err(|error| wrong(format!("{}: {error}", path.display())))?;
-    hash.update(length.to_le_bytes());
-    Ok(())
 }

@@ -1,13 +1,13 @@
 //! Points, polylines and areas in plan view, in map coordinates; valid by construction.
 
 use super::blocks::Block;
+pub use super::geometry::Corner;
+use super::geometry::{meet, minus, twice_area};
+use super::holes::bridged;
 use crate::chance::Entries;
 use crate::error::Flaw;
 use crate::math;
 use serde::Deserialize;
-
-/// A corner in plan view (m), map coordinates.
-pub type Corner = [f64; 2];
 
 /// A point of release.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -121,6 +121,7 @@ impl TryFrom<Vec<Corner>> for Polyline {
 #[serde(try_from = "Corners", expecting = "a list of corners [x, y]")]
 pub struct Area {
     corners_m: Vec<Corner>,
+    holes_m: Vec<Vec<Corner>>,
     /// Its triangles, each with the area up to and including it (m²).
     triangles: Vec<([Corner; 3], f64)>,
 }
@@ -129,6 +130,11 @@ impl Area {
     /// Its corners (m), map coordinates.
     pub fn corners_m(&self) -> &[Corner] {
         &self.corners_m
+    }
+
+    /// Outlines of its holes (m), map coordinates.
+    pub fn holes_m(&self) -> &[Vec<Corner>] {
+        &self.holes_m
     }
 
     /// Its area (m²).
@@ -147,6 +153,34 @@ impl Area {
     }
 }
 
+impl Area {
+    /// A polygon without its holes.
+    ///
+    /// # Errors
+    /// Sides that cross or touch each other, a hole that is not inside, no area.
+    pub(super) fn with_holes(
+        outline_m: Vec<Corner>,
+        holes_m: &[Vec<Corner>],
+    ) -> Result<Self, Flaw> {
+        let mut area = Self::try_from(outline_m)?;
+        if holes_m.is_empty() {
+            return Ok(area);
+        }
+        let holes: Vec<Self> =
+            holes_m.iter().map(|hole| Self::try_from(hole.clone())).collect::<Result<_, _>>()?;
+        let rest_m2 = area.area_m2() - holes.iter().map(Self::area_m2).sum::<f64>();
+        let rings: Vec<&[Corner]> = holes.iter().map(Self::corners_m).collect();
+        area.triangles = ears(&bridged(&area.corners_m, &rings)?)?;
+        // holes that overlap or lie outside leave another area
+        if (area.area_m2() - rest_m2).abs() > ROUNDING * rest_m2.abs() {
+            let found = "found a hole that is not inside of its polygon, or meets another one";
+            return Err(Flaw::new(found, ORDER));
+        }
+        area.holes_m = holes_m.to_vec();
+        Ok(area)
+    }
+}
+
 impl TryFrom<Vec<Corner>> for Area {
     type Error = Flaw;
 
@@ -161,18 +195,23 @@ impl TryFrom<Vec<Corner>> for Area {
             let found = format!("found a polygon with {} different corners", corners_m.len());
             return Err(Flaw::new(found, "write at least three: [[x, y], [x, y], [x, y]]"));
         }
-        let triangles = triangulate(&corners_m)?;
-        Ok(Self { corners_m, triangles })
+        if let Some((i, j)) = first_meeting(&corners_m) {
+            let found =
+                format!("found that the sides from corner {} and corner {} meet", i + 1, j + 1);
+            return Err(Flaw::new(found, ORDER));
+        }
+        let triangles = ears(&corners_m)?;
+        Ok(Self { corners_m, holes_m: Vec::new(), triangles })
     }
 }
 
-/// Cuts a simple polygon into triangles, ear by ear.
-fn triangulate(corners_m: &[Corner]) -> Result<Vec<([Corner; 3], f64)>, Flaw> {
-    const REMEDY: &str = "write the corners in order around the area";
-    if let Some((i, j)) = first_meeting(corners_m) {
-        let found = format!("found that the sides from corner {} and corner {} meet", i + 1, j + 1);
-        return Err(Flaw::new(found, REMEDY));
-    }
+/// How the corners of a polygon are to be written.
+const ORDER: &str = "write the corners in order around the area";
+/// Relative error of a sum of areas (–).
+const ROUNDING: f64 = 1e-9;
+
+/// Cuts a polygon whose sides do not cross into triangles, ear by ear.
+fn ears(corners_m: &[Corner]) -> Result<Vec<([Corner; 3], f64)>, Flaw> {
     let mut left = corners_m.to_vec();
     let turning: f64 =
         (1..left.len() - 1).map(|i| twice_area([left[0], left[i], left[i + 1]])).sum();
@@ -184,7 +223,7 @@ fn triangulate(corners_m: &[Corner]) -> Result<Vec<([Corner; 3], f64)>, Flaw> {
         let Some((tip, ear)) =
             (0..left.len()).map(|i| (i, ear(&left, i))).find(|(_, ear)| is_free(&left, ear))
         else {
-            return Err(Flaw::new("found a polygon too thin to cut into triangles", REMEDY));
+            return Err(Flaw::new("found a polygon too thin to cut into triangles", ORDER));
         };
         left.remove(tip);
         let area = 0.5 * twice_area(ear);
@@ -194,7 +233,7 @@ fn triangulate(corners_m: &[Corner]) -> Result<Vec<([Corner; 3], f64)>, Flaw> {
         }
     }
     if triangles.is_empty() {
-        return Err(Flaw::new("found a polygon without area", REMEDY));
+        return Err(Flaw::new("found a polygon without area", ORDER));
     }
     Ok(triangles)
 }
@@ -223,27 +262,6 @@ fn first_meeting(corners_m: &[Corner]) -> Option<(usize, usize)> {
     let side = |i: usize| [corners_m[i], corners_m[(i + 1) % n]];
     let pairs = (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j)));
     pairs.filter(|&(i, j)| (j + 1) % n != i).find(|&(i, j)| meet(side(i), side(j)))
-}
-
-/// Whether two sides have a point in common.
-fn meet([a, b]: [Corner; 2], [c, d]: [Corner; 2]) -> bool {
-    let boxes_meet = (0..2).all(|axis| {
-        a[axis].min(b[axis]) <= c[axis].max(d[axis]) && c[axis].min(d[axis]) <= a[axis].max(b[axis])
-    });
-    let apart = |p, q, one, other| twice_area([p, q, one]) * twice_area([p, q, other]) > 0.0;
-    boxes_meet && !apart(a, b, c, d) && !apart(c, d, a, b)
-}
-
-/// Twice the area of a triangle (m²), positive when it turns anticlockwise.
-///
-/// Differences first: map coordinates are large and their products would lose the digits that matter.
-fn twice_area([a, b, c]: [Corner; 3]) -> f64 {
-    let (u, v) = (minus(b, a), minus(c, a));
-    u[0] * v[1] - u[1] * v[0]
-}
-
-fn minus(a: Corner, b: Corner) -> Corner {
-    [a[0] - b[0], a[1] - b[1]]
 }
 
 /// Coordinates farther out than this (m) are no place on Earth, as in a mesh.

@@ -17,8 +17,7 @@ pub struct RecordTable {
 }
 
 /// One evaluation line: a vertical curtain over a polyline of the map.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table with name and points_m")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LineTable {
     /// Name in the results.
     pub name: String,

@@ -2,7 +2,8 @@
 
 use super::blocks::Block;
 use super::check::{Allowed, Checked, Complaint, drawn};
-use super::places::{Area, Point, Polyline};
+use super::places::{Area, Corner, Point, Polyline};
+use super::zones::Zones;
 use crate::chance::{Distribution, entries};
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -35,12 +36,20 @@ pub struct ReleaseTable {
     /// The blocks of the table, once a scene is read.
     #[serde(skip)]
     pub blocks: Vec<Block>,
+    /// Where: points, lines or polygons of a GeoJSON file or Shapefile.
+    pub zones: Option<PathBuf>,
+    /// What that file holds, once the scene is read.
+    #[serde(skip)]
+    pub zone_list: Option<Zones>,
 }
 
 /// Most releases of one run: their values take 0.1 kB each in memory.
 pub const MOST_RELEASES: usize = 1_000_000_000;
 
-const WHERE: &str = "write exactly one of points_m, line_m, polygon_m and table";
+/// Boxes that a cell is compared with at most, see [`ReleaseTable::boxes_m`].
+const MOST_BOXES: usize = 64;
+
+const WHERE: &str = "write exactly one of points_m, line_m, polygon_m, table and zones";
 
 impl ReleaseTable {
     /// `placed`: the sources of `[frequency]` say where.
@@ -56,6 +65,7 @@ impl ReleaseTable {
             ("line_m", self.line_m.is_some()),
             ("polygon_m", self.polygon_m.is_some()),
             ("table", self.table.is_some()),
+            ("zones", self.zones.is_some()),
         ];
         let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
         match (given.next(), given.next()) {
@@ -72,6 +82,32 @@ impl ReleaseTable {
             _ => {}
         }
         self.check_height()
+    }
+
+    /// Boxes around the places of release (m): west, south, east, north. One for each of a few places, else one for all.
+    pub(super) fn boxes_m(&self) -> Vec<[f64; 4]> {
+        let single = |corners: &[Corner]| box_of(corners).into_iter().collect::<Vec<_>>();
+        let boxes: Vec<[f64; 4]> =
+            match (&self.points_m, &self.line_m, &self.polygon_m, &self.zone_list) {
+                _ if !self.blocks.is_empty() => {
+                    self.blocks.iter().filter_map(|block| box_of(&[block.at_m])).collect()
+                }
+                (Some(points), ..) => {
+                    points.iter().filter_map(|point| box_of(&[point.at_m])).collect()
+                }
+                (_, Some(line), ..) => single(line.corners_m()),
+                (_, _, Some(area), _) => single(area.corners_m()),
+                (.., Some(zones)) => {
+                    zones.list().iter().filter_map(|zone| box_of(&zone.corners_m())).collect()
+                }
+                _ => Vec::new(),
+            };
+        if boxes.len() <= MOST_BOXES {
+            return boxes;
+        }
+        let corners: Vec<Corner> =
+            boxes.iter().flat_map(|b| [[b[0], b[1]], [b[2], b[3]]]).collect();
+        single(&corners)
     }
 
     /// `height_m` and a third coordinate exclude each other, and one of them is needed.
@@ -96,4 +132,13 @@ impl ReleaseTable {
             )),
         }
     }
+}
+
+/// The box of some corners; none without any.
+fn box_of(corners: &[Corner]) -> Option<[f64; 4]> {
+    let &[x, y] = corners.first()?;
+    let grow = |[west, south, east, north]: [f64; 4], [x, y]: &Corner| {
+        [west.min(*x), south.min(*y), east.max(*x), north.max(*y)]
+    };
+    Some(corners.iter().fold([x, y, x, y], grow))
 }

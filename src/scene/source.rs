@@ -21,7 +21,7 @@ pub(super) struct Lookup<'a> {
 const TABLES: [&str; 3] = ["grounds", "rocks", "release"];
 
 /// Tables of which a scene may have several.
-const LISTS: [&str; 5] = ["terrain", "trees", "lines", "barriers", "objects"];
+const LISTS: [&str; 6] = ["terrain", "trees", "lines", "barriers", "objects", "ground_zones"];
 
 /// One value of the file.
 struct Node {

@@ -63,11 +63,16 @@ impl Grid {
     }
 
     /// The surface through the cell centres as facets around `map_origin_m`, see [`triangulate`].
+    ///
+    /// The origin is subtracted from the corner before a cell's place is added: no digit of the grid is lost to the size
+    /// of map coordinates.
     pub fn facets(&self, map_origin_m: Vec3) -> Vec<Facet> {
+        let corner_m = [self.corner_m[0] - map_origin_m.x, self.corner_m[1] - map_origin_m.y];
         triangulate(self.columns, self.rows, |column, row_from_south| {
-            let row = self.rows - 1 - row_from_south;
-            let [x, y] = self.centre_m(column, row);
-            self.value(column, row).map(|z| Vec3::new(x, y, z) - map_origin_m)
+            let z = self.value(column, self.rows - 1 - row_from_south)?;
+            let [x, y] = [(corner_m[0], column), (corner_m[1], row_from_south)]
+                .map(|(corner, cells)| corner + (cells as f64 + 0.5) * self.cell_m);
+            Some(Vec3::new(x, y, z - map_origin_m.z))
         })
     }
 
@@ -269,6 +274,21 @@ impl Header {
     }
 }
 
+/// Whether bytes begin like an ESRI ASCII grid.
+pub(super) fn begins_like_grid(bytes: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(64)]);
+    let word = head.trim_start_matches('\u{feff}').split_ascii_whitespace().next();
+    word.is_some_and(|word| KEYWORDS.iter().any(|known| known.eq_ignore_ascii_case(word)))
+}
+
+/// A part was asked for in which a file has no cells; `outline` is what it has: west, south, east, north (m).
+pub(super) fn nothing_there(file: &Path, [west, south, east, north]: [f64; 4]) -> Error {
+    let found = format!(
+        "found no cells of the file there: it has {west}..{east} east, {south}..{north} north"
+    );
+    Error::input(file, "crop", found, "write map coordinates inside the file")
+}
+
 fn clipped(line: &str) -> String {
     line.chars().take(40).collect()
 }
@@ -283,12 +303,19 @@ pub fn triangulate(
     rows: usize,
     point: impl Fn(usize, usize) -> Option<Vec3>,
 ) -> Vec<Facet> {
-    let mut facets = Vec::new();
-    for row in 0..rows.saturating_sub(1) {
-        for column in 0..columns.saturating_sub(1) {
-            let around = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| point(column + i, row + j));
-            facets.extend(cut(around).into_iter().flatten());
-        }
+    let cells = || {
+        let of_row =
+            move |row: usize| (0..columns.saturating_sub(1)).map(move |column| (column, row));
+        (0..rows.saturating_sub(1)).flat_map(of_row)
+    };
+    let around = |(column, row): (usize, usize)| {
+        [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| point(column + i, row + j))
+    };
+    // Counted first: millions of facets are not moved about while the list grows.
+    let count = |corners: [Option<Vec3>; 4]| corners.iter().flatten().count().saturating_sub(2);
+    let mut facets = Vec::with_capacity(cells().map(|cell| count(around(cell))).sum());
+    for cell in cells() {
+        facets.extend(cut(around(cell)).into_iter().flatten());
     }
     facets
 }
@@ -310,6 +337,11 @@ fn cut(around: [Option<Vec3>; 4]) -> [Option<Facet>; 2] {
         _ => [None, None],
     }
 }
+
+mod window;
+
+#[cfg(feature = "cloud")]
+pub(super) use window::distance;
 
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,14 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
 pub mod brims;
+#[cfg(feature = "cloud")]
+pub mod cloud;
 pub mod coarser;
 pub mod edges;
 pub mod features;
 pub mod floor;
+pub mod formats;
+pub mod geotiff;
 pub mod grid;
 mod groups;
 pub mod health;
@@ -12,6 +16,7 @@ pub mod index;
 pub mod make;
 mod merge;
 pub mod read;
+pub mod patches;
 pub(crate) mod seen;
 pub mod stems;
 pub mod stl;
@@ -29,7 +34,7 @@ use weld::Welded;
 /// One mesh file of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
-    /// The STL file.
+    /// The file.
     pub path: PathBuf,
     /// Index of its ground in the scene's list of grounds.
     pub ground: u16,
@@ -48,9 +53,9 @@ pub struct Terrain {
     pub triangles: Vec<[u32; 3]>,
     /// Which [`Sheet`] each triangle came from.
     pub sheet_of: Vec<u16>,
-    /// Number of the facet in its file, from 0.
+    /// Number of the facet in its file, from 0; where zones of ground cut a file, in the file as cut.
     pub facet_of: Vec<u32>,
-    /// The mesh files.
+    /// The mesh files; a file on which zones lay other grounds stands there once for each.
     pub sheets: Vec<Sheet>,
     /// What a sphere can touch.
     pub features: Features,
@@ -60,6 +65,10 @@ pub struct Terrain {
     pub floor: Floor,
     /// Stems that can give way to a rock; none if all stand for good. The plan, which knows the limits, puts them here.
     pub stems: Option<Stems>,
+    /// EPSG code of the map coordinates, where a file names one.
+    pub epsg: Option<u32>,
+    /// What zones of ground have done to the triangles; none without zones.
+    pub patched: Option<patches::Patched>,
 }
 
 impl Terrain {
@@ -85,6 +94,8 @@ impl Terrain {
             features,
             index,
             stems: None,
+            epsg: None,
+            patched: None,
         }
     }
 

@@ -1,13 +1,16 @@
-//! From mesh files to the terrain: read, weld, examine, index.
+//! From terrain files to the terrain: read, crop, lay zones of ground on it, weld, examine, index.
 
+use super::formats::surface::starts;
+use super::formats::{self, Loaded, Options};
 use super::health::Health;
+use super::patches::{Layer, Patches};
 use super::stl::{self, Soup};
 use super::weld::{Piece, Up, weld};
 use super::{Sheet, Terrain};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::rock::Vec3;
 
-/// One mesh file and how it enters the terrain.
+/// One file and how it enters the terrain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     /// The file, its ground, and whether it is a tree.
@@ -16,24 +19,81 @@ pub struct Source {
     pub up: Up,
     /// Metres per unit of the file, positive.
     pub scale: f64,
+    /// What is asked of a file of any format; `None` = an STL file, whatever its name.
+    pub options: Option<Options>,
+}
+
+impl Source {
+    /// An STL file as it stands: z up, metres.
+    pub fn stl(sheet: Sheet) -> Self {
+        Self { sheet, up: Up::Z, scale: 1.0, options: None }
+    }
+
+    fn load(&self) -> Result<Loaded> {
+        let path = &self.sheet.path;
+        let Some(options) = &self.options else { return stl::read(path).map(Loaded::Mesh) };
+        let loaded = formats::read(path, options)?;
+        let is_mesh = matches!(loaded, Loaded::Mesh(_));
+        if is_mesh && (options.crop.is_some() || options.resample_m.is_some()) {
+            let remedy = "remove crop and resample_m: a mesh is taken as it is";
+            return Err(Error::input(path, "crop, resample_m", "found them beside a mesh", remedy));
+        }
+        if !is_mesh && self.sheet.is_tree {
+            let remedy = "write a mesh of stems under [[trees]]; `rockfall mesh stems` makes one of a list of trees";
+            return Err(Error::input(path, "[[trees]]", "found an elevation model", remedy));
+        }
+        if !is_mesh && (self.up != Up::Z || (self.scale - 1.0).abs() > 0.0) {
+            let remedy = "remove up and scale: elevation models are in metres, z up";
+            return Err(Error::input(
+                path,
+                "up, scale",
+                "found them beside an elevation model",
+                remedy,
+            ));
+        }
+        Ok(loaded)
+    }
 }
 
 impl Terrain {
-    /// Reads and welds mesh files; says what was found in them.
+    /// Reads and welds terrain files; says what was found in them.
     ///
-    /// `map_origin_m` is the map position of the files' (0, 0, 0), `tolerance_m` the weld tolerance
+    /// `map_origin_m` is the map position of the meshes' (0, 0, 0), `tolerance_m` the weld tolerance
     /// (`None` = chosen from the size of the mesh).
     ///
     /// # Errors
-    /// A file that cannot be read or is no STL, no triangle with an area, coordinates too large for a
-    /// binary file.
+    /// A file that cannot be read or is of no known format, no triangle with an area, coordinates too large for a
+    /// binary file, coordinate systems that differ.
     pub fn read(
         sources: &[Source],
         map_origin_m: Vec3,
         tolerance_m: Option<f64>,
     ) -> Result<(Self, Health)> {
-        let soups = sources.iter().map(|source| stl::read(&source.sheet.path));
-        let soups: Vec<Soup> = soups.collect::<Result<_>>()?;
+        Self::read_patched(sources, map_origin_m, tolerance_m, &Patches::default())
+    }
+
+    /// The same with zones of ground laid on the slope.
+    ///
+    /// # Errors
+    /// As [`Terrain::read`].
+    pub fn read_patched(
+        sources: &[Source],
+        map_origin_m: Vec3,
+        tolerance_m: Option<f64>,
+        patches: &Patches,
+    ) -> Result<(Self, Health)> {
+        let mut soups = read_soups(sources, map_origin_m)?;
+        let epsg = one_system(sources, &soups)?;
+        let mut sheets: Vec<Sheet> = sources.iter().map(|source| source.sheet.clone()).collect();
+        let mut layer = (!patches.is_empty()).then(|| Layer::new(patches));
+        let mut sheet_of_facet: Vec<Vec<u16>> = vec![Vec::new(); sources.len()];
+        if let Some(layer) = &mut layer {
+            for (number, source) in sources.iter().enumerate().filter(|(_, s)| !s.sheet.is_tree) {
+                let placed = |point: Vec3| source.placed(point) + map_origin_m;
+                let grounds = layer.lay(&mut soups[number], source.sheet.ground, &placed)?;
+                sheet_of_facet[number] = sheets_of(&mut sheets, number, &grounds)?;
+            }
+        }
         let pieces: Vec<Piece> = (0..)
             .zip(sources.iter().zip(&soups))
             .map(|(sheet, (source, soup))| Piece {
@@ -44,10 +104,78 @@ impl Terrain {
                 sheet,
             })
             .collect();
-        let welded = weld(&pieces, map_origin_m, tolerance_m)?;
+        let mut welded = weld(&pieces, map_origin_m, tolerance_m)?;
         let health = Health::of(&welded, &pieces);
         health.check()?;
-        let sheets = sources.iter().map(|source| source.sheet.clone()).collect();
-        Ok((Self::new(welded, sheets), health))
+        for (sheet, &facet) in welded.sheet_of.iter_mut().zip(&welded.facet_of) {
+            if let Some(&other) = sheet_of_facet[usize::from(*sheet)].get(facet as usize) {
+                *sheet = other;
+            }
+        }
+        drop(soups);
+        let terrain =
+            Self { epsg, patched: layer.map(|layer| layer.done), ..Self::new(welded, sheets) };
+        Ok((terrain, health))
+    }
+}
+
+/// All files as triangles. What one file may be cropped to depends on the heights of all.
+fn read_soups(sources: &[Source], map_origin_m: Vec3) -> Result<Vec<Soup>> {
+    let loaded: Vec<Loaded> = sources.iter().map(Source::load).collect::<Result<_>>()?;
+    let none = Options::default();
+    let asked = |source: &Source| source.options.clone().unwrap_or_else(|| none.clone());
+    let starts: Vec<_> = sources.iter().map(|source| starts(&asked(source), &loaded)).collect();
+    let soup = |((source, loaded), starts): ((&Source, Loaded), &_)| {
+        loaded.into_soup(&source.sheet.path, &asked(source), starts, map_origin_m)
+    };
+    sources.iter().zip(loaded).zip(&starts).map(soup).collect()
+}
+
+/// The EPSG code that the files name: of all the same one, and the scene's if that has one.
+fn one_system(sources: &[Source], soups: &[Soup]) -> Result<Option<u32>> {
+    let mut known: Option<(u32, String)> = None;
+    for (source, soup) in sources.iter().zip(soups) {
+        let Some(code) = soup.epsg else { continue };
+        let path = &source.sheet.path;
+        let asked = source.options.as_ref().and_then(|options| options.epsg);
+        let other = asked.map(|code| (code, "the scene".to_owned())).or_else(|| known.clone());
+        if let Some((other, whose)) = other.filter(|(other, _)| *other != code) {
+            let remedy = format!(
+                "write epsg = {code} in the scene, or gdalwarp -t_srs EPSG:{other} {} out.tif",
+                path.display()
+            );
+            let found = format!("found EPSG:{code} where {whose} has EPSG:{other}");
+            return Err(Error::input(path, "coordinate system", found, remedy));
+        }
+        known.get_or_insert_with(|| (code, path.display().to_string()));
+    }
+    Ok(known.map(|(code, _)| code))
+}
+
+/// Sheets for the grounds of a file's facets: the file's own first, a new one for each other ground.
+fn sheets_of(sheets: &mut Vec<Sheet>, number: usize, grounds: &[u16]) -> Result<Vec<u16>> {
+    let of_file = sheets[number].clone();
+    let mut known = vec![(of_file.ground, number)];
+    for &ground in grounds {
+        if !known.iter().any(|(other, _)| *other == ground) {
+            known.push((ground, sheets.len()));
+            sheets.push(Sheet { ground, ..of_file.clone() });
+        }
+    }
+    if sheets.len() > usize::from(u16::MAX) {
+        return Err(Error::Request(format!(
+            "the terrain has more than {} sheets; join files or zones",
+            u16::MAX
+        )));
+    }
+    let sheet =
+        |ground: &u16| known.iter().find(|(other, _)| other == ground).map_or(number, |k| k.1);
+    Ok(grounds.iter().map(|ground| sheet(ground) as u16).collect())
+}
+
+impl Source {
+    /// A point of the file in metres, z up.
+    fn placed(&self, point: Vec3) -> Vec3 {
+        self.up.turned(point) * self.scale
     }
 }

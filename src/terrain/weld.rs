@@ -38,6 +38,16 @@ pub enum Up {
     Y,
 }
 
+impl Up {
+    /// A point of the file, z up.
+    pub(super) fn turned(self, point: Vec3) -> Vec3 {
+        match self {
+            Self::Z => point,
+            Self::Y => Vec3::new(point.x, -point.z, point.y),
+        }
+    }
+}
+
 /// One soup and how it enters the mesh.
 #[derive(Debug, Clone, Copy)]
 pub struct Piece<'a> {
@@ -141,11 +151,7 @@ pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> R
 impl Piece<'_> {
     /// A point of the file in metres, z up, not yet recentred.
     pub(super) fn placed(&self, point: Vec3) -> Vec3 {
-        let turned = match self.up {
-            Up::Z => point,
-            Up::Y => Vec3::new(point.x, -point.z, point.y),
-        };
-        turned * self.scale
+        self.up.turned(point) * self.scale
     }
 
     fn check(&self) -> Result<()> {

@@ -2,7 +2,8 @@
 
 use super::GroundRaster;
 use crate::error::{Error, Result};
-use crate::output::write_whole;
+use crate::output::{write_ground, write_whole};
+use crate::terrain::geotiff::Image;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -26,6 +27,30 @@ impl GroundRaster {
         let tree = |i: usize| f64::from(u8::from(self.trees[i]));
         self.write_grid(&dir.join(GROUND), height)?;
         self.write_grid(&dir.join(TREES), tree)
+    }
+
+    /// Writes `maps/ground.tif`.
+    ///
+    /// # Errors
+    /// When the file or the folder cannot be written.
+    pub fn write_tif(&self, dir: &Path, epsg: Option<u32>) -> Result<()> {
+        let height = |&z: &f64| if z.is_finite() { z as f32 } else { NO_DATA as f32 };
+        let rows = self.height_m.chunks(self.columns).rev();
+        let values: Vec<f32> = rows.flatten().map(height).collect();
+        let north_m = self.south_m + self.rows() as f64 * self.cell_m;
+        write_ground(
+            dir,
+            &Image {
+                corner_m: [self.west_m, north_m],
+                cell_m: self.cell_m,
+                columns: self.columns as u32,
+                rows: self.rows() as u32,
+                epsg,
+                nodata: NO_DATA as f32,
+                said: None,
+                values: &values,
+            },
+        )
     }
 
     fn write_grid(&self, path: &Path, value: impl Fn(usize) -> f64) -> Result<()> {

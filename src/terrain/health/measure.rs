@@ -3,7 +3,7 @@
 use super::FileHealth;
 use crate::rock::Vec3;
 use crate::terrain::groups::Groups;
-use crate::terrain::stl::{Format, Spacing, area_vector};
+use crate::terrain::stl::{Spacing, area_vector};
 use crate::terrain::t_junctions;
 use crate::terrain::weld::{Piece, Tally, Welded};
 
@@ -32,7 +32,9 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
         facets: soup.facets.len(),
         facing_down: down.count() as f64 / soup.facets.len().max(1) as f64,
         normals_off,
-        spacing: (soup.format == Format::Binary).then(|| Spacing::of(&soup.facets)),
+        spacing: soup.is_single.then(|| Spacing::of(&soup.facets)),
+        epsg: soup.epsg,
+        notes: soup.notes.clone(),
     }
 }
 

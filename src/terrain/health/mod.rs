@@ -15,7 +15,7 @@ use std::path::Path;
 pub struct FileHealth {
     /// The file, as people write it.
     pub file: String,
-    /// Text or binary.
+    /// What kind of file.
     pub format: Format,
     /// Solids in the file.
     pub solids: usize,
@@ -25,8 +25,12 @@ pub struct FileHealth {
     pub facing_down: f64,
     /// Stored normals more than 30° off the winding; never used.
     pub normals_off: Tally,
-    /// What 32-bit numbers do to the coordinates, in the unit of the file; `None` for text.
+    /// What 32-bit numbers do to the coordinates, in the unit of the file; `None` where they are stored with all digits.
     pub spacing: Option<Spacing>,
+    /// EPSG code of its coordinates, where the file names one.
+    pub epsg: Option<u32>,
+    /// What the file holds and what was done with it, in words.
+    pub notes: Vec<String>,
 }
 
 /// The state of a welded terrain. All places are map coordinates (m).

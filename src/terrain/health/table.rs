@@ -95,18 +95,18 @@ impl Health {
 
 impl fmt::Display for FileHealth {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let format = match self.format {
-            Format::Ascii => "ASCII",
-            Format::Binary => "binary",
-        };
-        writeln!(
-            f,
-            "{}: {format} STL, {} solid(s), {} facets, {:.0} % face down",
-            self.file,
-            grouped(self.solids),
-            grouped(self.facets),
-            100.0 * self.facing_down
-        )?;
+        write!(f, "{}: {}, ", self.file, self.format.name())?;
+        if matches!(self.format, Format::Ascii | Format::Binary) {
+            write!(f, "{} solid(s), ", grouped(self.solids))?;
+        }
+        let (facets, down) = (grouped(self.facets), 100.0 * self.facing_down);
+        writeln!(f, "{facets} facets, {down:.0} % face down")?;
+        if let Some(code) = self.epsg {
+            writeln!(f, "  map coordinates of EPSG:{code}")?;
+        }
+        for note in &self.notes {
+            writeln!(f, "  {note}")?;
+        }
         if self.normals_off.count > 0 {
             let count = grouped(self.normals_off.count);
             writeln!(

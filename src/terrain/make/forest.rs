@@ -3,6 +3,7 @@
 use super::stems::{Stem, prism, ring};
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
+use crate::gis::{self, Shape};
 use crate::terrain::Terrain;
 use crate::terrain::stl::Facet;
 use serde::Deserialize;
@@ -26,12 +27,41 @@ struct Written {
     height_m: f64,
 }
 
-/// Reads a list of trees: a CSV file with the columns `x, y, dbh_m, height_m` (m) in any order; it may have more.
-/// Each comes with its line in the file.
+/// Whether a list is drawn in a GIS and not written as text.
+fn is_drawn(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    ending.is_some_and(|ending| ["geojson", "json", "shp", "gpkg"].contains(&ending.as_str()))
+}
+
+/// Points with the properties `dbh_m` and `height_m`.
+fn read_drawn(path: &Path) -> Result<Vec<(u64, Stem)>> {
+    let mut stems = Vec::new();
+    for feature in gis::read(path)?.features {
+        let Shape::Points(points) = &feature.shape else {
+            let found = format!("found {}", feature.shape.name());
+            return Err(feature.wrong(path, found, "write points"));
+        };
+        let value = |name: &str| {
+            let remedy = "write the properties dbh_m and height_m (m) of every point";
+            let lacks = || feature.wrong(path, format!("found no {name}"), remedy);
+            feature.positive(name, path)?.ok_or_else(lacks)
+        };
+        let (dbh_m, height_m) = (value("dbh_m")?, value("height_m")?);
+        let stem = |&[x_m, y_m]: &[f64; 2]| Stem { x_m, y_m, dbh_m, height_m };
+        stems.extend(points.iter().map(|point| (feature.number as u64, stem(point))));
+    }
+    Ok(stems)
+}
+
+/// Reads a list of trees: a CSV file with the columns `x, y, dbh_m, height_m` (m) in any order, it may have more; or a
+/// GeoJSON file or Shapefile of points with the properties `dbh_m` and `height_m`. Each comes with its line or feature.
 ///
 /// # Errors
 /// A file that cannot be read, a row without these numbers, a diameter or height that is not above 0, no row at all.
 pub fn read_list(path: &Path) -> Result<Vec<(u64, Stem)>> {
+    if is_drawn(path) {
+        return read_drawn(path);
+    }
     let file = file::open(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers().cloned().unwrap_or_default();
@@ -89,7 +119,8 @@ pub fn plant(list: &Path, trees: &[(u64, Stem)], terrain: &Terrain) -> Result<Ve
                 "write a place on the slope, its box is {}..{} east, {}..{} north; --origin-m takes map coordinates",
                 low.x, high.x, low.y, high.y
             );
-            return Err(Error::input(list, format!("line {line}"), found, remedy));
+            let what = if is_drawn(list) { "feature" } else { "line" };
+            return Err(Error::input(list, format!("{what} {line}"), found, remedy));
         };
         let half_m = 0.5 * tree.dbh_m;
         let around = ring().into_iter();

@@ -26,7 +26,7 @@ pub(super) fn begins_like_text(bytes: &[u8]) -> bool {
 
 /// Reads all solids of a text STL.
 pub(super) fn parse(bytes: &[u8], file: &Path) -> Result<Soup> {
-    let mut soup = Soup::empty(Format::Ascii);
+    let mut soup = Soup::of_format(Format::Ascii);
     let mut words = Words::of(bytes, file);
     while let Some(word) = words.next() {
         words.check(word, "solid", "a file holds `solid … endsolid` and nothing between solids")?;

@@ -26,7 +26,7 @@ pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
 
 /// Reads bytes that [have the exact length](has_exact_length).
 pub(super) fn parse(mut bytes: Vec<u8>, file: &Path) -> Result<Soup> {
-    let mut soup = Soup::empty(Format::Binary);
+    let mut soup = Soup::of_format(Format::Binary);
     soup.facets.reserve_exact(bytes.len() / TRIANGLE_BYTES as usize);
     soup.solids.push(header_text(&bytes[..80]));
     // stl_io takes a header that begins with `solid` for text, and searches the whole file for the end of the line.

@@ -24,17 +24,42 @@ const COS_NORMAL_OFF: f64 = 0.866_025_403_784_438_6;
 /// A facet: its three corners, anticlockwise seen from outside (from above, on a slope).
 pub type Facet = [Vec3; 3];
 
-/// How an STL file stores its numbers.
+/// What a file is; of STL also how it stores its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// Text: every digit that was written is kept.
+    /// STL as text: every digit that was written is kept.
     Ascii,
-    /// 50 bytes a triangle, coordinates as 32-bit floats (7 digits).
+    /// STL, 50 bytes a triangle, coordinates as 32-bit floats (7 digits).
     Binary,
+    /// GeoTIFF elevation model.
+    GeoTiff,
+    /// ESRI ASCII grid.
+    AsciiGrid,
+    /// PLY mesh.
+    Ply,
+    /// Wavefront OBJ mesh.
+    Obj,
+    /// LAS or LAZ point cloud.
+    Cloud,
 }
 
-/// The facets of one STL file as they stand there: nothing shared, nothing repaired, all coordinates finite.
+impl Format {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ascii => "ASCII STL",
+            Self::Binary => "binary STL",
+            Self::GeoTiff => "GeoTIFF",
+            Self::AsciiGrid => "ESRI ASCII grid",
+            Self::Ply => "PLY",
+            Self::Obj => "OBJ",
+            Self::Cloud => "point cloud",
+        }
+    }
+}
+
+/// The facets of one file as they stand there: nothing shared, nothing repaired, all coordinates finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Soup {
     /// Corners of each facet in file order, in the file's own unit and axes.
@@ -46,18 +71,32 @@ pub struct Soup {
     /// Facets whose stored normal points more than 30° away from the one their winding gives. Stored normals are
     /// never used; a disagreement tells that a program turned the file or its facets and forgot the other.
     pub normals_off: Vec<u32>,
+    /// Whether coordinates are stored as 32-bit floats.
+    pub is_single: bool,
+    /// EPSG code of its coordinates, where the file names one.
+    pub epsg: Option<u32>,
+    /// What the file holds and what was done with it, in words.
+    pub notes: Vec<String>,
 }
 
 impl From<Vec<Facet>> for Soup {
     /// A made mesh, with all its digits.
     fn from(facets: Vec<Facet>) -> Self {
-        Self { facets, ..Self::empty(Format::Ascii) }
+        Self { facets, ..Self::of_format(Format::Ascii) }
     }
 }
 
 impl Soup {
-    fn empty(format: Format) -> Self {
-        Self { facets: Vec::new(), solids: Vec::new(), format, normals_off: Vec::new() }
+    pub(super) fn of_format(format: Format) -> Self {
+        Self {
+            facets: Vec::new(),
+            solids: Vec::new(),
+            format,
+            normals_off: Vec::new(),
+            is_single: format == Format::Binary,
+            epsg: None,
+            notes: Vec::new(),
+        }
     }
 
     /// Takes one more facet; its stored normal (any length, may be zero or NaN) is compared and forgotten.

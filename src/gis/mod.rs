@@ -1,0 +1,251 @@
+//! What people draw in a GIS: points, lines and polygons with properties, from GeoJSON and Shapefile.
+//!
+//! Coordinates are map coordinates in metres; a third one is not used. Outlines come out the same from every format:
+//! anticlockwise from their south-western corner, holes clockwise.
+
+mod geojson;
+mod shapefile;
+#[cfg(test)]
+mod tests;
+pub(crate) mod wkt;
+
+pub use geojson::parse as parse_geojson;
+pub use shapefile::parse as parse_shapefile;
+
+use crate::error::{Error, Result};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A point of the map (m).
+pub type Corner = [f64; 2];
+
+/// Coordinates farther out than this (m) are no place on Earth, as in a mesh.
+const FARTHEST_M: f64 = 1e8;
+/// Names of columns in a Shapefile are cut off after so many bytes.
+const COLUMN_BYTES: usize = 10;
+
+/// A polygon; no ring repeats its first corner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polygon {
+    /// Its outline (m).
+    pub outline_m: Vec<Corner>,
+    /// Outlines of its holes (m).
+    pub holes_m: Vec<Vec<Corner>>,
+}
+
+/// A geometry; several parts of one feature stand together.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Points (m).
+    Points(Vec<Corner>),
+    /// Lines (m).
+    Lines(Vec<Vec<Corner>>),
+    /// Polygons.
+    Polygons(Vec<Polygon>),
+}
+
+impl Shape {
+    /// What it is, in the plural.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Points(_) => "points",
+            Self::Lines(_) => "lines",
+            Self::Polygons(_) => "polygons",
+        }
+    }
+}
+
+/// The value of a property.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A finite number.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+/// One drawn thing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Feature {
+    /// Where it stands in the file, from 1.
+    pub number: usize,
+    /// Its geometry.
+    pub shape: Shape,
+    /// Its properties by name; empty ones are left out.
+    pub properties: BTreeMap<String, Value>,
+}
+
+/// All that a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// The file.
+    pub file: PathBuf,
+    /// EPSG code of its coordinates, where the file names one.
+    pub epsg: Option<u32>,
+    /// Name of its system, where the file has a name and no code.
+    pub system: Option<String>,
+    /// Its features with a geometry, in file order.
+    pub features: Vec<Feature>,
+}
+
+impl Feature {
+    /// A property by name, also where a Shapefile has cut the name off.
+    pub fn property(&self, name: &str) -> Option<&Value> {
+        let short = name.get(..COLUMN_BYTES);
+        self.properties.get(name).or_else(|| self.properties.get(short?))
+    }
+
+    /// A property in words.
+    pub fn text(&self, name: &str) -> Option<String> {
+        self.property(name).map(|value| match value {
+            Value::Number(number) => number.to_string(),
+            Value::Text(text) => text.clone(),
+        })
+    }
+
+    /// A property as a number above 0, or none where there is none.
+    ///
+    /// # Errors
+    /// Another value; `file` is for the message.
+    pub fn positive(&self, name: &str, file: &Path) -> Result<Option<f64>> {
+        let number = match self.property(name) {
+            None => return Ok(None),
+            Some(Value::Number(number)) => Some(*number),
+            Some(Value::Text(text)) => text.trim().parse().ok(),
+        };
+        if let Some(number) = number.filter(|number| *number > 0.0 && number.is_finite()) {
+            return Ok(Some(number));
+        }
+        let found = format!("found {name} = {}", self.text(name).unwrap_or_default());
+        Err(self.wrong(file, found, "write a number above 0, or leave the property out"))
+    }
+
+    /// Something is wrong with this feature.
+    pub fn wrong(&self, file: &Path, found: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::input(file, format!("feature {}", self.number), found, remedy)
+    }
+}
+
+/// Reads a GeoJSON file, or a Shapefile with its table (`.dbf`) and system (`.prj`) beside it.
+///
+/// # Errors
+/// A file that cannot be read or is of another format, coordinates that are no metres of a map, no feature at all.
+pub fn read(path: &Path) -> Result<Layer> {
+    let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
+    let layer = if shapefile::begins_like_shapefile(&bytes) {
+        let beside = |ending: &str| {
+            let file = companion(path, ending);
+            file.map(|file| std::fs::read(&file).map_err(Error::file("read", &file))).transpose()
+        };
+        shapefile::parse(&bytes, beside("dbf")?.as_deref(), beside("prj")?.as_deref(), path)?
+    } else {
+        if let Some((_, kind)) = ELSEWHERE.iter().find(|(mark, _)| bytes.starts_with(mark)) {
+            let remedy = format!("write it as GeoJSON: ogr2ogr {} {}", out(path), path.display());
+            return Err(Error::input(path, "start", format!("found {kind}"), remedy));
+        }
+        geojson::parse(&bytes, path)?
+    };
+    if layer.features.is_empty() {
+        let remedy = "draw points, lines or polygons, or leave the file out of the scene";
+        return Err(Error::input(path, "features", "found none", remedy));
+    }
+    Ok(layer)
+}
+
+/// How other files begin, and what they are.
+const ELSEWHERE: [(&[u8], &str); 4] = [
+    (b"SQLite format 3\0", "a GeoPackage"),
+    (b"PK\x03\x04", "a ZIP archive"),
+    (b"<?xml", "an XML file (KML, GML)"),
+    (b"<kml", "a KML file"),
+];
+
+/// All files that [`read`] reads: a Shapefile is three.
+pub fn files(path: &Path) -> Vec<PathBuf> {
+    let is_shapefile = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("shp"));
+    let beside = ["dbf", "prj"].into_iter().filter(|_| is_shapefile);
+    let beside = beside.filter_map(|ending| companion(path, ending));
+    std::iter::once(path.to_owned()).chain(beside).collect()
+}
+
+/// The file of another ending beside a Shapefile, if it is there.
+fn companion(path: &Path, ending: &str) -> Option<PathBuf> {
+    let both = [ending.to_owned(), ending.to_uppercase()];
+    both.iter().map(|ending| path.with_extension(ending)).find(|file| file.exists())
+}
+
+/// A file name to convert into.
+fn out(path: &Path) -> String {
+    let stem = path.file_stem().map_or_else(|| "out".into(), |stem| stem.to_string_lossy());
+    format!("{stem}.geojson")
+}
+
+/// Why coordinates in degrees are of no use, and the command that makes metres of them.
+fn degrees(file: &Path) -> Error {
+    let remedy = format!(
+        "write it in the map coordinates of the scene: ogr2ogr -t_srs EPSG:CODE {} {}",
+        out(file),
+        file.display()
+    );
+    Error::input(file, "coordinate system", "found longitude and latitude", remedy)
+}
+
+/// A place on the map, or what is wrong with it.
+fn place(x: f64, y: f64) -> std::result::Result<Corner, String> {
+    let fits = |m: f64| (-FARTHEST_M..=FARTHEST_M).contains(&m);
+    if fits(x) && fits(y) { Ok([x, y]) } else { Err(format!("found the coordinates ({x}, {y})")) }
+}
+
+/// Polygons from rings in any order and direction: every ring that lies in no other is an outline, one that lies in an
+/// outline is a hole of it.
+fn polygons(rings: Vec<Vec<Corner>>) -> Vec<Polygon> {
+    let rings: Vec<Vec<Corner>> = rings.into_iter().map(|ring| canonical(ring, true)).collect();
+    let depth = |ring: usize| {
+        let around = (0..rings.len())
+            .filter(|&other| other != ring && encloses(&rings[other], &rings[ring]));
+        around.collect::<Vec<usize>>()
+    };
+    let depths: Vec<Vec<usize>> = (0..rings.len()).map(depth).collect();
+    let is_outline = |ring: &usize| depths[*ring].len().is_multiple_of(2);
+    let holes_of = |outline: usize| {
+        let inside = |ring: &usize| {
+            depths[*ring].contains(&outline) && depths[*ring].len() == depths[outline].len() + 1
+        };
+        (0..rings.len()).filter(inside).map(|ring| canonical(rings[ring].clone(), false)).collect()
+    };
+    let outlines = (0..rings.len()).filter(is_outline);
+    outlines
+        .map(|ring| Polygon { outline_m: rings[ring].clone(), holes_m: holes_of(ring) })
+        .collect()
+}
+
+/// Whether a ring lies inside another one: told by its first corner that does not lie on the other's corners.
+fn encloses(ring: &[Corner], other: &[Corner]) -> bool {
+    let Some(&[x, y]) = other.iter().find(|corner| !ring.contains(corner)) else { return false };
+    let sides = (0..ring.len()).map(|k| (ring[k], ring[(k + 1) % ring.len()]));
+    let crosses = |&([ax, ay], [bx, by]): &(Corner, Corner)| {
+        (ay <= y) != (by <= y) && x < ax + (y - ay) / (by - ay) * (bx - ax)
+    };
+    sides.filter(crosses).count() % 2 == 1
+}
+
+/// A ring without repeated corners, in the given direction, from its western-most (then southern-most) corner.
+fn canonical(mut ring: Vec<Corner>, anticlockwise: bool) -> Vec<Corner> {
+    ring.dedup();
+    if ring.len() > 1 && ring.first() == ring.last() {
+        ring.pop();
+    }
+    let turning: f64 = (1..ring.len().saturating_sub(1))
+        .map(|k| {
+            let [u, v] = [ring[k], ring[k + 1]].map(|c| [c[0] - ring[0][0], c[1] - ring[0][1]]);
+            u[0] * v[1] - u[1] * v[0]
+        })
+        .sum();
+    if (turning > 0.0) != anticlockwise {
+        ring.reverse();
+    }
+    let first = (0..ring.len())
+        .min_by(|&i, &j| ring[i][0].total_cmp(&ring[j][0]).then(ring[i][1].total_cmp(&ring[j][1])));
+    ring.rotate_left(first.unwrap_or(0));
+    ring
+}

@@ -1,0 +1,207 @@
+//! The files beside a scene: where they are, what they hold of it, and their part of its fingerprint.
+
+use super::check::{Checked, Complaint};
+use super::refusal::Refusal;
+use super::zones::Zones;
+use super::{MeshFile, Scene};
+use crate::error::Error;
+use crate::file::{self, LONGEST_MESH};
+use crate::gis;
+use sha2::{Digest, Sha256};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// A file that went into the results.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputFile {
+    /// Which.
+    pub path: PathBuf,
+    /// Its length.
+    pub bytes: u64,
+    /// Of a drawing whose coordinates were taken as the scene's without an EPSG code that says so: the name of its system,
+    /// empty where it names none.
+    pub assumed: Option<String>,
+}
+
+/// The table, the entry of a list, and the key that name a file.
+type Named = (&'static str, Option<usize>, &'static str);
+
+impl Scene {
+    /// Paths as seen from the working directory.
+    pub(super) fn settle_paths(&mut self, folder: &Path) {
+        let meshes = self.terrain.iter_mut().chain(&mut self.trees);
+        let meshes = meshes.flat_map(|mesh| [&mut mesh.mesh, &mut mesh.file]);
+        let drawn = self.line_entries.iter_mut().map(|line| &mut line.file);
+        let drawn = drawn.chain(self.barrier_entries.iter_mut().map(|barrier| &mut barrier.file));
+        let deposits = self.calibrate.iter_mut().map(|table| &mut table.deposits);
+        let grounds = self.ground_zones.iter_mut().map(|zones| &mut zones.file);
+        let zones = [&mut self.release.zones, &mut self.release.table];
+        let paths = meshes.chain(drawn).chain(zones).flatten().chain(deposits).chain(grounds);
+        paths.for_each(|path| *path = folder.join(&*path));
+    }
+
+    /// Lines and barriers that stand in the scene itself.
+    pub(super) fn take_written(&mut self) -> Checked {
+        let (mut lines, mut barriers) = (Vec::new(), Vec::new());
+        for (index, entry) in self.line_entries.iter().enumerate().filter(|(_, e)| e.file.is_none())
+        {
+            lines.push(entry.written().map_err(|wrong| wrong.in_entry(index).inside("lines"))?);
+        }
+        for (index, entry) in
+            self.barrier_entries.iter().enumerate().filter(|(_, e)| e.file.is_none())
+        {
+            barriers
+                .push(entry.written().map_err(|wrong| wrong.in_entry(index).inside("barriers"))?);
+        }
+        (self.lines, self.barriers) = (lines, barriers);
+        Ok(())
+    }
+
+    /// Zones, lines, barriers and grounds that stand in files.
+    pub(super) fn take_drawn(&mut self) -> std::result::Result<(), Refusal> {
+        let (mut lines, mut barriers) = (Vec::new(), Vec::new());
+        for (index, entry) in self.line_entries.iter().enumerate() {
+            let read = match &entry.file {
+                None => entry.written().map(|line| vec![line]).map_err(Into::into),
+                Some(file) => self.same_system(file, "file").and_then(|()| entry.read(file)),
+            };
+            lines.extend(read.map_err(|wrong: Refusal| wrong.in_entry(index, "lines"))?);
+        }
+        for (index, entry) in self.barrier_entries.iter().enumerate() {
+            let read = match &entry.file {
+                None => entry.written().map(|barrier| vec![barrier]).map_err(Into::into),
+                Some(file) => self.same_system(file, "file").and_then(|()| entry.read(file)),
+            };
+            barriers.extend(read.map_err(|wrong: Refusal| wrong.in_entry(index, "barriers"))?);
+        }
+        let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
+        let mut patches = Vec::new();
+        for (index, zones) in self.ground_zones.iter().enumerate() {
+            let read = self
+                .same_system(&zones.file, "file")
+                .and_then(|()| zones.read(&zones.file, &grounds));
+            patches.extend(read.map_err(|wrong| wrong.in_entry(index, "ground_zones"))?);
+        }
+        let zones = self.release.zones.as_deref().map(|file| {
+            self.same_system(file, "zones")?;
+            Zones::read(file).map_err(Refusal::from)
+        });
+        let zones = zones.transpose().map_err(|wrong| match wrong {
+            Refusal::Key(complaint) => complaint.inside("release").into(),
+            file @ Refusal::File(_) => file,
+        })?;
+        self.patches.list = patches;
+        self.patches.cut = self.ground_zones.iter().any(|zones| zones.cut);
+        (self.lines, self.barriers, self.release.zone_list) = (lines, barriers, zones);
+        Ok(())
+    }
+
+    /// Refuses a drawing in another system than the scene's; `key` names it.
+    fn same_system(&self, file: &Path, key: &str) -> std::result::Result<(), Refusal> {
+        if !file.exists() {
+            let remedy = format!(
+                "write the path of a GeoJSON file or Shapefile as seen from the scene file; {} is not there",
+                file.display()
+            );
+            return Err(Complaint::about(key, remedy).into());
+        }
+        let layer = gis::read(file)?;
+        match (layer.epsg, self.epsg) {
+            (Some(code), Some(own)) if code != own => {
+                let found = format!("found EPSG:{code} where the scene has EPSG:{own}");
+                let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+                let remedy = format!(
+                    "write it in the system of the scene: ogr2ogr -t_srs EPSG:{own} {stem}.geojson {}",
+                    file.display()
+                );
+                Err(Error::input(file, "coordinate system", found, remedy).into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Hash over text and files, each followed by its length so that no two scenes run together.
+    pub(super) fn fingerprint(&mut self, text: &str) -> std::result::Result<String, Complaint> {
+        let mut hash = Sha256::new();
+        hash.update(text);
+        hash.update((text.len() as u64).to_le_bytes());
+        let mut inputs = Vec::new();
+        let mut take = |path: &Path| -> std::result::Result<(), String> {
+            let file = file::open(path, LONGEST_MESH).map_err(|error| match error {
+                Error::File { file, source, .. } => format!("{}: {source}", file.display()),
+                other => other.to_string(),
+            })?;
+            let length = std::io::copy(&mut file.take(LONGEST_MESH), &mut hash)
+                .map_err(|error| format!("{}: {error}", path.display()))?;
+            hash.update(length.to_le_bytes());
+            inputs.push(InputFile { path: path.to_owned(), bytes: length, assumed: None });
+            Ok(())
+        };
+        self.each_mesh(|mesh| take(mesh.path()).map_err(|why| unreadable(mesh, &why)))?;
+        for ((table, key), path) in self.tables() {
+            take(path).map_err(|why| {
+                let remedy = "write the path of a CSV file as seen from the scene file";
+                Complaint::about(key, format!("{remedy}; {why}")).inside(table)
+            })?;
+        }
+        for ((table, index, key), path) in self.drawings() {
+            for path in gis::files(path) {
+                take(&path).map_err(|why| {
+                    let remedy = "write the path of a file that can be read";
+                    let about = Complaint::about(key, format!("{remedy}; {why}"));
+                    match index {
+                        Some(index) => about.in_entry(index).inside(table),
+                        None => about.inside(table),
+                    }
+                })?;
+            }
+        }
+        for input in &mut inputs {
+            let is_drawing = self.drawings().iter().any(|(_, file)| *file == input.path);
+            let layer = if is_drawing { gis::read(&input.path).ok() } else { None };
+            input.assumed = layer
+                .filter(|layer| layer.epsg.is_none())
+                .map(|layer| layer.system.unwrap_or_default());
+        }
+        self.inputs = inputs;
+        Ok(format!("{:x}", hash.finalize()))
+    }
+
+    /// CSV files: table and key that name them.
+    fn tables(&self) -> Vec<((&'static str, &'static str), &Path)> {
+        let blocks = self.release.table.iter().map(|path| (("release", "table"), path.as_path()));
+        let ends = self.calibrate.iter();
+        blocks.chain(ends.map(|c| (("calibrate", "deposits"), c.deposits.as_path()))).collect()
+    }
+
+    /// Files with drawings: table, entry and key that name them.
+    fn drawings(&self) -> Vec<(Named, &Path)> {
+        let mut all: Vec<(Named, &Path)> = Vec::new();
+        for (index, line) in self.line_entries.iter().enumerate() {
+            all.extend(
+                line.file.iter().map(|file| (("lines", Some(index), "file"), file.as_path())),
+            );
+        }
+        for (index, barrier) in self.barrier_entries.iter().enumerate() {
+            all.extend(
+                barrier.file.iter().map(|file| (("barriers", Some(index), "file"), file.as_path())),
+            );
+        }
+        for (index, zones) in self.ground_zones.iter().enumerate() {
+            all.push((("ground_zones", Some(index), "file"), &zones.file));
+        }
+        all.extend(
+            self.release.zones.iter().map(|file| (("release", None, "zones"), file.as_path())),
+        );
+        all
+    }
+}
+
+fn unreadable(mesh: &MeshFile, why: &str) -> Complaint {
+    let (key, what) = if mesh.file.is_some() {
+        ("file", "an elevation model or mesh")
+    } else {
+        ("mesh", "an STL file")
+    };
+    Complaint::about(key, format!("write the path of {what} as seen from the scene file; {why}"))
+}

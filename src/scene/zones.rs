@@ -1,0 +1,224 @@
+//! `[release] zones`: where rocks start, drawn in a GIS.
+
+use super::places::{Area, Polyline};
+use crate::error::{Error, Result};
+use crate::gis::{self, Corner, Feature, Layer, Polygon, Shape};
+use std::path::{Path, PathBuf};
+
+/// Where in a zone rocks start.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ZonePlace {
+    /// One of these points (m), each as often.
+    Points(Vec<Corner>),
+    /// Uniform along these lines.
+    Lines(Vec<Polyline>),
+    /// Uniform over these areas.
+    Areas(Vec<Area>),
+}
+
+/// One zone of release.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zone {
+    /// Property `name`, else "zone" and its number.
+    pub name: String,
+    /// Number of the feature in the file, from 1.
+    pub feature: usize,
+    /// Where.
+    pub place: ZonePlace,
+    /// Property `weight`: its share of the releases over that of the others (–), positive.
+    pub weight: Option<f64>,
+    /// Property `volume_m3`: volume that it releases (m³), positive.
+    pub volume_m3: Option<f64>,
+    /// Property `frequency_per_year`: rocks a year (1/a), positive.
+    pub frequency_per_year: Option<f64>,
+}
+
+/// All zones of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Zones {
+    /// Their file.
+    pub file: PathBuf,
+    /// EPSG code that the file names.
+    pub epsg: Option<u32>,
+    /// Name of the system of coordinates, where the file has a name and no code.
+    pub system: Option<String>,
+    list: Vec<Zone>,
+    /// Share of the releases up to and including each zone (–), the last one 1.
+    shares: Vec<f64>,
+}
+
+impl Zones {
+    /// Reads them.
+    ///
+    /// # Errors
+    /// A file or feature that cannot be used; weights for some zones and not for others; points beside lines or areas
+    /// without weights, which have no common measure.
+    pub fn read(file: &Path) -> Result<Self> {
+        let Layer { epsg, system, features, .. } = gis::read(file)?;
+        let list: Vec<Zone> =
+            features.iter().map(|feature| zone(feature, file)).collect::<Result<_>>()?;
+        let sizes = sizes(&list, file)?;
+        let total: f64 = sizes.iter().sum();
+        let mut shares: Vec<f64> = sizes
+            .iter()
+            .scan(0.0, |sum, size| {
+                *sum += size / total;
+                Some(*sum)
+            })
+            .collect();
+        // rounding must not leave a gap behind the last one
+        if let Some(last) = shares.last_mut() {
+            *last = 1.0;
+        }
+        Ok(Self { file: file.to_owned(), epsg, system, list, shares })
+    }
+
+    /// The zones.
+    pub fn list(&self) -> &[Zone] {
+        &self.list
+    }
+
+    /// The share of all releases that a zone gets (–).
+    pub fn share(&self, zone: usize) -> f64 {
+        self.shares[zone] - zone.checked_sub(1).map_or(0.0, |before| self.shares[before])
+    }
+
+    /// The zone that a number in 0..1 falls on.
+    pub fn pick(&self, even: f64) -> usize {
+        self.shares.partition_point(|end| *end <= even).min(self.list.len() - 1)
+    }
+}
+
+impl Zone {
+    /// Its points or corners (m).
+    pub fn corners_m(&self) -> Vec<Corner> {
+        match &self.place {
+            ZonePlace::Points(points) => points.clone(),
+            ZonePlace::Lines(lines) => {
+                lines.iter().flat_map(Polyline::corners_m).copied().collect()
+            }
+            ZonePlace::Areas(areas) => areas.iter().flat_map(Area::corners_m).copied().collect(),
+        }
+    }
+
+    /// Number of points, length (m) or area (m²).
+    pub fn size(&self) -> f64 {
+        match &self.place {
+            ZonePlace::Points(points) => points.len() as f64,
+            ZonePlace::Lines(lines) => lines.iter().map(Polyline::length_m).sum(),
+            ZonePlace::Areas(areas) => areas.iter().map(Area::area_m2).sum(),
+        }
+    }
+
+    /// A point of it; three independent even numbers in 0..1 give points uniform over it.
+    pub fn at(&self, [which, u, v]: [f64; 3]) -> Corner {
+        match &self.place {
+            ZonePlace::Points(points) => {
+                points[((which * points.len() as f64) as usize).min(points.len() - 1)]
+            }
+            ZonePlace::Lines(lines) => {
+                let (line, along) = part(lines.iter().map(Polyline::length_m), which);
+                lines[line].at(along)
+            }
+            ZonePlace::Areas(areas) => {
+                let (area, which) = part(areas.iter().map(Area::area_m2), which);
+                areas[area].at([which, u, v])
+            }
+        }
+    }
+}
+
+/// The part on which an even number falls, and how far into that part it falls (–).
+fn part(sizes: impl Iterator<Item = f64> + Clone, even: f64) -> (usize, f64) {
+    let target = even * sizes.clone().sum::<f64>();
+    let (mut before, mut last) = (0.0, (0, 1.0));
+    for (number, size) in sizes.enumerate() {
+        last = (number, ((target - before) / size).clamp(0.0, 1.0));
+        before += size;
+        if target < before {
+            break;
+        }
+    }
+    last
+}
+
+fn zone(feature: &Feature, file: &Path) -> Result<Zone> {
+    let wrong = |flaw: crate::error::Flaw| feature.wrong(file, flaw.found, flaw.remedy);
+    let line = |corners: &Vec<Corner>| Polyline::try_from(corners.clone()).map_err(wrong);
+    let area = |Polygon { outline_m, holes_m }: &Polygon| {
+        Area::with_holes(outline_m.clone(), holes_m).map_err(wrong)
+    };
+    let place = match &feature.shape {
+        Shape::Points(points) => ZonePlace::Points(points.clone()),
+        Shape::Lines(lines) => ZonePlace::Lines(lines.iter().map(line).collect::<Result<_>>()?),
+        Shape::Polygons(all) => ZonePlace::Areas(all.iter().map(area).collect::<Result<_>>()?),
+    };
+    let zone = Zone {
+        name: feature.text("name").unwrap_or_else(|| format!("zone {}", feature.number)),
+        feature: feature.number,
+        place,
+        weight: feature.positive("weight", file)?,
+        volume_m3: feature.positive("volume_m3", file)?,
+        frequency_per_year: feature.positive("frequency_per_year", file)?,
+    };
+    if zone.size() > 0.0 {
+        return Ok(zone);
+    }
+    Err(feature.wrong(file, "found no point", "draw a point, a line or a polygon"))
+}
+
+/// By what the releases are shared: weights, or the size of the zones.
+fn sizes(list: &[Zone], file: &Path) -> Result<Vec<f64>> {
+    let weights: Vec<f64> = list.iter().filter_map(|zone| zone.weight).collect();
+    if weights.len() == list.len() {
+        return Ok(weights);
+    }
+    let refused = |zone: &Zone, found: &str, remedy: &str| {
+        Err(Error::input(file, format!("feature {}", zone.feature), found, remedy))
+    };
+    let without = list.iter().find(|zone| zone.weight.is_none());
+    if let (Some(zone), false) = (without, weights.is_empty()) {
+        return refused(
+            zone,
+            "found no weight, but others have one",
+            "write the property weight for all zones or for none",
+        );
+    }
+    let kind = |zone: &Zone| std::mem::discriminant(&zone.place);
+    if let Some(other) = list.iter().find(|zone| kind(zone) != kind(&list[0])) {
+        let remedy = "write the property weight for every zone: points, metres and square metres cannot be compared";
+        return refused(
+            other,
+            "found another kind of geometry than before, without weight",
+            remedy,
+        );
+    }
+    Ok(list.iter().map(Zone::size).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two holes, one seen past the other: their area is left out, and no point falls into them.
+    #[test]
+    fn holes_are_left_out() {
+        let square = |low: f64, side: f64| {
+            vec![[low, low], [low + side, low], [low + side, low + side], [low, low + side]]
+        };
+        let holed = Area::with_holes(square(0.0, 10.0), &[square(3.0, 2.0), square(6.0, 2.0)]);
+        let holed = holed.unwrap();
+        assert!((holed.area_m2() - 92.0).abs() < 1e-12);
+        for k in 0..5000u32 {
+            let even = [0.618_033_988_75, 0.754_877_666_25, 0.569_840_290_99];
+            let [x, y] = holed.at(even.map(|step| (f64::from(k) * step).fract()));
+            let inside = |low: f64| x > low && x < low + 2.0 && y > low && y < low + 2.0;
+            assert!((0.0..=10.0).contains(&x) && (0.0..=10.0).contains(&y));
+            assert!(!inside(3.0) && !inside(6.0), "({x}, {y})");
+        }
+        // a hole that reaches out, and one in the other
+        for holes in [[square(9.0, 2.0), square(3.0, 2.0)], [square(3.0, 4.0), square(4.0, 1.0)]] {
+            assert!(Area::with_holes(square(0.0, 10.0), &holes).is_err());
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The one door for terrain files: what a file is, is told from its first bytes and never from its name.
+
+mod obj;
+mod ply;
+pub(super) mod surface;
+#[cfg(test)]
+mod tests;
+
+pub use obj::parse as parse_obj;
+pub use ply::parse as parse_ply;
+
+#[cfg(feature = "cloud")]
+use super::cloud;
+use super::geotiff;
+use super::grid::{self, Grid};
+use super::stl::{self, Facet, Format, Soup};
+use crate::error::{Error, Result};
+use crate::rock::Vec3;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// What is asked of a file beside its triangles.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Options {
+    /// What part of an elevation model or point cloud is used; absent = all.
+    pub crop: Option<Crop>,
+    /// Side of the cells to use (m): of a grid not below its own; of a cloud, the cell of which the lowest point is kept.
+    pub resample_m: Option<f64>,
+    /// Classes of the points that are ground (ASPRS); empty = 2.
+    pub classes: Vec<u8>,
+    /// EPSG code of the scene.
+    pub epsg: Option<u32>,
+}
+
+/// A part of the map.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Crop {
+    /// A box: west, south, east, north (m), and what is kept around it (m).
+    Box([f64; 4], f64),
+    /// What rocks can reach.
+    Reach {
+        /// Boxes of the places where rocks start (m).
+        starts: Vec<[f64; 4]>,
+        /// Tangent of the lowest angle under which a rock comes to its start from above (–).
+        slope: f64,
+        /// What is kept around it (m).
+        margin_m: f64,
+    },
+}
+
+/// A file as it was read, before it is cropped, resampled and cut into triangles.
+#[derive(Debug)]
+pub(super) enum Loaded {
+    /// Triangles, in coordinates of the file.
+    Mesh(Soup),
+    /// Heights, in map coordinates.
+    Grid { grid: Grid, format: Format, epsg: Option<u32> },
+    /// Ground points, in map coordinates.
+    #[cfg(feature = "cloud")]
+    Cloud(cloud::Cloud),
+}
+
+/// How a file begins, and what it is.
+const MARKS: [(&[u8], Format); 6] = [
+    (b"II*\0", Format::GeoTiff),
+    (b"MM\0*", Format::GeoTiff),
+    (b"II+\0", Format::GeoTiff),
+    (b"MM\0+", Format::GeoTiff),
+    (b"ply", Format::Ply),
+    (b"LASF", Format::Cloud),
+];
+
+/// Files that GDAL or a laser tool turns into one of the formats: how they begin, name, command.
+const ELSEWHERE: [(&[u8], &str, &str); 5] = [
+    (b"SQLite format 3\0", "a GeoPackage", "gdal_translate -of GTiff"),
+    (b"\x89HDF", "an HDF5 or NetCDF file", "gdal_translate -of GTiff"),
+    (b"CDF", "a NetCDF file", "gdal_translate -of GTiff"),
+    (b"<VRTDataset", "a virtual raster", "gdal_translate -of GTiff"),
+    (b"\0\0\0\x0cjP", "a JPEG 2000 picture", "gdal_translate -of GTiff"),
+];
+
+/// Reads a file of any format.
+pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
+    let head = head(path)?;
+    let format = format_of(&head);
+    let whole = || std::fs::read(path).map_err(Error::file("read", path));
+    match format {
+        Some(Format::GeoTiff) => {
+            let window = if let Some(Crop::Box(box_m, margin_m)) = &options.crop {
+                Some(wider(*box_m, *margin_m))
+            } else {
+                None
+            };
+            let geotiff::Raster { grid, epsg } = geotiff::read(path, window, options.epsg)?;
+            Ok(Loaded::Grid { grid, format: Format::GeoTiff, epsg })
+        }
+        Some(Format::AsciiGrid) => {
+            Ok(Loaded::Grid { grid: Grid::read(path)?, format: Format::AsciiGrid, epsg: None })
+        }
+        Some(Format::Ply) => ply::parse(&whole()?, path).map(Loaded::Mesh),
+        Some(Format::Obj) => obj::parse(&whole()?, path).map(Loaded::Mesh),
+        Some(Format::Cloud) => read_cloud(path, options),
+        Some(Format::Ascii | Format::Binary) | None => {
+            if let Some((_, kind, command)) =
+                ELSEWHERE.iter().find(|(mark, ..)| head.starts_with(mark))
+            {
+                let remedy = format!("write it as GeoTIFF: {command} {} out.tif", path.display());
+                return Err(Error::input(path, "start", format!("found {kind}"), remedy));
+            }
+            stl::read(path).map(Loaded::Mesh)
+        }
+    }
+}
+
+/// Reads an elevation model: `GeoTIFF` or ESRI ASCII grid.
+///
+/// # Errors
+/// A file that cannot be read, or is none of them.
+pub fn read_grid(path: &Path) -> Result<Grid> {
+    if let Loaded::Grid { grid, .. } = read(path, &Options::default())? {
+        return Ok(grid);
+    }
+    Err(wrong(path, "start", "found no grid", "write a GeoTIFF or an ESRI ASCII grid"))
+}
+
+#[cfg(feature = "cloud")]
+fn read_cloud(path: &Path, options: &Options) -> Result<Loaded> {
+    cloud::read(path, options).map(Loaded::Cloud)
+}
+
+#[cfg(not(feature = "cloud"))]
+fn read_cloud(path: &Path, _: &Options) -> Result<Loaded> {
+    let remedy = "build rockfall with `--features cloud`, or make an elevation model of it: pdal translate IN.laz OUT.tif -w gdal --writers.gdal.resolution=1 --writers.gdal.output_type=min";
+    Err(Error::input(path, "start", "found a LAS or LAZ point cloud", remedy))
+}
+
+fn head(path: &Path) -> Result<Vec<u8>> {
+    let mut head = Vec::new();
+    let file = File::open(path).map_err(Error::file("read", path))?;
+    file.take(4096).read_to_end(&mut head).map_err(Error::file("read", path))?;
+    Ok(head)
+}
+
+fn format_of(head: &[u8]) -> Option<Format> {
+    let marked = MARKS.iter().find(|(mark, _)| head.starts_with(mark)).map(|(_, format)| *format);
+    marked
+        .or_else(|| grid::begins_like_grid(head).then_some(Format::AsciiGrid))
+        .or_else(|| obj::begins_like_obj(head).then_some(Format::Obj))
+}
+
+/// A box with more around it.
+pub(super) fn wider([west, south, east, north]: [f64; 4], margin_m: f64) -> [f64; 4] {
+    [west - margin_m, south - margin_m, east + margin_m, north + margin_m]
+}
+
+/// The triangles of a convex polygon: a fan from its first corner.
+fn fan(polygon: &[Vec3]) -> impl Iterator<Item = Facet> + '_ {
+    (2..polygon.len()).map(|k| [polygon[0], polygon[k - 1], polygon[k]])
+}
+
+fn parsed(word: &[u8]) -> Option<f64> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+fn wrong(file: &Path, place: impl Into<String>, found: impl Into<String>, remedy: &str) -> Error {
+    Error::input(file, place, found, remedy)
+}

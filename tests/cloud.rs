@@ -1,0 +1,201 @@
+//! Point clouds: LAZ says what LAS says, and a thinned cloud is the slope it was measured on.
+#![cfg(feature = "cloud")]
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use las::point::{Classification, Format};
+use las::{Builder, Point, Writer};
+use rockfall::rock::Vec3;
+use rockfall::terrain::cloud::{self, Cloud};
+use rockfall::terrain::formats::Options;
+use rockfall::terrain::grid::Grid;
+use rockfall::terrain::read::Source;
+use rockfall::terrain::stl::write_ascii;
+use rockfall::terrain::weld::Up;
+use rockfall::terrain::{Sheet, Terrain};
+use std::io::Cursor;
+use std::path::Path;
+
+/// A tilted plane in map coordinates, with vegetation above and a low point of noise below.
+fn points() -> Vec<Point> {
+    let mut all = Vec::new();
+    for k in 0..6000u32 {
+        // a lattice of irrational steps covers the square evenly
+        let (u, v) =
+            ((f64::from(k) * 0.618_033_988_75).fract(), (f64::from(k) * 0.754_877_666_25).fract());
+        let (x, y) = (
+            2_600_000.0 + (3200.0 * u).round() / 100.0,
+            1_200_000.0 + (3200.0 * v).round() / 100.0,
+        );
+        let z = ground_m(x, y);
+        let (z, class) = match k % 5 {
+            0 => (z + 6.0, Classification::HighVegetation),
+            1 if k % 100 == 1 => (z - 30.0, Classification::LowPoint),
+            _ => (z, Classification::Ground),
+        };
+        all.push(Point { x, y, z, classification: class, ..Point::default() });
+    }
+    all
+}
+
+fn ground_m(x: f64, y: f64) -> f64 {
+    50.0 + 0.5 * (x - 2_600_000.0) - 0.25 * (y - 1_200_000.0)
+}
+
+fn written(is_compressed: bool) -> Vec<u8> {
+    file_of(points(), is_compressed)
+}
+
+fn file_of(points: Vec<Point>, is_compressed: bool) -> Vec<u8> {
+    let mut builder = Builder::from((1, 4));
+    builder.point_format = Format::new(6).unwrap();
+    builder.point_format.is_compressed = is_compressed;
+    for (axis, offset) in [
+        (&mut builder.transforms.x, 2_600_000.0),
+        (&mut builder.transforms.y, 1_200_000.0),
+        (&mut builder.transforms.z, 0.0),
+    ] {
+        (axis.scale, axis.offset) = (0.001, offset);
+    }
+    let mut writer = Writer::new(Cursor::new(Vec::new()), builder.into_header().unwrap()).unwrap();
+    for point in points {
+        writer.write_point(Point { gps_time: Some(0.0), ..point }).unwrap();
+    }
+    writer.into_inner().unwrap().into_inner()
+}
+
+fn read(bytes: Vec<u8>, options: &Options) -> Cloud {
+    cloud::parse(Cursor::new(bytes), Path::new("cloud.laz"), options).unwrap()
+}
+
+#[test]
+fn laz_says_what_las_says() {
+    let (las, laz) = (written(false), written(true));
+    assert!(laz.len() < las.len() / 2);
+    let las = read(las, &Options::default());
+    assert_eq!(read(laz, &Options::default()), las);
+    // one point a cell, the ground alone, to a millimetre
+    assert!((900..=1024).contains(&las.points_m().len()), "{}", las.points_m().len());
+    for point in las.points_m() {
+        assert!((point.z - ground_m(point.x, point.y)).abs() < 1.1e-3, "{point}");
+    }
+    let coarse = read(written(true), &Options { resample_m: Some(4.0), ..Options::default() });
+    assert_eq!(coarse.points_m().len(), 64);
+    let trees = read(written(true), &Options { classes: vec![5], ..Options::default() });
+    assert!(trees.points_m().iter().all(|p| p.z > ground_m(p.x, p.y) + 5.0));
+}
+
+/// The triangles cover the hull of the points once, face up, and hold their heights.
+#[test]
+fn the_surface_is_the_slope() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("cloud.laz");
+    std::fs::write(&path, written(true)).unwrap();
+    let sheet = Sheet { path, ground: 0, is_tree: false };
+    let source = Source { sheet, up: Up::Z, scale: 1.0, options: Some(Options::default()) };
+    let origin_m = Vec3::new(2_600_000.0, 1_200_000.0, 0.0);
+    let (terrain, health) = Terrain::read(&[source.clone()], origin_m, None).unwrap();
+    assert!(health.files[0].notes[0].contains("6000 points"), "{:?}", health.files[0].notes);
+    assert_eq!(
+        (health.non_manifold_edges.count, health.flipped_edges.count, health.border_loops),
+        (0, 0, 1)
+    );
+    for k in 0..1000 {
+        let (x, y) = (1.0 + 0.03 * f64::from(k), 2.0 + (7.0 * f64::from(k)) % 28.0);
+        let at = terrain
+            .ground_below(x + origin_m.x - terrain.origin_m.x, y + origin_m.y - terrain.origin_m.y)
+            .unwrap();
+        let expected = ground_m(x + origin_m.x, y + origin_m.y);
+        assert!((at + terrain.origin_m.z - expected).abs() < 3e-3, "{x} {y}");
+    }
+    let (again, _) = Terrain::read(&[source], origin_m, None).unwrap();
+    assert_eq!((again.vertices_m, again.triangles), (terrain.vertices_m, terrain.triangles));
+}
+
+#[test]
+fn a_damaged_or_empty_cloud_is_refused() {
+    let parse = |bytes: Vec<u8>, options: &Options| {
+        cloud::parse(Cursor::new(bytes), Path::new("cloud.las"), options)
+    };
+    let said = parse(written(false), &Options { classes: vec![17], ..Options::default() })
+        .unwrap_err()
+        .to_string();
+    assert!(said.contains("no point of the classes [17]") && said.contains("{2, 5, 7}"), "{said}");
+    let whole = written(true);
+    for length in (0..whole.len()).step_by(97) {
+        let _ = parse(whole[..length].to_vec(), &Options::default());
+    }
+    assert!(parse(whole[..300].to_vec(), &Options::default()).is_err());
+}
+
+/// A slope as STL and as points at the same corners: other diagonals, the same statistics.
+#[test]
+fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
+    let dir = tempfile::tempdir().unwrap();
+    let (columns, rows) = (31usize, 41usize);
+    let height = |column: usize, row: usize| {
+        60.0 - 1.75 * row as f64 + 0.25 * ((column * 7 + row * 13) % 5) as f64
+    };
+    let values =
+        (0..rows).flat_map(|row| (0..columns).map(move |column| Some(height(column, row))));
+    let corner_m = [2_600_000.0, 1_200_000.0];
+    let grid = Grid { columns, rows, corner_m, cell_m: 2.0, values: values.collect() };
+    write_ascii(&dir.path().join("slope.stl"), "slope", &grid.facets(Vec3::zeros())).unwrap();
+    let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let points = cells.map(|(column, row)| {
+        let [x, y] = grid.centre_m(column, row);
+        Point {
+            x,
+            y,
+            z: height(column, row),
+            classification: Classification::Ground,
+            ..Point::default()
+        }
+    });
+    std::fs::write(dir.path().join("slope.laz"), file_of(points.collect(), true)).unwrap();
+    let runouts = |terrain: &str| -> Vec<f64> {
+        let scene = format!(
+            "title = \"Cloud\"\nseed = 5\n[[terrain]]\nground = \"rock\"\n{terrain}\n\
+             [grounds.rock]\nnormal_stiffness_n_m = 1e9\nshear_stiffness_n_m = 0.25e9\nfriction_angle_deg = 33.0\n\
+             restitution = 0.3\nrolling_friction = 0.6\nroughness_deg = 5.0\n\
+             [rocks]\ndensity_kg_m3 = 2700.0\nradius_m = 0.3\n\
+             [release]\ncount = 400\nheight_m = 0.5\nvelocity_m_s = [0.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+             line_m = [[2600010.0, 1200075.0], [2600050.0, 1200075.0]]\n[record]\npaths = 0\n"
+        );
+        let (file, out) = (dir.path().join("scene.toml"), dir.path().join("out"));
+        std::fs::write(&file, scene).unwrap();
+        let program = std::process::Command::new(env!("CARGO_BIN_EXE_rockfall"))
+            .args([
+                "run",
+                file.to_str().unwrap(),
+                "--quiet",
+                "--overwrite",
+                "--out",
+                out.to_str().unwrap(),
+            ])
+            .output()
+            .unwrap();
+        assert!(program.status.success(), "{}", String::from_utf8_lossy(&program.stderr));
+        let table = std::fs::read_to_string(out.join("releases.csv")).unwrap();
+        let column =
+            table.lines().next().unwrap().split(',').position(|name| name == "runout_m").unwrap();
+        table
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').nth(column).unwrap().parse().unwrap())
+            .collect()
+    };
+    let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
+    let variance = |all: &[f64]| {
+        all.iter().map(|x| (x - mean(all)).powi(2)).sum::<f64>() / (all.len() - 1) as f64
+    };
+    let (mesh, cloud) =
+        (runouts("mesh = \"slope.stl\""), runouts("file = \"slope.laz\"\nresample_m = 2.0"));
+    let difference = mean(&mesh) - mean(&cloud);
+    // four standard errors of the difference of two means
+    let error = ((variance(&mesh) + variance(&cloud)) / mesh.len() as f64).sqrt();
+    assert!(
+        mean(&mesh) > 10.0 && difference.abs() < 4.0 * error,
+        "{difference} of {}, {error}",
+        mean(&mesh)
+    );
+}
