@@ -6,6 +6,7 @@ mod cost;
 mod grounds;
 mod inputs;
 mod listing;
+mod settings;
 mod slips;
 mod stiffness;
 mod watch;
@@ -20,9 +21,7 @@ use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::release::{self, Lost, Release, Releases};
-use crate::scene::{
-    BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene, SolverTable,
-};
+use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
 use crate::step::{Scheme, Settings};
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
@@ -160,12 +159,6 @@ pub struct Plan {
     pub fast_warnings: Vec<FastWarning>,
 }
 
-/// Local error of the adaptive scheme (m/s): statistics of runout no longer change below it.
-const TOLERANCE_M_S: f64 = 0.05;
-/// Local error of the reference scheme (m/s).
-const REFERENCE_TOLERANCE_M_S: f64 = 1e-8;
-/// Largest step of the rigid scheme (s).
-const RIGID_STEP_S: f64 = 0.01;
 /// Simulated time that all but endlessly rolling rocks stay below (s); the longest journeys of
 /// kilometre-long slopes take about a minute.
 const LONGEST_S: f64 = 120.0;
@@ -184,7 +177,7 @@ impl Plan {
     /// # Errors
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
-        let step = settings(&scene.solver);
+        let step = settings::in_force(&scene.solver);
         grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
@@ -273,7 +266,7 @@ impl Plan {
             fast_warnings,
             terrain,
         };
-        if plan.rock_against_rock.is_kept() {
+        if plan.rock_against_rock.is_kept() && plan.cost(plan.count).is_modest() {
             plan.world()?;
         }
         Ok(plan)
@@ -326,26 +319,6 @@ impl Plan {
     pub fn without_kernels(mut self) -> Self {
         self.step.plane_impacts = false;
         self
-    }
-}
-
-/// The step in force, defaults filled in. What a scheme has no use for is 0 (tolerance) or without limit (step).
-fn settings(solver: &SolverTable) -> Settings {
-    let scheme = solver.scheme();
-    let (tolerance_m_s, step_s) = match scheme {
-        Scheme::Adaptive => (TOLERANCE_M_S, f64::INFINITY),
-        Scheme::Reference => (REFERENCE_TOLERANCE_M_S, f64::INFINITY),
-        Scheme::Rigid => (0.0, RIGID_STEP_S),
-        // the scene check has made sure that dda has a step of its own
-        Scheme::Dda => (0.0, f64::INFINITY),
-    };
-    Settings {
-        scheme,
-        tolerance_m_s: solver.tolerance_m_s.unwrap_or(tolerance_m_s),
-        step_s: solver.step_s.unwrap_or(step_s),
-        shear_memory: solver.shear_memory.unwrap_or(true),
-        plane_impacts: matches!(scheme, Scheme::Adaptive | Scheme::Reference),
-        capture_speed_m_s: solver.capture_speed_m_s,
     }
 }
 

@@ -131,11 +131,11 @@ impl Feature {
 /// # Errors
 /// A file that cannot be read or is of another format, coordinates that are no metres of a map, no feature at all.
 pub fn read(path: &Path) -> Result<Layer> {
-    let bytes = std::fs::read(path).map_err(Error::file("read", path))?;
+    let bytes = crate::file::read(path, crate::file::LONGEST_TEXT)?;
     let layer = if shapefile::begins_like_shapefile(&bytes) {
         let beside = |ending: &str| {
             let file = companion(path, ending);
-            file.map(|file| std::fs::read(&file).map_err(Error::file("read", &file))).transpose()
+            file.map(|file| crate::file::read(&file, crate::file::LONGEST_TEXT)).transpose()
         };
         shapefile::parse(&bytes, beside("dbf")?.as_deref(), beside("prj")?.as_deref(), path)?
     } else {

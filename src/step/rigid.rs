@@ -22,7 +22,7 @@ const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
 /// Local error of an impact followed in its own time (–, relative to its speed).
-const IMPACT: f64 = 2e-5;
+pub(crate) const IMPACT: f64 = 2e-5;
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 100;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).

@@ -42,7 +42,7 @@ pub struct Cloud {
 /// # Errors
 /// A file that cannot be read or is damaged, coordinates in degrees, no point of the classes asked for.
 pub fn read(path: &Path, options: &Options) -> Result<Cloud> {
-    let file = std::fs::File::open(path).map_err(Error::file("read", path))?;
+    let file = crate::file::open(path, crate::file::LONGEST_MESH)?;
     parse(std::io::BufReader::new(file), path, options)
 }
 

@@ -5,8 +5,9 @@ use crate::contact::pair::{Tie, between};
 use crate::coupled::bridge::Motion;
 use crate::ground::Law;
 use crate::rock::Vec3;
+use crate::step::impact::{Struck, throw};
 use crate::step::law::{Body, within};
-use crate::step::rigid::rub;
+use crate::step::rigid::{IMPACT, rub};
 use crate::step::slide::Mode;
 
 /// One rock inside a step.
@@ -268,6 +269,21 @@ impl Foot {
         (self.push, self.drag, self.turn) = (next.0, next.1, next.2);
         let load = change.load(&ball.body);
         ball.take(&load);
+    }
+
+    /// Impulses of an impact at velocity `v` and spin `w`: the limit of stiff springs, the same as for a rock alone.
+    pub(super) fn impact(
+        &mut self,
+        (body, law): (&Body, &Law),
+        (v, w): (&Vec3, &Vec3),
+        captured: bool,
+    ) {
+        let struck = Struck { normal: self.n, law, stiffness_scale: 1.0, captured };
+        let thrown = throw(body, &[struck], (v, w), IMPACT);
+        let load = (thrown.velocity_m_s - v) * body.mass;
+        self.push = self.n.dot(&load).max(0.0);
+        self.drag = load - self.n * self.n.dot(&load);
+        self.turn = (thrown.spin_rad_s - w) * body.inertia + self.n.cross(&self.drag) * body.radius;
     }
 
     /// Impulses for velocity `v` and spin `w` without this contact's own.

@@ -206,9 +206,7 @@ impl Pile {
         if let Some(touch) = hit {
             let law = world.law(touch.triangle);
             let mut foot = Foot::new(k, (touch.feature, touch.triangle), touch.normal, law);
-            let restitution = if ball.blows < LIVELY { law.restitution } else { 0.0 };
-            foot.target = -restitution * foot.n.dot(&v);
-            foot.strike(body, &v, &ball.w);
+            foot.impact((body, law), (&v, &ball.w), ball.blows >= LIVELY);
             let before = (ball.v, ball.w);
             ball.take_late(&foot.load(body), s);
             let mean = mean_late(ball, &before, s);

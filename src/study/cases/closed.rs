@@ -68,29 +68,6 @@ pub(super) fn skidded(setup: &Setup, v: f64, t: f64, has_springs: bool) -> (f64,
     (way - back, 5.0 / 7.0 * v)
 }
 
-/// Centre after `t` (s) of one rigid impact on z = 0 of a sphere thrown from `setup`, and its spin: the impulse along
-/// the surface is the smaller of what stops the slip, `2/7 m u`, and what friction gives, `μ (1 + e) m v_n`.
-pub(super) fn struck(setup: &Setup, t: f64) -> ([f64; 3], [f64; 3]) {
-    let (g, r) = (setup.gravity_m_s2, setup.rock.radius_m);
-    let (v, w, c) = (setup.velocity_m_s, setup.spin_rad_s, setup.centre_m);
-    let fall = (v.z.powi(2) + 2.0 * g * (c.z - r)).sqrt();
-    let touch = (fall + v.z) / g;
-    let restitution = setup.ground.restitution.unwrap_or(1.0);
-    let slip = [v.x - r * w.y, v.y + r * w.x];
-    let fast = math::hypot(slip[0], slip[1]);
-    let stop = 2.0 / 7.0 * fast;
-    let most = math::tan(setup.ground.friction_angle_rad) * (1.0 + restitution) * fall;
-    let share = if fast > 0.0 { stop.min(most) / fast } else { 0.0 };
-    let out = [v.x - share * slip[0], v.y - share * slip[1]];
-    let left = t - touch;
-    let z = r + restitution * fall * left - 0.5 * g * left * left;
-    let turn = 2.5 / r * share;
-    (
-        [c.x + v.x * touch + out[0] * left, c.y + v.y * touch + out[1] * left, z],
-        [w.x - turn * slip[1], w.y + turn * slip[0], w.z],
-    )
-}
-
 /// Where a rising function is zero.
 pub(super) fn zero_of(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..80 {

@@ -16,7 +16,6 @@ use super::grid::{self, Grid};
 use super::stl::{self, Facet, Format, Soup};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -84,7 +83,7 @@ const ELSEWHERE: [(&[u8], &str, &str); 5] = [
 pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
     let head = head(path)?;
     let format = format_of(&head);
-    let whole = || std::fs::read(path).map_err(Error::file("read", path));
+    let whole = || crate::file::read(path, crate::file::LONGEST_MESH);
     match format {
         Some(Format::GeoTiff) => {
             let window = if let Some(Crop::Box(box_m, margin_m)) = &options.crop {
@@ -137,7 +136,7 @@ fn read_cloud(path: &Path, _: &Options) -> Result<Loaded> {
 
 fn head(path: &Path) -> Result<Vec<u8>> {
     let mut head = Vec::new();
-    let file = File::open(path).map_err(Error::file("read", path))?;
+    let file = crate::file::open(path, crate::file::LONGEST_MESH)?;
     file.take(4096).read_to_end(&mut head).map_err(Error::file("read", path))?;
     Ok(head)
 }

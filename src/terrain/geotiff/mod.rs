@@ -13,7 +13,6 @@ use crate::error::{Error, Result};
 use crate::terrain::grid::{self, Grid};
 use lzw::Packed;
 use place::Place;
-use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
@@ -58,7 +57,7 @@ pub struct Raster {
 /// A file that cannot be read or is damaged, has no georeference, a rotated or geographic one, cells that are not square,
 /// several bands, or heights that are not finite.
 pub fn read(path: &Path, box_m: Option<[f64; 4]>, epsg: Option<u32>) -> Result<Raster> {
-    let file = File::open(path).map_err(Error::file("read", path))?;
+    let file = crate::file::open(path, crate::file::LONGEST_MESH)?;
     let length = file.metadata().map_err(Error::file("read", path))?.len();
     parse(BufReader::with_capacity(1 << 16, file), length, path, (box_m, epsg))
 }
