@@ -56,7 +56,9 @@ fn rasters(maps: &Path, frame: &Value) {
     let grids = std::fs::read_dir(maps).unwrap().map(|entry| entry.unwrap().path());
     let mut seen = 0;
     // ground and trees, which the figures are drawn on, are grids alone
-    let maps = grids.filter(|path| path.with_extension("tif").exists());
+    // and the ground as used has cells of its own
+    let maps = grids.filter(|path| path.file_stem().is_some_and(|stem| stem != "ground"));
+    let maps = maps.filter(|path| path.with_extension("tif").exists());
     for asc in maps.filter(|path| path.extension().is_some_and(|end| end == "asc")) {
         let (Some(tif), Some(grid)) = (raster(&asc.with_extension("tif")), raster(&asc)) else {
             return;
