@@ -36,7 +36,7 @@ pub(crate) fn net(rocks: usize) -> BarrierView {
 
 /// A line that so many rocks cross; every third is stopped by a barrier before.
 fn line(number: usize, name: &str, rocks: usize) -> Line {
-    let energy = |k: usize| 400.0 * 1.07_f64.powi(i32::try_from(k % 120).unwrap());
+    let energy = |k: usize| 400.0 * 1.07_f64.powi(i32::try_from(k % 120).expect("below 120"));
     let point = |k: usize| LinePoint {
         release: k,
         along_m: (k * 7 % 60) as f64,
