@@ -202,3 +202,57 @@ fn rocks_of_every_size_lift_off_an_edge_alike() {
         assert!((cos - 10.0 / 17.0).abs() < 0.005, "R {radius}: {cos}");
     }
 }
+
+/// A noisy plane of square cells, larger than the ball sees.
+fn noisy(cell: f64, cells: usize, noise_m: f64) -> Terrain {
+    use common::zoo::{between, dice};
+    let chance = &mut dice(77, 0);
+    let half = 0.5 * cell * cells as f64;
+    let heights: Vec<f64> =
+        (0..(cells + 1).pow(2)).map(|_| noise_m * between(chance, -1.7, 1.7)).collect();
+    let at = |i: usize, j: usize| {
+        Vec3::new(i as f64 * cell - half, j as f64 * cell - half, heights[i * (cells + 1) + j])
+    };
+    let mut facets = Vec::new();
+    for i in 0..cells {
+        for j in 0..cells {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            facets.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    terrain(facets)
+}
+
+/// A rock far larger than its triangles on a noisy surface: e = 1 keeps the energy, e = 0.5 rebounds as on a plane, within 5 %.
+#[test]
+fn a_rock_larger_than_its_triangles_rebounds_as_on_a_plane() {
+    for noise_m in [0.001, 0.005] {
+        let terrain = noisy(0.1, 40, noise_m);
+        for restitution in [1.0, 0.5] {
+            for place in [[0.02, 0.01], [-0.07, 0.05]] {
+                let (radius, speed) = (5.0, 10.0);
+                let ground = rockfall::ground::Ground {
+                    friction_angle_rad: 0.0,
+                    restitution: Some(restitution),
+                    ..GROUND
+                };
+                let rock = Rock { radius_m: radius, ..ROCK };
+                let case = Case { ground, rock, tolerance_m_s: 0.05, ..CASE };
+                let start = [[place[0], place[1], radius + 0.02], [0.0, 0.0, -speed], [0.0; 3]];
+                let run = case.run(&terrain, start, 0.2);
+                let v = run.end.velocity_m_s;
+                // speed where it touched, by energy
+                let up = (v.norm_squared() + 2.0 * G * (run.end.position_m.z - radius)).sqrt();
+                let e = up / (speed * speed + 2.0 * G * 0.02).sqrt();
+                println!("noise {noise_m} e {restitution} {place:?}: {e} {:?}", run.effort);
+                let omega = (GROUND.normal_stiffness_n_m / rock.mass_kg()).sqrt();
+                let fall = (speed * speed + 2.0 * G * 0.02).sqrt();
+                let zeta = rockfall::ground::damping_ratio(restitution);
+                let plane = rockfall::ground::normal_impact(fall, omega, zeta, G);
+                let right = plane.rebound_m_s.unwrap() / fall;
+                let allowed = if restitution > 0.9 { 2e-3 } else { 0.05 * right };
+                assert!((e - right).abs() < allowed, "noise {noise_m} {place:?}: {e} for {right}");
+            }
+        }
+    }
+}
