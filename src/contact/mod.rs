@@ -40,7 +40,7 @@ impl Feature {
     pub const NONE: Self = Self { kind: FeatureKind::Face, id: u32::MAX };
 }
 
-/// Where a ball touches the mesh or presses into it: a patch ([`patch`]), nearly always a single nearest point.
+/// Where a ball touches the mesh or presses into it: a patch (`contact::patch`), nearly always a single nearest point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touch {
     /// What of the mesh is nearest.

@@ -6,7 +6,7 @@
 //! it; a vertex where the centre stands behind every edge at it. Flat and hollow edges fail by themselves, from
 //! either side of a sheet, and every contact belongs to one feature. Only where a saddle of the distance is inside the
 //! ball too – a hollow edge that holds the foot of the centre on both its faces, or a vertex among such – can several
-//! minima belong together: then [`super::patch`] tells.
+//! minima belong together: then `contact::patch` tells.
 
 mod pressed;
 mod take;

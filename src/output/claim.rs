@@ -11,8 +11,8 @@ const LOCK: &str = ".lock";
 
 /// The right to write into a folder, until it is dropped or the process ends, however it ends.
 ///
-/// Until [`Self::keep`] is called nothing in the folder is worth keeping: dropped before, the claim removes what it and
-/// [`Self::made`] made, and nothing else.
+/// Until `keep` is called nothing in the folder is worth keeping: dropped before, the claim removes what it and
+/// `made` made, and nothing else.
 #[derive(Debug)]
 pub struct Claim {
     /// Closing it gives the folder free.

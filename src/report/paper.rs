@@ -174,7 +174,7 @@ impl<'a> Paper<'a> {
         self.put(&Circle::new(tenths(centre), radius, ShapeStyle::from(fill).filled()));
     }
 
-    /// A mark of one of [`SHAPES`] forms: series are told apart without colour.
+    /// A mark of one of `SHAPES` forms: series are told apart without colour.
     pub fn mark(&self, shape: usize, (x, y): Spot, radius_px: f64, fill: RGBColor) {
         let r = 1.2 * radius_px;
         match shape % SHAPES {

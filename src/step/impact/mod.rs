@@ -6,7 +6,7 @@
 //!
 //! **One plane, with weight** (schemes `adaptive` and `reference`):
 //!
-//! ```ignore
+//! ```text
 //! let plane = Plane::new(&body, law, 1e-4); // once for a rock and a ground; 1e-10 for `reference`
 //! match plane.follow(&n, &v, &w) {          // first touch: penetration 0, n·v < 0, springs at rest, not captured
 //!     Followed::Left(out) => …,             // time, shift, velocity, spin, deepest, losses where penetration is 0 again
@@ -38,7 +38,6 @@
 //!
 //! Losses are each ≥ 0 and add up to the energy that is gone to rounding: the parts are summed along the steps and scaled by the
 //! exact total. What springs store when a contact opens is in them, under damping and rolling.
-#![allow(dead_code, unused_imports, reason = "wired in next")]
 
 mod frozen;
 mod normal;
@@ -49,8 +48,8 @@ mod run;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use frozen::{Struck, Thrown, throw};
-pub(crate) use plane::{Followed, Plane, Rebound};
+pub(crate) use frozen::{Struck, throw};
+pub(crate) use plane::{Followed, Plane};
 
 /// What following an impact has cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
