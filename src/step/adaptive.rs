@@ -346,12 +346,7 @@ pub(crate) fn accept(
     for spot in &grip.spots[..grip.spot_count] {
         let hold = &mut grip.holds[spot.hold];
         next.shear[spot.hold] = carry(next.shear[spot.hold], &hold.n, &spot.n);
-        (hold.feature, hold.triangle) = (spot.feature, spot.triangle);
-        (hold.shear, hold.roll) = spot.stretches(hh);
-        hold.n = spot.n;
-        hold.push = spot.push;
-        hold.slides = spot.drag.norm() >= spot.law.friction * spot.push * (1.0 - 1e-9);
-        hold.closed = spot.is_closed(&end.v, hh);
+        spot.remember(spot.stretches(hh), spot.is_closed(&end.v, hh), hold);
     }
     grip.fresh = !grip.merge_lost(world);
     let next = &mut grip.rates[0];

@@ -318,11 +318,7 @@ impl Grip {
             let hold = &mut self.holds[spot.hold];
             let last = &mut self.impact.rates[STAGES - 1];
             last.shear[spot.hold] = carry(last.shear[spot.hold], &hold.n, &spot.n);
-            (hold.feature, hold.triangle) = (spot.feature, spot.triangle);
-            (hold.shear, hold.roll, hold.n) = (spot.shear, spot.roll, spot.n);
-            hold.push = spot.push;
-            hold.slides = spot.drag.norm() >= spot.law.friction * spot.push * (1.0 - 1e-9);
-            hold.closed = spot.push > 0.0 || spot.pen > 0.0;
+            spot.remember((spot.shear, spot.roll), spot.push > 0.0 || spot.pen > 0.0, hold);
         }
     }
 

@@ -8,6 +8,7 @@
 use super::joint;
 use super::slide::{Answers, Frame, Mode, Pair};
 use crate::contact::Feature;
+use crate::contact::hold::Hold;
 use crate::ground::Law;
 use crate::rock::{Rock, Vec3};
 
@@ -152,6 +153,14 @@ impl Spot {
     #[inline]
     pub fn is_closed(&self, v: &Vec3, h: f64) -> bool {
         self.push > 0.0 || self.pen_at(v, h) > 0.0
+    }
+
+    /// Writes the contact into its memory, with its stretches and whether it still holds the rock.
+    pub(crate) fn remember(&self, (shear, roll): (Vec3, Vec3), closed: bool, hold: &mut Hold) {
+        (hold.feature, hold.triangle, hold.n) = (self.feature, self.triangle, self.n);
+        (hold.shear, hold.roll, hold.push) = (shear, roll, self.push);
+        hold.slides = self.drag.norm() >= self.law.friction * self.push * (1.0 - 1e-9);
+        hold.closed = closed;
     }
 
     /// Stretches at the stage's end: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`, and the same for rolling.
