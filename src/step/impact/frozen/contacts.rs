@@ -8,8 +8,8 @@ use crate::step::impact::normal::NONE;
 use crate::step::impact::rub::Element;
 use crate::step::law::Body;
 
-/// Sweeps of projections at the end, at most.
-const SWEEPS: u32 = 5000;
+/// A speed along a normal that is none, in impact speeds (–).
+const REST: f64 = 1e-9;
 /// What a captured contact throws back by its own spring may be so much more than its restitution says (–).
 const ALLOWANCE: f64 = 1.05;
 
@@ -113,20 +113,21 @@ impl Contacts {
         nothing: f64,
     ) -> Ended {
         let mut plastic = [0.0; MOST];
-        for _ in 0..SWEEPS {
-            let mut largest = 0.0f64;
-            for (k, contact) in self.list().iter().enumerate() {
-                let up = contact.n.dot(&v);
-                let own = ALLOWANCE * contact.kept * self.fastest[k] + nothing;
-                if up < 0.0 || (contact.captured && up <= own) {
-                    plastic[k] += 0.5 * up * up;
-                    v -= contact.n * up;
-                    largest = largest.max(up.abs());
-                }
-            }
-            if largest <= 1e-10 {
+        for _ in 0..=self.len {
+            let own = |k: usize| ALLOWANCE * self.list[k].kept * self.fastest[k] + nothing;
+            let stays = |k: usize| self.list[k].captured && self.list[k].n.dot(&v) <= own(k);
+            let held: [bool; MOST] = std::array::from_fn(|k| k < self.len && stays(k));
+            let next = self.nearest_allowed(&v, held);
+            if next == v {
                 break;
             }
+            self.share_plastic(
+                &v,
+                0.5 * (v.norm_squared() - next.norm_squared()),
+                held,
+                &mut plastic,
+            );
+            v = next;
         }
         let (was, is) = (self.energy(before), self.energy((v, w)));
         if self.conserve() && plastic.iter().all(|taken| *taken <= nothing * nothing) {
@@ -138,5 +139,47 @@ impl Contacts {
             (v, w) = (v * slower, w * slower);
         }
         Ended { v, w, plastic }
+    }
+
+    /// Closest velocity to `v` that comes nearer to no contact and neither nears nor leaves those that are `held`. In three
+    /// dimensions it is `v` itself, lies in one contact's plane, along the line of two, or is zero: each is tried.
+    fn nearest_allowed(&self, v: &Vec3, held: [bool; MOST]) -> Vec3 {
+        let is_allowed = |x: &Vec3| {
+            self.list().iter().zip(held).all(|(contact, held)| {
+                let up = contact.n.dot(x);
+                up >= -REST && (!held || up <= REST)
+            })
+        };
+        if is_allowed(v) {
+            return *v;
+        }
+        // Projections go through the origin: the longest is the nearest.
+        let mut best = Vec3::zeros();
+        let mut offer = |x: Vec3| {
+            if x.norm_squared() > best.norm_squared() && is_allowed(&x) {
+                best = x;
+            }
+        };
+        for (k, one) in self.list().iter().enumerate() {
+            offer(v - one.n * one.n.dot(v));
+            for other in &self.list()[k + 1..] {
+                if let Some(line) = one.n.cross(&other.n).try_normalize(REST) {
+                    offer(line * line.dot(v));
+                }
+            }
+        }
+        best
+    }
+
+    /// Books energy that ended in the contacts to those that stopped `v`, by the speeds they stopped.
+    fn share_plastic(&self, v: &Vec3, taken: f64, held: [bool; MOST], plastic: &mut [f64; MOST]) {
+        let stopped: [f64; MOST] = std::array::from_fn(|k| {
+            let up = if k < self.len { self.list[k].n.dot(v) } else { 0.0 };
+            if up < 0.0 || held[k] { up * up } else { 0.0 }
+        });
+        let sum: f64 = stopped.iter().sum();
+        for (plastic, stopped) in plastic.iter_mut().zip(stopped) {
+            *plastic += if sum > 0.0 { taken.max(0.0) * stopped / sum } else { 0.0 };
+        }
     }
 }
