@@ -3,7 +3,7 @@
 //!
 //! Around a place, the features that could touch anywhere within a margin are collected once and asked many times.
 //! A face touches where the centre's foot lies inside it; an edge where the centre stands outside of every face on
-//! it; a vertex where the centre stands behind every edge at it. PlaneKernel and hollow edges fail by themselves, from
+//! it; a vertex where the centre stands behind every edge at it. Flat and hollow edges fail by themselves, from
 //! either side of a sheet, and every contact belongs to one feature. Only where a saddle of the distance is inside the
 //! ball too – a hollow edge that holds the foot of the centre on both its faces, or a vertex among such – can several
 //! minima belong together: then `contact::patch` tells.

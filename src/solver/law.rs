@@ -17,7 +17,7 @@ use crate::rock::{Rock, Vec3};
 pub struct Body {
     /// Mass (kg).
     pub mass: f64,
-    /// Snapshot of inertia (kg m²).
+    /// Moment of inertia (kg m²).
     pub inertia: f64,
     /// Radius (m).
     pub radius: f64,

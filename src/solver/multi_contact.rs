@@ -1,4 +1,4 @@
-//! ContactRates contacts of one rock at once: sweeps, helped along by Newton jumps in the six unknowns.
+//! Several contacts of one rock at once: sweeps, helped along by Newton jumps in the six unknowns.
 //!
 //! Sweeping contact by contact settles slowly where two stiff contacts nearly oppose or nearly repeat each other.
 //! With the modes (open, closed, sticking, sliding) that the sweeps have found, the stage is one linear system for

@@ -1,4 +1,4 @@
-//! Partition within a window: who may meet whom before its end.
+//! Islands within a window: who may meet whom before its end.
 
 use super::{State, WorldBody};
 use crate::contact::pair::PairHistory;
@@ -110,7 +110,7 @@ fn nearest_gap(a: &Place, b: &Place, dt: f64) -> f64 {
 impl Meetings {
     /// Rocks that were deviated off their ways further than allowed and, as far as one knows, may have met one that they
     /// were not compared with, in ascending order. `after` gives each rock's place at the window's end and the largest
-    /// change of its velocity (m/s), `near` the pairs that can come into question, given how far each was deviation_m (m).
+    /// change of its velocity (m/s), `near` the pairs that can come into question, given how far each may deviate from its flight (m).
     pub(super) fn missed(
         &self,
         places: &[Place],

@@ -140,7 +140,7 @@ fn alone(
     end
 }
 
-/// ContactRates contacts; `K` of them at most, `N` numbers that change, `Q` that are summed up, `P` possible kinks.
+/// Several contacts; `K` of them at most, `N` numbers that change, `Q` that are summed up, `P` possible kinks.
 fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     (body, contacts, tolerance): (&Body, &[FrozenContact], f64),
     (v, w): (&Vec3, &Vec3),

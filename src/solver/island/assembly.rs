@@ -91,7 +91,7 @@ pub struct Island<'a> {
     /// The global system of fixed steps.
     pub(super) global: Global,
     /// Work space of rigid steps.
-    pub(super) island: RigidIsland,
+    pub(super) rigid: RigidIsland,
 }
 
 impl<'a> Island<'a> {
@@ -118,7 +118,7 @@ impl<'a> Island<'a> {
             pair_rates: vec![[Vec3::zeros(); STAGES]; pair_histories.len()],
             pair_forces,
             global: Global::default(),
-            island: RigidIsland::default(),
+            rigid: RigidIsland::default(),
             pair_histories,
         }
     }

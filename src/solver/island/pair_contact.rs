@@ -20,7 +20,7 @@ pub(super) struct PairContact {
     pub(super) c_n: f64,
     /// Too slow to rebound.
     pub(super) captured: bool,
-    /// ContactHistories in tension too.
+    /// Holds in tension too.
     pub(super) bond: Option<Bond>,
     /// Unit normal from the second to the first.
     pub(super) n: Vec3,

@@ -1,4 +1,4 @@
-//! Partition: rocks that may touch each other, directly or through others.
+//! Islands: rocks that may touch each other, directly or through others.
 
 /// A forest of sets; the smallest number of a set stands for it.
 #[derive(Debug, Clone)]

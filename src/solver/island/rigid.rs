@@ -68,7 +68,7 @@ impl Island<'_> {
         if let [member] = &mut self.members[..] {
             return alone(self.terrain, member, (longest, h_max));
         }
-        let mut island = std::mem::take(&mut self.island);
+        let mut island = std::mem::take(&mut self.rigid);
         island.begin(&self.members, &self.pair_histories);
         let dt = island.step_s(longest, h_max);
         let (terrain, pair_histories) = (self.terrain, &self.pair_histories);
@@ -88,7 +88,7 @@ impl Island<'_> {
             unsettled: !(settled && struck),
             ..Done::default()
         };
-        self.island = island;
+        self.rigid = island;
         if finite { Ok(done) } else { Err(StepError::NotFinite) }
     }
 
