@@ -233,6 +233,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         inputs: plan.inputs.clone(),
         title_block: plan.title_block.clone(),
         sources: plan.sources.clone(),
+        language: plan.language,
         warnings: plan.warnings.clone(),
         mesh_health,
     })

@@ -160,7 +160,8 @@ impl Panel {
     pub fn band(&self, paper: &Paper<'_>, band: &[(f64, f64, f64)], fill: RGBColor, opacity: f64) {
         let edge = |x: f64, y: f64, else_y: f64| {
             let (x, y) = self.at(x, y);
-            let y = if y.is_finite() { y } else { else_y };
+            // 0 on a logarithmic axis lies infinitely far below: the edge of the frame, not a missing bound
+            let y = if y.is_nan() { else_y } else { y };
             let Frame { left, top, right, bottom } = self.frame;
             (x.clamp(left, right), y.clamp(top, bottom))
         };

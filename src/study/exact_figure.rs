@@ -2,7 +2,7 @@
 
 use super::exact::{CaseStudy, Curve};
 use crate::report::axis::Axis;
-use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION};
+use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
@@ -29,7 +29,7 @@ pub(super) fn colour(scheme: Scheme) -> RGBColor {
 }
 
 /// The form of a scheme's marks.
-fn shape(scheme: Scheme) -> usize {
+pub(super) fn shape(scheme: Scheme) -> usize {
     match scheme {
         Scheme::Adaptive => 0,
         Scheme::Dda => 1,
@@ -95,7 +95,7 @@ fn key(paper: &Paper<'_>, panel: &Panel, study: &CaseStudy) {
     }
     for line in savings_in_words(study) {
         debug_assert!(text_width(&line, SMALL) < KEY_PX);
-        paper.text(&Label::new(line, (left, y)).coloured(PURPLE));
+        paper.text(&Label::new(line, (left, y)).coloured(GREY));
         y += SMALL + 4.0;
     }
 }

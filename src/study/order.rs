@@ -189,9 +189,10 @@ pub(super) fn draw(ladders: &[Ladder]) -> String {
             let points: Vec<(f64, f64)> = points.map(|&(n, error)| (f64::from(n), error)).collect();
             panel.line(paper, &points, Pen::full(ink, 1.4));
             for &(x, y) in &points {
-                paper.disc(panel.at(x, y), 2.6, ink);
+                paper.mark(super::exact_figure::shape(ladder.scheme), panel.at(x, y), 2.6, ink);
             }
             paper.line(&[(left, y), (left + 18.0, y)], Pen::full(ink, 1.4));
+            paper.mark(super::exact_figure::shape(ladder.scheme), (left + 9.0, y), 2.6, ink);
             paper.text(&Label::new(ladder.scheme.name(), (left + 24.0, y)).bold());
             let words = format!(
                 "order {} (theory {})",

@@ -1,14 +1,14 @@
 //! Table, page and figure of the cost against the number of rocks in one world.
 
+use super::exact_figure;
 use super::scaling::{Cost, Phase, World, exponent};
 use crate::report::axis::Axis;
-use crate::report::colour::{BLUE, GREEN, GREY, INK, ORANGE};
+use crate::report::colour::{GREY, INK};
 use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, paint};
 use crate::report::svg::path::Frame;
 use crate::solver::Scheme;
-use plotters::style::RGBColor;
 use std::fmt::Write as _;
 
 /// Other programs' cost of the same worlds: spheres, LIGGGHTS at 0.05 ms, Rapier at 5 ms (processor seconds by
@@ -266,14 +266,6 @@ type Value = dyn Fn(&World) -> f64;
 const PLOT_PX: f64 = 120.0;
 const TOP_PX: f64 = 26.0;
 
-fn colour(scheme: Scheme) -> RGBColor {
-    match scheme {
-        Scheme::Dda => ORANGE,
-        Scheme::Rigid => GREEN,
-        Scheme::Adaptive | Scheme::Reference => BLUE,
-    }
-}
-
 /// Time of a step, memory and cost over the number of spheres.
 pub(super) fn figure(worlds: &[World]) -> String {
     let megabytes =
@@ -283,12 +275,12 @@ pub(super) fn figure(worlds: &[World]) -> String {
     };
     let rate = |phase: Phase| move |world: &World| world.cost(phase).map_or(f64::NAN, Cost::rate);
     let panels: [(&str, &Value); 6] = [
-        ("Step of all, falling (ms)", &step(Phase::Falling)),
-        ("Step of all, impacts (ms)", &step(Phase::Impacts)),
-        ("Step of all, settling (ms)", &step(Phase::Settling)),
+        ("Falling: step (ms)", &step(Phase::Falling)),
+        ("Impacts: step (ms)", &step(Phase::Impacts)),
+        ("Settling: step (ms)", &step(Phase::Settling)),
         ("Memory (MB)", &megabytes),
-        ("s per s, impacts", &rate(Phase::Impacts)),
-        ("s per s, settling", &rate(Phase::Settling)),
+        ("Impacts: time (s/s)", &rate(Phase::Impacts)),
+        ("Settling: time (s/s)", &rate(Phase::Settling)),
     ];
     let height = TOP_PX + panels.len() as f64 * (PLOT_PX + FOOT_PX + 12.0);
     paint("scaling", (WIDTH_PX, height), "Cost against number of spheres", |paper| {
@@ -318,9 +310,14 @@ fn draw_panel(paper: &Paper<'_>, worlds: &[World], (top, title): (f64, &str), va
         let points: Vec<(f64, f64)> =
             of(worlds, scheme).map(|world| (world.spheres as f64, value(world))).collect();
         let points: Vec<_> = points.into_iter().filter(|point| point.1.is_finite()).collect();
-        panel.line(paper, &points, Pen::full(colour(scheme), 1.6));
+        panel.line(paper, &points, Pen::full(exact_figure::colour(scheme), 1.6));
         for &(x, y) in &points {
-            paper.disc(panel.at(x, y), 3.0, colour(scheme));
+            paper.mark(
+                exact_figure::shape(scheme),
+                panel.at(x, y),
+                2.8,
+                exact_figure::colour(scheme),
+            );
         }
     }
     panel.axes(paper);
@@ -329,9 +326,15 @@ fn draw_panel(paper: &Paper<'_>, worlds: &[World], (top, title): (f64, &str), va
 fn key(paper: &Paper<'_>) {
     let mut x = 74.0;
     for scheme in SCHEMES {
-        paper.disc((x, 12.0), 4.0, colour(scheme));
+        paper.mark(exact_figure::shape(scheme), (x, 12.0), 3.2, exact_figure::colour(scheme));
         paper.text(&Label::new(scheme.name(), (x + 9.0, 12.0)).sized(NORMAL).coloured(INK));
         x += 90.0;
     }
-    paper.text(&Label::new("dashed: in proportion to the number", (x, 12.0)).coloured(GREY));
+    paper.text(
+        &Label::new(
+            "dashed: in proportion to the number; s/s: run time over simulated time",
+            (x, 12.0),
+        )
+        .coloured(GREY),
+    );
 }

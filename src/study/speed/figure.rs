@@ -8,7 +8,7 @@ use crate::report::format::significant;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint};
 use crate::report::svg::path::Frame;
-use crate::study::exact_figure::colour;
+use crate::study::exact_figure::{colour, shape};
 
 const PLOT_PX: f64 = 300.0;
 const TOP_PX: f64 = 26.0;
@@ -42,7 +42,7 @@ pub(in crate::study) fn draw(study: &SpeedStudy) -> String {
                 .collect();
             panel.line(paper, &values, Pen::full(ink, 1.4));
             for &(x, y) in &values {
-                paper.disc(panel.at(x, y), 2.8, ink);
+                paper.mark(shape(scheme), panel.at(x, y), 2.6, ink);
             }
         }
         key(paper, &panel, study);
