@@ -8,8 +8,8 @@ mod maps;
 mod measured;
 
 use super::input::{
-    About, BandPoint, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row, StopShare,
-    Table, Text,
+    About, BandPoint, Check, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row,
+    StopShare, Table, Text,
 };
 use super::raster::GroundRaster;
 use super::words::{Words, fill};
@@ -79,9 +79,10 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         checks: Vec::new(),
     };
     report.checks = plausibility::checks(&report, results);
+    let said =
+        |check: &Check| fill(words.check_failed, &[("name", &check.name), ("found", &check.found)]);
     let failed = report.checks.iter().filter(|check| !check.passes);
-    let failed: Vec<String> =
-        failed.map(|check| format!("{}: {}", check.name, check.found)).collect();
+    let failed: Vec<String> = failed.map(said).collect();
     report.text.warnings = [warnings_first(hazard, words), report.text.warnings, failed].concat();
     Ok(report)
 }
@@ -294,7 +295,9 @@ fn statistics_table(
             PERCENTS.map(|percent| percentile_of(sample, f64::from(percent) / 100.0, *open));
         let cells = [mean].into_iter().chain(middle).chain([most]);
         let name = if unit.is_empty() { (*name).to_owned() } else { format!("{name} ({unit})") };
-        (name, cells.map(|cell| cell.map(|x| x.over(size))).collect())
+        let clean =
+            |x: Estimate| if *like == Quantity::Height { x.above_a_mm() } else { x.over(size) };
+        (name, cells.map(|cell| cell.map(clean)).collect())
     });
     let about = About::Rocks;
     Table { title, note, columns, rows: rows.collect(), about }

@@ -10,13 +10,18 @@ pub use tables::plain_headline;
 
 use super::barriers;
 use super::figure::{Drawing, Heading};
-use super::format::{self, escape};
+use super::format;
 use super::input::{About, Check, Report};
 use super::lines;
 use super::words::{Words, fill};
 use crate::simulation::Stop;
 use std::fmt::Write as _;
 use style::STYLE;
+
+/// Text for the page. Digits of one number stay in one line: a thin space breaks, a narrow no-break space does not.
+fn escape(text: &str) -> String {
+    format::escape(text).replace('\u{2009}', "\u{202f}")
+}
 
 /// What is drawn, in the order of the page.
 type Figures = [(Heading, Drawing)];

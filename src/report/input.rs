@@ -201,6 +201,14 @@ impl Estimate {
         Self { is: Is::Lacking(rocks), ..Self::plain(f64::NAN) }
     }
 
+    /// With what is smaller than a millimetre taken for 0 (m): how far a rolling rock is off the ground is rounding.
+    #[must_use]
+    pub(super) fn above_a_mm(self) -> Self {
+        let mm = |v: f64| if v.abs() < 1e-3 { 0.0 } else { v };
+        let Self { value, low, high, is } = self;
+        Self { value: mm(value), low: mm(low), high: mm(high), is }
+    }
+
     /// In a unit so many times as large.
     #[must_use]
     pub fn over(self, size: f64) -> Self {

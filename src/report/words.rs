@@ -80,7 +80,7 @@ words! {
     calibration_title, calibration_note, uncalibrated, fitted_first, fitted_second, held_out,
     fitted_all, hardly_told, told_title, told_note, fitted, ends_title, ends_note, difference,
     censored, have_left, remedy_left, have_no_time, remedy_time, have_no_budget, remedy_budget,
-    check_reach, check_reach_found, check_speed, check_speed_found, check_fast_found,
+    check_failed, check_reach, check_reach_found, check_speed, check_speed_found, check_fast_found,
     check_deposits, check_deposits_found, check_pits, check_mesh, check_mesh_found, check_coarse,
     year_title, year_axis, year_energy_axis, years, nothing_comes, hits_of, passages_of,
     year_barriers, year_caption, object, line, hits, passages, or_more, and_without, and_with,

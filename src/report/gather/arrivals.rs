@@ -51,8 +51,8 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<Table> {
             Some(percent(reach)),
             p95(line, LineQuantity::Speed),
             p95(line, LineQuantity::Total).map(|at| at.over(size)),
-            p95(line, LineQuantity::Height),
-            p95(line, LineQuantity::HeightNormal),
+            p95(line, LineQuantity::Height).map(Estimate::above_a_mm),
+            p95(line, LineQuantity::HeightNormal).map(Estimate::above_a_mm),
         ];
         rows.push((name, cells));
         rows.extend(residual.map(|at| behind(at, words, size)));
@@ -79,7 +79,7 @@ fn behind(at: &Residual, words: &Words, size: f64) -> (String, Vec<Option<Estima
         Some(percent(of_share(&at.with.reach))),
         None,
         of(&at.with.energy_j).map(|at| at.over(size)),
-        of(&at.with.height_m),
+        of(&at.with.height_m).map(Estimate::above_a_mm),
         None,
     ];
     (name, cells)

@@ -1,8 +1,8 @@
 //! Tables of estimates: numbers with as many digits as their intervals leave meaningful.
 
-use super::note;
+use super::{escape, note};
 use crate::math;
-use crate::report::format::{self, escape};
+use crate::report::format;
 use crate::report::input::{Estimate, Is, Row, Table, energy_unit};
 use crate::report::words::{Words, fill};
 use std::fmt::Write as _;

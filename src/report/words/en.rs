@@ -309,6 +309,7 @@ pub(super) static WORDS: Words = Words {
     have_no_budget: "were still moving when their budget of work was spent",
     remedy_budget: "Ask why: see how the rocks ended.",
     // Plausibility
+    check_failed: "{name}: {found}",
     check_reach: "Reach angle",
     check_reach_found: "median {median}°; medians of observed events lie at 32 to 35° on high talus slopes and at 20 to 40° where a low slope meets a meadow",
     check_speed: "Speed",

@@ -142,7 +142,7 @@ pub(super) static WORDS: Words = Words {
     // Runout
     runout_axis: "Distance de propagation (m)",
     share_farther: "Part allant plus loin",
-    open_end: "{n} sortis ou encore en mouvement\u{a0}: au-delà, ≥",
+    open_end: "hors terrain ou en mouvement\u{a0}: {n}\u{a0}; au-delà, seulement ≥",
     no_curve: "aucune courbe",
     runout_open: " {n} d’entre eux sont sortis du terrain ou bougeaient encore\u{a0}: leur distance est au moins celle comptée ici, les centiles qui en dépendent sont des bornes inférieures (≥), et la courbe s’arrête là.",
     runout_left_out: " {n} distances ne sont pas finies et dans aucune classe.",
@@ -309,6 +309,7 @@ pub(super) static WORDS: Words = Words {
     have_no_budget: "bougeaient encore quand leur budget de calcul fut épuisé",
     remedy_budget: "En chercher la cause\u{a0}: voir comment finissent les blocs.",
     // Plausibility
+    check_failed: "{name}\u{a0}: {found}",
     check_reach: "Angle d’énergie",
     check_reach_found: "médiane {median}°\u{a0}; les médianes observées sont de 32 à 35° sur les hauts talus d’éboulis et de 20 à 40° où un versant bas rejoint un pré",
     check_speed: "Vitesse",

@@ -142,7 +142,7 @@ pub(super) static WORDS: Words = Words {
     // Runout
     runout_axis: "Distanza di arresto (m)",
     share_farther: "Quota che va oltre",
-    open_end: "{n} usciti o ancora in moto: oltre, solo ≥",
+    open_end: "fuori dal terreno o in moto: {n}; oltre, solo ≥",
     no_curve: "nessuna curva",
     runout_open: " {n} di essi sono usciti dal terreno o erano ancora in moto: la loro distanza è almeno quella contata qui, i percentili che ne dipendono sono limiti inferiori (≥) e la curva termina lì.",
     runout_left_out: " {n} distanze non sono finite e in nessuna classe.",
@@ -309,6 +309,7 @@ pub(super) static WORDS: Words = Words {
     have_no_budget: "erano ancora in moto quando lo sforzo di calcolo fu esaurito",
     remedy_budget: "Chiedersi perché: vedere come finiscono i massi.",
     // Plausibility
+    check_failed: "{name}: {found}",
     check_reach: "Angolo di propagazione",
     check_reach_found: "mediana {median}°; le mediane osservate stanno fra 32 e 35° su alti versanti detritici e fra 20 e 40° dove un versante basso incontra un prato",
     check_speed: "Velocità",
