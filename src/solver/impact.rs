@@ -48,7 +48,7 @@ mod integrate;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use plane::{Followed, Plane};
+pub(crate) use plane::{Followed, Plane, Rebound};
 pub(crate) use rigid_limit::{FrozenContact, throw};
 
 /// What following an impact has cost.
