@@ -41,7 +41,7 @@
 
 mod rigid_limit;
 mod normal_motion;
-mod dormand_prince;
+pub(in crate::solver) mod dormand_prince;
 mod plane;
 mod sliders;
 mod integrate;
