@@ -166,11 +166,11 @@ mod tests {
             let words = Words::of(language);
             for ((name, text), (_, original)) in words.texts().into_iter().zip(&english) {
                 assert_eq!(places(text), places(original), "{name} of {language:?}");
-                assert_eq!(
-                    text.is_empty(),
-                    language == Language::En && name == "in_english",
-                    "{name}"
-                );
+                if name == "in_english" {
+                    assert_eq!(text.is_empty(), language == Language::En, "{text}");
+                    continue;
+                }
+                assert!(!text.is_empty(), "{name} of {language:?}");
                 let ends = |text: &str| text.ends_with('.');
                 assert_eq!(
                     ends(text),
