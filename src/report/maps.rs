@@ -184,7 +184,9 @@ fn panels(report: &Report, maps: &CellMap, layers: &[Layer]) -> (Vec<Panel>, f64
     // seven digits of a northing need their room
     let (across, up) = axes(x, y);
     let room = Panel::new(square, across, up).room_left();
-    let widest = half - room - 8.0;
+    // half of the last label of an axis stands beside its frame
+    let beside = 0.5 * text_width(&format::decimal(x.1, 0), SMALL);
+    let widest = half - room - beside.max(8.0);
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     // a slender map is given some ground beside it
     let more = 0.5 * (widest / scale - (x.1 - x.0)).max(0.0);

@@ -118,6 +118,9 @@ impl Panel {
             let x = self.at(tick.value, self.y.low).0;
             let length = if tick.label.is_empty() { 0.6 * TICK_PX } else { TICK_PX };
             paper.line(&[(x, bottom), (x, bottom + length)], FRAME_PEN);
+            // seven digits at the end of an axis stay on the paper
+            let half = 0.5 * text_width(&tick.label, SMALL) + 1.0;
+            let x = x.min(paper.size_px().0 - half).max(half);
             let at = (x, bottom + TICK_PX + GAP_PX);
             write_if_any(paper, &Label::new(tick.label, at).below().centred());
         }
