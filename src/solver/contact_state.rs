@@ -282,7 +282,7 @@ impl ContactState {
         let history = self.histories.find(touch, &self.touches, taken, || slow && !rebounds);
         if history >= before {
             if !slow {
-                self.impact.meet(-touch.normal.dot(v), world.least_impact_m_s());
+                self.impact.try_meeting(-touch.normal.dot(v));
             }
             for rate in &mut self.rates {
                 (rate.shear[history], rate.roll[history]) = (Vec3::zeros(), Vec3::zeros());
