@@ -1,12 +1,12 @@
 //! Speed, energy and bounce height of a few rocks along their ways.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, GREEN, INK, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{Fall, Path, Report, energy_unit};
+use super::model::{Fall, Path, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel, align};
-use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
 use super::words::{Words, fill};
 use crate::math;
@@ -78,14 +78,14 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
     let titles = [words.speed_axis, energy.as_str(), words.height_axis];
     let panels = panels(&curves, titles, words);
     let bottom = panels[2].frame.bottom + FOOT_PX;
-    let svg = paint("along", (WIDTH_PX, bottom), words.along_alt, |paper| {
-        key(paper, &panels[0], &chosen, words);
+    let svg = paint("along", (WIDTH_PX, bottom), words.along_alt, |canvas| {
+        key(canvas, &panels[0], &chosen, words);
         for (k, panel) in panels.iter().enumerate() {
-            panel.grid(paper);
+            panel.grid(canvas);
             for (curve, pen) in curves[k].iter().zip(PENS) {
-                panel.line(paper, curve, pen);
+                panel.line(canvas, curve, pen);
             }
-            if k == 2 { panel.axes(paper) } else { panel.axes_above_another(paper) }
+            if k == 2 { panel.axes(canvas) } else { panel.axes_above_another(canvas) }
         }
     });
     let who = |rock: &Chosen<'_>| in_words(rock, words.along_rock_caption);
@@ -132,14 +132,14 @@ fn panels(curves: &[Vec<Vec<(f64, f64)>>; 3], titles: [&str; 3], words: &Words) 
     panels
 }
 
-fn key(paper: &Paper<'_>, panel: &Panel, chosen: &[Chosen<'_>], words: &Words) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, chosen: &[Chosen<'_>], words: &Words) {
     let y = panel.frame.top - 14.0;
     let mut x = panel.frame.left;
     for (rock, pen) in chosen.iter().zip(PENS) {
         let said = in_words(rock, words.along_rock);
-        paper.line(&[(x, y), (x + 20.0, y)], pen);
+        canvas.line(&[(x, y), (x + 20.0, y)], pen);
         x += 25.0 + text_width(&said, SMALL) + 18.0;
         let left = x - 18.0 - text_width(&said, SMALL);
-        paper.text(&Label::new(said, (left, y)).coloured(INK));
+        canvas.text(&Label::new(said, (left, y)).coloured(INK));
     }
 }

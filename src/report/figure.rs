@@ -1,6 +1,6 @@
 //! The list of figures.
 
-use super::input::Report;
+use super::model::Report;
 use super::words::Words;
 use super::{distributions, plan_view, reach_angle, runout, side_view, stops};
 

@@ -1,13 +1,13 @@
 //! One evaluation line: where rocks pass, how high with how much energy, and how much is exceeded how often.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted, paint, text_width};
 use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{BandPoint, Line, kilo};
+use super::model::{BandPoint, Line, kilo};
 use super::panel::{FOOT_PX, Panel, align};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, fitted, paint, text_width};
 use super::svg::path::{Frame, Spot};
 use super::words::{Words, fill};
 use crate::hazard::INTENSITY_J;
@@ -54,25 +54,25 @@ pub(super) fn draw(words: &Words, line: &Line) -> Drawing {
     let bottom = top + CURVE_PX + FOOT_PX;
     let curves = lower_panels((words, line), top, (unit, size));
     let title = fill(words.line_title, &[("name", &line.name)]);
-    let svg = paint(&format!("line-{}", line.number), (WIDTH_PX, bottom), &title, |paper| {
-        head(paper, &along, words.where_pass);
-        along.grid(paper);
-        bins.bars(paper, &along, line.releases);
-        along.axes(paper);
-        head(paper, &cloud, words.first_crossing);
-        draw_cloud(paper, &cloud, line, size);
-        let behind = |of: fn(&super::input::Behind) -> &Vec<BandPoint>| {
+    let svg = paint(&format!("line-{}", line.number), (WIDTH_PX, bottom), &title, |canvas| {
+        head(canvas, &along, words.where_pass);
+        along.grid(canvas);
+        bins.bars(canvas, &along, line.releases);
+        along.axes(canvas);
+        head(canvas, &cloud, words.first_crossing);
+        draw_cloud(canvas, &cloud, line, size);
+        let behind = |of: fn(&super::model::Behind) -> &Vec<BandPoint>| {
             line.behind.as_ref().map(of).map(Vec::as_slice)
         };
-        head(paper, &curves[0], words.energy_exceeded);
+        head(canvas, &curves[0], words.energy_exceeded);
         let pair = (&line.energy_exceedance[..], behind(|at| &at.energy_exceedance));
-        draw_curve(paper, &curves[0], pair, size);
-        intensities(paper, &curves[0], size);
-        head(paper, &curves[1], words.height_exceeded);
+        draw_curve(canvas, &curves[0], pair, size);
+        intensities(canvas, &curves[0], size);
+        head(canvas, &curves[1], words.height_exceeded);
         let pair = (&line.height_exceedance[..], behind(|at| &at.height_exceedance));
-        draw_curve(paper, &curves[1], pair, 1.0);
+        draw_curve(canvas, &curves[1], pair, 1.0);
         if line.behind.is_some() {
-            key(paper, &curves[0], words);
+            key(canvas, &curves[0], words);
         }
     });
     Drawing { svg, caption: caption(words, line) }
@@ -105,9 +105,9 @@ fn caption(words: &Words, line: &Line) -> String {
     caption + &behind
 }
 
-fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
+fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
     let at = (panel.frame.left, panel.frame.top - 10.0);
-    paper.text(&Label::new(words, at).bold().sized(NORMAL));
+    canvas.text(&Label::new(words, at).bold().sized(NORMAL));
 }
 
 fn upper_panels(
@@ -159,35 +159,35 @@ fn lower_panels((words, line): (&Words, &Line), top: f64, (unit, size): (&str, f
     ]
 }
 
-fn draw_cloud(paper: &Paper<'_>, panel: &Panel, line: &Line, size: f64) {
-    panel.grid(paper);
+fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &Line, size: f64) {
+    panel.grid(canvas);
     let spots: Vec<Spot> = line
         .crossings
         .iter()
         .map(|at| panel.at(at.total_j / size, above(at.height_m)))
         .filter(|&spot| panel.frame.holds(spot))
         .collect();
-    paper.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
+    canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     for probability in MARKED {
         let pen = Pen::full(VERMILLION, 1.2);
         let pen = if probability < 0.9 { pen } else { pen.dashed() };
-        let of = |list: &[super::input::Quantile]| {
+        let of = |list: &[super::model::Quantile]| {
             let found = list.iter().find(|q| (q.probability - probability).abs() < 1e-9);
             found.map(|q| q.at.value).filter(|value| value.is_finite())
         };
         let words = format!("P{:.0}", 100.0 * probability);
         if let Some(energy) = of(&line.energy_quantiles) {
-            panel.upright(paper, energy / size, pen);
+            panel.upright(canvas, energy / size, pen);
             let at = panel.at(energy / size, panel.y.high);
-            name(paper, panel, &words, [(at.0 + 3.0, at.1 + 9.0), (at.0 - 24.0, at.1 + 9.0)]);
+            name(canvas, panel, &words, [(at.0 + 3.0, at.1 + 9.0), (at.0 - 24.0, at.1 + 9.0)]);
         }
         if let Some(height) = of(&line.height_quantiles) {
-            panel.line(paper, &[(panel.x.low, height), (panel.x.high, height)], pen);
+            panel.line(canvas, &[(panel.x.low, height), (panel.x.high, height)], pen);
             let (x, y) = panel.at(panel.x.high, height.max(0.0));
-            name(paper, panel, &words, [(x - 26.0, y - 8.0), (x - 26.0, y + 9.0)]);
+            name(canvas, panel, &words, [(x - 26.0, y - 8.0), (x - 26.0, y + 9.0)]);
         }
     }
-    panel.axes(paper);
+    panel.axes(canvas);
 }
 
 /// A height without what a rock presses into the ground; NaN where there is no ground.
@@ -196,23 +196,23 @@ fn above(height_m: f64) -> f64 {
 }
 
 /// Writes a word at the first place that is free.
-fn name(paper: &Paper<'_>, panel: &Panel, words: &str, places: [Spot; 2]) {
+fn name(canvas: &Canvas<'_>, panel: &Panel, words: &str, places: [Spot; 2]) {
     let labels = places.map(|at| Label::new(words, at).coloured(INK));
     let free =
-        |label: &&Label| panel.frame.contains(&label.frame()) && paper.is_free(&label.frame());
+        |label: &&Label| panel.frame.contains(&label.frame()) && canvas.is_free(&label.frame());
     if let Some(label) = labels.iter().find(free) {
-        paper.text_on_rim(label);
+        canvas.text_on_rim(label);
     }
 }
 
 /// A curve with its band, and the one behind barriers over it.
 fn draw_curve(
-    paper: &Paper<'_>,
+    canvas: &Canvas<'_>,
     panel: &Panel,
     (without, with): (&[BandPoint], Option<&[BandPoint]>),
     size: f64,
 ) {
-    panel.grid(paper);
+    panel.grid(canvas);
     for (curve, fill, pen) in [
         (Some(without), SKY, Pen::full(BLUE, 1.6)),
         (with, GREEN, Pen::full(DARK_GREEN, 1.6).dashed()),
@@ -221,22 +221,22 @@ fn draw_curve(
         let shown = curve.iter().filter(|p| !panel.x.is_log || p.x > 0.0);
         let band: Vec<(f64, f64, f64)> =
             shown.clone().map(|p| (p.x / size, p.y.low, p.y.high)).collect();
-        panel.band(paper, &band, fill, 0.25);
+        panel.band(canvas, &band, fill, 0.25);
         let line: Vec<(f64, f64)> =
             shown.map(|p| (p.x / size, p.y.value)).filter(|&(_, y)| y > 0.0).collect();
-        panel.line(paper, &line, pen);
+        panel.line(canvas, &line, pen);
     }
-    panel.axes(paper);
+    panel.axes(canvas);
 }
 
 /// The limits between weak, medium and strong.
-fn intensities(paper: &Paper<'_>, panel: &Panel, size: f64) {
+fn intensities(canvas: &Canvas<'_>, panel: &Panel, size: f64) {
     for limit in INTENSITY_J {
-        panel.upright(paper, limit / size, Pen::full(GREY, 0.8).dotted());
+        panel.upright(canvas, limit / size, Pen::full(GREY, 0.8).dotted());
         let (x, y) = panel.at(limit / size, panel.y.high);
         let words = format!("{:.0}\u{2009}kJ", limit / 1e3);
         name(
-            paper,
+            canvas,
             panel,
             &words,
             [(x + 3.0, y + 9.0), (x - text_width(&words, SMALL) - 3.0, y + 9.0)],
@@ -245,15 +245,15 @@ fn intensities(paper: &Paper<'_>, panel: &Panel, size: f64) {
 }
 
 /// Both pens, in a line of their own above the heads: names are long in some languages.
-fn key(paper: &Paper<'_>, panel: &Panel, words: &Words) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
     let y = panel.frame.top - 10.0 - KEY_PX;
     let mut x = panel.frame.left;
     for (name, pen) in [
         (words.without_barriers, Pen::full(BLUE, 1.6)),
         (words.with_barriers, Pen::full(DARK_GREEN, 1.6).dashed()),
     ] {
-        paper.line(&[(x, y), (x + 20.0, y)], pen);
-        paper.text(&Label::new(name, (x + 25.0, y)).coloured(GREY));
+        canvas.line(&[(x, y), (x + 20.0, y)], pen);
+        canvas.text(&Label::new(name, (x + 25.0, y)).coloured(GREY));
         x += 25.0 + text_width(name, SMALL) + 20.0;
     }
 }
@@ -279,19 +279,19 @@ pub(super) fn retention(lines: &[Line], words: &Words) -> Drawing {
         Axis::linear(0.0, most, words.retention_axis),
         Axis::linear(0.0, rows, ""),
     );
-    let svg = paint("retention", (WIDTH_PX, frame.bottom + FOOT_PX), words.retention, |paper| {
-        panel.grid_upright(paper);
+    let svg = paint("retention", (WIDTH_PX, frame.bottom + FOOT_PX), words.retention, |canvas| {
+        panel.grid_upright(canvas);
         for (k, line) in lines.iter().enumerate() {
             let y = frame.top + row_px * (k as f64 + 0.5);
-            bar(paper, &panel, (line, &names[k], y), words);
+            bar(canvas, &panel, (line, &names[k], y), words);
         }
-        paper.outline(&frame, Pen::full(INK, 0.8));
-        panel.x_axis(paper);
+        canvas.outline(&frame, Pen::full(INK, 0.8));
+        panel.x_axis(canvas);
     });
     Drawing { svg, caption: words.retention_caption.to_owned() }
 }
 
-fn bar(paper: &Paper<'_>, panel: &Panel, (line, name, y): (&Line, &str, f64), words: &Words) {
+fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name, y): (&Line, &str, f64), words: &Words) {
     let frame = panel.frame;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let behind = line.behind.as_ref().map(|behind| behind.reach);
@@ -305,14 +305,14 @@ fn bar(paper: &Paper<'_>, panel: &Panel, (line, name, y): (&Line, &str, f64), wo
             top: y + top,
             bottom: y + top + tall,
         };
-        paper.fill(&bar, colour, 1.0);
+        canvas.fill(&bar, colour, 1.0);
         let middle = 0.5 * (bar.top + bar.bottom);
-        paper.line(&[(at(reach.low), middle), (at(reach.high), middle)], Pen::full(INK, 1.2));
+        canvas.line(&[(at(reach.low), middle), (at(reach.high), middle)], Pen::full(INK, 1.2));
     }
-    paper.text(&Label::new(name, (frame.left - 6.0, y)).right());
+    canvas.text(&Label::new(name, (frame.left - 6.0, y)).right());
     let reach = format::percent(line.reach.value, 1);
     let left = behind.map_or(String::new(), |reach| {
         fill(words.left, &[("share", &format::percent(reach.value, 1))])
     });
-    paper.text(&Label::new(reach, (frame.right + 6.0, y)).followed_by(left));
+    canvas.text(&Label::new(reach, (frame.right + 6.0, y)).followed_by(left));
 }

@@ -3,7 +3,7 @@
 use super::{escape, note};
 use crate::math;
 use crate::report::format;
-use crate::report::input::{Estimate, Is, Row, Table, energy_unit};
+use crate::report::model::{Estimate, Is, Row, Table, energy_unit};
 use crate::report::words::{Words, fill};
 use std::fmt::Write as _;
 

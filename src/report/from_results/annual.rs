@@ -1,0 +1,177 @@
+//! What a year brings, from the summary: tables and curves. Every title says that its numbers are a year.
+
+use super::super::format;
+use super::super::model::{About, AnnualView, BandPoint, Estimate, Table};
+use super::super::words::{Words, fill};
+use super::estimate;
+use crate::hazard::{
+    Annual, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk, RiskKind,
+};
+use crate::output::Results;
+
+/// Curves of all places.
+pub(super) fn views(results: &Results) -> Vec<AnnualView> {
+    let Some(annual) = &results.summary.annual else { return Vec::new() };
+    let view = |place: &AnnualPlace| {
+        let figures = &place.without_barriers;
+        AnnualView {
+            name: place.name.clone(),
+            is_object: place.is_object,
+            without: band(figures),
+            with: place.with_barriers.as_ref().map(band),
+            return_periods_years: figures.returns.iter().map(|one| one.years).collect(),
+        }
+    };
+    annual.places.iter().map(view).collect()
+}
+
+/// A curve by rising energy.
+fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
+    let point = |at: &ExceedancePoint| BandPoint {
+        x: at.energy_j,
+        y: estimate(at.per_year, Some(at.low_95), Some(at.high_95)),
+    };
+    figures.curve.iter().rev().map(point).collect()
+}
+
+/// Three tables a place: how often, with what energy, at what risk.
+pub(super) fn tables(results: &Results, words: &Words) -> Vec<Table> {
+    let Some(annual) = &results.summary.annual else { return Vec::new() };
+    let each = |place: &AnnualPlace| {
+        [Some(passages(annual, place, words)), Some(returns(place, words)), risks(place, words)]
+    };
+    annual.places.iter().flat_map(each).flatten().collect()
+}
+
+/// A title with the name of a place and what it is.
+fn named(text: &str, place: &AnnualPlace, words: &Words) -> String {
+    let what = if place.is_object { words.object } else { words.line };
+    let name = fill(what, &[("name", &words.quoted(&place.name))]);
+    fill(text, &[("name", &name)])
+}
+
+/// All figures of a place: without barriers first.
+fn both<'a>(
+    place: &'a AnnualPlace,
+    words: &Words,
+) -> impl Iterator<Item = (&'static str, &'a AnnualFigures)> + use<'a> {
+    let without = if place.with_barriers.is_some() { words.and_without } else { "" };
+    let and_with = words.and_with;
+    let with = place.with_barriers.iter().map(move |figures| (and_with, figures));
+    [(without, &place.without_barriers)].into_iter().chain(with)
+}
+
+fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> Table {
+    let all = if place.is_object { words.hits } else { words.passages };
+    let or_more = |joule: f64| fill(words.or_more, &[("energy", &format::plain(joule / 1e3))]);
+    let mut rows = Vec::new();
+    let mut say = |name: String, rate: &Rate| rows.push((name, cells(rate, annual)));
+    for (which, figures) in both(place, words) {
+        say(format!("{all}{which}"), &figures.passages);
+        for above in &figures.above {
+            say(or_more(above.energy_j) + which, &above.rate);
+        }
+    }
+    for saved in &place.saved {
+        say(fill(words.kept_away, &[("name", &words.quoted(&saved.barrier))]), &saved.passages);
+        for above in &saved.above {
+            say(or_more(above.energy_j), &above.rate);
+        }
+    }
+    let by = |text: &str| fill(text, &[("unit", &"1/a")]);
+    let columns = [
+        words.col_year.to_owned(),
+        words.col_period.to_owned(),
+        words.col_probability.to_owned(),
+        words.col_conditional.to_owned(),
+        by(words.col_by_rate),
+        by(words.col_by_exponent),
+    ];
+    Table {
+        about: About::Year,
+        title: named(words.often_title, place, words),
+        note: fill(
+            words.often_note,
+            &[
+                ("events", &format::significant(annual.events_per_year, 4)),
+                ("rocks", &format::decimal(annual.rocks as f64, 0)),
+                ("effective", &format::decimal(annual.effective_rocks, 0)),
+            ],
+        ),
+        columns: columns.into(),
+        rows,
+    }
+}
+
+fn of(rate: &Rate, map: impl Fn(f64) -> f64) -> Estimate {
+    estimate(map(rate.per_year), Some(map(rate.low_95)), Some(map(rate.high_95)))
+}
+
+fn cells(rate: &Rate, annual: &Annual) -> Vec<Option<Estimate>> {
+    let period = |per_year: f64| if per_year > 0.0 { 1.0 / per_year } else { f64::NAN };
+    let years = Estimate::new(period(rate.per_year), period(rate.high_95), period(rate.low_95));
+    vec![
+        Some(of(rate, |x| x)),
+        Some(years),
+        Some(of(rate, |x| -100.0 * libm::expm1(-x))),
+        Some(of(rate, |x| 100.0 * x / annual.events_per_year)),
+        Some(estimate(rate.by_log_rate, None, None)),
+        rate.by_exponent.map(|slope| estimate(slope, None, None)),
+    ]
+}
+
+fn returns(place: &AnnualPlace, words: &Words) -> Table {
+    let row = |(which, one): (&str, &ReturnEnergy)| {
+        let kilo = |joule: f64| joule / 1e3;
+        let energy = match one.energy_j {
+            Some(joule) => estimate(kilo(joule), Some(kilo(one.low_95)), one.high_95.map(kilo)),
+            // more seldom than that, but perhaps not by much
+            None => estimate(f64::NAN, None, one.high_95.filter(|high| *high > 0.0).map(kilo)),
+        };
+        let slope = |slope: Option<f64>| slope.map(|joule| estimate(kilo(joule), None, None));
+        let name = fill(words.years, &[("n", &format::plain(one.years))]) + which;
+        (name, vec![Some(energy), slope(one.by_log_rate), slope(one.by_exponent)])
+    };
+    let all = both(place, words)
+        .flat_map(|(which, figures)| figures.returns.iter().map(move |r| (which, r)));
+    let by = |text: &str| fill(text, &[("unit", &"kJ")]);
+    let columns = [words.energy_axis, words.col_by_rate, words.col_by_exponent].map(by);
+    Table {
+        about: About::Year,
+        title: named(words.returns_title, place, words),
+        note: words.returns_note.to_owned(),
+        columns: columns.into(),
+        rows: all.map(row).collect(),
+    }
+}
+
+fn risks(place: &AnnualPlace, words: &Words) -> Option<Table> {
+    let row = |(which, risk): (&str, &Risk)| {
+        let Risk { kind, rate } = risk;
+        let slope = |slope: f64| estimate(slope, None, None);
+        let cells =
+            vec![Some(of(rate, |x| x)), Some(slope(rate.by_log_rate)), rate.by_exponent.map(slope)];
+        (format!("{}{which}", risk_name(*kind, words)), cells)
+    };
+    let all = both(place, words)
+        .flat_map(|(which, figures)| figures.risks.iter().map(move |r| (which, r)));
+    let rows: Vec<_> = all.map(row).collect();
+    let by = |text: &str| fill(text, &[("unit", &"1/a")]);
+    let columns = [words.col_year, words.col_by_rate, words.col_by_exponent].map(by);
+    (!rows.is_empty()).then(|| Table {
+        about: About::Year,
+        title: named(words.risk_title, place, words),
+        note: words.risk_note.to_owned(),
+        columns: columns.into(),
+        rows,
+    })
+}
+
+fn risk_name(kind: RiskKind, words: &Words) -> &'static str {
+    match kind {
+        RiskKind::PersonHit => words.person_hit,
+        RiskKind::VehiclesHit => words.vehicles_hit,
+        RiskKind::Individual => words.individual_risk,
+        RiskKind::Deaths => words.deaths,
+    }
+}

@@ -1,0 +1,136 @@
+//! The first tables of the page: what arrives at each line, and at each barrier.
+
+use super::super::format;
+use super::super::model::{About, Estimate, Quantity, Table};
+use super::super::words::{Words, fill};
+use super::lines::{of_share, shown};
+use super::{of_percentile, percentile_of};
+use crate::hazard::{BarrierSummary, LineQuantity, Residual, Statistic};
+use crate::output::Results;
+
+/// The percentile of the headline (–).
+const P: f64 = 0.95;
+
+/// One table over the lines in this order, one over the barriers; each where there are some.
+pub(super) fn tables(results: &Results, words: &Words, order: &[String]) -> Vec<Table> {
+    [lines(results, words, order), barriers(results, words)].into_iter().flatten().collect()
+}
+
+fn of(statistic: &Statistic) -> Option<Estimate> {
+    Some(of_percentile(statistic.percentiles.get("p95")?, (statistic.rocks, None)))
+}
+
+/// A unit of energy for a whole table.
+fn energy_unit(estimates: impl Iterator<Item = f64>) -> (&'static str, f64) {
+    Quantity::Total.unit(estimates.filter(|value| value.is_finite()).fold(0.0, f64::max))
+}
+
+fn percent(share: Estimate) -> Estimate {
+    share.over(0.01)
+}
+
+fn lines(results: &Results, words: &Words, order: &[String]) -> Option<Table> {
+    let releases = results.hazard.rocks();
+    let is_barrier =
+        |name: &str| results.summary.barriers.iter().any(|one| one.barrier.name == name);
+    let mut own: Vec<_> = shown(results).filter(|(_, line)| !is_barrier(&line.info.name)).collect();
+    own.sort_by_key(|(_, line)| order.iter().position(|name| *name == line.info.name));
+    let p95 = |line: &crate::hazard::Line, of| percentile_of(&line.sample(of), P, None);
+    let energies = own.iter().filter_map(|(_, line)| p95(line, LineQuantity::Total));
+    let (unit, size) = energy_unit(energies.map(|at| at.value));
+    let mut rows = Vec::new();
+    for (_, line) in &own {
+        let reach = of_share(&line.reach(releases));
+        let residual = results.summary.residual.iter().find(|at| at.line == line.info.name);
+        let residual = residual.filter(|at| !at.behind.is_empty());
+        let name = match residual {
+            Some(_) => fill(words.line_without, &[("name", &line.info.name)]),
+            None => line.info.name.clone(),
+        };
+        let cells = vec![
+            Some(percent(reach)),
+            p95(line, LineQuantity::Speed),
+            p95(line, LineQuantity::Total).map(|at| at.over(size)),
+            p95(line, LineQuantity::Height).map(Estimate::above_a_mm),
+            p95(line, LineQuantity::HeightNormal).map(Estimate::above_a_mm),
+        ];
+        rows.push((name, cells));
+        rows.extend(residual.map(|at| behind(at, words, size)));
+    }
+    let columns = [
+        words.col_reach.to_owned(),
+        words.col_speed.to_owned(),
+        fill(words.col_energy, &[("unit", &unit)]),
+        words.col_height_vertical.to_owned(),
+        words.col_height_normal.to_owned(),
+    ];
+    (!rows.is_empty()).then(|| Table {
+        about: About::Lines,
+        title: words.arrives_title.to_owned(),
+        note: words.arrives_note.to_owned(),
+        columns: columns.into(),
+        rows,
+    })
+}
+
+fn behind(at: &Residual, words: &Words, size: f64) -> (String, Vec<Option<Estimate>>) {
+    let name = fill(words.line_with, &[("name", &at.line), ("barriers", &at.behind.join(", "))]);
+    let cells = vec![
+        Some(percent(of_share(&at.with.reach))),
+        None,
+        of(&at.with.energy_j).map(|at| at.over(size)),
+        of(&at.with.height_m).map(Estimate::above_a_mm),
+        None,
+    ];
+    (name, cells)
+}
+
+fn barriers(results: &Results, words: &Words) -> Option<Table> {
+    let all = &results.summary.barriers;
+    let design = |one: &BarrierSummary| one.design_values.as_ref().map(|design| design.energy_j);
+    let energies = all.iter().flat_map(|one| {
+        [of(&one.energy_j).map(|at| at.value), design(one), Some(one.barrier.capacity_j)]
+    });
+    let (unit, size) = energy_unit(energies.flatten());
+    let row = |one: &BarrierSummary| {
+        let barrier = &one.barrier;
+        let name = format!(
+            "{} ({} m, {} {unit})",
+            barrier.name,
+            format::plain(barrier.height_m),
+            format::significant(barrier.capacity_j / size, 3)
+        );
+        // of rocks that weigh differently: what is not stopped
+        let passing = if results.hazard.weights().is_some() {
+            let stopped = of_share(&one.stopped);
+            Estimate::new(1.0 - stopped.value, 1.0 - stopped.high, 1.0 - stopped.low)
+        } else {
+            of_share(&crate::hazard::Proportion::new(one.over + one.through, one.arriving.count))
+        };
+        let some = |share| (one.arriving.count > 0).then_some(share);
+        let cells = vec![
+            Some(percent(of_share(&one.arriving))),
+            some(percent(passing)),
+            of(&one.energy_j).map(|at| at.over(size)),
+            of(&one.top_m),
+            super::barriers::design(one).map(|design| design.energy_j.over(size)),
+            super::barriers::design(one).map(|design| design.height_m),
+        ];
+        (name, cells)
+    };
+    let columns = [
+        words.col_arriving_of.to_owned(),
+        words.col_passing.to_owned(),
+        fill(words.col_energy, &[("unit", &unit)]),
+        words.col_top.to_owned(),
+        fill(words.col_design_energy, &[("unit", &unit)]),
+        words.col_design_height.to_owned(),
+    ];
+    (!all.is_empty()).then(|| Table {
+        about: About::Barriers,
+        title: words.barriers_head_title.to_owned(),
+        note: words.barriers_head_note.to_owned(),
+        columns: columns.into(),
+        rows: all.iter().map(row).collect(),
+    })
+}

@@ -1,0 +1,266 @@
+//! What barriers stop and what their rule asks for, from the summary and the crossings.
+
+use super::super::format;
+use super::super::model::{About, BarrierView, DesignView, Estimate, PlaceView, Quantity, Table};
+use super::super::raster::GroundRaster;
+use super::super::words::{Words, fill};
+use super::{estimate, of_percentile, statistics};
+use crate::error::Result;
+use crate::hazard::{
+    self, Arrival, AtPlace, BarrierSummary, Design, PERCENTS, Proportion, Rule, Statistic,
+};
+use crate::math;
+use crate::output::Results;
+use std::collections::BTreeMap;
+use std::fmt::Display;
+
+/// The rocks that arrive at each barrier, for its figure.
+pub(super) fn views(results: &Results, ground: Option<&GroundRaster>) -> Result<Vec<BarrierView>> {
+    let summaries = &results.summary.barriers;
+    if summaries.is_empty() {
+        return Ok(Vec::new());
+    }
+    let barriers: Vec<hazard::Barrier> = summaries.iter().map(|one| one.barrier.clone()).collect();
+    let arrivals = hazard::arrivals(&barriers, results.crossings()?)?;
+    let view = |(one, places): (&BarrierSummary, Vec<Vec<Arrival>>)| BarrierView {
+        name: one.barrier.name.clone(),
+        height_m: one.barrier.height_m,
+        capacity_j: one.barrier.capacity_j,
+        design: one.design_values.as_ref().map(design_view),
+        design_lacks: one.design_lacks,
+        percentile: one.barrier.design.as_ref().map(|rule| rule.percentile),
+        left_is_uphill: left_is_uphill(results, one, ground),
+        places: one.by_place.iter().zip(places).map(place_view).collect(),
+    };
+    Ok(summaries.iter().zip(arrivals).map(view).collect())
+}
+
+fn design_view(design: &Design) -> DesignView {
+    let of = |value: f64, [low, high]: [Option<f64>; 2]| estimate(value, low, high);
+    DesignView {
+        height_m: of(design.height_m, design.height_95_m),
+        energy_j: of(design.energy_j, design.energy_95_j),
+    }
+}
+
+/// What the rule of a barrier asks for, or how many rocks are missing; none without a rule.
+pub(super) fn design(one: &BarrierSummary) -> Option<DesignView> {
+    let lacking = Estimate::lacking(one.design_lacks);
+    let lacking =
+        (one.design_lacks > 0).then_some(DesignView { height_m: lacking, energy_j: lacking });
+    one.design_values.as_ref().map(design_view).or(lacking)
+}
+
+/// Whether the ground on the left of a barrier's line is higher than on its right, 10 m to each side of its middle.
+fn left_is_uphill(
+    results: &Results,
+    one: &BarrierSummary,
+    ground: Option<&GroundRaster>,
+) -> Option<bool> {
+    let line = results.lines.iter().find(|line| line.info.name == one.barrier.name)?;
+    let corners = &line.info.corners_m;
+    let pair = corners.get(corners.len().checked_sub(1)? / 2..)?.get(..2)?;
+    let [dx, dy] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+    let (x, y) = (0.5 * (pair[0][0] + pair[1][0]), 0.5 * (pair[0][1] + pair[1][1]));
+    let aside = 10.0 / math::hypot(dx, dy);
+    let height =
+        |side: f64| ground.map(|g| g.height_at(x - side * aside * dy, y + side * aside * dx));
+    let (left, right) = (height(1.0)?, height(-1.0)?);
+    (left - right).is_finite().then_some(left > right)
+}
+
+fn place_view((place, rocks): (&AtPlace, Vec<Arrival>)) -> PlaceView {
+    PlaceView {
+        offset_m: place.offset_m,
+        arriving: place.arriving.share,
+        rocks: rocks.iter().map(|rock| (rock.top_m, rock.total_j)).collect(),
+    }
+}
+
+/// One table over all barriers, and two of each: what arrives, and how it would do at other heights and places.
+pub(super) fn tables(
+    results: &Results,
+    words: &Words,
+    ground: Option<&GroundRaster>,
+) -> Vec<Table> {
+    let barriers = &results.summary.barriers;
+    if barriers.is_empty() {
+        return Vec::new();
+    }
+    let reached = barriers.iter().filter(|one| one.arriving.count > 0);
+    let each = reached.flat_map(|one| {
+        let left_is_uphill = left_is_uphill(results, one, ground);
+        [arriving(one, words), sensitivity(one, words, left_is_uphill)]
+    });
+    [counts(barriers, words)].into_iter().chain(each).collect()
+}
+
+fn counts(barriers: &[BarrierSummary], words: &Words) -> Table {
+    let design_energy = fill(words.col_design_energy, &[("unit", &"kJ")]);
+    let columns = [
+        words.col_height,
+        words.col_capacity,
+        words.col_arriving,
+        words.col_arriving_percent,
+        words.col_stopped,
+        words.col_over,
+        words.col_through,
+        words.col_design_height,
+        &design_energy,
+    ];
+    let rules: Vec<String> = barriers.iter().filter_map(|one| in_words(one, words)).collect();
+    Table {
+        about: About::Barriers,
+        title: words.barriers_title.to_owned(),
+        note: fill(words.barriers_note, &[("rules", &rules.join(" "))]).trim_end().to_owned(),
+        columns: columns.map(str::to_owned).into(),
+        rows: barriers.iter().map(|one| (one.barrier.name.clone(), cells(one))).collect(),
+    }
+}
+
+fn plain(value: f64) -> Estimate {
+    estimate(value, None, None)
+}
+
+fn percent(share: &Proportion) -> Option<Estimate> {
+    let [value, low, high] = [share.share, share.low_95, share.high_95].map(|x| 100.0 * x);
+    (share.of > 0).then(|| estimate(value, Some(low), Some(high)))
+}
+
+fn cells(one: &BarrierSummary) -> Vec<Option<Estimate>> {
+    let design = design(one);
+    vec![
+        Some(plain(one.barrier.height_m)),
+        Some(plain(one.barrier.capacity_j / 1e3)),
+        Some(plain(one.arriving.count as f64)),
+        percent(&one.arriving),
+        percent(&one.stopped),
+        Some(plain(one.over as f64)),
+        Some(plain(one.through as f64)),
+        design.map(|design| design.height_m),
+        design.map(|design| design.energy_j.over(1e3)),
+    ]
+}
+
+/// The rule of a barrier with its factors one by one.
+fn in_words(one: &BarrierSummary, words: &Words) -> Option<String> {
+    let rule: &Rule = one.barrier.design.as_ref()?;
+    let name = words.quoted(&one.barrier.name);
+    let Some(design) = one.design_values.as_ref() else {
+        let found: [(&str, &dyn Display); 3] =
+            [("name", &name), ("percentile", &rule.percentile), ("n", &one.design_lacks)];
+        return Some(fill(words.rule_lacks, &found));
+    };
+    let standard = rule.standard.as_deref().unwrap_or(words.own_rule);
+    let distance = rule.free_distance_m.map_or(String::new(), |free_m| {
+        fill(words.free_distance, &[("m", &format::significant(free_m, 3))])
+    });
+    let factors = |what, list| factors(what, list, words);
+    let said = fill(
+        words.rule,
+        &[
+            ("name", &name),
+            ("standard", &standard),
+            ("percentile", &rule.percentile),
+            ("energy", &format::decimal(design.energy_percentile_j / 1e3, 1)),
+            ("top", &format::decimal(design.height_percentile_m, 2)),
+            ("speed", &factors(words.factor_speed, &rule.speed_factors)),
+            ("mass", &factors(words.factor_mass, &rule.mass_factors)),
+            ("height", &factors(words.factor_height, &rule.height_factors)),
+            ("free", &rule.free_height_m),
+        ],
+    );
+    Some(said + &distance)
+}
+
+/// Partial factors on something, one by one.
+fn factors(what: &str, list: &BTreeMap<String, f64>, words: &Words) -> String {
+    let each: Vec<String> =
+        list.iter().map(|(name, factor)| format!("{} {factor}", name.replace('_', " "))).collect();
+    let text = if each.is_empty() { words.no_factor } else { words.factors };
+    fill(text, &[("what", &what), ("list", &each.join(", "))])
+}
+
+/// The population that is left for a barrier by those before it.
+fn arriving(one: &BarrierSummary, words: &Words) -> Table {
+    let row = |name: &str, like: Quantity, of: &Statistic| {
+        let most = of.max.map(|most| most.value);
+        let (unit, size) = like.unit(most.unwrap_or(0.0));
+        let mean = of.mean.map(|mean| estimate(mean.value, mean.low_95, mean.high_95));
+        let middle = PERCENTS.map(|percent| {
+            let found = of.percentiles.get(&format!("p{percent}"))?;
+            Some(of_percentile(found, (of.rocks, None)))
+        });
+        let cells = [mean].into_iter().chain(middle).chain([most.map(plain)]);
+        (format!("{name} ({unit})"), cells.map(|cell| cell.map(|x| x.over(size))).collect())
+    };
+    let before = one.crossing - one.arriving.count;
+    Table {
+        about: About::Barriers,
+        title: named(words.arriving_title, one, words),
+        note: fill(
+            words.arriving_note,
+            &[("crossing", &one.crossing), ("before", &before), ("left", &one.arriving.count)],
+        ),
+        columns: statistics(words),
+        rows: vec![
+            row(words.total, Quantity::Total, &one.energy_j),
+            row(words.top, Quantity::Height, &one.top_m),
+        ],
+    }
+}
+
+/// A title with the name of a barrier.
+fn named(text: &str, one: &BarrierSummary, words: &Words) -> String {
+    fill(text, &[("name", &words.quoted(&one.barrier.name))])
+}
+
+fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>) -> Table {
+    let heights = one.by_place.first().into_iter().flat_map(|own| &own.by_height);
+    let stopped =
+        heights.map(|(m, _)| fill(words.col_stopped_at, &[("m", &format::significant(*m, 3))]));
+    let mut columns: Vec<String> =
+        [words.col_arriving_percent.to_owned()].into_iter().chain(stopped).collect();
+    let has_design = one.by_place.iter().any(|place| place.design_values.is_some());
+    if has_design {
+        columns.push(words.col_design_height.to_owned());
+        columns.push(fill(words.col_design_energy, &[("unit", &"kJ")]));
+    }
+    let row = |place: &AtPlace| {
+        let name = match place.offset_m {
+            0.0 => words.at_its_place.to_owned(),
+            aside => side(aside, words, left_is_uphill),
+        };
+        let mut cells = vec![percent(&place.arriving)];
+        cells.extend(place.by_height.iter().map(|(_, share)| percent(share)));
+        if has_design {
+            let design = place.design_values.as_ref().map(design_view);
+            cells.push(design.map(|design| design.height_m));
+            cells.push(design.map(|design| design.energy_j.over(1e3)));
+        }
+        (name, cells)
+    };
+    Table {
+        about: About::Barriers,
+        title: named(words.sensitivity_title, one, words),
+        note: words.sensitivity_note.to_owned(),
+        columns,
+        rows: one.by_place.iter().map(row).collect(),
+    }
+}
+
+/// A distance beside a line in words (m, positive on its left): uphill or downhill where the ground says which.
+fn side(aside_m: f64, words: &Words, left_is_uphill: Option<bool>) -> String {
+    let towards = match (aside_m > 0.0, left_is_uphill) {
+        (is_left, Some(uphill)) => {
+            if is_left == uphill {
+                words.uphill
+            } else {
+                words.downhill
+            }
+        }
+        (true, None) => words.to_the_left,
+        (false, None) => words.to_the_right,
+    };
+    format!("{}\u{2009}m {towards}", format::plain(aside_m.abs()))
+}

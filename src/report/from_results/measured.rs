@@ -1,0 +1,151 @@
+//! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
+
+use super::super::format;
+use super::super::model::{About, Estimate, Observed, Table};
+use super::super::words::{Words, fill};
+use super::estimate;
+use crate::calibrate::{Calibration, Measure, Told, Trial};
+use crate::error::Result;
+use crate::hazard::{Agreement, Way};
+use crate::output::{Results, read_calibration};
+
+/// Columns of both tables.
+fn columns(words: &Words) -> Vec<String> {
+    let columns = [
+        words.col_mean_measured,
+        words.col_computed,
+        words.col_ks,
+        words.col_ks_limit,
+        words.col_area,
+        words.col_side_measured,
+        words.col_side_computed,
+    ];
+    columns.map(str::to_owned).into()
+}
+
+/// Measured and computed ways, if the scene names measured ones.
+pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
+    let measured = results.summary.observed.clone();
+    if measured.is_empty() {
+        return Ok(None);
+    }
+    let mut computed = Vec::new();
+    for row in results.rows()? {
+        computed.extend(Way::of(&row?));
+    }
+    let agreement = Agreement::of(&measured, &computed);
+    Ok(agreement.map(|agreement| Observed { measured, computed, agreement }))
+}
+
+/// How well this run and the calibration agree with what was measured.
+pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<Table>> {
+    let mut tables = Vec::new();
+    if let Some(observed) = observed(results)? {
+        tables.push(Table {
+            about: About::Measured,
+            title: words.agreement_title.to_owned(),
+            note: fill(
+                words.agreement_note,
+                &[
+                    ("measured", &observed.agreement.measured),
+                    ("computed", &observed.agreement.computed),
+                ],
+            ),
+            columns: columns(words),
+            rows: vec![(words.this_run.to_owned(), cells(&observed.agreement))],
+        });
+    }
+    if let Some(found) = read_calibration(&results.dir)? {
+        tables.push(calibration(&found, words));
+        if !found.told.is_empty() {
+            tables.extend([told(&found, words), spread(&found, words)]);
+        }
+    }
+    Ok(tables)
+}
+
+fn calibration(found: &Calibration, words: &Words) -> Table {
+    let row = |who: &str, trial: &Trial, of: &Agreement| {
+        let values = found.names.iter().zip(&trial.values);
+        let values: Vec<String> =
+            values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
+        (format!("{who}: {}", values.join(", ")), cells(of))
+    };
+    let (first, second) = (&found.first, &found.second);
+    Table {
+        about: About::Measured,
+        title: words.calibration_title.to_owned(),
+        note: fill(
+            words.calibration_note,
+            &[("trials", &found.trials), ("releases", &found.releases)],
+        ),
+        columns: columns(words),
+        rows: vec![
+            row(words.uncalibrated, &found.before, &found.before.all),
+            row(words.fitted_first, first, &first.fitted),
+            row(words.held_out, first, &first.kept_apart),
+            row(words.fitted_second, second, &second.fitted),
+            row(words.held_out, second, &second.kept_apart),
+        ]
+        .into_iter()
+        .chain(found.whole.as_ref().map(|whole| row(words.fitted_all, whole, &whole.all)))
+        .collect(),
+    }
+}
+
+/// How far the measured ends tell each value.
+fn told(found: &Calibration, words: &Words) -> Table {
+    let row = |told: &Told| {
+        let value = estimate(told.value, Some(told.low_95), Some(told.high_95));
+        let name = if told.is_told {
+            told.name.clone()
+        } else {
+            fill(words.hardly_told, &[("name", &told.name)])
+        };
+        (name, vec![Some(value)])
+    };
+    Table {
+        about: About::Measured,
+        title: words.told_title.to_owned(),
+        note: fill(
+            words.told_note,
+            &[("ends", &found.ends.0), ("worth", &format::decimal(found.ends.1, 0))],
+        ),
+        columns: vec![words.fitted.to_owned()],
+        rows: found.told.iter().map(row).collect(),
+    }
+}
+
+/// Where the ends of the fit lie and how they spread.
+fn spread(found: &Calibration, words: &Words) -> Table {
+    let row = |measure: &Measure| {
+        let difference = estimate(
+            measure.computed - measure.measured,
+            Some(measure.low_95),
+            Some(measure.high_95),
+        );
+        let plain = |value: f64| Some(estimate(value, None, None));
+        let cells = vec![plain(measure.measured), plain(measure.computed), Some(difference)];
+        (format!("{}: {}", measure.scene, measure.what), cells)
+    };
+    Table {
+        about: About::Measured,
+        title: words.ends_title.to_owned(),
+        note: words.ends_note.to_owned(),
+        columns: [words.measured, words.computed, words.difference].map(str::to_owned).into(),
+        rows: found.measures.iter().map(row).collect(),
+    }
+}
+
+fn cells(of: &Agreement) -> Vec<Option<Estimate>> {
+    let numbers = [
+        of.measured_mean_m,
+        of.computed_mean_m,
+        of.ks,
+        of.ks_limit,
+        of.area_m,
+        of.measured_side_m,
+        of.computed_side_m,
+    ];
+    numbers.map(|value| Some(Estimate::plain(value))).into()
+}

@@ -1,0 +1,161 @@
+//! The exact cases over every scheme, and the studies as commands.
+#![allow(clippy::unwrap_used, reason = "a test without its files has failed")]
+
+use crate::report::boxes;
+use rockfall::simulation::Scratch;
+use rockfall::solver::Scheme;
+use rockfall::study::cases::CASES;
+use std::fs;
+use std::process::Command;
+
+/// Every case with every scheme at a usual setting, within the tolerance that the case itself gives a reason for.
+#[test]
+fn every_scheme_reaches_every_exact_case() {
+    for case in CASES {
+        let terrain = case.terrain();
+        for (scheme, fineness) in [
+            (Scheme::Adaptive, 1e-2),
+            (Scheme::Adaptive, 1e-4),
+            (Scheme::Reference, 1e-8),
+            (Scheme::Rigid, 1e-2),
+            (Scheme::Dda, 1e-5),
+        ] {
+            let step = case.settings(scheme, fineness);
+            let journey = case.follow(&terrain, &step, &mut Scratch::default());
+            let error = case.error(&case.measures(&terrain, scheme), &journey);
+            let (allowed, why) = case.allowed(&step);
+            println!("{:13} {:10} {error:.1e} of {allowed:.1e}", case.name, scheme.name());
+            assert!(
+                error <= allowed,
+                "{} {}: {error:e} > {allowed:e} ({why})",
+                case.name,
+                scheme.name()
+            );
+        }
+    }
+}
+
+/// The stiff and extreme cases: every scheme keeps every bound, each of which has its reason where it is set.
+#[test]
+fn stiff_and_extreme_cases_keep_their_bounds() {
+    let outcomes = rockfall::study::stability::study(|_| ());
+    let broken: Vec<_> = outcomes.iter().filter(|outcome| !outcome.holds()).collect();
+    assert!(broken.is_empty(), "{broken:#?}");
+    // every case with every scheme left something behind
+    assert!(outcomes.len() > 500);
+}
+
+/// A run that goes on until an interval is narrow asks for the same releases whatever the number of threads, writes the
+/// bytes of a run that was asked for them at once, and has nothing left to do when resumed.
+#[test]
+fn a_run_until_an_interval_is_narrow_is_the_same_everywhere() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |out: &str, more: &[&str]| {
+        let out = dir.path().join(out);
+        let done = Command::new(env!("CARGO_BIN_EXE_rockfall"))
+            .args(["run", "examples/quick.toml", "--quiet", "--out"])
+            .arg(&out)
+            .args(more)
+            .output()
+            .unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        fs::read_to_string(out.join("releases.csv")).unwrap()
+    };
+    let until = ["--releases", "60", "--until", "speed.p50 < 0.3 m/s"];
+    let alone = run("one", &[&until[..], &["--threads", "1"]].concat());
+    let rows = alone.lines().count() - 1;
+    assert!(rows > 60, "the aim was reached with the first releases: the test tests nothing");
+    assert_eq!(alone, run("two", &[&until[..], &["--threads", "2"]].concat()));
+    assert_eq!(alone, run("once", &["--releases", &rows.to_string()]));
+    assert_eq!(alone, run("one", &[&until[..], &["--resume"]].concat()));
+}
+
+/// At fixed steps every scheme has the order that its theory says, within a twentieth.
+#[test]
+fn every_scheme_has_its_order_at_fixed_steps() {
+    for ladder in rockfall::study::order::study() {
+        let order = ladder.order();
+        println!("{} order {order:.2} {:?}", ladder.scheme.name(), ladder.errors);
+        assert!(
+            (order - ladder.theory).abs() <= 0.05 * ladder.theory,
+            "{} {order}",
+            ladder.scheme.name()
+        );
+    }
+}
+
+/// The table of the README: the fourth-order scheme is exact to a few digits more than it shows, the default's error
+/// falls with its tolerance, and a row says what it measures.
+#[test]
+fn exact_values_are_in_their_units() {
+    let values = rockfall::study::exact_values::values();
+    assert!(values.len() > 15);
+    for value in &values {
+        let off = value.found.map(|found| (found - value.exact).abs());
+        assert!(off[0] < 3e-6 && off[0] <= off[1] + 1e-7, "{value:?}");
+        assert!(off[1] < 2e-3 && off[2] < 0.2, "{value:?}");
+        assert!(value.what.contains('('), "{value:?} has no unit");
+    }
+    let table = rockfall::study::exact_values::table(&values);
+    assert_eq!(table.lines().count(), values.len() + 2);
+}
+
+fn rockfall(arguments: &[&str], out: &std::path::Path) -> (Option<i32>, String, String) {
+    let done = Command::new(env!("CARGO_BIN_EXE_rockfall"))
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .unwrap();
+    let page = fs::read_to_string(out.join("README.md")).unwrap_or_default();
+    (done.status.code(), String::from_utf8_lossy(&done.stdout).into_owned(), page)
+}
+
+/// Two hundred of the releases on the real slope keep every bound of conservation; the fixed step at a
+/// millisecond dissipates what no contact took, and says so with exit status 1.
+#[test]
+fn conservation_is_held_and_can_be_broken() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = |scene: &str, out: &str| {
+        rockfall(&["study", "stability", scene, "--releases", "200"], &dir.path().join(out))
+    };
+    let (code, said, page) = study("examples/tyrol.toml", "good");
+    assert_eq!(code, Some(0), "{said}");
+    assert!(page.contains("200 of 200 releases") && !page.contains("**no**"), "{page}");
+    let scene = fs::read_to_string("examples/tyrol.toml").unwrap();
+    let mesh = fs::canonicalize("terrain/tyrol.stl").unwrap();
+    let coarse = scene.replace("../terrain/tyrol.stl", mesh.to_str().unwrap())
+        + "\n[solver]\nscheme = \"dda\"\nstep_s = 1e-3\n";
+    let file = dir.path().join("coarse.toml");
+    fs::write(&file, coarse).unwrap();
+    let (code, said, page) = study(file.to_str().unwrap(), "bad");
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("NOT KEPT") && page.contains("**no**"), "{page}");
+}
+
+/// A scene's study with coarser meshes says all three errors apart, which dominates, and what it would take.
+#[test]
+fn errors_of_a_scene_are_told_apart() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = ["study", "error", "examples/quick.toml", "--releases", "150", "--meshes"];
+    let (code, said, page) = rockfall(&scene, dir.path());
+    assert_eq!(code, Some(0), "{said}");
+    for words in
+        ["sampling error", "error of the steps", "error of the mesh", "dominates", "cheapest"]
+    {
+        assert!(
+            said.contains(words) || words == "cheapest" && said.contains("finer"),
+            "{words}: {said}"
+        );
+    }
+    assert!(page.contains("(the scene's own)") && page.contains(", own |"), "{page}");
+    let rows = |file: &str| fs::read_to_string(dir.path().join(file)).unwrap().lines().count() - 1;
+    // three quantities, three percentiles (two with too few rocks), five tolerances, three meshes
+    assert_eq!((rows("error.csv") % 5, rows("mesh.csv") % 3), (0, 0));
+    assert_eq!(rows("error.csv") / 5, rows("mesh.csv") / 3);
+    let drawn = fs::read_to_string(dir.path().join("error.svg")).unwrap();
+    // every axis says that it is an error, every text has its own room
+    assert!(drawn.contains("mesh") && drawn.matches(">Error of P95 ").count() == 3);
+    let faults = boxes::faults(&drawn, "error.svg");
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
