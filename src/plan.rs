@@ -22,7 +22,7 @@ use crate::ground::Ground;
 use crate::random::Distribution;
 use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
-use crate::solver::{Scheme, Settings};
+use crate::solver::Settings;
 use crate::terrain::health::Health;
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
@@ -339,7 +339,7 @@ fn bonds(scene: &Scene) -> Part<Strength> {
     let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
         return Part::LeftOut("releases are independent");
     };
-    if scene.solver.scheme() == Scheme::Rigid {
+    if !scene.solver.scheme().has_springs() {
         return Part::LeftOut("a bond breaks by its springs, and the rigid limit has none");
     }
     let strength =

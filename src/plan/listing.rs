@@ -117,7 +117,7 @@ impl Plan {
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
-            let how = if step.scheme == Scheme::Rigid {
+            let how = if !step.scheme.has_springs() {
                 "; impacts in the order of their times, sustained contact swept"
             } else {
                 ""
@@ -315,7 +315,7 @@ fn fingerprint(hash: &str) -> String {
 
 /// How rocks answer each other.
 fn one_world(scheme: Scheme, ground: &Ground) -> String {
-    let springs = if scheme == Scheme::Rigid {
+    let springs = if !scheme.has_springs() {
         "springs left out: the rigid limit has none".to_owned()
     } else {
         let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);

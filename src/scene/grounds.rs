@@ -49,7 +49,7 @@ impl GroundTable {
         stiffness("shear_stiffness_n_m", &self.shear_stiffness_n_m)?;
         let angle = &self.friction_angle_deg;
         drawn("friction_angle_deg", angle, Allowed::Slope, "scree is near 35")?;
-        if self.restitution.is_none() && scheme != Scheme::Dda {
+        if self.restitution.is_none() && !scheme.has_fixed_step() {
             let remedy = "write restitution = 0..1; only scheme \"dda\" can do without";
             return Err(Complaint::missing("restitution", remedy));
         }

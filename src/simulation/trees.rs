@@ -10,8 +10,8 @@ use super::driver::Fall;
 use crate::contact::history::ContactHistories;
 use crate::random::{Purpose, RandomStream, beside};
 use crate::rock::Vec3;
+use crate::solver::Stepper;
 use crate::solver::contact_state::TOUCH;
-use crate::solver::{Scheme, Stepper};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
 
@@ -78,7 +78,7 @@ impl<'a> Fall<'a> {
         let pressed = self.load.pressed;
         self.state.may_yield =
             pressed.is_some_and(|stem| self.load.left_j(stems, stem) <= 1.1 * motion_j);
-        if self.settings.step.scheme != Scheme::Rigid {
+        if self.settings.step.scheme.has_springs() {
             return;
         }
         let (c, m) = (self.state.c, self.world.body.mass);

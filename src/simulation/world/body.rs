@@ -7,7 +7,6 @@ use crate::rock::{Motion, Vec3};
 use crate::simulation::driver::{IMPACT_TIMES, RunSettings};
 use crate::simulation::rest::RestCriterion;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::Scheme;
 use crate::solver::contact_state::{ContactEnvironment, Loss};
 use crate::solver::island::{Given, Hit, IslandBody};
 use crate::solver::step_control::ONSET;
@@ -121,7 +120,7 @@ impl WorldBody<'_> {
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         state.begin(&world, c, v, w);
         // A rock that is pressed in from the start has the energy of its springs, too.
-        if settings.step.scheme != Scheme::Rigid {
+        if settings.step.scheme.has_springs() {
             let held = state.stored_j(&world);
             self.recorder.pay(&held, 1.0);
             self.began_j.0 += held.sum();
@@ -245,7 +244,7 @@ impl WorldBody<'_> {
         let IslandBody { state, body, laws, .. } = &mut *self.member;
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         // The rigid limit has no springs, whatever the depth that rounding leaves.
-        let is_rigid = settings.step.scheme == Scheme::Rigid;
+        let is_rigid = !settings.step.scheme.has_springs();
         let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
         self.recorder.pay(&stored, -1.0);
         let rise_j = self.total_j(settings) - self.began_j.0 + given_j + stored.sum();
