@@ -117,10 +117,10 @@ impl Plan {
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
-            let how = if !step.scheme.has_springs() {
-                "; impacts in the order of their times, sustained contact swept"
-            } else {
+            let how = if step.scheme.has_springs() {
                 ""
+            } else {
+                "; impacts in the order of their times, sustained contact swept"
             };
             format!("islands of rocks that may touch, each with its own step{how}")
         });
@@ -315,11 +315,11 @@ fn fingerprint(hash: &str) -> String {
 
 /// How rocks answer each other.
 fn one_world(scheme: Scheme, ground: &Ground) -> String {
-    let springs = if !scheme.has_springs() {
-        "springs left out: the rigid limit has none".to_owned()
-    } else {
+    let springs = if scheme.has_springs() {
         let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
         format!("springs of {p_n:e} and {p_s:e} N/m")
+    } else {
+        "springs left out: the rigid limit has none".to_owned()
     };
     let restitution = ground.restitution.map_or_else(
         || "restitution of the scheme itself".to_owned(),
