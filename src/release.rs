@@ -317,9 +317,11 @@ impl Releases {
         let mut chance = stream(self.seed, Purpose::Grounds, index);
         // How a block rolls is its shape, which it keeps: the same quantile on every ground.
         let mut character = None;
-        let draw_ground = |table: &GroundTable| Ground {
-            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut chance),
-            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut chance),
+        let draw_ground = |table: &GroundTable| {
+            let normal_stiffness_n_m = table.normal_stiffness_n_m.draw(&mut chance);
+            Ground {
+            normal_stiffness_n_m,
+            shear_stiffness_n_m: table.shear_n_m(normal_stiffness_n_m, |value| value.draw(&mut chance)),
             friction_angle_rad: table.friction_angle_deg.draw(&mut chance).to_radians(),
             restitution: table.restitution.as_ref().map(|e| e.draw(&mut chance)),
             rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
@@ -332,7 +334,7 @@ impl Releases {
                 .map_or(0.0, |angle| angle.draw(&mut chance))
                 .to_radians(),
             roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut chance)),
-        };
+        }};
         self.grounds.iter().map(draw_ground).collect()
     }
 }

@@ -14,6 +14,7 @@ pub mod islands;
 mod jump;
 mod link;
 mod member;
+mod ordering;
 mod rigid;
 mod stage;
 mod sweeps;

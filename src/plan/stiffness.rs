@@ -21,6 +21,9 @@ const SELDOM_PASSED_M_S: f64 = 40.0;
 /// fifth of the speed.
 const RESOLVED_PHASE: f64 = 0.3;
 
+/// Shear over normal spring (–): beyond, nothing that a ground may be.
+const SHEAR: [f64; 2] = [1e-6, 1e3];
+
 /// A warning that concerns rocks above a speed: where none comes so fast, there is nothing to warn of.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FastWarning {
@@ -113,9 +116,10 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
     let median = |value: &Distribution| value.quantile(0.5);
     let rock = rock(scene, median(scene.rocks.radius_m()));
     let of = |table: &GroundTable| {
+        let normal_stiffness_n_m = median(&table.normal_stiffness_n_m);
         let ground = Ground {
-            normal_stiffness_n_m: median(&table.normal_stiffness_n_m),
-            shear_stiffness_n_m: median(&table.shear_stiffness_n_m),
+            normal_stiffness_n_m,
+            shear_stiffness_n_m: table.shear_n_m(normal_stiffness_n_m, median),
             friction_angle_rad: median(&table.friction_angle_deg).to_radians(),
             restitution: table.restitution.as_ref().map(median),
             rolling_friction: 0.0,
@@ -128,6 +132,23 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
     scene.grounds.values().map(of).collect()
 }
 
+/// Refuses shear springs so far from the normal one that they are no ground: too soft, a contact takes for ever to slip.
+fn check_shear(scene: &Scene) -> Result<()> {
+    for (name, ground) in &scene.grounds {
+        let Some(shear) = &ground.shear_stiffness_n_m else { continue };
+        let [soft, _, stiff] = ground.normal_stiffness_n_m.reckoned();
+        let (least, most) = (SHEAR[0] * soft, SHEAR[1] * stiff);
+        let [low, _, high] = shear.reckoned();
+        if low < least || high > most {
+            let place = format!("[grounds.{name}] shear_stiffness_n_m");
+            let found = format!("found {:e} beside a normal spring of {soft:e}", if low < least { low } else { high });
+            let remedy = format!("write a value in {least:e}..{most:e}, usual are 0.25 to 1 times the normal spring");
+            return Err(Error::input(&scene.file, place, found, remedy));
+        }
+    }
+    Ok(())
+}
+
 /// Refuses springs that cannot carry the largest rock and warns of those that an impact presses too deep.
 pub(super) fn check(
     scene: &Scene,
@@ -137,6 +158,7 @@ pub(super) fn check(
     if scene.solver.scheme() == Scheme::Rigid {
         return Ok(());
     }
+    check_shear(scene)?;
     let largest = rock(scene, scene.rocks.radius_m().reckoned()[2]);
     let fastest_m_s = fastest_m_s(scene, terrain);
     for (name, ground) in &scene.grounds {

@@ -263,6 +263,7 @@ impl<'a> Job<'a> {
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given[k]);
             go(rover, self.course, self.now_s, given, slides[k]);
+            rover.spend(self.course);
             std::mem::swap(&mut rover.member, &mut cluster.members[k]);
         }
         cluster.members.iter().all(|member| member.flying)

@@ -77,6 +77,15 @@ impl Rover<'_> {
             Landing::Leaves(t) => (now_s + t, Some(Stop::LeftTerrain)),
             Landing::Flies => (f64::INFINITY, None),
         });
+        self.spend(course);
+    }
+
+    /// Takes it out of the world when it has had all the work it may have: others may have less to do.
+    pub(super) fn spend(&mut self, course: &Course) {
+        if self.journey.effort.work() > course.step.scheme.most_work() {
+            self.lands = None;
+            self.leave(Stop::OverBudget);
+        }
     }
 
     /// Goes along the parabola; nothing for a rock in contact.
