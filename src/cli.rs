@@ -379,7 +379,9 @@ fn bar(asked: usize, what: &str) -> ProgressBar {
 /// Says what is wrong; where even that cannot be written (a full disk, nobody there) the status must do.
 fn complain(text: impl Display) {
     // what stands in a file must not steer the terminal, nor break the line
-    let shown = |c: char| if c.is_control() && c != '\n' { c.escape_default().to_string() } else { c.to_string() };
+    let shown = |c: char| {
+        if c.is_control() && c != '\n' { c.escape_default().to_string() } else { c.to_string() }
+    };
     let text: String = text.to_string().chars().map(shown).collect();
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }

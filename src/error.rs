@@ -52,10 +52,7 @@ fn remedy(kind: ErrorKind) -> &'static str {
 
 /// Whether the system has no more room.
 fn is_full(kind: ErrorKind) -> bool {
-    matches!(
-        kind,
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge
-    )
+    matches!(kind, ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge)
 }
 
 /// What is wrong with a value and what to write instead: an [`Error::Input`] that does not yet know its place.

@@ -320,21 +320,23 @@ impl Releases {
         let draw_ground = |table: &GroundTable| {
             let normal_stiffness_n_m = table.normal_stiffness_n_m.draw(&mut chance);
             Ground {
-            normal_stiffness_n_m,
-            shear_stiffness_n_m: table.shear_n_m(normal_stiffness_n_m, |value| value.draw(&mut chance)),
-            friction_angle_rad: table.friction_angle_deg.draw(&mut chance).to_radians(),
-            restitution: table.restitution.as_ref().map(|e| e.draw(&mut chance)),
-            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
-                let drawn = unit(&mut chance);
-                rolling.quantile(*character.get_or_insert(drawn))
-            }),
-            roughness_rad: table
-                .roughness_deg
-                .as_ref()
-                .map_or(0.0, |angle| angle.draw(&mut chance))
-                .to_radians(),
-            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut chance)),
-        }};
+                normal_stiffness_n_m,
+                shear_stiffness_n_m: table
+                    .shear_n_m(normal_stiffness_n_m, |value| value.draw(&mut chance)),
+                friction_angle_rad: table.friction_angle_deg.draw(&mut chance).to_radians(),
+                restitution: table.restitution.as_ref().map(|e| e.draw(&mut chance)),
+                rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
+                    let drawn = unit(&mut chance);
+                    rolling.quantile(*character.get_or_insert(drawn))
+                }),
+                roughness_rad: table
+                    .roughness_deg
+                    .as_ref()
+                    .map_or(0.0, |angle| angle.draw(&mut chance))
+                    .to_radians(),
+                roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut chance)),
+            }
+        };
         self.grounds.iter().map(draw_ground).collect()
     }
 }

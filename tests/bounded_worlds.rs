@@ -39,7 +39,10 @@ fn worlds_that_never_rest_end_by_time_or_budget() {
             let out = dir.path().join("out");
             let said = rockfall(&["run", word(&scene), "--overwrite", "--out", word(&out)]);
             let said = String::from_utf8_lossy(&said.stdout).into_owned();
-            assert!(said.contains("warning: 2 of 2 rocks were still moving when their budget"), "{said}");
+            assert!(
+                said.contains("warning: 2 of 2 rocks were still moving when their budget"),
+                "{said}"
+            );
         }
         let known = ["over_budget", "time_up", "at_rest", "left_terrain"];
         assert!(ends.iter().all(|stop| known.contains(&stop.as_str())), "{ends:?}");

@@ -34,7 +34,10 @@ fn a_ground_on_which_nothing_stops_a_sphere_is_warned_of() {
     let own = plan("like = \"crsp/talus\"\nrolling_friction = 0.5");
     assert!(!own.contains(warning) && own.contains("rock: on slopes of up to 26.6°"), "{own}");
     let stone = plan("like = \"rstone/debris\"");
-    assert!(!stone.contains("nothing stops") && stone.contains("rock: on slopes of up to"), "{stone}");
+    assert!(
+        !stone.contains("nothing stops") && stone.contains("rock: on slopes of up to"),
+        "{stone}"
+    );
     // springs of the scene: a quarter, and what that gives back where e = 0.4
     let tangential = plan("restitution = 0.4");
     assert!(

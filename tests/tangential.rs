@@ -63,9 +63,11 @@ points_m = [[5.0, 5.0]]
 #[test]
 fn the_ratio_gives_the_shear_spring() {
     let read = |text: &str| Scene::parse(text, Path::new("tests/bad/scene.toml")).unwrap();
-    let plane = terrain(vec![
-        [Vec3::new(0.0, 0.0, 0.0), Vec3::new(20.0, 0.0, 0.0), Vec3::new(0.0, 20.0, 0.0)],
-    ]);
+    let plane = terrain(vec![[
+        Vec3::new(0.0, 0.0, 0.0),
+        Vec3::new(20.0, 0.0, 0.0),
+        Vec3::new(0.0, 20.0, 0.0),
+    ]]);
     let grounds = |scene: &Scene| -> Vec<Ground> {
         let releases = Releases::compile(scene, &plane).unwrap();
         (0..10).map(|index| releases.release(&plane, index).unwrap().grounds[0]).collect()

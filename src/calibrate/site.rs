@@ -8,8 +8,8 @@ use crate::hazard::{Agreement, Row, Way, Weighted, distances, effective, rank, r
 use crate::math;
 use crate::plan::Plan;
 use crate::scene::{Scene, VaryTable};
+use crate::simulation::{Scratch, simulate_release};
 use crate::terrain::Terrain;
-use crate::trajectory::{Scratch, fall};
 use std::path::Path;
 
 /// A measured end was released from a place of the scene if that is no farther away (m): positions are measured to a
@@ -45,7 +45,8 @@ impl Site {
         let (measured, blocks, part) = match scene.calibrate.as_ref().map(|table| &table.deposits) {
             Some(deposits) => {
                 let (measured, blocks) = (Way::read(deposits)?, Way::read_blocks(deposits)?);
-                let part = parts_of(measured.len(), &blocks, parts).ok_or_else(|| few(deposits, parts))?;
+                let part =
+                    parts_of(measured.len(), &blocks, parts).ok_or_else(|| few(deposits, parts))?;
                 (measured, blocks, part)
             }
             None => (Vec::new(), Vec::new(), Vec::new()),
@@ -91,7 +92,8 @@ impl Site {
         let plan = Plan::compile(&self.scene, terrain)?;
         let origin_m = plan.terrain.origin_m;
         let mut computed = Computed::new();
-        let one = |index: usize, scratch: &mut Scratch| fall(&plan, index, None, scratch);
+        let one =
+            |index: usize, scratch: &mut Scratch| simulate_release(&plan, index, None, scratch);
         for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {
             let way = |fall| Way::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
             computed.extend(falls?.iter().filter_map(way));
@@ -126,7 +128,8 @@ impl Site {
         rows.iter().for_each(|&row| counts[own.of_end[row]][0] += 1.0);
         let places = || computed.iter().map(|(index, _)| own.of_release(*index));
         places().flatten().for_each(|place| counts[place][1] += 1.0);
-        let weight = |place: Option<usize>| place.map_or(0.0, |place| counts[place][0] / counts[place][1]);
+        let weight =
+            |place: Option<usize>| place.map_or(0.0, |place| counts[place][0] / counts[place][1]);
         computed.iter().zip(places()).map(|((_, way), place)| (*way, weight(place))).collect()
     }
 
@@ -250,12 +253,10 @@ mod tests {
         let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]];
         let own = OwnPlaces::of(&measured, &places).unwrap();
         assert_eq!(own.of_end, [0, 1, 0, 0]);
-        assert_eq!((0..4).map(|k| own.of_release(k)).collect::<Vec<_>>(), [
-            Some(0),
-            Some(1),
-            None,
-            Some(0)
-        ]);
+        assert_eq!(
+            (0..4).map(|k| own.of_release(k)).collect::<Vec<_>>(),
+            [Some(0), Some(1), None, Some(0)]
+        );
         assert!(OwnPlaces::of(&measured, &places[..1]).is_none());
         assert!(OwnPlaces::of(&measured, &[]).is_none());
     }

@@ -39,7 +39,10 @@ fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, Strin
         (None, own) => own.as_ref().map_or_else(String::new, |own| words(own, " N/m")),
     };
     let mut parts = vec![
-        format!("springs {} normal, {along} along the surface", words(&ground.normal_stiffness_n_m, " N/m")),
+        format!(
+            "springs {} normal, {along} along the surface",
+            words(&ground.normal_stiffness_n_m, " N/m")
+        ),
         format!("friction angle {}", words(&ground.friction_angle_deg, "°")),
     ];
     let mut say = |name: &str, value: Option<&Distribution>, unit: &str| {

@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene};
-use crate::step::Scheme;
-use crate::step::dda::SINGLE_STEP_PHASE;
+use crate::solver::Scheme;
+use crate::solver::dda::SINGLE_STEP_PHASE;
 use crate::terrain::Terrain;
 
 /// Deepest a resting rock may press a spring, over its radius (–): a softer ground is no rigid surface.
@@ -141,8 +141,13 @@ fn check_shear(scene: &Scene) -> Result<()> {
         let [low, _, high] = shear.reckoned();
         if low < least || high > most {
             let place = format!("[grounds.{name}] shear_stiffness_n_m");
-            let found = format!("found {:e} beside a normal spring of {soft:e}", if low < least { low } else { high });
-            let remedy = format!("write a value in {least:e}..{most:e}, usual are 0.25 to 1 times the normal spring");
+            let found = format!(
+                "found {:e} beside a normal spring of {soft:e}",
+                if low < least { low } else { high }
+            );
+            let remedy = format!(
+                "write a value in {least:e}..{most:e}, usual are 0.25 to 1 times the normal spring"
+            );
             return Err(Error::input(&scene.file, place, found, remedy));
         }
     }

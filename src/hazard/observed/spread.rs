@@ -122,11 +122,10 @@ mod tests {
     #[test]
     fn figures_are_those_found_by_hand() {
         let way = |x: f64, y: f64| Way { start_m: [1.0, 1.0], end_m: [1.0 + x, 1.0 + y] };
-        let figures =
-            Spread::figures(
-                &[way(0.0, 10.0), way(0.0, 20.0)],
-                &[(way(3.0, 14.0), 1.0), (way(3.0, 24.0), 1.0)],
-            );
+        let figures = Spread::figures(
+            &[way(0.0, 10.0), way(0.0, 20.0)],
+            &[(way(3.0, 14.0), 1.0), (way(3.0, 24.0), 1.0)],
+        );
         let value = |what: &str| figures.iter().find(|f| f.0.starts_with(what)).unwrap();
         assert!((value("offset").2 - 5.0).abs() < 1e-12);
         assert!((value("standard deviation along").1 - 50.0_f64.sqrt()).abs() < 1e-12);

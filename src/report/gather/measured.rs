@@ -65,7 +65,11 @@ fn calibration(found: &Calibration) -> Table {
     let mut rows = vec![row("Uncalibrated, all rocks", &found.before, &found.before.all)];
     for (part, trial) in found.held_out.iter().enumerate() {
         let part = part + 1;
-        rows.push(row(&format!("Fitted without part {part}, seen on the rest"), trial, &trial.fitted));
+        rows.push(row(
+            &format!("Fitted without part {part}, seen on the rest"),
+            trial,
+            &trial.fitted,
+        ));
         rows.push(row(&format!("The same on part {part}, held out"), trial, &trial.kept_apart));
     }
     rows.push(row("Fitted on all", &found.whole, &found.whole.all));
