@@ -21,6 +21,7 @@ use crate::hazard::Agreement;
 use crate::scene::{CalibrateTable, GroundTable, Scene, VaryKey, VaryTable};
 use search::Search;
 use serde::{Deserialize, Serialize};
+use site::Site;
 use std::fmt;
 
 /// Most quantities that are fitted at a time.
@@ -63,6 +64,9 @@ pub struct Calibration {
     pub before: Trial,
     /// Fitted to all but one part of the ends and scored on that, part by part; none where none was held out.
     pub held_out: Vec<Trial>,
+    /// Whether throws of one block were held out together.
+    #[serde(default)]
+    pub by_block: bool,
     /// Fitted to all ends.
     pub whole: Trial,
     /// How far the ends tell each value.
@@ -107,6 +111,7 @@ pub fn calibrate(
         trials,
         before,
         held_out,
+        by_block: search.sites.iter().any(Site::knows_blocks),
         whole,
         told,
         measures,

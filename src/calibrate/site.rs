@@ -74,6 +74,11 @@ impl Site {
         &self.scene.file
     }
 
+    /// Whether it is known which throws are of one block.
+    pub(super) fn knows_blocks(&self) -> bool {
+        !self.blocks.is_empty()
+    }
+
     pub(super) fn measured(&self) -> &[Way] {
         &self.measured
     }

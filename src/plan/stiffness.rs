@@ -134,20 +134,24 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
 
 /// Refuses shear springs so far from the normal one that they are no ground: too soft, a contact takes for ever to slip.
 fn check_shear(scene: &Scene) -> Result<()> {
-    for (name, ground) in &scene.grounds {
-        let Some(shear) = &ground.shear_stiffness_n_m else { continue };
-        let [soft, _, stiff] = ground.normal_stiffness_n_m.reckoned();
+    let fixed = |value: f64| [value; 3];
+    let between = scene.rocks.contact.as_ref().map(|contact| {
+        let springs = [contact.normal_stiffness_n_m, contact.shear_stiffness_n_m].map(fixed);
+        ("[rocks.contact]".to_owned(), springs)
+    });
+    let grounds = scene.grounds.iter().filter_map(|(name, ground)| {
+        let springs = [&ground.normal_stiffness_n_m, ground.shear_stiffness_n_m.as_ref()?];
+        Some((format!("[grounds.{name}]"), springs.map(Distribution::reckoned)))
+    });
+    for (table, [[soft, _, stiff], [low, _, high]]) in grounds.chain(between) {
         let (least, most) = (SHEAR[0] * soft, SHEAR[1] * stiff);
-        let [low, _, high] = shear.reckoned();
         if low < least || high > most {
-            let place = format!("[grounds.{name}] shear_stiffness_n_m");
-            let found = format!(
-                "found {:e} beside a normal spring of {soft:e}",
-                if low < least { low } else { high }
-            );
+            let wrong = if low < least { low } else { high };
+            let found = format!("found {wrong:e} beside a normal spring of {soft:e}");
             let remedy = format!(
-                "write a value in {least:e}..{most:e}, usual are 0.25 to 1 times the normal spring"
+                "write a value in {least:e}..{most:e}; usual is 0.25 to 1 times the normal spring"
             );
+            let place = format!("{table} shear_stiffness_n_m");
             return Err(Error::input(&scene.file, place, found, remedy));
         }
     }
@@ -160,10 +164,10 @@ pub(super) fn check(
     terrain: &Terrain,
     warnings: &mut Vec<FastWarning>,
 ) -> Result<()> {
+    check_shear(scene)?;
     if scene.solver.scheme() == Scheme::Rigid {
         return Ok(());
     }
-    check_shear(scene)?;
     let largest = rock(scene, scene.rocks.radius_m().reckoned()[2]);
     let fastest_m_s = fastest_m_s(scene, terrain);
     for (name, ground) in &scene.grounds {

@@ -62,6 +62,8 @@ fn calibration(found: &Calibration) -> Table {
             values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
         (format!("{who}: {}", values.join(", ")), cells(of))
     };
+    let blocks =
+        if found.by_block { ", and throws of one block are held out together" } else { "" };
     let mut rows = vec![row("Uncalibrated, all rocks", &found.before, &found.before.all)];
     for (part, trial) in found.held_out.iter().enumerate() {
         let part = part + 1;
@@ -77,8 +79,8 @@ fn calibration(found: &Calibration) -> Table {
         about: About::Measured,
         title: "Calibration and what it is worth".to_owned(),
         note: format!(
-            "{} trials of {} releases for each fit; a value counts only on ends that it was not fitted to. Throws of one block are held out together.",
-            found.trials, found.releases
+            "{} trials of {} releases for each fit; a value counts only on ends that it was not fitted to{}.",
+            found.trials, found.releases, blocks
         ),
         columns: COLUMNS.map(str::to_owned).into(),
         rows,
