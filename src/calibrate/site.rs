@@ -1,12 +1,12 @@
 //! One scene of a calibration and what was measured on it.
 
 use super::{Ends, put_all};
-use crate::chance::{Chance, unit};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
 use crate::hazard::{Agreement, Row, Way, Weighted, distances, effective, rank, runouts};
 use crate::math;
 use crate::plan::Plan;
+use crate::random::{RandomStream, unit};
 use crate::scene::{Scene, VaryTable};
 use crate::simulation::{Scratch, simulate_release};
 use crate::terrain::Terrain;
@@ -174,10 +174,10 @@ impl Site {
     }
 
     /// As many measured ends as they are worth, drawn from them with replacement: their rows.
-    pub(super) fn redraw(&self, chance: &mut Chance) -> Vec<usize> {
+    pub(super) fn redraw(&self, random: &mut RandomStream) -> Vec<usize> {
         let count = (self.effective().round() as usize).max(2);
         let rows = self.measured.len();
-        (0..count).map(|_| ((unit(chance) * rows as f64) as usize).min(rows - 1)).collect()
+        (0..count).map(|_| ((unit(random) * rows as f64) as usize).min(rows - 1)).collect()
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::search::Search;
 use super::site::{Computed, Site};
-use crate::chance::{Purpose, stream};
 use crate::error::Result;
 use crate::hazard::Spread;
+use crate::random::{Purpose, stream};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -63,9 +63,9 @@ impl Search<'_> {
     /// The values that fit best when the measured ends are drawn again.
     fn told(&self, values: &[f64], seed: u64) -> Vec<Told> {
         let best = |redraw: usize| {
-            let mut chance = stream(seed, Purpose::Redraw, redraw);
+            let mut random = stream(seed, Purpose::Redraw, redraw);
             let drawn: Vec<Vec<usize>> =
-                self.sites.iter().map(|site| site.redraw(&mut chance)).collect();
+                self.sites.iter().map(|site| site.redraw(&mut random)).collect();
             let distance = |computed: &[Computed]| -> f64 {
                 let each = self.sites.iter().zip(&drawn).zip(computed);
                 each.map(|((site, rows), computed)| site.distance(computed, rows)).sum()
@@ -102,8 +102,8 @@ impl Search<'_> {
             let found = site.figures(computed, &all);
             let again: Vec<_> = (0..REDRAWS)
                 .map(|redraw| {
-                    let mut chance = stream(seed, Purpose::Redraw, redraw);
-                    site.figures(computed, &site.redraw(&mut chance))
+                    let mut random = stream(seed, Purpose::Redraw, redraw);
+                    site.figures(computed, &site.redraw(&mut random))
                 })
                 .collect();
             let one = |(at, (what, measured, computed)): (usize, (&'static str, f64, f64))| {
