@@ -148,6 +148,8 @@ pub struct Plan {
     pub catalogued: Vec<String>,
     /// Up to which slope each ground stops a rolling sphere, in words.
     pub rolling_stops: Vec<String>,
+    /// Ratio of the springs and tangential restitution of each ground, in words.
+    pub tangential: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
     /// What went in, as name and value.
@@ -274,6 +276,7 @@ impl Plan {
             ],
             catalogued: grounds::catalogued(scene),
             rolling_stops: grounds::rolling_stops(scene),
+            tangential: grounds::tangential(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             fast_warnings,

@@ -317,21 +317,25 @@ impl Releases {
         let mut random = stream(self.seed, Purpose::Grounds, index);
         // How a block rolls is its shape, which it keeps: the same quantile on every ground.
         let mut character = None;
-        let draw_ground = |table: &GroundTable| Ground {
-            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut random),
-            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut random),
-            friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
-            restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
-            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
-                let drawn = unit(&mut random);
-                rolling.quantile(*character.get_or_insert(drawn))
-            }),
-            roughness_rad: table
-                .roughness_deg
-                .as_ref()
-                .map_or(0.0, |angle| angle.draw(&mut random))
-                .to_radians(),
-            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+        let draw_ground = |table: &GroundTable| {
+            let normal_stiffness_n_m = table.normal_stiffness_n_m.draw(&mut random);
+            Ground {
+                normal_stiffness_n_m,
+                shear_stiffness_n_m: table
+                    .shear_n_m(normal_stiffness_n_m, |value| value.draw(&mut random)),
+                friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
+                restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
+                rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
+                    let drawn = unit(&mut random);
+                    rolling.quantile(*character.get_or_insert(drawn))
+                }),
+                roughness_rad: table
+                    .roughness_deg
+                    .as_ref()
+                    .map_or(0.0, |angle| angle.draw(&mut random))
+                    .to_radians(),
+                roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+            }
         };
         self.grounds.iter().map(draw_ground).collect()
     }

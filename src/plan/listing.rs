@@ -65,6 +65,7 @@ impl Plan {
             maps,
             catalogued,
             rolling_stops,
+            tangential,
             deposits,
             inputs: _,      // with the report
             title_block: _, // with the report
@@ -102,6 +103,7 @@ impl Plan {
                 format!("{speed:.4} m/s on {name}, {whose}: slower impacts do not rebound"),
             );
         }
+        list.lines("tangential answer", tangential.iter().cloned());
         list.line("impacts on one plane", plane_impacts(step));
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));

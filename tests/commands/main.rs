@@ -2,6 +2,8 @@
 //!
 //! One program for all of it: linking takes longer than most of these tests.
 
+#[path = "../asked/mod.rs"]
+mod asked;
 #[path = "../drawn/mod.rs"]
 mod drawn;
 #[path = "../made/mod.rs"]
@@ -19,7 +21,9 @@ mod svg;
 mod bad_input;
 mod belongs;
 mod bounded;
+mod bounded_worlds;
 mod calibrate;
+mod catalogue;
 mod compare;
 mod data_in;
 mod edges;

@@ -50,9 +50,7 @@ pub(super) fn tables(results: &Results) -> Result<Vec<Table>> {
     }
     if let Some(found) = read_calibration(&results.dir)? {
         tables.push(calibration(&found));
-        if !found.told.is_empty() {
-            tables.extend([told(&found), spread(&found)]);
-        }
+        tables.extend([told(&found), spread(&found)]);
     }
     Ok(tables)
 }
@@ -64,25 +62,28 @@ fn calibration(found: &Calibration) -> Table {
             values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
         (format!("{who}: {}", values.join(", ")), cells(of))
     };
-    let (first, second) = (&found.first, &found.second);
+    let blocks =
+        if found.by_block { ", and throws of one block are held out together" } else { "" };
+    let mut rows = vec![row("Uncalibrated, all rocks", &found.before, &found.before.all)];
+    for (part, trial) in found.held_out.iter().enumerate() {
+        let part = part + 1;
+        rows.push(row(
+            &format!("Fitted without part {part}, seen on the rest"),
+            trial,
+            &trial.fitted,
+        ));
+        rows.push(row(&format!("The same on part {part}, held out"), trial, &trial.kept_apart));
+    }
+    rows.push(row("Fitted on all", &found.whole, &found.whole.all));
     Table {
         about: About::Measured,
         title: "Calibration and what it is worth".to_owned(),
         note: format!(
-            "{} trials of {} releases on each half of the measured rocks; a value counts only on the half that it was not fitted to.",
-            found.trials, found.releases
+            "{} trials of {} releases for each fit; a value counts only on ends that it was not fitted to{}.",
+            found.trials, found.releases, blocks
         ),
         columns: COLUMNS.map(str::to_owned).into(),
-        rows: vec![
-            row("Uncalibrated, all rocks", &found.before, &found.before.all),
-            row("Fitted on the first half, seen on it", first, &first.fitted),
-            row("The same on the held-out half", first, &first.kept_apart),
-            row("Fitted on the second half, seen on it", second, &second.fitted),
-            row("The same on the held-out half", second, &second.kept_apart),
-        ]
-        .into_iter()
-        .chain(found.whole.as_ref().map(|whole| row("Fitted on all", whole, &whole.all)))
-        .collect(),
+        rows,
     }
 }
 

@@ -77,6 +77,15 @@ impl WorldBody<'_> {
                 FlightEnd::Leaves(t) => (now_s + t, Some(Stop::LeftTerrain)),
                 FlightEnd::Flies => (f64::INFINITY, None),
             });
+        self.spend(settings);
+    }
+
+    /// Takes it out of the world when it has had all the work it may have: others may have less to do.
+    pub(super) fn spend(&mut self, settings: &RunSettings) {
+        if self.recorder.effort.work() > settings.step.scheme.most_work() {
+            self.lands = None;
+            self.leave(Stop::OverBudget);
+        }
     }
 
     /// Goes along the parabola; nothing for a rock in contact.

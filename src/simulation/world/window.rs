@@ -276,6 +276,7 @@ impl<'a> IslandWindow<'a> {
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given[k]);
             go(body, self.settings, self.now_s, given, slides[k]);
+            body.spend(self.settings);
             std::mem::swap(&mut body.member, &mut island.members[k]);
         }
         island.members.iter().all(|member| member.flying)
