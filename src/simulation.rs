@@ -3,6 +3,7 @@
 mod rest;
 mod crossings;
 mod driver;
+mod impacts;
 mod recorder;
 mod roughness;
 mod trees;

@@ -1,5 +1,6 @@
 //! The fall itself: leap, touch, step, stop.
 
+use super::impacts::Struck;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::roughness::Roughness;
@@ -247,7 +248,7 @@ impl Fall<'_> {
         self.recorder.ledger.rise_j =
             self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
         self.leave_facet();
-        self.recorder.end_impact();
+        self.recorder.end_impacts(|_| false, || 0.0);
         stop
     }
 
@@ -288,8 +289,11 @@ impl Fall<'_> {
             let slides = self.state.histories.iter().any(|history| history.slides);
             let begun = self.state.clocks.now();
             self.recorder.step(to, slides);
-            self.leave_facet_in_time();
-            self.recorder.end_impact_in_time();
+            // a blow of the rigid limit is announced first and falls with the next step
+            if !(self.is_rigid() && self.state.is_struck) {
+                self.leave_facet_in_time();
+                self.end_impacts();
+            }
             self.state.clocks.stop(Piece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.over_budget());
@@ -313,10 +317,12 @@ impl Fall<'_> {
         {
             return;
         }
-        let radius = self.world.body.radius;
         let until_s = self.recorder.now.time_s + self.impact_time();
+        let world = &self.world;
         let mut fastest: Option<(f64, Vec3, u32)> = None;
         let ContactState { histories, struck, c, .. } = &mut *self.state;
+        let known = histories.iter().filter(|history| history.announced);
+        let held_j = ContactState::held_j(world, known);
         for history in
             histories.iter_mut().chain(struck.iter_mut()).filter(|history| !history.announced)
         {
@@ -324,9 +330,17 @@ impl Fall<'_> {
             if history.captured {
                 continue;
             }
-            let point = *c - history.n * radius;
-            self.recorder.begin_impact(point, history.feature.kind, history.triangle, until_s);
             let speed = -history.n.dot(&self.recorder.now.velocity_m_s);
+            if speed >= world.law(history.triangle).capture_m_s {
+                let struck = Struck {
+                    point_m: *c - history.n * world.body.radius,
+                    normal: history.n,
+                    feature: history.feature.kind,
+                    sheet: world.terrain.sheet_of[history.triangle as usize],
+                    approach_m_s: speed,
+                };
+                history.impact = self.recorder.begin_impact(&struck, until_s, held_j);
+            }
             if speed > fastest.map_or(0.0, |(known, ..)| known) {
                 fastest = Some((speed, history.n, history.triangle));
             }
@@ -334,6 +348,15 @@ impl Fall<'_> {
         if let Some((_, normal, triangle)) = fastest {
             self.meet_facet(normal, triangle, until_s);
         }
+    }
+
+    /// Ends the impacts whose patch has let go or whose time is up.
+    fn end_impacts(&mut self) {
+        let (world, histories) = (&self.world, &self.state.histories);
+        self.recorder.end_impacts(
+            |number| histories.iter().any(|history| history.impact == number),
+            || ContactState::held_j(world, histories.iter()),
+        );
     }
 
     /// The longest an impact is taken to last (s): in the rigid limit no time at all.
@@ -354,7 +377,6 @@ impl Fall<'_> {
     }
 
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
-        self.recorder.end_impact();
         self.recorder.end_path();
         self.recorder.effort.sweeps += self.state.sweeps;
         self.recorder.effort.triangles += self.state.near.tested;
@@ -369,9 +391,9 @@ impl Fall<'_> {
             end: recorder.now,
             stop,
             extremes: recorder.extremes,
-            impact_count: recorder.impact_count,
+            impact_count: recorder.impacts.count,
             tree_impact_count: recorder.tree_impact_count,
-            impacts: recorder.impacts,
+            impacts: recorder.impacts.rows,
             path: recorder.path,
             crossings: recorder.crossings.into_found(),
             visits: recorder.visits.into_found(),

@@ -8,7 +8,7 @@ use super::law::{Body, StageContact};
 use super::plane_kernel::PlaneKernel;
 use super::tableau::STAGES;
 use crate::clock::{Clocks, Piece};
-use crate::contact::history::{ContactHistories, HISTORIES};
+use crate::contact::history::{ContactHistories, ContactHistory, HISTORIES};
 use crate::contact::neighbours::Neighbours;
 use crate::contact::{ContactPoints, MOST};
 use crate::rock::Vec3;
@@ -330,6 +330,20 @@ impl ContactState {
         let c = self.c;
         self.look(world, &c, world.body.radius);
         self.stored_j(world)
+    }
+
+    /// About how much the springs of contacts that last hold (J), as their memories tell: `F²/(2 p_N)` and the stretches.
+    pub fn held_j<'h>(
+        world: &ContactEnvironment,
+        histories: impl Iterator<Item = &'h ContactHistory>,
+    ) -> f64 {
+        let held = histories.map(|history| {
+            let law = world.law(history.triangle);
+            let pressed = history.normal_force * history.normal_force / law.p_n;
+            let shear = law.p_s * history.shear.norm_squared();
+            0.5 * (pressed + shear + law.k_r * history.roll.norm_squared())
+        });
+        held.sum()
     }
 
     /// The same for the touches of the last look.
