@@ -15,6 +15,7 @@ pub(crate) mod friction_rolling;
 pub mod stage;
 pub mod tableau;
 pub mod environment;
+mod springs;
 
 use contact_state::{ContactEnvironment, ContactState};
 use step_control::{Advance, Control, StepError};

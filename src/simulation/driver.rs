@@ -1,6 +1,5 @@
 //! The fall itself: leap, touch, step, stop.
 
-use super::impacts::Struck;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::roughness::Roughness;
@@ -13,7 +12,7 @@ use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
 use crate::release::Release;
-use crate::rock::{Motion, Vec3};
+use crate::rock::Motion;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
 use crate::solver::law::Body;
 use crate::solver::{self, Scheme, Settings, Stepper};
@@ -253,7 +252,7 @@ impl Fall<'_> {
     }
 
     /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
-    fn is_rigid(&self) -> bool {
+    pub(super) fn is_rigid(&self) -> bool {
         self.settings.step.scheme == Scheme::Rigid
     }
 
@@ -268,7 +267,8 @@ impl Fall<'_> {
         loop {
             let left = self.settings.longest_s - self.recorder.now.time_s;
             self.strike();
-            let done = match solver::advance(stepper, &self.world, self.state, left) {
+            let most = left.min(self.longest_before_yield_s());
+            let done = match solver::advance(stepper, &self.world, self.state, most) {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
@@ -310,57 +310,8 @@ impl Fall<'_> {
         }
     }
 
-    /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
-    fn announce(&mut self) {
-        if self.state.struck.is_empty()
-            && self.state.histories.iter().all(|history| history.announced)
-        {
-            return;
-        }
-        let until_s = self.recorder.now.time_s + self.impact_time();
-        let world = &self.world;
-        let mut fastest: Option<(f64, Vec3, u32)> = None;
-        let ContactState { histories, struck, c, .. } = &mut *self.state;
-        let known = histories.iter().filter(|history| history.announced);
-        let held_j = ContactState::held_j(world, known);
-        for history in
-            histories.iter_mut().chain(struck.iter_mut()).filter(|history| !history.announced)
-        {
-            history.announced = true;
-            if history.captured {
-                continue;
-            }
-            let speed = -history.n.dot(&self.recorder.now.velocity_m_s);
-            if speed >= world.law(history.triangle).capture_m_s {
-                let struck = Struck {
-                    point_m: *c - history.n * world.body.radius,
-                    normal: history.n,
-                    feature: history.feature.kind,
-                    sheet: world.terrain.sheet_of[history.triangle as usize],
-                    approach_m_s: speed,
-                };
-                history.impact = self.recorder.begin_impact(&struck, until_s, held_j);
-            }
-            if speed > fastest.map_or(0.0, |(known, ..)| known) {
-                fastest = Some((speed, history.n, history.triangle));
-            }
-        }
-        if let Some((_, normal, triangle)) = fastest {
-            self.meet_facet(normal, triangle, until_s);
-        }
-    }
-
-    /// Ends the impacts whose patch has let go or whose time is up.
-    fn end_impacts(&mut self) {
-        let (world, histories) = (&self.world, &self.state.histories);
-        self.recorder.end_impacts(
-            |number| histories.iter().any(|history| history.impact == number),
-            || ContactState::held_j(world, histories.iter()),
-        );
-    }
-
     /// The longest an impact is taken to last (s): in the rigid limit no time at all.
-    fn impact_time(&self) -> f64 {
+    pub(super) fn impact_time(&self) -> f64 {
         if self.is_rigid() {
             return 0.0;
         }

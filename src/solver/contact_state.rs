@@ -8,7 +8,7 @@ use super::law::{Body, StageContact};
 use super::plane_kernel::PlaneKernel;
 use super::tableau::STAGES;
 use crate::clock::{Clocks, Piece};
-use crate::contact::history::{ContactHistories, ContactHistory, HISTORIES};
+use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
 use crate::contact::{ContactPoints, MOST};
 use crate::rock::Vec3;
@@ -322,50 +322,6 @@ impl ContactState {
         let is_plane = self.near.plane().is_some();
         let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
         longest_step(&world.body, self.v.norm(), room)
-    }
-
-    /// Energy in the springs of the contacts (J), by the kind it was counted under:
-    /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
-    pub fn springs_j(&mut self, world: &ContactEnvironment) -> Loss {
-        let c = self.c;
-        self.look(world, &c, world.body.radius);
-        self.stored_j(world)
-    }
-
-    /// About how much the springs of contacts that last hold (J), as their memories tell: `F²/(2 p_N)` and the stretches.
-    pub fn held_j<'h>(
-        world: &ContactEnvironment,
-        histories: impl Iterator<Item = &'h ContactHistory>,
-    ) -> f64 {
-        let held = histories.map(|history| {
-            let law = world.law(history.triangle);
-            let pressed = history.normal_force * history.normal_force / law.p_n;
-            let shear = law.p_s * history.shear.norm_squared();
-            0.5 * (pressed + shear + law.k_r * history.roll.norm_squared())
-        });
-        held.sum()
-    }
-
-    /// The same for the touches of the last look.
-    pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
-        let mut stored = Loss::default();
-        for touch in self.touches.iter() {
-            let penetration = (world.body.radius - touch.distance_m).max(0.0);
-            let pressed =
-                0.5 * world.law(touch.triangle).p_n * touch.gain2 * penetration * penetration;
-            stored
-                .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
-        }
-        for history in self.histories.iter() {
-            let law = world.law(history.triangle);
-            let damping = 0.5 * law.p_s * history.shear.norm_squared();
-            let rolling = 0.5 * law.k_r * history.roll.norm_squared();
-            stored.add(
-                &Loss { damping, rolling, ..Loss::default() }.on(world, history.triangle),
-                1.0,
-            );
-        }
-        stored
     }
 }
 
