@@ -8,7 +8,7 @@ use rockfall::simulation::{Effort, Scratch, Stop, Trajectory};
 use rockfall::solver::Scheme;
 use rockfall::study::speed::rate::step_of;
 use rockfall::study::speed::slope::{SCHEMES, Slope};
-use rockfall::study::speed::{Order, WRITTEN, study};
+use rockfall::study::speed::{SpeedOptions, WRITTEN, study};
 use rockfall::study::write_speed;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -25,7 +25,7 @@ fn main() {
 fn everything() {
     let source = Path::new(env!("CARGO_MANIFEST_DIR"));
     let rocks = std::env::var("ROCKFALL_BENCH_ROCKS").map_or(ROCKS, |rocks| rocks.parse().unwrap());
-    let order = Order {
+    let order = SpeedOptions {
         rocks,
         triangles: vec![10_000, 100_000, 1_000_000],
         written: WRITTEN,

@@ -5,14 +5,14 @@ mod signals;
 mod study;
 mod words;
 
-use crate::wiring::{self, Ended, Order, Part};
+use crate::run::{self, Ended, Part, RunOptions};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use rockfall::error::{Error, Result};
 use rockfall::output::Mode;
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
-use rockfall::study::aim::Aim;
+use rockfall::study::target_precision::TargetPrecision;
 use rockfall::study::verify::Verification;
 use rockfall::terrain::weld::Up;
 use std::fmt::Display;
@@ -167,7 +167,7 @@ struct RunArgs {
     shard: Option<Part>,
     /// Go on with more releases until a 95 % interval is narrower, as in "runout.p95 < 1.0 m"
     #[arg(long, value_name = "AIM", conflicts_with_all = ["only", "shard"])]
-    until: Option<Aim>,
+    until: Option<TargetPrecision>,
     /// Go on with an interrupted run in the same folder
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
@@ -189,22 +189,20 @@ pub(crate) fn main() -> ExitCode {
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
-        Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Draw { dir } => run::draw(&dir).map(|()| ExitCode::SUCCESS),
         Command::Compare(args) => compare::compare(&args),
         Command::Verify { out } => verify(&out),
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
         Command::Calibrate(args) => calibrate(&args),
         Command::Study(command) => study::study(&command),
-        Command::Mesh(MeshCommand::Check { files, up }) => {
-            wiring::check_meshes(&files, up).map(say)
-        }
+        Command::Mesh(MeshCommand::Check { files, up }) => run::check_meshes(&files, up).map(say),
         Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
-            wiring::mesh_from_grid(&grid, &out).map(say)
+            run::mesh_from_grid(&grid, &out).map(say)
         }
         Command::Mesh(MeshCommand::Stems { list, terrain, out, origin_m }) => {
-            wiring::mesh_of_stems((&list, &terrain), &out, origin_m.as_deref()).map(say)
+            run::mesh_of_stems((&list, &terrain), &out, origin_m.as_deref()).map(say)
         }
-        Command::Mesh(MeshCommand::Make { kind, out }) => wiring::make_mesh(&kind, &out).map(say),
+        Command::Mesh(MeshCommand::Make { kind, out }) => run::make_mesh(&kind, &out).map(say),
     };
     done.unwrap_or_else(|error| {
         complain(format_args!("error: {error}"));
@@ -218,7 +216,7 @@ fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
     let name = args.scenes[0].file_stem().unwrap_or_default();
     let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
     let bar = bar(rockfall::calibrate::planned(&scenes[0]), "trials");
-    let said = wiring::calibrate(&scenes, (args.releases, args.threads), &out, || bar.inc(1))?;
+    let said = run::calibrate(&scenes, (args.releases, args.threads), &out, || bar.inc(1))?;
     bar.finish_and_clear();
     Ok(say(said))
 }
@@ -227,7 +225,7 @@ fn plan(scene: &Path) -> Result<ExitCode> {
     let scene = Scene::read(scene)?;
     let (terrain, health) = scene.read_terrain()?;
     let plan = Plan::compile(&scene, terrain)?;
-    wiring::read_measured(&plan)?;
+    run::read_measured(&plan)?;
     Ok(say(format!("{health}\n{plan}")))
 }
 
@@ -240,7 +238,7 @@ fn verify(out: &Path) -> Result<ExitCode> {
 
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
     let mode = if overwrite { Mode::Overwrite } else { Mode::Merge };
-    wiring::merge(shards, out, mode)?;
+    run::merge(shards, out, mode)?;
     Ok(say(format!("results in {}", out.display())))
 }
 
@@ -248,18 +246,18 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
     let (terrain, health) = scene.read_terrain()?;
     let mut plan = Plan::compile(&scene, terrain)?;
-    let order = args.order();
+    let options = args.options();
     if !args.yes {
-        plan.cost(order.part.range(plan.count).len()).check()?;
+        plan.cost(options.part.range(plan.count).len()).check()?;
     }
     if !args.quiet {
         say(&plan);
     }
-    let bar = args.progress(order.part.range(plan.count).len());
-    let ended = wiring::run(
+    let bar = args.progress(options.part.range(plan.count).len());
+    let ended = run::run(
         &mut plan,
         &health,
-        &order,
+        &options,
         |flag| signals::stop_at(&flag),
         |done, asked| {
             bar.set_length(asked as u64);
@@ -275,7 +273,7 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
             bar.finish();
             if !args.quiet {
                 say(format!("\n{}\n", headline.join("\n")));
-                say(format!("{} releases, results in {}", plan.count, order.out.display()));
+                say(format!("{} releases, results in {}", plan.count, options.out.display()));
             }
             Ok(ExitCode::SUCCESS)
         }
@@ -319,7 +317,7 @@ impl RunArgs {
         self.only.map(Part::Only).or(self.shard).unwrap_or(Part::All)
     }
 
-    fn order(&self) -> Order {
+    fn options(&self) -> RunOptions {
         let name = self.scene.file_stem().unwrap_or_default();
         let mode = match (self.resume, self.overwrite) {
             (true, _) => Mode::Resume,
@@ -333,7 +331,7 @@ impl RunArgs {
             Part::Only(only) => results.join(format!("only_{only}")),
             Part::Shard { number, of } => results.join(format!("shard_{number}_of_{of}")),
         };
-        Order {
+        RunOptions {
             out: self.out.clone().unwrap_or(usual),
             mode,
             part: self.part(),

@@ -16,8 +16,8 @@
 pub mod error;
 pub mod math;
 pub mod file;
-pub mod clock;
-pub mod chance;
+pub mod stopwatch;
+pub mod random;
 pub mod rock;
 pub mod frequency;
 // world

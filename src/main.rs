@@ -2,7 +2,7 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod cli;
-mod wiring;
+mod run;
 
 fn main() -> std::process::ExitCode {
     cli::main()

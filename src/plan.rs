@@ -9,17 +9,17 @@ mod listing;
 mod settings;
 mod slips;
 mod stiffness;
-mod watch;
+mod recorders;
 
 pub use annual::Year;
 pub use cost::Cost;
+pub use recorders::{EvaluationLine, Footprint, MapGrid, Piece, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
-pub use watch::{Curtain, Footprint, Lattice, Piece, Watch};
 
-use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
+use crate::random::Distribution;
 use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
 use crate::solver::{Scheme, Settings};
@@ -132,7 +132,7 @@ pub struct Plan {
     /// Kept impacts.
     pub impacts: Part<()>,
     /// Evaluation lines.
-    pub lines: Part<Vec<Curtain>>,
+    pub lines: Part<Vec<EvaluationLine>>,
     /// Barriers; each has an evaluation line of its name.
     pub barriers: Part<Vec<BarrierTable>>,
     /// Objects that rocks may hit; each has a curtain of its name.
@@ -140,7 +140,7 @@ pub struct Plan {
     /// Sources and their frequency.
     pub year: Part<Year>,
     /// Cells of the maps.
-    pub maps: Part<Lattice>,
+    pub maps: Part<MapGrid>,
     /// Grounds with values of the catalogue: name, what was taken, source.
     pub catalogued: Vec<String>,
     /// Up to which slope each ground stops a rolling sphere, in words.
@@ -242,7 +242,7 @@ impl Plan {
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
             ),
-            lines: Part::when(curtains(scene, &terrain)?, "the scene has none"),
+            lines: Part::when(evaluation_lines(scene, &terrain)?, "the scene has none"),
             barriers: Part::when(
                 Some(scene.barriers.clone()).filter(|all| !all.is_empty()),
                 "the scene has none",
@@ -250,7 +250,7 @@ impl Plan {
             objects,
             year,
             maps: Part::when(
-                lattice(scene, &terrain)?,
+                map_grid(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
             ),
             inputs: inputs::of(scene),
@@ -289,8 +289,8 @@ impl Plan {
     }
 
     /// What every rock is watched for.
-    pub fn watch(&self) -> Watch<'_> {
-        Watch {
+    pub fn recorders(&self) -> Recorders<'_> {
+        Recorders {
             lines: if let Part::Kept(lines) = &self.lines { lines } else { &[] },
             cells: if let Part::Kept(cells) = &self.maps { Some(cells) } else { None },
         }
@@ -344,30 +344,33 @@ fn paths(record: &RecordTable) -> Part<Paths> {
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
 }
 
-fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
+fn evaluation_lines(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<EvaluationLine>>> {
     let lines = scene.lines.iter().map(|line| ("lines", &line.name, &line.points_m));
     let barriers =
         scene.barriers.iter().map(|barrier| ("barriers", &barrier.name, &barrier.points_m));
     let (low, high) = terrain.index.bounds();
-    let curtain = |(table, name, line): (&str, &String, &Polyline)| {
-        let curtain = Curtain::new(name, line, terrain.origin_m);
-        if curtain.is_near([low.x, low.y], [high.x, high.y]) {
-            return Ok(curtain);
+    let evaluation_line = |(table, name, line): (&str, &String, &Polyline)| {
+        let evaluation_line = EvaluationLine::new(name, line, terrain.origin_m);
+        if evaluation_line.is_near([low.x, low.y], [high.x, high.y]) {
+            return Ok(evaluation_line);
         }
         // A forgotten map origin, most likely: no rock would ever cross it.
         let (place, found) =
             (format!("[[{table}]] \"{name}\" points_m"), "found no terrain near it");
         Err(Error::input(&scene.file, place, found, release::outside(terrain)))
     };
-    let mut all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
+    let mut all: Vec<EvaluationLine> =
+        lines.chain(barriers).map(evaluation_line).collect::<Result<_>>()?;
     let elsewhere = scene.barriers.iter().flat_map(BarrierTable::elsewhere);
-    all.extend(elsewhere.map(|(_, name, line)| Curtain::new(&name, &line, terrain.origin_m)));
-    all.extend(annual::curtains(scene, terrain)?);
+    all.extend(
+        elsewhere.map(|(_, name, line)| EvaluationLine::new(&name, &line, terrain.origin_m)),
+    );
+    all.extend(annual::evaluation_lines(scene, terrain)?);
     Ok(Some(all).filter(|all| !all.is_empty()))
 }
 
-fn lattice(scene: &Scene, terrain: &Terrain) -> Result<Option<Lattice>> {
-    scene.maps.as_ref().map(|maps| Lattice::over(terrain, maps, &scene.file)).transpose()
+fn map_grid(scene: &Scene, terrain: &Terrain) -> Result<Option<MapGrid>> {
+    scene.maps.as_ref().map(|maps| MapGrid::over(terrain, maps, &scene.file)).transpose()
 }
 
 fn can_exceed_0(value: Option<&Distribution>) -> bool {

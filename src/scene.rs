@@ -47,9 +47,9 @@ pub use rocks::{RockContact, Rocks};
 pub use solver::SolverTable;
 pub use zones::{Zone, ZonePlace, Zones};
 
-use crate::chance::{Distribution, entries};
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
+use crate::random::{Distribution, entries};
 use crate::solver::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::patches::Patches;

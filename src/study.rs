@@ -10,7 +10,7 @@
 //!            verify     exact cases of several rocks and the method paper's examples
 //! ```
 
-pub mod aim;
+pub mod target_precision;
 pub mod bench;
 pub mod cases;
 pub mod conserve;
@@ -25,14 +25,14 @@ mod scaling_page;
 mod scene_figure;
 mod scene_page;
 pub mod speed;
-pub mod spread;
+pub mod bootstrap;
 pub mod verify;
 pub mod stability;
 mod stability_figure;
-mod subject;
+mod statistic;
 
 use crate::error::{Error, Result};
-use crate::output::write_whole;
+use crate::output::write_atomic;
 use conserve::Conservation;
 use exact::CaseStudy;
 use scene::SceneStudy;
@@ -59,12 +59,12 @@ pub fn write_exact(
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
     for study in studies {
         let file = figures.join(format!("{}.svg", study.case.name));
-        write_whole(&file, exact_figure::draw(study).as_bytes())?;
+        write_atomic(&file, exact_figure::draw(study).as_bytes())?;
     }
-    write_whole(&figures.join("order.svg"), order::draw(ladders).as_bytes())?;
-    write_whole(&dir.join("order.csv"), order::csv(ladders).as_bytes())?;
-    write_whole(&dir.join("exact.csv"), exact::csv(studies).as_bytes())?;
-    write_whole(&dir.join("README.md"), exact_page::page(studies, ladders, values).as_bytes())
+    write_atomic(&figures.join("order.svg"), order::draw(ladders).as_bytes())?;
+    write_atomic(&dir.join("order.csv"), order::csv(ladders).as_bytes())?;
+    write_atomic(&dir.join("exact.csv"), exact::csv(studies).as_bytes())?;
+    write_atomic(&dir.join("README.md"), exact_page::page(studies, ladders, values).as_bytes())
 }
 
 /// Writes a scene's page, table and figure into `dir`.
@@ -73,12 +73,12 @@ pub fn write_exact(
 /// When a file or folder cannot be written.
 pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
-    write_whole(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
-    write_whole(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
+    write_atomic(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
+    write_atomic(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
     if !study.meshes.is_empty() {
-        write_whole(&dir.join("mesh.csv"), scene_page::mesh_csv(study).as_bytes())?;
+        write_atomic(&dir.join("mesh.csv"), scene_page::mesh_csv(study).as_bytes())?;
     }
-    write_whole(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
+    write_atomic(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
 }
 
 /// Writes the page, table and figure of the cost of many rocks in one world into `dir`.
@@ -87,9 +87,9 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
 /// When a file or folder cannot be written.
 pub fn write_scaling(worlds: &[World], dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
-    write_whole(&dir.join("scaling.svg"), scaling_page::figure(worlds).as_bytes())?;
-    write_whole(&dir.join("scaling.csv"), scaling_page::csv(worlds).as_bytes())?;
-    write_whole(&dir.join("README.md"), scaling_page::page(worlds).as_bytes())
+    write_atomic(&dir.join("scaling.svg"), scaling_page::figure(worlds).as_bytes())?;
+    write_atomic(&dir.join("scaling.csv"), scaling_page::csv(worlds).as_bytes())?;
+    write_atomic(&dir.join("README.md"), scaling_page::page(worlds).as_bytes())
 }
 
 /// Writes the page, table and map of the stiff and extreme cases into `dir`.
@@ -98,9 +98,9 @@ pub fn write_scaling(worlds: &[World], dir: &Path) -> Result<()> {
 /// When a file or folder cannot be written.
 pub fn write_stability(outcomes: &[Outcome], maps: &[Map], dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
-    write_whole(&dir.join("map.svg"), stability_figure::draw(maps).as_bytes())?;
-    write_whole(&dir.join("stability.csv"), stability::csv(outcomes).as_bytes())?;
-    write_whole(&dir.join("README.md"), stability::page(outcomes).as_bytes())
+    write_atomic(&dir.join("map.svg"), stability_figure::draw(maps).as_bytes())?;
+    write_atomic(&dir.join("stability.csv"), stability::csv(outcomes).as_bytes())?;
+    write_atomic(&dir.join("README.md"), stability::page(outcomes).as_bytes())
 }
 
 /// Writes the page and table of a scene's conservation into `dir`.
@@ -109,8 +109,8 @@ pub fn write_stability(outcomes: &[Outcome], maps: &[Map], dir: &Path) -> Result
 /// When a file or folder cannot be written.
 pub fn write_conservation(found: &Conservation, dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
-    write_whole(&dir.join("conservation.csv"), conserve::csv(found).as_bytes())?;
-    write_whole(&dir.join("README.md"), conserve::page(found).as_bytes())
+    write_atomic(&dir.join("conservation.csv"), conserve::csv(found).as_bytes())?;
+    write_atomic(&dir.join("README.md"), conserve::page(found).as_bytes())
 }
 
 /// Writes the page, tables and figure of the speeds into `dir`.
@@ -119,8 +119,8 @@ pub fn write_conservation(found: &Conservation, dir: &Path) -> Result<()> {
 /// When a file or folder cannot be written.
 pub fn write_speed(study: &SpeedStudy, dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
-    write_whole(&dir.join("speed.svg"), speed::draw(study).as_bytes())?;
-    write_whole(&dir.join("speed.csv"), speed::csv(study).as_bytes())?;
-    write_whole(&dir.join("parts.csv"), speed::parts_csv(study).as_bytes())?;
-    write_whole(&dir.join("README.md"), speed::page(study).as_bytes())
+    write_atomic(&dir.join("speed.svg"), speed::draw(study).as_bytes())?;
+    write_atomic(&dir.join("speed.csv"), speed::csv(study).as_bytes())?;
+    write_atomic(&dir.join("parts.csv"), speed::parts_csv(study).as_bytes())?;
+    write_atomic(&dir.join("README.md"), speed::page(study).as_bytes())
 }

@@ -7,9 +7,9 @@ mod svg;
 mod program;
 
 use program::rockfall;
-use rockfall::chance::{Purpose, stream, unit};
 use rockfall::hazard::{Difference, Reading, Values};
 use rockfall::math::{self, exp};
+use rockfall::random::{Purpose, stream, unit};
 use rockfall::report::compare::Comparison;
 use std::path::{Path, PathBuf};
 
@@ -20,10 +20,10 @@ const PAIRS: usize = 3000;
 
 /// Pairs of standard normal numbers with a correlation of 0.8, and a third one beside them.
 fn draws(seed: usize) -> Vec<[f64; 3]> {
-    let mut chance = stream(seed as u64, Purpose::Redraw, 0);
+    let mut random = stream(seed as u64, Purpose::Redraw, 0);
     // Box and Muller (1958)
     let mut draw = || {
-        let (far, turn) = (unit(&mut chance), unit(&mut chance));
+        let (far, turn) = (unit(&mut random), unit(&mut random));
         (-2.0 * math::ln(far)).sqrt() * math::cos(std::f64::consts::TAU * turn)
     };
     (0..ROCKS)

@@ -2,7 +2,7 @@
 
 mod common;
 use common::*;
-use rockfall::chance::{Distribution, Purpose, stream};
+use rockfall::random::{Distribution, Purpose, stream};
 use rockfall::ground::{Ground, damping_ratio, normal_impact};
 use rockfall::plan::{RestRule, Watch};
 use rockfall::release::Release;

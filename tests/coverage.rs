@@ -3,9 +3,9 @@
 
 mod yearly;
 
-use rockfall::chance::{Purpose, stream, unit};
 use rockfall::frequency::{Class, Frequency, Law, Source};
 use rockfall::hazard::{CrossingRow, Object, Rate, Sample, Vehicles};
+use rockfall::random::{Purpose, stream, unit};
 use yearly::{REACH, asked, covers, crossings, near, power_law, road, row};
 
 /// Reach 0.2 and 20 m/s for all: 300 kJ are 0.5556 m³, so λ = 0.2 · 0.1 (0.5556^−½ − 100^−½) = 0.0248328157 a year, T =
@@ -115,7 +115,7 @@ fn weighted_means_and_percentiles_are_covered() {
     let (a, b, c) = (0.1, 0.5, 0.25);
     let asked = asked(vec![power_law(a, b)]);
     let frequency = asked.frequency.clone().unwrap();
-    let value = |volume: f64, chance: f64| volume.powf(c) * (0.5 + chance);
+    let value = |volume: f64, random: f64| volume.powf(c) * (0.5 + random);
     // E[V^c] = b/(c − b) (V₁^(c−b) − V₀^(c−b)) / (V₀^−b − V₁^−b), E[0.5 + u] = 1
     let moment = |p: f64| 100_f64.powf(p) - 0.1_f64.powf(p);
     let mean = b / (c - b) * moment(c - b) / -moment(-b);
@@ -124,11 +124,11 @@ fn weighted_means_and_percentiles_are_covered() {
     let (mut means, mut inside) = (0, [0; 2]);
     for seed in 0..RUNS {
         let pairs = (0..1200).filter_map(|index| {
-            let mut chance = stream(seed, Purpose::Size, index);
-            let volume = frequency.stratum(index).quantile_m3(unit(&mut chance)).unwrap();
-            let passes = unit(&mut chance) < REACH;
+            let mut random = stream(seed, Purpose::Size, index);
+            let volume = frequency.stratum(index).quantile_m3(unit(&mut random)).unwrap();
+            let passes = unit(&mut random) < REACH;
             let weight = weights.of_release(index);
-            passes.then(|| (value(volume, unit(&mut chance)), weight))
+            passes.then(|| (value(volume, unit(&mut random)), weight))
         });
         let sample = Sample::weighted(pairs.collect::<Vec<_>>());
         let found = sample.mean().unwrap();

@@ -45,7 +45,7 @@ fn no_step_adds_energy() {
         for ground in grounds {
             for step_s in [1e-5, 1e-4, 1e-3, 1e-2] {
                 for shear_memory in [true, false] {
-                    steps += watch(&terrain, &Case { step_s, shear_memory, ground, ..DDA });
+                    steps += recorders(&terrain, &Case { step_s, shear_memory, ground, ..DDA });
                 }
             }
         }
@@ -67,7 +67,7 @@ fn rough_slope() -> Vec<Facet> {
 
 /// Throws rocks at the terrain and follows them over some impacts; every step's energy, springs included, against the
 /// one before.
-fn watch(terrain: &Terrain, case: &Case) -> u64 {
+fn recorders(terrain: &Terrain, case: &Case) -> u64 {
     let episode = Episode::new(terrain, case, G);
     let mut steps = 0;
     for k in 0..8u32 {

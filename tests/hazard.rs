@@ -62,11 +62,11 @@ fn ranks_of_a_million_follow_the_normal_law() {
 /// a standard error of 0.35 % the miss rate stays below 6.1 % (three of them).
 #[test]
 fn intervals_hold_as_often_as_they_say() {
-    let mut chance = ChaCha8Rng::seed_from_u64(1);
+    let mut random = ChaCha8Rng::seed_from_u64(1);
     let (repeats, p) = (4000, 0.9);
     let misses = (0..repeats)
         .filter(|_| {
-            let sample = Sample::of((0..100).map(|_| chance.random::<f64>()));
+            let sample = Sample::of((0..100).map(|_| random.random::<f64>()));
             let found = sample.percentile(p).unwrap();
             !(found.low_95.unwrap()..=found.high_95.unwrap()).contains(&p)
         })

@@ -56,7 +56,7 @@ fn a_killed_run_is_resumed_to_the_same_bytes() {
     let dir = tempfile::tempdir().unwrap();
     let reference = dir.path().join("reference");
     let mut whole = timed(run(&reference, &[]));
-    let mut chance = ChaCha8Rng::seed_from_u64(9);
+    let mut random = ChaCha8Rng::seed_from_u64(9);
     let (mut kills, mut runs) = (0, 0);
     while kills < wanted {
         if runs % RUNS_OF_ONE_CLOCK == RUNS_OF_ONE_CLOCK - 1 {
@@ -65,7 +65,7 @@ fn a_killed_run_is_resumed_to_the_same_bytes() {
         }
         let out = dir.path().join(format!("killed_{runs}"));
         for turn in 0..KILLS_OF_ONE_RUN {
-            let delay = whole.mul_f64(chance.random::<f64>());
+            let delay = whole.mul_f64(random.random::<f64>());
             // `--resume` into nothing begins; a run begun anew over old results is killed too
             let mode = if turn == 0 && runs % 3 == 2 { "--overwrite" } else { "--resume" };
             kills += usize::from(kill_after(run(&out, &[mode]), delay));
@@ -111,7 +111,7 @@ fn a_terminated_run_says_how_to_go_on() {
 #[test]
 fn a_folder_in_use_is_refused() {
     let dir = tempfile::tempdir().unwrap();
-    let claim = rockfall::output::Claim::on(dir.path()).unwrap();
+    let lock = rockfall::output::FolderLock::on(dir.path()).unwrap();
     let out = dir.path().to_str().unwrap();
     for mode in ["--resume", "--overwrite"] {
         let said = rockfall(&["run", "examples/quick.toml", "--quiet", "--out", out, mode]);
@@ -120,6 +120,6 @@ fn a_folder_in_use_is_refused() {
         let start = format!("error: {out}: another process is writing into this folder; wait");
         assert!(stderr.starts_with(&start), "{stderr}");
     }
-    drop(claim);
+    drop(lock);
     succeed(run(dir.path(), &["--resume"]));
 }

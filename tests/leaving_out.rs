@@ -64,18 +64,18 @@ fn features_left_out_are_never_touched() {
         out_of_sight += lean.features.brims.iter().filter(|one| one.front | one.back != 0).count();
         left_out += count.saddles + count.flat_corners + count.flat_edges;
         for index in 0..200 {
-            let chance = &mut dice(700, index + 1000 * mesh);
-            let radius = 0.05 * 20f64.powf(between(chance, 0.0, 1.0));
+            let random = &mut dice(700, index + 1000 * mesh);
+            let radius = 0.05 * 20f64.powf(between(random, 0.0, 1.0));
             // near corners, where what is left out would have been
-            let vertex = between(chance, 0.0, lean.vertices_m.len() as f64) as usize;
-            let far = radius * between(chance, 0.0, 1.1);
-            let centre = lean.vertices_m[vertex] + point(chance, 1.0).normalize() * far;
+            let vertex = between(random, 0.0, lean.vertices_m.len() as f64) as usize;
+            let far = radius * between(random, 0.0, 1.1);
+            let centre = lean.vertices_m[vertex] + point(random, 1.0).normalize() * far;
             let found = touches(&lean, &centre, radius);
             assert_eq!(found, touches(&full, &centre, radius), "{} {mesh} {index}", KINDS[kind]);
             touched += found.len();
             let flight = Parabola {
-                start: centre + point(chance, 1.0).normalize() * (2.0 * radius),
-                velocity: point(chance, 5.0),
+                start: centre + point(random, 1.0).normalize() * (2.0 * radius),
+                velocity: point(random, 5.0),
                 gravity: 9.81,
                 radius,
             };

@@ -109,7 +109,7 @@ fn lines_and_maps_agree() {
     let (mut crossed, mut at_rest) = (0, 0);
     for fall in falls(&plan, 60) {
         let Some(crossing) = fall.crossings.iter().find(|crossing| crossing.line == 0) else {
-            assert!(fall.visits.iter().all(|visit| visit.cell / cells.columns < 13));
+            assert!(fall.passages.iter().all(|passage| passage.cell / cells.columns < 13));
             continue;
         };
         crossed += 1;
@@ -118,13 +118,13 @@ fn lines_and_maps_agree() {
             crossing.motion.translational_j(&fall.rock) + crossing.motion.rotational_j(&fall.rock);
         let beside = |row: u32| {
             let number = row * cells.columns + column;
-            fall.visits.iter().find(|visit| visit.cell == number)
+            fall.passages.iter().find(|passage| passage.cell == number)
         };
         let (above, below) = (beside(12).unwrap(), beside(13).unwrap());
         // the ends of both parts are the crossing itself, computed along another way
         let most = above.total_j.max(below.total_j);
         assert!(most >= total_j * (1.0 - 1e-9), "{most} {total_j}");
-        let largest = fall.visits.iter().map(|visit| visit.total_j).fold(0.0, f64::max);
+        let largest = fall.passages.iter().map(|passage| passage.total_j).fold(0.0, f64::max);
         // what leaves the terrain may be fastest beyond the last cell
         if fall.stop == Stop::AtRest {
             let most = fall.extremes.total_j;
@@ -141,8 +141,8 @@ fn watching_changes_no_rock() {
     let (lean, full) = (quick(""), quick(&format!("{LINES}\n[maps]\ncell_m = 2.0\n")));
     assert!(!lean.lines.is_kept() && !lean.maps.is_kept());
     for (one, other) in falls(&lean, 20).into_iter().zip(falls(&full, 20)) {
-        assert!(one.crossings.is_empty() && one.visits.is_empty());
-        let blind = Trajectory { crossings: vec![], visits: vec![], ..other };
+        assert!(one.crossings.is_empty() && one.passages.is_empty());
+        let blind = Trajectory { crossings: vec![], passages: vec![], ..other };
         assert_eq!(format!("{one:?}"), format!("{blind:?}"));
     }
 }

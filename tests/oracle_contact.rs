@@ -111,17 +111,17 @@ fn touches_are_the_local_minima_of_the_distance() {
         for mesh in 0..12 {
             let terrain = zoo(kind, mesh);
             for index in 0..100 {
-                let chance = &mut dice(600, index + 1000 * mesh);
-                let radius = 0.05 * 20f64.powf(between(chance, 0.0, 1.0));
-                let t = between(chance, 0.0, terrain.triangles.len() as f64) as u32;
+                let random = &mut dice(600, index + 1000 * mesh);
+                let radius = 0.05 * 20f64.powf(between(random, 0.0, 1.0));
+                let t = between(random, 0.0, terrain.triangles.len() as f64) as u32;
                 let [a, b, c] = terrain.corners_m(t);
-                let (u, v) = (between(chance, 0.0, 1.0), between(chance, 0.0, 1.0));
+                let (u, v) = (between(random, 0.0, 1.0), between(random, 0.0, 1.0));
                 let centre = a
                     + (b - a) * (u * (1.0 - v))
                     + (c - a) * (u * v)
-                    + point(chance, 1.0).normalize() * (radius * between(chance, 0.0, 1.1));
+                    + point(random, 1.0).normalize() * (radius * between(random, 0.0, 1.1));
                 let (margin, slack) = (0.35 * radius, 0.1 * radius);
-                let from = centre + point(chance, 1.0).normalize() * (0.999 * margin);
+                let from = centre + point(random, 1.0).normalize() * (0.999 * margin);
                 near.collect(&terrain, &from, radius, margin, slack);
                 near.touches(&terrain, &centre, radius, &mut touches);
                 let right = minima(&terrain, &centre, radius);
@@ -199,8 +199,8 @@ fn the_index_finds_every_triangle() {
         for mesh in 0..12 {
             let terrain = zoo(kind, mesh);
             for index in 0..50 {
-                let chance = &mut dice(700, index + 1000 * mesh);
-                let (centre, radius) = (point(chance, 2.5), between(chance, 0.0, 1.0));
+                let random = &mut dice(700, index + 1000 * mesh);
+                let (centre, radius) = (point(random, 2.5), between(random, 0.0, 1.0));
                 let mut seen = vec![0; terrain.triangles.len()];
                 terrain.index.near(&centre, radius, |start, count| {
                     (start..start + count).for_each(|t| seen[t as usize] += 1);

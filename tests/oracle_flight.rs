@@ -61,13 +61,13 @@ fn no_flight_from_the_air_misses_or_invents_a_touch() {
         for mesh in 0..MESHES {
             let terrain = zoo(kind, mesh);
             for index in 0..FLIGHTS {
-                let chance = &mut dice(200, index + 1000 * mesh);
-                let radius = 0.05 * 20f64.powf(between(chance, 0.0, 1.0));
-                let start = point(chance, 3.0);
+                let random = &mut dice(200, index + 1000 * mesh);
+                let radius = 0.05 * 20f64.powf(between(random, 0.0, 1.0));
+                let start = point(random, 3.0);
                 if distance(&terrain, &start) < radius + 1e-6 {
                     continue;
                 }
-                let velocity = point(chance, 1.0) * 10f64.powf(between(chance, -1.0, 1.5));
+                let velocity = point(random, 1.0) * 10f64.powf(between(random, -1.0, 1.5));
                 let gravity = if index % 10 == 0 { 0.0 } else { G };
                 let flight = Parabola { start, velocity, gravity, radius };
                 flights += 1;
@@ -91,10 +91,10 @@ fn no_flight_from_a_touch_falls_through() {
         for mesh in 0..MESHES {
             let terrain = zoo(kind, mesh);
             for index in 0..FLIGHTS {
-                let chance = &mut dice(300, index + 1000 * mesh);
-                let radius = 0.05 * 20f64.powf(between(chance, 0.0, 1.0));
-                let start = point(chance, 3.0);
-                let velocity = point(chance, 5.0);
+                let random = &mut dice(300, index + 1000 * mesh);
+                let radius = 0.05 * 20f64.powf(between(random, 0.0, 1.0));
+                let start = point(random, 3.0);
+                let velocity = point(random, 5.0);
                 let flight = Parabola { start, velocity, gravity: G, radius };
                 if distance(&terrain, &start) < radius + 1e-6 {
                     continue;
@@ -110,7 +110,7 @@ fn no_flight_from_a_touch_falls_through() {
                 // Pressed in or lifted by a rounding, as a contact leaves it.
                 start -= velocity.normalize() * (gap + [0.0, 1e-17, 1e-15, -1e-15][index % 4]);
                 let scale = [1.0, 1e-3, 1e-9, 0.0][index / 4 % 4];
-                let velocity = point(chance, 5.0) * scale;
+                let velocity = point(random, 5.0) * scale;
                 let again = Parabola { start, velocity, ..flight };
                 flights += 1;
                 if let Err(failure) = check(&terrain, &again, 3.0) {
@@ -128,8 +128,8 @@ fn no_flight_from_a_touch_falls_through() {
 fn a_wall_is_met_however_its_box_rounds() {
     let mut missed = Vec::new();
     for index in 0..2000 {
-        let chance = &mut dice(400, index);
-        let x = between(chance, -4000.0, 4000.0).round() * 0.25;
+        let random = &mut dice(400, index);
+        let x = between(random, -4000.0, 4000.0).round() * 0.25;
         let at = |y: f64, z: f64| Vec3::new(x, y, z);
         // Enough facets that some leaves of the index hold the wall alone.
         let wall = (0..16).flat_map(|k| {
@@ -139,12 +139,12 @@ fn a_wall_is_met_however_its_box_rounds() {
         });
         let far = [Vec3::new(-2000.0, 0.0, 0.0), Vec3::new(-2001.0, 0.0, 0.0), at(-900.0, -900.0)];
         let terrain = terrain(wall.chain([far]).collect());
-        let radius = between(chance, 0.001, 2.0);
-        let speed = 10f64.powf(between(chance, -4.0, 1.0));
-        let gap = between(chance, 0.0, speed);
+        let radius = between(random, 0.001, 2.0);
+        let speed = 10f64.powf(between(random, -4.0, 1.0));
+        let gap = between(random, 0.0, speed);
         let start = at(110.0, 10.0) - Vec3::x() * (radius + gap) - terrain.origin_m;
         let gravity = if index % 2 == 0 { 0.0 } else { G };
-        let velocity = Vec3::new(speed, between(chance, -1.0, 1.0), between(chance, -1.0, 1.0));
+        let velocity = Vec3::new(speed, between(random, -1.0, 1.0), between(random, -1.0, 1.0));
         let flight = Parabola { start, velocity, gravity, radius };
         match time_of_impact(&terrain, &flight, 3.0, &mut 0) {
             FlightEnd::Touch(t) if (t * speed - gap).abs() < 1e-11 => {}
@@ -161,15 +161,15 @@ fn a_wall_is_met_however_its_box_rounds() {
 fn no_drop_slips_between_triangles() {
     let mut missed = Vec::new();
     for index in 0..3000 {
-        let chance = &mut dice(500, index);
-        let thin = 10f64.powf(-8.0 * between(chance, 0.0, 1.0));
+        let random = &mut dice(500, index);
+        let thin = 10f64.powf(-8.0 * between(random, 0.0, 1.0));
         let turn = nalgebra::Rotation3::from_euler_angles(
-            between(chance, -0.8, 0.8) * f64::from(u32::from(index % 2 == 0)),
-            between(chance, -0.8, 0.8) * f64::from(u32::from(index % 3 == 0)),
-            between(chance, -3.0, 3.0) * f64::from(u32::from(index % 5 == 0)),
+            between(random, -0.8, 0.8) * f64::from(u32::from(index % 2 == 0)),
+            between(random, -0.8, 0.8) * f64::from(u32::from(index % 3 == 0)),
+            between(random, -3.0, 3.0) * f64::from(u32::from(index % 5 == 0)),
         );
         let at = |x: f64, y: f64| turn * Vec3::new(x, y, 0.0);
-        let (middle, bend) = (between(chance, -1.0, 1.0), between(chance, -0.4, 0.4) * thin);
+        let (middle, bend) = (between(random, -1.0, 1.0), between(random, -0.4, 0.4) * thin);
         let shared = [at(0.0, -10.0), at(bend, middle), at(0.0, 10.0)];
         let outer = [at(-thin, middle), at(thin, middle)];
         let shell = [at(-10.0, -10.0), at(-10.0, 10.0), at(10.0, -10.0), at(10.0, 10.0)];
@@ -185,12 +185,12 @@ fn no_drop_slips_between_triangles() {
         }
         let terrain = terrain(facets);
         let (from, to) = (terrain.vertices_m[0], terrain.vertices_m[1]);
-        let share = [0.0, 0.5, 1.0, between(chance, 0.0, 1.0)][index % 4];
+        let share = [0.0, 0.5, 1.0, between(random, 0.0, 1.0)][index % 4];
         let foot = from + (to - from) * (0.9 * share + 0.1);
         let normal = turn * Vec3::z();
-        let radius = between(chance, 0.05, 1.0);
-        let velocity = -normal * between(chance, 1.0, 20.0);
-        let start = foot + normal * (radius + between(chance, 0.0, 1.0));
+        let radius = between(random, 0.05, 1.0);
+        let velocity = -normal * between(random, 1.0, 20.0);
+        let start = foot + normal * (radius + between(random, 0.0, 1.0));
         let flight = Parabola { start, velocity, gravity: 0.0, radius };
         if let Err(failure) = check(&terrain, &flight, 3.0) {
             missed.push(format!("thin {thin:e} share {share}: {failure}"));

@@ -58,7 +58,7 @@ impl World {
             step: &step,
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
-            watch: rockfall::plan::Watch::default(),
+            recorders: rockfall::plan::Recorders::default(),
         };
         let releases: Vec<Release> = spheres
             .iter()

@@ -127,15 +127,15 @@ fn the_plane_kernel_is_the_general_law() {
     let floor = terrain(vec![[a, b, c], [a, c, d]]);
     let mut worst = [0.0f64; 3];
     for index in 0..300 {
-        let chance = &mut dice(900, index);
-        let speed = 0.2 * 250f64.powf(between(chance, 0.0, 1.0));
-        let steep = between(chance, 0.05, 1.57);
+        let random = &mut dice(900, index);
+        let speed = 0.2 * 250f64.powf(between(random, 0.0, 1.0));
+        let steep = between(random, 0.05, 1.57);
         let spin = || [0; 3];
-        let w = spin().map(|_| between(chance, -1.0, 1.0) * speed / ROCK.radius_m);
+        let w = spin().map(|_| between(random, -1.0, 1.0) * speed / ROCK.radius_m);
         let ground = rockfall::ground::Ground {
-            restitution: Some(between(chance, 0.1, 1.0)),
-            friction_angle_rad: between(chance, 0.0, 0.8),
-            rolling_friction: if index % 2 == 0 { 0.0 } else { between(chance, 0.1, 0.6) },
+            restitution: Some(between(random, 0.1, 1.0)),
+            friction_angle_rad: between(random, 0.0, 0.8),
+            rolling_friction: if index % 2 == 0 { 0.0 } else { between(random, 0.1, 0.6) },
             ..GROUND
         };
         let start =
@@ -206,10 +206,10 @@ fn rocks_of_every_size_lift_off_an_edge_alike() {
 /// A noisy plane of square cells, larger than the ball sees.
 fn noisy(cell: f64, cells: usize, noise_m: f64) -> Terrain {
     use common::zoo::{between, dice};
-    let chance = &mut dice(77, 0);
+    let random = &mut dice(77, 0);
     let half = 0.5 * cell * cells as f64;
     let heights: Vec<f64> =
-        (0..(cells + 1).pow(2)).map(|_| noise_m * between(chance, -1.7, 1.7)).collect();
+        (0..(cells + 1).pow(2)).map(|_| noise_m * between(random, -1.7, 1.7)).collect();
     let at = |i: usize, j: usize| {
         Vec3::new(i as f64 * cell - half, j as f64 * cell - half, heights[i * (cells + 1) + j])
     };

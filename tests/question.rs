@@ -119,7 +119,7 @@ fn fixing_the_radius_leaves_the_other_draws_alone() {
     let terrain = plane(0.0);
     let drawn_radius = scene(L_SHAPE, "");
     let mut fixed_radius = drawn_radius.clone();
-    fixed_radius.rocks.radius_m = Some(rockfall::chance::Distribution::fixed(0.3).unwrap());
+    fixed_radius.rocks.radius_m = Some(rockfall::random::Distribution::fixed(0.3).unwrap());
     let (some, others) = (drawn(&drawn_radius, &terrain, 20), drawn(&fixed_radius, &terrain, 20));
     for (one, other) in some.iter().zip(&others) {
         assert_eq!(one.motion.position_m.xy(), other.motion.position_m.xy());
@@ -263,7 +263,7 @@ fn soft_springs_are_refused_or_warned_of() {
     let with = |stiffness: f64| {
         let mut asked = scene(L_SHAPE, "");
         let ground = asked.grounds.get_mut("rock").unwrap();
-        ground.normal_stiffness_n_m = rockfall::chance::Distribution::fixed(stiffness).unwrap();
+        ground.normal_stiffness_n_m = rockfall::random::Distribution::fixed(stiffness).unwrap();
         Plan::compile(&asked, plane(30.0))
     };
     // R = 0.6 m: 2443 kg; m g/(0.01 R) = 4.0e6 N/m

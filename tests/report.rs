@@ -13,11 +13,11 @@ mod svg;
 
 use places::net;
 use rockfall::report::axis::Axis;
+use rockfall::report::canvas::{Label, Pen, paint};
 use rockfall::report::colour;
 use rockfall::report::figure::{FIGURES, WIDTH_PX};
-use rockfall::report::input::{Estimate, Fall, Is, Path, Point, Quantity, Report};
+use rockfall::report::model::{Estimate, Fall, Is, Path, Point, Quantity, Report};
 use rockfall::report::panel::{FOOT_PX, Panel};
-use rockfall::report::paper::{Label, Pen, paint};
 use rockfall::report::svg::path::Frame;
 use rockfall::report::{self, html};
 use rockfall::simulation::{PathState, Stop};
@@ -264,17 +264,17 @@ fn log_log() -> String {
     let frame = Frame { left: 70.0, top: 10.0, right: 660.0, bottom: 300.0 };
     let x = Axis::log(3e-6, 0.7, "Step (s)");
     let panel = Panel::new(frame, x, Axis::log(1e-9, 1e-1, "Error (–)"));
-    paint("loglog", (WIDTH_PX, 300.0 + FOOT_PX), "Error", |paper| {
-        panel.grid(paper);
+    paint("loglog", (WIDTH_PX, 300.0 + FOOT_PX), "Error", |canvas| {
+        panel.grid(canvas);
         let line = |power: i32| {
             (0..60)
                 .map(|i| 10f64.powf(-7.0 + 0.15 * f64::from(i)))
                 .map(move |h| (h, h.powi(power)))
                 .collect::<Vec<_>>()
         };
-        panel.line(paper, &line(1), Pen::full(colour::BLUE, 1.5));
-        panel.line(paper, &line(2), Pen::full(colour::VERMILLION, 1.5).dashed());
-        panel.axes(paper);
+        panel.line(canvas, &line(1), Pen::full(colour::BLUE, 1.5));
+        panel.line(canvas, &line(2), Pen::full(colour::VERMILLION, 1.5).dashed());
+        panel.axes(canvas);
     })
 }
 
@@ -297,8 +297,8 @@ fn lines_on_logarithmic_axes_end_at_the_frame() {
 
 #[test]
 fn text_in_a_figure_stays_text() {
-    let svg = paint("text", (300.0, 50.0), "<title> & \"quotes\"", |paper| {
-        paper.text(&Label::new("a < b & 10⁻⁵ > 0", (10.0, 20.0)));
+    let svg = paint("text", (300.0, 50.0), "<title> & \"quotes\"", |canvas| {
+        canvas.text(&Label::new("a < b & 10⁻⁵ > 0", (10.0, 20.0)));
     });
     svg::check(&svg, "text");
     assert!(svg.contains("a &lt; b &amp; 10"));

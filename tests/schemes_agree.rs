@@ -16,7 +16,7 @@ fn falls(scheme: Scheme, roughness_deg: f64) -> Vec<Trajectory> {
     scene.record.paths = Some(0);
     scene.solver.scheme = Some(scheme);
     let rock = scene.grounds.get_mut("rock").unwrap();
-    rock.roughness_deg = Some(rockfall::chance::Distribution::fixed(roughness_deg).unwrap());
+    rock.roughness_deg = Some(rockfall::random::Distribution::fixed(roughness_deg).unwrap());
     let (terrain, _) = scene.read_terrain().unwrap();
     let plan = Plan::compile(&scene, terrain).unwrap();
     let mut scratch = Scratch::default();

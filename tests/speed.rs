@@ -1,6 +1,6 @@
 //! The study of speed on a small slope: every number is there, and what only records changes no rock.
 
-use rockfall::study::speed::{Order, study};
+use rockfall::study::speed::{SpeedOptions, study};
 use rockfall::study::write_speed;
 use std::fs;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ const CHANGES: [&str; 2] = ["rolling friction", "roughness of 10°"];
 #[test]
 fn the_study_measures_every_scheme_and_every_part() {
     let dir = tempfile::tempdir().expect("a folder to work in");
-    let order = Order {
+    let order = SpeedOptions {
         rocks: 6,
         triangles: vec![2000, 4000],
         written: 300,

@@ -9,11 +9,11 @@ mod common;
 
 use common::{GROUND, ROCK};
 use proptest::prelude::*;
-use rockfall::chance::{Distribution, Purpose, stream};
 use rockfall::contact::ContactPoints;
 use rockfall::contact::neighbours::Neighbours;
 use rockfall::flight::{Parabola, time_of_impact, time_of_impact_past};
-use rockfall::plan::{RestRule, Watch};
+use rockfall::plan::{Recorders, RestRule};
+use rockfall::random::{Distribution, Purpose, stream};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Vec3};
 use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, Trajectory, simulate};
@@ -62,7 +62,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
         step: &step,
         rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
         longest_s: 20.0,
-        watch: Watch::default(),
+        recorders: Recorders::default(),
     };
     let motion = Motion {
         time_s: 0.0,

@@ -65,7 +65,7 @@ fn a_killed_aim_is_resumed_to_the_same_bytes() {
     let begun = Instant::now();
     succeed(until(&reference, &[]));
     let whole = begun.elapsed();
-    let mut chance = ChaCha8Rng::seed_from_u64(18);
+    let mut random = ChaCha8Rng::seed_from_u64(18);
     let (mut kills, mut runs) = (0, 0);
     while kills < wanted {
         let out = dir.path().join(format!("killed_{runs}"));
@@ -75,7 +75,7 @@ fn a_killed_aim_is_resumed_to_the_same_bytes() {
                 .stdout(Stdio::null())
                 .spawn()
                 .unwrap();
-            sleep(whole.mul_f64(chance.random::<f64>()));
+            sleep(whole.mul_f64(random.random::<f64>()));
             child.kill().unwrap();
             let ended = child.wait_with_output().unwrap();
             let said = String::from_utf8_lossy(&ended.stderr);

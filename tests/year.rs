@@ -155,9 +155,10 @@ fn hits_are_where_paths_say() {
     let (mut hits, mut misses) = (0, 0);
     for index in 0..60 {
         let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
-        for (line, curtain) in plan.watch().lines.iter().enumerate() {
-            let Some(footprint) = curtain.footprint else { continue };
-            let free_m = |x: f64, y: f64| curtain.gap_m(footprint, [x, y]).0 - fall.rock.radius_m;
+        for (line, evaluation_line) in plan.recorders().lines.iter().enumerate() {
+            let Some(footprint) = evaluation_line.footprint else { continue };
+            let free_m =
+                |x: f64, y: f64| evaluation_line.gap_m(footprint, [x, y]).0 - fall.rock.radius_m;
             let hit = fall.crossings.iter().find(|crossing| crossing.line == line);
             let until_s = hit.map_or(f64::INFINITY, |hit| hit.motion.time_s);
             for point in fall.path.iter().filter(|point| point.motion.time_s < until_s) {
@@ -166,7 +167,7 @@ fn hits_are_where_paths_say() {
                 assert!(
                     free_m > -1e-5,
                     "rock {index} {}: {free_m} at {} before {until_s}",
-                    curtain.name,
+                    evaluation_line.name,
                     point.motion.time_s
                 );
             }
@@ -177,11 +178,15 @@ fn hits_are_where_paths_say() {
             hits += 1;
             let at = hit.motion.position_m;
             let free_m_at = free_m(at.x, at.y);
-            assert!(free_m_at.abs() < 1e-5, "rock {index} {}: {free_m_at}", curtain.name);
+            assert!(free_m_at.abs() < 1e-5, "rock {index} {}: {free_m_at}", evaluation_line.name);
             let below = fall.path.iter().find(|point| point.motion.time_s > until_s + 0.01);
             if let Some(later) = below {
                 let at = later.motion.position_m;
-                assert!(free_m(at.x, at.y) < 0.05, "rock {index} turns back at {}", curtain.name);
+                assert!(
+                    free_m(at.x, at.y) < 0.05,
+                    "rock {index} turns back at {}",
+                    evaluation_line.name
+                );
             }
         }
     }

@@ -1,7 +1,7 @@
 //! `rockfall compare`.
 
 use super::say;
-use crate::wiring;
+use crate::run;
 use clap::Args;
 use rockfall::error::Result;
 use std::path::PathBuf;
@@ -20,5 +20,5 @@ pub(super) struct CompareArgs {
 
 /// Compares two finished runs and says what changes.
 pub(super) fn compare(args: &CompareArgs) -> Result<ExitCode> {
-    wiring::compare::compare(&args.a, &args.b, &args.out).map(say)
+    run::compare::compare(&args.a, &args.b, &args.out).map(say)
 }

@@ -2,11 +2,11 @@
 
 use super::words::at_least_1;
 use super::{CHECK_FAILED, say};
-use crate::wiring::study::{self as wiring, SceneOrder};
+use crate::run::study::{self as run, StudyOptions};
 use clap::{Args, Subcommand};
 use rockfall::error::Result;
 use rockfall::solver::Scheme;
-use rockfall::study::aim::Aim;
+use rockfall::study::target_precision::TargetPrecision;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -69,7 +69,7 @@ pub(super) struct ErrorArgs {
     meshes: bool,
     /// Also find the cheapest setting for this 95 % interval of both errors together, as in "runout.p95 < 1.0 m"
     #[arg(long, value_name = "AIM", requires = "scene")]
-    within: Option<Aim>,
+    within: Option<TargetPrecision>,
 }
 
 #[derive(Debug, Args)]
@@ -111,7 +111,7 @@ pub(super) fn study(command: &StudyCommand) -> Result<ExitCode> {
             let say_done = |piece: String| {
                 say(piece);
             };
-            wiring::speed((args.releases, &args.triangles), &args.out, say_done).map(say)
+            run::speed((args.releases, &args.triangles), &args.out, say_done).map(say)
         }
     }
 }
@@ -126,7 +126,7 @@ fn scaling(args: &ScalingArgs) -> Result<ExitCode> {
         (Scheme::Rigid, &args.rigid[..]),
     ];
     let times = (args.seconds, &args.settle[..]);
-    let (words, all_hold) = wiring::scaling((&args.out, times), &worlds, say_done)?;
+    let (words, all_hold) = run::scaling((&args.out, times), &worlds, say_done)?;
     say(words);
     Ok(if all_hold { ExitCode::SUCCESS } else { ExitCode::from(CHECK_FAILED) })
 }
@@ -137,11 +137,11 @@ fn stability(args: &StabilityArgs) -> Result<ExitCode> {
         say(format!("{done} done"));
     };
     let (words, all_hold) = match &args.scene {
-        None => wiring::stability(args.out.as_ref().unwrap_or(&usual), say_done)?,
+        None => run::stability(args.out.as_ref().unwrap_or(&usual), say_done)?,
         Some(scene) => {
             let name = scene.file_stem().unwrap_or_default();
             let out = args.out.clone().unwrap_or_else(|| usual.join(name));
-            wiring::conservation(scene, &out, (args.releases, args.threads), say_done)?
+            run::conservation(scene, &out, (args.releases, args.threads), say_done)?
         }
     };
     say(words);
@@ -155,10 +155,10 @@ fn error(args: &ErrorArgs) -> Result<ExitCode> {
         let say_done = |case: &str| {
             say(format!("{case} done"));
         };
-        return wiring::exact_cases(&out, say_done).map(say);
+        return run::exact_cases(&out, say_done).map(say);
     };
     let name = scene.file_stem().unwrap_or_default();
-    let order = SceneOrder {
+    let options = StudyOptions {
         scene: scene.clone(),
         out: args.out.clone().unwrap_or_else(|| usual.join(name)),
         releases: args.releases,
@@ -169,5 +169,5 @@ fn error(args: &ErrorArgs) -> Result<ExitCode> {
     let say_done = |line: String| {
         say(line);
     };
-    wiring::scene_errors(&order, say_done).map(say)
+    run::scene_errors(&options, say_done).map(say)
 }

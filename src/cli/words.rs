@@ -1,6 +1,6 @@
 //! Words of the command line: those that are numbers, and how one is written again.
 
-use crate::wiring::Part;
+use crate::run::Part;
 use rockfall::scene::MOST_RELEASES;
 use rockfall::terrain::weld::Up;
 

@@ -1,6 +1,6 @@
 //! Results read back: what figures and pages are drawn from.
 
-use super::claim::Claim;
+use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
@@ -24,7 +24,7 @@ pub struct Results {
     pub lines: Vec<Line>,
     /// Keeps other processes away as long as the run that wrote them goes on.
     #[expect(dead_code, reason = "held until it is dropped")]
-    pub(super) claim: Option<Claim>,
+    pub(super) lock: Option<FolderLock>,
 }
 
 /// Reads the results in `dir`.
@@ -61,7 +61,7 @@ pub fn read(dir: &Path) -> Result<Results> {
     let mut lines = self::lines(&infos, asked, summary.identity.releases);
     recall_lines(dir, &mut lines)?;
     check_lengths(dir, &summary.bytes)?;
-    Ok(Results { dir: dir.to_owned(), summary, hazard, lines, claim: None })
+    Ok(Results { dir: dir.to_owned(), summary, hazard, lines, lock: None })
 }
 
 impl Results {

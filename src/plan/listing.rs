@@ -1,6 +1,6 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{Curtain, Part, Paths, Plan, RestRule, annual};
+use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual};
 use crate::ground::Ground;
 use crate::release::Where;
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
@@ -128,7 +128,7 @@ impl Plan {
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
         list.part("lines", lines, |lines| {
-            let each = |line: &Curtain| format!("{} ({:.1} m)", line.name, line.length_m());
+            let each = |line: &EvaluationLine| format!("{} ({:.1} m)", line.name, line.length_m());
             let each: Vec<String> = lines.iter().map(each).collect();
             format!("{}: {}; crossings exact between stored points", lines.len(), each.join(", "))
         });

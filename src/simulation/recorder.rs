@@ -5,7 +5,7 @@ use super::crossings::{Crossing, Crossings};
 use super::impacts::{Impacts, ImpactsMark, Struck};
 use super::{Effort, Extremes, Ledger, PathPoint, PathState};
 use crate::flight::Parabola;
-use crate::plan::Watch;
+use crate::plan::Recorders;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::solver::contact_state::Loss;
 use crate::terrain::Terrain;
@@ -30,7 +30,7 @@ pub(super) struct Recorder<'a> {
     pub(super) path: Vec<PathPoint>,
     pub(super) impacts: Impacts,
     pub(super) crossings: Crossings<'a>,
-    pub(super) visits: CellPassages<'a>,
+    pub(super) passages: CellPassages<'a>,
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
     pub(super) effort: Effort,
@@ -50,7 +50,7 @@ pub(super) struct Mark {
     path: usize,
     impacts: ImpactsMark,
     crossings: Vec<Crossing>,
-    visits: (usize, Option<CellPassage>),
+    passages: (usize, Option<CellPassage>),
     tree_impact_count: u32,
     ledger: Ledger,
     next_point_s: f64,
@@ -61,7 +61,7 @@ impl<'a> Recorder<'a> {
         terrain: &'a Terrain,
         rock: Rock,
         start: Motion,
-        (keep, watch): (Keep, Watch<'a>),
+        (keep, recorders): (Keep, Recorders<'a>),
     ) -> Self {
         let mut recorder = Self {
             terrain,
@@ -71,8 +71,8 @@ impl<'a> Recorder<'a> {
             extremes: Extremes::default(),
             path: Vec::new(),
             impacts: Impacts::kept_if(keep.impacts),
-            crossings: Crossings::of(watch.lines),
-            visits: CellPassages::of(watch.cells),
+            crossings: Crossings::of(recorders.lines),
+            passages: CellPassages::of(recorders.cells),
             tree_impact_count: 0,
             ledger: Ledger::default(),
             effort: Effort::default(),
@@ -91,7 +91,7 @@ impl<'a> Recorder<'a> {
             path: self.path.len(),
             impacts: self.impacts.mark(),
             crossings: self.crossings.found().to_vec(),
-            visits: self.visits.mark(),
+            passages: self.passages.mark(),
             tree_impact_count: self.tree_impact_count,
             ledger: self.ledger,
             next_point_s: self.next_point_s,
@@ -104,7 +104,7 @@ impl<'a> Recorder<'a> {
         self.path.truncate(mark.path);
         self.impacts.go_back(&mark.impacts);
         self.crossings.go_back(&mark.crossings);
-        self.visits.go_back(mark.visits);
+        self.passages.go_back(mark.passages);
         (self.tree_impact_count, self.next_point_s) = (mark.tree_impact_count, mark.next_point_s);
     }
 
@@ -157,7 +157,7 @@ impl<'a> Recorder<'a> {
             self.note_height(&flight.centre(dt * f64::from(k) / f64::from(points + 1)));
         }
         self.crossings.fly((self.terrain, &self.rock), &start, flight, dt);
-        self.visits.fly((self.terrain, &self.rock), &start, flight, dt);
+        self.passages.fly((self.terrain, &self.rock), &start, flight, dt);
         self.now.time_s += dt;
         (self.now.position_m, self.now.velocity_m_s) = (flight.centre(dt), flight.velocity(dt));
         self.note_speed();
@@ -172,7 +172,7 @@ impl<'a> Recorder<'a> {
     pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
         let from = std::mem::replace(&mut self.now, to);
         self.crossings.step((self.terrain, &self.rock), &from, &to);
-        self.visits.step(&self.rock, &from, &to);
+        self.passages.step(&self.rock, &from, &to);
         let dt = to.time_s - from.time_s;
         while self.next_point_s <= to.time_s {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };

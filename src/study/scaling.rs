@@ -5,7 +5,7 @@ use super::speed::machine::{OwnTime, status_bytes};
 use crate::contact::pair::Strength;
 use crate::ground::Ground;
 use crate::math;
-use crate::plan::{RestRule, Watch};
+use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{
@@ -196,7 +196,7 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         step: &step,
         rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
         longest_s,
-        watch: Watch::default(),
+        recorders: Recorders::default(),
     };
     let releases = heap(spheres, size, terrain.origin_m);
     let answer =
@@ -255,15 +255,15 @@ fn boxes(size: f64) -> Vec<crate::terrain::stl::Facet> {
 /// Spheres in a grid above the ridge, each moved by up to a millimetre: columns of spheres exactly above each other
 /// would balance.
 fn heap(spheres: usize, size: f64, origin_m: Vec3) -> Vec<Release> {
-    use crate::chance::{Purpose, stream};
+    use crate::random::{Purpose, stream};
     use rand::RngExt as _;
     let wide = (4.0 * size).ceil() as usize;
     let middle = 0.5 * (wide as f64 - 1.0);
-    let mut chance = stream(1, Purpose::Impacts, 0);
+    let mut random = stream(1, Purpose::Impacts, 0);
     let release = |k: usize| {
         let cell = [(k % wide) as f64 - middle, (k / wide % wide) as f64 - middle];
         let grid = Vec3::new(cell[0], cell[1], (k / (wide * wide)) as f64) * SPACING_M;
-        let off = Vec3::from_fn(|_, _| chance.random_range(-1e-3..1e-3));
+        let off = Vec3::from_fn(|_, _| random.random_range(-1e-3..1e-3));
         let position_m = grid + off + Vec3::z() * 0.875 - origin_m;
         let still = Vec3::zeros();
         let motion = Motion { time_s: 0.0, position_m, velocity_m_s: still, spin_rad_s: still };

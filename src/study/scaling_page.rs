@@ -2,10 +2,10 @@
 
 use super::scaling::{Cost, Phase, World, exponent};
 use crate::report::axis::Axis;
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, paint};
 use crate::report::colour::{BLUE, GREEN, GREY, INK, ORANGE};
 use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::paper::{Label, NORMAL, Paper, Pen, paint};
 use crate::report::svg::path::Frame;
 use crate::solver::Scheme;
 use plotters::style::RGBColor;
@@ -291,16 +291,16 @@ pub(super) fn figure(worlds: &[World]) -> String {
         ("s per s, settling", &rate(Phase::Settling)),
     ];
     let height = TOP_PX + panels.len() as f64 * (PLOT_PX + FOOT_PX + 12.0);
-    paint("scaling", (WIDTH_PX, height), "Cost against number of spheres", |paper| {
-        key(paper);
+    paint("scaling", (WIDTH_PX, height), "Cost against number of spheres", |canvas| {
+        key(canvas);
         for (row, (title, value)) in panels.iter().enumerate() {
             let top = TOP_PX + row as f64 * (PLOT_PX + FOOT_PX + 12.0);
-            draw_panel(paper, worlds, (top, title), *value);
+            draw_panel(canvas, worlds, (top, title), *value);
         }
     })
 }
 
-fn draw_panel(paper: &Paper<'_>, worlds: &[World], (top, title): (f64, &str), value: &Value) {
+fn draw_panel(canvas: &Canvas<'_>, worlds: &[World], (top, title): (f64, &str), value: &Value) {
     let frame = Frame { left: 74.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
     let values = worlds.iter().map(value).filter(|y| y.is_finite());
     let (low, high) =
@@ -308,30 +308,30 @@ fn draw_panel(paper: &Paper<'_>, worlds: &[World], (top, title): (f64, &str), va
     let most = worlds.iter().map(|world| world.spheres).max().unwrap_or(1) as f64;
     let least = worlds.iter().map(|world| world.spheres).min().unwrap_or(1) as f64;
     let panel = Panel::new(frame, Axis::log(least, most, "Spheres"), Axis::log(low, high, title));
-    panel.grid(paper);
+    panel.grid(canvas);
     if low.is_finite() && low > 0.0 {
         // linear growth from the first point, for the eye
         let end = (most, low * most / least);
-        panel.line(paper, &[(least, low), end], Pen::full(GREY, 1.0).dashed());
+        panel.line(canvas, &[(least, low), end], Pen::full(GREY, 1.0).dashed());
     }
     for scheme in SCHEMES {
         let points: Vec<(f64, f64)> =
             of(worlds, scheme).map(|world| (world.spheres as f64, value(world))).collect();
         let points: Vec<_> = points.into_iter().filter(|point| point.1.is_finite()).collect();
-        panel.line(paper, &points, Pen::full(colour(scheme), 1.6));
+        panel.line(canvas, &points, Pen::full(colour(scheme), 1.6));
         for &(x, y) in &points {
-            paper.disc(panel.at(x, y), 3.0, colour(scheme));
+            canvas.disc(panel.at(x, y), 3.0, colour(scheme));
         }
     }
-    panel.axes(paper);
+    panel.axes(canvas);
 }
 
-fn key(paper: &Paper<'_>) {
+fn key(canvas: &Canvas<'_>) {
     let mut x = 74.0;
     for scheme in SCHEMES {
-        paper.disc((x, 12.0), 4.0, colour(scheme));
-        paper.text(&Label::new(scheme.name(), (x + 9.0, 12.0)).sized(NORMAL).coloured(INK));
+        canvas.disc((x, 12.0), 4.0, colour(scheme));
+        canvas.text(&Label::new(scheme.name(), (x + 9.0, 12.0)).sized(NORMAL).coloured(INK));
         x += 90.0;
     }
-    paper.text(&Label::new("dashed: in proportion to the number", (x, 12.0)).coloured(GREY));
+    canvas.text(&Label::new("dashed: in proportion to the number", (x, 12.0)).coloured(GREY));
 }

@@ -32,7 +32,7 @@ use threads::{Speedup, speedup};
 
 /// How much is measured.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Order {
+pub struct SpeedOptions {
     /// Rocks of the fast schemes; `reference` gets a tenth, `dda` one of 200.
     pub rocks: usize,
     /// Sizes of the slope (triangles), about.
@@ -82,7 +82,7 @@ pub struct SpeedStudy {
 /// Releases whose files and report are measured, usually.
 pub const WRITTEN: usize = 100_000;
 
-impl Order {
+impl SpeedOptions {
     /// Rocks of one scheme.
     fn rocks_of(&self, scheme: Scheme) -> usize {
         match scheme {
@@ -105,7 +105,7 @@ impl Order {
 ///
 /// # Panics
 /// If no size is asked for.
-pub fn study(order: &Order, dir: &Path, mut done: impl FnMut(String)) -> Result<SpeedStudy> {
+pub fn study(order: &SpeedOptions, dir: &Path, mut done: impl FnMut(String)) -> Result<SpeedStudy> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     let mut study = SpeedStudy {
         machine: Machine::here(order.source.as_deref()),
@@ -130,7 +130,7 @@ impl SpeedStudy {
     /// Everything that is measured on one slope.
     fn slope(
         &mut self,
-        order: &Order,
+        order: &SpeedOptions,
         triangles: usize,
         dir: &Path,
         done: &mut impl FnMut(String),

@@ -2,7 +2,7 @@
 
 use super::slope;
 use rockfall::output::Zone;
-use rockfall::report::input::{
+use rockfall::report::model::{
     BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, Line, LinePoint, MapMark,
     PlaceView, Quantile, Report,
 };

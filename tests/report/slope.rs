@@ -4,7 +4,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rockfall::report::input::{
+use rockfall::report::model::{
     About, BandPoint, Estimate, Fall, Path, Point, Quantile, Quantity, Report, Row, StopShare,
     Table, Text,
 };
@@ -141,7 +141,7 @@ fn rebound(at: Vec3, v: Vec3, dice: &mut Dice) -> Vec3 {
 }
 
 /// Largest values along the points; what the end decides is filled in by the caller.
-fn summary(points: &[Point], chance: f64) -> Fall {
+fn summary(points: &[Point], random: f64) -> Fall {
     let most = |value: fn(&Point) -> f64| points.iter().map(value).fold(0.0, f64::max);
     let mass_kg = 2700.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS_M.powi(3);
     let max_speed_m_s = most(|p| p.speed_m_s);
@@ -153,7 +153,7 @@ fn summary(points: &[Point], chance: f64) -> Fall {
         reach_angle_deg: 0.0,
         max_speed_m_s,
         max_translational_j: translational_j,
-        max_rotational_j: (0.12 + 0.2 * chance) * translational_j,
+        max_rotational_j: (0.12 + 0.2 * random) * translational_j,
         max_total_j: 1.2 * translational_j,
         max_height_m: most(|p| p.clearance_m),
         impacts: 0,

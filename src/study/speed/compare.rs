@@ -4,7 +4,7 @@ use super::slope::Slope;
 use crate::hazard::Sample;
 use crate::simulation::Trajectory;
 use crate::solver::Scheme;
-use crate::study::spread::{Interval, Paired};
+use crate::study::bootstrap::{Interval, Paired};
 
 /// Draws of the intervals start here.
 const SEED: u64 = 11;

@@ -3,10 +3,10 @@
 use super::SpeedStudy;
 use super::slope::SCHEMES;
 use crate::report::axis::Axis;
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format::significant;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint};
 use crate::report::svg::path::Frame;
 use crate::study::exact_figure::colour;
 
@@ -30,28 +30,28 @@ pub(in crate::study) fn draw(study: &SpeedStudy) -> String {
     let x = Axis::log(few, many * 0.99, "Triangles");
     let mut panel = Panel::new(frame, x, Axis::log(slow, fast, "Rocks per second and core"));
     panel.frame.left = panel.room_left();
-    paint("speed", (WIDTH_PX, panel.frame.bottom + FOOT_PX), TITLE, |paper| {
-        paper.text(&Label::new(TITLE, (panel.frame.left, 12.0)).sized(NORMAL).bold());
-        panel.grid(paper);
-        panel.grid_upright(paper);
+    paint("speed", (WIDTH_PX, panel.frame.bottom + FOOT_PX), TITLE, |canvas| {
+        canvas.text(&Label::new(TITLE, (panel.frame.left, 12.0)).sized(NORMAL).bold());
+        panel.grid(canvas);
+        panel.grid_upright(canvas);
         for (scheme, _) in SCHEMES {
             let ink = colour(scheme);
             let values: Vec<(f64, f64)> = rates()
                 .filter(|rate| rate.scheme == scheme)
                 .map(|rate| (rate.triangles as f64, rate.per_second()))
                 .collect();
-            panel.line(paper, &values, Pen::full(ink, 1.4));
+            panel.line(canvas, &values, Pen::full(ink, 1.4));
             for &(x, y) in &values {
-                paper.disc(panel.at(x, y), 2.8, ink);
+                canvas.disc(panel.at(x, y), 2.8, ink);
             }
         }
-        key(paper, &panel, study);
-        panel.axes(paper);
+        key(canvas, &panel, study);
+        panel.axes(canvas);
     })
 }
 
 /// Names and rates beside the last points, the highest first, far enough from each other to be read.
-fn key(paper: &Paper<'_>, panel: &Panel, study: &SpeedStudy) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, study: &SpeedStudy) {
     let last = |scheme| study.rates.iter().rev().find(|rate| rate.scheme == scheme);
     let mut ends: Vec<&super::Rate> = SCHEMES.iter().filter_map(|way| last(way.0)).collect();
     ends.sort_by(|a, b| b.per_second().total_cmp(&a.per_second()));
@@ -60,7 +60,7 @@ fn key(paper: &Paper<'_>, panel: &Panel, study: &SpeedStudy) {
         let (_, height) = panel.at(rate.triangles as f64, rate.per_second());
         let at = (panel.frame.right + 10.0, height.max(least));
         let words = format!("{}  {}", rate.scheme.name(), significant(rate.per_second(), 2));
-        paper.text(&Label::new(words, at).bold().coloured(colour(rate.scheme)));
+        canvas.text(&Label::new(words, at).bold().coloured(colour(rate.scheme)));
         least = at.1 + SMALL + 4.0;
     }
 }

@@ -5,7 +5,7 @@ use super::threads::Speedup;
 use super::{PartCost, SpeedStudy};
 use crate::report::format::{decimal, percent, significant};
 use crate::study::bench::goes_by_tolerance;
-use crate::study::spread::Interval;
+use crate::study::bootstrap::Interval;
 use std::fmt::Write as _;
 
 const INTRODUCTION: &str = "\

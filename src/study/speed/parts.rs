@@ -205,13 +205,13 @@ impl Side {
 
 /// What the files need to know of a plan.
 fn info(plan: &Plan) -> RunInfo {
-    let lines = plan.watch().lines.iter().map(|line| LineInfo {
+    let lines = plan.recorders().lines.iter().map(|line| LineInfo {
         name: line.name.clone(),
         length_m: line.length_m(),
         corners_m: line.corners_m(plan.terrain.origin_m),
         of_barrier: false,
     });
-    let maps = plan.watch().cells.map(|cells| MapFrame {
+    let maps = plan.recorders().cells.map(|cells| MapFrame {
         west_m: cells.west_m + plan.terrain.origin_m.x,
         south_m: cells.south_m + plan.terrain.origin_m.y,
         cell_m: cells.cell_m,

@@ -55,13 +55,17 @@ pub fn runs(
             } else {
                 command.arg("plan");
             }
-            found.push(watch(command.arg(&scene), triangles, releases)?);
+            found.push(recorders(command.arg(&scene), triangles, releases)?);
         }
     }
     Ok(found)
 }
 
-fn watch(command: &mut Command, triangles: usize, releases: Option<usize>) -> Result<ProgramRun> {
+fn recorders(
+    command: &mut Command,
+    triangles: usize,
+    releases: Option<usize>,
+) -> Result<ProgramRun> {
     let failed = |why: String| Error::Request(format!("{}: {why}", command_name(command)));
     let begun = Instant::now();
     let before = children_s();

@@ -2,9 +2,9 @@
 
 use super::machine::OwnTime;
 use super::slope::Slope;
-use crate::clock::{Piece, look_s};
 use crate::simulation::{Effort, Scratch, Stop, Trajectory};
 use crate::solver::{Scheme, Settings};
+use crate::stopwatch::{Piece, look_s};
 use crate::study::bench::settings;
 
 /// Shares of the time of a rock (–); together 1.
@@ -138,16 +138,16 @@ fn share_out(rate: &mut Rate, slope: &Slope, step: &Settings) {
         slope.fall(step, index, &mut scratch);
     }
     let all_s = clock.seconds();
-    let clocks = scratch.clocks();
-    let of = |piece| clocks.seconds(piece, look_s);
+    let stopwatches = scratch.stopwatches();
+    let of = |piece| stopwatches.seconds(piece, look_s);
     let pieces = [Piece::Leap, Piece::Geometry, Piece::NotesInFlight, Piece::NotesInContact];
-    let looks = pieces.iter().map(|&piece| 2 * clocks.times(piece)).sum::<u64>() as f64;
+    let looks = pieces.iter().map(|&piece| 2 * stopwatches.times(piece)).sum::<u64>() as f64;
     let (leap, geometry) = (of(Piece::Leap), of(Piece::Geometry));
     let notes = of(Piece::NotesInFlight) + of(Piece::NotesInContact);
     // what is left: nothing else is done with a rock but to draw its release
     let algebra = (all_s - looks * look_s - leap - geometry - notes).max(0.0);
     let sum = leap + geometry + algebra + notes;
-    rate.leap_s = leap / clocks.times(Piece::Leap).max(1) as f64;
+    rate.leap_s = leap / stopwatches.times(Piece::Leap).max(1) as f64;
     rate.shares = Shares {
         leap: leap / sum,
         geometry: geometry / sum,

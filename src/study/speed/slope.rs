@@ -1,8 +1,8 @@
 //! The benchmark: a natural slope, 300 m by 400 m, with rocks released near its top.
 
-use crate::chance::{Purpose, stream, unit};
 use crate::ground::Ground;
-use crate::plan::{RestRule, Watch};
+use crate::plan::{Recorders, RestRule};
+use crate::random::{Purpose, stream, unit};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
@@ -109,16 +109,16 @@ impl Slope {
             step,
             rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
             longest_s: LONGEST_S,
-            watch: Watch::default(),
+            recorders: Recorders::default(),
         }
     }
 
     /// Follows release number `index`; neither path nor impacts are kept.
     pub fn fall(&self, step: &Settings, index: usize, scratch: &mut Scratch) -> Trajectory {
         let release = self.release(index);
-        let mut chance = stream(SEED, Purpose::Impacts, index);
+        let mut random = stream(SEED, Purpose::Impacts, index);
         let keep = Keep { path_step_s: None, impacts: false };
-        let fallen = simulate(&self.course(step), &release, keep, &mut chance, scratch);
+        let fallen = simulate(&self.course(step), &release, keep, &mut random, scratch);
         Trajectory { index, ..fallen }
     }
 }

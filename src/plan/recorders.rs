@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// An evaluation line: a vertical curtain over a polyline. Or an object, which has a footprint.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curtain {
+pub struct EvaluationLine {
     /// Name in the results.
     pub name: String,
     /// Its straight pieces, one behind the other.
@@ -63,7 +63,7 @@ impl Piece {
     }
 }
 
-impl Curtain {
+impl EvaluationLine {
     /// The curtain over a line given in map coordinates.
     pub fn new(name: &str, line: &Polyline, origin_m: Vec3) -> Self {
         let local = |corner: &Corner| [corner[0] - origin_m.x, corner[1] - origin_m.y];
@@ -165,7 +165,7 @@ impl Curtain {
 
 /// The square cells of all maps. Cell 0 is the most south-western, its eastern neighbour is cell 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lattice {
+pub struct MapGrid {
     /// Western edge (m, local).
     pub west_m: f64,
     /// Southern edge (m, local).
@@ -181,7 +181,7 @@ pub struct Lattice {
 /// Most cells of a map: what a raster file of 32-bit numbers holds without special formats.
 const MOST_CELLS: f64 = 250e6;
 
-impl Lattice {
+impl MapGrid {
     /// Cells over the whole terrain, with edges at multiples of the cell on the map.
     ///
     /// # Errors
@@ -220,9 +220,9 @@ impl Lattice {
 
 /// What is watched; nothing by default.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Watch<'a> {
+pub struct Recorders<'a> {
     /// Evaluation lines.
-    pub lines: &'a [Curtain],
+    pub lines: &'a [EvaluationLine],
     /// Cells of the maps.
-    pub cells: Option<&'a Lattice>,
+    pub cells: Option<&'a MapGrid>,
 }

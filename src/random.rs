@@ -1,6 +1,6 @@
-//! Chance: counter-based random streams and the distributions a scene may draw from.
+//! Random numbers: counter-based random streams and the distributions a scene may draw from.
 //!
-//! Chance belongs to the rock, not to the thread: a stream is named by seed, purpose and release number,
+//! Randomness belongs to the rock, not to the thread: a stream is named by seed, purpose and release number,
 //! and nothing else decides its values. One draw takes exactly one 64-bit word of its stream, whatever the
 //! distribution, so that giving one key a distribution leaves the draws of all others alone.
 
@@ -16,7 +16,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// A stream of random words. `ChaCha8` is counter-based and documented as value-stable.
-pub type Chance = ChaCha8Rng;
+pub type RandomStream = ChaCha8Rng;
 
 /// What a stream is for. Two purposes never share a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,30 +39,30 @@ pub enum Purpose {
 }
 
 /// The stream of one purpose of one release: the same alone, resumed, or among a million.
-pub fn stream(seed: u64, purpose: Purpose, index: usize) -> Chance {
+pub fn stream(seed: u64, purpose: Purpose, index: usize) -> RandomStream {
     let mut key = *b"________-rockfall random stream-";
     key[..8].copy_from_slice(&seed.to_le_bytes());
     key[8] = purpose as u8;
-    let mut chance = Chance::from_seed(key);
-    chance.set_stream(index as u64);
-    chance
+    let mut random = RandomStream::from_seed(key);
+    random.set_stream(index as u64);
+    random
 }
 
 /// The stream of another purpose of the same release.
-pub fn beside(chance: &Chance, purpose: Purpose) -> Chance {
-    let mut key = chance.get_seed();
+pub fn beside(random: &RandomStream, purpose: Purpose) -> RandomStream {
+    let mut key = random.get_seed();
     key[8] = purpose as u8;
-    let mut beside = Chance::from_seed(key);
-    beside.set_stream(chance.get_stream());
+    let mut beside = RandomStream::from_seed(key);
+    beside.set_stream(random.get_stream());
     beside
 }
 
 /// A number drawn evenly from the open interval (0, 1), never 0 or 1, symmetric about 1/2 (–).
 ///
 /// `(k + 1/2) 2⁻⁵²` with `k` the upper 52 bits of one word: exact in `f64`.
-pub fn unit(chance: &mut Chance) -> f64 {
+pub fn unit(random: &mut RandomStream) -> f64 {
     const STEP: f64 = 1.0 / (1_u64 << 52) as f64;
-    ((chance.next_u64() >> 12) as f64 + 0.5) * STEP
+    ((random.next_u64() >> 12) as f64 + 0.5) * STEP
 }
 
 #[cfg(test)]
@@ -70,8 +70,8 @@ mod tests {
     use super::*;
 
     fn first_words(seed: u64, purpose: Purpose, index: usize) -> [u64; 4] {
-        let mut chance = stream(seed, purpose, index);
-        std::array::from_fn(|_| chance.next_u64())
+        let mut random = stream(seed, purpose, index);
+        std::array::from_fn(|_| random.next_u64())
     }
 
     /// A stream is a function of its name alone, and no two names share it.
@@ -108,8 +108,8 @@ mod tests {
     #[test]
     #[expect(clippy::float_cmp, reason = "the same stream must give the same bits")]
     fn draws_are_value_stable() {
-        let mut chance = stream(2017, Purpose::Size, 137);
-        let drawn = [unit(&mut chance), unit(&mut chance)];
+        let mut random = stream(2017, Purpose::Size, 137);
+        let drawn = [unit(&mut random), unit(&mut random)];
         assert_eq!(drawn, [0.620_068_286_355_674, 0.893_149_787_554_896_9]);
     }
 }

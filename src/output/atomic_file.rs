@@ -17,7 +17,7 @@ const PART: &str = "part";
 /// # Errors
 ///
 /// If the disk is full or the folder cannot be written; the old file then stands as it was.
-pub fn write_whole(path: &Path, contents: &[u8]) -> Result<()> {
+pub fn write_atomic(path: &Path, contents: &[u8]) -> Result<()> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".");
     name.push(PART);
@@ -37,7 +37,7 @@ pub fn write_whole(path: &Path, contents: &[u8]) -> Result<()> {
 }
 
 /// The path without the ending of a file that is not yet whole.
-pub(super) fn as_whole(path: &Path) -> PathBuf {
+pub(super) fn final_path(path: &Path) -> PathBuf {
     if path.extension().is_some_and(|ending| ending == PART) {
         path.with_extension("")
     } else {
@@ -59,7 +59,7 @@ pub(super) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
     let mut text = serde_json::to_vec_pretty(value)
         .map_err(|why| Error::file("write", path)(std::io::Error::other(why)))?;
     text.push(b'\n');
-    write_whole(path, &text)
+    write_atomic(path, &text)
 }
 
 /// Reads a JSON file; none when there is no such file.

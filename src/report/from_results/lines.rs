@@ -1,7 +1,7 @@
 //! Lines of the report, gathered from the summary and the crossings.
 
 use super::super::format;
-use super::super::input::{
+use super::super::model::{
     About, BandPoint, Behind, Estimate, Line, LinePoint, MapMark, Quantile, Quantity, Table,
 };
 use super::super::raster::GroundRaster;

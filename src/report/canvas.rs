@@ -7,7 +7,7 @@ pub use label::{Label, bold_width, fitted, text_width};
 use super::colour::{self, INK, WHITE};
 use super::format::escape;
 use super::svg::path::{self, Frame, Spot, tenths};
-use super::svg::{Canvas, DEPTH, FRAGMENT_MARK, TENTHS, document};
+use super::svg::{DEPTH, FRAGMENT_MARK, SvgBackend, TENTHS, document};
 use label::TAIL_GAP;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, IntoDrawingArea};
@@ -66,33 +66,33 @@ pub fn paint(
     name: &str,
     size_px: (f64, f64),
     title: &str,
-    draw: impl FnOnce(&Paper<'_>),
+    draw: impl FnOnce(&Canvas<'_>),
 ) -> String {
     let mut body = String::new();
-    let canvas = Canvas::new(&mut body, size_px);
+    let backend = SvgBackend::new(&mut body, size_px);
     let boxes = RefCell::default();
-    let paper = Paper { area: canvas.into_drawing_area(), name, size_px, boxes };
-    draw(&paper);
-    drop(paper);
+    let canvas = Canvas { area: backend.into_drawing_area(), name, size_px, boxes };
+    draw(&canvas);
+    drop(canvas);
     document(&body, size_px, title)
 }
 
 /// The sheet.
 #[allow(missing_debug_implementations, reason = "a plotters area has none")]
-pub struct Paper<'a> {
-    area: DrawingArea<Canvas<'a>, Shift>,
+pub struct Canvas<'a> {
+    area: DrawingArea<SvgBackend<'a>, Shift>,
     name: &'a str,
     size_px: (f64, f64),
     /// Room that texts have taken.
     boxes: RefCell<Vec<Frame>>,
 }
 
-impl<'a> Paper<'a> {
+impl<'a> Canvas<'a> {
     fn put<'e, E, B>(&self, element: &'e E)
     where
         B: CoordMapper,
         &'e E: PointCollection<'e, (i32, i32), B>,
-        E: Drawable<Canvas<'a>, B>,
+        E: Drawable<SvgBackend<'a>, B>,
     {
         // the canvas writes to a string (cannot fail) and is borrowed for one element at a time
         self.area.draw(element).expect("drawing on a string cannot fail");

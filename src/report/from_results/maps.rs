@@ -1,6 +1,6 @@
 //! The maps of the report, read back from their grids.
 
-use super::super::input::CellMap;
+use super::super::model::CellMap;
 use crate::error::Result;
 use crate::hazard::Layer;
 use crate::output::Results;

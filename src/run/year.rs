@@ -49,9 +49,9 @@ fn asked_of_sources(plan: &Plan) -> Asked {
 }
 
 /// Refuses to aim at an interval that does not know of weights.
-pub(super) fn allows(plan: &Plan, aims: bool) -> Result<()> {
+pub(super) fn allows(plan: &Plan, targets: bool) -> Result<()> {
     let plan::Part::Kept(year) = &plan.year else { return Ok(()) };
-    if !aims || year.frequency.weights(plan.count).are_equal() {
+    if !targets || year.frequency.weights(plan.count).are_equal() {
         return Ok(());
     }
     Err(Error::Request(

@@ -2,7 +2,7 @@
 
 use rockfall::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
 use rockfall::output::{Site, Zone};
-use rockfall::plan::{self, Curtain, Plan};
+use rockfall::plan::{self, EvaluationLine, Plan};
 use rockfall::release::Where;
 use rockfall::scene::{self, Area, BarrierTable, DesignTable, Polyline, ZonePlace};
 
@@ -45,13 +45,13 @@ pub(super) fn line_infos(plan: &Plan) -> Vec<LineInfo> {
 
 /// All lines; the `moved` ones are other places of barriers.
 fn infos(plan: &Plan, moved: &[String]) -> Vec<LineInfo> {
-    let info = |line: &Curtain| LineInfo {
+    let info = |line: &EvaluationLine| LineInfo {
         name: line.name.clone(),
         length_m: line.length_m(),
         corners_m: line.corners_m(plan.terrain.origin_m),
         of_barrier: moved.contains(&line.name),
     };
-    plan.watch().lines.iter().map(info).collect()
+    plan.recorders().lines.iter().map(info).collect()
 }
 
 pub(super) fn barriers(plan: &Plan) -> Vec<Barrier> {
@@ -79,7 +79,7 @@ pub(super) fn barriers(plan: &Plan) -> Vec<Barrier> {
 }
 
 pub(super) fn map_frame(plan: &Plan) -> Option<MapFrame> {
-    let cells = plan.watch().cells?;
+    let cells = plan.recorders().cells?;
     // edges lie at multiples of the cell: the digits that the origin cost come back
     let whole = |edge_m: f64| (edge_m / cells.cell_m).round() * cells.cell_m;
     Some(MapFrame {

@@ -1,7 +1,7 @@
 //! What barriers stop and what their rule asks for, from the summary and the crossings.
 
 use super::super::format;
-use super::super::input::{About, BarrierView, DesignView, Estimate, PlaceView, Quantity, Table};
+use super::super::model::{About, BarrierView, DesignView, Estimate, PlaceView, Quantity, Table};
 use super::super::raster::GroundRaster;
 use super::{estimate, of_percentile};
 use crate::error::Result;

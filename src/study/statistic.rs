@@ -1,7 +1,7 @@
 //! What a scene's study looks at: quantities of whole journeys, and what passes the scene's lines.
 
 use crate::hazard::{Quantity, Row};
-use crate::plan::{Curtain, Plan};
+use crate::plan::{EvaluationLine, Plan};
 use crate::rock::Rock;
 use crate::simulation::{Crossing, Trajectory};
 
@@ -13,7 +13,7 @@ pub const QUANTITIES: [(Quantity, &str, &str); 3] = [
 ];
 /// Something that the study looks at.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Subject {
+pub struct StudyQuantity {
     /// In words.
     pub name: String,
     /// Its unit.
@@ -38,7 +38,7 @@ pub enum Of {
 /// What has no value because the rock never came there.
 const NEVER: f64 = f64::NEG_INFINITY;
 
-impl Subject {
+impl StudyQuantity {
     /// Each of [`QUANTITIES`], then height and energy at every line of the plan.
     pub(super) fn all(plan: &Plan) -> Vec<Self> {
         let whole = QUANTITIES.map(|(quantity, name, unit)| Self {
@@ -47,16 +47,16 @@ impl Subject {
             column: quantity.column().to_owned(),
             of: Of::Rock(quantity),
         });
-        let at_line = |(line, curtain): (usize, &Curtain)| {
+        let at_line = |(line, evaluation_line): (usize, &EvaluationLine)| {
             let at = |what: &str, unit, of| Self {
-                name: format!("{what} at \"{}\"", curtain.name),
+                name: format!("{what} at \"{}\"", evaluation_line.name),
                 unit,
                 column: format!("{what}_at_line_{}", line + 1),
                 of,
             };
             [at("height", "m", Of::HeightAt(line)), at("energy", "J", Of::EnergyAt(line))]
         };
-        let lines = plan.watch().lines.iter().enumerate().flat_map(at_line);
+        let lines = plan.recorders().lines.iter().enumerate().flat_map(at_line);
         whole.into_iter().chain(lines).collect()
     }
 

@@ -1,7 +1,7 @@
 //! What a year brings, from the summary: tables and curves. Every title says that its numbers are a year.
 
 use super::super::format;
-use super::super::input::{About, AnnualView, BandPoint, Estimate, Table};
+use super::super::model::{About, AnnualView, BandPoint, Estimate, Table};
 use super::estimate;
 use crate::hazard::{
     Annual, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk,

@@ -2,7 +2,7 @@
 
 use super::normal::Truncated;
 use super::written::{Lognormal, Normal};
-use super::{Chance, unit};
+use super::{RandomStream, unit};
 use crate::error::Flaw;
 use crate::math;
 
@@ -111,8 +111,8 @@ impl Distribution {
     }
 
     /// Draws one value; takes one word of the stream, even for a number that is not drawn.
-    pub fn draw(&self, chance: &mut Chance) -> f64 {
-        self.quantile(unit(chance))
+    pub fn draw(&self, random: &mut RandomStream) -> f64 {
+        self.quantile(unit(random))
     }
 
     /// Even between two numbers.

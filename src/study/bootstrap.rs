@@ -1,7 +1,7 @@
 //! Statistics of the same rocks under several settings: how far chance moves them, alone and against each other.
 
-use crate::chance::{Purpose, stream, unit};
 use crate::math;
+use crate::random::{Purpose, stream, unit};
 
 /// Times that the rocks are drawn again: the ends of a 95 % interval are then known to a tenth of its width.
 const DRAWS: usize = 400;
@@ -91,10 +91,10 @@ impl Paired {
         let (limit, slope) = fit(&x, &values);
         let mut draws = [Vec::with_capacity(DRAWS), Vec::with_capacity(DRAWS)];
         for draw in 0..DRAWS {
-            let mut chance = stream(seed, Purpose::Redraw, draw);
+            let mut random = stream(seed, Purpose::Redraw, draw);
             let mut times = vec![0u16; self.rocks];
             for _ in 0..self.rocks {
-                times[(unit(&mut chance) * self.rocks as f64) as usize] += 1;
+                times[(unit(&mut random) * self.rocks as f64) as usize] += 1;
             }
             let (limit, slope) = fit(&x, &self.percentiles(p, &times));
             draws[0].push(limit);
@@ -111,10 +111,10 @@ impl Paired {
             found[to] - found[0]
         };
         let draws = (0..DRAWS).map(|draw| {
-            let mut chance = stream(seed, Purpose::Redraw, draw);
+            let mut random = stream(seed, Purpose::Redraw, draw);
             let mut times = vec![0u16; self.rocks];
             for _ in 0..self.rocks {
-                times[(unit(&mut chance) * self.rocks as f64) as usize] += 1;
+                times[(unit(&mut random) * self.rocks as f64) as usize] += 1;
             }
             difference(&times)
         });

@@ -1,6 +1,6 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
-use super::super::input::{About, Estimate, Observed, Table};
+use super::super::model::{About, Estimate, Observed, Table};
 use super::estimate;
 use crate::calibrate::{Calibration, Measure, Told, Trial};
 use crate::error::Result;

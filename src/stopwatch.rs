@@ -25,7 +25,7 @@ const INTERRUPTED: Duration = Duration::from_millis(1);
 
 /// How long the pieces took so far.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Clocks {
+pub struct Stopwatches {
     is_on: bool,
     took: [Duration; PIECES],
     times: [u64; PIECES],
@@ -33,8 +33,8 @@ pub struct Clocks {
     interrupted: [u64; PIECES],
 }
 
-impl Clocks {
-    /// Clocks that run.
+impl Stopwatches {
+    /// Stopwatches that run.
     pub fn running() -> Self {
         Self { is_on: true, ..Self::default() }
     }
@@ -94,17 +94,17 @@ pub fn look_s() -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Clocks, Piece};
+    use super::{Piece, Stopwatches};
 
     #[test]
     fn only_running_clocks_count() {
-        for (mut clocks, times) in [(Clocks::default(), 0), (Clocks::running(), 3)] {
+        for (mut stopwatches, times) in [(Stopwatches::default(), 0), (Stopwatches::running(), 3)] {
             for _ in 0..3 {
-                let begun = clocks.now();
-                clocks.stop(Piece::Leap, begun);
+                let begun = stopwatches.now();
+                stopwatches.stop(Piece::Leap, begun);
             }
-            assert_eq!(clocks.times(Piece::Leap), times);
-            assert!(clocks.seconds(Piece::Geometry, 0.0) == 0.0);
+            assert_eq!(stopwatches.times(Piece::Leap), times);
+            assert!(stopwatches.seconds(Piece::Geometry, 0.0) == 0.0);
         }
     }
 }

@@ -5,17 +5,17 @@ use rockfall::error::{Error, Result};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::solver::Scheme;
-use rockfall::study::aim::Aim;
 use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
-use rockfall::study::speed::{self, Order, WRITTEN};
+use rockfall::study::speed::{self, SpeedOptions, WRITTEN};
 use rockfall::study::stability::{self, Map, Outcome};
+use rockfall::study::target_precision::TargetPrecision;
 use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 /// How a study of a scene is asked for.
 #[derive(Debug)]
-pub(crate) struct SceneOrder {
+pub(crate) struct StudyOptions {
     /// The scene file.
     pub(crate) scene: PathBuf,
     /// Folder for page, table and figure.
@@ -27,7 +27,7 @@ pub(crate) struct SceneOrder {
     /// Whether to try coarser meshes too.
     pub(crate) meshes: bool,
     /// What the cheapest setting shall reach.
-    pub(crate) within: Option<Aim>,
+    pub(crate) within: Option<TargetPrecision>,
 }
 
 /// Studies the exact cases and says where the result is.
@@ -152,31 +152,32 @@ pub(crate) fn speed(
     // run where its source code lies, it can name the commit
     let package = std::fs::read_to_string("Cargo.toml").unwrap_or_default();
     let source = package.contains("name = \"rockfall\"").then(|| PathBuf::from("."));
-    let order = Order { rocks, triangles: triangles.to_vec(), written: WRITTEN, program, source };
-    let found = speed::study(&order, &out.join("work"), done)?;
+    let options =
+        SpeedOptions { rocks, triangles: triangles.to_vec(), written: WRITTEN, program, source };
+    let found = speed::study(&options, &out.join("work"), done)?;
     study::write_speed(&found, out)?;
     Ok(format!("page, tables and figure in {}", out.display()))
 }
 
 /// Studies a scene and says what was found in a few sentences.
-pub(crate) fn scene_errors(order: &SceneOrder, done: impl Fn(String)) -> Result<String> {
-    let mut asked = Scene::read(&order.scene)?;
-    asked.release.count = order.releases.unwrap_or(asked.release.count);
+pub(crate) fn scene_errors(options: &StudyOptions, done: impl Fn(String)) -> Result<String> {
+    let mut asked = Scene::read(&options.scene)?;
+    asked.release.count = options.releases.unwrap_or(asked.release.count);
     let (terrain, _) = asked.read_terrain()?;
     let plan = Plan::compile(&asked, terrain)?;
-    if let Some(aim) = &order.within {
-        among_studied(aim)?;
+    if let Some(target) = &options.within {
+        among_studied(target)?;
     }
-    let ensemble = Ensemble::new(order.threads)?;
-    let found = scene::study(plan, &ensemble, order.meshes, |rung, times| {
+    let ensemble = Ensemble::new(options.threads)?;
+    let found = scene::study(plan, &ensemble, options.meshes, |rung, times| {
         let each = 1e3 * rung.seconds / asked.release.count as f64;
         let setting = study::setting(&rung.step);
         let mesh =
             if times > 1.0 { format!(", edges {times} times as long") } else { String::new() };
         done(format!("{setting}{mesh}: {:.1} s, {each:.2} ms a rock", rung.seconds));
     })?;
-    let wish = order.within.as_ref().and_then(|aim| wish(aim, &found));
-    study::write_scene(&found, wish, &order.out)?;
+    let wish = options.within.as_ref().and_then(|target| wish(target, &found));
+    study::write_scene(&found, wish, &options.out)?;
     let mut words: Vec<String> = found
         .statistics
         .iter()
@@ -187,29 +188,29 @@ pub(crate) fn scene_errors(order: &SceneOrder, done: impl Fn(String)) -> Result<
             is_shown.then(|| study::sentence(&found, statistic, wished).replace("**", ""))
         })
         .collect();
-    words.push(format!("page, table and figure in {}", order.out.display()));
+    words.push(format!("page, table and figure in {}", options.out.display()));
     Ok(words.join("\n"))
 }
 
 /// The error that an interval allows is half its width.
-fn wish(aim: &Aim, found: &SceneStudy) -> Option<Wish> {
+fn wish(target: &TargetPrecision, found: &SceneStudy) -> Option<Wish> {
     let is_it = |statistic: &scene::Statistic| {
         let subject = &found.subjects[statistic.subject];
-        subject.of == Of::Rock(aim.quantity) && statistic.percent == aim.percent
+        subject.of == Of::Rock(target.quantity) && statistic.percent == target.percent
     };
     let statistic = found.statistics.iter().position(is_it)?;
-    Some(Wish { statistic, error: 0.5 * aim.width })
+    Some(Wish { statistic, error: 0.5 * target.width })
 }
 
-fn among_studied(aim: &Aim) -> Result<()> {
-    let is_studied = QUANTITIES.iter().any(|(quantity, ..)| *quantity == aim.quantity)
-        && PERCENTS.contains(&aim.percent);
+fn among_studied(target: &TargetPrecision) -> Result<()> {
+    let is_studied = QUANTITIES.iter().any(|(quantity, ..)| *quantity == target.quantity)
+        && PERCENTS.contains(&target.percent);
     if is_studied {
         return Ok(());
     }
     let names = QUANTITIES.map(|(_, name, _)| name).join(", ");
     let percents = PERCENTS.map(|percent| format!("p{percent}")).join(", ");
     Err(Error::Request(format!(
-        "--within: found \"{aim}\"; a study looks at {percents} of {names}: write one of these"
+        "--within: found \"{target}\"; a study looks at {percents} of {names}: write one of these"
     )))
 }

@@ -3,7 +3,7 @@
 #![expect(clippy::float_cmp, reason = "the same stream must give the same bits")]
 
 use super::*;
-use crate::chance::{Purpose, stream};
+use crate::random::{Purpose, stream};
 
 const DRAWS: usize = 20_000;
 
@@ -116,9 +116,9 @@ fn far_tails_are_drawn_evenly_from_both_sides() {
 #[test]
 fn one_draw_takes_one_word() {
     let second = |first: &Distribution| {
-        let mut chance = stream(3, Purpose::Start, 8);
-        first.draw(&mut chance);
-        unit(&mut chance)
+        let mut random = stream(3, Purpose::Start, 8);
+        first.draw(&mut random);
+        unit(&mut random)
     };
     let fixed = second(&Distribution::fixed(1.0).unwrap());
     assert!(families().iter().all(|(from, ..)| second(from) == fixed));

@@ -7,7 +7,7 @@ mod lines;
 mod maps;
 mod measured;
 
-use super::input::{
+use super::model::{
     About, BandPoint, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row, StopShare,
     Table, Text,
 };

@@ -23,7 +23,7 @@ const NARROWEST: f64 = 1e-3;
 
 /// A percentile and the width that its 95 % interval must stay below.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Aim {
+pub struct TargetPrecision {
     /// Of what.
     pub quantity: Quantity,
     /// Which percentile (per cent).
@@ -34,7 +34,7 @@ pub struct Aim {
     unit: &'static str,
 }
 
-impl Aim {
+impl TargetPrecision {
     /// The percentile of so many values.
     pub fn percentile(&self, values: &[f64]) -> Option<Percentile> {
         Sample::of(values.iter().copied()).percentile(f64::from(self.percent) / 100.0)
@@ -93,13 +93,13 @@ impl Aim {
     }
 }
 
-impl fmt::Display for Aim {
+impl fmt::Display for TargetPrecision {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(to, "{}.p{} < {} {}", self.name, self.percent, self.width, self.unit)
     }
 }
 
-impl FromStr for Aim {
+impl FromStr for TargetPrecision {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -147,11 +147,11 @@ mod tests {
 
     #[test]
     fn an_aim_is_read_as_it_is_written() {
-        let aim: Aim = "runout.p95 < 1.0 m".parse().unwrap();
-        assert_eq!((aim.quantity, aim.percent, aim.width), (Quantity::Runout, 95, 1.0));
-        let aim: Aim = "energy.p99<2.5 kJ".parse().unwrap();
-        assert_eq!((aim.quantity, aim.width), (Quantity::MaxTotal, 2500.0));
-        assert_eq!(aim.to_string(), "energy.p99 < 2500 J");
+        let target: TargetPrecision = "runout.p95 < 1.0 m".parse().unwrap();
+        assert_eq!((target.quantity, target.percent, target.width), (Quantity::Runout, 95, 1.0));
+        let target: TargetPrecision = "energy.p99<2.5 kJ".parse().unwrap();
+        assert_eq!((target.quantity, target.width), (Quantity::MaxTotal, 2500.0));
+        assert_eq!(target.to_string(), "energy.p99 < 2500 J");
         for wrong in [
             "runout.p95",
             "runout < 1 m",
@@ -163,7 +163,7 @@ mod tests {
             "runout.p95 < NaN m",
             "runout.p95 < 1e-300 m",
         ] {
-            let told = wrong.parse::<Aim>().unwrap_err();
+            let told = wrong.parse::<TargetPrecision>().unwrap_err();
             assert!(told.contains("found"), "{wrong}: {told}");
         }
     }
@@ -171,11 +171,11 @@ mod tests {
     /// Evenly spread values: the interval of the median of n is about 2/√n wide, so half the width takes four times as many.
     #[test]
     fn releases_grow_until_the_interval_is_narrow() {
-        let aim: Aim = "runout.p50 < 0.02 m".parse().unwrap();
+        let target: TargetPrecision = "runout.p50 < 0.02 m".parse().unwrap();
         let values: Vec<f64> = (0..100_000).map(|k| (f64::from(k) * 0.618_034).fract()).collect();
         let mut done = 100;
         let mut asked = vec![done];
-        while let Some(next) = aim.next(&values[..done], done) {
+        while let Some(next) = target.next(&values[..done], done) {
             assert!(next > done);
             done = next;
             asked.push(done);
@@ -183,7 +183,7 @@ mod tests {
         // (2/0.02)² = 10 000, with a tenth more
         assert!((9_000..16_000).contains(&done), "{asked:?}");
         // Too few for any interval at all.
-        let far: Aim = "runout.p99 < 1 m".parse().unwrap();
+        let far: TargetPrecision = "runout.p99 < 1 m".parse().unwrap();
         assert!(far.next(&values[..10], 10).unwrap() >= 2 * 299);
     }
 }

@@ -1,7 +1,7 @@
 //! The first tables of the page: what arrives at each line, and at each barrier.
 
 use super::super::format;
-use super::super::input::{About, Estimate, Quantity, Table};
+use super::super::model::{About, Estimate, Quantity, Table};
 use super::lines::{of_share, shown};
 use super::{of_percentile, percentile_of};
 use crate::hazard::{BarrierSummary, LineQuantity, Residual, Statistic};

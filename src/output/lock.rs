@@ -14,14 +14,14 @@ const LOCK: &str = ".lock";
 /// Until `keep` is called nothing in the folder is worth keeping: dropped before, the claim removes what it and
 /// `made` made, and nothing else.
 #[derive(Debug)]
-pub struct Claim {
+pub struct FolderLock {
     /// Closing it gives the folder free.
-    lock: Option<File>,
+    file: Option<File>,
     /// What is removed if nothing comes of it, the last first.
     made: Vec<PathBuf>,
 }
 
-impl Claim {
+impl FolderLock {
     /// Takes the folder `dir`, which is made if it is not there.
     ///
     /// A file system that cannot lock (some network disks) is used without: the user then has to take care.
@@ -29,11 +29,11 @@ impl Claim {
     /// # Errors
     /// If another process has it, or it cannot be written.
     pub fn on(dir: &Path) -> Result<Self> {
-        let mut claim = Self { lock: None, made: missing(dir) };
+        let mut lock = Self { file: None, made: missing(dir) };
         fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
         let path = dir.join(LOCK);
         if !path.exists() {
-            claim.made.push(path.clone());
+            lock.made.push(path.clone());
         }
         let file = OpenOptions::new()
             .create(true)
@@ -49,16 +49,16 @@ impl Claim {
         };
         match file.try_lock() {
             // the process that had it may have removed it meanwhile: then this is no lock any more
-            Ok(()) if is_there(&file, &path) => claim.lock = Some(file),
+            Ok(()) if is_there(&file, &path) => lock.file = Some(file),
             Ok(()) => return taken(),
             Err(TryLockError::WouldBlock) => {
-                claim.keep();
+                lock.keep();
                 return taken();
             }
             Err(TryLockError::Error(why)) if why.kind() == ErrorKind::Unsupported => {}
             Err(TryLockError::Error(why)) => return Err(Error::file("lock", &path)(why)),
         }
-        Ok(claim)
+        Ok(lock)
     }
 
     /// A file or folder that the claim answers for.
@@ -72,7 +72,7 @@ impl Claim {
     }
 }
 
-impl Drop for Claim {
+impl Drop for FolderLock {
     fn drop(&mut self) {
         for path in self.made.drain(..).rev() {
             // a folder goes only when it is empty; that something cannot be removed would add nothing

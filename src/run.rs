@@ -17,7 +17,7 @@ use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
 use rockfall::simulation::{self, Scratch};
-use rockfall::study::aim::Aim;
+use rockfall::study::target_precision::TargetPrecision;
 use rockfall::terrain::formats;
 use rockfall::terrain::health::Health;
 use rockfall::terrain::read::Source;
@@ -31,7 +31,7 @@ use std::sync::atomic::AtomicBool;
 
 /// How a run is asked for.
 #[derive(Debug)]
-pub(crate) struct Order {
+pub(crate) struct RunOptions {
     /// Folder for the results.
     pub(crate) out: PathBuf,
     /// What to do with results that it holds already.
@@ -41,7 +41,7 @@ pub(crate) struct Order {
     /// Worker threads; `None` = all cores.
     pub(crate) threads: Option<usize>,
     /// Go on with more releases until this is reached.
-    pub(crate) until: Option<Aim>,
+    pub(crate) until: Option<TargetPrecision>,
 }
 
 /// What part of the releases a run computes.
@@ -88,35 +88,35 @@ pub(crate) enum Ended {
 pub(crate) fn run(
     plan: &mut Plan,
     health: &Health,
-    order: &Order,
+    options: &RunOptions,
     begin: impl FnOnce(Arc<AtomicBool>) -> Result<()>,
     progress: impl Fn(usize, usize),
 ) -> Result<Ended> {
-    year::allows(plan, order.until.is_some())?;
-    let ensemble = Ensemble::new(order.threads)?;
+    year::allows(plan, options.until.is_some())?;
+    let ensemble = Ensemble::new(options.threads)?;
     begin(ensemble.stop_flag())?;
-    let mut mode = order.mode;
-    if order.until.is_some() && mode == Mode::Resume {
+    let mut mode = options.mode;
+    if options.until.is_some() && mode == Mode::Resume {
         mode = Mode::Extend;
-        plan.count = plan.count.max(output::releases_in(&order.out)?.unwrap_or(0));
+        plan.count = plan.count.max(output::releases_in(&options.out)?.unwrap_or(0));
     }
     loop {
-        let info = run_info(plan, health, order, &ensemble)?;
-        let output = Output::create(info, &order.out, mode)?;
-        let asked = order.part.range(plan.count);
-        let output = compute(plan, &ensemble, output, order, |done| progress(done, asked.len()))?;
+        let info = run_info(plan, health, options, &ensemble)?;
+        let output = Output::create(info, &options.out, mode)?;
+        let asked = options.part.range(plan.count);
+        let output = compute(plan, &ensemble, output, options, |done| progress(done, asked.len()))?;
         let done = output.remaining().start - asked.start;
         if done < asked.len() {
             return Ok(Ended::Interrupted(done, asked.len()));
         }
         // Only the last round is finished: until then the folder keeps what the next one goes on from.
-        if let Some(releases) = more(order.until.as_ref(), output.hazard(), plan.count)? {
+        if let Some(releases) = more(options.until.as_ref(), output.hazard(), plan.count)? {
             plan.count = releases;
             mode = Mode::Extend;
             continue;
         }
         let results = output.finish()?;
-        output::write_drawings(&order.out, plan)?;
+        output::write_drawings(&options.out, plan)?;
         report::draw_run(&results, &plan.terrain)?;
         return Ok(Ended::Complete(report::headline(&results.hazard)));
     }
@@ -127,11 +127,11 @@ fn compute(
     plan: &Plan,
     ensemble: &Ensemble,
     mut output: Output,
-    order: &Order,
+    options: &RunOptions,
     progress: impl Fn(usize),
 ) -> Result<Output> {
-    let asked = order.part.range(plan.count);
-    let paths = matches!(order.part, Part::Only(_)).then(|| asked.clone());
+    let asked = options.part.range(plan.count);
+    let paths = matches!(options.part, Part::Only(_)).then(|| asked.clone());
     if plan.rock_against_rock.is_kept() {
         let stop = ensemble.stop_flag();
         let falls = ensemble
@@ -179,26 +179,31 @@ fn beside<T: Send>(
 ///
 /// # Errors
 /// If it is out of reach: the rounds before stay, and can be finished without the aim.
-fn more(until: Option<&Aim>, hazard: &Hazard, done: usize) -> Result<Option<usize>> {
-    let Some(aim) = until else { return Ok(None) };
-    if let Some(why) = aim.refusal(hazard) {
+fn more(until: Option<&TargetPrecision>, hazard: &Hazard, done: usize) -> Result<Option<usize>> {
+    let Some(target) = until else { return Ok(None) };
+    if let Some(why) = target.refusal(hazard) {
         return Err(Error::Request(format!("{why}; finish these with --releases {done} --resume")));
     }
-    let values = hazard.values(aim.quantity);
-    let needed = aim.needs(values, done);
+    let values = hazard.values(target.quantity);
+    let needed = target.needs(values, done);
     if needed > MOST_RELEASES as f64 {
         return Err(Error::Request(format!(
-            "--until \"{aim}\": {done} releases are written, and about {needed:.0e} would be needed; write a wider interval, or finish these with --releases {done} --resume"
+            "--until \"{target}\": {done} releases are written, and about {needed:.0e} would be needed; write a wider interval, or finish these with --releases {done} --resume"
         )));
     }
-    Ok(aim.next(values, done).map(|next| next.min(MOST_RELEASES)))
+    Ok(target.next(values, done).map(|next| next.min(MOST_RELEASES)))
 }
 
 /// An aim that needs more releases than this is given up: their values take a gigabyte.
 const MOST_RELEASES: usize = 10_000_000;
 
-fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) -> Result<RunInfo> {
-    let asked = order.part.range(plan.count);
+fn run_info(
+    plan: &Plan,
+    health: &Health,
+    options: &RunOptions,
+    ensemble: &Ensemble,
+) -> Result<RunInfo> {
+    let asked = options.part.range(plan.count);
     let mut mesh_health = serde_json::to_value(health)
         .map_err(|error| Error::Request(format!("the mesh health cannot be written: {error}")))?;
     mesh_health["table"] = health.to_string().lines().collect();
@@ -225,9 +230,9 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         barriers: barriers(plan),
         asked: year::asked(plan),
         observed: read_measured(plan)?,
-        keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
+        keeps_paths: matches!(options.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
-        is_shard: matches!(order.part, Part::Shard { .. }),
+        is_shard: matches!(options.part, Part::Shard { .. }),
         threads: ensemble.threads(),
         plan: plan.lines(),
         inputs: plan.inputs.clone(),
