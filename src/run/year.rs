@@ -1,9 +1,9 @@
 //! What a plan asks of the year, as the results need it.
 
-use rockfall::error::{Error, Result};
-use rockfall::hazard::{Asked, Matrix, Object, Vehicles};
-use rockfall::plan::{self, Plan};
-use rockfall::scene::{MatrixTable, ObjectTable};
+use crate::error::{Error, Result};
+use crate::hazard::{Asked, Matrix, Object, Vehicles};
+use crate::plan::{self, Plan};
+use crate::scene::{MatrixTable, ObjectTable};
 
 /// What is asked of the year.
 pub(super) fn asked(plan: &Plan) -> Asked {
