@@ -8,7 +8,7 @@ use rockfall::simulation::{Scratch, Trajectory, simulate_release};
 use rockfall::solver::Scheme;
 use std::path::Path;
 
-const ROCKS: usize = 600;
+const ROCKS: usize = 2000;
 
 fn falls(scheme: Scheme, roughness_deg: f64) -> Vec<Trajectory> {
     let mut scene = Scene::read(Path::new("examples/quick.toml")).unwrap();
@@ -31,6 +31,14 @@ fn kolmogorov_smirnov(mut a: Vec<f64>, mut b: Vec<f64>) -> f64 {
     a.iter().chain(&b).map(|&x| (share(&a, x) - share(&b, x)).abs()).fold(0.0, f64::max)
 }
 
+/// Mean and standard deviation of a count.
+fn mean(rocks: &[Trajectory], count: fn(&Trajectory) -> u32) -> (f64, f64) {
+    let n = rocks.len() as f64;
+    let mean = rocks.iter().map(|rock| f64::from(count(rock))).sum::<f64>() / n;
+    let square = rocks.iter().map(|rock| (f64::from(count(rock)) - mean).powi(2)).sum::<f64>();
+    (mean, (square / n).sqrt())
+}
+
 #[test]
 fn runout_speed_and_energy_do_not_depend_on_the_scheme() {
     // p = 0.05: 1.358 √((n + m)/(n m))
@@ -50,6 +58,13 @@ fn runout_speed_and_energy_do_not_depend_on_the_scheme() {
             ];
             println!("{roughness_deg}°: {name:?} and {beside:?} are {found:.4?} apart");
             assert!(found.iter().all(|d| *d < limit), "{name:?} {beside:?} {found:?}");
+            // blows within an episode are counted by every scheme
+            for count in [|rock: &Trajectory| rock.impact_count, |rock| rock.tree_impact_count] {
+                let ((one, sd), (other, sd_beside)) = (mean(a, count), mean(b, count));
+                let error = ((sd * sd + sd_beside * sd_beside) / ROCKS as f64).sqrt();
+                println!("{name:?} {one:.3} impacts a rock, {beside:?} {other:.3} ± {error:.3}");
+                assert!((one - other).abs() < 4.0 * error, "{name:?} {one}, {beside:?} {other}");
+            }
         }
     }
 }

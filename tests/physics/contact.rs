@@ -1,10 +1,10 @@
 //! What must hold of contact whatever the scheme: two sheets, every size, rows of impacts, stems that break, gentle slopes.
 
-mod common;
+use crate::common;
 use common::*;
-use rockfall::random::{Distribution, Purpose, stream};
 use rockfall::ground::{Ground, damping_ratio, normal_impact};
-use rockfall::plan::{RestRule, Watch};
+use rockfall::plan::{Recorders, RestRule};
+use rockfall::random::{Distribution, Purpose, stream};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{Impact, Keep, RunSettings, Scratch, Stop, Trajectory, simulate};
@@ -210,7 +210,7 @@ fn a_breaking_stem_spins_the_rock_no_more_than_it_can() {
             step: &step,
             rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
             longest_s: 20.0,
-            watch: Watch::default(),
+            recorders: Recorders::default(),
         };
         let motion = Motion {
             time_s: 0.0,
@@ -220,8 +220,8 @@ fn a_breaking_stem_spins_the_rock_no_more_than_it_can() {
         };
         let release = Release { rock: ROCK, motion, grounds: vec![GROUND; 2] };
         let keep = Keep { path_step_s: None, impacts: true };
-        let mut chance = stream(1, Purpose::Impacts, 0);
-        simulate(&settings, &release, keep, &mut chance, &mut Scratch::default())
+        let mut random = stream(1, Purpose::Impacts, 0);
+        simulate(&settings, &release, keep, &mut random, &mut Scratch::default())
     };
     let [adaptive, reference, rigid, dda] = SCHEMES;
     let exact = shoot(&reference);
