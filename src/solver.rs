@@ -16,6 +16,7 @@ pub mod stage;
 pub mod tableau;
 pub mod environment;
 mod springs;
+pub(crate) mod yielding;
 
 use contact_state::{ContactEnvironment, ContactState};
 use step_control::{Advance, Control, StepError};

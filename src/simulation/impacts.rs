@@ -126,15 +126,13 @@ impl Impacts {
         };
         if let Some(impact) = self.hand.list.iter_mut().flatten().find(is_same) {
             let number = impact.number;
-            *impact =
-                InHand { normal: struck.normal, weight, until_s, over_s: None, ..*impact };
+            *impact = InHand { normal: struck.normal, weight, until_s, over_s: None, ..*impact };
             return (number, false);
         }
         self.count += 1;
         let number = self.count;
         let sheet = struck.sheet;
-        let impact =
-            InHand { number, sheet, normal: struck.normal, weight, until_s, over_s: None };
+        let impact = InHand { number, sheet, normal: struck.normal, weight, until_s, over_s: None };
         *self.hand.place() = Some(impact);
         if self.keeps_rows {
             self.rows.push(Impact {

@@ -204,12 +204,7 @@ impl<'a> Recorder<'a> {
 
     /// Begins an impact on a triangle's patch at the present motion, to end at `until_s` (s) at the latest; `held_j` is what
     /// the springs of other contacts hold. Returns its number.
-    pub(super) fn begin_impact(
-        &mut self,
-        struck: &Struck,
-        until_s: f64,
-        held_j: f64,
-    ) -> u32 {
+    pub(super) fn begin_impact(&mut self, struck: &Struck, until_s: f64, held_j: f64) -> u32 {
         let times_s = (self.now.time_s, until_s);
         let lost_j = self.lost_to_mesh_j() - held_j;
         let speed_m_s = self.now.velocity_m_s.norm();
@@ -220,7 +215,11 @@ impl<'a> Recorder<'a> {
     }
 
     /// Ends the impacts whose time is over or whose patch no longer `holds` the rock; `held_j` as above.
-    pub(super) fn end_impacts(&mut self, holds: impl Fn(u32) -> bool, held_j: impl FnOnce() -> f64) {
+    pub(super) fn end_impacts(
+        &mut self,
+        holds: impl Fn(u32) -> bool,
+        held_j: impl FnOnce() -> f64,
+    ) {
         if !self.impacts.is_any() {
             return;
         }

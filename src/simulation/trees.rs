@@ -10,7 +10,7 @@ use crate::contact::history::{ContactHistories, ContactHistory};
 use crate::random::{Purpose, RandomStream, beside};
 use crate::rock::Vec3;
 use crate::solver::contact_state::TOUCH;
-use crate::solver::rigid::yielding_impact;
+use crate::solver::yielding::yielding_impact;
 use crate::solver::{Scheme, Stepper};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;

@@ -25,8 +25,6 @@ pub(crate) const HELD: f64 = 1e-4;
 pub(crate) const IMPACT: f64 = 2e-5;
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 100;
-/// Halvings of an impulse that is sought: all the digits there are.
-const BISECTIONS: u32 = 60;
 /// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-12;
 
@@ -109,37 +107,6 @@ pub(crate) fn rub(
     };
     let (shear_force, turn) = pair.solve(mode);
     (-frame.out_along(shear_force), -frame.out_local(turn))
-}
-
-/// Velocity and spin after an impact on something with normal `n` that gives way once it has taken `limit_j`: the normal impulse,
-/// with its friction, grows until then. `None` if it has not given way when the rock is brought to rest along the normal.
-pub(crate) fn yielding_impact(
-    body: &Body,
-    (law, n): (&Law, &Vec3),
-    (v, w): (&Vec3, &Vec3),
-    limit_j: f64,
-) -> Option<(Vec3, Vec3)> {
-    let energy_j =
-        |v: &Vec3, w: &Vec3| 0.5 * (body.mass * v.norm_squared() + body.inertia * w.norm_squared());
-    let after = |impulse: f64| {
-        let pushed = v + n * (impulse / body.mass);
-        let caps = (law.friction * impulse, law.rolling_m * impulse);
-        let (shear, turn) = rub(body, n, caps, (&pushed, w), &mut Mode::default());
-        (pushed + shear / body.mass, w + (turn - n.cross(&shear) * body.radius) / body.inertia)
-    };
-    let taken_j = |impulse: f64| {
-        let (v1, w1) = after(impulse);
-        energy_j(v, w) - energy_j(&v1, &w1)
-    };
-    let (mut low, mut high) = (0.0, -body.mass * n.dot(v));
-    if high <= 0.0 || taken_j(high) <= limit_j {
-        return None;
-    }
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        *(if taken_j(middle) > limit_j { &mut high } else { &mut low }) = middle;
-    }
-    Some(after(low))
 }
 
 /// The contacts of one impact or step.

@@ -93,8 +93,11 @@ fn a_gentle_slope_is_no_rest() {
     let way = 0.5 * 5.0 / 7.0 * G * angle.sin() * 9.0;
     for case in SCHEMES {
         let springs = case.scheme != Scheme::Rigid;
-        let pressed =
-            if springs { ROCK.mass_kg() * G * angle.cos() / GROUND.normal_stiffness_n_m } else { 0.0 };
+        let pressed = if springs {
+            ROCK.mass_kg() * G * angle.cos() / GROUND.normal_stiffness_n_m
+        } else {
+            0.0
+        };
         let height = ROCK.radius_m - pressed;
         let start = [[0.0, height * angle.sin(), height * angle.cos()], [0.0; 3], [0.0; 3]];
         let run = Case { ground, ..case }.run(&terrain, start, 3.0);
@@ -164,7 +167,8 @@ fn rows_of_rough_journeys_are_sound() {
             let (terrain, chance) = (zoo(index % 8, index), &mut dice(31, index));
             let rock = Rock { radius_m: between(chance, 0.2, 0.6), ..ROCK };
             let mut any = || between(chance, -3.0, 3.0);
-            let start = [[0.1 * any(), 0.1 * any(), 4.0], [any(), any(), -6.0], [any(), any(), any()]];
+            let start =
+                [[0.1 * any(), 0.1 * any(), 4.0], [any(), any(), -6.0], [any(), any(), any()]];
             let run = Case { rock, ..*case }.run(&terrain, start, 3.0);
             rows_are_sound(&format!("{} {index}", case.scheme.name()), &run, lost_j(&run) + 1e-9);
             rows += run.impacts.len();
@@ -232,8 +236,12 @@ fn a_breaking_stem_spins_the_rock_no_more_than_it_can() {
         println!("{}: spin {spin:.3} J for {right:.3} J, {:?}", case.scheme.name(), run.ledger);
         assert_eq!((run.stop.clone(), run.tree_impact_count), (Stop::LeftTerrain, 1), "{run:?}");
         assert!((run.ledger.trees_j / limit_j - 1.0).abs() < 1e-6, "{:?}", run.ledger);
-        // the rigid limit has no shear spring to wind up first
-        let allowed = if case.scheme == Scheme::Rigid { 0.5 } else { 0.03 };
+        // a fixed step of 10 µs takes a dozen to get there; the rigid limit keeps the place of the touch
+        let allowed = match case.scheme {
+            Scheme::Dda => 0.15,
+            Scheme::Rigid => 0.05,
+            _ => 0.01,
+        };
         assert!((spin / right - 1.0).abs() < allowed, "{}: {spin} J", case.scheme.name());
         let v = (run.end.velocity_m_s - exact.end.velocity_m_s).norm();
         assert!(v < 0.05, "{}: {v} m/s", case.scheme.name());

@@ -23,11 +23,8 @@ pub(super) fn slippery(setup: Setup) -> Setup {
 
 /// On ground without friction that gives back all of an impact.
 pub(super) fn elastic() -> Setup {
-    let ground = crate::ground::Ground {
-        friction_angle_rad: 0.0,
-        restitution: Some(1.0),
-        ..SETUP.ground
-    };
+    let ground =
+        crate::ground::Ground { friction_angle_rad: 0.0, restitution: Some(1.0), ..SETUP.ground };
     Setup { ground, ..SETUP }
 }
 
