@@ -16,6 +16,8 @@ pub(crate) mod friction_rolling;
 pub mod stage;
 pub mod tableau;
 pub mod environment;
+mod springs;
+pub(crate) mod yielding;
 
 use contact_state::{ContactEnvironment, ContactState};
 pub use scheme::Scheme;

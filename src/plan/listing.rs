@@ -220,7 +220,7 @@ impl List {
         );
         self.line(
             "hollow edges",
-            "left out around each rock: hollow on one side of a sheet is sharp on the other; on the hollow side the faces touch",
+            "all kept, however sharp: a rock so deep in a fold that it reaches the edge presses on both sides as one contact",
         );
         self.line(
             "corners",
