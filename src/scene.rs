@@ -40,7 +40,7 @@ pub use grounds::GroundTable;
 pub use meshes::{CropTable, MeshFile, MeshTable};
 pub use object::{ObjectTable, VehiclesTable};
 pub use places::{Area, Corner, Point, Polyline};
-pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
+pub use record::{Language, LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};

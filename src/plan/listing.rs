@@ -70,6 +70,7 @@ impl Plan {
             inputs: _,      // with the report
             title_block: _, // with the report
             sources: _,     // with the report
+            language: _,    // with the report
             warnings,
             fast_warnings,
         } = self;

@@ -3,7 +3,7 @@
 use super::exact::{CaseStudy, Curve};
 use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
-use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION};
+use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
@@ -24,7 +24,7 @@ pub fn colour(scheme: Scheme) -> RGBColor {
 }
 
 /// The form of a scheme's marks.
-fn shape(scheme: Scheme) -> usize {
+pub fn shape(scheme: Scheme) -> usize {
     scheme.of([1, 0, 2, 3])
 }
 
@@ -85,7 +85,7 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, study: &CaseStudy) {
     }
     for line in savings_in_words(study) {
         debug_assert!(text_width(&line, SMALL) < KEY_PX);
-        canvas.text(&Label::new(line, (left, y)).coloured(PURPLE));
+        canvas.text(&Label::new(line, (left, y)).coloured(GREY));
         y += SMALL + 4.0;
     }
 }

@@ -179,9 +179,10 @@ pub(super) fn draw(ladders: &[Ladder]) -> String {
             let points: Vec<(f64, f64)> = points.map(|&(n, error)| (f64::from(n), error)).collect();
             panel.line(canvas, &points, Pen::full(ink, 1.4));
             for &(x, y) in &points {
-                canvas.disc(panel.at(x, y), 2.6, ink);
+                canvas.mark(super::exact_figure::shape(ladder.scheme), panel.at(x, y), 2.6, ink);
             }
             canvas.line(&[(left, y), (left + 18.0, y)], Pen::full(ink, 1.4));
+            canvas.mark(super::exact_figure::shape(ladder.scheme), (left + 9.0, y), 2.6, ink);
             canvas.text(&Label::new(ladder.scheme.name(), (left + 24.0, y)).bold());
             let words = format!(
                 "order {} (theory {})",
