@@ -92,7 +92,6 @@ pub(crate) fn run(
     begin: impl FnOnce(Arc<AtomicBool>) -> Result<()>,
     progress: impl Fn(usize, usize),
 ) -> Result<Ended> {
-    year::allows(plan, order.until.is_some())?;
     let ensemble = Ensemble::new(order.threads)?;
     begin(ensemble.stop_flag())?;
     let mut mode = order.mode;
@@ -183,14 +182,14 @@ fn more(until: Option<&Aim>, hazard: &Hazard, done: usize) -> Result<Option<usiz
     if let Some(why) = aim.refusal(hazard) {
         return Err(Error::Request(format!("{why}; finish these with --releases {done} --resume")));
     }
-    let values = hazard.values(aim.quantity);
-    let needed = aim.needs(values, done);
+    let sample = hazard.sample_as_seen(aim.quantity);
+    let needed = aim.needs(&sample, done);
     if needed > MOST_RELEASES as f64 {
         return Err(Error::Request(format!(
             "--until \"{aim}\": {done} releases are written, and about {needed:.0e} would be needed; write a wider interval, or finish these with --releases {done} --resume"
         )));
     }
-    Ok(aim.next(values, done).map(|next| next.min(MOST_RELEASES)))
+    Ok(aim.next(&sample, done).map(|next| next.min(MOST_RELEASES)))
 }
 
 /// An aim that needs more releases than this is given up: their values take a gigabyte.

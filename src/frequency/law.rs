@@ -98,7 +98,8 @@ impl Law {
                 format!("{per_year} events a year of the scene's rocks")
             }
             Self::PowerLaw { per_year_at_1m3, exponent, volume_m3: [least, largest] } => format!(
-                "{per_year_at_1m3} V^-{exponent} events a year of V m³ or more, {least} to {largest} m³"
+                "{} V^-{exponent} events a year of V m³ or more, {least} to {largest} m³",
+                six_digits(*per_year_at_1m3)
             ),
             Self::Classes(classes) => {
                 let class = |class: &Class| {
@@ -109,6 +110,11 @@ impl Law {
             }
         }
     }
+}
+
+/// A number that may have been computed, without digits that tell nothing.
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 impl Stratum {

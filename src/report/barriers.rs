@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{BarrierView, DesignView, Estimate, PlaceView, kilo};
+use super::input::{BarrierView, DesignView, Estimate, PlaceView, RockView, kilo};
 use super::panel::{FOOT_PX, Panel};
 use super::paper::{Label, NORMAL, Paper, Pen, paint};
 use super::svg::path::{Frame, Spot};
@@ -24,7 +24,7 @@ const ELSEWHERE: [RGBColor; 4] = [ORANGE, PURPLE, SKY, GREY];
 /// Draws the cloud and the two curves of sensitivity.
 pub(super) fn draw(barrier: &BarrierView, number: usize) -> Drawing {
     let rocks = barrier.places.first().map_or(&[][..], |own| &own.rocks);
-    let most_j = rocks.iter().map(|rock| rock.1).fold(barrier.capacity_j, f64::max);
+    let most_j = rocks.iter().map(|rock| rock.total_j).fold(barrier.capacity_j, f64::max);
     let (unit, size) = kilo(most_j);
     let cloud = cloud_panel(barrier, rocks, (unit, size));
     let top = cloud.frame.bottom + FOOT_PX + GAP_PX;
@@ -63,6 +63,11 @@ fn caption(barrier: &BarrierView, arriving: usize) -> String {
         ),
         None => String::new(),
     };
+    let weighs = if barrier.is_weighted() {
+        " Dots are rocks as computed, large ones more often than they come; shares are weighted back."
+    } else {
+        ""
+    };
     let places = if barrier.places.len() > 1 {
         ", at its place (full) and at the other places of the scene. Below right: the same share at its own height against its \
          place, with Wilson's 95 % interval."
@@ -72,7 +77,7 @@ fn caption(barrier: &BarrierView, arriving: usize) -> String {
     format!(
         "Barrier “{}”: {} {}. Above: total energy and height of the highest point of each; inside the green frame it \
          stops them.{design} Below: share of the arriving rocks that a barrier of another height and the same capacity \
-         would stop{places}",
+         would stop{places}{weighs}",
         barrier.name,
         format::decimal(arriving as f64, 0),
         format::counted(arriving, "rock arrives", "rocks arrive")
@@ -84,12 +89,13 @@ fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
     paper.text(&Label::new(words, at).bold().sized(NORMAL));
 }
 
-fn cloud_panel(barrier: &BarrierView, rocks: &[(f64, f64)], (unit, size): (&str, f64)) -> Panel {
+fn cloud_panel(barrier: &BarrierView, rocks: &[RockView], (unit, size): (&str, f64)) -> Panel {
     let reach = |at: &Estimate| 1.05 * [at.value, at.high].into_iter().fold(0.0, f64::max);
     let (design_m, design_j) =
         barrier.design.map_or((0.0, 0.0), |of| (reach(&of.height_m), reach(&of.energy_j)));
-    let energies = rocks.iter().map(|rock| rock.1).chain([1.05 * barrier.capacity_j, design_j]);
-    let tops = rocks.iter().map(|rock| rock.0).filter(|top| top.is_finite());
+    let energies =
+        rocks.iter().map(|rock| rock.total_j).chain([1.05 * barrier.capacity_j, design_j]);
+    let tops = rocks.iter().map(|rock| rock.top_m).filter(|top| top.is_finite());
     let tops = tops.chain([1.05 * barrier.height_m, design_m]);
     let frame = Frame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + CLOUD_PX };
     let mut panel = Panel::new(
@@ -104,7 +110,7 @@ fn cloud_panel(barrier: &BarrierView, rocks: &[(f64, f64)], (unit, size): (&str,
 fn draw_cloud(
     paper: &Paper<'_>,
     panel: &Panel,
-    (barrier, rocks): (&BarrierView, &[(f64, f64)]),
+    (barrier, rocks): (&BarrierView, &[RockView]),
     size: f64,
 ) {
     panel.grid(paper);
@@ -114,7 +120,7 @@ fn draw_cloud(
     paper.fill(&stopped, GREEN, 0.12);
     let spots: Vec<Spot> = rocks
         .iter()
-        .map(|rock| panel.at(rock.1 / size, rock.0))
+        .map(|rock| panel.at(rock.total_j / size, rock.top_m))
         .filter(|&spot| panel.frame.holds(spot))
         .collect();
     paper.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
@@ -176,15 +182,21 @@ fn lower_panels(barrier: &BarrierView, top: f64) -> (Panel, Option<Panel>) {
     )
 }
 
-/// Share (%) of the rocks at a place that a barrier of every height stops, as a staircase.
+/// Share (%) of the rocks at a place, by what each stands for, that a barrier of every height stops, as a staircase.
 fn staircase(barrier: &BarrierView, place: &PlaceView, most_m: f64) -> Vec<(f64, f64)> {
-    let held = place.rocks.iter().filter(|rock| rock.1 <= barrier.capacity_j && rock.0 <= most_m);
-    let mut tops: Vec<f64> = held.map(|rock| rock.0).collect();
-    tops.sort_by(f64::total_cmp);
-    let percent = |count: usize| 100.0 * count as f64 / place.rocks.len().max(1) as f64;
-    let steps =
-        tops.iter().enumerate().flat_map(|(k, &top)| [(top, percent(k)), (top, percent(k + 1))]);
-    [(0.0, 0.0)].into_iter().chain(steps).chain([(most_m, percent(tops.len()))]).collect()
+    let is_held = |rock: &&RockView| rock.total_j <= barrier.capacity_j && rock.top_m <= most_m;
+    let mut held: Vec<&RockView> = place.rocks.iter().filter(is_held).collect();
+    held.sort_by(|one, other| one.top_m.total_cmp(&other.top_m));
+    let all: f64 = place.rocks.iter().map(|rock| rock.weight).sum();
+    let mut stopped = 0.0;
+    let mut points = vec![(0.0, 0.0)];
+    for rock in held {
+        let before = stopped;
+        stopped += rock.weight;
+        points.extend([before, stopped].map(|sum| (rock.top_m, 100.0 * sum / all)));
+    }
+    points.push((most_m, if stopped > 0.0 { 100.0 * stopped / all } else { 0.0 }));
+    points
 }
 
 /// Pen of a place: 0 is the barrier's own, the others follow in the order of the scene.
@@ -207,20 +219,52 @@ fn draw_heights(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
 fn draw_places(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
     panel.grid(paper);
     for (k, place) in barrier.places.iter().enumerate() {
-        let stops = |rock: &&(f64, f64)| rock.0 <= barrier.height_m && rock.1 <= barrier.capacity_j;
-        let share = crate::hazard::Proportion::new(
-            place.rocks.iter().filter(stops).count(),
-            place.rocks.len(),
-        );
-        if share.of == 0 {
-            continue;
-        }
+        let Some(stopped) = place.stopped else { continue };
         let at = |percent: f64| panel.at(place.offset_m, percent);
-        paper.line(&[at(100.0 * share.low_95), at(100.0 * share.high_95)], Pen::full(INK, 1.2));
+        paper.line(&[at(stopped.low), at(stopped.high)], Pen::full(INK, 1.2));
         // its pen in the other panel: colours alone do not tell them apart
-        let (x, y) = at(100.0 * share.share);
+        let (x, y) = at(stopped.value);
         paper.line(&[(x - 16.0, y), (x + 16.0, y)], pen_of(k));
         paper.disc((x, y), 4.0, pen_of(k).colour);
     }
     panel.axes(paper);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: of four rocks one stands for 7 of 10 events. It is the lowest: a barrier above its top holds 70 %, and one above
+    /// the next 80 %; the last has more energy than any height holds.
+    #[test]
+    fn a_heavy_rock_counts_for_what_it_stands_for() {
+        let rock = |top_m: f64, total_j: f64, weight: f64| RockView { top_m, total_j, weight };
+        let rocks = vec![
+            rock(2.0, 1.0, 1.0),
+            rock(1.0, 1.0, 7.0),
+            rock(9.0, 1.0, 1.0),
+            rock(0.5, 99.0, 1.0),
+        ];
+        let place = PlaceView { offset_m: 0.0, arriving: 1.0, stopped: None, rocks };
+        let barrier = BarrierView {
+            name: "net".to_owned(),
+            height_m: 3.0,
+            capacity_j: 10.0,
+            design: None,
+            design_lacks: 0,
+            percentile: None,
+            left_is_uphill: None,
+            places: vec![place],
+        };
+        let stairs = staircase(&barrier, &barrier.places[0], 6.0);
+        let expected = [(0.0, 0.0), (1.0, 0.0), (1.0, 70.0), (2.0, 70.0), (2.0, 80.0), (6.0, 80.0)];
+        assert_eq!(stairs.len(), expected.len());
+        for (found, by_hand) in stairs.iter().zip(expected) {
+            assert!(
+                (found.0 - by_hand.0).abs() + (found.1 - by_hand.1).abs() < 1e-12,
+                "{stairs:?}"
+            );
+        }
+        assert!(barrier.is_weighted() && caption(&barrier, 4).contains("weighted back"));
+    }
 }

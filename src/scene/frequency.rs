@@ -1,9 +1,11 @@
 //! `[frequency]`: how often rocks are released, of what size, and what is asked of the year.
 
-use super::check::{Allowed, Checked, Complaint, number};
+use super::check::{Allowed, Checked, Complaint, number, optional};
 use super::places::{Area, Point, Polyline};
-use crate::chance::{Distribution, Entries};
-use crate::frequency::{Class, Frequency, Law, Source, radius_of_m3};
+use super::zone_sources::CommonSizes;
+use super::zones::Zones;
+use crate::chance::Entries;
+use crate::frequency::{Class, Frequency, Law, Source};
 use serde::{Deserialize, Deserializer};
 
 /// How often rocks are released: one law, or one for each of several sources.
@@ -14,9 +16,9 @@ pub struct FrequencyTable {
     pub per_year: Option<f64>,
     /// Power law: events a year of 1 m³ or more (1/year), positive.
     pub per_year_at_1m3: Option<f64>,
-    /// Power law: exponent `b` of `N(≥ V) = a V^−b` (–), positive.
+    /// Power law: exponent `b` of `N(≥ V) = a V^−b` (–), positive. Without law, that of all zones of release that have none.
     pub exponent: Option<f64>,
-    /// Power law: smallest and largest volume (m³), positive and rising.
+    /// Power law: smallest and largest volume (m³), positive and rising. Without law, those of all zones that have none.
     #[serde(default, deserialize_with = "pair")]
     pub volume_m3: Option<[f64; 2]>,
     /// Instead: events a year by class of volume.
@@ -98,19 +100,17 @@ const RETURN_PERIODS_YEARS: [f64; 4] = [30.0, 100.0, 300.0, 1000.0];
 /// Energies unless the scene names others (J): the limits of the classes of the intensity map.
 const ENERGIES_J: [f64; 2] = [30e3, 300e3];
 /// Largest exponent (–): measured ones are below 2, and far steeper laws have one size only.
-const STEEPEST: f64 = 20.0;
+pub(super) const STEEPEST: f64 = 20.0;
 const LAW: &str = "write per_year = … (sizes as [rocks] radius_m has them), or per_year_at_1m3, exponent and volume_m3, or classes";
 
 impl FrequencyTable {
-    /// The sources, their laws and what is asked; none where a key is wrong, which the check has said.
-    pub(super) fn compile(&self) -> Option<Frequency> {
-        let own = self.keys().law().ok()?.map(|law| Source { name: "release".to_owned(), law });
-        let named = |table: &SourceTable| {
-            Some(Source { name: table.name.clone(), law: table.keys().law().ok()?? })
-        };
-        let sources: Option<Vec<Source>> = match own {
-            Some(source) => Some(vec![source]),
-            None => self.sources.iter().map(named).collect(),
+    /// The sources, their laws and what is asked; none where a key is wrong, which the check has said, and where zones are
+    /// sources that were not read yet.
+    pub(super) fn compile(&self, zones: Option<&Zones>) -> Option<Frequency> {
+        let sources = if self.is_by_zone() {
+            zones?.sources(self.common_sizes()).ok()
+        } else {
+            self.written_sources()
         };
         Some(Frequency::new(
             sources?,
@@ -119,14 +119,66 @@ impl FrequencyTable {
         ))
     }
 
-    pub(super) fn check(&self) -> Checked {
+    /// Its own law, or its sources.
+    fn written_sources(&self) -> Option<Vec<Source>> {
+        let own = self.keys().law().ok()?.map(|law| Source { name: "release".to_owned(), law });
+        let named = |table: &SourceTable| {
+            Some(Source { name: table.name.clone(), law: table.keys().law().ok()?? })
+        };
+        match own {
+            Some(source) => Some(vec![source]),
+            None => self.sources.iter().map(named).collect(),
+        }
+    }
+
+    /// Whether it has neither a law nor sources: then each zone of release is one.
+    pub(super) fn is_by_zone(&self) -> bool {
+        let has_law = self.per_year.is_some() || self.per_year_at_1m3.is_some();
+        !has_law && self.classes.is_none() && self.sources.is_empty()
+    }
+
+    /// The key of its law.
+    pub(super) fn law_key(&self) -> &'static str {
+        match (self.per_year, self.per_year_at_1m3) {
+            (Some(_), _) => "per_year",
+            (_, Some(_)) => "per_year_at_1m3",
+            _ => "classes",
+        }
+    }
+
+    /// Sizes of all zones that do not say them themselves.
+    pub(super) fn common_sizes(&self) -> CommonSizes {
+        CommonSizes { exponent: self.exponent, volume_m3: self.volume_m3 }
+    }
+
+    /// `has_zones`: places of release are drawn in a file, whose properties may hold what is missing here.
+    pub(super) fn check(&self, has_zones: bool) -> Checked {
+        if has_zones && self.is_by_zone() {
+            optional("exponent", self.exponent, Allowed::Positive, "")?;
+            if let Some(volume_m3) = self.volume_m3 {
+                volumes("volume_m3", volume_m3, false)?;
+            }
+        } else {
+            self.check_sources()?;
+        }
+        positive_list("energies_j", self.energies_j.as_deref())?;
+        positive_list("return_periods_years", self.return_periods_years.as_deref())?;
+        self.matrix.as_ref().map_or(Ok(()), |one| one.check().map_err(|w| w.inside("matrix")))
+    }
+
+    fn check_sources(&self) -> Checked {
         let own = self.keys().law()?;
         if own.is_some() != self.sources.is_empty() {
             return Err(if own.is_some() {
                 let remedy = "remove it, or the law in [frequency]: each source has its own";
                 Complaint::about("sources", remedy).finding("found both a law and sources")
             } else {
-                Complaint::missing("per_year", format!("{LAW}, or [[frequency.sources]]"))
+                Complaint::missing(
+                    "per_year",
+                    format!(
+                        "{LAW}, or [[frequency.sources]], or [release] zones with a frequency each"
+                    ),
+                )
             });
         }
         let mut draws = Vec::new();
@@ -141,9 +193,7 @@ impl FrequencyTable {
                 "found a source with volumes of its own beside one that takes [rocks] radius_m";
             return Err(about.finding(found).in_entry(index).inside("sources"));
         }
-        positive_list("energies_j", self.energies_j.as_deref())?;
-        positive_list("return_periods_years", self.return_periods_years.as_deref())?;
-        self.matrix.as_ref().map_or(Ok(()), |one| one.check().map_err(|w| w.inside("matrix")))
+        Ok(())
     }
 
     fn keys(&self) -> LawKeys<'_> {
@@ -245,11 +295,16 @@ fn classes_law(classes: &[ClassTable]) -> Result<Law, Complaint> {
 }
 
 /// Volumes of blocks (m³) that a run can follow, from a pebble to a hillside.
-const VOLUMES_M3: [f64; 2] = [1e-6, 1e6];
+pub(super) const VOLUMES_M3: [f64; 2] = [1e-6, 1e6];
 
-fn volumes(key: &str, [least, largest]: [f64; 2], may_be_equal: bool) -> Checked {
+/// Whether two volumes (m³) rise and can be followed.
+pub(super) fn are_volumes([least, largest]: [f64; 2], may_be_equal: bool) -> bool {
     let rise = least < largest || may_be_equal && least <= largest;
-    if rise && least >= VOLUMES_M3[0] && largest <= VOLUMES_M3[1] {
+    rise && least >= VOLUMES_M3[0] && largest <= VOLUMES_M3[1]
+}
+
+fn volumes(key: &str, range: [f64; 2], may_be_equal: bool) -> Checked {
+    if are_volumes(range, may_be_equal) {
         return Ok(());
     }
     let [low, high] = VOLUMES_M3;
@@ -288,19 +343,6 @@ impl MatrixTable {
     }
 }
 
-/// Radii to reckon with (m) where the sources have volumes of their own: ends and middle of every stratum, as often as
-/// it comes.
-pub(super) fn radii_m(frequency: &Frequency) -> Option<Distribution> {
-    let shares = [0.0, 0.5, 1.0];
-    let radii = frequency.strata().iter().flat_map(|stratum| {
-        let volumes = shares.map(|p| Some((stratum.quantile_m3(p)?, stratum.per_year)));
-        volumes.into_iter().flatten()
-    });
-    let (radii, weights): (Vec<f64>, Vec<f64>) =
-        radii.map(|(volume, weight)| (radius_of_m3(volume), weight)).unzip();
-    Distribution::values(radii, Some(weights)).ok()
-}
-
 fn pair<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 2]>, D::Error> {
     Entries::deserialize(from).map(|Entries(pair)| Some(pair))
 }
@@ -317,22 +359,4 @@ fn one_or_two<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> 
         OneOrTwo::One(volume) => [volume; 2],
         OneOrTwo::Two(pair) => pair,
     })
-}
-
-/// Checks `radius_m` against the laws: volumes of their own, or none.
-pub(super) fn check_radius(
-    radius_m: Option<&Distribution>,
-    frequency: Option<&Frequency>,
-) -> Checked {
-    let drawn = frequency.is_some_and(Frequency::draws_volumes);
-    match (radius_m, drawn) {
-        (Some(_), true) => Err(Complaint::about(
-            "radius_m",
-            "remove it: the volumes of [frequency] say how large rocks are; or write per_year = … there",
-        )),
-        (None, false) => {
-            Err(Complaint::missing("radius_m", "write radius_m = …; it has no default"))
-        }
-        _ => Ok(()),
-    }
 }

@@ -30,6 +30,7 @@ pub mod verify;
 pub mod stability;
 mod stability_figure;
 mod subject;
+mod weighing;
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;

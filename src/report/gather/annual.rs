@@ -4,7 +4,7 @@ use super::super::format;
 use super::super::input::{About, AnnualView, BandPoint, Estimate, Table};
 use super::estimate;
 use crate::hazard::{
-    Annual, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk,
+    Annual, AnnualBarrier, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk,
 };
 use crate::output::Results;
 
@@ -33,12 +33,42 @@ fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
     figures.curve.iter().rev().map(point).collect()
 }
 
-/// Three tables a place: how often, with what energy, at what risk.
+/// Three tables a place: how often, with what energy, at what risk; and one a barrier.
 pub(super) fn tables(results: &Results) -> Vec<Table> {
     let Some(annual) = &results.summary.annual else { return Vec::new() };
     let each =
         |place: &AnnualPlace| [Some(passages(annual, place)), Some(returns(place)), risks(place)];
-    annual.places.iter().flat_map(each).flatten().collect()
+    let places = annual.places.iter().flat_map(each).flatten();
+    places.chain(annual.barriers.iter().map(|one| barrier(annual, one))).collect()
+}
+
+/// Columns of how often something happens.
+const HOW_OFTEN: [&str; 6] = [
+    "a year (1/a)",
+    "return period (a)",
+    "probability in a year (%)",
+    "conditional on release (%)",
+    "change with ln(rate) (1/a)",
+    "change with exponent (1/a)",
+];
+
+fn barrier(annual: &Annual, one: &AnnualBarrier) -> Table {
+    let AnnualBarrier { name, arriving, stopped, over, through } = one;
+    let rows = [
+        ("Rocks that arrive", arriving),
+        ("… are stopped", stopped),
+        ("… go over it", over),
+        ("… break through", through),
+    ];
+    Table {
+        about: About::Year,
+        title: format!("How often a year: barrier “{name}”"),
+        note: "Numbers a year unless the column says otherwise, with 95 % intervals; where none was seen, a one-sided bound. What a \
+               barrier before has stopped does not arrive."
+            .to_owned(),
+        columns: HOW_OFTEN.map(str::to_owned).into(),
+        rows: rows.map(|(what, rate)| (what.to_owned(), cells(rate, annual))).into(),
+    }
 }
 
 /// Name of a place with what it is.
@@ -70,14 +100,6 @@ fn passages(annual: &Annual, place: &AnnualPlace) -> Table {
             say(format!("… with {} kJ or more", kj(above.energy_j)), &above.rate);
         }
     }
-    let columns = [
-        "a year (1/a)",
-        "return period (a)",
-        "probability in a year (%)",
-        "conditional on release (%)",
-        "change with ln(rate) (1/a)",
-        "change with exponent (1/a)",
-    ];
     Table {
         about: About::Year,
         title: format!("How often a year: {}", named(place)),
@@ -89,7 +111,7 @@ fn passages(annual: &Annual, place: &AnnualPlace) -> Table {
             format::decimal(annual.rocks as f64, 0),
             format::decimal(annual.effective_rocks, 0)
         ),
-        columns: columns.map(str::to_owned).into(),
+        columns: HOW_OFTEN.map(str::to_owned).into(),
         rows,
     }
 }
@@ -142,16 +164,21 @@ fn returns(place: &AnnualPlace) -> Table {
 }
 
 fn risks(place: &AnnualPlace) -> Option<Table> {
-    let row = |(which, risk): (&str, &Risk)| {
+    let row = |which: &str, risk: &Risk| {
         let Risk { kind, rate } = risk;
         let slope = |slope: f64| estimate(slope, None, None);
         let cells =
             vec![Some(of(rate, |x| x)), Some(slope(rate.by_log_rate)), rate.by_exponent.map(slope)];
         (format!("{}{which}", kind.name()), cells)
     };
-    let all =
-        both(place).flat_map(|(which, figures)| figures.risks.iter().map(move |r| (which, r)));
-    let rows: Vec<_> = all.map(row).collect();
+    let mut rows = Vec::new();
+    for (which, figures) in both(place) {
+        rows.extend(figures.risks.iter().map(|risk| row(which, risk)));
+    }
+    for saved in &place.saved {
+        let which = format!(", kept away by “{}”", saved.barrier);
+        rows.extend(saved.risks.iter().map(|risk| row(&which, risk)));
+    }
     let columns = ["a year (1/a)", "change with ln(rate) (1/a)", "change with exponent (1/a)"];
     (!rows.is_empty()).then(|| Table {
         about: About::Year,
