@@ -165,6 +165,7 @@ fn what_is_no_law_is_refused() {
         ([often, &one_end], "", "feature 2: found one end of a range"),
         ([often, &swapped], "", "feature 2: found the volumes 5 and 0.5"),
         ([&steep, often], "", "feature 1: found too large an exponent"),
+        ([often, "\"frequency_per_year\":1e-300"], "", "feature 2: found 0.000"),
         ([often, often], law, "feature 1: found no volume_min_m3"),
         ([often, "\"per_year_at_1m3\":1"], "", "feature 2: found no exponent"),
         ([&with_volume, &with_volume], "", "[rocks] radius_m (line 21): found 0.3; remove it"),

@@ -1,6 +1,6 @@
 //! Magnitude–frequency laws, cut into strata.
 
-use super::STRATA_PER_DECADE;
+use super::{STRATA, STRATA_PER_DECADE};
 use crate::math;
 use serde::{Deserialize, Serialize};
 
@@ -84,6 +84,13 @@ impl Law {
                 classes.iter().map(stratum).collect()
             }
         }
+    }
+
+    /// Whether its rates and their squares are numbers that a computer tells apart from 0 and from infinity: none of its
+    /// strata comes more seldom than 10⁻¹²⁰ or more often than 10¹² times a year.
+    pub fn is_countable(&self) -> bool {
+        let rates = self.strata(0, STRATA);
+        rates.iter().all(|stratum| (1e-120..=1e12).contains(&stratum.per_year))
     }
 
     /// Events a year of all sizes together (1/year).

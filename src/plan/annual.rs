@@ -66,7 +66,7 @@ pub(super) fn year(
                 .to_owned(),
         );
     }
-    let matrix = scene.frequency.as_ref().and_then(|table| table.matrix.clone());
+    let matrix = scene.frequency.as_ref().and_then(|table| table.matrix.as_ref()?.table());
     let largest_m: Vec<f64> =
         frequency.strata().iter().map(|stratum| largest_m(scene, stratum)).collect();
     let most_j = most_j(scene, terrain, &largest_m);

@@ -1,6 +1,7 @@
 //! `[frequency]`: how often rocks are released, of what size, and what is asked of the year.
 
 use super::check::{Allowed, Checked, Complaint, number, optional};
+use super::matrix::MatrixEntry;
 use super::places::{Area, Point, Polyline};
 use super::zone_sources::CommonSizes;
 use super::zones::Zones;
@@ -31,7 +32,7 @@ pub struct FrequencyTable {
     /// Return periods whose energy is asked for (years), positive.
     pub return_periods_years: Option<Vec<f64>>,
     /// Classes of hazard by energy and return period.
-    pub matrix: Option<MatrixTable>,
+    pub matrix: Option<MatrixEntry>,
 }
 
 /// `[[frequency.sources]]`: a place that releases rocks.
@@ -70,22 +71,6 @@ pub struct ClassTable {
     pub per_year: f64,
 }
 
-/// `[frequency.matrix]`: levels of hazard by the energy of each return period; the table and its source are the scene's.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table [frequency.matrix]")]
-pub struct MatrixTable {
-    /// Name that stands beside the map.
-    pub name: String,
-    /// Where the table was read; stands beside the map.
-    pub source: String,
-    /// Limits between the classes of energy (J), rising.
-    pub energies_j: Vec<f64>,
-    /// Return periods (years), rising.
-    pub return_periods_years: Vec<f64>,
-    /// A row for each return period, in it a level for each class of energy, from weak to strong.
-    pub levels: Vec<Vec<u8>>,
-}
-
 /// The keys of a law, wherever they stand.
 struct LawKeys<'a> {
     per_year: Option<f64>,
@@ -101,6 +86,8 @@ const RETURN_PERIODS_YEARS: [f64; 4] = [30.0, 100.0, 300.0, 1000.0];
 const ENERGIES_J: [f64; 2] = [30e3, 300e3];
 /// Largest exponent (–): measured ones are below 2, and far steeper laws have one size only.
 pub(super) const STEEPEST: f64 = 20.0;
+/// What rates must be.
+pub(super) const COUNTABLE: &str = "write rates, exponent and volumes that make 1e-120 to 1e12 events a year in every class of size";
 const LAW: &str = "write per_year = … (sizes as [rocks] radius_m has them), or per_year_at_1m3, exponent and volume_m3, or classes";
 
 impl FrequencyTable {
@@ -240,6 +227,19 @@ impl SourceTable {
 impl LawKeys<'_> {
     /// The law; none where no key of one is written.
     fn law(&self) -> Result<Option<Law>, Complaint> {
+        let law = self.written()?;
+        let key = match &law {
+            Some(law) if law.is_countable() => return Ok(Some(law.clone())),
+            None => return Ok(None),
+            Some(Law::Events { .. }) => "per_year",
+            Some(Law::PowerLaw { .. }) => "per_year_at_1m3",
+            Some(Law::Classes(_)) => "classes",
+        };
+        Err(Complaint::about(key, COUNTABLE))
+    }
+
+    /// The same, whatever its rates are.
+    fn written(&self) -> Result<Option<Law>, Complaint> {
         let power = [
             ("per_year_at_1m3", self.per_year_at_1m3.is_some()),
             ("exponent", self.exponent.is_some()),
@@ -312,35 +312,8 @@ fn volumes(key: &str, range: [f64; 2], may_be_equal: bool) -> Checked {
     Err(Complaint::about(key, remedy))
 }
 
-fn positive_list(key: &str, list: Option<&[f64]>) -> Checked {
+pub(super) fn positive_list(key: &str, list: Option<&[f64]>) -> Checked {
     list.unwrap_or_default().iter().try_for_each(|value| number(key, *value, Allowed::Positive, ""))
-}
-
-impl MatrixTable {
-    fn check(&self) -> Checked {
-        for (key, words) in [("name", &self.name), ("source", &self.source)] {
-            if words.trim().is_empty() {
-                let remedy = "write it: a table of levels stands with its name and its source";
-                return Err(Complaint::about(key, remedy));
-            }
-        }
-        for (key, list) in
-            [("energies_j", &self.energies_j), ("return_periods_years", &self.return_periods_years)]
-        {
-            positive_list(key, Some(list))?;
-            if list.is_empty() || list.windows(2).any(|pair| pair[0] >= pair[1]) {
-                return Err(Complaint::about(key, "write at least one number, rising"));
-            }
-        }
-        let (rows, columns) = (self.return_periods_years.len(), self.energies_j.len() + 1);
-        if self.levels.len() != rows || self.levels.iter().any(|row| row.len() != columns) {
-            let remedy = format!(
-                "write {rows} rows, one a return period, of {columns} levels, one a class of energy"
-            );
-            return Err(Complaint::about("levels", remedy));
-        }
-        Ok(())
-    }
 }
 
 fn pair<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 2]>, D::Error> {

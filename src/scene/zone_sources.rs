@@ -1,7 +1,7 @@
 //! Zones of release that are sources: each releases rocks as often as its properties say.
 
 use super::check::{Checked, Complaint};
-use super::frequency::{STEEPEST, VOLUMES_M3, are_volumes};
+use super::frequency::{COUNTABLE, STEEPEST, VOLUMES_M3, are_volumes};
 use super::refusal::Refusal;
 use super::zones::{Zone, Zones};
 use super::{FrequencyTable, Scene};
@@ -114,6 +114,10 @@ impl Zones {
         };
         let source = |zone: &Zone| {
             let law = zone.law(common).map_err(|flaw| refused(zone, flaw))?;
+            if !law.is_countable() {
+                let found = format!("found {}", law.in_words());
+                return Err(refused(zone, Flaw::new(found, COUNTABLE)));
+            }
             Ok(Source { name: zone.name.clone(), law })
         };
         let sources: Vec<Source> =
