@@ -5,8 +5,8 @@ use super::matrix::MatrixEntry;
 use super::places::{Area, Point, Polyline};
 use super::zone_sources::CommonSizes;
 use super::zones::Zones;
-use crate::chance::Entries;
 use crate::frequency::{Class, Frequency, Law, Source};
+use crate::random::Entries;
 use serde::{Deserialize, Deserializer};
 
 /// How often rocks are released: one law, or one for each of several sources.

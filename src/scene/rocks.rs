@@ -1,8 +1,8 @@
 //! `[rocks]` and `[rocks.contact]`.
 
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
-use crate::chance::Distribution;
 use crate::frequency::{Frequency, radius_of_m3};
+use crate::random::Distribution;
 use serde::Deserialize;
 
 /// The rocks.

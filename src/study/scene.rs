@@ -5,8 +5,8 @@
 //! difference; what is left is drawn again and again to say how far it can be trusted.
 
 use super::bench::goes_by_tolerance;
-use super::speed::machine::Busy;
-use super::spread::{Interval, Ladder, Paired};
+use super::bootstrap::{Interval, Ladder, Paired};
+use super::processor_time::Busy;
 use super::weighing::{FEWEST, Weigh};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
@@ -20,7 +20,7 @@ use crate::terrain::coarser::{coarser, slope_edge_m};
 use std::ops::Range;
 use std::time::Instant;
 
-pub use super::subject::{Of, QUANTITIES, Subject};
+pub use super::statistic::{Of, QUANTITIES, StudyQuantity};
 
 /// Percentiles of the study (per cent).
 pub const PERCENTS: [u8; 3] = [50, 95, 99];
@@ -98,7 +98,7 @@ pub struct SceneStudy {
     /// On coarser meshes and the scene's own, from coarse to fine; empty where they were not asked for.
     pub meshes: Vec<Mesh>,
     /// What was looked at.
-    pub subjects: Vec<Subject>,
+    pub subjects: Vec<StudyQuantity>,
     /// Each of [`PERCENTS`] for each subject.
     pub statistics: Vec<Statistic>,
     /// So many releases of equal weight would know as much (–); none where all weigh the same.
@@ -150,7 +150,7 @@ pub fn study(
     let mut rungs: Vec<Rung> =
         relatives.iter().map(|&relative| Rung::new(&own_step, relative)).collect();
     // All settings take turns, so that a machine that is busy for a while slows all of them alike.
-    let subjects = Subject::all(&plan);
+    let subjects = StudyQuantity::all(&plan);
     for block in blocks(plan.count) {
         for rung in &mut rungs {
             plan.step = rung.step;
@@ -207,7 +207,7 @@ pub fn study(
 /// All releases on the slope with longer edges; last its own mesh, where they have been already.
 fn meshes(
     plan: &mut Plan,
-    subjects: &[Subject],
+    subjects: &[StudyQuantity],
     ensemble: &Ensemble,
     (own, done): (&Rung, impl Fn(&Rung, f64)),
 ) -> Result<Vec<Mesh>> {
@@ -265,7 +265,7 @@ impl Rung {
     fn run(
         &mut self,
         plan: &Plan,
-        subjects: &[Subject],
+        subjects: &[StudyQuantity],
         releases: Range<usize>,
         ensemble: &Ensemble,
     ) -> Result<()> {
@@ -287,7 +287,7 @@ impl Rung {
         Ok(())
     }
 
-    fn add(&mut self, subjects: &[Subject], row: &Row, fall: &Trajectory) {
+    fn add(&mut self, subjects: &[StudyQuantity], row: &Row, fall: &Trajectory) {
         let failed = !row.stop.counts();
         self.failed += usize::from(failed);
         self.rise_j = self.rise_j.max(fall.ledger.rise_j);
