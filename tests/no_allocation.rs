@@ -111,6 +111,5 @@ fn most_for_a_year(releases: usize) -> u64 {
 #[test]
 fn a_year_takes_no_memory_by_the_rock() {
     let [few, many] = [3_000, 300_000].map(most_for_a_year);
-    println!("{few} bytes for 3 000 rocks, {many} bytes for 300 000");
     assert!(many <= few + few / 10 && many < 4 << 20, "{few} and {many}");
 }
