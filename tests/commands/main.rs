@@ -38,3 +38,4 @@ mod shards;
 mod until;
 mod view;
 mod year;
+mod zone_sources;
