@@ -192,20 +192,21 @@ impl Cloud {
         }))
     }
 
+    /// The points in a box; all without one.
+    #[must_use]
+    pub(super) fn cropped(mut self, box_m: Option<BoxM>) -> Self {
+        if let Some(box_m) = box_m {
+            self.points_m.retain(|point| distance(box_m, [point.x, point.y]) <= 0.0);
+        }
+        self
+    }
+
     /// Triangles between its points around `map_origin_m`.
-    pub(super) fn into_soup(
-        mut self,
-        file: &Path,
-        box_m: Option<BoxM>,
-        map_origin_m: Vec3,
-    ) -> Result<Soup> {
+    pub(super) fn into_soup(self, file: &Path, map_origin_m: Vec3) -> Result<Soup> {
         let mut soup = Soup::of_format(Format::Cloud);
         soup.epsg = self.epsg;
         let [all, ground] = self.counts;
         soup.notes.push(format!("{all} points, {ground} of them ground"));
-        if let Some(box_m) = box_m {
-            self.points_m.retain(|point| distance(box_m, [point.x, point.y]) <= 0.0);
-        }
         let kept = self.points_m.len();
         soup.notes.push(format!("thinned to {kept}, the lowest of each cell of {} m", self.cell_m));
         let (facets, longest_m) = delaunay(&self.points_m, map_origin_m);

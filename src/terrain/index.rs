@@ -98,6 +98,67 @@ const DEPTH: usize = 56;
 /// Children that wait during a traversal, at most.
 pub const WAITING: usize = (WIDE - 1) * DEPTH + 1;
 
+/// Most triangles that one tree of parry's is built over: it takes about 300 bytes for each until it is packed.
+const AT_ONCE: usize = 1 << 21;
+
+/// Triangles that stand side by side in the index, by their numbers in the input.
+struct Part<'a> {
+    /// Place of the first one in the index.
+    start: u32,
+    triangles: &'a mut [u32],
+}
+
+impl<'a> Part<'a> {
+    /// Cut across the middle of the side along which the centres lie widest apart; as many triangles in both, and the same
+    /// ones whatever order they come in.
+    fn halves(self, corners: &impl Fn(u32) -> [Vec3; 3]) -> [Self; 2] {
+        let centre = |t: u32| corners(t).iter().sum::<Vec3>();
+        let first = centre(self.triangles[0]);
+        let (lo, hi) = self
+            .triangles
+            .iter()
+            .map(|&t| centre(t))
+            .fold((first, first), |(lo, hi), at| (lo.inf(&at), hi.sup(&at)));
+        let axis = (hi - lo).imax();
+        let middle = self.triangles.len() / 2;
+        self.triangles.select_nth_unstable_by(middle, |&a, &b| {
+            centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b))
+        });
+        let (low, high) = self.triangles.split_at_mut(middle);
+        let next = self.start + middle as u32;
+        [Part { start: self.start, triangles: low }, Part { start: next, triangles: high }]
+    }
+}
+
+/// What was packed: its levels and its box (m).
+struct Packed {
+    depth: usize,
+    lo: Vec3,
+    hi: Vec3,
+}
+
+impl Packed {
+    const NOTHING: Self = Self {
+        depth: 0,
+        lo: Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+        hi: Vec3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
+    };
+
+    fn and(&self, other: &Self) -> Self {
+        Self {
+            depth: self.depth.max(other.depth),
+            lo: self.lo.inf(&other.lo),
+            hi: self.hi.sup(&other.hi),
+        }
+    }
+}
+
+/// Leaves of a tree from left to right; the first stands at `start` of the index.
+struct Order {
+    start: u32,
+    leaves: Vec<u32>,
+}
+
 struct Loose {
     lo: Vec3,
     hi: Vec3,
@@ -107,40 +168,78 @@ struct Loose {
 }
 
 impl Index {
-    /// Builds the index over triangles given by their corners, and the order in which it wants them.
+    /// Builds the index over `count` triangles given by their corners, and the order in which it wants them.
     ///
     /// `order[k]` is the number that triangle `k` of the index had in the input.
     ///
     /// # Panics
     /// If the tree were deeper than a traversal can walk, which no mesh makes it.
-    pub fn build(corners: impl Iterator<Item = [Vec3; 3]>) -> (Self, Vec<u32>) {
-        let boxes: Vec<Aabb> = corners.map(|[a, b, c]| box_of(a, b, c)).collect();
-        if boxes.is_empty() {
-            return (Self::default(), Vec::new());
+    pub fn build(count: usize, corners: impl Fn(u32) -> [Vec3; 3]) -> (Self, Vec<u32>) {
+        let mut order: Vec<u32> = (0..count as u32).collect();
+        if count == 0 {
+            return (Self::default(), order);
         }
+        let mut index = Self::default();
+        let whole = Part { start: 0, triangles: &mut order };
+        let Packed { depth, lo, hi } = index.pack_part(whole, &corners);
+        assert!(depth <= DEPTH, "the index of the mesh has {depth} levels");
+        (index.lo, index.hi) = (lo, hi);
+        (index, order)
+    }
+
+    /// Packs a part of the triangles and puts them into the order of the tree. What is too large for one tree of parry's is
+    /// cut into four first.
+    fn pack_part(&mut self, part: Part, corners: &impl Fn(u32) -> [Vec3; 3]) -> Packed {
+        let Part { start, triangles } = part;
+        if triangles.len() <= AT_ONCE {
+            return self.pack_at_once(Part { start, triangles }, corners);
+        }
+        let place = self.nodes.len();
+        self.nodes.push(Node::EMPTY);
+        let [west, east] = Part { start, triangles }.halves(corners);
+        let quarters = west.halves(corners).into_iter().chain(east.halves(corners));
+        let mut whole = Packed::NOTHING;
+        for (side, quarter) in quarters.enumerate() {
+            let word = self.nodes.len() as u32;
+            let packed = self.pack_part(quarter, corners);
+            self.nodes[place].put(side, word, (&packed.lo, &packed.hi));
+            whole = whole.and(&packed);
+        }
+        whole.depth += 1;
+        whole
+    }
+
+    /// The same with one tree of parry's.
+    fn pack_at_once(&mut self, part: Part, corners: &impl Fn(u32) -> [Vec3; 3]) -> Packed {
+        let Part { start, triangles } = part;
+        // The tree may depend on the order in which it is given triangles, and selecting leaves an order of its own.
+        triangles.sort_unstable();
+        let boxes: Vec<Aabb> = triangles.iter().map(|&t| box_of(corners(t))).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
         drop(boxes);
         let mut loose = unroll(&tree);
         drop(tree);
         count_leaves(&mut loose);
-        let root = &loose[0];
-        let mut index = Self { nodes: Vec::new(), lo: root.lo, hi: root.hi };
-        let mut order = Vec::with_capacity(root.count as usize);
-        let depth = index.pack(&loose, 0, &mut order);
-        assert!(depth <= DEPTH, "the index of the mesh has {depth} levels");
-        (index, order)
+        let (lo, hi) = (loose[0].lo, loose[0].hi);
+        let mut order = Order { start, leaves: Vec::with_capacity(triangles.len()) };
+        let depth = self.pack(&loose, 0, &mut order);
+        let sorted = triangles.to_vec();
+        for (triangle, leaf) in triangles.iter_mut().zip(order.leaves) {
+            *triangle = sorted[leaf as usize];
+        }
+        Packed { depth, lo, hi }
     }
 
     /// Packs what is below a node, in the order of the tree; returns how deep it is.
-    fn pack(&mut self, loose: &[Loose], top: u32, order: &mut Vec<u32>) -> usize {
+    fn pack(&mut self, loose: &[Loose], top: u32, order: &mut Order) -> usize {
         let place = self.nodes.len();
         self.nodes.push(Node::EMPTY);
         let mut depth = 0;
         for (side, child) in widest(loose, top).enumerate() {
             let from = &loose[child as usize];
             let word = if from.count <= LEAF {
-                let start = order.len() as u32;
-                gather(loose, child, order);
+                let start = order.start + order.leaves.len() as u32;
+                gather(loose, child, &mut order.leaves);
                 LEAF_BIT | ((from.count - 1) << COUNT_SHIFT) | start
             } else {
                 let next = self.nodes.len() as u32;
@@ -227,7 +326,7 @@ fn widest(loose: &[Loose], top: u32) -> impl Iterator<Item = u32> {
     taken.into_iter().take(count)
 }
 
-fn box_of(a: Vec3, b: Vec3, c: Vec3) -> Aabb {
+fn box_of([a, b, c]: [Vec3; 3]) -> Aabb {
     let (lo, hi) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
     Aabb::new(Vector::from(lo), Vector::from(hi))
 }

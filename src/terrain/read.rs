@@ -1,14 +1,15 @@
 //! From terrain files to the terrain: read, crop, lay zones of ground on it, weld, examine, index.
 
-use super::formats::surface::starts;
+use super::formats::surface::{self, starts};
 use super::formats::{self, Loaded, Options};
-use super::health::Health;
+use super::health::{FileHealth, Health};
 use super::patches::{Layer, Patches};
 use super::stl::{self, Soup};
-use super::weld::{Piece, Up, weld};
+use super::weld::{self, Piece, Up};
 use super::{Sheet, Terrain};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
+use std::path::Path;
 
 /// One file and how it enters the terrain.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,15 +105,18 @@ impl Terrain {
                 sheet,
             })
             .collect();
-        let mut welded = weld(&pieces, map_origin_m, tolerance_m)?;
-        let health = Health::of(&welded, &pieces);
+        let files = FileHealth::of_all(&pieces, map_origin_m);
+        let joined = weld::join(&pieces, map_origin_m, tolerance_m)?;
+        drop(pieces);
+        drop(soups);
+        let mut welded = joined.finish();
+        let health = Health::with_files(&welded, files);
         health.check()?;
         for (sheet, &facet) in welded.sheet_of.iter_mut().zip(&welded.facet_of) {
             if let Some(&other) = sheet_of_facet[usize::from(*sheet)].get(facet as usize) {
                 *sheet = other;
             }
         }
-        drop(soups);
         let terrain =
             Self { epsg, patched: layer.map(|layer| layer.done), ..Self::new(welded, sheets) };
         Ok((terrain, health))
@@ -125,10 +129,25 @@ fn read_soups(sources: &[Source], map_origin_m: Vec3) -> Result<Vec<Soup>> {
     let none = Options::default();
     let asked = |source: &Source| source.options.clone().unwrap_or_else(|| none.clone());
     let starts: Vec<_> = sources.iter().map(|source| starts(&asked(source), &loaded)).collect();
-    let soup = |((source, loaded), starts): ((&Source, Loaded), &_)| {
-        loaded.into_soup(&source.sheet.path, &asked(source), starts, map_origin_m)
+    let used = |((source, loaded), starts): ((&Source, Loaded), &_)| {
+        loaded.used(&source.sheet.path, &asked(source), starts)
     };
-    sources.iter().zip(loaded).zip(&starts).map(soup).collect()
+    let mut used: Vec<Loaded> =
+        sources.iter().zip(loaded).zip(&starts).map(used).collect::<Result<_>>()?;
+    let files: Vec<&Path> = sources.iter().map(|source| source.sheet.path.as_path()).collect();
+    let is_unreached = |(loaded, source): &(&Loaded, &Source)| {
+        source.sheet.is_tree || matches!(loaded, Loaded::Unreached)
+    };
+    if let Some(first) =
+        files.first().filter(|_| used.iter().zip(sources).all(|s| is_unreached(&s)))
+    {
+        return Err(surface::unreached(first));
+    }
+    let facets = surface::facets(&mut used, &files, map_origin_m)?;
+    let soup = |((loaded, file), facets): ((Loaded, &&Path), _)| {
+        loaded.into_soup(file, facets, map_origin_m)
+    };
+    used.into_iter().zip(&files).zip(facets).map(soup).collect()
 }
 
 /// The EPSG code that the files name: of all the same one, and the scene's if that has one.

@@ -54,10 +54,30 @@ pub(super) enum Loaded {
     /// Triangles, in coordinates of the file.
     Mesh(Soup),
     /// Heights, in map coordinates.
-    Grid { grid: Grid, format: Format, epsg: Option<u32> },
+    Grid(Heights),
+    /// Was one of the others, of which no rock reaches anything.
+    Unreached,
     /// Ground points, in map coordinates.
     #[cfg(feature = "cloud")]
     Cloud(cloud::Cloud),
+}
+
+/// An elevation model.
+#[derive(Debug)]
+pub(super) struct Heights {
+    grid: Grid,
+    format: Format,
+    epsg: Option<u32>,
+    /// What was done with it, in words.
+    notes: Vec<String>,
+    /// How many other grids its surface goes on in.
+    joined: usize,
+}
+
+impl Heights {
+    fn of(grid: Grid, format: Format, epsg: Option<u32>) -> Loaded {
+        Loaded::Grid(Self { grid, format, epsg, notes: Vec::new(), joined: 0 })
+    }
 }
 
 /// How a file begins, and what it is.
@@ -92,11 +112,9 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
                 None
             };
             let geotiff::Raster { grid, epsg } = geotiff::read(path, window, options.epsg)?;
-            Ok(Loaded::Grid { grid, format: Format::GeoTiff, epsg })
+            Ok(Heights::of(grid, Format::GeoTiff, epsg))
         }
-        Some(Format::AsciiGrid) => {
-            Ok(Loaded::Grid { grid: Grid::read(path)?, format: Format::AsciiGrid, epsg: None })
-        }
+        Some(Format::AsciiGrid) => Ok(Heights::of(Grid::read(path)?, Format::AsciiGrid, None)),
         Some(Format::Ply) => ply::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Obj) => obj::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Cloud) => read_cloud(path, options),
@@ -117,8 +135,8 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
 /// # Errors
 /// A file that cannot be read, or is none of them.
 pub fn read_grid(path: &Path) -> Result<Grid> {
-    if let Loaded::Grid { grid, .. } = read(path, &Options::default())? {
-        return Ok(grid);
+    if let Loaded::Grid(heights) = read(path, &Options::default())? {
+        return Ok(heights.grid);
     }
     Err(wrong(path, "start", "found no grid", "write a GeoTIFF or an ESRI ASCII grid"))
 }
