@@ -1,7 +1,7 @@
 //! One released rock as a row of numbers: the only way into the statistics, from a run as from a file.
 
 use crate::rock::Vec3;
-use crate::trajectory::{Stop, Trajectory};
+use crate::simulation::{Stop, Trajectory};
 use serde::{Deserialize, Serialize};
 
 /// One row of `releases.csv`; positions in map coordinates.
