@@ -327,7 +327,7 @@ pub(crate) fn mesh_of_stems(
         *corner -= map_origin_m;
     }
     write_binary(out, &facets)?;
-    Ok(format!("{} stems, {} triangles written to {}", trees.len(), facets.len(), out.display()))
+    Ok(format!("{} stems, {} triangles written to {}", trees.count(), facets.len(), out.display()))
 }
 
 /// A mesh file as it stands.

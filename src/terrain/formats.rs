@@ -13,10 +13,10 @@ pub use ply::parse as parse_ply;
 use super::cloud;
 use super::geotiff;
 use super::grid::{self, Grid};
+use super::make;
 use super::stl::{self, Facet, Format, Soup};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
-use std::io::Read;
 use std::path::Path;
 
 /// What is asked of a file beside its triangles.
@@ -56,7 +56,9 @@ pub(super) enum Loaded {
     /// Heights, in map coordinates.
     Grid(Heights),
     /// Was one of the others, of which no rock reaches anything.
-    Unreached,
+    Unreached(Format),
+    /// Trees, in map coordinates.
+    Trees(make::List),
     /// Ground points, in map coordinates.
     #[cfg(feature = "cloud")]
     Cloud(cloud::Cloud),
@@ -101,7 +103,7 @@ const ELSEWHERE: [(&[u8], &str, &str); 5] = [
 
 /// Reads a file of any format.
 pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
-    let head = head(path)?;
+    let head = crate::file::head(path)?;
     let format = format_of(&head);
     let whole = || crate::file::read(path, crate::file::LONGEST_MESH);
     match format {
@@ -118,12 +120,17 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
         Some(Format::Ply) => ply::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Obj) => obj::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Cloud) => read_cloud(path, options),
-        Some(Format::Ascii | Format::Binary) | None => {
+        Some(Format::Ascii | Format::Binary | Format::Trees) | None => {
             if let Some((_, kind, command)) =
                 ELSEWHERE.iter().find(|(mark, ..)| head.starts_with(mark))
             {
                 let remedy = format!("write it as GeoTIFF: {command} {} out.tif", path.display());
                 return Err(Error::input(path, "start", format!("found {kind}"), remedy));
+            }
+            if make::begins_like_list(&head) {
+                let remedy =
+                    "write it under [[trees]] file, or as zones, lines, barriers or ground_zones";
+                return Err(wrong(path, "start", "found a drawing or a list of trees", remedy));
             }
             stl::read(path).map(Loaded::Mesh)
         }
@@ -150,13 +157,6 @@ fn read_cloud(path: &Path, options: &Options) -> Result<Loaded> {
 fn read_cloud(path: &Path, _: &Options) -> Result<Loaded> {
     let remedy = "build rockfall with `--features cloud`, or make an elevation model of it: pdal translate IN.laz OUT.tif -w gdal --writers.gdal.resolution=1 --writers.gdal.output_type=min";
     Err(Error::input(path, "start", "found a LAS or LAZ point cloud", remedy))
-}
-
-fn head(path: &Path) -> Result<Vec<u8>> {
-    let mut head = Vec::new();
-    let file = crate::file::open(path, crate::file::LONGEST_MESH)?;
-    file.take(4096).read_to_end(&mut head).map_err(Error::file("read", path))?;
-    Ok(head)
 }
 
 fn format_of(head: &[u8]) -> Option<Format> {

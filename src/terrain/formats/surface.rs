@@ -27,7 +27,7 @@ pub(in crate::terrain) fn starts(options: &Options, all: &[Loaded]) -> Starts {
 impl Loaded {
     fn highest_in(&self, box_m: [f64; 4]) -> Option<f64> {
         match self {
-            Self::Mesh(_) | Self::Unreached => None,
+            Self::Mesh(_) | Self::Unreached(_) | Self::Trees(_) => None,
             Self::Grid(heights) => heights.grid.highest_in(box_m),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => cloud.highest_in(box_m),
@@ -37,10 +37,21 @@ impl Loaded {
     /// The box of its cells that rocks from the starts can reach (m).
     fn reached(&self, starts: &Starts, slope: f64) -> Option<[f64; 4]> {
         match self {
-            Self::Mesh(_) | Self::Unreached => None,
+            Self::Mesh(_) | Self::Unreached(_) | Self::Trees(_) => None,
             Self::Grid(heights) => heights.grid.reached(starts, slope),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => cloud.reached(starts, slope),
+        }
+    }
+
+    fn format(&self) -> Format {
+        match self {
+            Self::Mesh(soup) => soup.format,
+            Self::Grid(heights) => heights.format,
+            Self::Unreached(format) => *format,
+            Self::Trees(_) => Format::Trees,
+            #[cfg(feature = "cloud")]
+            Self::Cloud(_) => Format::Cloud,
         }
     }
 
@@ -60,21 +71,25 @@ impl Loaded {
             Some(Crop::Reach { slope, margin_m, .. }) => match self.reached(starts, *slope) {
                 Some(box_m) => Some(wider(box_m, *margin_m)),
                 // one of several tiles; of all files together something must be reached
-                None => return Ok(Self::Unreached),
+                None => return Ok(Self::Unreached(self.format())),
             },
         };
         match self {
             Self::Grid(heights) => heights.used(file, (options.resample_m, box_m)).map(Self::Grid),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => Ok(Self::Cloud(cloud.cropped(box_m))),
-            mesh => Ok(mesh),
+            whole => Ok(whole),
         }
     }
 
-    /// Its triangles around `map_origin_m`; `others` are grids that its own is joined with.
+    /// Its triangles around `map_origin_m`; `facets` are those of a grid. Of trees none: they wait for the slope.
     ///
     /// # Errors
     /// No triangle.
+    #[cfg_attr(
+        not(feature = "cloud"),
+        expect(unused_variables, reason = "only clouds are cut here")
+    )]
     pub(in crate::terrain) fn into_soup(
         self,
         file: &Path,
@@ -83,9 +98,15 @@ impl Loaded {
     ) -> Result<Soup> {
         match self {
             Self::Mesh(soup) => Ok(soup),
-            Self::Unreached => {
-                let mut soup = Soup::of_format(Format::GeoTiff);
+            Self::Unreached(format) => {
+                let mut soup = Soup::of_format(format);
                 soup.notes.push("left out: no cell lies below the places of release".to_owned());
+                Ok(soup)
+            }
+            Self::Trees(trees) => {
+                let mut soup = Soup::of_format(Format::Trees);
+                soup.epsg = trees.epsg;
+                soup.notes.push(format!("{} stems, stood on the slope", trees.count()));
                 Ok(soup)
             }
             Self::Grid(heights) => heights.into_soup(file, facets),
