@@ -57,6 +57,15 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// No contact.
+    pub const NONE: Self = Self {
+        feature: Feature::NONE,
+        triangle: 0,
+        normal: Vec3::new(0.0, 0.0, 0.0),
+        distance_m: f64::INFINITY,
+        gain2: 1.0,
+    };
+
     /// Whether it is one point of one face, whose plane tells everything.
     #[inline]
     #[expect(clippy::float_cmp, reason = "a single point has exactly 1")]
@@ -74,14 +83,7 @@ pub struct ContactPoints {
 
 impl Default for ContactPoints {
     fn default() -> Self {
-        let none = ContactPoint {
-            feature: Feature::NONE,
-            triangle: 0,
-            normal: Vec3::zeros(),
-            distance_m: f64::INFINITY,
-            gain2: 1.0,
-        };
-        Self { list: [none; MOST], len: 0 }
+        Self { list: [ContactPoint::NONE; MOST], len: 0 }
     }
 }
 

@@ -17,6 +17,7 @@ use super::{ContactPoint, ContactPoints, Feature};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+pub use pressed::Passage;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
 const SLACK: f64 = 1e-9;

@@ -302,7 +302,6 @@ impl ContactState {
         self.leave_plane(world);
         (self.v, self.w) = (v, w);
         self.fresh = false;
-        self.impact.restart();
     }
 
     /// Whether nothing presses on the rock any more.

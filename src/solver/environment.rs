@@ -43,11 +43,13 @@ impl ContactEnvironment<'_> {
     #[inline]
     pub fn law_of(&self, touches: &[ContactPoint], k: usize) -> Law {
         let touch = &touches[k];
-        let law = self.law(touch.triangle);
-        if touches.len() == 1 {
-            return law.of_patch(touch.gain2, 1.0);
-        }
-        law.of_patch(touch.gain2, dashpot_share(touches, k, self.body.radius))
+        self.law(touch.triangle).of_patch(touch.gain2, self.dashpot_share(touches, k))
+    }
+
+    /// What the dashpot of touch `k` among others of the same instant takes of its own damping (–).
+    #[inline]
+    pub(super) fn dashpot_share(&self, touches: &[ContactPoint], k: usize) -> f64 {
+        if touches.len() == 1 { 1.0 } else { dashpot_share(touches, k, self.body.radius) }
     }
 }
 

@@ -41,14 +41,14 @@
 
 mod rigid_limit;
 mod normal_motion;
-mod dormand_prince;
+pub(in crate::solver) mod dormand_prince;
 mod plane;
 mod sliders;
 mod integrate;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use plane::{Followed, Plane};
+pub(crate) use plane::{Followed, Plane, Rebound};
 pub(crate) use rigid_limit::{FrozenContact, throw};
 
 /// What following an impact has cost.

@@ -81,6 +81,80 @@ pub(crate) fn within(x: Vec3, cap: f64) -> Vec3 {
     if size2 > cap * cap { x * (cap / size2.sqrt()) } else { x }
 }
 
+/// What a contact does at a given motion, and how its springs go on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Action {
+    /// Slip of the contact point (m/s).
+    pub(crate) slip: Vec3,
+    /// Normal force (N), ≥ 0, and what it would be if it could pull.
+    pub(crate) normal: [f64; 2],
+    /// Shear force; the rock feels its opposite at the contact point (N).
+    pub(crate) shear_force: Vec3,
+    /// Rolling moment; the rock feels its opposite (N m).
+    pub(crate) rolling_moment: Vec3,
+    /// Rates of the stretches of shear (m/s) and rolling springs (rad/s).
+    pub(crate) rates: [Vec3; 2],
+    /// Squares of the shear force and of the rolling moment that there would be without a cap (N², N² m²).
+    pub(crate) asked2: [f64; 2],
+}
+
+/// Where a contact is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    /// Unit normal from the mesh to the centre.
+    pub(crate) n: Vec3,
+    /// Penetration (m).
+    pub(crate) penetration: f64,
+    /// Stretch of the shear spring (m) …
+    pub(crate) shear: Vec3,
+    /// … and of the rolling spring (rad).
+    pub(crate) roll: Vec3,
+}
+
+impl Action {
+    /// In a contact of stiffness `p_n` (N/m) and damping `c_n` (N s/m), all else by `law`, at velocity `v` and spin `w`.
+    #[inline]
+    pub(crate) fn of(
+        body: &Body,
+        law: &Law,
+        (p_n, c_n): (f64, f64),
+        at: &Place,
+        (v, w): (&Vec3, &Vec3),
+    ) -> Self {
+        let pulls = p_n * at.penetration - c_n * at.n.dot(v);
+        let normal_force = pulls.max(0.0);
+        let slip = body.slip(&at.n, v, w);
+        let held = at.shear * law.p_s;
+        let asked = held + slip * law.c_s;
+        let shear_force = within(asked, law.friction * normal_force);
+        let shear_rate = if law.c_s > 0.0 { (shear_force - held) / law.c_s } else { ZERO };
+        let (mut rolling_moment, mut roll_rate, mut asked_moment2) = (ZERO, ZERO, 0.0);
+        if law.c_r > 0.0 {
+            let wound = at.roll * law.k_r;
+            let asked = wound + w * law.c_r;
+            rolling_moment = within(asked, law.rolling_m * normal_force);
+            roll_rate = (rolling_moment - wound) / law.c_r;
+            asked_moment2 = asked.norm_squared();
+        }
+        Self {
+            slip,
+            normal: [normal_force, pulls],
+            shear_force,
+            rolling_moment,
+            rates: [shear_rate, roll_rate],
+            asked2: [asked.norm_squared(), asked_moment2],
+        }
+    }
+
+    /// Power that goes into friction, dashpots and springs, and rolling (W), in this order.
+    #[inline]
+    pub(crate) fn powers(&self, approach: f64, w: &Vec3) -> [f64; 3] {
+        let slipping = self.shear_force.dot(&(self.slip - self.rates[0]));
+        let damping = self.shear_force.dot(&self.rates[0]) + self.normal[0] * approach;
+        [slipping, damping, self.rolling_moment.dot(w)]
+    }
+}
+
 impl StageContact {
     /// No contact.
     pub const NONE: Self = Self {

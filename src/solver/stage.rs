@@ -1,7 +1,7 @@
 //! One implicit stage: the contact law solved with the geometry at the stage's end.
 
 use super::contact_state::{ContactEnvironment, ContactState, Loss, Rate, TOUCH};
-use super::law::{self, StageContact, within};
+use super::law::{self, Action, Place, StageContact};
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
@@ -38,19 +38,13 @@ impl StageContact {
         v: &Vec3,
         w: &Vec3,
     ) -> (Vec3, Vec3) {
+        let at =
+            Place { n: self.n, penetration: self.penetration, shear: self.shear, roll: self.roll };
         let law = &self.law;
-        self.normal_force = (law.p_n * self.penetration - self.c_n * self.n.dot(v)).max(0.0);
-        let held = self.shear * law.p_s;
-        self.shear_force = within(
-            held + world.body.slip(&self.n, v, w) * law.c_s,
-            law.friction * self.normal_force,
-        );
-        let wound = self.roll * law.k_r;
-        self.rolling_moment = within(wound + w * law.c_r, law.rolling_m * self.normal_force);
-        let rate = |change: Vec3, damping: f64| {
-            if damping > 0.0 { change / damping } else { Vec3::zeros() }
-        };
-        (rate(self.shear_force - held, law.c_s), rate(self.rolling_moment - wound, law.c_r))
+        let action = Action::of(&world.body, law, (law.p_n, self.c_n), &at, (v, w));
+        self.normal_force = action.normal[0];
+        (self.shear_force, self.rolling_moment) = (action.shear_force, action.rolling_moment);
+        (action.rates[0], action.rates[1])
     }
 }
 

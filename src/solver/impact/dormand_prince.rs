@@ -1,7 +1,7 @@
 //! An explicit embedded Runge–Kutta pair of order 5(4) (Dormand and Prince 1980), on the stack.
 
 /// Times of its stages (–, relative to the step).
-pub(super) const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
+pub(in crate::solver) const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 
 const A2: [f64; 1] = [0.2];
 const A3: [f64; 2] = [3.0 / 40.0, 9.0 / 40.0];
@@ -23,38 +23,38 @@ const E: [f64; 6] = [
 
 /// Rates of `N` numbers that change and of `Q` that are only summed up, and `P` places where the law may have a kink.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rates<const N: usize, const Q: usize, const P: usize> {
-    pub(super) y: [f64; N],
-    pub(super) q: [f64; Q],
+pub(in crate::solver) struct Rates<const N: usize, const Q: usize, const P: usize> {
+    pub(in crate::solver) y: [f64; N],
+    pub(in crate::solver) q: [f64; Q],
     /// What an element asks for, squared, and its cap: where they cross, the law has a kink.
-    pub(super) kinks: [[f64; 2]; P],
+    pub(in crate::solver) kinks: [[f64; 2]; P],
 }
 
 /// Something that changes.
-pub(super) trait Flow<const N: usize, const Q: usize, const P: usize> {
+pub(in crate::solver) trait Flow<const N: usize, const Q: usize, const P: usize> {
     /// Rates at the time of stage `node`.
-    fn rates(&self, node: usize, y: &[f64; N]) -> Rates<N, Q, P>;
+    fn rates(&mut self, node: usize, y: &[f64; N]) -> Rates<N, Q, P>;
     /// Square of a local error over the one allowed.
     fn size2(&self, off: &[f64; N]) -> f64;
 }
 
 /// A step tried.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tried<const N: usize, const Q: usize, const P: usize> {
-    pub(super) y: [f64; N],
-    pub(super) q: [f64; Q],
+pub(in crate::solver) struct Tried<const N: usize, const Q: usize, const P: usize> {
+    pub(in crate::solver) y: [f64; N],
+    pub(in crate::solver) q: [f64; Q],
     /// Rates at its end.
-    pub(super) last: Rates<N, Q, P>,
+    pub(in crate::solver) last: Rates<N, Q, P>,
     /// Square of its local error over the one allowed.
-    pub(super) error2: f64,
+    pub(in crate::solver) error2: f64,
     /// What the elements ask for, squared, and their caps, at every stage.
     kinks: [[[f64; 2]; P]; 7],
 }
 
 /// Tries a step of length `h` from `y`, where the rates are `first`.
 #[inline]
-pub(super) fn step<const N: usize, const Q: usize, const P: usize>(
-    flow: &impl Flow<N, Q, P>,
+pub(in crate::solver) fn step<const N: usize, const Q: usize, const P: usize>(
+    flow: &mut impl Flow<N, Q, P>,
     y: &[f64; N],
     first: &Rates<N, Q, P>,
     h: f64,
@@ -102,7 +102,7 @@ const RATIO: (f64, f64) = (0.2, 4.0);
 
 /// By how much the next step may be longer.
 #[inline]
-pub(super) fn growth(error2: f64) -> f64 {
+pub(in crate::solver) fn growth(error2: f64) -> f64 {
     // The fourth root, between those of the orders 4 and 5 for little more than three roots.
     let root = error2.sqrt().sqrt().sqrt();
     if root * RATIO.1 <= SAFETY { RATIO.1 } else { (SAFETY / root).max(RATIO.0) }
@@ -120,7 +120,7 @@ impl<const N: usize, const Q: usize, const P: usize> Tried<N, Q, P> {
     /// At which share of the step of length `h` it should end instead (–), because an element begins to slip, to stick or to
     /// open there, and not little beyond it.
     #[inline]
-    pub(super) fn cut(&self, h: f64, allowed: f64) -> Option<f64> {
+    pub(in crate::solver) fn cut(&self, h: f64, allowed: f64) -> Option<f64> {
         let slips = |[asked2, cap]: [f64; 2]| asked2 > cap * cap;
         let first = self.kinks[0].map(slips);
         let mut cut: Option<f64> = None;

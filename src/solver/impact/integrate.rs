@@ -59,7 +59,7 @@ impl<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize, const 
     Flow<N, Q, K> for Under<'_, P, D>
 {
     #[inline]
-    fn rates(&self, node: usize, y: &[f64; N]) -> Rates<N, Q, K> {
+    fn rates(&mut self, node: usize, y: &[f64; N]) -> Rates<N, Q, K> {
         self.law.rates(self.force.nodes[node], y)
     }
 
@@ -112,7 +112,7 @@ pub(super) fn run<
             wished
         };
         force.aim(h);
-        let tried = step(&Under { law, force: &force, over_allowed2 }, &y, &rates, h);
+        let tried = step(&mut Under { law, force: &force, over_allowed2 }, &y, &rates, h);
         effort.evaluations += 6;
         let kink = tried.cut(h, span.allowed);
         let short = h < SHORTEST * span.length;

@@ -220,7 +220,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
                 return Settled::Jammed;
             }
             let h = wish.min(self.flow.longest);
-            let tried = step(&self.flow, &self.y, &rates, h);
+            let tried = step(&mut self.flow, &self.y, &rates, h);
             self.effort.evaluations += 6;
             let kink = tried.cut(h, self.flow.allowed).filter(|_| h > SHORTEST);
             if tried.error2 > 1.0 || kink.is_some() {

@@ -227,7 +227,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     for ContactRates<K>
 {
     #[inline]
-    fn rates(&self, _node: usize, y: &[f64; N]) -> Rates<N, Q, P> {
+    fn rates(&mut self, _node: usize, y: &[f64; N]) -> Rates<N, Q, P> {
         self.rates_of(y)
     }
 
