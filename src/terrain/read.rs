@@ -4,8 +4,8 @@ use super::formats::surface::{self, starts};
 use super::formats::{self, Loaded, Options};
 use super::health::{FileHealth, Health};
 use super::make::{self, List};
-use super::patches::{Layer, Patches};
-use super::stl::{self, Soup};
+use super::patches::{Layer, Patched, Patches};
+use super::stl::{self, Format, Soup};
 use super::weld::{self, Piece, Up, weld};
 use super::{Sheet, Terrain};
 use crate::error::{Error, Result};
@@ -91,16 +91,8 @@ impl Terrain {
         let (mut soups, lists) = read_soups(sources, map_origin_m)?;
         let epsg = one_system(sources, &soups)?;
         stand(&lists, sources, &mut soups, map_origin_m)?;
-        let mut sheets: Vec<Sheet> = sources.iter().map(|source| source.sheet.clone()).collect();
-        let mut layer = (!patches.is_empty()).then(|| Layer::new(patches));
-        let mut sheet_of_facet: Vec<Vec<u16>> = vec![Vec::new(); sources.len()];
-        if let Some(layer) = &mut layer {
-            for (number, source) in sources.iter().enumerate().filter(|(_, s)| !s.sheet.is_tree) {
-                let placed = |point: Vec3| source.placed(point) + map_origin_m;
-                let grounds = layer.lay(&mut soups[number], source.sheet.ground, &placed)?;
-                sheet_of_facet[number] = sheets_of(&mut sheets, number, &grounds)?;
-            }
-        }
+        let Laid { sheets, sheet_of_facet, patched } =
+            lay(patches, sources, &mut soups, map_origin_m)?;
         let pieces: Vec<Piece> = pieces(sources, &soups).collect();
         let files = FileHealth::of_all(&pieces, map_origin_m);
         let joined = weld::join(&pieces, map_origin_m, tolerance_m)?;
@@ -114,10 +106,37 @@ impl Terrain {
                 *sheet = other;
             }
         }
-        let terrain =
-            Self { epsg, patched: layer.map(|layer| layer.done), ..Self::new(welded, sheets) };
-        Ok((terrain, health))
+        Ok((Self { epsg, patched, ..Self::new(welded, sheets) }, health))
     }
+}
+
+/// Zones of ground on the files.
+struct Laid {
+    /// The files' own sheets, and one more for each other ground on a file.
+    sheets: Vec<Sheet>,
+    /// Of every facet, by file; empty where no zones are.
+    sheet_of_facet: Vec<Vec<u16>>,
+    patched: Option<Patched>,
+}
+
+fn lay(
+    patches: &Patches,
+    sources: &[Source],
+    soups: &mut [Soup],
+    map_origin_m: Vec3,
+) -> Result<Laid> {
+    let mut sheets: Vec<Sheet> = sources.iter().map(|source| source.sheet.clone()).collect();
+    let mut sheet_of_facet: Vec<Vec<u16>> = vec![Vec::new(); sources.len()];
+    if patches.is_empty() {
+        return Ok(Laid { sheets, sheet_of_facet, patched: None });
+    }
+    let mut layer = Layer::new(patches);
+    for (number, source) in sources.iter().enumerate().filter(|(_, s)| !s.sheet.is_tree) {
+        let placed = |point: Vec3| source.placed(point) + map_origin_m;
+        let grounds = layer.lay(&mut soups[number], source.sheet.ground, &placed)?;
+        sheet_of_facet[number] = sheets_of(&mut sheets, number, &grounds)?;
+    }
+    Ok(Laid { sheets, sheet_of_facet, patched: Some(layer.done) })
 }
 
 /// The files as they enter the mesh.
@@ -194,10 +213,12 @@ fn one_system(sources: &[Source], soups: &[Soup]) -> Result<Option<u32>> {
         let asked = source.options.as_ref().and_then(|options| options.epsg);
         let other = asked.map(|code| (code, "the scene".to_owned())).or_else(|| known.clone());
         if let Some((other, whose)) = other.filter(|(other, _)| *other != code) {
-            let remedy = format!(
-                "write epsg = {code} in the scene, or gdalwarp -t_srs EPSG:{other} {} out.tif",
-                path.display()
-            );
+            let name = path.display();
+            let command = match soup.format {
+                Format::Trees => format!("ogr2ogr -t_srs EPSG:{other} out.geojson {name}"),
+                _ => format!("gdalwarp -t_srs EPSG:{other} {name} out.tif"),
+            };
+            let remedy = format!("write epsg = {code} in the scene, or {command}");
             let found = format!("found EPSG:{code} where {whose} has EPSG:{other}");
             return Err(Error::input(path, "coordinate system", found, remedy));
         }

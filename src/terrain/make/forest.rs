@@ -136,7 +136,7 @@ pub fn plant(file: &Path, list: &List, terrain: &Terrain) -> Result<Vec<Facet>> 
             let (low, high) = (low + origin_m, high + origin_m);
             let found = format!("found no slope at ({}, {})", tree.x_m, tree.y_m);
             let remedy = format!(
-                "write a place on the slope, its box is {}..{} east, {}..{} north, in map coordinates",
+                "write a place on the slope, its box is {}..{} east, {}..{} north, in map coordinates (`mesh stems` takes them with --origin-m)",
                 low.x, high.x, low.y, high.y
             );
             let place = format!("{} {number}", list.counted);
