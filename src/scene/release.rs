@@ -4,7 +4,7 @@ use super::blocks::Block;
 use super::check::{Allowed, Checked, Complaint, drawn};
 use super::places::{Area, Corner, Point, Polyline};
 use super::zones::Zones;
-use crate::chance::{Distribution, entries};
+use crate::random::{Distribution, entries};
 use serde::Deserialize;
 use std::path::PathBuf;
 

@@ -4,7 +4,7 @@ use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
 use super::{Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState};
 use crate::flight::Parabola;
-use crate::plan::Watch;
+use crate::plan::Recorders;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::solver::contact_state::Loss;
 use crate::terrain::Terrain;
@@ -29,7 +29,7 @@ pub(super) struct Recorder<'a> {
     pub(super) path: Vec<PathPoint>,
     pub(super) impacts: Vec<Impact>,
     pub(super) crossings: Crossings<'a>,
-    pub(super) visits: CellPassages<'a>,
+    pub(super) passages: CellPassages<'a>,
     pub(super) impact_count: u32,
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
@@ -51,7 +51,7 @@ pub(super) struct Mark {
     path: usize,
     impacts: usize,
     crossings: Vec<Crossing>,
-    visits: (usize, Option<CellPassage>),
+    passages: (usize, Option<CellPassage>),
     counts: (u32, u32),
     ledger: Ledger,
     open_impact: Option<(Impact, f64)>,
@@ -63,7 +63,7 @@ impl<'a> Recorder<'a> {
         terrain: &'a Terrain,
         rock: Rock,
         start: Motion,
-        (keep, watch): (Keep, Watch<'a>),
+        (keep, recorders): (Keep, Recorders<'a>),
     ) -> Self {
         let mut recorder = Self {
             terrain,
@@ -73,8 +73,8 @@ impl<'a> Recorder<'a> {
             extremes: Extremes::default(),
             path: Vec::new(),
             impacts: Vec::new(),
-            crossings: Crossings::of(watch.lines),
-            visits: CellPassages::of(watch.cells),
+            crossings: Crossings::of(recorders.lines),
+            passages: CellPassages::of(recorders.cells),
             impact_count: 0,
             tree_impact_count: 0,
             ledger: Ledger::default(),
@@ -95,7 +95,7 @@ impl<'a> Recorder<'a> {
             path: self.path.len(),
             impacts: self.impacts.len(),
             crossings: self.crossings.found().to_vec(),
-            visits: self.visits.mark(),
+            passages: self.passages.mark(),
             counts: (self.impact_count, self.tree_impact_count),
             ledger: self.ledger,
             open_impact: self.open_impact,
@@ -109,7 +109,7 @@ impl<'a> Recorder<'a> {
         self.path.truncate(mark.path);
         self.impacts.truncate(mark.impacts);
         self.crossings.go_back(&mark.crossings);
-        self.visits.go_back(mark.visits);
+        self.passages.go_back(mark.passages);
         (self.impact_count, self.tree_impact_count) = mark.counts;
         (self.open_impact, self.next_point_s) = (mark.open_impact, mark.next_point_s);
     }
@@ -158,7 +158,7 @@ impl<'a> Recorder<'a> {
             self.note_height(&flight.centre(dt * f64::from(k) / f64::from(points + 1)));
         }
         self.crossings.fly((self.terrain, &self.rock), &start, flight, dt);
-        self.visits.fly((self.terrain, &self.rock), &start, flight, dt);
+        self.passages.fly((self.terrain, &self.rock), &start, flight, dt);
         self.now.time_s += dt;
         (self.now.position_m, self.now.velocity_m_s) = (flight.centre(dt), flight.velocity(dt));
         self.note_speed();
@@ -173,7 +173,7 @@ impl<'a> Recorder<'a> {
     pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
         let from = std::mem::replace(&mut self.now, to);
         self.crossings.step((self.terrain, &self.rock), &from, &to);
-        self.visits.step(&self.rock, &from, &to);
+        self.passages.step(&self.rock, &from, &to);
         let dt = to.time_s - from.time_s;
         while self.next_point_s <= to.time_s {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };

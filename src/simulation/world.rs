@@ -172,7 +172,7 @@ fn body<'a>(
     let start = (motion.position_m, motion.velocity_m_s, motion.spin_rad_s);
     WorldBody {
         member: BodySlot::new(IslandBody::new(body, laws.collect(), start)),
-        recorder: Recorder::new(settings.terrain, release.rock, motion, (keep, settings.watch)),
+        recorder: Recorder::new(settings.terrain, release.rock, motion, (keep, settings.recorders)),
         state: State::Moving,
         lands: None,
         calm: RestCriterion::from(motion.position_m),

@@ -318,7 +318,7 @@ impl WorldBody<'_> {
             impacts: recorder.impacts,
             path: recorder.path,
             crossings: recorder.crossings.into_found(),
-            visits: recorder.visits.into_found(),
+            passages: recorder.passages.into_found(),
             ledger: recorder.ledger,
             released_j: self.member.body.mass * settings.gravity_m_s2 * fallen + kinetic,
             effort,
