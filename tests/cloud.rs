@@ -127,7 +127,7 @@ fn a_damaged_or_empty_cloud_is_refused() {
     assert!(parse(whole[..300].to_vec(), &Options::default()).is_err());
 }
 
-/// A slope as STL and as points at the same corners: other diagonals, the same statistics.
+/// A slope as STL and as points at the same corners: the same triangles, the same statistics.
 #[test]
 fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
     let dir = tempfile::tempdir().unwrap();
@@ -152,6 +152,27 @@ fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
         }
     });
     std::fs::write(dir.path().join("slope.laz"), file_of(points.collect(), true)).unwrap();
+    // on a lattice both are cut along the same diagonals
+    let source = |name: &str, options| {
+        let sheet = Sheet { path: dir.path().join(name), ground: 0, is_tree: false };
+        Source { sheet, up: Up::Z, scale: 1.0, options: Some(options) }
+    };
+    let coarse = Options { resample_m: Some(2.0), ..Options::default() };
+    let [mesh, cloud] =
+        [("slope.stl", Options::default()), ("slope.laz", coarse)].map(|(name, options)| {
+            let terrain = Terrain::read(&[source(name, options)], Vec3::zeros(), None).unwrap().0;
+            let corners = |t: u32| {
+                let mut corners = terrain.corners_m(t).map(|p| {
+                    <[f64; 3]>::from((p + terrain.origin_m) * 1e3).map(|mm| mm.round() as i64)
+                });
+                corners.sort_unstable();
+                corners
+            };
+            let mut all: Vec<_> = (0..terrain.triangles.len() as u32).map(corners).collect();
+            all.sort_unstable();
+            all
+        });
+    assert!(mesh == cloud);
     let runouts = |terrain: &str| -> Vec<f64> {
         let scene = format!(
             "title = \"Cloud\"\nseed = 5\n[[terrain]]\nground = \"rock\"\n{terrain}\n\

@@ -112,7 +112,7 @@ fn grids_that_lie_over_each_other_in_other_cells_are_refused() {
     let said = dir.refusal(&scene(&files(&["dem.tif", "shifted.tif"]), ""));
     assert!(said.contains("found 18 x 18 m of ground that") && said.contains("gdalwarp"), "{said}");
     // beside each other, half a cell off: used, and the gap is told
-    spec.tie[3] = 2_600_000.5 + 2.0 * SIZE[0] as f64 + 0.5;
+    spec.tie[3] = 2_600_000.5 + 2.0 * SIZE[0] as f64 - 0.5;
     dir.put("beside.tif", write(&[(&spec, &height)]));
     let plan = dir.plan(&scene(&files(&["dem.tif", "beside.tif"]), ""));
     assert!(plan.contains("a gap of a cell to") && plan.contains("beside.tif"), "{plan}");
