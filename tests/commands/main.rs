@@ -35,6 +35,8 @@ mod language;
 mod rust_version;
 mod same_everywhere;
 mod shards;
+mod stem_lists;
+mod tiles;
 mod until;
 mod view;
 mod year;
