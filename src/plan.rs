@@ -22,7 +22,7 @@ use crate::ground::Ground;
 use crate::random::Distribution;
 use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, InputFile, Language, ObjectTable, Polyline, RecordTable, Scene};
-use crate::solver::{Scheme, Settings};
+use crate::solver::Settings;
 use crate::terrain::health::Health;
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
@@ -148,6 +148,8 @@ pub struct Plan {
     pub catalogued: Vec<String>,
     /// Up to which slope each ground stops a rolling sphere, in words.
     pub rolling_stops: Vec<String>,
+    /// Ratio of the springs and tangential restitution of each ground, in words.
+    pub tangential: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
     /// What went in, as name and value.
@@ -277,6 +279,7 @@ impl Plan {
             language: scene.report.language.unwrap_or_default(),
             catalogued: grounds::catalogued(scene),
             rolling_stops: grounds::rolling_stops(scene),
+            tangential: grounds::tangential(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             fast_warnings,
@@ -342,7 +345,7 @@ fn bonds(scene: &Scene) -> Part<Strength> {
     let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
         return Part::LeftOut("releases are independent");
     };
-    if scene.solver.scheme() == Scheme::Rigid {
+    if !scene.solver.scheme().has_springs() {
         return Part::LeftOut("a bond breaks by its springs, and the rigid limit has none");
     }
     let strength =

@@ -77,7 +77,7 @@ words! {
     measured_title, measured_curves, measured_map, measured, computed, share_of_rocks, no_rock,
     measured_caption, col_mean_measured, col_computed, col_ks, col_ks_limit, col_area,
     col_side_measured, col_side_computed, agreement_title, agreement_note, this_run,
-    calibration_title, calibration_note, uncalibrated, fitted_first, fitted_second, held_out,
+    calibration_title, calibration_note, blocks_held_out, uncalibrated, fitted_without, held_out,
     fitted_all, hardly_told, told_title, told_note, fitted, ends_title, ends_note, difference,
     censored, have_left, remedy_left, have_no_time, remedy_time, have_no_budget, remedy_budget,
     check_failed, check_reach, check_reach_found, check_speed, check_speed_found, check_fast_found,
@@ -86,6 +86,8 @@ words! {
     year_barriers, year_caption, object, line, hits, passages, or_more, and_without, and_with,
     kept_away, col_year, col_period, col_probability, col_conditional, col_by_rate,
     col_by_exponent, often_title, often_note, returns_title, returns_note, risk_title, risk_note,
+    barrier_weighted, barrier_year_title, barrier_year_note, rocks_arrive, are_stopped, go_over,
+    break_through, risk_kept_away,
     person_hit, vehicles_hit, individual_risk, deaths,
 }
 

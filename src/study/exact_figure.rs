@@ -20,22 +20,12 @@ const FLOOR: f64 = 1e-12;
 
 /// The colour of a scheme in every figure of the studies.
 pub fn colour(scheme: Scheme) -> RGBColor {
-    match scheme {
-        Scheme::Dda => VERMILLION,
-        Scheme::Adaptive => BLUE,
-        Scheme::Reference => GREEN,
-        Scheme::Rigid => ORANGE,
-    }
+    scheme.of([VERMILLION, BLUE, GREEN, ORANGE])
 }
 
 /// The form of a scheme's marks.
 pub fn shape(scheme: Scheme) -> usize {
-    match scheme {
-        Scheme::Adaptive => 0,
-        Scheme::Dda => 1,
-        Scheme::Reference => 2,
-        Scheme::Rigid => 3,
-    }
+    scheme.of([1, 0, 2, 3])
 }
 
 /// Draws one case.

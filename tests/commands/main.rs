@@ -2,6 +2,8 @@
 //!
 //! One program for all of it: linking takes longer than most of these tests.
 
+#[path = "../asked/mod.rs"]
+mod asked;
 #[path = "../drawn/mod.rs"]
 mod drawn;
 #[path = "../made/mod.rs"]
@@ -21,7 +23,9 @@ mod boxes;
 mod bad_input;
 mod belongs;
 mod bounded;
+mod bounded_worlds;
 mod calibrate;
+mod catalogue;
 mod compare;
 mod data_in;
 mod edges;
@@ -31,6 +35,9 @@ mod language;
 mod rust_version;
 mod same_everywhere;
 mod shards;
+mod stem_lists;
+mod tiles;
 mod until;
 mod view;
 mod year;
+mod zone_sources;

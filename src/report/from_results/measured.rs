@@ -57,9 +57,7 @@ pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<Table>> {
     }
     if let Some(found) = read_calibration(&results.dir)? {
         tables.push(calibration(&found, words));
-        if !found.told.is_empty() {
-            tables.extend([told(&found, words), spread(&found, words)]);
-        }
+        tables.extend([told(&found, words), spread(&found, words)]);
     }
     Ok(tables)
 }
@@ -71,25 +69,24 @@ fn calibration(found: &Calibration, words: &Words) -> Table {
             values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
         (format!("{who}: {}", values.join(", ")), cells(of))
     };
-    let (first, second) = (&found.first, &found.second);
+    let blocks = if found.by_block { words.blocks_held_out } else { "" };
+    let mut rows = vec![row(words.uncalibrated, &found.before, &found.before.all)];
+    for (part, trial) in found.held_out.iter().enumerate() {
+        let part = part + 1;
+        let named = |text: &str| fill(text, &[("part", &part)]);
+        rows.push(row(&named(words.fitted_without), trial, &trial.fitted));
+        rows.push(row(&named(words.held_out), trial, &trial.kept_apart));
+    }
+    rows.push(row(words.fitted_all, &found.whole, &found.whole.all));
     Table {
         about: About::Measured,
         title: words.calibration_title.to_owned(),
         note: fill(
             words.calibration_note,
-            &[("trials", &found.trials), ("releases", &found.releases)],
+            &[("trials", &found.trials), ("releases", &found.releases), ("blocks", &blocks)],
         ),
         columns: columns(words),
-        rows: vec![
-            row(words.uncalibrated, &found.before, &found.before.all),
-            row(words.fitted_first, first, &first.fitted),
-            row(words.held_out, first, &first.kept_apart),
-            row(words.fitted_second, second, &second.fitted),
-            row(words.held_out, second, &second.kept_apart),
-        ]
-        .into_iter()
-        .chain(found.whole.as_ref().map(|whole| row(words.fitted_all, whole, &whole.all)))
-        .collect(),
+        rows,
     }
 }
 

@@ -68,7 +68,7 @@ impl Example {
     /// # Errors
     /// A shipped scene that cannot be planned.
     pub(super) fn run(self, all: &mut Verification, scheme: Scheme) -> Result<()> {
-        let printed = scheme == Scheme::Dda;
+        let printed = scheme.has_fixed_step();
         let begun = all.rows.len();
         let done = match self {
             Self::AsymmetricEdge => {
