@@ -5,7 +5,7 @@ use crate::drawn;
 use crate::program;
 use crate::site;
 
-use drawn::{shapefile, weights, zones};
+use drawn::{column, rings, shapefile, zones};
 use program::{rockfall, same_results};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
@@ -123,11 +123,8 @@ fn a_shapefile_and_a_geojson_of_the_same_zones_give_the_same_bytes() {
         eprintln!("the Shapefile is GDAL's");
     } else {
         eprintln!("skipped GDAL's Shapefile: python3 has no pyogrio; the one written here is read");
-        let ring =
-            |x: f64, y: f64| [[x, y], [x, y + 6.0], [x + 8.0, y + 6.0], [x + 8.0, y], [x, y]];
-        let rings = [ring(2_600_010.5, 1_200_080.25), ring(2_600_040.25, 1_200_070.5)];
-        dir.put("zones.shp", shapefile(&rings));
-        dir.put("zones.dbf", weights(&["1.5", "3"]));
+        dir.put("zones.shp", shapefile(&rings()));
+        dir.put("zones.dbf", column("weight", &["1.5", "3"]));
     }
     let run = |file: &str| {
         dir.run(

@@ -40,3 +40,4 @@ mod tiles;
 mod until;
 mod view;
 mod year;
+mod zone_sources;
