@@ -11,7 +11,7 @@ use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
-use clear::{clear_of, distance_m};
+use clear::{clear_of, distance_m, is_inside_tree};
 use std::path::PathBuf;
 
 /// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
@@ -71,8 +71,9 @@ pub struct Releases {
     file: PathBuf,
     seed: u64,
     gravity_m_s2: f64,
-    /// One, or one for each source.
+    /// One, or one for each source; zones that are sources are one.
     places: Vec<Where>,
+    zones_are_sources: bool,
     height_m: Option<Distribution>,
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
@@ -108,6 +109,7 @@ impl Releases {
             seed: scene.seed,
             gravity_m_s2: scene.gravity_m_s2,
             places,
+            zones_are_sources: scene.has_zone_sources(),
             height_m: asked.height_m.clone(),
             velocity_m_s: asked.velocity_m_s.clone(),
             spin_rad_s: asked.spin_rad_s.clone(),
@@ -130,10 +132,12 @@ impl Releases {
     }
 
     /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
-    /// one, so that every zone keeps its share.
+    /// one, so that every zone keeps its share. A zone that is a source has its own releases.
     fn draw_zone(&self, random: &mut RandomStream, index: usize) -> Option<usize> {
         let Where::Zones(zones) = self.place_of(index).0 else { return None };
-        Some(zones.pick(unit(random)))
+        let drawn = zones.pick(unit(random));
+        let source = self.frequency.as_ref().filter(|_| self.zones_are_sources);
+        Some(source.map_or(drawn, |frequency| frequency.stratum(index).source))
     }
 
     /// Looks for ground below an entry of the place, or beside a centre that is given with its height.
@@ -296,13 +300,16 @@ impl Releases {
         // beyond the edge there is no ground to be under
         let buried = terrain.ground_under(centre.x, centre.y, centre.z).is_none()
             && terrain.ground_below(centre.x, centre.y).is_some();
-        if depth_m <= 2.0 * pressed_m + TYPED_DEPTH * rock.radius_m && !buried {
+        let caged = is_inside_tree(terrain, centre);
+        if depth_m <= 2.0 * pressed_m + TYPED_DEPTH * rock.radius_m && !buried && !caged {
             return Ok(());
         }
         let [x, y, z]: [f64; 3] = (centre + terrain.origin_m).into();
         let who = format!("{} at ({x}, {y}, {z})", release_name(index));
         let found = if buried {
             "found its centre under the terrain".to_owned()
+        } else if caged {
+            "found its centre inside a tree".to_owned()
         } else {
             format!("found it {depth_m:.2e} m deep in the ground or a tree")
         };

@@ -74,7 +74,15 @@ fn words(value: &Distribution, unit: &str) -> String {
 
 /// The rows of the title block: who, for whom, when; only what the scene says.
 pub(super) fn title_block(report: &ReportTable) -> Vec<(String, String)> {
-    let ReportTable { client, project, author, date, terrain_source: _, ground_source: _ } = report;
+    let ReportTable {
+        client,
+        project,
+        author,
+        date,
+        terrain_source: _,
+        ground_source: _,
+        language: _,
+    } = report;
     [("Client", client), ("Project", project), ("Author", author), ("Date", date)]
         .into_iter()
         .filter_map(|(name, value)| Some((name.to_owned(), value.clone()?)))

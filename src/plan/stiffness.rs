@@ -6,7 +6,6 @@ use crate::ground::{Capture, Damping, Ground, Law};
 use crate::random::Distribution;
 use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene};
-use crate::solver::Scheme;
 use crate::solver::dda::SINGLE_STEP_PHASE;
 use crate::terrain::Terrain;
 
@@ -51,7 +50,7 @@ pub(super) fn own_dissipation(
     step_s: f64,
     warnings: &mut Vec<String>,
 ) -> Vec<OwnDissipation> {
-    if scene.solver.scheme() != Scheme::Dda {
+    if !scene.solver.scheme().has_fixed_step() {
         return Vec::new();
     }
     let dissipation = |(name, ground): (&String, &GroundTable)| {
@@ -97,7 +96,7 @@ pub(super) fn flutter(step: &Settings, warnings: &mut Vec<String>) {
 /// A fixed step so short that a rock may spend its budget of work before its time is up.
 pub(super) fn too_short(step: &Settings, longest_s: f64, warnings: &mut Vec<String>) {
     let most = step.scheme.most_work() as f64;
-    if step.scheme == Scheme::Dda && longest_s > most * step.step_s {
+    if step.scheme.has_fixed_step() && longest_s > most * step.step_s {
         warnings.push(format!(
             "step_s = {:e} lets a rock fall for {:.3} s at most before its budget of {most} steps is spent; write a longer step, or a longest_s below that",
             step.step_s,
@@ -164,7 +163,7 @@ pub(super) fn check(
     terrain: &Terrain,
     warnings: &mut Vec<FastWarning>,
 ) -> Result<()> {
-    if scene.solver.scheme() == Scheme::Rigid {
+    if !scene.solver.scheme().has_springs() {
         return check_shear(scene);
     }
     let largest = rock(scene, scene.rocks.radius_m().reckoned()[2]);

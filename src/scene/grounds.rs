@@ -51,7 +51,7 @@ impl GroundTable {
         self.check_shear()?;
         let angle = &self.friction_angle_deg;
         drawn("friction_angle_deg", angle, Allowed::Slope, "scree is near 35")?;
-        if self.restitution.is_none() && scheme != Scheme::Dda {
+        if self.restitution.is_none() && !scheme.has_fixed_step() {
             let remedy = "write restitution = 0..1; only scheme \"dda\" can do without";
             return Err(Complaint::missing("restitution", remedy));
         }

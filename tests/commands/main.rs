@@ -17,6 +17,8 @@ mod tiff;
 #[path = "../statistics/report/svg.rs"]
 #[allow(dead_code, reason = "the figures of a report ask more of it")]
 mod svg;
+#[path = "../statistics/report/boxes.rs"]
+mod boxes;
 
 mod bad_input;
 mod belongs;
@@ -29,9 +31,13 @@ mod data_in;
 mod edges;
 mod full_disk;
 mod kill;
+mod language;
 mod rust_version;
 mod same_everywhere;
 mod shards;
+mod stem_lists;
+mod tiles;
 mod until;
 mod view;
 mod year;
+mod zone_sources;

@@ -155,7 +155,7 @@ fn a_view_is_small_and_what_it_holds_is_what_was_computed() {
 fn node_reads_the_same(out: &Path, text: &str) {
     let said = Command::new("node")
         .args([
-            "tests/view/decode.js",
+            "tests/commands/view/decode.js",
             concat!(env!("CARGO_MANIFEST_DIR"), "/src/report/view/web/decode.js"),
         ])
         .arg(out.join(PAGE))
@@ -252,6 +252,8 @@ fn nothing_leaves_the_page_and_no_title_breaks_it() {
     // the report stays without a script, and leads here
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(!report.contains("<script") && report.contains("href=\"view.html\""));
+    // a model of megabytes is not shipped with a page: a link to it would lead nowhere
+    assert!(!report.contains("view.glb"));
 }
 
 /// Drawn again from the files alone, both files are the same bytes; without paths and maps there is a view too.

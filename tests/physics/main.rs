@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod contact;
 mod dda;
 mod dda_energy;
 mod exact_edge;

@@ -83,7 +83,7 @@ impl Linear {
         };
         let (normal_force, held) =
             if pair.bond.is_some() { (1.0, 1.0) } else { (normal.at(speed), pair.normal_force) };
-        let slider = Slider::left(cap, law.p_s * h + law.c_s, (&pair.shear_force, held));
+        let slider = Slider::left(cap, law.shear_over(h), (&pair.shear_force, held));
         let still = (Vec3::zeros(), Vec3::zeros());
         let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
         let own = pair.speed(sought);
@@ -125,7 +125,7 @@ impl System {
         let normal_force = normal.at(speed);
         let shear = Slider::left(
             law.friction,
-            law.p_s * h + law.c_s,
+            law.shear_over(h),
             (&contact.shear_force, contact.normal_force),
         );
         let shear = shear.at(stick, normal_force);
@@ -141,7 +141,7 @@ impl System {
         if law.rolling_m > 0.0 {
             let roll = Slider::left(
                 law.rolling_m,
-                law.k_r * h + law.c_r,
+                law.rolling_over(h),
                 (&contact.rolling_moment, contact.normal_force),
             );
             let roll = roll.at(wound, normal_force);
