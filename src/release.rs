@@ -71,8 +71,9 @@ pub struct Releases {
     file: PathBuf,
     seed: u64,
     gravity_m_s2: f64,
-    /// One, or one for each source.
+    /// One, or one for each source; zones that are sources are one.
     places: Vec<Where>,
+    zones_are_sources: bool,
     height_m: Option<Distribution>,
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
@@ -108,6 +109,7 @@ impl Releases {
             seed: scene.seed,
             gravity_m_s2: scene.gravity_m_s2,
             places,
+            zones_are_sources: scene.has_zone_sources(),
             height_m: asked.height_m.clone(),
             velocity_m_s: asked.velocity_m_s.clone(),
             spin_rad_s: asked.spin_rad_s.clone(),
@@ -130,10 +132,12 @@ impl Releases {
     }
 
     /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
-    /// one, so that every zone keeps its share.
+    /// one, so that every zone keeps its share. A zone that is a source has its own releases.
     fn draw_zone(&self, random: &mut RandomStream, index: usize) -> Option<usize> {
         let Where::Zones(zones) = self.place_of(index).0 else { return None };
-        Some(zones.pick(unit(random)))
+        let drawn = zones.pick(unit(random));
+        let source = self.frequency.as_ref().filter(|_| self.zones_are_sources);
+        Some(source.map_or(drawn, |frequency| frequency.stratum(index).source))
     }
 
     /// Looks for ground below an entry of the place, or beside a centre that is given with its height.
@@ -320,21 +324,25 @@ impl Releases {
         let mut random = stream(self.seed, Purpose::Grounds, index);
         // How a block rolls is its shape, which it keeps: the same quantile on every ground.
         let mut character = None;
-        let draw_ground = |table: &GroundTable| Ground {
-            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut random),
-            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut random),
-            friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
-            restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
-            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
-                let drawn = unit(&mut random);
-                rolling.quantile(*character.get_or_insert(drawn))
-            }),
-            roughness_rad: table
-                .roughness_deg
-                .as_ref()
-                .map_or(0.0, |angle| angle.draw(&mut random))
-                .to_radians(),
-            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+        let draw_ground = |table: &GroundTable| {
+            let normal_stiffness_n_m = table.normal_stiffness_n_m.draw(&mut random);
+            Ground {
+                normal_stiffness_n_m,
+                shear_stiffness_n_m: table
+                    .shear_n_m(normal_stiffness_n_m, |value| value.draw(&mut random)),
+                friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
+                restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
+                rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
+                    let drawn = unit(&mut random);
+                    rolling.quantile(*character.get_or_insert(drawn))
+                }),
+                roughness_rad: table
+                    .roughness_deg
+                    .as_ref()
+                    .map_or(0.0, |angle| angle.draw(&mut random))
+                    .to_radians(),
+                roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+            }
         };
         self.grounds.iter().map(draw_ground).collect()
     }

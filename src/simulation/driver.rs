@@ -14,7 +14,7 @@ use crate::release::Release;
 use crate::rock::Motion;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
 use crate::solver::law::Body;
-use crate::solver::{self, Scheme, Settings, Stepper};
+use crate::solver::{self, Settings, Stepper};
 use crate::stopwatch::{Piece, Stopwatches};
 use crate::terrain::Terrain;
 use std::f64::consts::PI;
@@ -253,12 +253,12 @@ impl Fall<'_> {
 
     /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
     pub(super) fn is_rigid(&self) -> bool {
-        self.settings.step.scheme == Scheme::Rigid
+        !self.settings.step.scheme.has_springs()
     }
 
     /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
     fn held(&mut self) -> Loss {
-        let left = self.state.is_free() && self.settings.step.scheme != Scheme::Dda;
+        let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
         if left || self.is_rigid() { Loss::default() } else { self.state.springs_j(&self.world) }
     }
 

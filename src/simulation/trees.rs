@@ -9,9 +9,9 @@ use super::driver::Fall;
 use crate::contact::history::{ContactHistories, ContactHistory};
 use crate::random::{Purpose, RandomStream, beside};
 use crate::rock::Vec3;
+use crate::solver::Stepper;
 use crate::solver::contact_state::TOUCH;
 use crate::solver::yielding::yielding_impact;
-use crate::solver::{Scheme, Stepper};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
 
@@ -81,7 +81,7 @@ impl<'a> Fall<'a> {
         let pressed = self.load.pressed;
         self.state.may_yield =
             pressed.is_some_and(|stem| self.load.left_j(stems, stem) <= 1.1 * motion_j);
-        if self.settings.step.scheme != Scheme::Rigid {
+        if self.settings.step.scheme.has_springs() {
             return;
         }
         let c = self.state.c;
@@ -115,7 +115,7 @@ impl<'a> Fall<'a> {
     pub(super) fn longest_before_yield_s(&self) -> f64 {
         let Some(stems) = self.settings.terrain.stems.as_ref() else { return f64::INFINITY };
         match self.load.pressed {
-            Some(stem) if self.state.may_yield && self.settings.step.scheme != Scheme::Rigid => {
+            Some(stem) if self.state.may_yield && self.settings.step.scheme.has_springs() => {
                 let left_j = self.load.left_j(stems, stem);
                 let of_stem =
                     |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(stem);

@@ -20,9 +20,8 @@ impl ContactState {
     ) -> f64 {
         let held = histories.map(|history| {
             let law = world.law(history.triangle);
-            let pressed = history.normal_force * history.normal_force / law.p_n;
-            let shear = law.p_s * history.shear.norm_squared();
-            0.5 * (pressed + shear + law.k_r * history.roll.norm_squared())
+            let penetration = history.normal_force / law.p_n;
+            law.stored_j(penetration, history.shear.norm_squared(), history.roll.norm_squared())
         });
         held.sum()
     }
@@ -32,15 +31,14 @@ impl ContactState {
         let mut stored = Loss::default();
         for touch in self.touches.iter() {
             let penetration = (world.body.radius - touch.distance_m).max(0.0);
-            let pressed =
-                0.5 * world.law(touch.triangle).p_n * touch.gain2 * penetration * penetration;
+            let pressed = touch.gain2 * world.law(touch.triangle).stored_j(penetration, 0.0, 0.0);
             stored
                 .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
         }
         for history in self.histories.iter() {
             let law = world.law(history.triangle);
-            let damping = 0.5 * law.p_s * history.shear.norm_squared();
-            let rolling = 0.5 * law.k_r * history.roll.norm_squared();
+            let damping = law.stored_j(0.0, history.shear.norm_squared(), 0.0);
+            let rolling = law.stored_j(0.0, 0.0, history.roll.norm_squared());
             stored.add(
                 &Loss { damping, rolling, ..Loss::default() }.on(world, history.triangle),
                 1.0,

@@ -25,5 +25,6 @@ mod rigid_heap;
 mod roughness;
 mod schemes_agree;
 mod stems;
+mod tangential;
 mod traps;
 mod world_ledger;

@@ -40,7 +40,7 @@ fn roughness_does_not_depend_on_stiffness_or_tolerance() {
             scene.solver.capture_speed_m_s = Some(0.2);
             let rock = scene.grounds.get_mut("rock").unwrap();
             rock.normal_stiffness_n_m = Distribution::fixed(stiffness_n_m).unwrap();
-            rock.shear_stiffness_n_m = Distribution::fixed(0.25 * stiffness_n_m).unwrap();
+            rock.shear_stiffness_n_m = Some(Distribution::fixed(0.25 * stiffness_n_m).unwrap());
         });
         let mean = falls.iter().map(Trajectory::runout_m).sum::<f64>() / ROCKS as f64;
         let square = falls.iter().map(|rock| (rock.runout_m() - mean).powi(2)).sum::<f64>();

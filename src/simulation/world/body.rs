@@ -8,7 +8,6 @@ use crate::simulation::driver::{IMPACT_TIMES, RunSettings};
 use crate::simulation::impacts::Struck;
 use crate::simulation::rest::RestCriterion;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::Scheme;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
 use crate::solver::island::{Given, Hit, IslandBody};
 use crate::solver::step_control::ONSET;
@@ -79,6 +78,15 @@ impl WorldBody<'_> {
                 FlightEnd::Leaves(t) => (now_s + t, Some(Stop::LeftTerrain)),
                 FlightEnd::Flies => (f64::INFINITY, None),
             });
+        self.spend(settings);
+    }
+
+    /// Takes it out of the world when it has had all the work it may have: others may have less to do.
+    pub(super) fn spend(&mut self, settings: &RunSettings) {
+        if self.recorder.effort.work() > settings.step.scheme.most_work() {
+            self.lands = None;
+            self.leave(Stop::OverBudget);
+        }
     }
 
     /// Goes along the parabola; nothing for a rock in contact.
@@ -122,7 +130,7 @@ impl WorldBody<'_> {
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         state.begin(&world, c, v, w);
         // A rock that is pressed in from the start has the energy of its springs, too.
-        if settings.step.scheme != Scheme::Rigid {
+        if settings.step.scheme.has_springs() {
             let held = state.stored_j(&world);
             self.recorder.pay(&held, 1.0);
             self.began_j.0 += held.sum();
@@ -252,7 +260,7 @@ impl WorldBody<'_> {
         let IslandBody { state, body, laws, .. } = &mut *self.member;
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         // The rigid limit has no springs, whatever the depth that rounding leaves.
-        let is_rigid = settings.step.scheme == Scheme::Rigid;
+        let is_rigid = !settings.step.scheme.has_springs();
         let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
         self.recorder.pay(&stored, -1.0);
         self.recorder.end_impacts(|_| false, || 0.0);
@@ -289,7 +297,7 @@ impl WorldBody<'_> {
         let IslandBody { state, body, laws, .. } = &*self.member;
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         // the rigid limit keeps no memory of what has hit and left again within a step
-        let is_rigid = settings.step.scheme == Scheme::Rigid;
+        let is_rigid = !settings.step.scheme.has_springs();
         self.recorder.end_impacts(
             |number| is_rigid || state.histories.iter().any(|history| history.impact == number),
             || ContactState::held_j(&world, state.histories.iter()),
