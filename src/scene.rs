@@ -23,6 +23,7 @@ mod refusal;
 mod release;
 mod rewrite;
 mod rocks;
+mod sketch;
 mod solver;
 mod source;
 mod wording;
@@ -44,6 +45,7 @@ pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
+pub use sketch::sketch;
 pub use solver::SolverTable;
 pub use zones::{Zone, ZonePlace, Zones};
 

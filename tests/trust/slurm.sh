@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's job array on a Slurm of one node, begun here for the purpose: tasks requeued and killed in the middle,
+# The job array of docs/cluster.md on a Slurm of one node, begun here for the purpose: tasks requeued and killed in the middle,
 # merged by a dependent job, compared with the run at once. Needs root, slurmctld, slurmd and munged
 # (Debian: slurm-wlm, munge). Says in reports/trust/slurm.txt what happened.
 #   tests/trust/slurm.sh path/to/rockfall
