@@ -131,3 +131,10 @@ fn the_bench_is_no_part_of_the_product() {
     let found: Vec<PathBuf> = sources(Path::new("src")).into_iter().filter(measures).collect();
     assert!(found.is_empty(), "belongs into bench/: {found:?}");
 }
+
+/// What a reader meets first is read in one go.
+#[test]
+fn the_readme_is_short() {
+    let words = fs::read_to_string("README.md").unwrap().split_whitespace().count();
+    assert!(words <= 1200, "{words} words");
+}

@@ -55,7 +55,7 @@ pub(super) fn allows(plan: &Plan, targets: bool) -> Result<()> {
         return Ok(());
     }
     Err(Error::Request(
-        "--until: found sizes that are sampled by importance ([frequency] with volumes), and the aim takes all rocks alike; write --releases N instead"
+        "--until: found sizes that are sampled by importance ([frequency] with volumes), and the precision asked for takes all rocks alike; write --releases N instead"
             .to_owned(),
     ))
 }

@@ -75,7 +75,7 @@ with those of a run left alone (`tests/trust/kills.sh`):
 
 ## Shards
 
-The README's Slurm array, as it stands there, on a node begun for the purpose (`tests/trust/slurm.sh`):
+The Slurm array of docs/cluster.md, as it stands there, on a node begun for the purpose (`tests/trust/slurm.sh`):
 
 ```
 {record("slurm.txt")}
