@@ -40,6 +40,7 @@ use crate::hazard;
 use crate::hazard::{
     Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
 };
+use crate::plan::PlanEntry;
 use crate::rock::Vec3;
 use crate::simulation::Trajectory;
 use opened::{open, open_maps};
@@ -87,8 +88,8 @@ pub struct RunInfo {
     pub is_shard: bool,
     /// Worker threads.
     pub threads: usize,
-    /// The lines of the plan: what is computed, what is left out and why.
-    pub plan: Vec<String>,
+    /// The plan: what is computed, what is left out and why.
+    pub plan: Vec<PlanEntry>,
     /// What went in, as name and value.
     pub inputs: Vec<(String, String)>,
     /// Rows of the title block.

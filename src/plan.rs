@@ -13,6 +13,7 @@ mod recorders;
 
 pub use annual::Year;
 pub use cost::Cost;
+pub use listing::PlanEntry;
 pub use recorders::{EvaluationLine, Footprint, MapGrid, Piece, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
 
@@ -23,6 +24,7 @@ use crate::random::Distribution;
 use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
 use crate::solver::{Scheme, Settings};
+use crate::terrain::health::Health;
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
 use std::path::PathBuf;
@@ -91,6 +93,8 @@ pub struct Plan {
     pub radii_m: [f64; 3],
     /// The meshes.
     pub terrain: Terrain,
+    /// Health of the meshes; none where the terrain was given and not read from files.
+    pub mesh_health: Option<Health>,
     /// The files that went in.
     pub input_files: Vec<InputFile>,
     /// Grounds by polygon, and what they have done to the triangles.
@@ -135,7 +139,7 @@ pub struct Plan {
     pub lines: Part<Vec<EvaluationLine>>,
     /// Barriers; each has an evaluation line of its name.
     pub barriers: Part<Vec<BarrierTable>>,
-    /// Objects that rocks may hit; each has a curtain of its name.
+    /// Objects that rocks may hit; each has an evaluation line of its name.
     pub objects: Part<Vec<ObjectTable>>,
     /// Sources and their frequency.
     pub year: Part<Year>,
@@ -172,7 +176,16 @@ const PATHS: usize = 500;
 pub const PATH_STEP_S: f64 = 0.05;
 
 impl Plan {
-    /// Works out what the scene needs.
+    /// Reads the meshes of a scene and works out what it needs.
+    ///
+    /// # Errors
+    /// A mesh that cannot be read or used, and as [`Self::compile`].
+    pub fn of_scene(scene: &Scene) -> Result<Self> {
+        let (terrain, health) = scene.read_terrain()?;
+        Ok(Self { mesh_health: Some(health), ..Self::compile(scene, terrain)? })
+    }
+
+    /// Works out what the scene needs on a terrain that is there already.
     ///
     /// # Errors
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
@@ -198,7 +211,7 @@ impl Plan {
         let plan = Self {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
-            scene_hash: scene.hash.clone(),
+            scene_hash: scene.hash_in_force(),
             version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
             mesh_origin_m: scene.origin_m,
             epsg: scene.epsg.or(terrain.epsg),
@@ -206,6 +219,7 @@ impl Plan {
             count: scene.release.count,
             releases,
             radii_m: scene.rocks.radius_m().reckoned(),
+            mesh_health: None,
             input_files: scene.inputs.clone(),
             ground_zones: Part::when(terrain.patched.clone(), "every file has one ground"),
             ground_names: scene.grounds.keys().cloned().collect(),

@@ -11,6 +11,7 @@
 
 mod along_paths;
 mod annual;
+mod answers;
 pub mod axis;
 mod barriers;
 pub mod colour;
@@ -40,6 +41,8 @@ mod site;
 mod stops;
 pub mod svg;
 pub mod view;
+
+pub use answers::answers;
 
 use crate::error::{Error, Result};
 use crate::hazard::Hazard;

@@ -1,12 +1,10 @@
-//! What the numerics cost and what they are worth: error against run time, stability, exact cases, speed.
+//! What the numerics cost and what they are worth: error against run time, stability, exact cases.
 //!
 //! ```text
 //! cases ─┬─► exact      error of every scheme against the exact solution, over run time; order: at fixed steps
 //!        └─► stability  stiff and extreme cases, each held against its bound
-//! slope ───► speed      rocks per second, where the time goes, what each part costs
 //! plan ─┬──► scene      errors of a scene's own statistics: of the sample, the steps, the mesh
 //!       └──► conserve   every release: no panic, no failure, no rock lost, no energy gained
-//! worlds ──► scaling    cost against the number of rocks that touch each other
 //!            verify     exact cases of several rocks and the method paper's examples
 //! ```
 
@@ -15,16 +13,14 @@ pub mod bench;
 pub mod cases;
 pub mod conserve;
 pub mod exact;
-mod exact_figure;
+pub mod exact_figure;
 mod exact_page;
 pub mod exact_values;
 pub mod order;
+pub mod processor_time;
 pub mod scene;
-mod scaling;
-mod scaling_page;
 mod scene_figure;
 mod scene_page;
-pub mod speed;
 pub mod bootstrap;
 pub mod verify;
 pub mod stability;
@@ -36,13 +32,10 @@ use crate::output::write_atomic;
 use conserve::Conservation;
 use exact::CaseStudy;
 use scene::SceneStudy;
-use speed::SpeedStudy;
 use stability::{Map, Outcome};
 use std::fs;
 use std::path::Path;
 
-pub use scaling::{Cost, Phase, World, resident_now, world};
-pub use scaling_page::findings;
 pub use scene_page::{Wish, sentence, setting};
 
 /// Writes the exact cases' page, table and figures into `dir`.
@@ -81,17 +74,6 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
     write_atomic(&dir.join("README.md"), scene_page::page(study, wish).as_bytes())
 }
 
-/// Writes the page, table and figure of the cost of many rocks in one world into `dir`.
-///
-/// # Errors
-/// When a file or folder cannot be written.
-pub fn write_scaling(worlds: &[World], dir: &Path) -> Result<()> {
-    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
-    write_atomic(&dir.join("scaling.svg"), scaling_page::figure(worlds).as_bytes())?;
-    write_atomic(&dir.join("scaling.csv"), scaling_page::csv(worlds).as_bytes())?;
-    write_atomic(&dir.join("README.md"), scaling_page::page(worlds).as_bytes())
-}
-
 /// Writes the page, table and map of the stiff and extreme cases into `dir`.
 ///
 /// # Errors
@@ -111,16 +93,4 @@ pub fn write_conservation(found: &Conservation, dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     write_atomic(&dir.join("conservation.csv"), conserve::csv(found).as_bytes())?;
     write_atomic(&dir.join("README.md"), conserve::page(found).as_bytes())
-}
-
-/// Writes the page, tables and figure of the speeds into `dir`.
-///
-/// # Errors
-/// When a file or folder cannot be written.
-pub fn write_speed(study: &SpeedStudy, dir: &Path) -> Result<()> {
-    fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
-    write_atomic(&dir.join("speed.svg"), speed::draw(study).as_bytes())?;
-    write_atomic(&dir.join("speed.csv"), speed::csv(study).as_bytes())?;
-    write_atomic(&dir.join("parts.csv"), speed::parts_csv(study).as_bytes())?;
-    write_atomic(&dir.join("README.md"), speed::page(study).as_bytes())
 }

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 /// Longest file (lines).
 const ROOM: usize = 400;
+/// Most names that a user of the library meets at its root.
+const MOST_NAMES: usize = 60;
 
 fn sources(dir: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -75,7 +77,7 @@ fn a_module_uses_only_modules_below_it() {
 
 #[test]
 fn rooms_are_small() {
-    let crowded: Vec<String> = ["src", "tests", "benches"]
+    let crowded: Vec<String> = ["src", "tests", "bench/src", "bench/benches", "bench/tests"]
         .iter()
         .flat_map(|dir| sources(Path::new(dir)))
         .filter_map(|file| {
@@ -84,4 +86,55 @@ fn rooms_are_small() {
         })
         .collect();
     assert!(crowded.is_empty(), "{}", crowded.join("\n"));
+}
+
+/// Names that a text re-exports: `pub use a::{B, c::D};` gives B and D.
+fn exported(text: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    for place in text.split("\npub use ").skip(1) {
+        let (path, _) = place.split_once(';').unwrap();
+        let list = path.split_once('{').map_or(path, |(_, list)| list.trim_end_matches('}'));
+        let last = |part: &str| part.trim().rsplit("::").next().unwrap().to_owned();
+        names.extend(list.split(',').map(last).filter(|name| !name.is_empty()));
+    }
+    names
+}
+
+/// The public face is small, and everything behind it is hidden from the documentation.
+#[test]
+fn the_public_face_is_small() {
+    let lib = fs::read_to_string("src/lib.rs").unwrap();
+    let names = exported(&lib);
+    assert!(names.contains(&"Scene".to_owned()) && names.contains(&"run".to_owned()), "{names:?}");
+    assert!(names.len() <= MOST_NAMES, "{} names: {names:?}", names.len());
+    let lines: Vec<&str> = lib.lines().collect();
+    let open = lines.windows(2).filter(|two| two[1].starts_with("pub mod "));
+    let open: Vec<&str> = open.filter(|two| two[0] != "#[doc(hidden)]").map(|two| two[1]).collect();
+    assert!(open.is_empty(), "neither hidden nor re-exported by name: {open:?}");
+}
+
+/// A module is a file with a folder beside it, everywhere.
+#[test]
+fn modules_have_one_style() {
+    let old: Vec<PathBuf> =
+        sources(Path::new("src")).into_iter().filter(|file| file.ends_with("mod.rs")).collect();
+    assert!(old.is_empty(), "write x.rs beside x/ instead of x/mod.rs: {old:?}");
+}
+
+/// Commands of the developers' bench are none of the product's.
+#[test]
+fn the_bench_is_no_part_of_the_product() {
+    let measures = |file: &PathBuf| {
+        let text = fs::read_to_string(file).unwrap();
+        text.contains("/proc/cpuinfo") || text.contains("Command::new(")
+    };
+    let found: Vec<PathBuf> = sources(Path::new("src")).into_iter().filter(measures).collect();
+    assert!(found.is_empty(), "belongs into bench/: {found:?}");
+}
+
+/// What a reader meets first is read in one go.
+#[test]
+fn the_readme_is_short() {
+    let words = fs::read_to_string("README.md").unwrap().split_whitespace().count();
+    assert!(words <= 1200, "{words} words");
 }

@@ -3,11 +3,16 @@
 //! Counted by the allocator of a small crate, on this thread alone: counting needs `unsafe`, which this crate forbids
 //! itself.
 
+// the slope on which the developers' bench measures: no allocation counts where speed does
+#[path = "../bench/src/speed/slope.rs"]
+#[allow(dead_code, unreachable_pub, reason = "the bench uses more of it")]
+mod slope;
+
 use allocation_counter::measure;
 use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, simulate};
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
-use rockfall::study::speed::slope::{SCHEMES, Slope};
+use slope::{SCHEMES, Slope};
 
 /// Rocks that make room, and rocks that must find it.
 const WARM: usize = 12;

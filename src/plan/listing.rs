@@ -9,6 +9,7 @@ use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::features::Count;
 use crate::terrain::patches::Patched;
+use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::fmt;
 
@@ -18,6 +19,12 @@ const LABEL: usize = 19;
 impl Plan {
     /// The listing, line by line; `rockfall plan` prints it and every report ends with it.
     pub fn lines(&self) -> Vec<String> {
+        self.entries_for(self.count).iter().map(ToString::to_string).collect()
+    }
+
+    /// The listing for another number of releases than the scene's: a target precision asks for more.
+    pub fn entries_for(&self, releases: usize) -> Vec<PlanEntry> {
+        let count = releases;
         // Every field by name and no `..`: a part that is not listed does not compile.
         let Self {
             title,
@@ -27,10 +34,11 @@ impl Plan {
             mesh_origin_m: _, // the terrain's own says more
             epsg,
             seed,
-            count,
-            releases,
+            count: _, // as asked for
+            releases: places_of_release,
             radii_m: [smallest_m, median_m, largest_m],
             terrain,
+            mesh_health: _, // printed above the listing
             input_files,
             ground_zones,
             ground_names,
@@ -65,7 +73,7 @@ impl Plan {
             warnings,
             fast_warnings,
         } = self;
-        let place = places(releases.places());
+        let place = places(places_of_release.places());
         let mut list = List::default();
         list.line("scene", title);
         list.line("file", format!("{}, {}", scene_file.display(), fingerprint(scene_hash)));
@@ -124,7 +132,7 @@ impl Plan {
             )
         });
         list.part("paths", paths, |Paths { first, step_s }| {
-            format!("kept for {} of {count} releases, every {step_s} s", first.min(count))
+            format!("kept for {} of {count} releases, every {step_s} s", first.min(&count))
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
         list.part("lines", lines, |lines| {
@@ -146,13 +154,13 @@ impl Plan {
             format!("{}: hit when the rim of a rock comes over them", each.join("; "))
         });
         match year {
-            Part::Kept(year) => list.lines("frequency", annual::lines(year, *count).into_iter()),
+            Part::Kept(year) => list.lines("frequency", annual::lines(year, count).into_iter()),
             Part::LeftOut(why) => list.line("frequency", format!("left out: {why}")),
         }
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
         });
-        let cost = self.cost(*count);
+        let cost = self.cost(count);
         let asks = if cost.is_modest() { "" } else { "; runs with --yes only" };
         list.line("at most", format!("{cost}{asks}"));
         if let Some(file) = deposits {
@@ -189,13 +197,28 @@ impl fmt::Display for Plan {
     }
 }
 
-/// Lines with a label in front.
+/// One line of the listing: a part of the plan and what is said of it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlanEntry {
+    /// The part.
+    pub name: String,
+    /// What is computed, or what is left out and why.
+    pub said: String,
+}
+
+impl fmt::Display for PlanEntry {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "{:<LABEL$}{}", self.name, self.said)
+    }
+}
+
+/// The listing as it grows.
 #[derive(Default)]
-struct List(Vec<String>);
+struct List(Vec<PlanEntry>);
 
 impl List {
     fn line(&mut self, label: &str, text: impl fmt::Display) {
-        self.0.push(format!("{label:<LABEL$}{text}"));
+        self.0.push(PlanEntry { name: label.to_owned(), said: text.to_string() });
     }
 
     fn lines(&mut self, label: &str, texts: impl Iterator<Item = String>) {

@@ -1,10 +1,11 @@
 //! What the results need to know of a plan: where things stand, lines, barriers, maps.
 
-use rockfall::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
-use rockfall::output::{Site, Zone};
-use rockfall::plan::{self, EvaluationLine, Plan};
-use rockfall::release::Where;
-use rockfall::scene::{self, Area, BarrierTable, DesignTable, Polyline, ZonePlace};
+use crate::error::{Error, Result};
+use crate::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
+use crate::output::{Site, Zone};
+use crate::plan::{self, EvaluationLine, Plan};
+use crate::release::Where;
+use crate::scene::{self, Area, BarrierTable, DesignTable, Polyline, ZonePlace};
 
 /// Where meshes and releases lie.
 pub(super) fn site(plan: &Plan) -> Site {
@@ -90,4 +91,14 @@ pub(super) fn map_frame(plan: &Plan) -> Option<MapFrame> {
         rows: cells.rows,
         epsg: plan.epsg,
     })
+}
+
+/// Health of the meshes as the summary has it: figures, and the table as it is printed. Null where the plan was compiled on
+/// a terrain that was not read from files.
+pub(super) fn mesh_health(plan: &Plan) -> Result<serde_json::Value> {
+    let Some(health) = &plan.mesh_health else { return Ok(serde_json::Value::Null) };
+    let mut value = serde_json::to_value(health)
+        .map_err(|error| Error::Request(format!("the mesh health cannot be written: {error}")))?;
+    value["table"] = health.to_string().lines().collect();
+    Ok(value)
 }

@@ -1,9 +1,9 @@
 //! What a plan asks of the year, as the results need it.
 
-use rockfall::error::{Error, Result};
-use rockfall::hazard::{Asked, Matrix, Object, Vehicles};
-use rockfall::plan::{self, Plan};
-use rockfall::scene::{MatrixTable, ObjectTable};
+use crate::error::{Error, Result};
+use crate::hazard::{Asked, Matrix, Object, Vehicles};
+use crate::plan::{self, Plan};
+use crate::scene::{MatrixTable, ObjectTable};
 
 /// What is asked of the year.
 pub(super) fn asked(plan: &Plan) -> Asked {
@@ -55,7 +55,7 @@ pub(super) fn allows(plan: &Plan, targets: bool) -> Result<()> {
         return Ok(());
     }
     Err(Error::Request(
-        "--until: found sizes that are sampled by importance ([frequency] with volumes), and the aim takes all rocks alike; write --releases N instead"
+        "--until: found sizes that are sampled by importance ([frequency] with volumes), and the precision asked for takes all rocks alike; write --releases N instead"
             .to_owned(),
     ))
 }

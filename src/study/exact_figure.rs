@@ -19,7 +19,7 @@ const KEY_PX: f64 = 190.0;
 const FLOOR: f64 = 1e-12;
 
 /// The colour of a scheme in every figure of the studies.
-pub(super) fn colour(scheme: Scheme) -> RGBColor {
+pub fn colour(scheme: Scheme) -> RGBColor {
     match scheme {
         Scheme::Dda => VERMILLION,
         Scheme::Adaptive => BLUE,

@@ -6,7 +6,7 @@
 
 use super::bench::goes_by_tolerance;
 use super::bootstrap::{Interval, Ladder, Paired};
-use super::speed::machine::Busy;
+use super::processor_time::Busy;
 use crate::ensemble::Ensemble;
 use crate::error::Result;
 use crate::hazard::{Percentile, Row};

@@ -4,19 +4,13 @@ use super::super::model::CellMap;
 use crate::error::Result;
 use crate::hazard::Layer;
 use crate::output::Results;
-use crate::terrain::grid::Grid;
 use std::collections::BTreeMap;
 
 /// The maps; none where the scene asks for none.
 pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
     let Some(frame) = results.summary.maps else { return Ok(None) };
     let read = |layer: Layer| -> Result<Vec<(u32, f64)>> {
-        let path = results.dir.join("maps").join(layer.file()).with_extension("asc");
-        // results of an earlier version lack the newer layers
-        if !path.exists() {
-            return Ok(Vec::new());
-        }
-        let grid = Grid::read(&path)?;
+        let Some(grid) = results.map(layer)? else { return Ok(Vec::new()) };
         let mut cells = Vec::new();
         for row in 0..grid.rows {
             for column in 0..grid.columns {
