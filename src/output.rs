@@ -36,9 +36,8 @@ pub use vector::write_terrain;
 
 use crate::error::{Error, Result};
 use crate::frequency::Weights;
-use crate::hazard;
 use crate::hazard::{
-    Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
+    self, Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
 };
 use crate::plan::PlanEntry;
 use crate::rock::Vec3;

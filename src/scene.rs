@@ -150,8 +150,7 @@ fn standard_gravity_m_s2() -> f64 {
 }
 
 impl Scene {
-    /// Reads and checks a scene file, the drawings that it names, and takes the fingerprint of all files.
-    ///
+    /// Reads and checks a scene file and the drawings that it names, and takes the fingerprint of all files.
     /// # Errors
     /// Whatever is wrong with the scene, with file, table, key and line; a file or drawing that cannot be used.
     pub fn read(file: &Path) -> Result<Self> {
