@@ -155,7 +155,7 @@ fn a_view_is_small_and_what_it_holds_is_what_was_computed() {
 fn node_reads_the_same(out: &Path, text: &str) {
     let said = Command::new("node")
         .args([
-            "tests/view/decode.js",
+            "tests/commands/view/decode.js",
             concat!(env!("CARGO_MANIFEST_DIR"), "/src/report/view/web/decode.js"),
         ])
         .arg(out.join(PAGE))
