@@ -32,7 +32,7 @@ pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
-pub use observed::{Agreement, Spread, Way, effective};
+pub use observed::{Agreement, Spread, Way, Weighted, distances, effective, rank, runouts};
 pub use proportion::Proportion;
 pub use quantile::{Open, Percentile, Ranks};
 pub use quantity::Quantity;

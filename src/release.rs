@@ -11,7 +11,7 @@ use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
-use clear::{clear_of, distance_m};
+use clear::{clear_of, distance_m, is_inside_tree};
 use std::path::PathBuf;
 
 /// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
@@ -296,13 +296,16 @@ impl Releases {
         // beyond the edge there is no ground to be under
         let buried = terrain.ground_under(centre.x, centre.y, centre.z).is_none()
             && terrain.ground_below(centre.x, centre.y).is_some();
-        if depth_m <= 2.0 * pressed_m + TYPED_DEPTH * rock.radius_m && !buried {
+        let caged = is_inside_tree(terrain, centre);
+        if depth_m <= 2.0 * pressed_m + TYPED_DEPTH * rock.radius_m && !buried && !caged {
             return Ok(());
         }
         let [x, y, z]: [f64; 3] = (centre + terrain.origin_m).into();
         let who = format!("{} at ({x}, {y}, {z})", release_name(index));
         let found = if buried {
             "found its centre under the terrain".to_owned()
+        } else if caged {
+            "found its centre inside a tree".to_owned()
         } else {
             format!("found it {depth_m:.2e} m deep in the ground or a tree")
         };
@@ -317,21 +320,25 @@ impl Releases {
         let mut random = stream(self.seed, Purpose::Grounds, index);
         // How a block rolls is its shape, which it keeps: the same quantile on every ground.
         let mut character = None;
-        let draw_ground = |table: &GroundTable| Ground {
-            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut random),
-            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut random),
-            friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
-            restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
-            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
-                let drawn = unit(&mut random);
-                rolling.quantile(*character.get_or_insert(drawn))
-            }),
-            roughness_rad: table
-                .roughness_deg
-                .as_ref()
-                .map_or(0.0, |angle| angle.draw(&mut random))
-                .to_radians(),
-            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+        let draw_ground = |table: &GroundTable| {
+            let normal_stiffness_n_m = table.normal_stiffness_n_m.draw(&mut random);
+            Ground {
+                normal_stiffness_n_m,
+                shear_stiffness_n_m: table
+                    .shear_n_m(normal_stiffness_n_m, |value| value.draw(&mut random)),
+                friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
+                restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
+                rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
+                    let drawn = unit(&mut random);
+                    rolling.quantile(*character.get_or_insert(drawn))
+                }),
+                roughness_rad: table
+                    .roughness_deg
+                    .as_ref()
+                    .map_or(0.0, |angle| angle.draw(&mut random))
+                    .to_radians(),
+                roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+            }
         };
         self.grounds.iter().map(draw_ground).collect()
     }

@@ -186,6 +186,7 @@ impl Round<'_> {
             plan: plan.entries_for(releases),
             inputs: plan.inputs.clone(),
             title_block: plan.title_block.clone(),
+            language: plan.language,
             sources: plan.sources.clone(),
             warnings: plan.warnings.clone(),
             mesh_health: infos::mesh_health(plan)?,

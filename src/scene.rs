@@ -41,7 +41,7 @@ pub use grounds::GroundTable;
 pub use meshes::{CropTable, MeshFile, MeshTable};
 pub use object::{ObjectTable, VehiclesTable};
 pub use places::{Area, Corner, Point, Polyline};
-pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
+pub use record::{Language, LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
@@ -52,7 +52,6 @@ pub use zones::{Zone, ZonePlace, Zones};
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
 use crate::random::{Distribution, entries};
-use crate::solver::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::{Sheet, Terrain, patches::Patches, read::Source};
 use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
@@ -374,12 +373,12 @@ impl Scene {
             let remedy = "write the table [rocks.contact]: rocks that share one world can touch";
             return Err(Complaint::missing("contact", remedy).inside("rocks"));
         };
-        if contact.restitution.is_none() && scheme != Scheme::Dda {
+        if contact.restitution.is_none() && !scheme.has_fixed_step() {
             let remedy = "write restitution = 0..1; only scheme \"dda\" can do without";
             let missing = Complaint::missing("restitution", remedy);
             return Err(missing.inside("contact").inside("rocks"));
         }
-        if matches!(scheme, Scheme::Rigid) && contact.has_bonds() {
+        if !scheme.has_springs() && contact.has_bonds() {
             let remedy = "write \"adaptive\", \"reference\" or \"dda\": a bond breaks by its springs, and the rigid limit has none; with tensile_strength_pa = 0 and cohesion_pa = 0 in [rocks.contact] \"rigid\" can be used";
             return Err(Complaint::about("scheme", remedy).inside("solver"));
         }

@@ -47,7 +47,12 @@ fn coloured(text: &str) -> String {
 
 /// Says what is wrong; where even that cannot be written (a full disk, nobody there) the status must do.
 pub(super) fn complain(text: impl Display) {
-    let _ = writeln!(stderr().lock(), "{}", coloured(&text.to_string()));
+    // what stands in a file must not steer the terminal, nor break the line
+    let shown = |c: char| {
+        if c.is_control() && c != '\n' { c.escape_default().to_string() } else { c.to_string() }
+    };
+    let text: String = text.to_string().chars().map(shown).collect();
+    let _ = writeln!(stderr().lock(), "{}", coloured(&text));
 }
 
 /// Prints; a reader that has gone away (`rockfall plan … | head`) is no error.

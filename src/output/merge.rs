@@ -73,6 +73,7 @@ impl Shard {
             inputs,
             title_block,
             sources,
+            language,
             warnings,
             mesh_health,
             lines,
@@ -105,6 +106,7 @@ impl Shard {
             inputs,
             title_block,
             sources,
+            language,
             warnings,
             mesh_health,
         }

@@ -10,6 +10,7 @@ use crate::hazard::{
     Quantity, Residual, Statistic, StopKind, Totals, Way,
 };
 use crate::plan::PlanEntry;
+use crate::scene::Language;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -126,6 +127,9 @@ pub struct Summary {
     /// Where terrain and ground values come from, in words.
     #[serde(default)]
     pub sources: [String; 2],
+    /// In which language page and figures speak.
+    #[serde(default)]
+    pub language: Language,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Health of the meshes.
@@ -172,6 +176,7 @@ impl Summary {
             inputs: info.inputs,
             title_block: info.title_block,
             sources: info.sources,
+            language: info.language,
             warnings: info.warnings,
             mesh_health: info.mesh_health,
             definitions: owned(&DEFINITIONS),

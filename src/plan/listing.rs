@@ -66,10 +66,12 @@ impl Plan {
             maps,
             catalogued,
             rolling_stops,
+            tangential,
             deposits,
             inputs: _,      // with the report
             title_block: _, // with the report
             sources: _,     // with the report
+            language: _,    // with the report
             warnings,
             fast_warnings,
         } = self;
@@ -103,6 +105,7 @@ impl Plan {
                 format!("{speed:.4} m/s on {name}, {whose}: slower impacts do not rebound"),
             );
         }
+        list.lines("tangential answer", tangential.iter().cloned());
         list.line("impacts on one plane", plane_impacts(step));
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));
@@ -118,10 +121,10 @@ impl Plan {
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
-            let how = if step.scheme == Scheme::Rigid {
-                "; impacts in the order of their times, sustained contact swept"
-            } else {
+            let how = if step.scheme.has_springs() {
                 ""
+            } else {
+                "; impacts in the order of their times, sustained contact swept"
             };
             format!("islands of rocks that may touch, each with its own step{how}")
         });
@@ -234,7 +237,7 @@ impl List {
         );
         self.line(
             "hollow edges",
-            "left out around each rock: hollow on one side of a sheet is sharp on the other; on the hollow side the faces touch",
+            "all kept, however sharp: a rock so deep in a fold that it reaches the edge presses on both sides as one contact",
         );
         self.line(
             "corners",
@@ -331,11 +334,11 @@ fn fingerprint(hash: &str) -> String {
 
 /// How rocks answer each other.
 fn one_world(scheme: Scheme, ground: &Ground) -> String {
-    let springs = if scheme == Scheme::Rigid {
-        "springs left out: the rigid limit has none".to_owned()
-    } else {
+    let springs = if scheme.has_springs() {
         let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
         format!("springs of {p_n:e} and {p_s:e} N/m")
+    } else {
+        "springs left out: the rigid limit has none".to_owned()
     };
     let restitution = ground.restitution.map_or_else(
         || "restitution of the scheme itself".to_owned(),

@@ -10,22 +10,26 @@ mod slopes;
 mod stems;
 #[cfg(test)]
 mod tests;
+mod valley;
 
 pub use forest::{plant, read_list};
 pub use shapes::{containers, jittered_plane, ridge, stairs, tetrahedron, v_groove};
 pub use slopes::{Slope, natural_slope, paper_slope, quick_slope};
 pub use stems::{Stem, square_stem, stem};
+pub use valley::valley_slope;
 
 use crate::error::{Error, Result};
 use crate::terrain::stl::{Facet, write_binary};
 use std::path::Path;
 
 /// Names of the made slopes and shapes, those of the files in `terrain/` without their ending.
-pub const KINDS: [&str; 8] = [
+pub const KINDS: [&str; 10] = [
     "paper_trees",
     "paper_slope",
     "quick_trees",
     "quick_slope",
+    "valley_trees",
+    "valley_slope",
     "paper_ridge",
     "paper_roof",
     "paper_tetrahedron",
@@ -39,6 +43,8 @@ pub fn made(kind: &str) -> Option<Vec<Facet>> {
         "paper_slope" => paper_slope().facets,
         "quick_trees" => slopes::quick_trees(&quick_slope()),
         "quick_slope" => quick_slope().facets,
+        "valley_trees" => valley::valley_trees(&valley_slope()),
+        "valley_slope" => valley_slope().facets,
         "paper_ridge" => shapes::paper_ridge(),
         "paper_roof" => shapes::paper_roof(),
         "paper_tetrahedron" => shapes::paper_tetrahedron(),

@@ -24,6 +24,13 @@ pub struct BarrierView {
     pub places: Vec<PlaceView>,
 }
 
+impl BarrierView {
+    /// Whether a rock arrives at it, here or at another place.
+    pub(in crate::report) fn is_met(&self) -> bool {
+        self.places.iter().any(|place| !place.rocks.is_empty())
+    }
+}
+
 /// What a rule asks of a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesignView {
@@ -97,6 +104,13 @@ pub struct Line {
     pub height_exceedance: Vec<BandPoint>,
     /// What is left by the barriers before it; none where rocks meet no barrier before.
     pub behind: Option<Behind>,
+}
+
+impl Line {
+    /// Whether a rock crosses it.
+    pub(in crate::report) fn is_met(&self) -> bool {
+        !self.crossings.is_empty()
+    }
 }
 
 /// What passes a line when the barriers before it have stopped what they can.
