@@ -1,9 +1,11 @@
 //! The answer at each line and barrier, a sentence each: what a run says last.
 
-use super::format::{NO_NUMBER, counted, decimal, interval, percent, significant};
+use super::format::{NO_NUMBER, counted, decimal, percent, significant};
 use super::model::energy_unit;
+use super::words::Words;
 use crate::hazard::{BarrierSummary, LineSummary, Percentile, Proportion, Statistic};
 use crate::output::Results;
+use crate::scene::Language;
 
 /// What arrives at every line and what every barrier has to take, in the order of the scene, in words.
 pub fn answers(results: &Results) -> Vec<String> {
@@ -63,6 +65,11 @@ fn barrier(of: &BarrierSummary) -> String {
         share(&of.stopped),
         share_interval(&of.stopped),
     )
+}
+
+/// Two written bounds; the terminal speaks English, whatever the language of the page.
+fn interval(low: &str, high: &str) -> String {
+    Words::of(Language::En).interval(low, high)
 }
 
 /// The 95th percentile, where there are rocks enough to bound it.
