@@ -51,10 +51,10 @@ pub(super) fn side(title: &str, (falls, ground): (&[Trajectory], &[Line]), step:
     let mut curves = Curves::new(title, "Across (m)", "Height (m)");
     curves.ground = ground.to_vec();
     for fall in falls {
-        let places = fall.path.iter().map(|p| (p.motion.position_m.x, p.motion.position_m.z));
+        let mut places = fall.path.iter().map(|p| (p.motion.position_m.x, p.motion.position_m.z));
         if step == 0 {
             curves.lines.push(places.clone().collect());
-            curves.discs.extend(places.last().map(|(x, z)| (x, z, fall.rock.radius_m)));
+            curves.discs.extend(places.next_back().map(|(x, z)| (x, z, fall.rock.radius_m)));
             continue;
         }
         let before = |point: &&PathPoint| point.motion.time_s <= step as f64 * STEP_S;
