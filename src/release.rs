@@ -71,8 +71,9 @@ pub struct Releases {
     file: PathBuf,
     seed: u64,
     gravity_m_s2: f64,
-    /// One, or one for each source.
+    /// One, or one for each source; zones that are sources are one.
     places: Vec<Where>,
+    zones_are_sources: bool,
     height_m: Option<Distribution>,
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
@@ -108,6 +109,7 @@ impl Releases {
             seed: scene.seed,
             gravity_m_s2: scene.gravity_m_s2,
             places,
+            zones_are_sources: scene.has_zone_sources(),
             height_m: asked.height_m.clone(),
             velocity_m_s: asked.velocity_m_s.clone(),
             spin_rad_s: asked.spin_rad_s.clone(),
@@ -130,10 +132,12 @@ impl Releases {
     }
 
     /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
-    /// one, so that every zone keeps its share.
+    /// one, so that every zone keeps its share. A zone that is a source has its own releases.
     fn draw_zone(&self, random: &mut RandomStream, index: usize) -> Option<usize> {
         let Where::Zones(zones) = self.place_of(index).0 else { return None };
-        Some(zones.pick(unit(random)))
+        let drawn = zones.pick(unit(random));
+        let source = self.frequency.as_ref().filter(|_| self.zones_are_sources);
+        Some(source.map_or(drawn, |frequency| frequency.stratum(index).source))
     }
 
     /// Looks for ground below an entry of the place, or beside a centre that is given with its height.

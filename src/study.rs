@@ -26,6 +26,7 @@ pub mod verify;
 pub mod stability;
 mod stability_figure;
 mod statistic;
+mod weighing;
 
 use crate::error::{Error, Result};
 use crate::output::write_atomic;

@@ -2,7 +2,7 @@
 
 use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual};
 use crate::ground::Ground;
-use crate::release::Where;
+use crate::release::{Releases, Where};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
 use crate::solver::dda::own_restitution;
 use crate::solver::{Scheme, Settings};
@@ -75,7 +75,7 @@ impl Plan {
             warnings,
             fast_warnings,
         } = self;
-        let place = places(places_of_release.places());
+        let place = places(places_of_release);
         let mut list = List::default();
         list.line("scene", title);
         list.line("file", format!("{}, {}", scene_file.display(), fingerprint(scene_hash)));
@@ -265,21 +265,20 @@ fn never(part: &Part<Infallible>) -> &'static str {
     }
 }
 
-fn places(all: &[Where]) -> String {
-    match all {
-        [one] => place(one),
-        all => all.iter().map(place).collect::<Vec<_>>().join(", "),
-    }
+fn places(releases: &Releases) -> String {
+    let words = |one: &Where| place(one, releases.zones_are_sources());
+    releases.places().iter().map(words).collect::<Vec<_>>().join(", ")
 }
 
-fn place(place: &Where) -> String {
+fn place(place: &Where, zones_are_sources: bool) -> String {
     match place {
         Where::Points(points) => format!("from {} points in turn", points.len()),
         Where::Line(line) => format!("along a line of {:.1} m", line.length_m()),
         Where::Area(area) => format!("over an area of {:.1} m²", area.area_m2()),
         Where::Zones(zones) => {
             let file = zones.file.display();
-            format!("over {} zones of {file}, {}", zones.list().len(), shared_by(zones))
+            let how = if zones_are_sources { "each a source of its own" } else { shared_by(zones) };
+            format!("over {} zones of {file}, {how}", zones.list().len())
         }
     }
 }

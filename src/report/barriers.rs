@@ -5,7 +5,7 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, paint};
 use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{BarrierView, DesignView, Estimate, PlaceView, kilo};
+use super::model::{BarrierView, DesignView, Estimate, PlaceView, RockView, kilo};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::{Frame, Spot};
 use super::words::{Words, fill};
@@ -25,7 +25,7 @@ const ELSEWHERE: [RGBColor; 4] = [ORANGE, PURPLE, SKY, GREY];
 /// Draws the cloud and the two curves of sensitivity.
 pub(super) fn draw(words: &Words, barrier: &BarrierView, number: usize) -> Drawing {
     let rocks = barrier.places.first().map_or(&[][..], |own| &own.rocks);
-    let most_j = rocks.iter().map(|rock| rock.1).fold(barrier.capacity_j, f64::max);
+    let most_j = rocks.iter().map(|rock| rock.total_j).fold(barrier.capacity_j, f64::max);
     let (unit, size) = kilo(most_j);
     let cloud = cloud_panel(words, (barrier, rocks), (unit, size));
     let top = cloud.frame.bottom + FOOT_PX + GAP_PX;
@@ -60,6 +60,7 @@ fn caption(words: &Words, barrier: &BarrierView, arriving: usize) -> String {
     };
     let lacks = format::decimal(barrier.design_lacks as f64, 0);
     let design = fill(design, &[("percentile", &percentile), ("n", &lacks)]);
+    let weighs = if barrier.is_weighted() { words.barrier_weighted } else { "" };
     fill(
         words.barrier_caption,
         &[
@@ -67,6 +68,7 @@ fn caption(words: &Words, barrier: &BarrierView, arriving: usize) -> String {
             ("rocks", &words.rocks(arriving)),
             ("design", &design),
             ("places", &if barrier.places.len() > 1 { words.barrier_places } else { "." }),
+            ("weighs", &weighs),
         ],
     )
 }
@@ -78,14 +80,15 @@ fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
 
 fn cloud_panel(
     words: &Words,
-    (barrier, rocks): (&BarrierView, &[(f64, f64)]),
+    (barrier, rocks): (&BarrierView, &[RockView]),
     (unit, size): (&str, f64),
 ) -> Panel {
     let reach = |at: &Estimate| 1.05 * [at.value, at.high].into_iter().fold(0.0, f64::max);
     let (design_m, design_j) =
         barrier.design.map_or((0.0, 0.0), |of| (reach(&of.height_m), reach(&of.energy_j)));
-    let energies = rocks.iter().map(|rock| rock.1).chain([1.05 * barrier.capacity_j, design_j]);
-    let tops = rocks.iter().map(|rock| rock.0).filter(|top| top.is_finite());
+    let energies =
+        rocks.iter().map(|rock| rock.total_j).chain([1.05 * barrier.capacity_j, design_j]);
+    let tops = rocks.iter().map(|rock| rock.top_m).filter(|top| top.is_finite());
     let tops = tops.chain([1.05 * barrier.height_m, design_m]);
     let frame = Frame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + CLOUD_PX };
     let mut panel = Panel::new(
@@ -103,7 +106,7 @@ fn cloud_panel(
 fn draw_cloud(
     canvas: &Canvas<'_>,
     panel: &Panel,
-    (barrier, rocks, size): (&BarrierView, &[(f64, f64)], f64),
+    (barrier, rocks, size): (&BarrierView, &[RockView], f64),
     words: &Words,
 ) {
     panel.grid(canvas);
@@ -113,7 +116,7 @@ fn draw_cloud(
     canvas.fill(&stopped, GREEN, 0.12);
     let spots: Vec<Spot> = rocks
         .iter()
-        .map(|rock| panel.at(rock.1 / size, rock.0))
+        .map(|rock| panel.at(rock.total_j / size, rock.top_m))
         .filter(|&spot| panel.frame.holds(spot))
         .collect();
     canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
@@ -175,15 +178,21 @@ fn lower_panels(words: &Words, barrier: &BarrierView, top: f64) -> (Panel, Optio
     )
 }
 
-/// Share (%) of the rocks at a place that a barrier of every height stops, as a staircase.
+/// Share (%) of the rocks at a place, by what each stands for, that a barrier of every height stops, as a staircase.
 fn staircase(barrier: &BarrierView, place: &PlaceView, most_m: f64) -> Vec<(f64, f64)> {
-    let held = place.rocks.iter().filter(|rock| rock.1 <= barrier.capacity_j && rock.0 <= most_m);
-    let mut tops: Vec<f64> = held.map(|rock| rock.0).collect();
-    tops.sort_by(f64::total_cmp);
-    let percent = |count: usize| 100.0 * count as f64 / place.rocks.len().max(1) as f64;
-    let steps =
-        tops.iter().enumerate().flat_map(|(k, &top)| [(top, percent(k)), (top, percent(k + 1))]);
-    [(0.0, 0.0)].into_iter().chain(steps).chain([(most_m, percent(tops.len()))]).collect()
+    let is_held = |rock: &&RockView| rock.total_j <= barrier.capacity_j && rock.top_m <= most_m;
+    let mut held: Vec<&RockView> = place.rocks.iter().filter(is_held).collect();
+    held.sort_by(|one, other| one.top_m.total_cmp(&other.top_m));
+    let all: f64 = place.rocks.iter().map(|rock| rock.weight).sum();
+    let mut stopped = 0.0;
+    let mut points = vec![(0.0, 0.0)];
+    for rock in held {
+        let before = stopped;
+        stopped += rock.weight;
+        points.extend([before, stopped].map(|sum| (rock.top_m, 100.0 * sum / all)));
+    }
+    points.push((most_m, if stopped > 0.0 { 100.0 * stopped / all } else { 0.0 }));
+    points
 }
 
 /// Pen of a place: 0 is the barrier's own, the others follow in the order of the scene.
@@ -206,20 +215,53 @@ fn draw_heights(canvas: &Canvas<'_>, panel: &Panel, barrier: &BarrierView) {
 fn draw_places(canvas: &Canvas<'_>, panel: &Panel, barrier: &BarrierView) {
     panel.grid(canvas);
     for (k, place) in barrier.places.iter().enumerate() {
-        let stops = |rock: &&(f64, f64)| rock.0 <= barrier.height_m && rock.1 <= barrier.capacity_j;
-        let share = crate::hazard::Proportion::new(
-            place.rocks.iter().filter(stops).count(),
-            place.rocks.len(),
-        );
-        if share.of == 0 {
-            continue;
-        }
+        let Some(stopped) = place.stopped else { continue };
         let at = |percent: f64| panel.at(place.offset_m, percent);
-        canvas.line(&[at(100.0 * share.low_95), at(100.0 * share.high_95)], Pen::full(INK, 1.2));
+        canvas.line(&[at(stopped.low), at(stopped.high)], Pen::full(INK, 1.2));
         // its pen in the other panel: colours alone do not tell them apart
-        let (x, y) = at(100.0 * share.share);
+        let (x, y) = at(stopped.value);
         canvas.line(&[(x - 16.0, y), (x + 16.0, y)], pen_of(k));
         canvas.disc((x, y), 4.0, pen_of(k).colour);
     }
     panel.axes(canvas);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: of four rocks one stands for 7 of 10 events. It is the lowest: a barrier above its top holds 70 %, and one above
+    /// the next 80 %; the last has more energy than any height holds.
+    #[test]
+    fn a_heavy_rock_counts_for_what_it_stands_for() {
+        let rock = |top_m: f64, total_j: f64, weight: f64| RockView { top_m, total_j, weight };
+        let rocks = vec![
+            rock(2.0, 1.0, 1.0),
+            rock(1.0, 1.0, 7.0),
+            rock(9.0, 1.0, 1.0),
+            rock(0.5, 99.0, 1.0),
+        ];
+        let place = PlaceView { offset_m: 0.0, arriving: 1.0, stopped: None, rocks };
+        let barrier = BarrierView {
+            name: "net".to_owned(),
+            height_m: 3.0,
+            capacity_j: 10.0,
+            design: None,
+            design_lacks: 0,
+            percentile: None,
+            left_is_uphill: None,
+            places: vec![place],
+        };
+        let stairs = staircase(&barrier, &barrier.places[0], 6.0);
+        let expected = [(0.0, 0.0), (1.0, 0.0), (1.0, 70.0), (2.0, 70.0), (2.0, 80.0), (6.0, 80.0)];
+        assert_eq!(stairs.len(), expected.len());
+        for (found, by_hand) in stairs.iter().zip(expected) {
+            assert!(
+                (found.0 - by_hand.0).abs() + (found.1 - by_hand.1).abs() < 1e-12,
+                "{stairs:?}"
+            );
+        }
+        let words = Words::of(crate::scene::Language::En);
+        assert!(barrier.is_weighted() && caption(words, &barrier, 4).contains("weighted back"));
+    }
 }

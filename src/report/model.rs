@@ -4,7 +4,7 @@ mod places;
 
 pub use places::{
     AnnualView, BarrierView, Behind, CellMap, DesignView, Line, LinePoint, MapMark, Observed,
-    PlaceView,
+    PlaceView, RockView,
 };
 
 use super::raster::GroundRaster;

@@ -86,6 +86,8 @@ words! {
     year_barriers, year_caption, object, line, hits, passages, or_more, and_without, and_with,
     kept_away, col_year, col_period, col_probability, col_conditional, col_by_rate,
     col_by_exponent, often_title, often_note, returns_title, returns_note, risk_title, risk_note,
+    barrier_weighted, barrier_year_title, barrier_year_note, rocks_arrive, are_stopped, go_over,
+    break_through, risk_kept_away,
     person_hit, vehicles_hit, individual_risk, deaths,
 }
 

@@ -59,7 +59,7 @@ Written by `tests/trust/report.py` from the records beside it; how to make them 
 
 {bad_inputs()}
 
-Bytes that nobody thought of, fed to the readers of meshes, scenes and grids (`tests/trust/fuzz.sh`, libFuzzer with address sanitizer):
+Bytes that nobody thought of, fed to the readers of meshes, scenes, grids, GeoTIFF, Shapefile and GeoJSON, PLY and OBJ, LAS and LAZ (`tests/trust/fuzz.sh`, libFuzzer with overflow checks; the program has no `unsafe` of its own):
 
 ```
 {record("fuzz.txt")}

@@ -5,7 +5,8 @@ use super::super::model::{About, AnnualView, BandPoint, Estimate, Table};
 use super::super::words::{Words, fill};
 use super::estimate;
 use crate::hazard::{
-    Annual, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk, RiskKind,
+    Annual, AnnualBarrier, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk,
+    RiskKind,
 };
 use crate::output::Results;
 
@@ -34,13 +35,44 @@ fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
     figures.curve.iter().rev().map(point).collect()
 }
 
-/// Three tables a place: how often, with what energy, at what risk.
+/// Three tables a place: how often, with what energy, at what risk; and one a barrier.
 pub(super) fn tables(results: &Results, words: &Words) -> Vec<Table> {
     let Some(annual) = &results.summary.annual else { return Vec::new() };
     let each = |place: &AnnualPlace| {
         [Some(passages(annual, place, words)), Some(returns(place, words)), risks(place, words)]
     };
-    annual.places.iter().flat_map(each).flatten().collect()
+    let places = annual.places.iter().flat_map(each).flatten();
+    places.chain(annual.barriers.iter().map(|one| barrier(annual, one, words))).collect()
+}
+
+/// Columns of how often something happens.
+fn how_often(words: &Words) -> Vec<String> {
+    let by = |text: &str| fill(text, &[("unit", &"1/a")]);
+    vec![
+        words.col_year.to_owned(),
+        words.col_period.to_owned(),
+        words.col_probability.to_owned(),
+        words.col_conditional.to_owned(),
+        by(words.col_by_rate),
+        by(words.col_by_exponent),
+    ]
+}
+
+fn barrier(annual: &Annual, one: &AnnualBarrier, words: &Words) -> Table {
+    let AnnualBarrier { name, arriving, stopped, over, through } = one;
+    let rows = [
+        (words.rocks_arrive, arriving),
+        (words.are_stopped, stopped),
+        (words.go_over, over),
+        (words.break_through, through),
+    ];
+    Table {
+        about: About::Year,
+        title: fill(words.barrier_year_title, &[("name", &words.quoted(name))]),
+        note: words.barrier_year_note.to_owned(),
+        columns: how_often(words),
+        rows: rows.map(|(what, rate)| (what.to_owned(), cells(rate, annual))).into(),
+    }
 }
 
 /// A title with the name of a place and what it is.
@@ -78,15 +110,6 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> Table {
             say(or_more(above.energy_j), &above.rate);
         }
     }
-    let by = |text: &str| fill(text, &[("unit", &"1/a")]);
-    let columns = [
-        words.col_year.to_owned(),
-        words.col_period.to_owned(),
-        words.col_probability.to_owned(),
-        words.col_conditional.to_owned(),
-        by(words.col_by_rate),
-        by(words.col_by_exponent),
-    ];
     Table {
         about: About::Year,
         title: named(words.often_title, place, words),
@@ -98,7 +121,7 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> Table {
                 ("effective", &format::decimal(annual.effective_rocks, 0)),
             ],
         ),
-        columns: columns.into(),
+        columns: how_often(words),
         rows,
     }
 }
@@ -146,16 +169,21 @@ fn returns(place: &AnnualPlace, words: &Words) -> Table {
 }
 
 fn risks(place: &AnnualPlace, words: &Words) -> Option<Table> {
-    let row = |(which, risk): (&str, &Risk)| {
+    let row = |which: &str, risk: &Risk| {
         let Risk { kind, rate } = risk;
         let slope = |slope: f64| estimate(slope, None, None);
         let cells =
             vec![Some(of(rate, |x| x)), Some(slope(rate.by_log_rate)), rate.by_exponent.map(slope)];
         (format!("{}{which}", risk_name(*kind, words)), cells)
     };
-    let all = both(place, words)
-        .flat_map(|(which, figures)| figures.risks.iter().map(move |r| (which, r)));
-    let rows: Vec<_> = all.map(row).collect();
+    let mut rows = Vec::new();
+    for (which, figures) in both(place, words) {
+        rows.extend(figures.risks.iter().map(|risk| row(which, risk)));
+    }
+    for saved in &place.saved {
+        let which = fill(words.risk_kept_away, &[("name", &words.quoted(&saved.barrier))]);
+        rows.extend(saved.risks.iter().map(|risk| row(&which, risk)));
+    }
     let by = |text: &str| fill(text, &[("unit", &"1/a")]);
     let columns = [words.col_year, words.col_by_rate, words.col_by_exponent].map(by);
     (!rows.is_empty()).then(|| Table {

@@ -1,11 +1,14 @@
 //! What barriers stop and what their rule asks for, from the summary and the crossings.
 
 use super::super::format;
-use super::super::model::{About, BarrierView, DesignView, Estimate, PlaceView, Quantity, Table};
+use super::super::model::{
+    About, BarrierView, DesignView, Estimate, PlaceView, Quantity, RockView, Table,
+};
 use super::super::raster::GroundRaster;
 use super::super::words::{Words, fill};
 use super::{estimate, of_percentile, statistics};
 use crate::error::Result;
+use crate::frequency::Weights;
 use crate::hazard::{
     self, Arrival, AtPlace, BarrierSummary, Design, PERCENTS, Proportion, Rule, Statistic,
 };
@@ -22,6 +25,7 @@ pub(super) fn views(results: &Results, ground: Option<&GroundRaster>) -> Result<
     }
     let barriers: Vec<hazard::Barrier> = summaries.iter().map(|one| one.barrier.clone()).collect();
     let arrivals = hazard::arrivals(&barriers, results.crossings()?)?;
+    let weights = results.hazard.weights();
     let view = |(one, places): (&BarrierSummary, Vec<Vec<Arrival>>)| BarrierView {
         name: one.barrier.name.clone(),
         height_m: one.barrier.height_m,
@@ -30,7 +34,12 @@ pub(super) fn views(results: &Results, ground: Option<&GroundRaster>) -> Result<
         design_lacks: one.design_lacks,
         percentile: one.barrier.design.as_ref().map(|rule| rule.percentile),
         left_is_uphill: left_is_uphill(results, one, ground),
-        places: one.by_place.iter().zip(places).map(place_view).collect(),
+        places: one
+            .by_place
+            .iter()
+            .zip(places)
+            .map(|place| place_view(place, weights.as_ref()))
+            .collect(),
     };
     Ok(summaries.iter().zip(arrivals).map(view).collect())
 }
@@ -69,11 +78,18 @@ fn left_is_uphill(
     (left - right).is_finite().then_some(left > right)
 }
 
-fn place_view((place, rocks): (&AtPlace, Vec<Arrival>)) -> PlaceView {
+/// `weights`: none where all rocks weigh the same.
+fn place_view((place, rocks): (&AtPlace, Vec<Arrival>), weights: Option<&Weights>) -> PlaceView {
+    let rock = |rock: &Arrival| RockView {
+        top_m: rock.top_m,
+        total_j: rock.total_j,
+        weight: weights.map_or(1.0, |weights| weights.of_release(rock.release)),
+    };
     PlaceView {
         offset_m: place.offset_m,
         arriving: place.arriving.share,
-        rocks: rocks.iter().map(|rock| (rock.top_m, rock.total_j)).collect(),
+        stopped: place.at_own_height().and_then(percent),
+        rocks: rocks.iter().map(rock).collect(),
     }
 }
 

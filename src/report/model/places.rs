@@ -47,8 +47,30 @@ pub struct PlaceView {
     pub offset_m: f64,
     /// Share of all releases that arrive (–).
     pub arriving: f64,
-    /// Height of the highest point (m) and total energy (J) of each.
-    pub rocks: Vec<(f64, f64)>,
+    /// Share of them that a barrier of its own height stops (%), by what each stands for; none where none arrives.
+    pub stopped: Option<Estimate>,
+    /// Each of them.
+    pub rocks: Vec<RockView>,
+}
+
+/// A rock that arrives at a barrier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RockView {
+    /// Height of its highest point (m).
+    pub top_m: f64,
+    /// Total energy (J).
+    pub total_j: f64,
+    /// What it stands for over the others (–); 1 where all weigh the same.
+    pub weight: f64,
+}
+
+impl BarrierView {
+    /// Whether the rocks that arrive weigh differently.
+    pub fn is_weighted(&self) -> bool {
+        let mut weights = self.places.iter().flat_map(|place| &place.rocks).map(|rock| rock.weight);
+        let first = weights.next();
+        weights.any(|weight| Some(weight) != first)
+    }
 }
 
 /// How often a year which energy is passed at a line or object.

@@ -5,7 +5,7 @@ use rockfall::hazard::{Agreement, Way};
 use rockfall::output::Zone;
 use rockfall::report::model::{
     AnnualView, BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, Line, LinePoint,
-    MapMark, Observed, PlaceView, Quantile, Report,
+    MapMark, Observed, PlaceView, Quantile, Report, RockView,
 };
 
 const EAST_M: f64 = 2_600_000.0;
@@ -17,7 +17,10 @@ pub(crate) fn net(rocks: usize) -> BarrierView {
     let place = |offset_m: f64, rocks: usize| PlaceView {
         offset_m,
         arriving: 0.5,
-        rocks: (0..rocks).map(|k| (top_m(k), 1e4 * k as f64)).collect(),
+        stopped: (rocks > 0).then_some(Estimate::new(40.0, 30.0, 55.0)),
+        rocks: (0..rocks)
+            .map(|k| RockView { top_m: top_m(k), total_j: 1e4 * k as f64, weight: 1.0 })
+            .collect(),
     };
     let design = DesignView {
         height_m: Estimate::new(4.2, 3.9, 5.0),
