@@ -112,7 +112,7 @@ struct RunArgs {
     /// Worker threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = words::threads)]
     threads: Option<usize>,
-    /// One release alone (numbers begin at 0), with its full path; its results go to only_I below those of the scene
+    /// One release alone (numbers begin at 0), with its full path; its results go to a folder of its own below those of the scene
     #[arg(long, value_name = "I", conflicts_with = "resume")]
     only: Option<usize>,
     /// The K-th of N parts of the releases, K from 1 to N; `rockfall merge` puts them together

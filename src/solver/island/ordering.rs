@@ -162,7 +162,9 @@ mod tests {
             let rows: Vec<usize> = (k + 1..rocks).filter(|&row| joined[k][row]).collect();
             found.extend(rows.iter().map(|&row| (k, row)));
             for &a in &rows {
-                rows.iter().for_each(|&b| joined[a][b] = true);
+                for &b in &rows {
+                    joined[a][b] = true;
+                }
             }
         }
         found
