@@ -84,7 +84,7 @@ pub struct RunInfo {
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.
     pub keeps_impacts: bool,
-    /// Whether [`merge`] is to put it together with others, were it the only one.
+    /// Whether `merge` is to put it together with others, were it the only one.
     pub is_shard: bool,
     /// Worker threads.
     pub threads: usize,

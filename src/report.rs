@@ -6,7 +6,7 @@
 //! Results ─► view.html, view.glb (the slope in three dimensions)
 //! ```
 //!
-//! Nothing is computed here that a reader would quote: estimates and intervals come in as [`input`] has them; only the
+//! Nothing is computed here that a reader would quote: estimates and intervals come in as `model` has them; only the
 //! bins of histograms and the envelopes along the fall line are found for display.
 
 mod along_paths;
