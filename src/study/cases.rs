@@ -1,7 +1,7 @@
 //! The exact cases: one row each, with the scene, the exact solution and where it comes from.
 
 mod closed;
-pub(super) mod meshes;
+mod meshes;
 mod pivot;
 mod starts;
 

@@ -116,7 +116,8 @@ fn rows_are_sound(name: &str, run: &Trajectory, most_j: f64) {
     assert_eq!(rows.len(), run.impact_count as usize, "{name}");
     assert!(rows.iter().all(|row| row.energy_lost_j >= 0.0), "{name}: {rows:#?}");
     let sum: f64 = rows.iter().map(|row| row.energy_lost_j).sum();
-    assert!(sum <= most_j * (1.0 + 1e-6), "{name}: rows lose {sum} J, the rock {most_j} J");
+    // what springs that stay pressed still hold is known from their forces alone
+    assert!(sum <= most_j * (1.0 + 1e-4), "{name}: rows lose {sum} J, the rock {most_j} J");
     for (k, one) in rows.iter().enumerate() {
         for other in &rows[k + 1..] {
             let is_soon = other.time_s - one.time_s < 1e-3;

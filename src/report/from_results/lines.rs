@@ -14,10 +14,10 @@ use crate::hazard::{
 };
 use crate::output::Results;
 
-/// A quantity of a line's table: its name, and the quantity of a release with the same unit.
+/// A row: what it is of, its name, and the quantity of a release with the same unit.
 type Tabled = (LineQuantity, fn(&Words) -> &'static str, Quantity);
 
-/// All of them.
+/// Quantities of a line's table: name, and the quantity of a release with the same unit.
 const TABLED: [Tabled; 7] = [
     (LineQuantity::Speed, |words| words.speed, Quantity::Speed),
     (LineQuantity::Translational, |words| words.translational, Quantity::Translational),

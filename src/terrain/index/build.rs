@@ -101,6 +101,7 @@ impl Index {
         let Packed { depth, lo, hi } = index.pack_part(whole, &corners, at_once);
         assert!(depth <= DEPTH, "the index of the mesh has {depth} levels");
         (index.lo, index.hi) = (lo, hi);
+        index.nodes.shrink_to_fit();
         (index, order)
     }
 
