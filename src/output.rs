@@ -259,7 +259,7 @@ impl Output {
     }
 
     /// Writes the summary and gives the results as they are on the disk. Of a part of a run the progress stays:
-    /// it holds what [`merge`] needs.
+    /// it holds what `merge` needs.
     ///
     /// # Errors
     ///
