@@ -182,7 +182,7 @@ impl Round<'_> {
             keeps_impacts: plan.impacts.is_kept(),
             is_shard: matches!(options.selection, Selection::Shard { .. }),
             threads: ensemble.threads(),
-            plan: plan.lines_for(releases),
+            plan: plan.entries_for(releases),
             inputs: plan.inputs.clone(),
             title_block: plan.title_block.clone(),
             language: plan.language,

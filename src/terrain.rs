@@ -1,6 +1,7 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
 pub mod brims;
+pub mod cliffs;
 #[cfg(feature = "cloud")]
 pub mod cloud;
 pub mod coarser;
