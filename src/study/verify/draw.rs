@@ -51,7 +51,7 @@ pub(super) fn side(title: &str, (falls, ground): (&[Trajectory], &[Line]), step:
     let mut curves = Curves::new(title, "Across (m)", "Height (m)");
     curves.ground = ground.to_vec();
     for fall in falls {
-        let mut places = fall.path.iter().map(|p| (p.motion.position_m.x, p.motion.position_m.z));
+        let places = fall.path.iter().map(|p| (p.motion.position_m.x, p.motion.position_m.z));
         if step == 0 {
             curves.lines.push(places.clone().collect());
             curves
