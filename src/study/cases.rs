@@ -141,7 +141,7 @@ impl Case {
     }
 }
 
-/// Half of √(p_N/m) of the cases' sphere of half a metre on springs of 1 GN/m (rad/s).
+/// Half of `√(p_N/m)` of the cases' sphere of half a metre on springs of 1 GN/m (rad/s).
 const HALF_OMEGA_RAD_S: f64 = 420.0;
 /// Tolerance (m/s) of what stands in for an exact solution.
 const FINEST_TOLERANCE_M_S: f64 = 1e-10;
