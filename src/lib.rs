@@ -19,6 +19,7 @@ pub mod file;
 pub mod clock;
 pub mod chance;
 pub mod rock;
+pub mod body;
 pub mod frequency;
 // world
 pub mod gis;

@@ -20,7 +20,8 @@ use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
-use crate::release::{self, Lost, Release, Releases};
+use crate::release::{self, Drawn, Lost, Release, Releases};
+use crate::rock::Rock;
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
 use crate::step::{Scheme, Settings};
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
@@ -286,6 +287,16 @@ impl Plan {
     /// As [`Self::release`].
     pub fn try_release(&self, index: usize) -> std::result::Result<Release, Box<Lost>> {
         self.releases.try_release(&self.terrain, index)
+    }
+
+    /// The shape of release `index`, of the size of its rock; none for a sphere.
+    pub fn block(&self, index: usize, rock: &Rock) -> Option<Drawn> {
+        self.releases.block(index, rock)
+    }
+
+    /// Whether some rocks have shapes.
+    pub fn has_blocks(&self) -> bool {
+        self.releases.shapes.has_blocks()
     }
 
     /// What every rock is watched for.

@@ -226,6 +226,7 @@ fn run_info(plan: &Plan, health: &Health, order: &Order, ensemble: &Ensemble) ->
         observed: read_measured(plan)?,
         keeps_paths: matches!(order.part, Part::Only(_)) || plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
+        has_blocks: plan.has_blocks(),
         is_shard: matches!(order.part, Part::Shard { .. }),
         threads: ensemble.threads(),
         plan: plan.lines(),

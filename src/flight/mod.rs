@@ -4,8 +4,10 @@
 //! face (a quadratic), an edge or a corner (quartics) is solved for, over the boxes that the parabola crosses.
 
 mod abreast;
+pub mod block;
 mod roots;
 mod slabs;
+pub mod top;
 mod touch;
 
 use crate::rock::Vec3;

@@ -41,7 +41,7 @@ use crate::hazard::{
     Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
 };
 use crate::rock::Vec3;
-use crate::trajectory::Trajectory;
+use crate::trajectory::{ShapeOf, Trajectory};
 use opened::{open, open_maps};
 use progress::{PROGRESS, Progress};
 use std::collections::BTreeMap;
@@ -83,6 +83,8 @@ pub struct RunInfo {
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.
     pub keeps_impacts: bool,
+    /// Whether some rocks have shapes: the tables then say how they are turned.
+    pub has_blocks: bool,
     /// Whether [`merge`] is to put it together with others, were it the only one.
     pub is_shard: bool,
     /// Worker threads.
@@ -156,15 +158,20 @@ impl Output {
         let mut claim = Claim::on(dir)?;
         let found = folder::prepare(dir, (&info, mode), &mut claim)?;
         let bytes = found.as_ref().map(|found| &found.bytes);
-        let releases = open(dir, RELEASES, &Row::COLUMNS, bytes)?;
-        let paths =
-            info.keeps_paths.then(|| open(dir, PATHS, &PathRow::COLUMNS, bytes)).transpose()?;
+        let columns = |plain: &[&'static str], more: &[&'static str]| {
+            [plain, if info.has_blocks { more } else { &[] }].concat()
+        };
+        let of_release = columns(&Row::COLUMNS, &Row::SHAPE_COLUMNS);
+        let releases = open(dir, RELEASES, &of_release, bytes)?;
+        let of_path = columns(&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS);
+        let paths = info.keeps_paths.then(|| open(dir, PATHS, &of_path, bytes)).transpose()?;
         let impacts = info
             .keeps_impacts
             .then(|| open(dir, IMPACTS, &ImpactRow::COLUMNS, bytes))
             .transpose()?;
+        let of_crossing = columns(&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
         let crossings = (!info.lines.is_empty())
-            .then(|| open(dir, CROSSINGS, &CrossingRow::COLUMNS, bytes))
+            .then(|| open(dir, CROSSINGS, &of_crossing, bytes))
             .transpose()?;
         let mut lines = read::lines(&info.lines, &info.asked, info.identity.releases);
         if found.is_some() {
@@ -228,7 +235,10 @@ impl Output {
     pub fn write(&mut self, falls: &[Trajectory]) -> Result<()> {
         for fall in falls {
             assert_eq!(fall.index, self.remaining().start, "journeys must be written in order");
-            let row = Row::of(fall, self.info.origin_m);
+            let mut row = Row::of(fall, self.info.origin_m);
+            if self.info.has_blocks {
+                row.shape.get_or_insert(ShapeOf::SPHERE);
+            }
             self.releases.write(&row)?;
             self.write_path(fall)?;
             self.write_impacts(fall)?;
@@ -335,8 +345,14 @@ impl Output {
 
     fn write_path(&mut self, fall: &Trajectory) -> Result<()> {
         let Some(table) = &mut self.paths else { return Ok(()) };
-        let rows = fall.path.iter().map(|point| PathRow::of(fall.index, point, self.info.origin_m));
-        rows.into_iter().try_for_each(|row| table.write(&row))
+        let (origin_m, has_blocks) = (self.info.origin_m, self.info.has_blocks);
+        fall.path.iter().try_for_each(|point| {
+            let mut row = PathRow::of(fall.index, point, origin_m);
+            if has_blocks {
+                row.attitude.get_or_insert(ShapeOf::SPHERE.attitude);
+            }
+            table.write(&row)
+        })
     }
 
     fn write_impacts(&mut self, fall: &Trajectory) -> Result<()> {
@@ -352,7 +368,10 @@ impl Output {
         for crossing in &fall.crossings {
             let line = &mut self.lines[crossing.line];
             let who = (fall.index, &fall.rock);
-            let row = CrossingRow::of(who, crossing, &line.info.name, self.info.origin_m);
+            let mut row = CrossingRow::of(who, crossing, &line.info.name, self.info.origin_m);
+            if self.info.has_blocks {
+                row.top_m = Some(row.highest_m());
+            }
             table.write(&row)?;
             line.add(&row);
         }

@@ -23,6 +23,7 @@ mod refusal;
 mod release;
 mod rewrite;
 mod rocks;
+mod shapes;
 mod solver;
 mod source;
 mod wording;
@@ -44,6 +45,7 @@ pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
+pub use shapes::{CORNERS, Orientation, RandomWord, ShapeTable};
 pub use solver::SolverTable;
 pub use zones::{Zone, ZonePlace, Zones};
 
@@ -299,6 +301,7 @@ impl Scene {
         if let Some(maps) = &self.maps {
             maps.check().map_err(|wrong| wrong.inside("maps"))?;
         }
+        self.check_shapes()?;
         self.check_together()
     }
 

@@ -2,6 +2,7 @@
 
 use super::check::{Allowed, Checked, drawn, number, optional};
 use super::frequency;
+use super::shapes::ShapeTable;
 use crate::chance::Distribution;
 use crate::frequency::Frequency;
 use serde::Deserialize;
@@ -14,6 +15,9 @@ pub struct Rocks {
     pub density_kg_m3: f64,
     /// Radius (m), positive; absent in the file where `[frequency]` has volumes, and then filled in to reckon with.
     pub radius_m: Option<Distribution>,
+    /// Shapes, drawn by their weights; none = spheres.
+    #[serde(default)]
+    pub shapes: Vec<ShapeTable>,
     /// Contact between rocks; needed only when they share one world.
     pub contact: Option<RockContact>,
 }

@@ -1,6 +1,7 @@
 //! One implicit step of a rock in contact.
 
 pub mod adaptive;
+pub(crate) mod block;
 mod bounce;
 pub mod dda;
 pub(crate) mod explicit;

@@ -1,6 +1,8 @@
 //! The fall itself: leap, touch, step, stop.
 
+use super::block::follow_block;
 use super::calm::Calm;
+use super::form::Form;
 use super::journey::{Journey, Keep};
 use super::roughness::Roughness;
 use super::stems::Strain;
@@ -11,8 +13,9 @@ use crate::error::Result;
 use crate::flight::{Landing, Parabola, leap_past};
 use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
-use crate::release::Release;
+use crate::release::{Drawn, Release};
 use crate::rock::{Motion, Vec3};
+use crate::step::block::Footing;
 use crate::step::grip::{Grip, Loss, World};
 use crate::step::law::Body;
 use crate::step::{self, Scheme, Settings, Stepper};
@@ -41,6 +44,7 @@ pub struct Course<'a> {
 #[derive(Debug, Default)]
 pub struct Scratch {
     grip: Grip,
+    footing: Footing,
     strain: Strain,
     laws: Vec<Law>,
     /// Dashpots of the grounds of the rock before: most scenes never change them.
@@ -84,12 +88,7 @@ pub fn follow(
     chance: &mut Chance,
     scratch: &mut Scratch,
 ) -> Trajectory {
-    let capture = Capture {
-        own_m_s: course.step.capture_speed_m_s,
-        tolerance_m_s: course.step.tolerance_m_s,
-        gravity_m_s2: course.gravity_m_s2,
-    };
-    scratch.make_laws(release, &capture);
+    scratch.make_laws(release, &capture_of(course));
     scratch.grip.near.forget();
     (scratch.grip.near.tested, scratch.grip.sweeps) = (0, 0);
     scratch.strain.begin(course.terrain, &mut scratch.grip.near.gone, chance);
@@ -105,7 +104,12 @@ pub fn follow(
         strain: &mut scratch.strain,
         chance,
         roughness: Roughness::default(),
-        journey: Journey::new(course.terrain, release.rock, release.motion, (keep, course.watch)),
+        journey: Journey::new(
+            course.terrain,
+            Form { rock: release.rock, block: None },
+            (release.motion, None),
+            (keep, course.watch),
+        ),
     };
     // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
     let mut stop = if fall.is_pressed() { fall.touch() } else { None };
@@ -116,6 +120,25 @@ pub fn follow(
         }
     };
     fall.end(release, stop)
+}
+
+/// The same for a block, with scheme `rigid`.
+pub fn roll(
+    course: &Course,
+    (release, drawn): (&Release, &Drawn),
+    keep: Keep,
+    scratch: &mut Scratch,
+) -> Trajectory {
+    scratch.make_laws(release, &capture_of(course));
+    follow_block(course, (release, drawn), keep, &scratch.laws, &mut scratch.footing)
+}
+
+fn capture_of(course: &Course) -> Capture {
+    Capture {
+        own_m_s: course.step.capture_speed_m_s,
+        tolerance_m_s: course.step.tolerance_m_s,
+        gravity_m_s2: course.gravity_m_s2,
+    }
 }
 
 /// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
@@ -134,9 +157,14 @@ pub fn fall(
         Ok(release) => release,
         Err(lost) => return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.why)),
     };
-    let mut chance = stream(plan.seed, Purpose::Impacts, index);
-    let fallen =
-        follow(&Course::of(plan), &release, kept(plan, index, paths), &mut chance, scratch);
+    let keep = kept(plan, index, paths);
+    let course = Course::of(plan);
+    let fallen = if let Some(drawn) = plan.block(index, &release.rock) {
+        roll(&course, (&release, &drawn), keep, scratch)
+    } else {
+        let mut chance = stream(plan.seed, Purpose::Impacts, index);
+        follow(&course, &release, keep, &mut chance, scratch)
+    };
     Ok(Trajectory { index, ..fallen })
 }
 
@@ -210,7 +238,7 @@ impl Fall<'_> {
         self.grip.clocks.stop(Piece::Leap, begun);
         self.journey.effort.leaps += 1;
         let begun = self.grip.clocks.now();
-        self.journey.fly(&flight, dt);
+        self.journey.fly(&flight, None, dt);
         self.grip.clocks.stop(Piece::NotesInFlight, begun);
         // flights count too: between two plates a rock may fly without end and without getting on in time
         stop.or_else(|| self.over_budget())
@@ -348,26 +376,10 @@ impl Fall<'_> {
         self.journey.end_path();
         self.journey.effort.sweeps += self.grip.sweeps;
         self.journey.effort.triangles += self.grip.near.tested;
-        let journey = self.journey;
         let start = release.motion;
-        let fallen = start.position_m.z - journey.now.position_m.z;
+        let fallen = start.position_m.z - self.journey.now.position_m.z;
         let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
-        Trajectory {
-            index: 0,
-            rock: release.rock,
-            start,
-            end: journey.now,
-            stop,
-            extremes: journey.extremes,
-            impact_count: journey.impact_count,
-            tree_impact_count: journey.tree_impact_count,
-            impacts: journey.impacts,
-            path: journey.path,
-            crossings: journey.crossings.into_found(),
-            visits: journey.visits.into_found(),
-            ledger: journey.ledger,
-            released_j: self.world.body.mass * self.course.gravity_m_s2 * fallen + kinetic,
-            effort: journey.effort,
-        }
+        let released_j = self.world.body.mass * self.course.gravity_m_s2 * fallen + kinetic;
+        self.journey.into_trajectory(release, stop, released_j)
     }
 }

@@ -15,6 +15,7 @@ mod wide;
 
 use super::calm::Calm;
 use super::fall::{Course, kept};
+use super::form::Form;
 use super::journey::{Journey, Keep};
 use super::{Stop, Trajectory};
 use crate::contact::pair::{Bond, Strength, Tie, between};
@@ -177,7 +178,12 @@ fn rover<'a>(
     let start = (motion.position_m, motion.velocity_m_s, motion.spin_rad_s);
     Rover {
         member: Seat::new(Member::new(body, laws.collect(), start)),
-        journey: Journey::new(course.terrain, release.rock, motion, (keep, course.watch)),
+        journey: Journey::new(
+            course.terrain,
+            Form { rock: release.rock, block: None },
+            (motion, None),
+            (keep, course.watch),
+        ),
         state: State::Moving,
         lands: None,
         calm: Calm::from(motion.position_m),

@@ -57,6 +57,7 @@ pub fn info(releases: usize) -> RunInfo {
         observed: vec![],
         keeps_paths: true,
         keeps_impacts: true,
+        has_blocks: false,
         is_shard: false,
         threads: 2,
         plan: vec!["trees    left out: the scene has none".to_owned()],
@@ -91,6 +92,7 @@ impl Chance {
             motion: self.motion(step as f64 * 0.05),
             clearance_m: if step == 0 { f64::NAN } else { 0.25 },
             state,
+            attitude: None,
         };
         states.into_iter().enumerate().map(point).collect()
     }
@@ -112,6 +114,8 @@ impl Chance {
         let crossing = |line: usize| Crossing {
             line,
             motion: self.motion(2.5),
+            rotational_j: 1234.5,
+            top_m: None,
             along_m: self.number(30.0),
             height_m: self.number(3.0),
             height_normal_m: if index == 1 { f64::NAN } else { self.number(2.0) },
@@ -165,6 +169,7 @@ pub fn fall(index: usize) -> Trajectory {
     let mut fall = Trajectory {
         index,
         rock: Rock { radius_m: 0.1 + chance.number(0.5), density_kg_m3: 2700.0 },
+        shape: None,
         start: chance.motion(0.0),
         end: chance.motion(12.5),
         stop: stop(index),

@@ -87,7 +87,7 @@ impl Rover<'_> {
         let dt = time_s - self.journey.now.time_s;
         if self.member.flying && dt > 0.0 {
             let flight = self.flight(course);
-            self.journey.fly(&flight, dt);
+            self.journey.fly(&flight, None, dt);
             self.journey.now.time_s = time_s;
         }
         let now = self.journey.now;
@@ -296,28 +296,11 @@ impl Rover<'_> {
             ledger.remainder_j += entry.min(0.0);
             *entry = entry.max(0.0);
         }
-        let journey = self.journey;
         let start = release.motion;
-        let fallen = start.position_m.z - journey.now.position_m.z;
+        let fallen = start.position_m.z - self.journey.now.position_m.z;
         let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
-        let mut effort = journey.effort;
-        effort.triangles += self.member.grip.near.tested;
-        Trajectory {
-            index,
-            rock: release.rock,
-            start,
-            end: journey.now,
-            stop,
-            extremes: journey.extremes,
-            impact_count: journey.impact_count,
-            tree_impact_count: journey.tree_impact_count,
-            impacts: journey.impacts,
-            path: journey.path,
-            crossings: journey.crossings.into_found(),
-            visits: journey.visits.into_found(),
-            ledger: journey.ledger,
-            released_j: self.member.body.mass * course.gravity_m_s2 * fallen + kinetic,
-            effort,
-        }
+        self.journey.effort.triangles += self.member.grip.near.tested;
+        let released_j = self.member.body.mass * course.gravity_m_s2 * fallen + kinetic;
+        Trajectory { index, ..self.journey.into_trajectory(release, stop, released_j) }
     }
 }
