@@ -9,7 +9,7 @@ const FLAT: f64 = 1e-9;
 /// Most corners of a core.
 const MOST: usize = 64;
 /// Weight of "move along the mean normal" beside "keep every face where it is" when corners are moved inwards (–).
-const GUIDE: f64 = 1e-6;
+const GUIDE: f64 = 1e-10;
 
 /// Most corners that a core may have.
 pub const fn most_corners() -> usize {

@@ -303,3 +303,6 @@ fn nearest_of_segments((p1, q1): (Vec3, Vec3), (p2, q2): (Vec3, Vec3)) -> (Vec3,
     }
     (p1 + d1 * s, p2 + d2 * t)
 }
+
+#[cfg(test)]
+mod tests;

@@ -357,3 +357,6 @@ pub(crate) fn law_body(block: &Block, gravity_m_s2: f64) -> Body {
         gravity: Vec3::new(0.0, 0.0, -gravity_m_s2),
     }
 }
+
+#[cfg(test)]
+mod tests;
