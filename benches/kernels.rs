@@ -3,14 +3,14 @@
 
 use divan::{Bencher, black_box};
 use nalgebra::{Matrix6, Vector6};
-use rockfall::contact::Touches;
-use rockfall::contact::near::Near;
-use rockfall::flight::{Landing, Parabola, leap};
+use rockfall::contact::ContactPoints;
+use rockfall::contact::neighbours::Neighbours;
+use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
 use rockfall::ground::{Capture, Damping, Law};
 use rockfall::rock::{Motion, Vec3};
-use rockfall::step::grip::{Grip, World};
-use rockfall::step::law::Body;
-use rockfall::step::{Settings, Stepper, advance};
+use rockfall::solver::contact_state::{ContactEnvironment, ContactState};
+use rockfall::solver::law::Body;
+use rockfall::solver::{Settings, Stepper, advance};
 use rockfall::study::speed::rate::step_of;
 use rockfall::study::speed::slope::{GRAVITY_M_S2, GROUND, ROCK, SCHEMES, Slope};
 
@@ -39,8 +39,8 @@ fn law(step: &Settings) -> Law {
     Law::new(&GROUND, &Damping::of(GROUND.restitution), &ROCK, &capture)
 }
 
-fn world<'a>(slope: &'a Slope, laws: &'a [Law]) -> World<'a> {
-    World { terrain: &slope.terrain, body: Body::new(&ROCK, GRAVITY_M_S2), laws }
+fn world<'a>(slope: &'a Slope, laws: &'a [Law]) -> ContactEnvironment<'a> {
+    ContactEnvironment { terrain: &slope.terrain, body: Body::new(&ROCK, GRAVITY_M_S2), laws }
 }
 
 fn states(triangles: usize) -> States {
@@ -50,7 +50,7 @@ fn states(triangles: usize) -> States {
     let laws = [law(&step)];
     for index in 0..ROCKS {
         let world = world(&slope, &laws);
-        let mut grip = Grip::default();
+        let mut grip = ContactState::default();
         let mut now = slope.release(index).motion;
         while let Some(touch) = fly(&slope, &now, &mut flights) {
             touches.push(touch);
@@ -84,7 +84,9 @@ fn fly(slope: &Slope, now: &Motion, flights: &mut Vec<Parabola>) -> Option<Motio
         gravity: GRAVITY_M_S2,
         radius: ROCK.radius_m,
     };
-    let Landing::Touch(t) = leap(&slope.terrain, &flight, 60.0, &mut 0) else { return None };
+    let FlightEnd::Touch(t) = time_of_impact(&slope.terrain, &flight, 60.0, &mut 0) else {
+        return None;
+    };
     flights.push(flight);
     let (position_m, velocity_m_s) = (flight.centre(t), flight.velocity(t));
     Some(Motion { time_s: 0.0, position_m, velocity_m_s, spin_rad_s: now.spin_rad_s })
@@ -97,7 +99,7 @@ fn leap_to_the_next_touch(bencher: Bencher, triangles: usize) {
     let mut next = (0..flights.len()).cycle();
     bencher.bench_local(|| {
         let flight = &flights[next.next().unwrap_or(0)];
-        leap(&slope.terrain, black_box(flight), 60.0, &mut 0)
+        time_of_impact(&slope.terrain, black_box(flight), 60.0, &mut 0)
     });
 }
 
@@ -105,7 +107,7 @@ fn leap_to_the_next_touch(bencher: Bencher, triangles: usize) {
 #[divan::bench(args = SIZES)]
 fn collect_features(bencher: Bencher, triangles: usize) {
     let States { slope, touches, .. } = states(triangles);
-    let mut near = Near::default();
+    let mut near = Neighbours::default();
     let mut next = (0..touches.len()).cycle();
     let r = ROCK.radius_m;
     bencher.bench_local(|| {
@@ -119,16 +121,16 @@ fn collect_features(bencher: Bencher, triangles: usize) {
 fn ask_for_touches(bencher: Bencher, triangles: usize) {
     let States { slope, touches, .. } = states(triangles);
     let r = ROCK.radius_m;
-    let mut nears: Vec<(Near, Vec3)> = touches
+    let mut nears: Vec<(Neighbours, Vec3)> = touches
         .iter()
         .take(200)
         .map(|touch| {
-            let mut near = Near::default();
+            let mut near = Neighbours::default();
             near.collect(&slope.terrain, &touch.position_m, r, 0.35 * r, 0.1 * r);
             (near, touch.position_m)
         })
         .collect();
-    let mut found = Touches::default();
+    let mut found = ContactPoints::default();
     let mut next = (0..nears.len()).cycle();
     bencher.bench_local(|| {
         let (near, centre) = &mut nears[next.next().unwrap_or(0)];
@@ -144,7 +146,7 @@ fn first_step_of_an_impact(bencher: Bencher, scheme: &str) {
     let step = step_of(way);
     let laws = [law(&step)];
     let world = world(&slope, &laws);
-    let mut grip = Grip::default();
+    let mut grip = ContactState::default();
     let mut next = (0..touches.len()).cycle();
     bencher.bench_local(|| {
         let Motion { position_m, velocity_m_s, spin_rad_s, .. } = touches[next.next().unwrap_or(0)];

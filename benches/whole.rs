@@ -4,12 +4,12 @@
 //! one scheme on one slope and prints a line: `cargo bench --bench whole -- 300 100k adaptive 0.05`.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs)]
 
-use rockfall::step::Scheme;
+use rockfall::simulation::{Effort, Scratch, Stop, Trajectory};
+use rockfall::solver::Scheme;
 use rockfall::study::speed::rate::step_of;
 use rockfall::study::speed::slope::{SCHEMES, Slope};
 use rockfall::study::speed::{Order, WRITTEN, study};
 use rockfall::study::write_speed;
-use rockfall::trajectory::{Effort, Scratch, Stop, Trajectory};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

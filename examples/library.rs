@@ -6,7 +6,7 @@
 use rockfall::error::Result;
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
-use rockfall::trajectory::{Scratch, fall};
+use rockfall::simulation::{Scratch, simulate_release};
 use std::path::Path;
 
 fn main() -> Result<()> {
@@ -17,7 +17,7 @@ fn main() -> Result<()> {
     println!("{plan}");
     let mut scratch = Scratch::default();
     for index in 0..3 {
-        let fallen = fall(&plan, index, None, &mut scratch)?;
+        let fallen = simulate_release(&plan, index, None, &mut scratch)?;
         println!(
             "rock {index}: {:?} after {:.1} s and {:.1} m, {} impacts, numerical remainder {:.1e} of its energy",
             fallen.stop,

@@ -5,7 +5,7 @@
 //! short enough that an interrupt is answered in seconds and that its paths fit in memory.
 
 use crate::error::{Error, Result};
-use crate::trajectory::{Crossing, Impact, PathPoint, Trajectory, Visit};
+use crate::simulation::{CellPassage, Crossing, Impact, PathPoint, Trajectory};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -168,7 +168,7 @@ fn bytes_of(falls: &[Trajectory]) -> usize {
             + size_of_val::<[PathPoint]>(&fall.path)
             + size_of_val::<[Impact]>(&fall.impacts)
             + size_of_val::<[Crossing]>(&fall.crossings)
-            + size_of_val::<[Visit]>(&fall.visits)
+            + size_of_val::<[CellPassage]>(&fall.visits)
     };
     falls.iter().map(kept).sum()
 }

@@ -28,14 +28,13 @@ pub mod terrain;
 // physics
 pub mod contact;
 pub mod flight;
-pub mod step;
-pub mod coupled;
+pub mod solver;
 // question
 pub mod scene;
 pub mod release;
 pub mod plan;
 // run
-pub mod trajectory;
+pub mod simulation;
 pub mod ensemble;
 // answer
 pub mod hazard;

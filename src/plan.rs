@@ -23,7 +23,7 @@ use crate::ground::Ground;
 use crate::release::{self, Drawn, Lost, Release, Releases};
 use crate::rock::Rock;
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
-use crate::step::{Scheme, Settings};
+use crate::solver::{Scheme, Settings};
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
 use std::path::PathBuf;

@@ -16,6 +16,7 @@ use rockfall::plan::Plan;
 use rockfall::report;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
+use rockfall::simulation::{self, Scratch};
 use rockfall::study::aim::Aim;
 use rockfall::terrain::formats;
 use rockfall::terrain::health::Health;
@@ -23,7 +24,6 @@ use rockfall::terrain::read::Source;
 use rockfall::terrain::stl::write_binary;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain, make};
-use rockfall::trajectory::{self, Scratch};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -134,14 +134,15 @@ fn compute(
     let paths = matches!(order.part, Part::Only(_)).then(|| asked.clone());
     if plan.rock_against_rock.is_kept() {
         let stop = ensemble.stop_flag();
-        let falls = ensemble.install(|| trajectory::fall_together(plan, paths.as_ref(), &stop))?;
+        let falls = ensemble
+            .install(|| simulation::simulate_releases_together(plan, paths.as_ref(), &stop))?;
         // One world is one piece: stopped before its end, it leaves nothing to write.
         let remaining = output.remaining();
         let wanted = falls.into_iter().flatten().filter(|fall| remaining.contains(&fall.index));
         output.write(&wanted.collect::<Vec<_>>())?;
     } else {
         let fall = |index: usize, scratch: &mut Scratch| {
-            trajectory::fall(plan, index, paths.as_ref(), scratch)
+            simulation::simulate_release(plan, index, paths.as_ref(), scratch)
         };
         let chunks = ensemble.in_chunks(output.remaining(), Scratch::default, fall);
         beside(chunks, |falls| {

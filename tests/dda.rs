@@ -6,10 +6,10 @@ use common::episode::Episode;
 use common::{CASE, Case, G, GROUND, ROCK, terrain};
 use rockfall::ground::{Ground, damping_ratio, restitution};
 use rockfall::rock::{Rock, Vec3};
-use rockfall::step::Scheme;
-use rockfall::step::dda::own_restitution;
+use rockfall::simulation::Stop;
+use rockfall::solver::Scheme;
+use rockfall::solver::dda::own_restitution;
 use rockfall::terrain::{Terrain, make};
-use rockfall::trajectory::Stop;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, PI, SQRT_2};
 
 /// No dashpots: what the step itself dissipates.
@@ -275,11 +275,14 @@ fn a_groove_holds_with_two_contacts() {
         let start = [[0.0, 0.3, 0.5 * SQRT_2], [0.0; 3], [0.0; 3]];
         let end = Episode::new(&groove, &case, G).run(start, 10_000, |_, _| {});
         let place = end.c + groove.origin_m;
-        assert_eq!(end.holds.len(), 2);
+        assert_eq!(end.histories.len(), 2);
         // coordinates of 1 m, springs of 1e9 N/m: 1e-15 m are 1e-6 N
         assert!((place.z - (0.5 * SQRT_2 - sunk)).abs() < 1e-12, "{}", place.z);
         let share = FRAC_1_SQRT_2 * sunk * GROUND.normal_stiffness_n_m;
-        assert!(end.holds.iter().all(|hold| (hold.push - share).abs() < 1e-3), "{share}");
+        assert!(
+            end.histories.iter().all(|hold| (hold.normal_force - share).abs() < 1e-3),
+            "{share}"
+        );
     }
 }
 

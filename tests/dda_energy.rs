@@ -4,11 +4,11 @@ mod common;
 
 use common::episode::Episode;
 use common::{CASE, Case, G, terrain};
-use rockfall::flight::{Landing, Parabola, leap};
+use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
-use rockfall::step::Scheme;
-use rockfall::step::grip::{Grip, World};
+use rockfall::solver::Scheme;
+use rockfall::solver::contact_state::{ContactEnvironment, ContactState};
 use rockfall::terrain::grid::triangulate;
 use rockfall::terrain::stl::Facet;
 use rockfall::terrain::{Terrain, make};
@@ -79,7 +79,7 @@ fn watch(terrain: &Terrain, case: &Case) -> u64 {
             let local = start - terrain.origin_m;
             let flight =
                 Parabola { start: local, velocity, gravity: G, radius: case.rock.radius_m };
-            let Landing::Touch(t) = leap(terrain, &flight, 9.0, &mut 0) else { break };
+            let FlightEnd::Touch(t) = time_of_impact(terrain, &flight, 9.0, &mut 0) else { break };
             let touch = flight.centre(t) + terrain.origin_m;
             let mut before = f64::INFINITY;
             let at_touch = [touch.into(), flight.velocity(t).into(), spin];
@@ -97,7 +97,7 @@ fn watch(terrain: &Terrain, case: &Case) -> u64 {
 }
 
 /// Energy of motion, height and springs (J).
-fn total_j(world: &World, grip: &Grip) -> f64 {
+fn total_j(world: &ContactEnvironment, grip: &ContactState) -> f64 {
     let weight = world.body.mass * world.body.gravity.dot(&grip.c);
     grip.motion_j(&world.body) - weight + grip.stored_j(world).sum()
 }

@@ -3,14 +3,14 @@
 mod common;
 use common::*;
 use nalgebra::Rotation3;
-use rockfall::contact::Touches;
-use rockfall::contact::near::Near;
-use rockfall::flight::{Landing, Parabola, leap};
+use rockfall::contact::ContactPoints;
+use rockfall::contact::neighbours::Neighbours;
+use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
+use rockfall::simulation::{FeatureKind, Stop};
 use rockfall::terrain::stl::Facet;
 use rockfall::terrain::{Terrain, make};
-use rockfall::trajectory::{FeatureKind, Stop};
 
 fn stiff(p_n: f64) -> Ground {
     Ground { normal_stiffness_n_m: p_n, shear_stiffness_n_m: 0.25 * p_n, ..GROUND }
@@ -154,15 +154,17 @@ fn leaps_end_at_the_touch() {
         let terrain = terrain(facets);
         let start = at(0.0, 0.0, 5.0) - terrain.origin_m;
         let flight = Parabola { start, velocity: at(3.0, 0.0, 0.0), gravity: G, radius: 0.5 };
-        let Landing::Touch(t) = leap(&terrain, &flight, 9.0, &mut 0) else { panic!("{name}") };
+        let FlightEnd::Touch(t) = time_of_impact(&terrain, &flight, 9.0, &mut 0) else {
+            panic!("{name}")
+        };
         println!("leap to {name}: {t} for {exact}, error {:.1e}", (t - exact).abs());
         assert!((t - exact).abs() < 5e-14, "{name}: {t} for {exact}");
     }
 }
 
 /// The contacts of a rock of radius 0.5 m at a map position.
-fn touches(terrain: &Terrain, centre: Vec3) -> Touches {
-    let (mut near, mut touches) = (Near::default(), Touches::default());
+fn touches(terrain: &Terrain, centre: Vec3) -> ContactPoints {
+    let (mut near, mut touches) = (Neighbours::default(), ContactPoints::default());
     let centre = centre - terrain.origin_m;
     near.collect(terrain, &centre, 0.5, 0.175, 0.05);
     near.touches(terrain, &centre, 0.5 * (1.0 + 1e-7), &mut touches);

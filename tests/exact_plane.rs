@@ -5,9 +5,9 @@ use common::*;
 use nalgebra::Rotation3;
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
-use rockfall::step::Scheme;
+use rockfall::simulation::{Stop, Trajectory};
+use rockfall::solver::Scheme;
 use rockfall::terrain::{Terrain, make};
-use rockfall::trajectory::{Stop, Trajectory};
 
 /// The same plane, falling in +y, from unlike triangles.
 fn planes(angle_rad: f64) -> Vec<Terrain> {

@@ -9,10 +9,12 @@ use rockfall::ground::Ground;
 use rockfall::plan::{RestRule, Watch};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::step::{Scheme, Settings};
+use rockfall::simulation::{
+    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, WorldStats, simulate_world,
+};
+use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::Terrain;
 use rockfall::terrain::make::jittered_plane;
-use rockfall::trajectory::{Answer, Census, Course, Keep, Stop, Trajectory, follow_counted};
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
@@ -44,7 +46,7 @@ impl World {
         terrain: &Terrain,
         spheres: &[Sphere],
         longest_s: f64,
-    ) -> (Vec<Trajectory>, Census) {
+    ) -> (Vec<Trajectory>, WorldStats) {
         let step = Settings {
             scheme: self.scheme,
             tolerance_m_s: 1e-4,
@@ -53,7 +55,7 @@ impl World {
             plane_impacts: true,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
-        let course = Course {
+        let course = RunSettings {
             terrain,
             gravity_m_s2: self.gravity_m_s2,
             step: &step,
@@ -73,10 +75,11 @@ impl World {
         };
         let releases: Vec<Release> = spheres.iter().map(release).collect();
         let ground = Ground { restitution: self.restitution, ..GROUND };
-        let answer = Answer { ground, strength: self.strength };
+        let answer = PairMaterial { ground, strength: self.strength };
         let keep = |_| Keep { path_step_s: None, impacts: false };
         let never = AtomicBool::new(false);
-        let (falls, census) = follow_counted(&course, &releases, &answer, keep, &never).unwrap();
+        let (falls, census) =
+            simulate_world(&course, &releases, &answer, keep, Observer::silent(&never)).unwrap();
         for fall in &falls {
             assert!(!matches!(fall.stop, Stop::Failed(_)), "{:?}", fall.stop);
         }

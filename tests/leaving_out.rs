@@ -3,14 +3,14 @@
 
 mod common;
 use common::zoo::{KINDS, between, dice, point, zoo};
-use rockfall::contact::near::Near;
-use rockfall::contact::{Touch, Touches};
-use rockfall::flight::{Landing, Parabola, leap};
+use rockfall::contact::neighbours::Neighbours;
+use rockfall::contact::{ContactPoint, ContactPoints};
+use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
 use rockfall::plan::Plan;
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
+use rockfall::simulation::{Effort, Scratch, Trajectory, simulate_release};
 use rockfall::terrain::Terrain;
-use rockfall::trajectory::{Effort, Scratch, Trajectory, fall};
 use std::path::Path;
 
 fn plan(scene: &str) -> Plan {
@@ -24,7 +24,9 @@ fn plan(scene: &str) -> Plan {
 
 fn falls(plan: &Plan) -> Vec<Trajectory> {
     let mut scratch = Scratch::default();
-    (0..plan.count).map(|index| fall(plan, index, None, &mut scratch).unwrap()).collect()
+    (0..plan.count)
+        .map(|index| simulate_release(plan, index, None, &mut scratch).unwrap())
+        .collect()
 }
 
 #[test]
@@ -43,8 +45,8 @@ fn a_lean_plan_gives_the_same_rocks_as_a_full_one() {
     }
 }
 
-fn touches(terrain: &Terrain, centre: &Vec3, radius: f64) -> Vec<Touch> {
-    let (mut near, mut touches) = (Near::default(), Touches::default());
+fn touches(terrain: &Terrain, centre: &Vec3, radius: f64) -> Vec<ContactPoint> {
+    let (mut near, mut touches) = (Neighbours::default(), ContactPoints::default());
     near.collect(terrain, centre, radius, 0.35 * radius, 0.1 * radius);
     near.touches(terrain, centre, radius, &mut touches);
     touches.iter().copied().collect()
@@ -81,17 +83,17 @@ fn features_left_out_are_never_touched() {
             if !touches(&full, &flight.start, radius).is_empty() {
                 continue;
             }
-            let end = leap(&lean, &flight, 5.0, &mut 0);
-            let whole = leap(&full, &flight, 5.0, &mut 0);
+            let end = time_of_impact(&lean, &flight, 5.0, &mut 0);
+            let whole = time_of_impact(&full, &flight, 5.0, &mut 0);
             // an edge's time may be rounded otherwise in the narrower window that a neighbour leaves
             let same = match (end, whole) {
-                (Landing::Touch(one), Landing::Touch(other)) => {
+                (FlightEnd::Touch(one), FlightEnd::Touch(other)) => {
                     (one - other).abs() <= 1e-14 * one.max(1.0)
                 }
                 _ => end == whole,
             };
             assert!(same, "{} {mesh} {index}: {end:?} {whole:?}", KINDS[kind]);
-            landed += usize::from(matches!(end, Landing::Touch(_)));
+            landed += usize::from(matches!(end, FlightEnd::Touch(_)));
         }
     }
     assert!(left_out > 1000 && touched > 5000 && landed > 4000, "{left_out} {touched} {landed}");

@@ -4,10 +4,10 @@
 
 use rockfall::ground::{Ground, damping_ratio, normal_impact};
 use rockfall::rock::Vec3;
-use rockfall::step::Scheme;
+use rockfall::simulation::Scratch;
+use rockfall::solver::Scheme;
 use rockfall::study::bench::{GRAVITY_M_S2, GROUND, SETUP, Setup, settings, terrain};
 use rockfall::terrain::make;
-use rockfall::trajectory::Scratch;
 
 /// One rock dropped upright: what one impact lost by the ledger's own account (J over the energy of the approach), and
 /// what it lost more than the closed form says.

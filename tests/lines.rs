@@ -4,7 +4,7 @@
 
 use rockfall::plan::{Part, Plan};
 use rockfall::scene::Scene;
-use rockfall::trajectory::{Scratch, Stop, Trajectory, fall};
+use rockfall::simulation::{Scratch, Stop, Trajectory, simulate_release};
 use std::path::Path;
 
 fn plan_of(text: &str) -> Plan {
@@ -23,7 +23,7 @@ fn quick(more: &str) -> Plan {
 
 fn falls(plan: &Plan, count: usize) -> Vec<Trajectory> {
     let mut scratch = Scratch::default();
-    (0..count).map(|index| fall(plan, index, None, &mut scratch).unwrap()).collect()
+    (0..count).map(|index| simulate_release(plan, index, None, &mut scratch).unwrap()).collect()
 }
 
 const LINES: &str = r#"

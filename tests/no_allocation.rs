@@ -4,10 +4,10 @@
 //! itself.
 
 use allocation_counter::measure;
-use rockfall::step::Scheme;
+use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, simulate};
+use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
 use rockfall::study::speed::slope::{SCHEMES, Slope};
-use rockfall::trajectory::{Course, Keep, Scratch, Stop, follow};
 
 /// Rocks that make room, and rocks that must find it.
 const WARM: usize = 12;
@@ -22,7 +22,7 @@ fn no_memory_is_taken_while_a_rock_falls() {
         let fineness = if scheme == Scheme::Dda { DDA_STEP_S } else { fineness };
         let rocks = if scheme == Scheme::Reference { COUNTED / 4 } else { COUNTED };
         let step = settings(scheme, fineness, None);
-        let course: Course = slope.course(&step);
+        let course: RunSettings = slope.course(&step);
         let mut scratch = Scratch::default();
         for index in 0..WARM {
             slope.fall(&step, index, &mut scratch);
@@ -34,7 +34,7 @@ fn no_memory_is_taken_while_a_rock_falls() {
             let keep = Keep { path_step_s: None, impacts: false };
             let mut fallen = None;
             let taken = measure(|| {
-                fallen = Some(follow(&course, &release, keep, &mut chance, &mut scratch));
+                fallen = Some(simulate(&course, &release, keep, &mut chance, &mut scratch));
             });
             let fallen = fallen.expect("it has fallen");
             assert!(!matches!(fallen.stop, Stop::Failed(_)), "{:?}", fallen.stop);
@@ -62,7 +62,7 @@ fn a_kept_path_takes_memory() {
     let keep = Keep { path_step_s: Some(0.05), impacts: false };
     let mut scratch = Scratch::default();
     let taken = measure(|| {
-        drop(follow(&course, &release, keep, &mut chance, &mut scratch));
+        drop(simulate(&course, &release, keep, &mut chance, &mut scratch));
     });
     assert!(taken.count_total > 0);
 }

@@ -9,8 +9,8 @@ mod common;
 use common::zoo::*;
 use common::*;
 use rockfall::contact::closest::closest_on;
-use rockfall::contact::near::Near;
-use rockfall::contact::{MOST, Touches};
+use rockfall::contact::neighbours::Neighbours;
+use rockfall::contact::{ContactPoints, MOST};
 use rockfall::rock::Vec3;
 use rockfall::terrain::{Terrain, make};
 
@@ -106,7 +106,7 @@ fn patches(terrain: &Terrain, c: &Vec3, radius: f64) -> (f64, usize) {
 #[test]
 fn touches_are_the_local_minima_of_the_distance() {
     let (mut asked, mut most, mut merged) = (0, 0, 0);
-    let (mut near, mut touches) = (Near::default(), Touches::default());
+    let (mut near, mut touches) = (Neighbours::default(), ContactPoints::default());
     for kind in 0..KINDS.len() {
         for mesh in 0..12 {
             let terrain = zoo(kind, mesh);
@@ -170,7 +170,7 @@ fn one_plane_is_one_contact() {
         let terrain = terrain(facets.into_iter().map(|f| f.map(|p| p + map)).collect());
         let normal = Vec3::new(0.0, f64::sin(angle), f64::cos(angle));
         let radius = 0.5;
-        let (mut near, mut touches) = (Near::default(), Touches::default());
+        let (mut near, mut touches) = (Neighbours::default(), ContactPoints::default());
         let features = &terrain.features;
         let mut feet: Vec<Vec3> = terrain.vertices_m.clone();
         for &[a, b] in &features.edges.ends {

@@ -8,7 +8,7 @@
 mod common;
 use common::zoo::*;
 use common::*;
-use rockfall::flight::{Landing, Parabola, leap};
+use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
 use rockfall::rock::Vec3;
 use rockfall::terrain::Terrain;
 
@@ -19,12 +19,12 @@ const MESHES: usize = 24;
 const FLIGHTS: usize = 120;
 
 /// Checks one leap: nothing is touched before, the touch is one, and it closes.
-fn check(terrain: &Terrain, flight: &Parabola, longest: f64) -> Result<Landing, String> {
-    let landing = leap(terrain, flight, longest, &mut 0);
+fn check(terrain: &Terrain, flight: &Parabola, longest: f64) -> Result<FlightEnd, String> {
+    let landing = time_of_impact(terrain, flight, longest, &mut 0);
     let (until, touch) = match landing {
-        Landing::Touch(t) => (t, true),
-        Landing::Leaves(t) => (t.max(longest), false),
-        Landing::Flies => (longest, false),
+        FlightEnd::Touch(t) => (t, true),
+        FlightEnd::Leaves(t) => (t.max(longest), false),
+        FlightEnd::Flies => (longest, false),
     };
     let early = crawl(terrain, flight, flight.radius - DEEP, until);
     if let Some(t) = early.filter(|&t| !touch || t < until - 1e-7) {
@@ -72,7 +72,7 @@ fn no_flight_from_the_air_misses_or_invents_a_touch() {
                 let flight = Parabola { start, velocity, gravity, radius };
                 flights += 1;
                 match check(&terrain, &flight, 3.0) {
-                    Ok(landing) => touches += usize::from(matches!(landing, Landing::Touch(_))),
+                    Ok(landing) => touches += usize::from(matches!(landing, FlightEnd::Touch(_))),
                     Err(failure) => failures.push(format!("{} {mesh} {failure}", KINDS[kind])),
                 }
             }
@@ -99,7 +99,9 @@ fn no_flight_from_a_touch_falls_through() {
                 if distance(&terrain, &start) < radius + 1e-6 {
                     continue;
                 }
-                let Landing::Touch(t) = leap(&terrain, &flight, 3.0, &mut 0) else { continue };
+                let FlightEnd::Touch(t) = time_of_impact(&terrain, &flight, 3.0, &mut 0) else {
+                    continue;
+                };
                 if let Err(failure) = check(&terrain, &flight, 3.0) {
                     failures.push(format!("first {} {mesh} {failure}", KINDS[kind]));
                 }
@@ -144,8 +146,8 @@ fn a_wall_is_met_however_its_box_rounds() {
         let gravity = if index % 2 == 0 { 0.0 } else { G };
         let velocity = Vec3::new(speed, between(chance, -1.0, 1.0), between(chance, -1.0, 1.0));
         let flight = Parabola { start, velocity, gravity, radius };
-        match leap(&terrain, &flight, 3.0, &mut 0) {
-            Landing::Touch(t) if (t * speed - gap).abs() < 1e-11 => {}
+        match time_of_impact(&terrain, &flight, 3.0, &mut 0) {
+            FlightEnd::Touch(t) if (t * speed - gap).abs() < 1e-11 => {}
             other => missed.push(format!("{other:?} for {}: {flight:?}", gap / speed)),
         }
     }

@@ -9,10 +9,12 @@ use rockfall::ground::Ground;
 use rockfall::plan::RestRule;
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::step::{Scheme, Settings};
+use rockfall::simulation::{
+    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, simulate_world,
+};
+use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::Terrain;
 use rockfall::terrain::make::jittered_plane;
-use rockfall::trajectory::{Answer, Course, Keep, Stop, Trajectory, follow_together};
 use std::sync::atomic::AtomicBool;
 
 /// Spheres in one world.
@@ -50,7 +52,7 @@ impl World {
             plane_impacts: true,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
-        let course = Course {
+        let course = RunSettings {
             terrain,
             gravity_m_s2: self.gravity_m_s2,
             step: &step,
@@ -76,10 +78,11 @@ impl World {
             friction_angle_rad: self.friction_angle_rad,
             ..GROUND
         };
-        let answer = Answer { ground, strength: self.strength };
+        let answer = PairMaterial { ground, strength: self.strength };
         let keep = |_| Keep { path_step_s: None, impacts: false };
         let never = AtomicBool::new(false);
-        let falls = follow_together(&course, &releases, &answer, keep, &never).unwrap();
+        let falls =
+            simulate_world(&course, &releases, &answer, keep, Observer::silent(&never)).unwrap().0;
         for fall in &falls {
             assert!(!matches!(fall.stop, Stop::Failed(_)), "{:?}", fall.stop);
         }

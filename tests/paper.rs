@@ -1,7 +1,7 @@
 //! The method paper's four examples, with its own scheme and step and with the default scheme.
 #![allow(clippy::unwrap_used, reason = "a test whose example cannot be planned has failed")]
 
-use rockfall::step::Scheme;
+use rockfall::solver::Scheme;
 use rockfall::study::verify::{Example, Verification};
 
 /// Runs an example; every row of its table must hold.

@@ -2,15 +2,15 @@
 
 mod common;
 use common::*;
-use rockfall::contact::Touches;
-use rockfall::contact::near::Near;
+use rockfall::contact::ContactPoints;
+use rockfall::contact::neighbours::Neighbours;
 use rockfall::rock::{Rock, Vec3};
-use rockfall::step::Scheme;
+use rockfall::solver::Scheme;
 use rockfall::terrain::Terrain;
 
 /// Energy and force over `p_N` of a ball of `radius` at `centre`, as the contacts say: `½ Σ |a|² pen²`, `Σ |a|² pen n̂`.
-fn pressed(terrain: &Terrain, near: &mut Near, centre: &Vec3, radius: f64) -> (f64, Vec3) {
-    let mut touches = Touches::default();
+fn pressed(terrain: &Terrain, near: &mut Neighbours, centre: &Vec3, radius: f64) -> (f64, Vec3) {
+    let mut touches = ContactPoints::default();
     near.collect(terrain, centre, radius, 0.1 * radius, 0.1 * radius);
     near.touches(terrain, centre, radius, &mut touches);
     touches.iter().fold((0.0, Vec3::zeros()), |(energy, force), touch| {
@@ -39,7 +39,7 @@ fn energies_are_those_of_the_sum_over_all_simplices() {
     let rough = read(include_str!("patch/rough.csv"));
     let facets = rough.iter().map(|row| [point(&row[0..3]), point(&row[3..6]), point(&row[6..9])]);
     let rough = terrain(facets.collect());
-    let mut near = Near::default();
+    let mut near = Neighbours::default();
     let mut several = 0;
     for row in read(include_str!("patch/energies.csv")) {
         let made;

@@ -14,8 +14,8 @@ mod common;
 use common::G;
 use common::together::{Sphere, WORLD, World, energy_j, plane};
 use rockfall::ground::Ground;
-use rockfall::step::Scheme;
-use rockfall::trajectory::{Stop, Trajectory};
+use rockfall::simulation::{Stop, Trajectory};
+use rockfall::solver::Scheme;
 
 fn pyramid(r: f64) -> Vec<Sphere> {
     let aside = 2.0 * r / 3.0f64.sqrt();

@@ -9,7 +9,7 @@ use rockfall::plan::{Part, Plan};
 use rockfall::release::{Release, Releases};
 use rockfall::rock::Vec3;
 use rockfall::scene::Scene;
-use rockfall::step::Scheme;
+use rockfall::solver::Scheme;
 use rockfall::terrain::Terrain;
 use rockfall::terrain::make::jittered_plane;
 use std::path::Path;

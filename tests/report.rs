@@ -20,7 +20,7 @@ use rockfall::report::panel::{FOOT_PX, Panel};
 use rockfall::report::paper::{Label, Pen, paint};
 use rockfall::report::svg::path::Frame;
 use rockfall::report::{self, html};
-use rockfall::trajectory::{PathState, Stop};
+use rockfall::simulation::{PathState, Stop};
 
 /// What is drawn is written: a file for every figure, and the page with all of them in it.
 #[test]

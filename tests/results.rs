@@ -9,7 +9,7 @@ use rockfall::error::Result;
 use rockfall::hazard::{Hazard, Layer, Quantity, Row, StopKind};
 use rockfall::output::{self, ImpactRow, Mode, Output, PathRow, RunInfo};
 use rockfall::rock::Vec3;
-use rockfall::trajectory::{Stop, Trajectory};
+use rockfall::simulation::{Stop, Trajectory};
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::Path;

@@ -6,8 +6,8 @@ mod common;
 use common::terrain;
 use common::together::{Sphere, WORLD, World, energy_j};
 use rockfall::rock::Vec3;
+use rockfall::simulation::Trajectory;
 use rockfall::terrain::Terrain;
-use rockfall::trajectory::Trajectory;
 
 /// Two far triangles whose box is 100 m wide: nothing but the other spheres is touched.
 fn space() -> Terrain {

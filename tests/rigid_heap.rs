@@ -5,15 +5,15 @@ mod common;
 
 use common::together::{Sphere, WORLD, World, energy_j, plane};
 use common::{CASE, Case, G, GROUND, terrain};
-use rockfall::contact::pair::Tie;
-use rockfall::coupled::{Cluster, Member, Seat};
+use rockfall::contact::pair::PairHistory;
 use rockfall::ground::{Capture, Damping, Ground, Law};
 use rockfall::rock::{Rock, Vec3};
-use rockfall::step::Scheme;
-use rockfall::step::law::Body;
+use rockfall::simulation::{Stop, Trajectory};
+use rockfall::solver::Scheme;
+use rockfall::solver::island::{BodySlot, Island, IslandBody};
+use rockfall::solver::law::Body;
 use rockfall::terrain::Terrain;
 use rockfall::terrain::make::{containers, jittered_plane};
-use rockfall::trajectory::{Stop, Trajectory};
 
 fn still(radius: f64, c: [f64; 3]) -> Sphere {
     (radius, 2700.0, c, [0.0; 3], [0.0; 3])
@@ -159,7 +159,7 @@ fn a_sphere_on_three_others_is_carried_by_a_third_each() {
     let law = Law::new(&GROUND, &damping, &rock, &capture);
     let member = |c: Vec3| {
         let start = (c - floor.origin_m, Vec3::zeros(), Vec3::zeros());
-        Seat::new(Member::new(Body::new(&rock, G), vec![law], start))
+        BodySlot::new(IslandBody::new(Body::new(&rock, G), vec![law], start))
     };
     let around = |k: f64| {
         let (sin, cos) = (k * std::f64::consts::TAU / 3.0).sin_cos();
@@ -170,19 +170,20 @@ fn a_sphere_on_three_others_is_carried_by_a_third_each() {
     let mass = (rock.mass_kg() / 2.0, r);
     let between = Law::of_mass(&GROUND, &damping, mass, &capture);
     let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
-    let ties = pairs.into_iter().map(|(a, b)| Tie::new(a, b, between)).collect();
-    let mut island = Cluster::new(&floor, members, ties);
+    let ties = pairs.into_iter().map(|(a, b)| PairHistory::new(a, b, between)).collect();
+    let mut island = Island::new(&floor, members, ties);
     for _ in 0..1000 {
         assert!(!island.advance_rigid(1e-3, 1e-3).unwrap().unsettled);
     }
     let weight = rock.mass_kg() * G;
-    for tie in island.ties.iter().filter(|tie| tie.b == 3) {
-        let (push, drag) = (tie.push / weight, tie.drag.norm() / weight);
+    for tie in island.pair_histories.iter().filter(|tie| tie.b == 3) {
+        let (normal_force, shear_force) =
+            (tie.normal_force / weight, tie.shear_force.norm() / weight);
         let exact = (theta / 2.0).tan() / 3.0;
-        assert!((push - 1.0 / 3.0).abs() < 5e-3, "{push}");
-        assert!((drag - exact).abs() < 5e-3, "{drag} {exact}");
+        assert!((normal_force - 1.0 / 3.0).abs() < 5e-3, "{normal_force}");
+        assert!((shear_force - exact).abs() < 5e-3, "{shear_force} {exact}");
     }
-    let off = (island.members[3].grip.c + floor.origin_m - top).norm();
+    let off = (island.members[3].state.c + floor.origin_m - top).norm();
     assert!(off < 1e-4 * r, "it sank by {off:e}");
 }
 

@@ -4,7 +4,7 @@ mod common;
 use common::*;
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
-use rockfall::step::Scheme;
+use rockfall::solver::Scheme;
 use std::f64::consts::TAU;
 
 fn elastic(roughness_deg: f64) -> Ground {

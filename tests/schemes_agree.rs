@@ -4,8 +4,8 @@
 
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
-use rockfall::step::Scheme;
-use rockfall::trajectory::{Scratch, Trajectory, fall};
+use rockfall::simulation::{Scratch, Trajectory, simulate_release};
+use rockfall::solver::Scheme;
 use std::path::Path;
 
 const ROCKS: usize = 600;
@@ -20,7 +20,7 @@ fn falls(scheme: Scheme, roughness_deg: f64) -> Vec<Trajectory> {
     let (terrain, _) = scene.read_terrain().unwrap();
     let plan = Plan::compile(&scene, terrain).unwrap();
     let mut scratch = Scratch::default();
-    (0..ROCKS).map(|index| fall(&plan, index, None, &mut scratch).unwrap()).collect()
+    (0..ROCKS).map(|index| simulate_release(&plan, index, None, &mut scratch).unwrap()).collect()
 }
 
 /// Largest distance of two empirical distributions of equally many values.

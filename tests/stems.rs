@@ -10,19 +10,19 @@ mod common;
 use common::{GROUND, ROCK};
 use proptest::prelude::*;
 use rockfall::chance::{Distribution, Purpose, stream};
-use rockfall::contact::Touches;
-use rockfall::contact::near::Near;
-use rockfall::flight::{Parabola, leap, leap_past};
+use rockfall::contact::ContactPoints;
+use rockfall::contact::neighbours::Neighbours;
+use rockfall::flight::{Parabola, time_of_impact, time_of_impact_past};
 use rockfall::plan::{RestRule, Watch};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Vec3};
-use rockfall::step::{Scheme, Settings};
+use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, Trajectory, simulate};
+use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::make::{Stem, square_stem};
 use rockfall::terrain::stems::Stems;
 use rockfall::terrain::stl::{Facet, Soup};
 use rockfall::terrain::weld::{Piece, Up, weld};
 use rockfall::terrain::{Sheet, Terrain};
-use rockfall::trajectory::{Course, Keep, Scratch, Stop, Trajectory, follow};
 use std::path::Path;
 use std::process::Command;
 
@@ -56,7 +56,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
         plane_impacts: true,
         capture_speed_m_s: None,
     };
-    let course = Course {
+    let course = RunSettings {
         terrain,
         gravity_m_s2: 0.0,
         step: &step,
@@ -73,7 +73,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
     let grounds = vec![GROUND; 2];
     let release = Release { rock: ROCK, motion, grounds };
     let keep = Keep { path_step_s: None, impacts: true };
-    follow(&course, &release, keep, &mut stream(1, Purpose::Impacts, 0), scratch)
+    simulate(&course, &release, keep, &mut stream(1, Purpose::Impacts, 0), scratch)
 }
 
 fn energy_j(fall: &Trajectory, motion: &Motion) -> f64 {
@@ -186,17 +186,17 @@ proptest! {
         let gone: Vec<u32> = (0..3).filter(|&stem| stem != first).collect();
         let one = stand(1, None);
         let at = |terrain: &Terrain| Parabola { start: flight.start - terrain.origin_m, ..flight };
-        let past = leap_past(&three, &at(&three), 2.0, &gone, &mut 0);
-        let never = leap(&one, &at(&one), 2.0, &mut 0);
+        let past = time_of_impact_past(&three, &at(&three), 2.0, &gone, &mut 0);
+        let never = time_of_impact(&one, &at(&one), 2.0, &mut 0);
         // the box that a rock leaves may be another, what it touches is the same
-        let touch = |landing| if let rockfall::flight::Landing::Touch(t) = landing { t } else { f64::INFINITY };
+        let touch = |landing| if let rockfall::flight::FlightEnd::Touch(t) = landing { t } else { f64::INFINITY };
         prop_assert!((touch(past) - touch(never)).abs() < 1e-9 || touch(past) == touch(never));
         let touches = |terrain: &Terrain, gone: &[u32]| {
-            let mut near = Near::default();
+            let mut near = Neighbours::default();
             near.gone.extend(gone);
             let centre = at(terrain).start;
             near.collect(terrain, &centre, flight.radius, 0.35, 0.1);
-            let mut touches = Touches::default();
+            let mut touches = ContactPoints::default();
             near.touches(terrain, &centre, flight.radius + 0.1, &mut touches);
             touches.iter().map(|touch| (touch.distance_m, touch.normal)).collect::<Vec<_>>()
         };

@@ -1,9 +1,9 @@
 //! The exact cases over every scheme, and the studies as commands.
 #![allow(clippy::unwrap_used, reason = "a test without its files has failed")]
 
-use rockfall::step::Scheme;
+use rockfall::simulation::Scratch;
+use rockfall::solver::Scheme;
 use rockfall::study::cases::CASES;
-use rockfall::trajectory::Scratch;
 use std::fs;
 use std::process::Command;
 

@@ -2,12 +2,12 @@
 
 mod common;
 use common::{CASE, Case, GROUND, terrain};
-use rockfall::contact::hold::carry;
+use rockfall::contact::history::carry;
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
-use rockfall::step::Scheme;
+use rockfall::simulation::{Stop, Trajectory};
+use rockfall::solver::Scheme;
 use rockfall::terrain::make;
-use rockfall::trajectory::{Stop, Trajectory};
 
 const REST: [f64; 3] = [0.0; 3];
 

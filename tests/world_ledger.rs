@@ -11,8 +11,8 @@ use common::together::{Sphere, WORLD, World, plane};
 use common::{G, GROUND};
 use rockfall::contact::pair::Strength;
 use rockfall::ground::Ground;
-use rockfall::step::Scheme;
-use rockfall::trajectory::Trajectory;
+use rockfall::simulation::Trajectory;
+use rockfall::solver::Scheme;
 
 fn heap(count: usize) -> Vec<Sphere> {
     let sphere = |k: usize| {

@@ -6,7 +6,7 @@ mod program;
 use program::{results, rockfall, same_results};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
-use rockfall::trajectory::{Scratch, fall};
+use rockfall::simulation::{Scratch, simulate_release};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -154,7 +154,7 @@ fn hits_are_where_paths_say() {
     let mut scratch = Scratch::default();
     let (mut hits, mut misses) = (0, 0);
     for index in 0..60 {
-        let fall = fall(&plan, index, None, &mut scratch).unwrap();
+        let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
         for (line, curtain) in plan.watch().lines.iter().enumerate() {
             let Some(footprint) = curtain.footprint else { continue };
             let free_m = |x: f64, y: f64| curtain.gap_m(footprint, [x, y]).0 - fall.rock.radius_m;

@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use crate::hazard::{Agreement, Row, Way};
 use crate::plan::Plan;
 use crate::scene::{Scene, VaryTable};
+use crate::simulation::{Scratch, simulate_release};
 use crate::terrain::Terrain;
-use crate::trajectory::{Scratch, fall};
 
 /// Values tried of each quantity in the first grid, and in each refinement: of one or two quantities, and of three.
 const GRID: [[usize; 3]; 2] = [[6, 5, 5], [5, 4, 4]];
@@ -163,7 +163,8 @@ impl Site {
         let plan = Plan::compile(&self.scene, terrain)?;
         let origin_m = plan.terrain.origin_m;
         let mut computed = Computed::new();
-        let one = |index: usize, scratch: &mut Scratch| fall(&plan, index, None, scratch);
+        let one =
+            |index: usize, scratch: &mut Scratch| simulate_release(&plan, index, None, scratch);
         for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {
             let way = |fall| Way::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
             computed.extend(falls?.iter().filter_map(way));

@@ -5,7 +5,7 @@ use super::{CHECK_FAILED, say};
 use crate::wiring::study::{self as wiring, SceneOrder};
 use clap::{Args, Subcommand};
 use rockfall::error::Result;
-use rockfall::step::Scheme;
+use rockfall::solver::Scheme;
 use rockfall::study::aim::Aim;
 use std::path::PathBuf;
 use std::process::ExitCode;

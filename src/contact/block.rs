@@ -12,8 +12,8 @@
 //!
 //! Only edges and vertices that stand out of the mesh take part, so most pairs need no test at all.
 
-use super::near::{Near, Peak, SharpEdge};
-use super::{Feature, Touch, Touches};
+use super::neighbours::{Neighbours, Peak, SharpEdge};
+use super::{ContactPoint, ContactPoints, Feature};
 use crate::body::Block;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -68,7 +68,7 @@ struct Placed<'a> {
 /// The contacts of a block that are no further away than `reach_m`, in a fixed order: corners, edges, faces. `near` must have been
 /// collected with the balls' radius, for a margin that holds the core.
 pub fn touches(
-    near: &mut Near,
+    near: &mut Neighbours,
     terrain: &Terrain,
     (block, pose): (&Block, &Pose),
     reach_m: f64,
@@ -78,7 +78,7 @@ pub fn touches(
     let corners = block.core.corners.iter().map(|own| pose.point(own)).collect();
     let placed = Placed { block, pose, corners };
     let reach = block.ball_m + reach_m;
-    let mut of_ball = Touches::default();
+    let mut of_ball = ContactPoints::default();
     for p in &placed.corners {
         near.touches(terrain, p, reach, &mut of_ball);
         for touch in of_ball.iter() {
@@ -95,7 +95,7 @@ pub fn touches(
 
 impl Placed<'_> {
     /// Adds the contact of a core point `p`, unless it is there already.
-    fn add(&self, p: &Vec3, touch: &Touch, found: &mut Vec<BlockTouch>) {
+    fn add(&self, p: &Vec3, touch: &ContactPoint, found: &mut Vec<BlockTouch>) {
         let ball = self.block.ball_m;
         let lever = p - self.pose.centre - touch.normal * ball;
         let near = SAME * ball;
@@ -117,7 +117,7 @@ impl Placed<'_> {
     /// The block's edges that cross an edge of the mesh.
     fn on_edge(
         &self,
-        (near, terrain): (&Near, &Terrain),
+        (near, terrain): (&Neighbours, &Terrain),
         edge: &SharpEdge,
         reach: f64,
         found: &mut Vec<BlockTouch>,
@@ -148,7 +148,7 @@ impl Placed<'_> {
     /// The block's edges and faces over a vertex of the mesh.
     fn on_peak(
         &self,
-        (near, terrain): (&Near, &Terrain),
+        (near, terrain): (&Neighbours, &Terrain),
         peak: &Peak,
         reach: f64,
         found: &mut Vec<BlockTouch>,
@@ -191,8 +191,8 @@ impl Placed<'_> {
     }
 }
 
-fn point(feature: Feature, triangle: u32, (normal, distance_m): (Vec3, f64)) -> Touch {
-    Touch { feature, triangle, normal, distance_m, gain2: 1.0 }
+fn point(feature: Feature, triangle: u32, (normal, distance_m): (Vec3, f64)) -> ContactPoint {
+    ContactPoint { feature, triangle, normal, distance_m, gain2: 1.0 }
 }
 
 /// Where two endless lines are nearest: the share along the first direction, the way along the second, a unit vector.

@@ -1,4 +1,4 @@
-//! The nearest point of a triangle.
+//! Nearest points of triangles and segments.
 
 use crate::rock::Vec3;
 
@@ -48,4 +48,58 @@ pub fn closest_part(&[a, b, c]: &[Vec3; 3], p: &Vec3) -> (Vec3, Part) {
         return (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), Part::Side(1));
     }
     (a + (ab * vb + ac * vc) / (va + vb + vc), Part::Face)
+}
+
+/// Square of the sine of the angle up to which segments are parallel (–): the distance is right to that angle times their length.
+const PARALLEL: f64 = 1e-15;
+
+/// Square of the least distance between two segments, each from its first point along its second (Ericson, Real-Time
+/// Collision Detection, 5.1.9). A segment may be a point.
+pub fn segments_distance2((p, d): (&Vec3, &Vec3), (q, e): (&Vec3, &Vec3)) -> f64 {
+    let r = p - q;
+    let (a, b, c, f, g) = (d.norm_squared(), d.dot(e), d.dot(&r), e.norm_squared(), e.dot(&r));
+    let onto =
+        |x: f64, length2: f64| if length2 > 0.0 { (x / length2).clamp(0.0, 1.0) } else { 0.0 };
+    let across = a * f - b * b;
+    let s =
+        if across > PARALLEL * a * f { ((b * g - c * f) / across).clamp(0.0, 1.0) } else { 0.0 };
+    let t = onto(b * s + g, f);
+    let s = onto(b * t - c, a);
+    let t = onto(b * s + g, f);
+    (r + d * s - e * t).norm_squared()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No pair of points of the two segments is nearer, and some pair is as near: tried on a fine lattice of both.
+    #[test]
+    fn the_distance_of_segments_is_the_least() {
+        let mut state = 7u64;
+        let mut uniform = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        for k in 0..2000 {
+            let mut vector = || Vec3::new(uniform(), uniform(), uniform());
+            let (p, d, q, mut e) = (vector(), vector(), vector(), vector());
+            match k % 4 {
+                1 => e = d * 0.7,
+                2 => e = Vec3::zeros(),
+                3 => e = d * -0.3 + Vec3::new(1e-9, 0.0, 0.0),
+                _ => (),
+            }
+            let found = segments_distance2((&p, &d), (&q, &e)).sqrt();
+            let share = |k: usize| k as f64 / 60.0;
+            let least = (0..=60)
+                .flat_map(|i| (0..=60).map(move |j| (share(i), share(j))))
+                .map(|(s, t)| (p + d * s - q - e * t).norm())
+                .fold(f64::INFINITY, f64::min);
+            assert!(found <= least + 1e-7, "{found} {least}");
+            assert!(found >= least - (d.norm() + e.norm()) / 60.0, "{found} {least}");
+        }
+    }
 }

@@ -68,19 +68,20 @@ impl Bond {
         Self { pull_n: strength.tensile_pa * area, shear_n: strength.cohesion_pa * area, length_m }
     }
 
-    /// How far a load passes the strength, as a share of it; 0 or less while the bond holds. `push` is the normal force
+    /// How far a load passes the strength, as a share of it; 0 or less while the bond holds. `normal_force` is the normal force
     /// (N, negative in tension), `drag` the size of the shear force (N).
-    pub fn overload(&self, push: f64, drag: f64, tan_phi: f64) -> f64 {
+    pub fn overload(&self, normal_force: f64, shear_force: f64, tan_phi: f64) -> f64 {
         let over = |load: f64, most: f64| {
             if load <= most { 0.0 } else { (load - most) / most.max(f64::MIN_POSITIVE) }
         };
-        over(-push, self.pull_n).max(over(drag, (self.shear_n + push * tan_phi).max(0.0)))
+        over(-normal_force, self.pull_n)
+            .max(over(shear_force, (self.shear_n + normal_force * tan_phi).max(0.0)))
     }
 }
 
 /// The memory of the contact of two rocks.
 #[derive(Debug, Clone, Copy)]
-pub struct Tie {
+pub struct PairHistory {
     /// The rock with the smaller number …
     pub a: u32,
     /// … and the other.
@@ -92,9 +93,9 @@ pub struct Tie {
     /// Stretch of the shear spring (m), of `a` relative to `b`.
     pub shear: Vec3,
     /// Normal force at the end of the last step (N).
-    pub push: f64,
+    pub normal_force: f64,
     /// Shear force at the end of the last step (N).
-    pub drag: Vec3,
+    pub shear_force: Vec3,
     /// Came in too slowly to rebound.
     pub captured: bool,
     /// Whether it slid at the end of the last step.
@@ -105,7 +106,7 @@ pub struct Tie {
     pub bond: Option<Bond>,
 }
 
-impl Tie {
+impl PairHistory {
     /// Two rocks that do not touch yet.
     pub fn new(a: u32, b: u32, law: Law) -> Self {
         Self {
@@ -114,8 +115,8 @@ impl Tie {
             law,
             n: Vec3::z(),
             shear: Vec3::zeros(),
-            push: 0.0,
-            drag: Vec3::zeros(),
+            normal_force: 0.0,
+            shear_force: Vec3::zeros(),
             captured: false,
             slides: false,
             closed: false,

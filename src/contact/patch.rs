@@ -15,7 +15,7 @@
 //! spring of stiffness `p_N |a|²` pressed in by `p/|a|` along `n̂`, with the same energy.
 
 use super::closest::{Part, closest_part};
-use super::{Feature, FeatureKind, Touch};
+use super::{ContactPoint, Feature, FeatureKind};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
@@ -32,7 +32,7 @@ struct Pressed {
     square: f64,
     slope: Vec3,
     /// Nearest point of the patch.
-    nearest: Touch,
+    nearest: ContactPoint,
 }
 
 /// An edge or a vertex inside the ball, once for every triangle on it.
@@ -67,7 +67,7 @@ impl Patches {
         terrain: &Terrain,
         sheets: &[u32],
         (centre, radius): (&Vec3, f64),
-        mut found: impl FnMut(Touch),
+        mut found: impl FnMut(ContactPoint),
     ) {
         self.pressed.clear();
         self.shared.clear();
@@ -132,9 +132,9 @@ impl Patches {
             _ => (distance2.sqrt(), off / distance2.sqrt()),
         };
         let place = self.pressed.len() as u32;
-        let pen = radius - distance_m;
-        let nearest = Touch { feature, triangle: t, normal, distance_m, gain2: 1.0 };
-        let (square, slope) = (pen * pen, normal * pen);
+        let penetration = radius - distance_m;
+        let nearest = ContactPoint { feature, triangle: t, normal, distance_m, gain2: 1.0 };
+        let (square, slope) = (penetration * penetration, normal * penetration);
         self.pressed.push(Pressed { triangle: t, parent: place, square, slope, nearest });
         for k in 0..3 {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
@@ -169,11 +169,11 @@ impl Patches {
             } else {
                 f64::from(features.vertex_weight[(first.key - VERTEX) as usize])
             };
-            let pen = radius - first.distance_m;
+            let penetration = radius - first.distance_m;
             let root = self.root(first.place);
             let patch = &mut self.pressed[root as usize];
-            patch.square += weight * pen * pen;
-            patch.slope += first.normal * (weight * pen);
+            patch.square += weight * penetration * penetration;
+            patch.slope += first.normal * (weight * penetration);
             start += same;
         }
     }
@@ -206,14 +206,14 @@ impl Patches {
 
 impl Pressed {
     /// The point contact that acts like the patch; `None` where it does not press.
-    fn touch(&self, radius: f64) -> Option<Touch> {
+    fn touch(&self, radius: f64) -> Option<ContactPoint> {
         let slope2 = self.slope.norm_squared();
         if self.square <= 0.0 || slope2 <= BALANCED * self.square {
             return None;
         }
         let slope = slope2.sqrt();
         // p = √square, a = slope/p: pressed in by p/|a| = square/slope.
-        Some(Touch {
+        Some(ContactPoint {
             normal: self.slope / slope,
             distance_m: radius - self.square / slope,
             gain2: slope2 / self.square,

@@ -6,7 +6,7 @@
 //! of Eq. (4), what is called `F` to its right-hand side. Points are counted from the sphere's centre `C`: a step
 //! needs only differences, and map coordinates would cost digits.
 //!
-//! `V` is the unit vector from the centre to the touched point; a [`Touch`](super::Touch) carries its opposite.
+//! `V` is the unit vector from the centre to the touched point; a [`ContactPoint`](super::ContactPoint) carries its opposite.
 //! Three equations are corrected, each where it stands: Eqs. (14), (16), (18).
 
 use crate::rock::Vec3;
@@ -116,8 +116,8 @@ pub fn rolling_stiffness(k_r: f64) -> Mat6 {
 
 /// A moment (N m) about the centre `→ F`.
 #[inline]
-pub fn moment_load(moment: &Vec3) -> Vec6 {
-    Vec6::new(0.0, 0.0, 0.0, moment.x, moment.y, moment.z)
+pub fn moment_load(rolling_moment: &Vec3) -> Vec6 {
+    Vec6::new(0.0, 0.0, 0.0, rolling_moment.x, rolling_moment.y, rolling_moment.z)
 }
 
 /// Inertia in a step of `dt` (s) with constant acceleration: `2 M/dt² → K`, `M = (m, I)`.

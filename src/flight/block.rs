@@ -13,11 +13,11 @@
 //! block are hulls of corners: with `n` from their own nearest points the same bound holds for each of their corners.
 
 use super::top::Top;
-use super::{Landing, Parabola, leap_past};
+use super::{FlightEnd, Parabola, time_of_impact_past};
 use crate::body::Block;
 use crate::contact::block::Pose;
 use crate::contact::closest::closest_on;
-use crate::contact::near::Near;
+use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
@@ -81,14 +81,24 @@ impl Tumble<'_> {
     }
 
     /// Collects what the block can touch while its centre moves up to `way` (m) from `centre`.
-    pub fn collect(block: &Block, near: &mut Near, terrain: &Terrain, (centre, way): (&Vec3, f64)) {
+    pub fn collect(
+        block: &Block,
+        near: &mut Neighbours,
+        terrain: &Terrain,
+        (centre, way): (&Vec3, f64),
+    ) {
         let core = block.bound_m - block.ball_m;
         near.collect(terrain, centre, block.ball_m, core + way, block.ball_m);
     }
 }
 
 /// Follows the flight for at most `longest_s`; `near` is overwritten.
-pub fn first_touch(terrain: &Terrain, tumble: &Tumble, longest_s: f64, near: &mut Near) -> Landing {
+pub fn first_touch(
+    terrain: &Terrain,
+    tumble: &Tumble,
+    longest_s: f64,
+    near: &mut Neighbours,
+) -> FlightEnd {
     let (bound, mut t) = (tumble.block.bound_m, 0.0);
     let mut dues = Vec::new();
     loop {
@@ -97,29 +107,30 @@ pub fn first_touch(terrain: &Terrain, tumble: &Tumble, longest_s: f64, near: &mu
             let ahead =
                 Parabola { start: centre, velocity: tumble.path.velocity(t), ..tumble.path };
             let gone = std::mem::take(&mut near.gone);
-            let landing = leap_past(terrain, &ahead, longest_s - t, &gone, &mut near.tested);
+            let landing =
+                time_of_impact_past(terrain, &ahead, longest_s - t, &gone, &mut near.tested);
             near.gone = gone;
             match landing {
-                Landing::Touch(wait) => t += wait,
-                Landing::Leaves(wait) => return Landing::Leaves(t + wait),
-                Landing::Flies => return Landing::Flies,
+                FlightEnd::Touch(wait) => t += wait,
+                FlightEnd::Leaves(wait) => return FlightEnd::Leaves(t + wait),
+                FlightEnd::Flies => return FlightEnd::Flies,
             }
         }
         let way = WINDOW * bound;
         let ends = (t + time_for(&tumble.path, t, way)).min(longest_s);
         Tumble::collect(tumble.block, near, terrain, (&tumble.path.centre(t), way));
         if let Some(touch) = advance(terrain, tumble, near, (t, ends), &mut dues) {
-            return Landing::Touch(touch);
+            return FlightEnd::Touch(touch);
         }
         if ends >= longest_s {
-            return Landing::Flies;
+            return FlightEnd::Flies;
         }
         t = ends;
     }
 }
 
 /// Whether a triangle is nearer to a point than `reach` (m).
-fn is_within(terrain: &Terrain, point: &Vec3, reach: f64, near: &mut Near) -> bool {
+fn is_within(terrain: &Terrain, point: &Vec3, reach: f64, near: &mut Neighbours) -> bool {
     let (mut within, mut tested) = (false, 0);
     terrain.index.near(point, reach, |start, count| {
         for t in start..start + count {
@@ -143,7 +154,7 @@ fn time_for(path: &Parabola, t: f64, way: f64) -> f64 {
 fn advance(
     terrain: &Terrain,
     tumble: &Tumble,
-    near: &mut Near,
+    near: &mut Neighbours,
     (begins, ends): (f64, f64),
     dues: &mut Vec<Due>,
 ) -> Option<f64> {
@@ -178,7 +189,7 @@ fn advance(
 struct Search<'a> {
     terrain: &'a Terrain,
     tumble: &'a Tumble<'a>,
-    near: &'a mut Near,
+    near: &'a mut Neighbours,
     bend: f64,
     moment: Moment,
 }

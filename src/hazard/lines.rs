@@ -7,7 +7,7 @@ use super::totals::Largest;
 use super::{Statistic, statistic};
 use crate::frequency::Weights;
 use crate::rock::{Rock, Vec3};
-use crate::trajectory::Crossing;
+use crate::simulation::Crossing;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -8,7 +8,7 @@ use super::annual::proportion;
 use super::classes::Counts;
 use super::row::StopKind;
 use crate::frequency::Weights;
-use crate::trajectory::Visit;
+use crate::simulation::CellPassage;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -277,7 +277,12 @@ impl Maps {
     }
 
     /// Adds the cells of one rock of a stratum, and how and where it ended (map coordinates).
-    pub fn add(&mut self, stratum: u16, visits: &[Visit], (stop, end_m): (StopKind, [f64; 3])) {
+    pub fn add(
+        &mut self,
+        stratum: u16,
+        visits: &[CellPassage],
+        (stop, end_m): (StopKind, [f64; 3]),
+    ) {
         for visit in visits {
             let cell = self.cells.entry(visit.cell).or_default();
             cell.passages += 1;
@@ -333,7 +338,7 @@ mod tests {
             MapFrame { west_m: 100.0, south_m: 50.0, cell_m: 2.0, columns: 3, rows: 2, epsg: None };
         let mut maps = Maps::new(frame, MapState::default());
         for (total_j, height_m) in [(29.9e3, 0.5), (30e3, 0.0), (299e3, 2.0)] {
-            let visits = [Visit { cell: 4, total_j, height_m }];
+            let visits = [CellPassage { cell: 4, total_j, height_m }];
             maps.add(0, &visits, (StopKind::AtRest, [103.0, 53.0 - height_m, 7.0]));
         }
         let weights = Weights::equal(6);
@@ -360,7 +365,7 @@ mod tests {
             let mut maps = Maps::new(frame, MapState::default());
             for k in 0..100 {
                 let total_j = if k < wild { 1e6 } else { 1e3 };
-                let visit = Visit { cell: 0, total_j, height_m: 0.0 };
+                let visit = CellPassage { cell: 0, total_j, height_m: 0.0 };
                 maps.add(0, &[visit], (StopKind::LeftTerrain, [9.0; 3]));
             }
             let weights = Weights::equal(100);

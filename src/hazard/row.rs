@@ -1,7 +1,7 @@
 //! One released rock as a row of numbers: the only way into the statistics, from a run as from a file.
 
 use crate::rock::Vec3;
-use crate::trajectory::{ShapeOf, Stop, Trajectory};
+use crate::simulation::{ShapeOf, Stop, Trajectory};
 use serde::{Deserialize, Serialize};
 
 /// One row of `releases.csv`; positions in map coordinates.

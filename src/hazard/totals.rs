@@ -1,7 +1,7 @@
 //! Sums over all rocks of what `releases.csv` has no column for.
 
 use super::sum::Sum;
-use crate::trajectory::{Effort, Ledger, Stop, Trajectory};
+use crate::simulation::{Effort, Ledger, Stop, Trajectory};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

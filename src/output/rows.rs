@@ -1,7 +1,7 @@
 //! Rows of `paths.csv` and `impacts.csv`; positions in map coordinates.
 
 use crate::rock::Vec3;
-use crate::trajectory::{FeatureKind, Impact, PathPoint, PathState};
+use crate::simulation::{FeatureKind, Impact, PathPoint, PathState};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 

@@ -1,10 +1,10 @@
 //! What rocks that share one world may do at the start: touch, and press on each other with their weight.
 
 use super::{Part, Plan};
-use crate::coupled::broad::{Ball, overlapping};
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::release::{Release, TYPED_DEPTH};
+use crate::solver::island::broad_phase::{Ball, overlapping};
 
 /// Overlap allowed over that which the weight above presses in (–): a wedge presses more than a column.
 const PRESSED: f64 = 2.0;

@@ -1,7 +1,7 @@
 //! The step in force: what the scene asks for, the rest filled in.
 
 use crate::scene::SolverTable;
-use crate::step::{Scheme, Settings};
+use crate::solver::{Scheme, Settings};
 
 /// Local error of the adaptive scheme (m/s): statistics of runout no longer change below it.
 const TOLERANCE_M_S: f64 = 0.05;

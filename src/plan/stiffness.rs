@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene};
-use crate::step::Scheme;
-use crate::step::dda::SINGLE_STEP_PHASE;
+use crate::solver::Scheme;
+use crate::solver::dda::SINGLE_STEP_PHASE;
 use crate::terrain::Terrain;
 
 /// Deepest a resting rock may press a spring, over its radius (–): a softer ground is no rigid surface.

@@ -1,6 +1,6 @@
 //! Room for a rock where it starts.
 
-use crate::flight::{Landing, Parabola, leap};
+use crate::flight::{FlightEnd, Parabola, time_of_impact};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use parry3d_f64::query::PointQuery;
@@ -14,8 +14,8 @@ pub(super) fn clear_of(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
     }
     let start = centre + Vec3::z() * (LIFT * radius_m);
     let down = Parabola { start, velocity: -Vec3::z(), gravity: 0.0, radius: radius_m };
-    match leap(terrain, &down, LIFT * radius_m, &mut 0) {
-        Landing::Touch(way_m) if way_m > 0.0 => start - Vec3::z() * way_m,
+    match time_of_impact(terrain, &down, LIFT * radius_m, &mut 0) {
+        FlightEnd::Touch(way_m) if way_m > 0.0 => start - Vec3::z() * way_m,
         _ => centre,
     }
 }

@@ -18,7 +18,7 @@ use crate::hazard::{self, Exceedance, Hazard, Open, PERCENTS, Percentile, Sample
 use crate::output::PathRow;
 use crate::output::Results;
 use crate::rock::Vec3;
-use crate::trajectory::Stop;
+use crate::simulation::Stop;
 
 /// Quantities of the tables, with their names in the hazard.
 const TABLED: [(Quantity, hazard::Quantity); 8] = [

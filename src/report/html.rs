@@ -13,7 +13,7 @@ use super::figure::{Drawing, Heading};
 use super::format::{self, escape};
 use super::input::{About, Check, Report};
 use super::lines;
-use crate::trajectory::Stop;
+use crate::simulation::Stop;
 use std::fmt::Write as _;
 use words::{GLOSSARY, METHOD, STYLE};
 

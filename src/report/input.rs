@@ -9,7 +9,7 @@ pub use places::{
 
 use super::raster::GroundRaster;
 use crate::output::Zone;
-use crate::trajectory::{PathState, Stop};
+use crate::simulation::{PathState, Stop};
 use std::collections::BTreeMap;
 
 /// Everything a report shows.

@@ -13,7 +13,7 @@ use super::paper::{Paper, Pen, paint};
 use super::site;
 use super::svg::path::{Frame, Spot, clipped, thinned};
 use crate::math;
-use crate::trajectory::Stop;
+use crate::simulation::Stop;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Tallest map (px): with the stop reasons and both captions it fits an A4 page.

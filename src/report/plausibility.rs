@@ -5,7 +5,7 @@ use super::input::{Check, Is, Report};
 use super::raster::GroundRaster;
 use super::reach_angle;
 use crate::output::Results;
-use crate::trajectory::Stop;
+use crate::simulation::Stop;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 

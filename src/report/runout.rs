@@ -9,7 +9,7 @@ use super::input::{Fall, Is, Quantile, Quantity, Report};
 use super::panel::{FOOT_PX, Panel, align};
 use super::paper::{Label, Paper, Pen, SMALL, paint};
 use super::svg::path::Frame;
-use crate::trajectory::Stop;
+use crate::simulation::Stop;
 
 const TOP_PX: f64 = 12.0;
 const UPPER_PX: f64 = 220.0;

@@ -9,7 +9,7 @@ use super::panel::{FOOT_PX, Panel};
 use super::paper::{Label, Paper, Pen, paint};
 use super::svg::path::Frame;
 use crate::math;
-use crate::trajectory::Stop;
+use crate::simulation::Stop;
 
 const LINE_PX: f64 = 30.0;
 const BAR_PX: f64 = 15.0;

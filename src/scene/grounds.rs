@@ -3,7 +3,7 @@
 use super::catalogue::{CATALOGUE, known_ground};
 use super::check::{Allowed, Checked, Complaint, drawn, suggest};
 use crate::chance::Distribution;
-use crate::step::Scheme;
+use crate::solver::Scheme;
 use serde::Deserialize;
 
 /// How one ground answers a rock; every value may be a distribution, drawn once per release.

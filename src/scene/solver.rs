@@ -1,7 +1,7 @@
 //! `[solver]`.
 
 use super::check::{Allowed, Checked, Complaint, optional};
-use crate::step::Scheme;
+use crate::solver::Scheme;
 use serde::Deserialize;
 
 /// How a rock is computed; optional as a whole. What is absent is filled in by the plan, which prints it.

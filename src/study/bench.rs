@@ -6,11 +6,11 @@ use crate::math;
 use crate::plan::RestRule;
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
-use crate::step::{Scheme, Settings};
+use crate::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
+use crate::solver::{Scheme, Settings};
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
-use crate::trajectory::{Course, Keep, Scratch, Trajectory, follow};
 use std::path::Path;
 
 /// Gravity of the cases (m/s²), as in the paper's Table 1.
@@ -72,7 +72,7 @@ pub const SETUP: Setup = Setup {
 impl Setup {
     /// Follows the rock; the ends are in the coordinates of the facets, impacts and path stay local.
     pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
-        let course = Course {
+        let course = RunSettings {
             watch: crate::plan::Watch::default(),
             terrain,
             gravity_m_s2: self.gravity_m_s2,
@@ -89,7 +89,7 @@ impl Setup {
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
         let mut chance = stream(1, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
-        let mut fallen = follow(&course, &release, keep, &mut chance, scratch);
+        let mut fallen = simulate(&course, &release, keep, &mut chance, scratch);
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;
         fallen

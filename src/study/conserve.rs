@@ -4,8 +4,8 @@ use super::scene_page::setting;
 use crate::ensemble::Ensemble;
 use crate::error::Result;
 use crate::plan::{Part, Plan};
+use crate::simulation::{self, Effort, Scratch, Stop, Trajectory};
 use crate::terrain::Terrain;
-use crate::trajectory::{self, Effort, Scratch, Stop, Trajectory};
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
@@ -110,7 +110,9 @@ pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(usize)) -> Resul
         threads: ensemble.threads(),
         ..Conservation::default()
     };
-    let fall = |index: usize, scratch: &mut Scratch| trajectory::fall(&plan, index, None, scratch);
+    let fall = |index: usize, scratch: &mut Scratch| {
+        simulation::simulate_release(&plan, index, None, scratch)
+    };
     let begun = Instant::now();
     let mut chunks = ensemble.in_chunks(0..plan.count, Scratch::default, fall);
     loop {

@@ -8,7 +8,7 @@ use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use crate::report::svg::path::Frame;
-use crate::step::Scheme;
+use crate::solver::Scheme;
 use plotters::style::RGBColor;
 
 const PLOT_PX: f64 = 250.0;

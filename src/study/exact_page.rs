@@ -5,7 +5,7 @@ use super::exact_figure::order_in_words;
 use super::exact_values::{self, Value};
 use super::order::{self, Ladder};
 use crate::report::format;
-use crate::step::Scheme;
+use crate::solver::Scheme;
 use std::fmt::Write as _;
 
 const INTRODUCTION: &str = "\

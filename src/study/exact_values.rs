@@ -1,8 +1,8 @@
 //! The exact cases in their own units: what is exact, what comes out, how far apart. The table of the README.
 
 use super::cases::{CASES, Case, Measure, has_springs};
-use crate::step::Scheme;
-use crate::trajectory::Scratch;
+use crate::simulation::Scratch;
+use crate::solver::Scheme;
 use std::fmt::Write as _;
 
 /// The columns: scheme with tolerance (m/s) or step (s). The first is the one whose value is shown.

@@ -15,11 +15,11 @@ use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Pen, SMALL, paint};
 use crate::report::svg::path::Frame;
 use crate::rock::Vec3;
-use crate::step::adaptive::Control;
-use crate::step::grip::{Grip, World};
-use crate::step::law::Body;
-use crate::step::tableau::{ESDIRK4, TR_BDF2};
-use crate::step::{Scheme, Stepper, advance};
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::law::Body;
+use crate::solver::step_control::Control;
+use crate::solver::tableau::{ESDIRK4, TR_BDF2};
+use crate::solver::{Scheme, Stepper, advance};
 use std::fmt::Write as _;
 
 /// Numbers of steps.
@@ -67,8 +67,8 @@ fn end(scheme: Scheme, case: &Case, setup: &Setup, steps: u32) -> Vec3 {
     let laws =
         [Law::new(&setup.ground, &Damping::of(setup.ground.restitution), &setup.rock, &capture)];
     let body = Body::new(&setup.rock, setup.gravity_m_s2);
-    let world = World { terrain: &terrain, body, laws: &laws };
-    let mut grip = Grip::default();
+    let world = ContactEnvironment { terrain: &terrain, body, laws: &laws };
+    let mut grip = ContactState::default();
     grip.begin(&world, setup.centre_m - terrain.origin_m, setup.velocity_m_s, setup.spin_rad_s);
     let dt = LASTS_S / f64::from(steps);
     let mut stepper = stepper(scheme, &world, &mut grip, dt);
@@ -83,7 +83,12 @@ fn end(scheme: Scheme, case: &Case, setup: &Setup, steps: u32) -> Vec3 {
 }
 
 /// Equal steps: the tableaux with an error control that allows everything.
-fn stepper(scheme: Scheme, world: &World, grip: &mut Grip, dt: f64) -> Stepper {
+fn stepper(
+    scheme: Scheme,
+    world: &ContactEnvironment,
+    grip: &mut ContactState,
+    dt: f64,
+) -> Stepper {
     let tableau = match scheme {
         Scheme::Adaptive => &TR_BDF2,
         Scheme::Reference => &ESDIRK4,

@@ -8,10 +8,12 @@ use crate::math;
 use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
-use crate::step::{Scheme, Settings};
+use crate::simulation::{
+    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, WorldStats, simulate_world,
+};
+use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::make::containers;
-use crate::trajectory::{Answer, Census, Course, Keep, Stop, Trajectory, follow_watched};
 use std::fs;
 use std::sync::atomic::AtomicBool;
 
@@ -78,7 +80,7 @@ pub struct Cost {
     /// Processor time of one thread (s).
     pub processor_s: f64,
     /// Counted in it.
-    pub census: Census,
+    pub census: WorldStats,
 }
 
 impl Cost {
@@ -114,7 +116,7 @@ pub struct World {
     /// Largest memory of the process on the way, less what it held before the first world (byte); `None` where the system does not say.
     pub memory_bytes: Option<u64>,
     /// What it took.
-    pub census: Census,
+    pub census: WorldStats,
     /// Spheres that failed or left the boxes' surroundings.
     pub lost: usize,
     /// Spheres at rest at the end.
@@ -145,7 +147,7 @@ impl World {
 struct Marks {
     clock: OwnTime,
     /// Time, processor time (s) and counts at the first window's end not before each begin and end.
-    seen: Vec<(f64, f64, Census)>,
+    seen: Vec<(f64, f64, WorldStats)>,
 }
 
 impl Marks {
@@ -153,7 +155,7 @@ impl Marks {
         Phase::ALL.into_iter().flat_map(|phase| <[f64; 2]>::from(phase.times_s()))
     }
 
-    fn see(&mut self, now_s: f64, census: &Census) {
+    fn see(&mut self, now_s: f64, census: &WorldStats) {
         // The world may have gone back.
         self.seen.retain(|(time_s, ..)| *time_s <= now_s);
         let passed = Self::times_s().take_while(|mark| *mark <= now_s).count();
@@ -165,7 +167,7 @@ impl Marks {
 
     fn costs(&self) -> Vec<Cost> {
         let pairs = Phase::ALL.into_iter().zip(self.seen.chunks_exact(2));
-        let cost = |(phase, ends): (Phase, &[(f64, f64, Census)])| Cost {
+        let cost = |(phase, ends): (Phase, &[(f64, f64, WorldStats)])| Cost {
             phase,
             simulated_s: ends[1].0 - ends[0].0,
             processor_s: ends[1].1 - ends[0].1,
@@ -188,7 +190,7 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         plane_impacts: true,
         capture_speed_m_s: None,
     };
-    let course = Course {
+    let course = RunSettings {
         terrain: &terrain,
         gravity_m_s2: GRAVITY_M_S2,
         step: &step,
@@ -198,16 +200,17 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
     };
     let releases = heap(spheres, size, terrain.origin_m);
     let answer =
-        Answer { ground: GROUND, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
+        PairMaterial { ground: GROUND, strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 } };
     let keep = |_| Keep { path_step_s: None, impacts: false };
     let never = AtomicBool::new(false);
     // Linux forgets the largest memory so far when asked to; where it cannot, the number is left out.
     let forgot = fs::write("/proc/self/clear_refs", "5").is_ok();
     let mut marks = Marks { clock: OwnTime::begin(), seen: Vec::new() };
-    marks.see(0.0, &Census::default());
-    let see = |now_s: f64, census: &Census| marks.see(now_s, census);
+    marks.see(0.0, &WorldStats::default());
+    let see = |now_s: f64, census: &WorldStats| marks.see(now_s, census);
     let (falls, census) =
-        follow_watched(&course, &releases, &answer, keep, (&never, see)).unwrap_or_default();
+        simulate_world(&course, &releases, &answer, keep, Observer { stop: &never, observe: see })
+            .unwrap_or_default();
     let processor_s = marks.clock.seconds();
     let most = resident_bytes("VmHWM:").filter(|_| forgot);
     let memory_bytes = most.zip(before).map(|(most, before)| most.saturating_sub(before));
@@ -271,7 +274,7 @@ fn heap(spheres: usize, size: f64, origin_m: Vec3) -> Vec<Release> {
 
 /// Over the radius (–).
 fn deepest_overlap(falls: &[Trajectory]) -> f64 {
-    use crate::coupled::broad::{Ball, overlapping};
+    use crate::solver::island::broad_phase::{Ball, overlapping};
     let ball = |fall: &Trajectory| Ball { centre: fall.end.position_m, radius: fall.rock.radius_m };
     let balls: Vec<Ball> = falls.iter().map(ball).collect();
     let depth = |(a, b): &(u32, u32)| {
@@ -348,7 +351,7 @@ mod tests {
     #[test]
     fn marks_go_back_with_the_world() {
         let mut marks = Marks { clock: OwnTime::begin(), seen: Vec::new() };
-        let counted = |windows| Census { windows, ..Census::default() };
+        let counted = |windows| WorldStats { windows, ..WorldStats::default() };
         for (now_s, windows) in [(0.0, 0), (0.26, 1), (0.41, 2), (0.37, 3), (0.42, 4), (0.6, 5)] {
             marks.see(now_s, &counted(windows));
         }

@@ -7,7 +7,7 @@ use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::paper::{Label, NORMAL, Paper, Pen, paint};
 use crate::report::svg::path::Frame;
-use crate::step::Scheme;
+use crate::solver::Scheme;
 use plotters::style::RGBColor;
 use std::fmt::Write as _;
 

@@ -12,10 +12,10 @@ use crate::error::Result;
 use crate::hazard::{Percentile, Row};
 use crate::math;
 use crate::plan::{Part, Plan};
-use crate::step::{Scheme, Settings};
+use crate::simulation::{self, Effort, Scratch, Trajectory};
+use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::coarser::{coarser, slope_edge_m};
-use crate::trajectory::{self, Effort, Scratch, Trajectory};
 use std::ops::Range;
 use std::time::Instant;
 
@@ -265,8 +265,9 @@ impl Rung {
         ensemble: &Ensemble,
     ) -> Result<()> {
         self.values.resize(subjects.len(), Vec::new());
-        let fall =
-            |index: usize, scratch: &mut Scratch| trajectory::fall(plan, index, None, scratch);
+        let fall = |index: usize, scratch: &mut Scratch| {
+            simulation::simulate_release(plan, index, None, scratch)
+        };
         let (begun, before) = (Instant::now(), Busy::of_all_threads());
         for falls in ensemble.in_chunks(releases, Scratch::default, fall) {
             falls?

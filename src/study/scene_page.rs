@@ -4,7 +4,7 @@ use super::bench::goes_by_tolerance;
 use super::scene::{Rung, SceneStudy, Statistic};
 use super::spread::Interval;
 use crate::report::format::{self, significant};
-use crate::step::Settings;
+use crate::solver::Settings;
 use std::fmt::Write as _;
 
 /// A statistic and the total error wanted of it (same unit).

@@ -18,7 +18,7 @@ pub(super) use figure::draw;
 pub(super) use page::{csv, page, parts_csv};
 
 use crate::error::{Error, Result};
-use crate::step::Scheme;
+use crate::solver::Scheme;
 use compare::{Compared, compare};
 use machine::Machine;
 use output::OutputCost;

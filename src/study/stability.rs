@@ -9,9 +9,9 @@ mod map;
 mod page;
 
 use super::bench::{Setup, settings};
-use crate::step::{Scheme, Settings};
+use crate::simulation::{Scratch, Stop, Trajectory};
+use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
-use crate::trajectory::{Scratch, Stop, Trajectory};
 
 pub use map::{Cell, Map, Verdict};
 pub(super) use page::{csv, page};

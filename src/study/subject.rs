@@ -3,7 +3,7 @@
 use crate::hazard::{Quantity, Row};
 use crate::plan::{Curtain, Plan};
 use crate::rock::Rock;
-use crate::trajectory::{Crossing, Trajectory};
+use crate::simulation::{Crossing, Trajectory};
 
 /// Quantities of the study with what they are called and their units.
 pub const QUANTITIES: [(Quantity, &str, &str); 3] = [

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::math;
 use crate::output::write_whole;
 use crate::report::curves::Curves;
-use crate::step::Scheme;
+use crate::solver::Scheme;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;

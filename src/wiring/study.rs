@@ -4,7 +4,7 @@ use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
-use rockfall::step::Scheme;
+use rockfall::solver::Scheme;
 use rockfall::study::aim::Aim;
 use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
 use rockfall::study::speed::{self, Order, WRITTEN};

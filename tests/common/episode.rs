@@ -3,9 +3,9 @@
 use super::Case;
 use rockfall::ground::{Capture, Damping, Law};
 use rockfall::rock::Vec3;
-use rockfall::step::grip::{Grip, World};
-use rockfall::step::law::Body;
-use rockfall::step::{Settings, Stepper, advance};
+use rockfall::solver::contact_state::{ContactEnvironment, ContactState};
+use rockfall::solver::law::Body;
+use rockfall::solver::{Settings, Stepper, advance};
 use rockfall::terrain::Terrain;
 
 /// One rock in contact, stepped by hand.
@@ -42,10 +42,10 @@ impl<'a> Episode<'a> {
         &self,
         [c, v, w]: [[f64; 3]; 3],
         steps: usize,
-        mut see: impl FnMut(&World, &Grip),
-    ) -> Grip {
-        let world = World { terrain: self.terrain, body: self.body, laws: &self.laws };
-        let mut grip = Grip::default();
+        mut see: impl FnMut(&ContactEnvironment, &ContactState),
+    ) -> ContactState {
+        let world = ContactEnvironment { terrain: self.terrain, body: self.body, laws: &self.laws };
+        let mut grip = ContactState::default();
         grip.begin(&world, Vec3::from(c) - self.terrain.origin_m, v.into(), w.into());
         let mut stepper = Stepper::new(&self.settings, &world, &mut grip);
         for _ in 0..steps {

@@ -16,11 +16,11 @@ use rockfall::ground::Ground;
 use rockfall::plan::RestRule;
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::step::{Scheme, Settings};
+use rockfall::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
+use rockfall::solver::{Scheme, Settings};
 use rockfall::terrain::stl::{Facet, Soup};
 use rockfall::terrain::weld::{Piece, Up, weld};
 use rockfall::terrain::{Sheet, Terrain};
-use rockfall::trajectory::{Course, Keep, Scratch, Trajectory, follow};
 use std::path::Path;
 
 /// Gravity of the exact cases (m/s²), as in the paper's Table 1.
@@ -100,7 +100,7 @@ impl Case {
             plane_impacts: self.plane_impacts,
             capture_speed_m_s: self.capture_speed_m_s,
         };
-        let course = Course {
+        let course = RunSettings {
             terrain,
             gravity_m_s2: G,
             step: &step,
@@ -117,7 +117,7 @@ impl Case {
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
         let mut chance = stream(seed, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
-        let mut fallen = follow(&course, &release, keep, &mut chance, &mut Scratch::default());
+        let mut fallen = simulate(&course, &release, keep, &mut chance, &mut Scratch::default());
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;
         fallen

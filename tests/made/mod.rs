@@ -7,9 +7,9 @@ use rand_chacha::ChaCha8Rng;
 use rockfall::hazard::{Asked, LineInfo, MapFrame};
 use rockfall::output::{Identity, RunInfo, Site, Zone};
 use rockfall::rock::{Motion, Rock, Vec3};
-use rockfall::trajectory::{
-    Crossing, Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState, Stop,
-    Trajectory, Visit,
+use rockfall::simulation::{
+    CellPassage, Crossing, Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState,
+    Stop, Trajectory,
 };
 
 /// Releases that keep their path.
@@ -124,8 +124,8 @@ impl Chance {
         (0..=index % 2).map(crossing).collect()
     }
 
-    fn visits(&mut self) -> Vec<Visit> {
-        let visit = |cell: u32| Visit {
+    fn visits(&mut self) -> Vec<CellPassage> {
+        let visit = |cell: u32| CellPassage {
             cell: 5 * cell,
             total_j: self.number(1e5),
             height_m: if cell == 2 { 0.0 } else { self.number(4.0) },

@@ -10,12 +10,12 @@ use rockfall::report::input::{
 };
 use rockfall::report::raster::GroundRaster;
 use rockfall::rock::Vec3;
+use rockfall::simulation::{PathState, Stop};
 use rockfall::terrain::grid::triangulate;
 use rockfall::terrain::make::{Stem, stem};
 use rockfall::terrain::stl::Soup;
 use rockfall::terrain::weld::{Piece, Up, weld};
 use rockfall::terrain::{Sheet, Terrain};
-use rockfall::trajectory::{PathState, Stop};
 
 /// Chance that is the same on every machine.
 pub(crate) struct Dice(ChaCha8Rng);

@@ -75,7 +75,7 @@ fn gap_m(terrain: &Terrain, tumble: &Tumble, t: f64) -> f64 {
 fn no_touch_is_missed() {
     let (terrain, blocks) = (rough(), blocks());
     let asked = std::env::var("ROCKFALL_FLIGHTS").ok().and_then(|n| n.parse().ok());
-    let mut near = Near::default();
+    let mut near = Neighbours::default();
     let (mut touched, mut missed, mut worst) = (0, 0, 0.0_f64);
     for flight in 0..asked.unwrap_or(FLIGHTS) {
         let mut chance = stream(11, Purpose::Start, flight);
@@ -90,13 +90,13 @@ fn no_touch_is_missed() {
         let top = Top::new(block.inertia_kg_m2, attitude, own);
         let tumble = Tumble { block, top, path };
         let ends = match first_touch(&terrain, &tumble, 5.0, &mut near) {
-            Landing::Touch(t) => {
+            FlightEnd::Touch(t) => {
                 touched += 1;
                 worst = worst.max(gap_m(&terrain, &tumble, t).abs());
                 t
             }
-            Landing::Leaves(t) => t,
-            Landing::Flies => 5.0,
+            FlightEnd::Leaves(t) => t,
+            FlightEnd::Flies => 5.0,
         };
         let is_inside =
             |k: u32| gap_m(&terrain, &tumble, ends * (f64::from(k) + 0.5) / 60.0) < -1e-6;

@@ -2,9 +2,9 @@
 
 use super::slope::Slope;
 use crate::hazard::Sample;
-use crate::step::Scheme;
+use crate::simulation::Trajectory;
+use crate::solver::Scheme;
 use crate::study::spread::{Interval, Paired};
-use crate::trajectory::Trajectory;
 
 /// Draws of the intervals start here.
 const SEED: u64 = 11;

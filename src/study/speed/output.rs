@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use crate::hazard::Asked;
 use crate::output::{Identity, Mode, Output, RunInfo, Site};
 use crate::report;
+use crate::simulation::Trajectory;
 use crate::terrain::{Sheet, Terrain};
-use crate::trajectory::Trajectory;
 use std::fs;
 use std::path::Path;
 

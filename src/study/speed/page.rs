@@ -151,7 +151,7 @@ fn parts(page: &mut String, study: &SpeedStudy) {
 
 fn part_row(part: &PartCost) -> String {
     let [without, with] = &part.effort;
-    let ratio = |of: fn(&crate::trajectory::Effort) -> u64| {
+    let ratio = |of: fn(&crate::simulation::Effort) -> u64| {
         decimal(of(with) as f64 / of(without).max(1) as f64, 2)
     };
     format!(

@@ -7,9 +7,11 @@ use crate::hazard::{LineInfo, MapFrame};
 use crate::output::{Mode, Output, RunInfo};
 use crate::plan::Plan;
 use crate::scene::Scene;
+use crate::simulation::{
+    Effort, Scratch, Trajectory, simulate_release, simulate_releases_together,
+};
 use crate::terrain::make::{Stem, natural_slope, stem};
 use crate::terrain::stl::{Facet, write_binary};
-use crate::trajectory::{Effort, Scratch, Trajectory, fall, fall_together};
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -191,11 +193,13 @@ impl Side {
 
     fn fall(&self) -> Result<Vec<Trajectory>> {
         if self.plan.rock_against_rock.is_kept() {
-            let journeys = fall_together(&self.plan, None, &AtomicBool::new(false))?;
+            let journeys = simulate_releases_together(&self.plan, None, &AtomicBool::new(false))?;
             return Ok(journeys.unwrap_or_default());
         }
         let mut scratch = Scratch::default();
-        (0..self.plan.count).map(|index| fall(&self.plan, index, None, &mut scratch)).collect()
+        (0..self.plan.count)
+            .map(|index| simulate_release(&self.plan, index, None, &mut scratch))
+            .collect()
     }
 }
 

@@ -3,9 +3,9 @@
 use super::machine::OwnTime;
 use super::slope::Slope;
 use crate::clock::{Piece, look_s};
-use crate::step::{Scheme, Settings};
+use crate::simulation::{Effort, Scratch, Stop, Trajectory};
+use crate::solver::{Scheme, Settings};
 use crate::study::bench::settings;
-use crate::trajectory::{Effort, Scratch, Stop, Trajectory};
 
 /// Shares of the time of a rock (–); together 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

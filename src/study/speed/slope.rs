@@ -5,12 +5,12 @@ use crate::ground::Ground;
 use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
-use crate::step::{Scheme, Settings};
+use crate::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
+use crate::solver::{Scheme, Settings};
 use crate::terrain::make::natural_slope;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
-use crate::trajectory::{Course, Keep, Scratch, Trajectory, follow};
 use std::path::Path;
 use std::time::Instant;
 
@@ -102,8 +102,8 @@ impl Slope {
     }
 
     /// What all rocks have in common.
-    pub fn course<'a>(&'a self, step: &'a Settings) -> Course<'a> {
-        Course {
+    pub fn course<'a>(&'a self, step: &'a Settings) -> RunSettings<'a> {
+        RunSettings {
             terrain: &self.terrain,
             gravity_m_s2: GRAVITY_M_S2,
             step,
@@ -118,7 +118,7 @@ impl Slope {
         let release = self.release(index);
         let mut chance = stream(SEED, Purpose::Impacts, index);
         let keep = Keep { path_step_s: None, impacts: false };
-        let fallen = follow(&self.course(step), &release, keep, &mut chance, scratch);
+        let fallen = simulate(&self.course(step), &release, keep, &mut chance, scratch);
         Trajectory { index, ..fallen }
     }
 }

@@ -4,8 +4,8 @@ use super::machine::Busy;
 use super::slope::Slope;
 use crate::ensemble::Ensemble;
 use crate::error::Result;
-use crate::step::Settings;
-use crate::trajectory::Scratch;
+use crate::simulation::Scratch;
+use crate::solver::Settings;
 use std::time::Instant;
 
 /// Rocks per second of several threads over those of one.

@@ -5,13 +5,13 @@ use super::{Notes, RISE, Way};
 use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::math;
 use crate::rock::Vec3;
-use crate::step::Scheme;
-use crate::step::dda::own_restitution;
+use crate::simulation::{Scratch, Stop};
+use crate::solver::Scheme;
+use crate::solver::dda::own_restitution;
 use crate::study::bench::{
     GRAVITY_M_S2, GROUND, SETUP, Setup, goes_by_tolerance, settings, terrain,
 };
 use crate::terrain::make;
-use crate::trajectory::{Scratch, Stop};
 
 /// Speed of the impacts (m/s): at the longest step still less than a tenth of the radius a step.
 const SPEED_M_S: f64 = 1.0;

@@ -3,10 +3,10 @@
 use super::{Notes, Way, sprung};
 use crate::math;
 use crate::rock::{Rock, Vec3};
+use crate::simulation::Stop;
 use crate::study::bench::{GRAVITY_M_S2, ROCK, SETUP, Setup, terrain};
 use crate::terrain::make;
 use crate::terrain::stl::Facet;
-use crate::trajectory::Stop;
 
 fn square(corner: Vec3, a: Vec3, b: Vec3) -> Vec<Facet> {
     vec![[corner, corner + a, corner + a + b], [corner, corner + a + b, corner + b]]

@@ -4,11 +4,11 @@ use super::{Notes, Way, sprung};
 use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::math;
 use crate::rock::{Rock, Vec3};
-use crate::step::Scheme;
+use crate::simulation::Trajectory;
+use crate::solver::Scheme;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, terrain};
 use crate::terrain::Terrain;
 use crate::terrain::make;
-use crate::trajectory::Trajectory;
 
 /// Contact oscillation per step (rad) below which a fixed step resolves an impact.
 const RESOLVED: f64 = 0.1;

@@ -5,10 +5,10 @@ use crate::chance::{Purpose, stream, unit};
 use crate::ground::Ground;
 use crate::math;
 use crate::rock::{Rock, Vec3};
-use crate::step::Scheme;
+use crate::simulation::{Scratch, Stop};
+use crate::solver::Scheme;
 use crate::study::bench::{GROUND, ROCK, SETUP, Setup, settings, terrain};
 use crate::terrain::make;
-use crate::trajectory::{Scratch, Stop};
 
 /// On a slope that friction and rolling friction hold: no creep, and as good as no cost. A top spinning on the spot slows
 /// down and stays where it is.

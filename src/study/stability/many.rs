@@ -6,10 +6,12 @@ use crate::math;
 use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
-use crate::step::Scheme;
+use crate::simulation::{
+    Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, simulate_world,
+};
+use crate::solver::Scheme;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, settings, terrain};
 use crate::terrain::{Terrain, make};
-use crate::trajectory::{Answer, Course, Keep, Stop, Trajectory, follow_together};
 use std::sync::atomic::AtomicBool;
 
 /// Radius of all of them (m); the density makes the mass.
@@ -27,7 +29,7 @@ fn together(
     let step = settings(way.scheme, way.fineness, None);
     let rest = RestRule { speed_m_s: 0.02, time_s: f64::INFINITY };
     let watch = Watch::default();
-    let course = Course { terrain: on, gravity_m_s2, step: &step, rest, longest_s, watch };
+    let course = RunSettings { terrain: on, gravity_m_s2, step: &step, rest, longest_s, watch };
     let release = |&(density_kg_m3, z, up): &Sphere| Release {
         rock: Rock { radius_m: RADIUS_M, density_kg_m3 },
         motion: Motion {
@@ -40,9 +42,11 @@ fn together(
     };
     let releases: Vec<Release> = spheres.iter().map(release).collect();
     let strength = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
-    let answer = Answer { ground: GROUND, strength };
+    let answer = PairMaterial { ground: GROUND, strength };
     let keep = |_| Keep { path_step_s: None, impacts: false };
-    follow_together(&course, &releases, &answer, keep, &AtomicBool::new(false)).unwrap_or_default()
+    simulate_world(&course, &releases, &answer, keep, Observer::silent(&AtomicBool::new(false)))
+        .unwrap_or_default()
+        .0
 }
 
 /// The same twice: holds what must hold of every journey.

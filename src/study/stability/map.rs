@@ -4,10 +4,10 @@ use super::RISE;
 use super::impacts::rebound_m_s;
 use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::rock::Vec3;
-use crate::step::Scheme;
+use crate::simulation::{Scratch, Stop};
+use crate::solver::Scheme;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, SETUP, Setup, settings, terrain};
 use crate::terrain::{Terrain, make};
-use crate::trajectory::{Scratch, Stop};
 
 /// Approach speed of the impacts (m/s).
 const SPEED_M_S: f64 = 5.0;

@@ -2,8 +2,8 @@
 
 use super::paper::STEP_S;
 use crate::report::curves::Curves;
+use crate::simulation::{PathPoint, Trajectory};
 use crate::terrain::Terrain;
-use crate::trajectory::{PathPoint, Trajectory};
 
 /// A line in a figure.
 pub(super) type Line = Vec<(f64, f64)>;

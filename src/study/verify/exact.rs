@@ -7,12 +7,12 @@ use crate::ground::Ground;
 use crate::plan::{RestRule, Watch};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
-use crate::step::{Scheme, Settings};
+use crate::simulation::{Keep, Observer, PairMaterial, RunSettings, Trajectory, simulate_world};
+use crate::solver::{Scheme, Settings};
 use crate::terrain::make::jittered_plane;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
-use crate::trajectory::{Answer, Course, Keep, Trajectory, follow_together};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -95,7 +95,8 @@ fn rocks(
     };
     let rest = RestRule { speed_m_s: 0.02, time_s: 1.0 };
     let watch = Watch::default();
-    let course = Course { terrain: &terrain, gravity_m_s2, step: &step, rest, longest_s, watch };
+    let course =
+        RunSettings { terrain: &terrain, gravity_m_s2, step: &step, rest, longest_s, watch };
     let releases: Vec<Release> = places
         .iter()
         .zip([velocity_m_s, [0.0; 3]])
@@ -111,10 +112,16 @@ fn rocks(
         })
         .collect();
     let strength = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
-    let answer = Answer { ground: GROUND, strength };
+    let answer = PairMaterial { ground: GROUND, strength };
     let keep = |_| Keep { path_step_s: None, impacts: false };
-    let falls = follow_together(&course, &releases, &answer, keep, &AtomicBool::new(false));
-    Ok(falls.unwrap_or_default())
+    let falls = simulate_world(
+        &course,
+        &releases,
+        &answer,
+        keep,
+        Observer::silent(&AtomicBool::new(false)),
+    );
+    Ok(falls.unwrap_or_default().0)
 }
 
 /// Two far triangles: room to fly in.

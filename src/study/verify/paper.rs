@@ -7,12 +7,14 @@ use crate::math;
 use crate::plan::Plan;
 use crate::report::curves::Curves;
 use crate::scene::Scene;
-use crate::step::Scheme;
+use crate::simulation::{
+    PathPoint, Scratch, Stop, Trajectory, simulate_release, simulate_releases_together,
+};
+use crate::solver::Scheme;
 use crate::terrain::Terrain;
 use crate::terrain::make::shipped;
 use crate::terrain::stl::Soup;
 use crate::terrain::weld::{Piece, weld};
-use crate::trajectory::{PathPoint, Scratch, Stop, Trajectory, fall, fall_together};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -250,10 +252,12 @@ fn example(text: &str, path_step_s: f64) -> Result<(Vec<Trajectory>, Vec<Line>)>
     scene.record.path_step_s = Some(path_step_s);
     let plan = Plan::compile(&scene, made_terrain(&scene)?)?;
     let mut falls = if plan.rock_against_rock.is_kept() {
-        fall_together(&plan, None, &AtomicBool::new(false))?.unwrap_or_default()
+        simulate_releases_together(&plan, None, &AtomicBool::new(false))?.unwrap_or_default()
     } else {
         let mut scratch = Scratch::default();
-        (0..plan.count).map(|k| fall(&plan, k, None, &mut scratch)).collect::<Result<_>>()?
+        (0..plan.count)
+            .map(|k| simulate_release(&plan, k, None, &mut scratch))
+            .collect::<Result<_>>()?
     };
     for fall in &mut falls {
         fall.start.position_m += plan.terrain.origin_m;

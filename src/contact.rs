@@ -1,0 +1,157 @@
+//! Where a sphere touches the mesh, what it remembers of it, and the paper's 6×6 submatrices.
+
+pub mod block;
+pub mod closest;
+pub mod history;
+pub mod neighbours;
+pub mod pair;
+mod patch;
+pub mod submatrix;
+
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+use serde::{Deserialize, Serialize};
+
+/// Most contacts one rock keeps at a time, the deepest first.
+pub const MOST: usize = 8;
+
+/// What of the mesh was touched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FeatureKind {
+    /// Inside of a triangle.
+    Face,
+    /// Edge between or beside triangles.
+    Edge,
+    /// Corner.
+    Vertex,
+}
+
+/// What of the mesh a contact belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Feature {
+    /// Face, edge or vertex.
+    pub kind: FeatureKind,
+    /// Its number in the terrain's triangles, edges or vertices.
+    pub id: u32,
+}
+
+impl Feature {
+    /// Nothing.
+    pub const NONE: Self = Self { kind: FeatureKind::Face, id: u32::MAX };
+}
+
+/// Where a ball touches the mesh or presses into it: a patch (`contact::patch`), nearly always a single nearest point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoint {
+    /// What of the mesh is nearest.
+    pub feature: Feature,
+    /// Triangle whose sheet and ground it answers with.
+    pub triangle: u32,
+    /// Unit normal from the mesh to the centre; the paper's `V` is its opposite.
+    pub normal: Vec3,
+    /// Distance from the centre to the mesh (m); pressed in when smaller than the radius. For a patch of several points
+    /// that of the point contact that acts like it.
+    pub distance_m: f64,
+    /// `|a|²`: stiffness of the patch relative to that of a single point (–), 1 for a single point.
+    pub gain2: f64,
+}
+
+impl ContactPoint {
+    /// No contact.
+    pub const NONE: Self = Self {
+        feature: Feature::NONE,
+        triangle: 0,
+        normal: Vec3::new(0.0, 0.0, 0.0),
+        distance_m: f64::INFINITY,
+        gain2: 1.0,
+    };
+
+    /// Whether it is one point of one face, whose plane tells everything.
+    #[inline]
+    #[expect(clippy::float_cmp, reason = "a single point has exactly 1")]
+    pub fn is_on_plane(&self) -> bool {
+        self.feature.kind == FeatureKind::Face && self.gain2 == 1.0
+    }
+}
+
+/// The touches of one rock, without allocation.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactPoints {
+    list: [ContactPoint; MOST],
+    len: usize,
+}
+
+impl Default for ContactPoints {
+    fn default() -> Self {
+        Self { list: [ContactPoint::NONE; MOST], len: 0 }
+    }
+}
+
+impl ContactPoints {
+    /// Forgets all.
+    #[inline]
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// The same touches from another centre, if all are on faces: their planes tell, nothing need be searched.
+    #[inline]
+    pub fn slide_to(&mut self, terrain: &Terrain, centre: &Vec3) -> bool {
+        let touches = &mut self.list[..self.len];
+        if touches.iter().any(|touch| !touch.is_on_plane()) {
+            return false;
+        }
+        for touch in touches {
+            let corner = terrain.features.faces[touch.feature.id as usize].a;
+            touch.distance_m = touch.normal.dot(&(centre - corner));
+        }
+        true
+    }
+
+    /// Forgets those that are not nearer than `reach` (m).
+    pub fn keep_nearer(&mut self, reach: f64) {
+        let mut kept = 0;
+        for k in 0..self.len {
+            if self.list[k].distance_m < reach {
+                self.list[kept] = self.list[k];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
+    /// Forgets those that are nearer than `reach` (m).
+    fn drop_nearer(&mut self, reach: f64) {
+        let mut kept = 0;
+        for k in 0..self.len {
+            if self.list[k].distance_m >= reach {
+                self.list[kept] = self.list[k];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
+    /// Adds one; when full, it takes the place of the shallowest if it is deeper.
+    #[inline]
+    pub fn add(&mut self, touch: ContactPoint) {
+        if self.len < MOST {
+            self.list[self.len] = touch;
+            self.len += 1;
+            return;
+        }
+        let shallowest = self.list.iter_mut().max_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+        if let Some(place) = shallowest.filter(|place| place.distance_m > touch.distance_m) {
+            *place = touch;
+        }
+    }
+}
+
+impl std::ops::Deref for ContactPoints {
+    type Target = [ContactPoint];
+    #[inline]
+    fn deref(&self) -> &[ContactPoint] {
+        &self.list[..self.len]
+    }
+}

@@ -1,0 +1,194 @@
+//! What a rock remembers of its contacts: the stretch of their shear and rolling springs.
+
+use super::{ContactPoint, Feature, MOST};
+use crate::rock::Vec3;
+
+/// Most memories: the contacts of a step's start and those that come up during the step.
+pub const HISTORIES: usize = 2 * MOST;
+
+/// Cosine of the turn of the normal up to which a new contact takes over an old one's springs (–): a rock rolling
+/// from face to edge to face keeps its grip.
+pub const SAME_GRIP: f64 = 0.7;
+
+/// The memory of one contact.
+#[derive(Debug, Clone, Copy)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a fact of its own: none excludes another"
+)]
+pub struct ContactHistory {
+    /// What it touches.
+    pub feature: Feature,
+    /// Triangle whose ground answers.
+    pub triangle: u32,
+    /// Normal to which `shear` is tangent.
+    pub n: Vec3,
+    /// Stretch of the shear spring ξ (m).
+    pub shear: Vec3,
+    /// Stretch of the rolling spring (rad).
+    pub roll: Vec3,
+    /// Came in too slowly to rebound: damped for good.
+    pub captured: bool,
+    /// Normal force at the end of the last step (N).
+    pub normal_force: f64,
+    /// Whether it slid at the end of the last step.
+    pub slides: bool,
+    /// Whether it was there at the last accepted step.
+    pub closed: bool,
+    /// Whether its beginning has been noted down.
+    pub announced: bool,
+}
+
+impl ContactHistory {
+    /// A new memory without stretch.
+    pub fn new(touch: &ContactPoint, captured: bool) -> Self {
+        Self {
+            feature: touch.feature,
+            triangle: touch.triangle,
+            n: touch.normal,
+            shear: Vec3::zeros(),
+            roll: Vec3::zeros(),
+            captured,
+            normal_force: 0.0,
+            slides: false,
+            closed: false,
+            announced: false,
+        }
+    }
+}
+
+/// Turns a vector tangent at `from` into one tangent at `to` by the shortest rotation; its length stays.
+#[inline]
+pub fn carry(x: Vec3, from: &Vec3, to: &Vec3) -> Vec3 {
+    if from == to { x } else { x - (from + to) * (to.dot(&x) / (1.0 + from.dot(to))) }
+}
+
+impl ContactHistory {
+    /// Takes over the stretches of a contact that has merged into this one. They never store more than both did before:
+    /// `ξ = (ξ_A + ξ_B) min(1, √((ξ_A² + ξ_B²)/|ξ_A + ξ_B|²))`, and the same for rolling.
+    fn absorb(&mut self, other: &Self) {
+        let both = |one: Vec3, other: Vec3| {
+            let (sum, most2) = (one + other, one.norm_squared() + other.norm_squared());
+            let size2 = sum.norm_squared();
+            if size2 > most2 { sum * (most2 / size2).sqrt() } else { sum }
+        };
+        self.shear = both(self.shear, carry(other.shear, &other.n, &self.n));
+        self.roll = both(self.roll, other.roll);
+    }
+}
+
+/// The memories of one rock, without allocation.
+#[derive(Debug, Clone)]
+pub struct ContactHistories {
+    list: [ContactHistory; HISTORIES],
+    len: usize,
+}
+
+impl Default for ContactHistories {
+    fn default() -> Self {
+        let touch = super::ContactPoints::default().list[0];
+        Self { list: [ContactHistory::new(&touch, false); HISTORIES], len: 0 }
+    }
+}
+
+impl ContactHistories {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Knows these instead, no more than there is room for.
+    pub fn restore(&mut self, histories: &[ContactHistory]) {
+        self.len = histories.len().min(HISTORIES);
+        self.list[..self.len].copy_from_slice(&histories[..self.len]);
+    }
+
+    /// Adds one, if there is room.
+    pub fn push(&mut self, history: ContactHistory) {
+        if self.len < HISTORIES {
+            self.list[self.len] = history;
+            self.len += 1;
+        }
+    }
+
+    /// Forgets all after the first `len`.
+    pub fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
+    }
+
+    /// The memory of a touch: its own, else that of a like one which has lost its feature, else a new one.
+    ///
+    /// `taken` marks memories that belong to other touches of the same instant.
+    #[inline]
+    pub fn find(
+        &mut self,
+        touch: &ContactPoint,
+        touches: &[ContactPoint],
+        taken: u32,
+        captured: impl FnOnce() -> bool,
+    ) -> usize {
+        let free = |k: usize| taken & (1 << k) == 0;
+        if let Some(k) = (0..self.len).find(|&k| free(k) && self.list[k].feature == touch.feature) {
+            return k;
+        }
+        let orphan =
+            |history: &ContactHistory| touches.iter().all(|other| other.feature != history.feature);
+        let like = (0..self.len).find(|&k| {
+            free(k) && self.list[k].n.dot(&touch.normal) > SAME_GRIP && orphan(&self.list[k])
+        });
+        like.unwrap_or_else(|| {
+            let place = self.len.min(HISTORIES - 1);
+            self.list[place] = ContactHistory::new(touch, captured());
+            self.len = place + 1;
+            place
+        })
+    }
+
+    /// Hands the stretches of every contact that is no more to the one that it merged into: `heir` names its feature.
+    /// Whether there was any.
+    pub fn merge_lost(&mut self, heir: impl Fn(Feature) -> Option<Feature>) -> bool {
+        let mut merged = false;
+        for k in 0..self.len {
+            let lost = self.list[k];
+            if lost.closed || lost.shear == Vec3::zeros() && lost.roll == Vec3::zeros() {
+                continue;
+            }
+            let Some(feature) = heir(lost.feature) else { continue };
+            let histories = &mut self.list[..self.len];
+            if let Some(history) =
+                histories.iter_mut().find(|history| history.closed && history.feature == feature)
+            {
+                history.absorb(&lost);
+                merged = true;
+            }
+        }
+        merged
+    }
+
+    /// Keeps only the memories that `keep` wants, in order.
+    pub fn retain(&mut self, mut keep: impl FnMut(&ContactHistory) -> bool) {
+        let mut kept = 0;
+        for k in 0..self.len {
+            if keep(&self.list[k]) {
+                self.list[kept] = self.list[k];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+}
+
+impl std::ops::Deref for ContactHistories {
+    type Target = [ContactHistory];
+    #[inline]
+    fn deref(&self) -> &[ContactHistory] {
+        &self.list[..self.len]
+    }
+}
+
+impl std::ops::DerefMut for ContactHistories {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut [ContactHistory] {
+        &mut self.list[..self.len]
+    }
+}

@@ -1,0 +1,376 @@
+//! Finding contacts: where a ball touches, the strict local minima of the distance from its centre to the mesh; where it
+//! presses into a fold, patches.
+//!
+//! Around a place, the features that could touch anywhere within a margin are collected once and asked many times.
+//! A face touches where the centre's foot lies inside it; an edge where the centre stands outside of every face on
+//! it; a vertex where the centre stands behind every edge at it. Flat and hollow edges fail by themselves, from
+//! either side of a sheet, and every contact belongs to one feature. Only where a saddle of the distance is inside the
+//! ball too – a hollow edge that holds the foot of the centre on both its faces, or a vertex among such – can several
+//! minima belong together: then `contact::patch` tells.
+
+mod offered;
+mod pressed;
+mod collect;
+
+pub(crate) use offered::{Peak, SharpEdge};
+
+use super::closest::closest_on;
+use super::patch::Patches;
+use super::{ContactPoint, ContactPoints, Feature};
+use crate::contact::FeatureKind;
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+pub use pressed::Passage;
+
+/// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
+const SLACK: f64 = 1e-9;
+/// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
+/// rounding of map coordinates, which bends flat edges by 1e-9.
+const SAME: f64 = 1e-6;
+
+#[derive(Debug, Clone, Copy)]
+struct NearFace {
+    id: u32,
+    a: Vec3,
+    n: Vec3,
+    out: [Vec3; 3],
+    /// `out[k] · x ≤ rim[k]` inside.
+    rim: [f64; 3],
+}
+
+#[derive(Debug, Clone, Copy)]
+struct NearEdge {
+    id: u32,
+    triangle: u32,
+    a: Vec3,
+    along: Vec3,
+    length: f64,
+    /// Range of outward face normals in `rays`.
+    rays: (u32, u32),
+    at_border: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct NearCorner {
+    id: u32,
+    triangle: u32,
+    p: Vec3,
+    /// Range of edge directions in `rays`.
+    rays: (u32, u32),
+    at_border: bool,
+}
+
+/// A place where the distance may have a saddle or a maximum inside the ball.
+#[derive(Debug, Clone, Copy)]
+enum NearSaddle {
+    /// A hollow edge from `a`, with its direction and length (m) and its range of outward face normals in `rays`.
+    Edge { a: Vec3, along: Vec3, length: f64, rays: (u32, u32) },
+    /// A vertex.
+    Vertex { id: u32, p: Vec3 },
+}
+
+impl NearFace {
+    /// Whether the foot of `point` lies inside, or at most `slack` (m) outside.
+    #[inline]
+    fn holds_foot_of(&self, point: &Vec3, slack: f64) -> bool {
+        (0..3).all(|k| self.out[k].dot(point) <= self.rim[k] + slack)
+    }
+
+    /// The touch of a centre at `height` (m).
+    #[inline]
+    fn touch(&self, height: f64) -> ContactPoint {
+        ContactPoint {
+            feature: Feature { kind: FeatureKind::Face, id: self.id },
+            triangle: self.id,
+            normal: if height < 0.0 { -self.n } else { self.n },
+            distance_m: height.abs(),
+            gain2: 1.0,
+        }
+    }
+}
+
+/// The features a rock can touch while its centre stays within a margin of a place.
+#[derive(Debug)]
+pub struct Neighbours {
+    centre: Vec3,
+    margin: f64,
+    radius: f64,
+    reach: f64,
+    faces: Vec<NearFace>,
+    edges: Vec<NearEdge>,
+    corners: Vec<NearCorner>,
+    saddles: Vec<NearSaddle>,
+    patches: Patches,
+    rays: Vec<Vec3>,
+    /// All triangles within reach; only looked at when a border or a saddle is near.
+    sheets: Vec<u32>,
+    /// Stems that have given way: they touch nothing any more.
+    pub gone: Vec<u32>,
+    /// Triangles tested so far.
+    pub tested: u64,
+}
+
+impl Default for Neighbours {
+    fn default() -> Self {
+        Self {
+            faces: Vec::with_capacity(64),
+            edges: Vec::with_capacity(64),
+            corners: Vec::with_capacity(64),
+            saddles: Vec::with_capacity(64),
+            patches: Patches::with_room(),
+            rays: Vec::with_capacity(512),
+            sheets: Vec::with_capacity(256),
+            ..Self::empty()
+        }
+    }
+}
+
+impl Neighbours {
+    /// No features yet and no memory taken: for rocks that are kept by the thousand.
+    pub fn empty() -> Self {
+        Self {
+            centre: Vec3::repeat(f64::INFINITY),
+            margin: 0.0,
+            radius: 0.0,
+            reach: 0.0,
+            faces: Vec::new(),
+            edges: Vec::new(),
+            corners: Vec::new(),
+            saddles: Vec::new(),
+            patches: Patches::default(),
+            rays: Vec::new(),
+            sheets: Vec::new(),
+            gone: Vec::new(),
+            tested: 0,
+        }
+    }
+
+    /// Forgets the place (before the next rock).
+    pub fn forget(&mut self) {
+        self.centre = Vec3::repeat(f64::INFINITY);
+    }
+
+    /// Collects around `centre`, for a rock of `radius`, all that touches within `slack` of it while the centre
+    /// moves up to `margin` (all m).
+    pub fn collect(
+        &mut self,
+        terrain: &Terrain,
+        centre: &Vec3,
+        radius: f64,
+        margin: f64,
+        slack: f64,
+    ) {
+        (self.centre, self.margin, self.radius) = (*centre, margin, radius);
+        self.reach = radius + slack + margin;
+        self.faces.clear();
+        self.edges.clear();
+        self.corners.clear();
+        self.saddles.clear();
+        self.rays.clear();
+        self.sheets.clear();
+        terrain.index.near(centre, self.reach, |start, count| {
+            for t in start..start + count {
+                self.tested += 1;
+                let face = &terrain.features.faces[t as usize];
+                let to = centre - face.a;
+                let height = face.n.dot(&to);
+                if height.abs() <= self.reach && !terrain.is_gone(t, &self.gone) {
+                    self.take(terrain, t, (to, height));
+                }
+            }
+        });
+    }
+
+    /// Whether what was collected holds for a rock at `centre`.
+    #[inline]
+    pub fn covers(&self, centre: &Vec3) -> bool {
+        (centre - self.centre).norm_squared() <= self.margin * self.margin
+    }
+
+    /// How far the centre may still go before it must be collected anew (m).
+    #[inline]
+    pub fn room_m(&self, centre: &Vec3) -> f64 {
+        self.margin - (centre - self.centre).norm()
+    }
+
+    /// The one face that can touch within the margin, if nothing else can: a certificate that geometry is a plane there.
+    #[inline]
+    pub fn plane(&self) -> Option<u32> {
+        match &self.faces[..] {
+            [face]
+                if self.edges.is_empty() && self.corners.is_empty() && self.saddles.is_empty() =>
+            {
+                Some(face.id)
+            }
+            _ => None,
+        }
+    }
+
+    /// The touches of a rock at `centre` that are nearer than `reach` (m), in fixed order: faces, edges, corners; where a
+    /// saddle is inside the ball, the patches that it presses into after those that it does not reach yet.
+    #[inline]
+    pub fn touches(
+        &mut self,
+        terrain: &Terrain,
+        centre: &Vec3,
+        reach: f64,
+        touches: &mut ContactPoints,
+    ) {
+        touches.clear();
+        self.patches.clear();
+        for face in &self.faces {
+            if let Some(height) = self.height_over(face, centre, reach) {
+                self.merge(face.touch(height), centre, touches);
+            }
+        }
+        for edge in &self.edges {
+            if let Some(touch) = self.on_edge(terrain, edge, centre, reach) {
+                self.merge(touch, centre, touches);
+            }
+        }
+        for corner in &self.corners {
+            if let Some(touch) = self.on_corner(terrain, corner, centre, reach) {
+                self.merge(touch, centre, touches);
+            }
+        }
+        if self.has_saddle(terrain, centre) {
+            self.gather(terrain, centre, touches);
+        }
+    }
+
+    /// Whether the foot of `centre` is still on `face`, one of those collected.
+    #[inline]
+    pub fn is_over(&self, face: u32, centre: &Vec3) -> bool {
+        let slack = SLACK * self.radius;
+        self.faces.iter().any(|own| own.id == face && own.holds_foot_of(centre, slack))
+    }
+
+    /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`.
+    #[inline]
+    pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
+        let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
+        faces.all(|other| other.id == face || self.height_over(other, centre, reach).is_none())
+            && !self.has_saddle(terrain, centre)
+            && edges.all(|edge| self.on_edge(terrain, edge, centre, reach).is_none())
+            && self
+                .corners
+                .iter()
+                .all(|corner| self.on_corner(terrain, corner, centre, reach).is_none())
+    }
+
+    /// Height over a face (m), if it is nearer than `reach` and has the foot of `centre` on it.
+    #[inline]
+    fn height_over(&self, face: &NearFace, centre: &Vec3, reach: f64) -> Option<f64> {
+        let height = face.n.dot(&(centre - face.a));
+        let touches = height.abs() < reach && face.holds_foot_of(centre, SLACK * self.radius);
+        touches.then_some(height)
+    }
+
+    #[inline]
+    fn on_edge(
+        &self,
+        terrain: &Terrain,
+        edge: &NearEdge,
+        centre: &Vec3,
+        reach: f64,
+    ) -> Option<ContactPoint> {
+        let to = centre - edge.a;
+        let s = edge.along.dot(&to);
+        let slack = SLACK * self.radius;
+        if s < -slack || s > edge.length + slack {
+            return None;
+        }
+        let off = to - edge.along * s.clamp(0.0, edge.length);
+        let distance2 = off.norm_squared();
+        if distance2 >= reach * reach {
+            return None;
+        }
+        let distance = distance2.sqrt();
+        let rays = &self.rays[edge.rays.0 as usize..edge.rays.1 as usize];
+        if distance <= slack || rays.iter().any(|out| out.dot(&off) < -SLACK * distance) {
+            return None;
+        }
+        if edge.at_border && self.is_covered(terrain, &(centre - off), centre, distance) {
+            return None;
+        }
+        let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
+        let normal = off / distance;
+        let touch = ContactPoint {
+            feature,
+            triangle: edge.triangle,
+            normal,
+            distance_m: distance,
+            gain2: 1.0,
+        };
+        Some(touch)
+    }
+
+    #[inline]
+    fn on_corner(
+        &self,
+        terrain: &Terrain,
+        corner: &NearCorner,
+        centre: &Vec3,
+        reach: f64,
+    ) -> Option<ContactPoint> {
+        let off = centre - corner.p;
+        let distance2 = off.norm_squared();
+        if distance2 >= reach * reach {
+            return None;
+        }
+        let distance = distance2.sqrt();
+        let rays = &self.rays[corner.rays.0 as usize..corner.rays.1 as usize];
+        if distance <= SLACK * self.radius
+            || rays.iter().any(|along| along.dot(&off) > SLACK * distance)
+            || corner.at_border && self.is_covered(terrain, &corner.p, centre, distance)
+        {
+            return None;
+        }
+        let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
+        let normal = off / distance;
+        let touch = ContactPoint {
+            feature,
+            triangle: corner.triangle,
+            normal,
+            distance_m: distance,
+            gain2: 1.0,
+        };
+        Some(touch)
+    }
+
+    /// Whether another triangle runs through `foot` and comes nearer to the centre: then the border or corner at
+    /// `foot` lies on the inside of a sheet (a T-junction, a seam) and touches nothing by itself.
+    pub(crate) fn is_covered(
+        &self,
+        terrain: &Terrain,
+        ground_contact: &Vec3,
+        centre: &Vec3,
+        distance: f64,
+    ) -> bool {
+        let near = SAME * self.radius;
+        self.sheets.iter().any(|&t| {
+            let corners = terrain.corners_m(t);
+            let gap = |p: &Vec3| (p - closest_on(&corners, p)).norm();
+            gap(ground_contact) <= near && gap(centre) < distance * (1.0 - 1e-12)
+        })
+    }
+
+    /// Adds a touch unless the same point was found on a lower feature before.
+    #[inline]
+    fn merge(&self, touch: ContactPoint, centre: &Vec3, touches: &mut ContactPoints) {
+        if touches.is_empty() {
+            touches.add(touch);
+            return;
+        }
+        let near2 = (SAME * self.radius).powi(2);
+        let ground_contact = centre - touch.normal * touch.distance_m;
+        let known = touches.iter().any(|other| {
+            (other.normal - touch.normal).norm_squared() <= SAME * SAME
+                && (centre - other.normal * other.distance_m - ground_contact).norm_squared()
+                    <= near2
+        });
+        if !known {
+            touches.add(touch);
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! What of a triangle can touch a rock whose centre stays within a margin.
+
+use super::{NearCorner, NearEdge, NearFace, NearSaddle, Neighbours, SLACK};
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+use crate::terrain::brims::Brim;
+use crate::terrain::features::Face;
+use crate::terrain::seen::Seen;
+
+/// What stands out on one side of a triangle is not touched from further than this on the other (–, relative to the
+/// distance): edges turn by 1e-6 at least before they are said to stand out, and tests have a slack of 1e-9.
+const ASIDE: f64 = 0.01;
+/// Rounding of the sine of a brim's steepest direction (–).
+const ASIDE_SLACK: f32 = 1e-3;
+
+impl Neighbours {
+    /// Takes of one triangle what may touch; the centre is `to` from its first corner and `height` over its plane (m).
+    pub(super) fn take(&mut self, terrain: &Terrain, t: u32, (to, height): (Vec3, f64)) {
+        self.sheets.push(t);
+        let face = &terrain.features.faces[t as usize];
+        let near = self.margin + SLACK * self.radius;
+        let brim = &terrain.features.brims[t as usize];
+        self.take_vertices(terrain, t, brim.vertices);
+        let (owned, beside) = self.within_sight(brim, height);
+        let (hollow, beside_hollow) = self.hollow_in_sight(brim, height);
+        let beside = beside.max(beside_hollow).max(near);
+        let Some(seen) = Seen::of(face, to, (height, beside)) else { return };
+        if seen.is_within(near) {
+            self.take_face(t, face);
+        }
+        for k in (0..3).filter(|_| owned | hollow != 0) {
+            if owned & (1 << k) != 0 && seen.may_meet_edge(k, (near, self.reach)) {
+                self.take_edge(terrain, terrain.features.edges.of_triangle[t as usize][k], t);
+            }
+            if hollow & (1 << k) != 0 && seen.may_press_edge(k, (near, self.radius + near)) {
+                self.take_hollow(terrain, terrain.features.edges.of_triangle[t as usize][k]);
+            }
+            if owned & (8 << k) != 0 && seen.may_meet_corner(k, (near, self.reach)) {
+                self.take_corner(terrain, terrain.triangles[t as usize][k], t);
+            }
+        }
+    }
+
+    fn take_face(&mut self, t: u32, face: &Face) {
+        let corners = [face.a, face.a + face.e1, face.a + face.e2];
+        let sides = [face.e1, face.e2 - face.e1, -face.e2];
+        let out = sides.map(|side| side.cross(&face.n).normalize());
+        let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
+        self.faces.push(NearFace { id: t, a: face.a, n: face.n, out, rim });
+    }
+
+    /// Those of the edges and corners on a triangle's brim that can be touched from the side on which the centre is, and
+    /// how far beside the triangle it can be then (m).
+    #[inline]
+    fn within_sight(&self, brim: &Brim, height: f64) -> (u8, f64) {
+        let sure = self.margin + ASIDE * self.reach;
+        let (mut owned, mut steepest) = (0, 1.0);
+        if height >= -sure && brim.front != 0 {
+            (owned, steepest) = (brim.front, brim.least_front);
+        }
+        if height <= sure && brim.back != 0 {
+            (owned, steepest) = (owned | brim.back, brim.least_back.min(steepest));
+        }
+        if brim.anywhere != 0 {
+            return (owned | brim.anywhere, self.reach);
+        }
+        let aside = (1.0 - steepest * steepest).max(0.0).sqrt() + ASIDE_SLACK;
+        (owned, self.margin + (self.reach - self.margin) * f64::from(aside))
+    }
+
+    /// Those of the edges on a triangle's brim that can be hollow on the side on which the centre is, and how far beside
+    /// the triangle it can be where the ball presses into them (m): the cone in which an edge is hollow is the opposite
+    /// of that in which it stands out.
+    #[inline]
+    fn hollow_in_sight(&self, brim: &Brim, height: f64) -> (u8, f64) {
+        let sure = self.margin + ASIDE * self.reach;
+        let (mut hollow, mut steepest) = (0, 1.0);
+        if height >= -sure && brim.back & 7 != 0 {
+            (hollow, steepest) = (brim.back & 7, brim.least_back);
+        }
+        if height <= sure && brim.front & 7 != 0 {
+            (hollow, steepest) = (hollow | brim.front & 7, brim.least_front.min(steepest));
+        }
+        if brim.anywhere & 7 != 0 {
+            return (hollow | brim.anywhere & 7, self.radius + self.margin);
+        }
+        let aside = (1.0 - steepest * steepest).max(0.0).sqrt() + ASIDE_SLACK;
+        (hollow, self.margin + self.radius * f64::from(aside))
+    }
+
+    /// Takes an edge that the ball can press into from its hollow side.
+    fn take_hollow(&mut self, terrain: &Terrain, id: u32) {
+        let faces = terrain.features.edges.triangles_on(id);
+        if faces.len() < 2 {
+            return; // a border has a face on one side only: nothing meets there
+        }
+        let [a, b] =
+            terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
+        let length = (b - a).norm();
+        let along = (b - a) / length;
+        let to = self.centre - a;
+        let off = to - along * along.dot(&to).clamp(0.0, length);
+        if off.norm() > self.radius + self.margin {
+            return;
+        }
+        let first = self.rays.len();
+        for &t in faces.iter().filter(|_| faces.len() == 2) {
+            let outward = terrain.features.outward(id, t, &terrain.vertices_m);
+            if outward.dot(&off) > self.margin + SLACK * self.radius {
+                self.rays.truncate(first);
+                return;
+            }
+            self.rays.push(outward);
+        }
+        let rays = (first as u32, self.rays.len() as u32);
+        self.saddles.push(NearSaddle::Edge { a, along, length, rays });
+    }
+
+    /// Takes the vertices of one triangle that the ball can press into.
+    #[inline]
+    fn take_vertices(&mut self, terrain: &Terrain, t: u32, vertices: u8) {
+        for k in (0..3).filter(|k| vertices & (1 << k) != 0) {
+            let id = terrain.triangles[t as usize][k];
+            let p = terrain.vertices_m[id as usize];
+            let reach = self.radius + self.margin;
+            if (self.centre - p).norm_squared() < reach * reach {
+                self.saddles.push(NearSaddle::Vertex { id, p });
+            }
+        }
+    }
+
+    fn take_edge(&mut self, terrain: &Terrain, id: u32, owner: u32) {
+        let [a, b] =
+            terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
+        let length = (b - a).norm();
+        let along = (b - a) / length;
+        let to = self.centre - a;
+        let s = along.dot(&to);
+        if s < -self.margin || s > length + self.margin || (to - along * s).norm() > self.reach {
+            return;
+        }
+        let first = self.rays.len();
+        let faces = terrain.features.edges.triangles_on(id);
+        for &t in faces {
+            let outward = terrain.features.outward(id, t, &terrain.vertices_m);
+            if outward.dot(&to) < -self.margin - SLACK * self.radius {
+                self.rays.truncate(first);
+                return;
+            }
+            self.rays.push(outward);
+        }
+        let rays = (first as u32, self.rays.len() as u32);
+        let at_border = faces.len() == 1;
+        self.edges.push(NearEdge { id, triangle: owner, a, along, length, rays, at_border });
+    }
+
+    fn take_corner(&mut self, terrain: &Terrain, id: u32, owner: u32) {
+        let p = terrain.vertices_m[id as usize];
+        let to = self.centre - p;
+        if to.norm() > self.reach {
+            return;
+        }
+        let first = self.rays.len();
+        for &v in terrain.features.neighbours(id) {
+            let along = (terrain.vertices_m[v as usize] - p).normalize();
+            if along.dot(&to) > self.margin + SLACK * self.radius {
+                self.rays.truncate(first);
+                return;
+            }
+            self.rays.push(along);
+        }
+        let rays = (first as u32, self.rays.len() as u32);
+        let at_border = terrain.features.is_border_vertex(id);
+        self.corners.push(NearCorner { id, triangle: owner, p, rays, at_border });
+    }
+}

@@ -1,0 +1,152 @@
+//! Where a ball presses into the mesh: patches in place of minima, and how far a single plane reaches.
+
+use super::{NearSaddle, Neighbours, SLACK};
+use crate::contact::closest::segments_distance2;
+use crate::contact::{ContactPoint, ContactPoints, Feature, FeatureKind};
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+
+/// Where the centre of a rock goes while it is pressed into a plane and comes out again.
+#[derive(Debug, Clone, Copy)]
+pub struct Passage {
+    /// Where it touched (m).
+    pub start: Vec3,
+    /// How far it goes along the plane (m).
+    pub along: Vec3,
+    /// How far it goes into the plane, at most, against the normal (m).
+    pub into: Vec3,
+    /// How far it may be off the straight way at most (m).
+    pub off_m: f64,
+    /// How far it gets from `start` at most (m).
+    pub way_m: f64,
+}
+
+impl Passage {
+    /// Least and largest value of a linear function over the rectangle of `along` and `into`.
+    fn range(&self, direction: &Vec3, at_start: f64) -> (f64, f64) {
+        let (s, d) = (direction.dot(&self.along), direction.dot(&self.into));
+        (at_start + s.min(0.0) + d.min(0.0), at_start + s.max(0.0) + d.max(0.0))
+    }
+
+    /// Whether it may come nearer than `reach` to a plane.
+    fn comes_nearer_to_plane(&self, (n, p): (&Vec3, &Vec3), reach: f64) -> bool {
+        let (low, high) = self.range(n, n.dot(&(self.start - p)));
+        low < reach + self.off_m && high > -reach - self.off_m
+    }
+
+    /// Whether it stays where `direction · x` is larger than `rim`.
+    fn stays_beyond(&self, direction: &Vec3, rim: f64) -> bool {
+        self.range(direction, direction.dot(&self.start)).0 > rim + self.off_m
+    }
+
+    /// Whether it may come nearer than `reach` to a segment. To what lies below the centre it is nearest where it is deepest.
+    fn comes_nearer(&self, (p, d): (&Vec3, &Vec3), reach: f64) -> bool {
+        let below = |x: &Vec3| self.into.dot(&(x - self.start - self.into)) >= 0.0;
+        if below(p) && below(&(p + d)) {
+            let reach = reach + self.off_m;
+            let lowest = self.start + self.into;
+            segments_distance2((&lowest, &self.along), (p, d)) < reach * reach
+        } else {
+            let reach = reach + self.way_m;
+            segments_distance2((&self.start, &Vec3::zeros()), (p, d)) < reach * reach
+        }
+    }
+}
+
+impl Neighbours {
+    /// Whether a rock on its `passage` touches nothing but the plane of `face`, however many triangles that is.
+    pub fn is_plane_on(&self, face: u32, passage: &Passage) -> bool {
+        let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
+        let in_plane = |p: &Vec3| own.n.dot(&(p - own.a)).abs() <= SLACK * self.radius;
+        let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
+        let lies_flat = |rays: (u32, u32)| {
+            let rays = rays_of(rays);
+            rays.len() > 1 && rays.iter().all(|ray| own.n.dot(ray).abs() <= SLACK)
+        };
+        // Whether the centre, `off` from an edge, may come to stand outside (or inside) of all faces on it.
+        let may_stand = |rays: (u32, u32), off: &Vec3, side: f64| {
+            rays_of(rays).iter().all(|ray| side * ray.dot(off) >= -passage.way_m)
+        };
+        let from_start = |a: &Vec3, along: &Vec3, length: f64| {
+            let to = passage.start - a;
+            to - along * along.dot(&to).clamp(0.0, length)
+        };
+        let reach = self.radius;
+        self.faces.iter().all(|other| {
+            let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
+            turned <= SLACK * SLACK && in_plane(&other.a)
+                || !passage.comes_nearer_to_plane((&other.n, &other.a), reach)
+                || (0..3).any(|k| passage.stays_beyond(&other.out[k], other.rim[k]))
+        }) && self.edges.iter().all(|edge| {
+            !passage.comes_nearer((&edge.a, &(edge.along * edge.length)), reach)
+                || !may_stand(edge.rays, &from_start(&edge.a, &edge.along, edge.length), 1.0)
+                || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.a)
+        }) && self.corners.iter().all(|corner| {
+            !passage.comes_nearer((&corner.p, &Vec3::zeros()), reach)
+                || !corner.at_border && lies_flat(corner.rays) && in_plane(&corner.p)
+        }) && self.saddles.iter().all(|saddle| match saddle {
+            NearSaddle::Edge { a, along, length, rays } => {
+                !passage.comes_nearer((a, &(along * *length)), reach)
+                    || rays.0 < rays.1 && !may_stand(*rays, &from_start(a, along, *length), -1.0)
+                    || lies_flat(*rays) && in_plane(a)
+            }
+            NearSaddle::Vertex { p, .. } => !passage.comes_nearer((p, &Vec3::zeros()), reach),
+        })
+    }
+
+    /// Whether a saddle or a maximum of the distance is inside the ball.
+    #[inline]
+    pub(super) fn has_saddle(&self, terrain: &Terrain, centre: &Vec3) -> bool {
+        self.saddles.iter().any(|saddle| match saddle {
+            NearSaddle::Edge { a, along, length, rays } => {
+                let to = centre - a;
+                let s = along.dot(&to);
+                let off = to - along * s;
+                let slack = SLACK * self.radius;
+                let outward = &self.rays[rays.0 as usize..rays.1 as usize];
+                // beyond its ends the edge is as near as its vertices, and those are asked by themselves
+                s >= -slack
+                    && s <= length + slack
+                    && off.norm_squared() < self.radius * self.radius
+                    && outward.iter().all(|out| out.dot(&off) <= slack)
+            }
+            NearSaddle::Vertex { id, p } => {
+                let off = centre - p;
+                off.norm_squared() < self.radius * self.radius
+                    && !terrain.features.is_regular(
+                        *id,
+                        &off,
+                        SLACK * self.radius,
+                        &terrain.vertices_m,
+                    )
+            }
+        })
+    }
+
+    /// The feature under which the patch that holds `feature` was found by the last look, if there was one.
+    pub fn patch_holding(&self, terrain: &Terrain, feature: Feature) -> Option<Feature> {
+        self.patches.holding(terrain, feature)
+    }
+
+    /// Puts the patches in place of the touches that the ball presses into.
+    #[cold]
+    pub(super) fn gather(&mut self, terrain: &Terrain, centre: &Vec3, touches: &mut ContactPoints) {
+        touches.drop_nearer(self.radius);
+        let mut patches = std::mem::take(&mut self.patches);
+        patches.find(terrain, &self.sheets, (centre, self.radius), |touch: ContactPoint| {
+            let ground_contact = centre - touch.normal * touch.distance_m;
+            let features = &terrain.features;
+            let at_border = match touch.feature.kind {
+                FeatureKind::Face => false,
+                FeatureKind::Edge => features.edges.triangles_on(touch.feature.id).len() == 1,
+                FeatureKind::Vertex => features.is_border_vertex(touch.feature.id),
+            };
+            let covered =
+                at_border && self.is_covered(terrain, &ground_contact, centre, touch.distance_m);
+            if !covered {
+                self.merge(touch, centre, touches);
+            }
+        });
+        self.patches = patches;
+    }
+}

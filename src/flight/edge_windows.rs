@@ -1,0 +1,85 @@
+//! Which edges and corners of a triangle a ball can meet during a window of time, told from two coordinates.
+//!
+//! With `p₁ = e₁·(c − a)` and `p₂ = e₂·(c − a)` everything in the triangle's plane is linear in `(p₁, p₂)`, and both
+//! are quadratic in time: their range over a window costs a few products and spares most of the quartics.
+
+use super::{Parabola, least, most};
+use crate::terrain::features::Face;
+
+/// Feet this far on the wrong side still count (–, relative to R): rounding.
+const SLACK: f64 = 1e-6;
+
+/// The two coordinates at the ends of a window, and how much they sag between.
+pub(super) struct EdgeWindows {
+    from: (f64, f64),
+    to: (f64, f64),
+    /// Second coefficients times a quarter of the window squared.
+    sag: (f64, f64),
+    d11: f64,
+    d12: f64,
+    d22: f64,
+    radius: f64,
+}
+
+impl EdgeWindows {
+    pub(super) fn new(face: &Face, flight: &Parabola, (ta, tb): (f64, f64)) -> Self {
+        let at = |t: f64| {
+            let to = flight.centre(t) - face.a;
+            (face.e1.dot(&to), face.e2.dot(&to))
+        };
+        let quarter = -0.125 * flight.gravity * (tb - ta) * (tb - ta);
+        Self {
+            from: at(ta),
+            to: at(tb),
+            sag: (face.e1.z * quarter, face.e2.z * quarter),
+            d11: face.e1.norm_squared(),
+            d12: face.e1.dot(&face.e2),
+            d22: face.e2.norm_squared(),
+            radius: flight.radius,
+        }
+    }
+
+    /// Smallest and largest `α p₁ + β p₂` over the window.
+    #[inline]
+    fn range(&self, alpha: f64, beta: f64) -> (f64, f64) {
+        let one = alpha * self.from.0 + beta * self.from.1;
+        let other = alpha * self.to.0 + beta * self.to.1;
+        let sag = alpha * self.sag.0 + beta * self.sag.1;
+        (least(one, other) - most(sag, 0.0), most(one, other) - least(sag, 0.0))
+    }
+
+    /// Whether the ball can meet edge `k`: abreast of it, outside of the triangle, and at most `aside` (m) out.
+    pub(super) fn edge(&self, k: usize, aside: f64) -> bool {
+        let (d11, d12, d22) = (self.d11, self.d12, self.d22);
+        let det = d11 * d22 - d12 * d12;
+        let d_far = d11 + d22 - 2.0 * d12;
+        // `inside` grows with √(length² det) per metre towards the inside of the triangle.
+        let ((low, high), length2, (nearest, furthest)) = match k {
+            0 => (self.range(1.0, 0.0), d11, self.range(-d12, d11)),
+            1 => {
+                let (low, high) = self.range(-1.0, 1.0);
+                let (least, most) = self.range(d22 - d12, d11 - d12);
+                ((low + d11 - d12, high + d11 - d12), d_far, (det - most, det - least))
+            }
+            _ => (self.range(0.0, 1.0), d22, self.range(d22, -d12)),
+        };
+        let per_metre = (length2 * det).sqrt();
+        let along = SLACK * self.radius * length2.sqrt();
+        high >= -along
+            && low <= length2 + along
+            && nearest <= SLACK * self.radius * per_metre
+            && furthest >= -(aside + SLACK * self.radius) * per_metre
+    }
+
+    /// Whether the ball can meet corner `k`: behind both sides that start there.
+    pub(super) fn corner(&self, k: usize) -> bool {
+        let (d11, d12, d22) = (self.d11, self.d12, self.d22);
+        let (one, other) = match k {
+            0 => (self.range(1.0, 0.0).0, self.range(0.0, 1.0).0),
+            1 => (d11 - self.range(1.0, 0.0).1, self.range(-1.0, 1.0).0 + d11 - d12),
+            _ => (d22 - self.range(0.0, 1.0).1, self.range(1.0, -1.0).0 + d22 - d12),
+        };
+        let slack = SLACK * self.radius * (d11 + d22).sqrt();
+        one <= slack && other <= slack
+    }
+}

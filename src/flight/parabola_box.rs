@@ -1,0 +1,116 @@
+//! When a parabola passes the boxes of the index: four boxes at once, in `f32`, never too narrow.
+//!
+//! Boxes are `f32` anyway. What is taken from the flight is rounded away from them, what is computed of it is off by a few
+//! roundings of its own size, and the windows that come out are wider by more than that ([`WIDER`]).
+
+use super::Parabola;
+use crate::terrain::index::{Node, above, below};
+use wide::f32x4;
+
+/// Boxes are grown by this much more than the radius (–, relative to it): a ball that meets a plate as it enters the
+/// plate's box, which has no thickness, must not be cut off by rounding.
+const ROUNDING: f64 = 1e-6;
+/// Windows are wider by this (–, relative to their ends): four roundings lie behind each, of 6e-8.
+const WIDER: f32 = 6e-7;
+/// Squares of times are off by as much (–).
+const SQUARED: f64 = 1e-6;
+/// Reciprocal of a speed too small to leave any box: its sign decides, it never overflows to NaN.
+const STANDING: f64 = 1e30;
+
+/// The parabola's pass through boxes: linear in x and y, quadratic in z.
+pub(super) struct ParabolaBox {
+    /// Start less, and plus, the radius of the ball and a little more.
+    less: [f32x4; 3],
+    plus: [f32x4; 3],
+    /// Reciprocal of the speeds; of the vertical one without gravity only.
+    inv: [f32x4; 3],
+    fall: Option<Fall>,
+}
+
+/// Height over time under gravity.
+struct Fall {
+    /// Time of the apex, rounded down and up.
+    apex_s: [f32x4; 2],
+    /// Its height less, and plus, the radius.
+    less: f32x4,
+    plus: f32x4,
+    /// `2/g`, a little too small and too large.
+    over: [f32x4; 2],
+}
+
+impl ParabolaBox {
+    pub(super) fn new(flight: &Parabola) -> Self {
+        let (c, v, g) = (flight.start, flight.velocity, flight.gravity);
+        let r = flight.radius * (1.0 + ROUNDING);
+        let (down, up) = (|x: f64| f32x4::splat(below(x)), |x: f64| f32x4::splat(above(x)));
+        let apex = c.z + 0.5 * v.z * v.z / g;
+        // Gravity so weak that the apex is out of every scale bends no flight.
+        let bends = g > 0.0 && apex < STANDING;
+        let fall = bends.then(|| Fall {
+            apex_s: [down(v.z / g), up(v.z / g)],
+            less: down(apex - r),
+            plus: up(apex + r),
+            over: [down(2.0 / g * (1.0 - SQUARED)), up(2.0 / g * (1.0 + SQUARED))],
+        });
+        let inv = |speed: f64| (1.0 / speed).clamp(-STANDING, STANDING) as f32;
+        Self {
+            less: [0, 1, 2].map(|k| down(c[k] - r)),
+            plus: [0, 1, 2].map(|k| up(c[k] + r)),
+            inv: [0, 1, 2].map(|k| f32x4::splat(inv(v[k]))),
+            fall,
+        }
+    }
+
+    /// Times within `0..limit` between which the centre may be in the boxes grown by the radius: where the windows begin
+    /// and where they end; empty if reversed.
+    #[inline]
+    pub(super) fn windows(&self, node: &Node, limit: f64) -> (f32x4, f32x4) {
+        let mut window = (f32x4::ZERO, f32x4::splat(limit as f32));
+        self.clip(node, 0, &mut window);
+        self.clip(node, 1, &mut window);
+        if self.fall.is_none() {
+            self.clip(node, 2, &mut window);
+        }
+        let floor2 = self.fall.as_ref().map(|fall| fall.clip_to_floor(node, &mut window));
+        let mut window = (window.0 * (1.0 - WIDER), window.1 * (1.0 + WIDER));
+        if let (Some(fall), Some(floor2)) = (&self.fall, floor2) {
+            fall.clip_to_roof(node, &mut window);
+            let never = f32x4::splat(f32::INFINITY);
+            window.0 = floor2.simd_lt(f32x4::ZERO).select(never, window.0);
+        }
+        window
+    }
+
+    /// Clips the windows to the time between two planes.
+    #[inline]
+    fn clip(&self, node: &Node, axis: usize, (begin, end): &mut (f32x4, f32x4)) {
+        let one = (node.lo[axis] - self.plus[axis]) * self.inv[axis];
+        let other = (node.hi[axis] - self.less[axis]) * self.inv[axis];
+        *begin = begin.fast_max(one.fast_min(other));
+        *end = end.fast_min(one.fast_max(other));
+    }
+}
+
+impl Fall {
+    /// Clips the windows to the time above the floors; gives the squares of the times that the fall from the apex takes
+    /// to them, negative if they are never reached.
+    #[inline]
+    fn clip_to_floor(&self, node: &Node, (begin, end): &mut (f32x4, f32x4)) -> f32x4 {
+        let floor2 = (self.plus - node.lo[2]) * self.over[1];
+        let floor = floor2.fast_max(f32x4::ZERO).sqrt();
+        *begin = begin.fast_max(self.apex_s[0] - floor);
+        *end = end.fast_min(self.apex_s[1] + floor);
+        floor2
+    }
+
+    /// Above the roof between two times: leaves the window's hull, unless the way up or the way down is out of it already.
+    #[inline]
+    fn clip_to_roof(&self, node: &Node, (begin, end): &mut (f32x4, f32x4)) {
+        let roof2 = (self.less - node.hi[2]) * self.over[0];
+        let roof = roof2.fast_max(f32x4::ZERO).sqrt();
+        let up = (self.apex_s[1] - roof) * (1.0 + WIDER);
+        let down = (self.apex_s[0] + roof) * (1.0 - WIDER);
+        *begin = begin.simd_gt(up).select(begin.fast_max(down), *begin);
+        *end = end.simd_lt(down).select(end.fast_min(up), *end);
+    }
+}

@@ -1,0 +1,293 @@
+//! When a ball on a parabola first touches one triangle, its own edges and its own corners.
+
+use super::edge_windows::EdgeWindows;
+use super::roots::{first_fall, quadratic};
+use super::{Parabola, least, most};
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+use crate::terrain::brims::Brim;
+use crate::terrain::features::Face;
+use crate::terrain::seen::Seen;
+
+/// A start nearer to touching than this counts as touching (–, relative to R²): rounding of the contact before.
+const TOUCHING: f64 = 1e-12;
+/// A range of heights ends this far beyond what was computed (–, relative to R): rounding.
+const NEAR: f64 = 1e-9;
+/// A foot this far beside a triangle still lies on it (–, relative to R): neighbours must not leave a gap.
+const BESIDE: f64 = 1e-9;
+/// What rounding may add to the sine of a brim's steepest direction (–).
+const ASIDE: f64 = 1e-3;
+/// A start beside a triangle but this little under its plane (–, relative to R) is on a neighbour in the same plane.
+const ROUNDING: f64 = 1e-9;
+
+/// First touch within a window of time, with the triangle and the edges and corners that it owns.
+#[inline]
+pub(super) fn of_triangle(
+    terrain: &Terrain,
+    t: u32,
+    flight: &Parabola,
+    window: (f64, f64),
+) -> Option<f64> {
+    let (ta, tb) = (most(window.0, 0.0), window.1);
+    let face = &terrain.features.faces[t as usize];
+    let height = Height {
+        h0: face.n.dot(&(flight.start - face.a)),
+        h1: face.n.dot(&flight.velocity),
+        h2: -0.5 * flight.gravity * face.n.z,
+    };
+    let range = height.range((ta, tb));
+    let near = flight.radius * (1.0 + NEAR);
+    if range.0 > near || range.1 < -near {
+        return None;
+    }
+    let mut best = tb;
+    let mut found = None;
+    // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
+    let slack = BESIDE * flight.radius;
+    let starts_near = ta <= 0.0 && starts_near(face, flight, height.h0);
+    let on_it = starts_near && face.holds_foot_of(&flight.start, slack);
+    let level = flight.radius * (1.0 - 2.0 * NEAR);
+    for (side, above) in [(1.0, range.1), (-1.0, -range.0)] {
+        if (above >= level || on_it)
+            && let Some(t) = height.falls_to(side, (flight.radius, on_it), range, (ta, best))
+            && face.holds_foot_of(&flight.centre(t), slack)
+        {
+            best = t;
+            found = Some(t);
+        }
+    }
+    let brim = &terrain.features.brims[t as usize];
+    if brim.front | brim.back | brim.anywhere == 0 {
+        return found;
+    }
+    for rim in rims(brim, flight.radius, starts_near && is_pressed_in(terrain, t, flight)) {
+        if rim.owned == 0 || rim.heights.0 > range.1 || rim.heights.1 < range.0 {
+            continue;
+        }
+        let slab = height.within(rim.heights, (ta, best));
+        if slab.0 <= slab.1
+            && let Some(t) = of_rim(terrain, t, flight, (&rim, slab))
+        {
+            best = t;
+            found = Some(t);
+        }
+    }
+    found
+}
+
+/// Whether the ball may be nearer than its radius to a triangle when it starts, at a height of `h0` (m).
+#[inline]
+fn starts_near(face: &Face, flight: &Parabola, h0: f64) -> bool {
+    let aside2 = flight.radius * flight.radius - h0 * h0;
+    if aside2 <= 0.0 {
+        return false;
+    }
+    let aside = aside2.sqrt() + NEAR * flight.radius;
+    Seen::of(face, flight.start - face.a, (h0, aside)).is_some()
+}
+
+/// Edges and corners of a triangle that are met alike.
+struct Rim {
+    /// Bits 0–2 edges, bits 3–5 corners.
+    owned: u8,
+    /// Heights of the centre over the triangle's plane (m).
+    heights: (f64, f64),
+    /// How far beside the triangle the centre can be (m).
+    aside: f64,
+}
+
+/// What a triangle owns, as it is met from in front, from behind and from anywhere; all of it from anywhere by a ball that
+/// is pressed in.
+#[inline]
+fn rims(brim: &Brim, radius: f64, pressed_in: bool) -> [Rim; 3] {
+    let near = radius * (1.0 + NEAR);
+    let anywhere = |owned: u8| Rim { owned, heights: (-near, near), aside: near };
+    if pressed_in {
+        return [anywhere(brim.front | brim.back | brim.anywhere), anywhere(0), anywhere(0)];
+    }
+    let aside = |least: f64| ((1.0 - least * least).max(0.0).sqrt() + ASIDE) * radius;
+    let [front, back] = [brim.least_front, brim.least_back].map(|least| f64::from(least) - NEAR);
+    [
+        Rim { owned: brim.front, heights: (front * radius, near), aside: aside(front) },
+        Rim { owned: brim.back, heights: (-near, -back * radius), aside: aside(back) },
+        anywhere(brim.anywhere),
+    ]
+}
+
+/// Whether the ball starts pressed into one of the edges and corners that a triangle owns: there it comes back to its
+/// starting distance, not to the radius, and may do so from where it could not touch.
+fn is_pressed_in(terrain: &Terrain, t: u32, flight: &Parabola) -> bool {
+    let brim = &terrain.features.brims[t as usize];
+    let owned = brim.front | brim.back | brim.anywhere;
+    let corners = terrain.corners_m(t);
+    let pressed2 = flight.radius * flight.radius * (1.0 - NEAR);
+    (0..3).any(|k| {
+        let to = flight.start - corners[k];
+        if owned & (8 << k) != 0 && to.norm_squared() < pressed2 {
+            return true;
+        }
+        let side = corners[(k + 1) % 3] - corners[k];
+        let share = (side.dot(&to) / side.norm_squared()).clamp(0.0, 1.0);
+        owned & (1 << k) != 0 && (to - side * share).norm_squared() < pressed2
+    })
+}
+
+/// First touch of some of the edges and corners of a triangle.
+#[inline]
+fn of_rim(
+    terrain: &Terrain,
+    t: u32,
+    flight: &Parabola,
+    (rim, slab): (&Rim, (f64, f64)),
+) -> Option<f64> {
+    let face = &terrain.features.faces[t as usize];
+    let (owned, aside) = (rim.owned, rim.aside);
+    let lasts = slab.1 - slab.0;
+    let way = (flight.velocity(slab.0).norm() + 0.5 * flight.gravity * lasts) * lasts;
+    Seen::of(face, flight.centre(slab.0) - face.a, (0.0, way + aside + NEAR * flight.radius))?;
+    let abreast = EdgeWindows::new(face, flight, slab);
+    let (mut best, mut found) = (slab.1, None);
+    for k in 0..3 {
+        let window = (slab.0, best);
+        let times = [
+            (owned & (1 << k) != 0 && abreast.edge(k, aside))
+                .then(|| edge(terrain, t, k, flight, window)),
+            (owned & (8 << k) != 0 && abreast.corner(k))
+                .then(|| corner(terrain, t, k, flight, window)),
+        ];
+        for time in times.into_iter().flatten().flatten() {
+            if time <= best {
+                (best, found) = (time, Some(time));
+            }
+        }
+    }
+    found
+}
+
+/// Height of the centre over a plane, a quadratic in time.
+struct Height {
+    h0: f64,
+    h1: f64,
+    h2: f64,
+}
+
+impl Height {
+    fn speed(&self, t: f64) -> f64 {
+        self.h1 + 2.0 * self.h2 * t
+    }
+
+    #[inline]
+    fn at(&self, t: f64) -> f64 {
+        self.h0 + t * (self.h1 + t * self.h2)
+    }
+
+    /// Lowest and highest in a window.
+    #[inline]
+    fn range(&self, (ta, tb): (f64, f64)) -> (f64, f64) {
+        let (ha, hb) = (self.at(ta), self.at(tb));
+        let turn = -0.5 * self.h1 / self.h2;
+        let ht = if turn > ta && turn < tb { self.at(turn) } else { ha };
+        (least(least(ha, hb), ht), most(most(ha, hb), ht))
+    }
+
+    /// The part of a window in which the height may be between two levels (its hull); reversed if nowhere.
+    #[inline]
+    fn within(&self, (low, high): (f64, f64), (ta, tb): (f64, f64)) -> (f64, f64) {
+        let holds = |t: f64| (low..=high).contains(&self.at(t));
+        let (mut first, mut last) =
+            (if holds(ta) { ta } else { tb }, if holds(tb) { tb } else { ta });
+        if first > ta || last < tb {
+            for level in [high, low] {
+                let (one, other) = quadratic(self.h2, self.h1, self.h0 - level).unwrap_or((tb, ta));
+                for t in [one, other].into_iter().filter(|&t| t > ta && t < tb) {
+                    (first, last) = (least(first, t), most(last, t));
+                }
+            }
+        }
+        (first, last)
+    }
+
+    /// First time in the window at which the ball comes down to the plane from one side (+1, −1).
+    ///
+    /// A ball that starts on the triangle (`on_it`), or at most a rounding under its plane, comes down when it is
+    /// back at its starting height: it can never fall through. One that starts beside the triangle may be anywhere
+    /// relative to the plane and must come down to the full radius.
+    #[inline]
+    fn falls_to(
+        &self,
+        side: f64,
+        (radius, on_it): (f64, bool),
+        (low, high): (f64, f64),
+        (ta, tb): (f64, f64),
+    ) -> Option<f64> {
+        let (h0, h1, h2) = (side * self.h0, side * self.h1, side * self.h2);
+        let touching = h0 >= 0.0
+            && h0 < radius * (1.0 + TOUCHING)
+            && (on_it || h0 > radius * (1.0 - ROUNDING));
+        if touching && ta <= 0.0 && (h1 < 0.0 || h1 == 0.0 && h2 < 0.0) {
+            return Some(0.0);
+        }
+        let level = if touching { least(h0, radius) } else { radius };
+        let (below, above) = if side > 0.0 { (low, high) } else { (-high, -low) };
+        if level < below - NEAR * radius || level > above + NEAR * radius {
+            return None;
+        }
+        let (one, other) = quadratic(h2, h1, h0 - level)?;
+        // A start on the level has a root at 0 that is no fall.
+        [one, other]
+            .into_iter()
+            .find(|&t| t >= ta && t <= tb && side * self.speed(t) < 0.0 && (t > 0.0 || h1 < 0.0))
+    }
+}
+
+/// When the ball touches edge `k` of a triangle: the distance to its line falls to the radius, abreast of it.
+fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
+    let corners = terrain.triangles[t as usize];
+    let [a, b] = [corners[k], corners[(k + 1) % 3]].map(|v| terrain.vertices_m[v as usize]);
+    let length = (b - a).norm();
+    let along = (b - a) / length;
+    let off = |x: Vec3| x - along * along.dot(&x);
+    let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
+    let slack = 1e-11 * length;
+    let abreast = |x: Vec3| (-slack..=length + slack).contains(&along.dot(&(x - a)));
+    let path = [off(flight.start - a), off(flight.velocity), off(fall)];
+    // The line goes on beyond the edge: the ball may meet it there first and the edge later.
+    ball_meets(path, flight.radius, window, &|t| abreast(flight.centre(t)))
+}
+
+/// When the ball touches corner `k` of a triangle.
+fn corner(
+    terrain: &Terrain,
+    t: u32,
+    k: usize,
+    flight: &Parabola,
+    window: (f64, f64),
+) -> Option<f64> {
+    let p = terrain.vertices_m[terrain.triangles[t as usize][k] as usize];
+    let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
+    ball_meets([flight.start - p, flight.velocity, fall], flight.radius, window, &|_| true)
+}
+
+/// First time that is `wanted` at which `|x0 + x1 t + x2 t²|` falls to the radius.
+#[inline]
+fn ball_meets(
+    [x0, x1, x2]: [Vec3; 3],
+    radius: f64,
+    (ta, tb): (f64, f64),
+    wanted: &impl Fn(f64) -> bool,
+) -> Option<f64> {
+    let r2 = radius * radius;
+    let gap = x0.norm_squared() - r2;
+    let slope = 2.0 * x0.dot(&x1);
+    let curve = x1.norm_squared() + 2.0 * x0.dot(&x2);
+    let cubic = 2.0 * x1.dot(&x2);
+    if ta <= 0.0 && gap < TOUCHING * r2 && wanted(0.0) {
+        if slope < 0.0 || slope == 0.0 && curve < 0.0 {
+            return Some(0.0);
+        }
+        // Leaving from inside or from the rim: it touches again when it is back at its starting distance. The root at
+        // 0 is divided out, what is left is a cubic.
+        return first_fall(&[slope, curve, cubic, x2.norm_squared(), 0.0], (0.0, tb), wanted);
+    }
+    first_fall(&[gap, slope, curve, cubic, x2.norm_squared()], (ta, tb), wanted)
+}

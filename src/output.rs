@@ -1,0 +1,419 @@
+//! Results on the disk: tables that grow chunk by chunk, and a summary at the end.
+//!
+//! A chunk's rows are on the disk before `progress.json` says so, in one stroke; whatever a crash leaves
+//! behind that mark is cut off when the run is resumed. So a resumed run writes the same bytes as an
+//! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
+
+mod annual;
+mod calibration;
+mod claim;
+mod folder;
+mod maps;
+mod merge;
+mod opened;
+mod progress;
+mod read;
+mod rows;
+mod site;
+mod summary;
+mod table;
+mod used;
+mod vector;
+mod whole;
+
+pub use calibration::{read_calibration, write_calibration};
+pub use claim::Claim;
+pub use folder::{announce_figures, releases_in};
+pub use merge::merge;
+pub use progress::Identity;
+pub use read::{Results, read};
+pub use rows::{ImpactRow, PathRow};
+pub use site::{Site, Zone};
+pub use summary::{Run, Summary};
+pub use used::{copy_used, write_drawings, write_ground};
+pub use vector::write_terrain;
+pub use whole::write_whole;
+
+use crate::error::{Error, Result};
+use crate::frequency::Weights;
+use crate::hazard;
+use crate::hazard::{
+    Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
+};
+use crate::rock::Vec3;
+use crate::simulation::{ShapeOf, Trajectory};
+use opened::{open, open_maps};
+use progress::{PROGRESS, Progress};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use table::Table;
+
+const RELEASES: &str = "releases.csv";
+const PATHS: &str = "paths.csv";
+const IMPACTS: &str = "impacts.csv";
+const CROSSINGS: &str = "crossings.csv";
+const TABLES: [&str; 4] = [RELEASES, PATHS, IMPACTS, CROSSINGS];
+
+/// What the results need to know of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunInfo {
+    /// Title of the scene.
+    pub title: String,
+    /// What decides every byte of the results.
+    pub identity: Identity,
+    /// Map position of the local (0, 0, 0) (m): added to every position written.
+    pub origin_m: Vec3,
+    /// Where meshes and releases lie.
+    pub site: Site,
+    /// Name of the ground of each mesh, in the order of [`Terrain::sheets`](crate::terrain::Terrain).
+    pub ground_of_sheet: Vec<String>,
+    /// Evaluation lines, in the order of the scene; none leaves `crossings.csv` out.
+    pub lines: Vec<LineInfo>,
+    /// Where the maps lie; none leaves them out.
+    pub maps: Option<MapFrame>,
+    /// Barriers; each on the line of its name.
+    pub barriers: Vec<Barrier>,
+    /// What is asked of the year: sources, objects, classes of hazard.
+    pub asked: Asked,
+    /// Measured ways to compare with; none if the scene names none.
+    pub observed: Vec<Way>,
+    /// Whether `paths.csv` is written.
+    pub keeps_paths: bool,
+    /// Whether `impacts.csv` is written.
+    pub keeps_impacts: bool,
+    /// Whether some rocks have shapes: the tables then say how they are turned.
+    pub has_blocks: bool,
+    /// Whether [`merge`] is to put it together with others, were it the only one.
+    pub is_shard: bool,
+    /// Worker threads.
+    pub threads: usize,
+    /// The lines of the plan: what is computed, what is left out and why.
+    pub plan: Vec<String>,
+    /// What went in, as name and value.
+    pub inputs: Vec<(String, String)>,
+    /// Rows of the title block.
+    pub title_block: Vec<(String, String)>,
+    /// Where terrain and ground values come from, in words.
+    pub sources: [String; 2],
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// Health of the meshes.
+    pub mesh_health: serde_json::Value,
+}
+
+/// What to do with results that the folder holds already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Refuse them.
+    Fresh,
+    /// The same for parts that are put together, where there is nothing to go on with.
+    Merge,
+    /// Go on with them; start when there are none; nothing is left to do when they are complete.
+    Resume,
+    /// The same, also where they are the first of the releases asked for.
+    Extend,
+    /// Replace them.
+    Overwrite,
+}
+
+/// Results being written.
+#[derive(Debug)]
+pub struct Output {
+    claim: Claim,
+    dir: PathBuf,
+    info: RunInfo,
+    releases: Table,
+    paths: Option<Table>,
+    impacts: Option<Table>,
+    crossings: Option<Table>,
+    hazard: Hazard,
+    lines: Vec<Line>,
+    /// None also when they are complete already.
+    maps: Option<Maps>,
+    begun: Instant,
+    /// Time that earlier sessions took (s).
+    seconds_before: f64,
+    /// When the last mark was set, and how long that took; none while all is marked.
+    marked: (Instant, Duration),
+    is_marked: bool,
+}
+
+/// Cells of maps above which their state is not put on the disk after every chunk.
+const MANY_CELLS: usize = 50_000;
+/// With so many cells, time between two marks over the time that one takes (–).
+const MARK_SHARE: u32 = 20;
+
+impl Output {
+    /// Opens the folder `dir`, which is made if it is not there, for the run described by `info`.
+    ///
+    /// # Errors
+    ///
+    /// If the folder holds results that `mode` does not allow to touch, cannot be written, or is being written by
+    /// another process.
+    pub fn create(info: RunInfo, dir: &Path, mode: Mode) -> Result<Self> {
+        // looked at before it is touched: a folder that is refused stays as it is
+        folder::look(dir, &info, mode)?;
+        let mut claim = Claim::on(dir)?;
+        let found = folder::prepare(dir, (&info, mode), &mut claim)?;
+        let bytes = found.as_ref().map(|found| &found.bytes);
+        let columns = |plain: &[&'static str], more: &[&'static str]| {
+            [plain, if info.has_blocks { more } else { &[] }].concat()
+        };
+        let of_release = columns(&Row::COLUMNS, &Row::SHAPE_COLUMNS);
+        let releases = open(dir, RELEASES, &of_release, bytes)?;
+        let of_path = columns(&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS);
+        let paths = info.keeps_paths.then(|| open(dir, PATHS, &of_path, bytes)).transpose()?;
+        let impacts = info
+            .keeps_impacts
+            .then(|| open(dir, IMPACTS, &ImpactRow::COLUMNS, bytes))
+            .transpose()?;
+        let of_crossing = columns(&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
+        let crossings = (!info.lines.is_empty())
+            .then(|| open(dir, CROSSINGS, &of_crossing, bytes))
+            .transpose()?;
+        let mut lines = read::lines(&info.lines, &info.asked, info.identity.releases);
+        if found.is_some() {
+            read::recall_lines(dir, &mut lines)?;
+        }
+        let maps = open_maps(dir, &info, found.as_ref())?;
+        let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
+        let mut hazard = Hazard::default().weighing(info.asked.frequency.clone());
+        // finished results are whole: nothing is marked, and what follows changes none of their rows
+        let mut is_marked = false;
+        if let Some(found) = found {
+            hazard.totals = found.totals;
+            read::recall(dir, &info.identity, found.done, &mut hazard)?;
+            read::check_lengths(dir, &found.finished)?;
+            is_marked = !found.finished.is_empty() && found.done == info.identity.releases;
+            claim.keep();
+        }
+        let dir = dir.to_owned();
+        let begun = Instant::now();
+        let mut output = Self {
+            claim,
+            dir,
+            info,
+            releases,
+            paths,
+            impacts,
+            crossings,
+            hazard,
+            lines,
+            maps,
+            begun,
+            seconds_before,
+            marked: (begun, Duration::ZERO),
+            is_marked,
+        };
+        output.keep()?;
+        Ok(output)
+    }
+
+    /// Release numbers still to be computed.
+    pub fn remaining(&self) -> Range<usize> {
+        let asked = self.info.identity.range();
+        asked.start + self.hazard.rocks()..asked.end
+    }
+
+    /// All rocks written so far, those of an interrupted run included.
+    pub fn hazard(&self) -> &Hazard {
+        &self.hazard
+    }
+
+    /// Writes the next journeys, which must be the first of [`Self::remaining`], in order; when it returns they
+    /// are on the disk, unless fine maps are drawn, see [`Self::keep`].
+    ///
+    /// # Errors
+    ///
+    /// If the disk is full or the folder has gone; everything up to the write before stays good.
+    ///
+    /// # Panics
+    ///
+    /// If the journeys are not those: a mistake of the caller that would spoil the results.
+    pub fn write(&mut self, falls: &[Trajectory]) -> Result<()> {
+        for fall in falls {
+            assert_eq!(fall.index, self.remaining().start, "journeys must be written in order");
+            let mut row = Row::of(fall, self.info.origin_m);
+            if self.info.has_blocks {
+                row.shape.get_or_insert(ShapeOf::SPHERE);
+            }
+            self.releases.write(&row)?;
+            self.write_path(fall)?;
+            self.write_impacts(fall)?;
+            self.write_crossings(fall)?;
+            if let Some(maps) = &mut self.maps {
+                let frequency = self.info.asked.frequency.as_ref();
+                let stratum = frequency.map_or(0, |one| one.stratum_of(row.index));
+                maps.add(stratum as u16, &fall.visits, (row.stop, row.end_m));
+            }
+            self.hazard.add(&row);
+            self.hazard.totals.add(fall);
+        }
+        self.is_marked = false;
+        let (last, took) = self.marked;
+        let many = self.maps.as_ref().is_some_and(|maps| maps.known_cells() > MANY_CELLS);
+        if many && last.elapsed() < took * MARK_SHARE {
+            return Ok(());
+        }
+        self.keep()
+    }
+
+    /// Puts on the disk what [`Self::write`] has not yet: with fine maps it does so only now and then, because their
+    /// state is as long as they are.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::write`].
+    pub fn keep(&mut self) -> Result<()> {
+        if self.is_marked {
+            return Ok(());
+        }
+        let begun = Instant::now();
+        self.mark()?;
+        self.marked = (Instant::now(), begun.elapsed());
+        self.is_marked = true;
+        if self.hazard.rocks() > 0 {
+            self.claim.keep();
+        }
+        Ok(())
+    }
+
+    /// Writes the summary and gives the results as they are on the disk. Of a part of a run the progress stays:
+    /// it holds what [`merge`] needs.
+    ///
+    /// # Errors
+    ///
+    /// If releases remain: the message says how far the run came and how to go on. If the disk is full.
+    pub fn finish(mut self) -> Result<Results> {
+        let left = self.remaining().len();
+        if left > 0 {
+            let (done, all) = (self.hazard.rocks(), self.info.identity.releases);
+            let dir = self.dir.display();
+            return Err(Error::Request(format!(
+                "{dir}: {done} of {all} releases are written; go on with --resume"
+            )));
+        }
+        let seconds = self.seconds();
+        let is_part = self.info.is_shard || self.info.identity.is_part();
+        self.claim.keep();
+        let bytes = self.lengths()?;
+        let done = self.hazard.rocks();
+        if let Some(maps) = &self.maps {
+            // of a part of a run no number a year can be told
+            maps::write(&self.dir, maps, (&self.info.asked, done), is_part)?;
+        }
+        let weights = self.hazard.weights().unwrap_or_else(|| Weights::equal(done));
+        let crossings = read::crossings(&self.dir)?;
+        let barriers = hazard::judge(&self.info.barriers, crossings, &weights)?;
+        let crossings = read::crossings(&self.dir)?;
+        let (nets, lines) = (&self.info.barriers, &self.info.lines);
+        let residual = hazard::residual(nets, lines, crossings, &weights)?;
+        let annual = if is_part { None } else { self.annual(done)? };
+        let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
+        (summary.barriers, summary.residual, summary.annual) = (barriers, residual, annual);
+        summary.bytes = bytes;
+        summary.write(&self.dir)?;
+        self.hazard.totals = summary.totals.clone();
+        let results = Results {
+            dir: self.dir,
+            summary,
+            hazard: self.hazard,
+            lines: self.lines,
+            claim: Some(self.claim),
+        };
+        if results.summary.maps.is_some() {
+            results.write_vectors()?;
+        }
+        // a part keeps what putting parts together needs
+        if !is_part {
+            folder::remove(&results.dir.join(PROGRESS))?;
+            maps::keep_state(&results.dir, None)?;
+        }
+        Ok(results)
+    }
+
+    /// What a year brings, of all releases.
+    fn annual(&self, releases: usize) -> Result<Option<Annual>> {
+        let RunInfo { asked, lines, barriers, .. } = &self.info;
+        let crossings = read::crossings(&self.dir)?;
+        let annual = hazard::annual(asked, releases, (lines, barriers), crossings)?;
+        annual.as_ref().map_or(Ok(()), |annual| annual::write(&self.dir, annual))?;
+        Ok(annual)
+    }
+
+    fn write_path(&mut self, fall: &Trajectory) -> Result<()> {
+        let Some(table) = &mut self.paths else { return Ok(()) };
+        let (origin_m, has_blocks) = (self.info.origin_m, self.info.has_blocks);
+        fall.path.iter().try_for_each(|point| {
+            let mut row = PathRow::of(fall.index, point, origin_m);
+            if has_blocks {
+                row.attitude.get_or_insert(ShapeOf::SPHERE.attitude);
+            }
+            table.write(&row)
+        })
+    }
+
+    fn write_impacts(&mut self, fall: &Trajectory) -> Result<()> {
+        let Some(table) = &mut self.impacts else { return Ok(()) };
+        fall.impacts.iter().try_for_each(|impact| {
+            let ground = &self.info.ground_of_sheet[usize::from(impact.sheet)];
+            table.write(&ImpactRow::of(fall.index, impact, ground, self.info.origin_m))
+        })
+    }
+
+    fn write_crossings(&mut self, fall: &Trajectory) -> Result<()> {
+        let Some(table) = &mut self.crossings else { return Ok(()) };
+        for crossing in &fall.crossings {
+            let line = &mut self.lines[crossing.line];
+            let who = (fall.index, &fall.rock);
+            let mut row = CrossingRow::of(who, crossing, &line.info.name, self.info.origin_m);
+            if self.info.has_blocks {
+                row.top_m = Some(row.highest_m());
+            }
+            table.write(&row)?;
+            line.add(&row);
+        }
+        Ok(())
+    }
+
+    /// The tables that are written, with their names.
+    fn tables(&mut self) -> impl Iterator<Item = (&'static str, &mut Table)> {
+        let Self { releases, paths, impacts, crossings, .. } = self;
+        let kept = [(PATHS, paths), (IMPACTS, impacts), (CROSSINGS, crossings)].into_iter();
+        let kept = kept.filter_map(|(name, table)| Some((name, table.as_mut()?)));
+        std::iter::once((RELEASES, releases)).chain(kept)
+    }
+
+    /// Puts all rows on the disk; the lengths of the tables (bytes).
+    fn lengths(&mut self) -> Result<BTreeMap<String, u64>> {
+        let length = |(name, table): (&str, &mut Table)| Ok((name.to_owned(), table.sync()?));
+        self.tables().map(length).collect()
+    }
+
+    /// Puts all rows on the disk, and then says that they are there.
+    fn mark(&mut self) -> Result<()> {
+        let bytes = self.lengths()?;
+        let done = self.hazard.rocks();
+        if let Some(maps) = &self.maps {
+            maps::write_state(&self.dir, maps, done)?;
+        }
+        let progress = Progress {
+            title: self.info.title.clone(),
+            identity: self.info.identity.clone(),
+            done,
+            bytes,
+            totals: self.hazard.totals.clone(),
+            seconds: self.seconds(),
+            finished: BTreeMap::new(),
+        };
+        progress.write(&self.dir)?;
+        // The state before is of use until the progress says otherwise.
+        self.maps.as_ref().map_or(Ok(()), |_| maps::keep_state(&self.dir, Some(done)))
+    }
+
+    fn seconds(&self) -> f64 {
+        self.seconds_before + self.begun.elapsed().as_secs_f64()
+    }
+}

@@ -1,0 +1,195 @@
+//! Which cells of the maps a rock passes, with its largest energy and height in each.
+
+use super::form::{Form, Instant, Turned};
+use super::recorder::between;
+use crate::flight::Parabola;
+use crate::plan::Lattice;
+use crate::rock::{Motion, Vec3};
+use crate::terrain::Terrain;
+
+/// One rock in one cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellPassage {
+    /// The cell's number in the lattice.
+    pub cell: u32,
+    /// Largest sum of translational and rotational energy in the cell (J).
+    pub total_j: f64,
+    /// Largest vertical distance from the ground below to the lowest point of the rock in the cell (m), 0 in contact.
+    pub height_m: f64,
+}
+
+/// The cells of one rock so far.
+#[derive(Debug)]
+pub(super) struct CellPassages<'a> {
+    cells: Option<&'a Lattice>,
+    found: Vec<CellPassage>,
+}
+
+impl<'a> CellPassages<'a> {
+    pub(super) fn of(cells: Option<&'a Lattice>) -> Self {
+        Self { cells, found: Vec::new() }
+    }
+
+    /// How many there are so far, and the last, which the next may join.
+    pub(super) fn mark(&self) -> (usize, Option<CellPassage>) {
+        (self.found.len(), self.found.last().copied())
+    }
+
+    /// Goes back to a mark.
+    pub(super) fn go_back(&mut self, (count, last): (usize, Option<CellPassage>)) {
+        self.found.truncate(count);
+        if let (Some(now), Some(last)) = (self.found.last_mut(), last) {
+            *now = last;
+        }
+    }
+
+    /// One entry a cell, in the order of cells.
+    pub(super) fn into_found(mut self) -> Vec<CellPassage> {
+        self.found.sort_by_key(|visit| visit.cell);
+        self.found.dedup_by(|next, kept| {
+            let same = next.cell == kept.cell;
+            if same {
+                kept.join(next);
+            }
+            same
+        });
+        self.found
+    }
+
+    /// Notes the cells below a flight of `dt` (s).
+    ///
+    /// The speed along a parabola has no largest value inside: the ends of its part in a cell hold it exactly. The
+    /// height is taken at both ends and in the middle of that part.
+    pub(super) fn fly(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        flight: &Parabola,
+        dt: f64,
+        at: impl Fn(f64) -> Instant,
+    ) {
+        let Some(cells) = self.cells else { return };
+        let from = at(0.0);
+        let rotational_j = form.rotational_j(&from);
+        let from = &from.motion;
+        let total_j =
+            |t: f64| 0.5 * form.rock.mass_kg() * flight.velocity(t).norm_squared() + rotational_j;
+        let height_m = |t: f64| {
+            let centre = flight.centre(t);
+            let ground = terrain.ground_under(centre.x, centre.y, centre.z);
+            ground.map_or(0.0, |ground| (centre.z - form.below_m(&at(t)) - ground).max(0.0))
+        };
+        let end = flight.centre(dt);
+        walk(cells, [&from.position_m, &end], |cell, s0, s1| {
+            let (t0, t1) = (s0 * dt, s1 * dt);
+            let height_m = [t0, 0.5 * (t0 + t1), t1].map(height_m).into_iter().fold(0.0, f64::max);
+            add(
+                &mut self.found,
+                CellPassage { cell, total_j: total_j(t0).max(total_j(t1)), height_m },
+            );
+        });
+    }
+
+    /// Notes the cells of a step in contact, which are shorter than cells: its ends hold what it has.
+    pub(super) fn step(&mut self, form: &Form, [from, to]: [&Motion; 2], turned: Option<Turned>) {
+        let Some(cells) = self.cells else { return };
+        let total_j = |s: f64| {
+            let motion = between(from, to, s);
+            let rotational_j = form.rotational_j(&Instant { motion, turned });
+            motion.translational_j(&form.rock) + rotational_j
+        };
+        walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {
+            let total_j = total_j(s0).max(total_j(s1));
+            add(&mut self.found, CellPassage { cell, total_j, height_m: 0.0 });
+        });
+    }
+}
+
+impl CellPassage {
+    fn join(&mut self, other: &Self) {
+        self.total_j = self.total_j.max(other.total_j);
+        self.height_m = self.height_m.max(other.height_m);
+    }
+}
+
+/// Adds to the last cell if that is the same: most steps stay in theirs.
+fn add(found: &mut Vec<CellPassage>, visit: CellPassage) {
+    match found.last_mut().filter(|last| last.cell == visit.cell) {
+        Some(last) => last.join(&visit),
+        None => found.push(visit),
+    }
+}
+
+/// Calls `pass` with every cell under the straight way between two places and the shares of the way at which it is
+/// entered and left (Amanatides and Woo 1987).
+fn walk(cells: &Lattice, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) {
+    let [from, to] = ends.map(|end| cells.place(end.x, end.y));
+    let mut at = from.map(|x| x.floor() as i64);
+    let last = to.map(|x| x.floor() as i64);
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let step = way.map(|x| if x > 0.0 { 1 } else { -1 });
+    let edge = |axis: usize, at: i64| {
+        let edge = if way[axis] > 0.0 { at + 1 } else { at };
+        if way[axis] == 0.0 { f64::INFINITY } else { (edge as f64 - from[axis]) / way[axis] }
+    };
+    let mut left = (last[0] - at[0]).unsigned_abs() + (last[1] - at[1]).unsigned_abs();
+    let mut entered = 0.0;
+    loop {
+        let next = [edge(0, at[0]), edge(1, at[1])];
+        // an axis that has arrived is not stepped along any more, whatever rounding says
+        let axis = usize::from(at[0] == last[0] || at[1] != last[1] && next[1] < next[0]);
+        let leaves = if left == 0 { 1.0 } else { next[axis].clamp(entered, 1.0) };
+        if let Some(cell) = cells.cell(at[0], at[1]) {
+            pass(cell, entered, leaves);
+        }
+        if left == 0 {
+            return;
+        }
+        at[axis] += step[axis];
+        entered = leaves;
+        left -= 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CELLS: Lattice =
+        Lattice { west_m: -10.0, south_m: 5.0, cell_m: 2.0, columns: 7, rows: 4 };
+
+    fn walked(from: [f64; 2], to: [f64; 2]) -> Vec<(u32, f64, f64)> {
+        let mut cells = Vec::new();
+        let [from, to] = [from, to].map(|[x, y]| Vec3::new(x, y, 0.0));
+        walk(&CELLS, [&from, &to], |cell, s0, s1| cells.push((cell, s0, s1)));
+        cells
+    }
+
+    /// By hand: from (−9, 6) to (−3, 9) the cells 0, 1, 8, 9, 10 and the corner of 17.
+    #[test]
+    fn a_way_is_cut_at_the_edges_of_cells() {
+        let found = walked([-9.0, 6.0], [-3.0, 9.0]);
+        let cells: Vec<u32> = found.iter().map(|(cell, ..)| *cell).collect();
+        assert_eq!(cells, [0, 1, 8, 9, 10, 17]);
+        let cuts: Vec<f64> = found.iter().map(|(_, _, s1)| *s1).collect();
+        for (cut, exact) in cuts.iter().zip([1.0 / 6.0, 1.0 / 3.0, 0.5, 5.0 / 6.0, 1.0, 1.0]) {
+            // one division of numbers near 10
+            assert!((cut - exact).abs() < 1e-14, "{cuts:?}");
+        }
+    }
+
+    /// However it runs, a way is covered once, without gaps, and what lies outside has no cell.
+    #[test]
+    fn parts_join_without_gaps() {
+        for k in 0..500 {
+            let turn = f64::from(k) * 0.37;
+            let from = [-3.0 + turn.cos() * 4.0, 9.0 + turn.sin() * 3.0];
+            let to = [-3.0 - (2.1 * turn).cos() * 4.0, 9.0 - (1.3 * turn).sin() * 3.0];
+            let found = walked(from, to);
+            assert!(found.windows(2).all(|pair| (pair[0].2 - pair[1].1).abs() < 1e-15));
+            let whole: f64 = found.iter().map(|(_, s0, s1)| s1 - s0).sum();
+            assert!((whole - 1.0).abs() < 1e-12, "{k}: {found:?}");
+        }
+        assert!(walked([100.0, 100.0], [101.0, 120.0]).is_empty());
+        assert_eq!(walked([-9.0, 6.0], [-9.0, 6.0]), [(0, 0.0, 1.0)]);
+    }
+}

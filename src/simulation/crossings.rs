@@ -1,0 +1,315 @@
+//! Where a rock passes evaluation lines: exact on the parabola of a flight and on the cubic of a step.
+
+use super::form::{Form, Instant, Turned};
+use super::recorder::between;
+use crate::flight::Parabola;
+use crate::math;
+use crate::plan::{Curtain, Footprint, Piece};
+use crate::rock::{Motion, Vec3};
+use crate::scene::Corner;
+use crate::terrain::Terrain;
+
+/// A rock's first crossing of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// Which line, in the order of the scene.
+    pub line: usize,
+    /// Motion at the crossing (local coordinates).
+    pub motion: Motion,
+    /// Rotational energy (J).
+    pub rotational_j: f64,
+    /// Vertical distance from the ground below to the highest point of a block (m); none for a sphere, whose diameter tells.
+    pub top_m: Option<f64>,
+    /// Where along the line (m), from its first corner.
+    pub along_m: f64,
+    /// Vertical distance from the ground below to the lowest point of the rock (m); NaN where there is no ground.
+    pub height_m: f64,
+    /// Distance from the slope to the nearest point of the rock along the slope's normal (m), the slope taken as the
+    /// plane of the triangle below; NaN where there is no ground.
+    pub height_normal_m: f64,
+    /// How often this rock crosses this line in all, 1 or more.
+    pub times: u32,
+}
+
+impl Crossing {
+    /// Slope of the path against the horizontal (degrees), positive downwards, −90..90.
+    pub fn descent_deg(&self) -> f64 {
+        let v = self.motion.velocity_m_s;
+        math::atan2(-v.z, math::hypot(v.x, v.y)).to_degrees()
+    }
+}
+
+/// The crossings of one rock so far.
+#[derive(Debug)]
+pub(super) struct Crossings<'a> {
+    lines: &'a [Curtain],
+    found: Vec<Crossing>,
+}
+
+impl<'a> Crossings<'a> {
+    pub(super) fn of(lines: &'a [Curtain]) -> Self {
+        Self { lines, found: Vec::new() }
+    }
+
+    /// So far.
+    pub(super) fn found(&self) -> &[Crossing] {
+        &self.found
+    }
+
+    /// Goes back to what was found before.
+    pub(super) fn go_back(&mut self, found: &[Crossing]) {
+        self.found.clear();
+        self.found.extend_from_slice(found);
+    }
+
+    /// In the order of lines.
+    pub(super) fn into_found(mut self) -> Vec<Crossing> {
+        self.found.sort_by_key(|crossing| crossing.line);
+        self.found
+    }
+
+    /// Notes the lines that a flight of `dt` (s) passes, with the rock as `at` says after a time (s). Seen from above a flight
+    /// is straight and even: the moment follows from one division.
+    pub(super) fn fly(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        flight: &Parabola,
+        dt: f64,
+        at: impl Fn(f64) -> Instant,
+    ) {
+        if self.lines.is_empty() {
+            return;
+        }
+        let (a, b) = (flat(&at(0.0).motion.position_m), flat(&flight.centre(dt)));
+        self.pass(
+            (terrain, form),
+            [a, a, b, b],
+            |piece| {
+                let (start, end) = (piece.side_m(a), piece.side_m(b));
+                let crosses = (start > 0.0) != (end > 0.0);
+                crosses.then(|| start / (start - end)).into_iter().collect()
+            },
+            |s| at(s * dt),
+        );
+    }
+
+    /// Notes the lines that a step in contact passes; a block stands as at the end of it.
+    pub(super) fn step(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        [from, to]: [&Motion; 2],
+        turned: Option<Turned>,
+    ) {
+        if self.lines.is_empty() {
+            return;
+        }
+        let third = (to.time_s - from.time_s) / 3.0;
+        let hull = [
+            from.position_m,
+            from.position_m + from.velocity_m_s * third,
+            to.position_m - to.velocity_m_s * third,
+            to.position_m,
+        ];
+        let hull = hull.map(|point| flat(&point));
+        self.pass(
+            (terrain, form),
+            hull,
+            |piece| roots(hull.map(|point| piece.side_m(point))),
+            |s| Instant { motion: between(from, to, s), turned },
+        );
+    }
+
+    /// Looks at every line near the way inside `hull`; `when` gives the shares of the way at which it meets the
+    /// endless line of a piece, rising, `at` the motion there.
+    fn pass(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        hull: [Corner; 4],
+        when: impl Fn(&Piece) -> Vec<f64>,
+        at: impl Fn(f64) -> Instant,
+    ) {
+        let low = [0, 1].map(|k| hull.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
+        let high = [0, 1].map(|k| hull.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
+        for (line, curtain) in self.lines.iter().enumerate() {
+            if let Some(footprint) = curtain.footprint {
+                let rim_m = form.rim_m();
+                let free = |k: usize| [low[k] - rim_m, high[k] + rim_m];
+                let ([west, east], [south, north]) = (free(0), free(1));
+                let is_known = self.found.iter().any(|crossing| crossing.line == line);
+                if is_known || !curtain.is_near([west, south], [east, north]) {
+                    continue;
+                }
+                if let Some((s, along_m)) = enter((curtain, footprint), rim_m, hull, &at) {
+                    self.note((terrain, form), line, (at(s), along_m), 1);
+                }
+                continue;
+            }
+            if !curtain.is_near(low, high) {
+                continue;
+            }
+            let last = curtain.pieces.len() - 1;
+            let mut met: Vec<(f64, f64)> = Vec::new();
+            for (k, piece) in curtain.pieces.iter().enumerate() {
+                for s in when(piece) {
+                    let share = piece.share(flat(&at(s).motion.position_m));
+                    // a corner belongs to the piece that it begins
+                    if (0.0..1.0).contains(&share) || k == last && share <= 1.0 && share > 0.0 {
+                        met.push((s, piece.along_m + share * piece.length_m()));
+                    }
+                }
+            }
+            met.sort_by(|one, other| one.0.total_cmp(&other.0));
+            if let Some(&(s, along_m)) = met.first() {
+                self.note((terrain, form), line, (at(s), along_m), met.len() as u32);
+            }
+        }
+    }
+
+    fn note(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        line: usize,
+        (instant, along_m): (Instant, f64),
+        times: u32,
+    ) {
+        if let Some(known) = self.found.iter_mut().find(|crossing| crossing.line == line) {
+            known.times += times;
+            return;
+        }
+        let centre = instant.motion.position_m;
+        let below = terrain.slope_under(centre.x, centre.y, centre.z);
+        let (height_m, height_normal_m) = below.map_or((f64::NAN, f64::NAN), |(ground, normal)| {
+            let over = centre.z - ground;
+            let near = over * normal.z.abs() - form.reach_m(&instant, &-up(normal));
+            (over - form.below_m(&instant), near)
+        });
+        let over = |(ground, _)| centre.z - ground + form.reach_m(&instant, &Vec3::z());
+        let top_m = form.block.map(|_| below.map_or(f64::NAN, over));
+        let rotational_j = form.rotational_j(&instant);
+        let Instant { motion, .. } = instant;
+        self.found.push(Crossing {
+            line,
+            motion,
+            rotational_j,
+            top_m,
+            along_m,
+            height_m,
+            height_normal_m,
+            times,
+        });
+    }
+}
+
+/// The normal of a slope that points up.
+fn up(normal: Vec3) -> Vec3 {
+    if normal.z < 0.0 { -normal } else { normal }
+}
+
+/// Nearer than this (m) touches: a hit is found to 1e-5 m of way, and a rim that comes no deeper over an object than 1e-9 m may be missed.
+const TOUCH_M: f64 = 1e-6;
+/// Shortest way that is gone over at a time (m).
+const SHORTEST_M: f64 = 1e-5;
+
+/// The share of a way inside `hull` at which the rim of a rock first comes over an object, and where along the object.
+///
+/// The way is gone along by what is free each time (conservative advancement): no place on it is farther from the next
+/// than three times the longest side of the hull allows, so the first touch cannot be jumped over.
+fn enter(
+    (curtain, footprint): (&Curtain, Footprint),
+    rim_m: f64,
+    hull: [Corner; 4],
+    at: impl Fn(f64) -> Instant,
+) -> Option<(f64, f64)> {
+    let side = |pair: &[Corner]| math::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+    let fastest_m = 3.0 * hull.windows(2).map(side).fold(0.0, f64::max);
+    let mut s = 0.0;
+    while s <= 1.0 {
+        let (gap_m, along_m) = curtain.gap_m(footprint, flat(&at(s).motion.position_m));
+        let free_m = gap_m - rim_m;
+        if free_m <= TOUCH_M {
+            return Some((s, along_m));
+        }
+        s += free_m.max(SHORTEST_M) / fastest_m;
+    }
+    None
+}
+
+fn flat(point: &Vec3) -> Corner {
+    [point.x, point.y]
+}
+
+/// Halvings of an interval until its ends are neighbours in `f64`.
+const HALVINGS: u32 = 60;
+
+/// Where a cubic, given by its Bézier ordinates over 0..1, changes side (above 0, or not), rising.
+///
+/// The curve stays within the hull of its ordinates, so one look at their signs tells most steps; between its extremes
+/// (a quadratic) it is monotone, and halving finds the place to the last bit.
+fn roots(ordinates: [f64; 4]) -> Vec<f64> {
+    let [b0, b1, b2, b3] = ordinates;
+    if ordinates.iter().all(|b| *b > 0.0) || ordinates.iter().all(|b| *b <= 0.0) {
+        return Vec::new();
+    }
+    let value = |s: f64| {
+        let r = 1.0 - s;
+        r * r * r * b0 + 3.0 * s * r * (r * b1 + s * b2) + s * s * s * b3
+    };
+    let (c0, c1, c2) = (b1 - b0, b2 - b1, b3 - b2);
+    let (a, b, c) = (c0 - 2.0 * c1 + c2, c1 - c0, c0);
+    let root = (b * b - a * c).sqrt();
+    let q = -(b + root.copysign(b));
+    let mut ends: Vec<f64> = [q / a, c / q].into_iter().filter(|s| *s > 0.0 && *s < 1.0).collect();
+    ends.extend([0.0, 1.0]);
+    ends.sort_by(f64::total_cmp);
+    // the ends of the step are taken as they are, so that the next step sees the same side
+    let above = |s: f64| match s {
+        0.0 => b0 > 0.0,
+        1.0 => b3 > 0.0,
+        _ => value(s) > 0.0,
+    };
+    let changes = ends.windows(2).filter(|pair| above(pair[0]) != above(pair[1]));
+    changes.map(|pair| halve(pair[0], pair[1], above)).collect()
+}
+
+/// The place between `low` and `high` where the answer changes.
+fn halve(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
+    let at_low = above(low);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if above(middle) == at_low {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::roots;
+
+    /// Ordinates of (s − 1/4)(s − 1/2)(s − 3/4) and of s² (3 − 2 s) − 1/2: their zeros are known.
+    #[test]
+    fn zeros_of_cubics_are_found_to_the_last_bits() {
+        let three = roots([-0.09375, 0.135_416_666_666_666_67, -0.135_416_666_666_666_67, 0.09375]);
+        assert_eq!(three.len(), 3);
+        for (found, zero) in three.iter().zip([0.25, 0.5, 0.75]) {
+            // the ordinates are rounded; near the middle zero the curve rises by 1/16 per unit
+            assert!((found - zero).abs() < 1e-14, "{found}");
+        }
+        let one = roots([-0.5, -0.5, 0.5, 0.5]);
+        assert!(one.len() == 1 && (one[0] - 0.5).abs() < 1e-15, "{one:?}");
+        assert!(roots([1.0, 0.2, 0.3, 1.0]).is_empty());
+        // dips below and comes back: two changes
+        assert_eq!(roots([0.1, -1.0, -1.0, 0.1]).len(), 2);
+    }
+
+    /// What ends a step on the line begins the next one there: together they cross once.
+    #[test]
+    fn a_line_at_a_seam_is_crossed_once() {
+        let first = roots([-1.0, -0.7, -0.3, 0.0]);
+        let second = roots([0.0, 0.3, 0.7, 1.0]);
+        assert_eq!(first.len() + second.len(), 1);
+    }
+}

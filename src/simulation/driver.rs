@@ -1,0 +1,390 @@
+//! The fall itself: leap, touch, step, stop.
+
+use super::block::follow_block;
+use super::form::Form;
+use super::recorder::{Keep, Recorder};
+use super::rest::RestCriterion;
+use super::roughness::Roughness;
+use super::trees::StemLoad;
+use super::{Stop, Trajectory};
+use crate::chance::{Chance, Purpose, stream};
+use crate::clock::{Clocks, Piece};
+use crate::error::Result;
+use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
+use crate::ground::{Capture, Damping, Law};
+use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
+use crate::release::{Drawn, Release};
+use crate::rock::{Motion, Vec3};
+use crate::solver::block::Footing;
+use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
+use crate::solver::law::Body;
+use crate::solver::{self, Scheme, Settings, Stepper};
+use crate::terrain::Terrain;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// What all rocks of a scene have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct RunSettings<'a> {
+    /// The meshes.
+    pub terrain: &'a Terrain,
+    /// Gravity (m/s²).
+    pub gravity_m_s2: f64,
+    /// The step.
+    pub step: &'a Settings,
+    /// When a rock is at rest.
+    pub rest: RestRule,
+    /// Simulated time after which a rock is out of time (s).
+    pub longest_s: f64,
+    /// Evaluation lines and map cells.
+    pub watch: Watch<'a>,
+}
+
+/// Work space of one thread; nothing of one rock is left for the next.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    state: ContactState,
+    footing: Footing,
+    load: StemLoad,
+    laws: Vec<Law>,
+    /// Dashpots of the grounds of the rock before: most scenes never change them.
+    damping: Vec<Damping>,
+}
+
+impl Scratch {
+    /// With clocks that run; see [`Self::clocks`].
+    pub fn timed() -> Self {
+        let mut scratch = Self::default();
+        scratch.state.clocks = Clocks::running();
+        scratch
+    }
+
+    /// Where the time of all journeys so far went.
+    pub fn clocks(&self) -> &Clocks {
+        &self.state.clocks
+    }
+
+    fn make_laws(&mut self, release: &Release, capture: &Capture) {
+        self.damping.truncate(release.grounds.len());
+        self.laws.clear();
+        for (k, ground) in release.grounds.iter().enumerate() {
+            if self.damping.get(k).is_none_or(|known| known.restitution != ground.restitution) {
+                self.damping.truncate(k);
+                self.damping.push(Damping::of(ground.restitution));
+            }
+            self.laws.push(Law::new(ground, &self.damping[k], &release.rock, capture));
+        }
+    }
+}
+
+/// An impact is over after so many contact times (–), whether the rock has left or not.
+pub(super) const IMPACT_TIMES: f64 = 3.0;
+
+/// Follows one rock from its release to its stop.
+pub fn simulate(
+    settings: &RunSettings,
+    release: &Release,
+    keep: Keep,
+    chance: &mut Chance,
+    scratch: &mut Scratch,
+) -> Trajectory {
+    scratch.make_laws(release, &capture_of(settings));
+    scratch.state.near.forget();
+    (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
+    scratch.load.begin(settings.terrain, &mut scratch.state.near.gone, chance);
+    let world = ContactEnvironment {
+        terrain: settings.terrain,
+        body: Body::new(&release.rock, settings.gravity_m_s2),
+        laws: &scratch.laws,
+    };
+    let mut fall = Fall {
+        settings,
+        world,
+        state: &mut scratch.state,
+        load: &mut scratch.load,
+        chance,
+        roughness: Roughness::default(),
+        recorder: Recorder::new(
+            settings.terrain,
+            Form { rock: release.rock, block: None },
+            (release.motion, None),
+            (keep, settings.watch),
+        ),
+    };
+    // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
+    let mut stop = if fall.is_pressed() { fall.touch() } else { None };
+    let stop = loop {
+        stop = stop.or_else(|| fall.fly()).or_else(|| fall.touch());
+        if let Some(stop) = stop {
+            break stop;
+        }
+    };
+    fall.end(release, stop)
+}
+
+/// The same for a block, with scheme `rigid`.
+pub fn simulate_block(
+    settings: &RunSettings,
+    (release, drawn): (&Release, &Drawn),
+    keep: Keep,
+    scratch: &mut Scratch,
+) -> Trajectory {
+    scratch.make_laws(release, &capture_of(settings));
+    follow_block(settings, (release, drawn), keep, &scratch.laws, &mut scratch.footing)
+}
+
+fn capture_of(settings: &RunSettings) -> Capture {
+    Capture {
+        own_m_s: settings.step.capture_speed_m_s,
+        tolerance_m_s: settings.step.tolerance_m_s,
+        gravity_m_s2: settings.gravity_m_s2,
+    }
+}
+
+/// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
+///
+/// A release that cannot be made (off the terrain, or inside the ground) ends where it should have begun.
+///
+/// # Errors
+/// None today; a caller must be ready for one.
+pub fn simulate_release(
+    plan: &Plan,
+    index: usize,
+    paths: Option<&Range<usize>>,
+    scratch: &mut Scratch,
+) -> Result<Trajectory> {
+    let release = match plan.try_release(index) {
+        Ok(release) => release,
+        Err(lost) => return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.why)),
+    };
+    let keep = kept(plan, index, paths);
+    let settings = RunSettings::of(plan);
+    let fallen = if let Some(drawn) = plan.block(index, &release.rock) {
+        simulate_block(&settings, (&release, &drawn), keep, scratch)
+    } else {
+        let mut chance = stream(plan.seed, Purpose::Impacts, index);
+        simulate(&settings, &release, keep, &mut chance, scratch)
+    };
+    Ok(Trajectory { index, ..fallen })
+}
+
+impl<'a> RunSettings<'a> {
+    /// What the rocks of a plan have in common.
+    pub fn of(plan: &'a Plan) -> Self {
+        Self {
+            terrain: &plan.terrain,
+            gravity_m_s2: plan.gravity_m_s2,
+            step: &plan.step,
+            rest: plan.rest,
+            longest_s: plan.longest_s,
+            watch: plan.watch(),
+        }
+    }
+}
+
+/// What to keep of release `index`: a path for the plan's first releases and for `paths`.
+pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> Keep {
+    let wanted = paths.is_some_and(|paths| paths.contains(&index));
+    let path_step_s = match &plan.paths {
+        Part::Kept(paths) if wanted || index < paths.first => Some(paths.step_s),
+        Part::LeftOut(_) if wanted => Some(PATH_STEP_S),
+        _ => None,
+    };
+    Keep { path_step_s, impacts: plan.impacts.is_kept() }
+}
+
+pub(super) struct Fall<'a> {
+    pub(super) settings: &'a RunSettings<'a>,
+    pub(super) world: ContactEnvironment<'a>,
+    pub(super) state: &'a mut ContactState,
+    pub(super) load: &'a mut StemLoad,
+    pub(super) chance: &'a mut Chance,
+    pub(super) roughness: Roughness,
+    pub(super) recorder: Recorder<'a>,
+}
+
+impl Fall<'_> {
+    /// Whether the rock is in contact with something it is pressed into.
+    fn is_pressed(&mut self) -> bool {
+        let now = self.recorder.now;
+        self.state.begin(&self.world, now.position_m, now.velocity_m_s, now.spin_rad_s);
+        self.state.touches.iter().any(|touch| touch.distance_m < self.world.body.radius)
+    }
+
+    /// Leaps to the next touch.
+    fn fly(&mut self) -> Option<Stop> {
+        let now = self.recorder.now;
+        let flight = Parabola {
+            start: now.position_m,
+            velocity: now.velocity_m_s,
+            gravity: self.settings.gravity_m_s2,
+            radius: self.world.body.radius,
+        };
+        let left = self.settings.longest_s - now.time_s;
+        let begun = self.state.clocks.now();
+        let (dt, stop) = match time_of_impact_past(
+            self.settings.terrain,
+            &flight,
+            left,
+            &self.state.near.gone,
+            &mut self.recorder.effort.triangles,
+        ) {
+            FlightEnd::Touch(t) => (t, None),
+            FlightEnd::Leaves(t) => (t, Some(Stop::LeftTerrain)),
+            FlightEnd::Flies => (left, Some(Stop::TimeUp)),
+        };
+        // a touch at the very end of the time comes too late
+        let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
+        self.state.clocks.stop(Piece::Leap, begun);
+        self.recorder.effort.leaps += 1;
+        let begun = self.state.clocks.now();
+        self.recorder.fly(&flight, None, dt);
+        self.state.clocks.stop(Piece::NotesInFlight, begun);
+        // flights count too: between two plates a rock may fly without end and without getting on in time
+        stop.or_else(|| self.over_budget())
+    }
+
+    /// Whether the rock has had all the work it may have.
+    fn over_budget(&self) -> Option<Stop> {
+        let most = self.settings.step.scheme.most_work();
+        (self.recorder.effort.work() > most).then_some(Stop::OverBudget)
+    }
+
+    /// Goes on in contact until the rock is free again or stops.
+    fn touch(&mut self) -> Option<Stop> {
+        let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
+        self.state.begin(&self.world, c, v, w);
+        self.announce();
+        let before_j = self.total_j();
+        let lost_before_j = self.recorder.lost_j();
+        // those of the look that `begin` has just taken
+        let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&self.world) };
+        let mut stepper = Stepper::new(self.settings.step, &self.world, self.state);
+        let stop = self.steps(&mut stepper);
+        let rise_j = self.total_j() - before_j;
+        self.recorder.ledger.remainder_j -= rise_j + self.recorder.lost_j() - lost_before_j;
+        // A rock that rests presses on its springs: what they hold is not lost.
+        let stored = self.held();
+        self.recorder.pay(&stored, -1.0);
+        self.recorder.pay(&held, 1.0);
+        self.recorder.ledger.rise_j =
+            self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
+        self.leave_facet();
+        self.recorder.end_impact();
+        stop
+    }
+
+    /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
+    fn is_rigid(&self) -> bool {
+        self.settings.step.scheme == Scheme::Rigid
+    }
+
+    /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
+    fn held(&mut self) -> Loss {
+        let left = self.state.is_free() && self.settings.step.scheme != Scheme::Dda;
+        if left || self.is_rigid() { Loss::default() } else { self.state.springs_j(&self.world) }
+    }
+
+    fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
+        let mut calm = RestCriterion::from(self.state.c);
+        loop {
+            let left = self.settings.longest_s - self.recorder.now.time_s;
+            self.strike();
+            let done = match solver::advance(stepper, &self.world, self.state, left) {
+                Ok(done) => done,
+                Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
+            };
+            // before its losses are paid, and with the speed before
+            self.announce();
+            let effort = &mut self.recorder.effort;
+            effort.steps += done.steps;
+            effort.rejected += done.rejected;
+            effort.unsettled += u64::from(done.unsettled);
+            self.recorder.pay(&done.loss, 1.0);
+            self.bend(done.loss.trees, stepper);
+            let to = Motion {
+                time_s: self.recorder.now.time_s + done.dt,
+                position_m: self.state.c,
+                velocity_m_s: self.state.v,
+                spin_rad_s: self.state.w,
+            };
+            let slides = self.state.histories.iter().any(|history| history.slides);
+            let begun = self.state.clocks.now();
+            self.recorder.step(to, slides);
+            self.leave_facet_in_time();
+            self.recorder.end_impact_in_time();
+            self.state.clocks.stop(Piece::NotesInContact, begun);
+            let time_up = (done.dt >= left).then_some(Stop::TimeUp);
+            let ends = time_up.or_else(|| self.over_budget());
+            if self.state.is_free() {
+                return ends;
+            }
+            calm.note(done.dt, &to, self.world.body.radius, &self.settings.rest);
+            if calm.rests() {
+                return Some(Stop::AtRest);
+            }
+            if ends.is_some() {
+                return ends;
+            }
+        }
+    }
+
+    /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
+    fn announce(&mut self) {
+        if self.state.struck.is_empty()
+            && self.state.histories.iter().all(|history| history.announced)
+        {
+            return;
+        }
+        let radius = self.world.body.radius;
+        let until_s = self.recorder.now.time_s + self.impact_time();
+        let mut fastest: Option<(f64, Vec3, u32)> = None;
+        let ContactState { histories, struck, c, .. } = &mut *self.state;
+        for history in
+            histories.iter_mut().chain(struck.iter_mut()).filter(|history| !history.announced)
+        {
+            history.announced = true;
+            if history.captured {
+                continue;
+            }
+            let point = *c - history.n * radius;
+            self.recorder.begin_impact(point, history.feature.kind, history.triangle, until_s);
+            let speed = -history.n.dot(&self.recorder.now.velocity_m_s);
+            if speed > fastest.map_or(0.0, |(known, ..)| known) {
+                fastest = Some((speed, history.n, history.triangle));
+            }
+        }
+        if let Some((_, normal, triangle)) = fastest {
+            self.meet_facet(normal, triangle, until_s);
+        }
+    }
+
+    /// The longest an impact is taken to last (s): in the rigid limit no time at all.
+    fn impact_time(&self) -> f64 {
+        if self.is_rigid() {
+            return 0.0;
+        }
+        let omegas =
+            self.state.histories.iter().map(|history| self.world.law(history.triangle).omega);
+        let slowest = omegas.fold(f64::INFINITY, f64::min);
+        IMPACT_TIMES * PI / slowest
+    }
+
+    /// Mechanical energy of the rock in contact (J), weight included.
+    fn total_j(&mut self) -> f64 {
+        self.state.motion_j(&self.world.body)
+            - self.world.body.mass * self.world.body.gravity.dot(&self.state.c)
+    }
+
+    fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
+        self.recorder.end_impact();
+        self.recorder.end_path();
+        self.recorder.effort.sweeps += self.state.sweeps;
+        self.recorder.effort.triangles += self.state.near.tested;
+        let start = release.motion;
+        let fallen = start.position_m.z - self.recorder.now.position_m.z;
+        let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
+        let released_j = self.world.body.mass * self.settings.gravity_m_s2 * fallen + kinetic;
+        self.recorder.into_trajectory(release, stop, released_j)
+    }
+}

@@ -1,0 +1,323 @@
+//! What is noted down along one rock's way: largest values, path, impacts, ledger, effort.
+
+use super::cells::{CellPassage, CellPassages};
+use super::crossings::{Crossing, Crossings};
+use super::form::{Form, Instant, Turned};
+use super::{
+    Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState, Stop, Trajectory,
+};
+use crate::flight::Parabola;
+use crate::flight::top::Top;
+use crate::plan::Watch;
+use crate::release::Release;
+use crate::rock::{Motion, Vec3};
+use crate::solver::contact_state::Loss;
+use crate::terrain::Terrain;
+
+/// What to keep of a rock's way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Keep {
+    /// Time between stored path points (s); `None` keeps no path.
+    pub path_step_s: Option<f64>,
+    /// Whether the impacts are stored one by one.
+    pub impacts: bool,
+}
+
+/// Notes along the way.
+#[derive(Debug)]
+pub(super) struct Recorder<'a> {
+    terrain: &'a Terrain,
+    form: Form<'a>,
+    keep: Keep,
+    pub(super) now: Motion,
+    /// How a block is turned now; none for a sphere.
+    pub(super) turned: Option<Turned>,
+    pub(super) extremes: Extremes,
+    pub(super) path: Vec<PathPoint>,
+    pub(super) impacts: Vec<Impact>,
+    pub(super) crossings: Crossings<'a>,
+    pub(super) visits: CellPassages<'a>,
+    pub(super) impact_count: u32,
+    pub(super) tree_impact_count: u32,
+    pub(super) ledger: Ledger,
+    pub(super) effort: Effort,
+    open_impact: Option<(Impact, f64)>,
+    next_point_s: f64,
+}
+
+/// Path points of a flight at which its height is measured, at most; the leap itself needs none.
+const HEIGHT_POINTS: f64 = 8.0;
+/// Heights are measured at most this often in flight (s).
+const HEIGHT_STEP_S: f64 = 0.1;
+
+/// A moment of a journey, to go back to: lists only grow, so their lengths will do.
+#[derive(Debug)]
+pub(super) struct Mark {
+    now: Motion,
+    turned: Option<Turned>,
+    extremes: Extremes,
+    path: usize,
+    impacts: usize,
+    crossings: Vec<Crossing>,
+    visits: (usize, Option<CellPassage>),
+    counts: (u32, u32),
+    ledger: Ledger,
+    open_impact: Option<(Impact, f64)>,
+    next_point_s: f64,
+}
+
+impl<'a> Recorder<'a> {
+    pub(super) fn new(
+        terrain: &'a Terrain,
+        form: Form<'a>,
+        (start, turned): (Motion, Option<Turned>),
+        (keep, watch): (Keep, Watch<'a>),
+    ) -> Self {
+        let mut recorder = Self {
+            terrain,
+            form,
+            keep,
+            now: start,
+            turned,
+            extremes: Extremes::default(),
+            path: Vec::new(),
+            impacts: Vec::new(),
+            crossings: Crossings::of(watch.lines),
+            visits: CellPassages::of(watch.cells),
+            impact_count: 0,
+            tree_impact_count: 0,
+            ledger: Ledger::default(),
+            effort: Effort::default(),
+            open_impact: None,
+            next_point_s: if keep.path_step_s.is_some() { 0.0 } else { f64::INFINITY },
+        };
+        recorder.note_speed();
+        recorder.note_height(&recorder.instant());
+        recorder
+    }
+
+    /// The present.
+    pub(super) fn mark(&self) -> Mark {
+        Mark {
+            now: self.now,
+            turned: self.turned,
+            extremes: self.extremes,
+            path: self.path.len(),
+            impacts: self.impacts.len(),
+            crossings: self.crossings.found().to_vec(),
+            visits: self.visits.mark(),
+            counts: (self.impact_count, self.tree_impact_count),
+            ledger: self.ledger,
+            open_impact: self.open_impact,
+            next_point_s: self.next_point_s,
+        }
+    }
+
+    /// Goes back to `mark`; what was tried in vain was work all the same.
+    pub(super) fn go_back(&mut self, mark: &Mark) {
+        (self.now, self.extremes, self.ledger) = (mark.now, mark.extremes, mark.ledger);
+        self.turned = mark.turned;
+        self.path.truncate(mark.path);
+        self.impacts.truncate(mark.impacts);
+        self.crossings.go_back(&mark.crossings);
+        self.visits.go_back(mark.visits);
+        (self.impact_count, self.tree_impact_count) = mark.counts;
+        (self.open_impact, self.next_point_s) = (mark.open_impact, mark.next_point_s);
+    }
+
+    /// Notes the present speed and energies.
+    pub(super) fn note_speed(&mut self) {
+        let one = self.now.translational_j(&self.form.rock);
+        let two = self.form.rotational_j(&self.instant());
+        let most = &mut self.extremes;
+        most.speed_m_s = most.speed_m_s.max(self.now.velocity_m_s.norm());
+        most.translational_j = most.translational_j.max(one);
+        most.rotational_j = most.rotational_j.max(two);
+        most.total_j = most.total_j.max(one + two);
+    }
+
+    fn instant(&self) -> Instant {
+        Instant { motion: self.now, turned: self.turned }
+    }
+
+    fn clearance_m(&self, at: &Instant) -> Option<f64> {
+        let centre = &at.motion.position_m;
+        self.terrain
+            .ground_under(centre.x, centre.y, centre.z)
+            .map(|ground| centre.z - self.form.below_m(at) - ground)
+    }
+
+    fn note_height(&mut self, at: &Instant) {
+        let centre = &at.motion.position_m;
+        let most_m =
+            centre.z - self.form.below_m(at) - self.terrain.floor.under(centre.x, centre.y);
+        if most_m <= self.extremes.height_m {
+            return;
+        }
+        if let Some(height) = self.clearance_m(at) {
+            self.extremes.height_m = self.extremes.height_m.max(height);
+        }
+    }
+
+    /// Goes along a flight for `dt` (s); a block turns as `top` does.
+    pub(super) fn fly(&mut self, flight: &Parabola, top: Option<&Top>, dt: f64) {
+        let start = self.now;
+        let at = |t: f64| Instant::in_flight(&start, flight, top, t);
+        while self.next_point_s <= start.time_s + dt {
+            let t = self.next_point_s - start.time_s;
+            let instant = at(t);
+            let motion = Motion { time_s: self.next_point_s, ..instant.motion };
+            self.point(&Instant { motion, ..instant }, PathState::Flight);
+        }
+        let points = (dt / HEIGHT_STEP_S).ceil().min(HEIGHT_POINTS) as u32;
+        for k in 1..=points {
+            self.note_height(&at(dt * f64::from(k) / f64::from(points + 1)));
+        }
+        self.crossings.fly((self.terrain, &self.form), flight, dt, at);
+        self.visits.fly((self.terrain, &self.form), flight, dt, at);
+        let end = at(dt);
+        self.now.time_s += dt;
+        (self.now.position_m, self.now.velocity_m_s) = (flight.centre(dt), flight.velocity(dt));
+        (self.now.spin_rad_s, self.turned) = (end.motion.spin_rad_s, end.turned);
+        self.note_speed();
+    }
+
+    /// Goes along one step in contact to `to`.
+    pub(super) fn step(&mut self, to: Motion, slides: bool) {
+        self.step_as(to, if slides { PathState::Sliding } else { PathState::Sticking });
+    }
+
+    /// Goes along one step in `state` to `to`.
+    pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
+        let from = std::mem::replace(&mut self.now, to);
+        self.crossings.step((self.terrain, &self.form), [&from, &to], self.turned);
+        self.visits.step(&self.form, [&from, &to], self.turned);
+        let dt = to.time_s - from.time_s;
+        while self.next_point_s <= to.time_s {
+            let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };
+            let motion = between(&from, &to, s.clamp(0.0, 1.0));
+            let motion = Motion { time_s: self.next_point_s, ..motion };
+            self.point(&Instant { motion, turned: self.turned }, state);
+        }
+        if state == PathState::Flight {
+            self.note_height(&self.instant());
+        }
+        self.note_speed();
+    }
+
+    fn point(&mut self, at: &Instant, state: PathState) {
+        let clearance_m = self.clearance_m(at).unwrap_or(f64::NAN);
+        let attitude = at.turned.map(|turned| turned.quaternion());
+        self.path.push(PathPoint { motion: at.motion, clearance_m, state, attitude });
+        self.next_point_s += self.keep.path_step_s.unwrap_or(f64::INFINITY);
+    }
+
+    /// The whole journey.
+    pub(super) fn into_trajectory(
+        self,
+        release: &Release,
+        stop: Stop,
+        released_j: f64,
+    ) -> Trajectory {
+        Trajectory {
+            index: 0,
+            rock: release.rock,
+            shape: None,
+            start: release.motion,
+            end: self.now,
+            stop,
+            extremes: self.extremes,
+            impact_count: self.impact_count,
+            tree_impact_count: self.tree_impact_count,
+            impacts: self.impacts,
+            path: self.path,
+            crossings: self.crossings.into_found(),
+            visits: self.visits.into_found(),
+            ledger: self.ledger,
+            released_j,
+            effort: self.effort,
+        }
+    }
+
+    /// Keeps the last point of the path.
+    pub(super) fn end_path(&mut self) {
+        if self.keep.path_step_s.is_some()
+            && self.path.last().is_none_or(|last| last.motion.time_s < self.now.time_s)
+        {
+            let state = self.path.last().map_or(PathState::Flight, |last| last.state);
+            let now = self.instant();
+            self.point(&now, state);
+        }
+    }
+
+    /// Begins an impact at the present motion; it ends at `until_s` at the latest.
+    pub(super) fn begin_impact(
+        &mut self,
+        point_m: Vec3,
+        feature: FeatureKind,
+        triangle: u32,
+        until_s: f64,
+    ) {
+        self.end_impact();
+        self.impact_count += 1;
+        self.tree_impact_count += u32::from(self.terrain.is_tree(triangle));
+        let speed = self.now.velocity_m_s.norm();
+        let impact = Impact {
+            time_s: self.now.time_s,
+            point_m,
+            feature,
+            sheet: self.terrain.sheet_of[triangle as usize],
+            speed_in_m_s: speed,
+            speed_out_m_s: speed,
+            energy_lost_j: -self.lost_j(),
+        };
+        self.open_impact = Some((impact, until_s));
+    }
+
+    /// Ends the impact in hand, if any.
+    pub(super) fn end_impact(&mut self) {
+        if let Some((mut impact, _)) = self.open_impact.take() {
+            impact.speed_out_m_s = self.now.velocity_m_s.norm();
+            impact.energy_lost_j += self.lost_j();
+            if self.keep.impacts {
+                self.impacts.push(impact);
+            }
+        }
+    }
+
+    /// Ends the impact in hand if its time is over.
+    pub(super) fn end_impact_in_time(&mut self) {
+        if self.open_impact.as_ref().is_some_and(|(_, until_s)| self.now.time_s >= *until_s) {
+            self.end_impact();
+        }
+    }
+
+    /// Writes `times` the losses into the ledger.
+    pub(super) fn pay(&mut self, loss: &Loss, times: f64) {
+        self.ledger.friction_j += times * loss.friction;
+        self.ledger.damping_j += times * loss.damping;
+        self.ledger.rolling_j += times * loss.rolling;
+        self.ledger.trees_j += times * loss.trees;
+    }
+
+    /// All losses so far (J).
+    pub(super) fn lost_j(&self) -> f64 {
+        let ledger = &self.ledger;
+        let slope_j = ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j;
+        slope_j + ledger.others_j + ledger.passed_on_j
+    }
+}
+
+/// The motion a share `s` of a step after its start: cubic in position, linear in velocity and spin.
+pub(super) fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
+    let dt = to.time_s - from.time_s;
+    let way = to.position_m - from.position_m;
+    let (v0, v1) = (from.velocity_m_s * dt - way, to.velocity_m_s * dt - way);
+    let bend = (v0 * (1.0 - s) - v1 * s) * (s * (1.0 - s));
+    Motion {
+        time_s: from.time_s + s * dt,
+        position_m: from.position_m + way * s + bend,
+        velocity_m_s: from.velocity_m_s.lerp(&to.velocity_m_s, s),
+        spin_rad_s: from.spin_rad_s.lerp(&to.spin_rad_s, s),
+    }
+}

@@ -1,0 +1,92 @@
+//! The rest rule: slow for long enough, and not getting faster.
+//!
+//! A ball beside the top of a ridge and a heap that begins to slide are slow for a while. What tells them from rest is that
+//! they speed up. A rock in a settled heap jitters, but goes nowhere; so what is compared is not the speed at two
+//! instants but the mean velocity over the two halves of the rule's time.
+
+use crate::plan::RestRule;
+use crate::rock::{Motion, Vec3};
+
+/// Growth of the mean speed from one half of the rule's time to the next that is no growth (–, relative to the rule's
+/// speed): rounding and the last creep of a heap.
+const GROWTH: f64 = 0.01;
+
+/// How calm one rock has been.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RestCriterion {
+    /// Centre when the half in hand began (m).
+    from_m: Vec3,
+    /// How far its surface has turned since (m).
+    turned_m: Vec3,
+    /// How long that is ago (s).
+    half_s: f64,
+    /// Mean speed over the half before (m/s).
+    before_m_s: Option<f64>,
+    rests: bool,
+}
+
+impl RestCriterion {
+    /// Of a rock that has just been moving.
+    pub(super) fn from(position_m: Vec3) -> Self {
+        let turned_m = Vec3::zeros();
+        Self { from_m: position_m, turned_m, half_s: 0.0, before_m_s: None, rests: false }
+    }
+
+    /// Notes a step of `dt` (s) that ended in `to`, of a rock of this radius (m).
+    pub(super) fn note(&mut self, dt: f64, to: &Motion, radius_m: f64, rule: &RestRule) {
+        let rim_m_s = to.spin_rad_s * radius_m;
+        if to.velocity_m_s.norm().max(rim_m_s.norm()) >= rule.speed_m_s {
+            *self = Self::from(to.position_m);
+            return;
+        }
+        self.half_s += dt;
+        self.turned_m += rim_m_s * dt;
+        if self.half_s >= 0.5 * rule.time_s {
+            let way_m = (to.position_m - self.from_m).norm().max(self.turned_m.norm());
+            let mean_m_s = way_m / self.half_s.max(f64::MIN_POSITIVE);
+            let most = |before| before + GROWTH * rule.speed_m_s;
+            let rests = self.before_m_s.is_some_and(|before| mean_m_s <= most(before));
+            *self = Self { before_m_s: Some(mean_m_s), rests, ..Self::from(to.position_m) };
+        }
+    }
+
+    /// Whether it was slow for the rule's time and did not get faster.
+    pub(super) fn rests(&self) -> bool {
+        self.rests
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RULE: RestRule = RestRule { speed_m_s: 0.02, time_s: 0.3 };
+
+    /// Time after which a rock with velocity `v(t)` is at rest, within 1 s.
+    fn rests_after(v: impl Fn(f64) -> f64) -> Option<f64> {
+        let (still, dt) = (Vec3::zeros(), 1e-3);
+        let mut to =
+            Motion { time_s: 0.0, position_m: still, velocity_m_s: still, spin_rad_s: still };
+        let mut calm = RestCriterion::from(to.position_m);
+        (1..=1000).map(|k| f64::from(k) * dt).find(|t| {
+            to.velocity_m_s.x = v(*t);
+            to.position_m.x += v(t - 0.5 * dt) * dt;
+            calm.note(dt, &to, 0.5, &RULE);
+            calm.rests()
+        })
+    }
+
+    /// Constant, slowing down, jittering: at rest after the rule's time. Speeding up, even by a five-hundredth of gravity:
+    /// not.
+    #[test]
+    fn what_speeds_up_does_not_rest() {
+        for v in
+            [|_| 0.0, |_| 0.019, |t: f64| 0.015 * (-t).exp(), |t: f64| 0.01 * (300.0 * t).sin()]
+        {
+            assert!((rests_after(v).unwrap() - 0.3).abs() < 2e-3);
+        }
+        assert_eq!(rests_after(|t| 0.018 * t), None);
+        assert_eq!(rests_after(|t| 0.1 * t), None);
+        assert_eq!(rests_after(|t| 0.001 * (3.0 * t).exp()), None);
+    }
+}

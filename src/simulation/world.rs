@@ -1,0 +1,216 @@
+//! Many rocks in one world: short windows of time in which those that may meet form islands.
+//!
+//! Rocks in flight leap, also past each other: their meeting is a quadratic. An island has its own step; where all of
+//! it is quiet it sleeps until something comes near. Windows, islands and contacts stand in a fixed order, so the
+//! number of threads changes nothing.
+
+mod statistics;
+mod bodies;
+mod window;
+mod snapshot;
+mod subdivide;
+mod body;
+mod prediction;
+mod cached_pairs;
+
+use super::driver::{RunSettings, kept};
+use super::form::Form;
+use super::recorder::{Keep, Recorder};
+use super::rest::RestCriterion;
+use super::{Stop, Trajectory};
+use crate::contact::pair::{Bond, PairHistory, Strength, between};
+use crate::error::{Error, Result};
+use crate::ground::{Capture, Damping, Ground, Law};
+use crate::plan::{Part, Plan};
+use crate::release::Release;
+use crate::rock::Vec3;
+use crate::solver::island::{BodySlot, IslandBody};
+use crate::solver::law::Body;
+use bodies::BodyWorld;
+pub use statistics::WorldStats;
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+
+/// How the rocks of a scene answer each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairMaterial {
+    /// Springs, friction and restitution, as of a ground.
+    pub ground: Ground,
+    /// Bonds between rocks that touch at the start.
+    pub strength: Strength,
+}
+
+/// Rocks nearer than this at the start touch (–, relative to the smaller radius): coordinates are typed with five or
+/// six digits.
+const TOUCHING: f64 = 1e-4;
+
+/// Dashpots that are kept at hand.
+const KNOWN: usize = 16;
+
+/// One rock on its way.
+struct WorldBody<'a> {
+    member: BodySlot,
+    recorder: Recorder<'a>,
+    state: State,
+    /// When its flight ends (s), and how.
+    lands: Option<(f64, Option<Stop>)>,
+    /// Whether it is slow and gets no faster.
+    calm: RestCriterion,
+    /// Step its last island would have tried next (s).
+    h: f64,
+    /// Velocity when the window began, and the largest change of it since (m/s).
+    off: (Vec3, f64),
+    /// By how much its velocity changed when these windows were gone through before (m/s).
+    foreseen_m_s: f64,
+    /// Speed that the springs which press on it may give it (m/s).
+    pressed_m_s: f64,
+    /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
+    began_j: (f64, f64),
+}
+
+/// Where a rock is in its story.
+#[derive(Debug, Clone, PartialEq)]
+enum State {
+    /// Under way.
+    Moving,
+    /// At rest until something comes near.
+    Asleep,
+    /// No longer in the world.
+    Gone(Stop),
+}
+
+/// All releases of a plan whose rocks share one world, in order; `None` if `stop` was raised before the end. A path is
+/// kept for the plan's first releases and for `paths`.
+///
+/// # Errors
+/// A release that cannot be made, rocks that overlap at the start, a plan without contact between rocks.
+pub fn simulate_releases_together(
+    plan: &Plan,
+    paths: Option<&Range<usize>>,
+    stop: &AtomicBool,
+) -> Result<Option<Vec<Trajectory>>> {
+    let Part::Kept(ground) = &plan.rock_against_rock else {
+        return Err(Error::Request("the rocks of this plan do not share one world".to_owned()));
+    };
+    let releases = plan.world()?;
+    let none = Strength { tensile_pa: 0.0, cohesion_pa: 0.0 };
+    let strength = if let Part::Kept(strength) = plan.bonds { strength } else { none };
+    let answer = PairMaterial { ground: *ground, strength };
+    let keep = |index| kept(plan, index, paths);
+    let falls =
+        simulate_world(&RunSettings::of(plan), &releases, &answer, keep, Observer::silent(stop));
+    Ok(falls.map(|(falls, _)| falls))
+}
+
+/// Who asks for a world: told of it window by window, and free to end it.
+#[derive(Debug)]
+pub struct Observer<'a, F> {
+    /// Raised when the run shall end.
+    pub stop: &'a AtomicBool,
+    /// Told the end of each window of time (s) and the counts so far. The world may go back to an earlier time, and goes
+    /// on from there.
+    pub observe: F,
+}
+
+impl<'a> Observer<'a, fn(f64, &WorldStats)> {
+    /// Told nothing.
+    pub fn silent(stop: &'a AtomicBool) -> Self {
+        Self { stop, observe: |_, _| () }
+    }
+}
+
+/// Follows all rocks of one world to their stops, in the order of the releases, with what it took; `None` if it was
+/// stopped. `keep` says what to keep of each rock's way.
+pub fn simulate_world(
+    settings: &RunSettings,
+    releases: &[Release],
+    material: &PairMaterial,
+    keep: impl Fn(usize) -> Keep,
+    Observer { stop, observe }: Observer<impl FnMut(f64, &WorldStats)>,
+) -> Option<(Vec<Trajectory>, WorldStats)> {
+    // Most scenes give all rocks the same ground: its dashpot is sought once.
+    let mut known: Vec<Damping> = Vec::new();
+    let mut damping = |restitution| {
+        let found = known.iter().find(|one| one.restitution == restitution).copied();
+        found.unwrap_or_else(|| {
+            known.insert(0, Damping::of(restitution));
+            known.truncate(KNOWN);
+            known[0]
+        })
+    };
+    let bodies = releases
+        .iter()
+        .enumerate()
+        .map(|(k, release)| Some(Box::new(body(settings, release, keep(k), &mut damping))))
+        .collect();
+    let mut world = BodyWorld::new(settings, material, bodies);
+    world.bond(material);
+    world.run(stop, observe).then(|| {
+        let statistics = world.statistics;
+        (world.end(releases), statistics)
+    })
+}
+
+fn capture(settings: &RunSettings) -> Capture {
+    Capture {
+        own_m_s: settings.step.capture_speed_m_s,
+        tolerance_m_s: settings.step.tolerance_m_s,
+        gravity_m_s2: settings.gravity_m_s2,
+    }
+}
+
+fn body<'a>(
+    settings: &RunSettings<'a>,
+    release: &Release,
+    keep: Keep,
+    damping: &mut impl FnMut(Option<f64>) -> Damping,
+) -> WorldBody<'a> {
+    let laws = release.grounds.iter().map(|ground| {
+        Law::new(ground, &damping(ground.restitution), &release.rock, &capture(settings))
+    });
+    let motion = release.motion;
+    let body = Body::new(&release.rock, settings.gravity_m_s2);
+    let start = (motion.position_m, motion.velocity_m_s, motion.spin_rad_s);
+    WorldBody {
+        member: BodySlot::new(IslandBody::new(body, laws.collect(), start)),
+        recorder: Recorder::new(
+            settings.terrain,
+            Form { rock: release.rock, block: None },
+            (motion, None),
+            (keep, settings.watch),
+        ),
+        state: State::Moving,
+        lands: None,
+        calm: RestCriterion::from(motion.position_m),
+        h: f64::INFINITY,
+        off: (Vec3::zeros(), 0.0),
+        foreseen_m_s: 0.0,
+        pressed_m_s: 0.0,
+        began_j: (0.0, 0.0),
+    }
+}
+
+/// The contact law of two rocks.
+fn law_between(a: &Body, b: &Body, answer: &(Ground, Damping), capture: &Capture) -> Law {
+    let mass = a.mass * b.mass / (a.mass + b.mass);
+    Law::of_mass(&answer.0, &answer.1, (mass, a.radius.min(b.radius)), capture)
+}
+
+impl BodyWorld<'_> {
+    /// Bonds the rocks that touch at the start; the rigid limit has no springs by which a bond would break, and none.
+    fn bond(&mut self, answer: &PairMaterial) {
+        if !answer.strength.is_some() || self.is_rigid() {
+            return;
+        }
+        for (a, b) in self.touching_at_start() {
+            let [one, two] = [a, b].map(|k| &self.rover(k).member);
+            let (n, length) = between(&one.state.c, &two.state.c);
+            let radius = one.body.radius.min(two.body.radius);
+            let bond = Bond::new(&answer.strength, radius, length);
+            let law = self.law(a, b);
+            self.tie(PairHistory { n, bond: Some(bond), ..PairHistory::new(a, b, law) });
+            self.hold(a);
+            self.hold(b);
+        }
+    }
+}

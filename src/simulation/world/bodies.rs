@@ -1,0 +1,341 @@
+//! All rocks of a world, and the windows of time they go through.
+
+use super::cached_pairs::CachedPairs;
+use super::prediction::{
+    Meetings, Place, is_busy, meetings_in_passing, meetings_of_islands, place_of,
+};
+use super::window::IslandWindow;
+use super::{PairMaterial, State, TOUCHING, WorldBody, WorldStats, capture, law_between};
+use crate::contact::pair::PairHistory;
+use crate::ground::{Capture, Damping, Ground, Law};
+use crate::release::Release;
+use crate::simulation::Trajectory;
+use crate::simulation::driver::RunSettings;
+use crate::solver::Scheme;
+use crate::solver::island::TRAVEL;
+use crate::solver::island::broad_phase::{Ball, overlapping};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Way of the fastest rock in one window, relative to its radius (–): the islands stay small.
+const WAY: f64 = 0.1;
+/// Longest window (s).
+const LONGEST_S: f64 = 0.02;
+/// Shortest window (s): one very small and fast rock must not stop the world.
+const SHORTEST_S: f64 = 1e-5;
+/// Times that the world goes back to one moment, each time knowing of throws twice as fast: enough for a rock of a
+/// billionth of the mass along ten ever heavier ones.
+const RETURNS: usize = 16;
+/// Windows after which a new moment is kept to go back to.
+const WINDOWS: usize = 64;
+/// The same in the rigid limit, where a window is dear and a moment cheap beside it.
+const WINDOWS_RIGID: usize = 8;
+
+/// All rocks of a world.
+pub(super) struct BodyWorld<'a> {
+    settings: &'a RunSettings<'a>,
+    answer: (Ground, Damping),
+    capture: Capture,
+    pub(super) bodies: Vec<Option<Box<WorldBody<'a>>>>,
+    /// Contacts and bonds, in the order of the numbers of their rocks.
+    pub(super) pair_histories: Vec<PairHistory>,
+    /// Who was near whom when that was asked last.
+    wide: CachedPairs,
+    pub(super) now_s: f64,
+    pub(super) statistics: WorldStats,
+}
+
+impl<'a> BodyWorld<'a> {
+    pub(super) fn new(
+        settings: &'a RunSettings<'a>,
+        answer: &PairMaterial,
+        bodies: Vec<Option<Box<WorldBody<'a>>>>,
+    ) -> Self {
+        Self {
+            settings,
+            answer: (answer.ground, Damping::of(answer.ground.restitution)),
+            capture: capture(settings),
+            bodies,
+            pair_histories: Vec::new(),
+            wide: CachedPairs::default(),
+            now_s: 0.0,
+            statistics: WorldStats::default(),
+        }
+    }
+
+    #[expect(clippy::expect_used, reason = "bodies are away only while their island is computed")]
+    pub(super) fn rover(&self, k: u32) -> &WorldBody<'a> {
+        self.bodies[k as usize].as_ref().expect("a body is at home between windows")
+    }
+
+    pub(super) fn is_rigid(&self) -> bool {
+        self.settings.step.scheme == Scheme::Rigid
+    }
+
+    pub(super) fn law(&self, a: u32, b: u32) -> Law {
+        let [a, b] = [a, b].map(|k| &self.rover(k).member.body);
+        law_between(a, b, &self.answer, &self.capture)
+    }
+
+    pub(super) fn tie(&mut self, pair_history: PairHistory) {
+        let place = self
+            .pair_histories
+            .partition_point(|known| (known.a, known.b) < (pair_history.a, pair_history.b));
+        self.pair_histories.insert(place, pair_history);
+    }
+
+    /// A bonded rock does not fly: its contacts begin with the world.
+    pub(super) fn hold(&mut self, k: u32) {
+        let settings = self.settings;
+        if let Some(body) = self.bodies[k as usize].as_mut().filter(|body| body.member.flying) {
+            body.land(settings);
+        }
+    }
+
+    /// Pairs that touch as far as typed coordinates can say.
+    pub(super) fn touching_at_start(&self) -> Vec<(u32, u32)> {
+        let ball = |body: &WorldBody| Ball {
+            centre: body.member.state.c,
+            radius: body.member.body.radius * (1.0 + TOUCHING),
+        };
+        overlapping(&self.bodies.iter().flatten().map(|body| ball(body)).collect::<Vec<_>>())
+    }
+
+    /// Goes through windows until nothing moves or time is up; false if `stop` was raised. After each window `see` is told
+    /// the time (s) and the counts so far; where the world goes back, so does the time.
+    pub(super) fn run(&mut self, stop: &AtomicBool, mut see: impl FnMut(f64, &WorldStats)) -> bool {
+        while self.is_under_way() {
+            let rolling_moment = self.moment();
+            for tried in 0..=RETURNS {
+                let Some(missed) = self.windows(stop, &mut see) else { return false };
+                if !missed || tried == RETURNS {
+                    break;
+                }
+                self.go_back(&rolling_moment);
+                self.statistics.returns += 1;
+            }
+            self.bodies.iter_mut().flatten().for_each(|body| body.foreseen_m_s = 0.0);
+        }
+        true
+    }
+
+    fn is_under_way(&self) -> bool {
+        let mut bodies = self.bodies.iter().flatten();
+        self.now_s < self.settings.longest_s && bodies.any(|body| body.state == State::Moving)
+    }
+
+    /// Goes through the next windows, up to one in which a rock may have met one that it was not compared with; whether
+    /// there was such a one, `None` if `stop` was raised.
+    fn windows(
+        &mut self,
+        stop: &AtomicBool,
+        see: &mut impl FnMut(f64, &WorldStats),
+    ) -> Option<bool> {
+        for _ in 0..if self.is_rigid() { WINDOWS_RIGID } else { WINDOWS } {
+            if !self.is_under_way() {
+                break;
+            }
+            if stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            let missed = self.window();
+            see(self.now_s, &self.statistics);
+            if missed {
+                return Some(true);
+            }
+        }
+        Some(false)
+    }
+
+    /// One window: islands, each on its own. Whether a rock was deviated further than was allowed for and may have met
+    /// one of another island.
+    fn window(&mut self) -> bool {
+        let length = self.window_length();
+        let end_s = (self.now_s + length).min(self.settings.longest_s);
+        let (settings, now_s) = (self.settings, self.now_s);
+        self.bodies.iter_mut().flatten().for_each(|body| {
+            body.watch_from(settings, now_s);
+        });
+        let present: Vec<u32> = self.present();
+        let dt = end_s - self.now_s;
+        let place = |&k: &u32| place_of(self.rover(k), self.settings, (self.now_s, dt));
+        let places: Vec<Place> = present.iter().map(place).collect();
+        let mut wide = std::mem::take(&mut self.wide);
+        let mut meetings = self.meetings(&mut wide, &present, &places, dt);
+        self.wide = wide;
+        let jobs = self.jobs(&present, &mut meetings, end_s);
+        let done: Vec<IslandWindow> = jobs
+            .into_par_iter()
+            .map(|mut job| {
+                job.run();
+                job
+            })
+            .collect();
+        let mut missed = false;
+        // what was not lent stays
+        self.pair_histories.retain(|pair_history| pair_history.a != pair_history.b);
+        for job in done {
+            missed |= job.missed;
+            self.statistics.add(&job.statistics);
+            self.take_back(job);
+        }
+        self.pair_histories.sort_unstable_by_key(|pair_history| (pair_history.a, pair_history.b));
+        self.now_s = end_s;
+        self.statistics.windows += 1;
+        let after = |k: usize| {
+            let body = self.rover(present[k]);
+            (body.position_at(self.settings, end_s), body.off.1)
+        };
+        let deviated = meetings.missed(&places, dt, after, |deviation_m| {
+            overlapping(
+                &places
+                    .iter()
+                    .zip(deviation_m)
+                    .map(|(p, off)| p.swept(*off, dt))
+                    .collect::<Vec<_>>(),
+            )
+        });
+        for &k in &deviated {
+            if let Some(body) = &mut self.bodies[present[k] as usize] {
+                body.foresee();
+            }
+        }
+        missed || !deviated.is_empty()
+    }
+
+    /// The rocks that are in the world.
+    fn present(&self) -> Vec<u32> {
+        let count = self.bodies.len() as u32;
+        (0..count).filter(|&k| !matches!(self.rover(k).state, State::Gone(_))).collect()
+    }
+
+    fn window_length(&self) -> f64 {
+        let mut length = LONGEST_S;
+        // In the rigid limit nothing happens between the steps: a window is one.
+        let way = if self.is_rigid() { TRAVEL } else { WAY };
+        for body in self.bodies.iter().flatten().filter(|body| body.state == State::Moving) {
+            let speed = body.velocity_at(self.settings, self.now_s).norm();
+            length = length.min(way * body.member.body.radius / speed.max(1e-9));
+        }
+        length.max(SHORTEST_S)
+    }
+
+    /// Who may meet whom; numbers are places in `present`.
+    fn meetings(
+        &self,
+        wide: &mut CachedPairs,
+        present: &[u32],
+        places: &[Place],
+        dt: f64,
+    ) -> Meetings {
+        let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
+        let held: Vec<(u32, u32)> = self
+            .pair_histories
+            .iter()
+            .map(|pair_history| (at(pair_history.a), at(pair_history.b)))
+            .collect();
+        if self.is_rigid() {
+            return meetings_in_passing(places, dt, &held, |reaches| {
+                wide.overlapping(places, reaches)
+            });
+        }
+        meetings_of_islands(places, dt, |reaches| {
+            let mut pairs = wide.overlapping(places, reaches);
+            if !held.is_empty() {
+                pairs.extend(&held);
+                pairs.sort_unstable();
+                pairs.dedup();
+            }
+            pairs
+        })
+    }
+
+    /// Takes every island in which something may happen before `end_s` out of the world.
+    fn jobs(
+        &mut self,
+        present: &[u32],
+        meetings: &mut Meetings,
+        end_s: f64,
+    ) -> Vec<IslandWindow<'a>> {
+        let mut lists = meetings.islands.lists();
+        lists.retain(|list| is_busy(list.iter().map(|&k| self.rover(present[k as usize])), end_s));
+        let mut part = vec![(usize::MAX, 0); present.len()];
+        for (number, list) in lists.iter().enumerate() {
+            for (&k, place) in list.iter().zip(0..) {
+                part[k as usize] = (number, place);
+            }
+        }
+        let mut pair_histories: Vec<Vec<PairHistory>> = lists.iter().map(|_| Vec::new()).collect();
+        let mut known = 0;
+        for &(a, b) in &meetings.pairs {
+            let (number, place) = part[a as usize];
+            if number == usize::MAX {
+                continue;
+            }
+            let [one, two] = [a, b].map(|k| present[k as usize]);
+            let before = |pair_history: &PairHistory| (pair_history.a, pair_history.b) < (one, two);
+            while self.pair_histories.get(known).is_some_and(before) {
+                known += 1;
+            }
+            let lent = self
+                .pair_histories
+                .get_mut(known)
+                .filter(|pair_history| (pair_history.a, pair_history.b) == (one, two));
+            let pair_history = if let Some(pair_history) = lent {
+                // the place of a pair that is lent: both ends one rock
+                let stays = PairHistory { b: pair_history.a, ..*pair_history };
+                std::mem::replace(pair_history, stays)
+            } else {
+                PairHistory::new(one, two, self.law(one, two))
+            };
+            // the ends of a lent pair keep the order of the list
+            known += usize::from(
+                self.pair_histories
+                    .get(known)
+                    .is_some_and(|pair_history| pair_history.a == pair_history.b),
+            );
+            pair_histories[number].push(PairHistory {
+                a: place,
+                b: part[b as usize].1,
+                ..pair_history
+            });
+        }
+        let mut jobs = Vec::with_capacity(lists.len());
+        for (list, pair_histories) in lists.into_iter().zip(pair_histories) {
+            let ids: Vec<u32> = list.iter().map(|&k| present[k as usize]).collect();
+            let bodies = ids.iter().filter_map(|&k| self.bodies[k as usize].take()).collect();
+            jobs.push(IslandWindow::new(
+                self.settings,
+                ids,
+                bodies,
+                pair_histories,
+                (self.now_s, end_s),
+            ));
+        }
+        jobs
+    }
+
+    fn take_back(&mut self, job: IslandWindow<'a>) {
+        let (ids, bodies, pair_histories) = job.into_parts();
+        for pair_history in pair_histories.into_iter().filter(PairHistory::is_held) {
+            let (a, b) = (ids[pair_history.a as usize], ids[pair_history.b as usize]);
+            let gone = |k: u32| matches!(bodies[k as usize].state, State::Gone(_));
+            if !gone(pair_history.a) && !gone(pair_history.b) {
+                self.pair_histories.push(PairHistory { a, b, ..pair_history });
+            }
+        }
+        for (&k, body) in ids.iter().zip(bodies) {
+            self.bodies[k as usize] = Some(body);
+        }
+    }
+
+    /// The journeys, complete.
+    pub(super) fn end(self, releases: &[Release]) -> Vec<Trajectory> {
+        let Self { settings, bodies, now_s, .. } = self;
+        let bodies = bodies.into_iter().flatten().enumerate();
+        bodies
+            .zip(releases)
+            .map(|((k, body), release)| body.end(settings, k, release, now_s))
+            .collect()
+    }
+}

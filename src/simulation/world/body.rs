@@ -1,0 +1,310 @@
+//! One rock of a world: flying, touching, resting, and what is noted down of it.
+
+use super::{State, WorldBody};
+use crate::flight::{FlightEnd, Parabola, time_of_impact};
+use crate::release::Release;
+use crate::rock::{Motion, Vec3};
+use crate::simulation::driver::{IMPACT_TIMES, RunSettings};
+use crate::simulation::rest::RestCriterion;
+use crate::simulation::{PathState, Stop, Trajectory};
+use crate::solver::Scheme;
+use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::island::{Given, Hit, IslandBody};
+use crate::solver::step_control::ONSET;
+use std::f64::consts::PI;
+
+impl WorldBody<'_> {
+    pub(super) fn flight(&self, settings: &RunSettings) -> Parabola {
+        Parabola {
+            start: self.recorder.now.position_m,
+            velocity: self.recorder.now.velocity_m_s,
+            gravity: settings.gravity_m_s2,
+            radius: self.member.body.radius,
+        }
+    }
+
+    /// Centre at a time not before its own (m).
+    pub(super) fn position_at(&self, settings: &RunSettings, time_s: f64) -> Vec3 {
+        if self.member.flying && time_s > self.recorder.now.time_s {
+            self.flight(settings).centre(time_s - self.recorder.now.time_s)
+        } else {
+            self.recorder.now.position_m
+        }
+    }
+
+    /// Velocity at a time not before its own (m/s).
+    pub(super) fn velocity_at(&self, settings: &RunSettings, time_s: f64) -> Vec3 {
+        if self.member.flying && time_s > self.recorder.now.time_s {
+            self.flight(settings).velocity(time_s - self.recorder.now.time_s)
+        } else {
+            self.recorder.now.velocity_m_s
+        }
+    }
+
+    /// Begins to watch how far its velocity changes; returns what was watched before.
+    pub(super) fn watch_from(&mut self, settings: &RunSettings, now_s: f64) -> (Vec3, f64) {
+        let velocity = self.velocity_at(settings, now_s);
+        std::mem::replace(&mut self.off, (velocity, 0.0))
+    }
+
+    /// Goes on with what was watched before.
+    pub(super) fn watch_on(&mut self, (velocity, off): (Vec3, f64)) {
+        let since = (self.off.0 - velocity).norm() + self.off.1;
+        self.off = (velocity, off.max(since));
+    }
+
+    /// Brings a rock that slept to the present; one that flies without knowing where looks ahead.
+    pub(super) fn wake(&mut self, settings: &RunSettings, now_s: f64) {
+        if self.state == State::Asleep {
+            self.state = State::Moving;
+            let now = Motion { time_s: now_s, ..self.recorder.now };
+            self.recorder.step_as(now, PathState::Sticking);
+        }
+        if self.member.flying && self.lands.is_none() {
+            self.look_ahead(settings);
+        }
+    }
+
+    /// Finds the end of the flight that begins now.
+    pub(super) fn look_ahead(&mut self, settings: &RunSettings) {
+        let now_s = self.recorder.now.time_s;
+        let left = settings.longest_s - now_s;
+        let flight = self.flight(settings);
+        let effort = &mut self.recorder.effort;
+        effort.leaps += 1;
+        self.lands =
+            Some(match time_of_impact(settings.terrain, &flight, left, &mut effort.triangles) {
+                FlightEnd::Touch(t) => (now_s + t, None),
+                FlightEnd::Leaves(t) => (now_s + t, Some(Stop::LeftTerrain)),
+                FlightEnd::Flies => (f64::INFINITY, None),
+            });
+    }
+
+    /// Goes along the parabola; nothing for a rock in contact.
+    pub(super) fn fly_to(&mut self, settings: &RunSettings, time_s: f64) {
+        if matches!(self.state, State::Gone(_)) {
+            return;
+        }
+        let dt = time_s - self.recorder.now.time_s;
+        if self.member.flying && dt > 0.0 {
+            let flight = self.flight(settings);
+            self.recorder.fly(&flight, None, dt);
+            self.recorder.now.time_s = time_s;
+        }
+        let now = self.recorder.now;
+        let state = &mut self.member.state;
+        (state.c, state.v, state.w) = (now.position_m, now.velocity_m_s, now.spin_rad_s);
+    }
+
+    /// Begins an episode of contact.
+    pub(super) fn begin(&mut self, settings: &RunSettings) {
+        if self.member.flying {
+            self.member.flying = false;
+            self.lands = None;
+            self.calm = RestCriterion::from(self.recorder.now.position_m);
+            self.member.state.histories.clear();
+            self.member.state.stored = 0.0;
+            self.began_j = (self.total_j(settings), self.given_j());
+        }
+    }
+
+    /// What others and the contacts with them have had so far (J).
+    fn given_j(&self) -> f64 {
+        self.recorder.ledger.others_j + self.recorder.ledger.passed_on_j
+    }
+
+    /// Touches the mesh.
+    pub(super) fn land(&mut self, settings: &RunSettings) {
+        self.begin(settings);
+        let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
+        let IslandBody { state, body, laws, .. } = &mut *self.member;
+        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        state.begin(&world, c, v, w);
+        // A rock that is pressed in from the start has the energy of its springs, too.
+        if settings.step.scheme != Scheme::Rigid {
+            let held = state.stored_j(&world);
+            self.recorder.pay(&held, 1.0);
+            self.began_j.0 += held.sum();
+        }
+        let omega = state
+            .histories
+            .iter()
+            .map(|history| world.law(history.triangle).omega)
+            .fold(0.0, f64::max);
+        if omega > 0.0 {
+            self.h = self.h.min(ONSET / omega);
+        }
+        self.announce(settings);
+    }
+
+    pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {
+        let now = &self.recorder.now;
+        let body = &self.member.body;
+        0.5 * (body.mass * now.velocity_m_s.norm_squared()
+            + body.inertia * now.spin_rad_s.norm_squared())
+            + body.mass * settings.gravity_m_s2 * now.position_m.z
+    }
+
+    /// Notes one step of its island.
+    pub(super) fn step(
+        &mut self,
+        settings: &RunSettings,
+        time_s: f64,
+        (loss, given): (Loss, Given),
+        slides: bool,
+    ) {
+        if matches!(self.state, State::Gone(_)) {
+            return;
+        }
+        let to = self.motion_at(time_s);
+        let was_flying = self.lands.is_some();
+        self.announce(settings);
+        // A rock may be hit and let go within one step: then it flies another way.
+        let is_untouched = given == Given::default() && loss == Loss::default();
+        if was_flying && self.member.flying && is_untouched {
+            self.recorder.step_as(to, PathState::Flight);
+            return;
+        }
+        self.touch(settings, to, (loss, given), (slides, was_flying));
+        if self.member.flying {
+            self.look_ahead(settings);
+        }
+    }
+
+    /// Notes one step of its island in the rigid limit: rocks that fly touch and fly on within a step, too.
+    pub(super) fn stride(
+        &mut self,
+        settings: &RunSettings,
+        time_s: f64,
+        given: (Loss, Given),
+        slides: bool,
+    ) {
+        if matches!(self.state, State::Gone(_)) {
+            return;
+        }
+        let to = self.motion_at(time_s);
+        self.announce(settings);
+        if self.member.flew && self.member.flying && !self.member.was_touched {
+            self.recorder.step_as(to, PathState::Flight);
+            return;
+        }
+        let flew = self.member.flew;
+        self.touch(settings, to, given, (slides, flew));
+        if self.member.flying {
+            self.lands = None;
+        }
+    }
+
+    /// Notes an impact on the mesh in the step that ends at `time_s` (s).
+    pub(super) fn hit(&mut self, hit: &Hit, time_s: f64) {
+        if self.state == State::Moving {
+            self.recorder.begin_impact(hit.point_m, hit.feature, hit.triangle, time_s);
+        }
+    }
+
+    /// What the solver has made of it (the largest change of its velocity is kept).
+    fn motion_at(&mut self, time_s: f64) -> Motion {
+        let state = &self.member.state;
+        self.off.1 = self.off.1.max((state.v - self.off.0).norm());
+        Motion { time_s, position_m: state.c, velocity_m_s: state.v, spin_rad_s: state.w }
+    }
+
+    /// Notes one step with contact.
+    fn touch(
+        &mut self,
+        settings: &RunSettings,
+        to: Motion,
+        (loss, given): (Loss, Given),
+        (slides, was_flying): (bool, bool),
+    ) {
+        let before_j = self.total_j(settings);
+        let dt = to.time_s - self.recorder.now.time_s;
+        let slides = slides || self.member.state.histories.iter().any(|history| history.slides);
+        self.recorder.step(to, slides);
+        self.recorder.pay(&loss, 1.0);
+        self.recorder.ledger.others_j += given.lost;
+        self.recorder.ledger.passed_on_j += given.passed_on;
+        let change = self.total_j(settings) - before_j + loss.sum() + given.sum();
+        self.recorder.ledger.remainder_j -= change;
+        self.recorder.end_impact_in_time();
+        if was_flying {
+            self.lands = None;
+            self.calm = RestCriterion::from(self.recorder.now.position_m);
+            self.began_j = (before_j, self.given_j() - given.sum());
+        }
+        if self.member.flying {
+            self.end_episode(settings);
+        }
+        self.calm.note(dt, &to, self.member.body.radius, &settings.rest);
+    }
+
+    /// Largest rise of energy over the contact episode that ends now.
+    pub(super) fn end_episode(&mut self, settings: &RunSettings) {
+        self.recorder.end_impact();
+        let given_j = self.given_j() - self.began_j.1;
+        let IslandBody { state, body, laws, .. } = &mut *self.member;
+        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        // The rigid limit has no springs, whatever the depth that rounding leaves.
+        let is_rigid = settings.step.scheme == Scheme::Rigid;
+        let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
+        self.recorder.pay(&stored, -1.0);
+        let rise_j = self.total_j(settings) - self.began_j.0 + given_j + stored.sum();
+        self.recorder.ledger.rise_j = self.recorder.ledger.rise_j.max(rise_j);
+    }
+
+    /// Notes down impacts on the mesh that have just begun.
+    pub(super) fn announce(&mut self, settings: &RunSettings) {
+        let IslandBody { state, body, laws, .. } = &mut *self.member;
+        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        for history in state.histories.iter_mut().filter(|history| !history.announced) {
+            history.announced = true;
+            if !history.captured {
+                let until_s = self.recorder.now.time_s
+                    + IMPACT_TIMES * PI / world.law(history.triangle).omega;
+                let point = state.c - history.n * body.radius;
+                self.recorder.begin_impact(point, history.feature.kind, history.triangle, until_s);
+            }
+        }
+    }
+
+    pub(super) fn leave(&mut self, stop: Stop) {
+        if self.state == State::Moving {
+            self.state = State::Gone(stop);
+        }
+    }
+
+    /// The journey, complete.
+    pub(super) fn end(
+        mut self,
+        settings: &RunSettings,
+        index: usize,
+        release: &Release,
+        now_s: f64,
+    ) -> Trajectory {
+        let stop = match &self.state {
+            State::Moving => Stop::TimeUp,
+            State::Asleep => Stop::AtRest,
+            State::Gone(stop) => stop.clone(),
+        };
+        if stop == Stop::TimeUp {
+            self.fly_to(settings, now_s);
+        }
+        if !self.member.flying {
+            self.end_episode(settings);
+        }
+        self.recorder.end_impact();
+        self.recorder.end_path();
+        // Friction that turns round within a step may seem to work: that is an error of the steps.
+        let ledger = &mut self.recorder.ledger;
+        for entry in [&mut ledger.friction_j, &mut ledger.damping_j, &mut ledger.rolling_j] {
+            ledger.remainder_j += entry.min(0.0);
+            *entry = entry.max(0.0);
+        }
+        let start = release.motion;
+        let fallen = start.position_m.z - self.recorder.now.position_m.z;
+        let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
+        self.recorder.effort.triangles += self.member.state.near.tested;
+        let released_j = self.member.body.mass * settings.gravity_m_s2 * fallen + kinetic;
+        Trajectory { index, ..self.recorder.into_trajectory(release, stop, released_j) }
+    }
+}

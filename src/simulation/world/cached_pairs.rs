@@ -1,0 +1,50 @@
+//! Who is near whom, asked several times with growing reaches: the answer to a somewhat larger question serves all.
+
+use super::prediction::Place;
+use crate::rock::Vec3;
+use crate::solver::island::broad_phase::{Ball, overlapping};
+
+/// Share by which the way that is asked for is larger than it must be (–).
+const SPARE: f64 = 0.5;
+
+/// Way that each rock may go besides before all are looked for anew (–, relative to its radius).
+const SKIN: f64 = 0.1;
+
+/// The pairs that were found last.
+#[derive(Debug, Default)]
+pub(super) struct CachedPairs {
+    /// How far each rock may be from where it was then (m), and where that is.
+    reaches: Vec<f64>,
+    centres: Vec<Vec3>,
+    pairs: Vec<(u32, u32)>,
+}
+
+impl CachedPairs {
+    /// Pairs that overlap or touch if each rock may be anywhere within so far of its centre (m), in ascending order.
+    pub(super) fn overlapping(&mut self, places: &[Place], reaches: &[f64]) -> Vec<(u32, u32)> {
+        let fits = |(k, asked): (usize, &f64)| {
+            let room = self.reaches[k] - asked;
+            let off = places[k].centre - self.centres[k];
+            room >= 0.0 && off.norm_squared() <= room * room
+        };
+        let fits = self.reaches.len() == reaches.len() && reaches.iter().enumerate().all(fits);
+        if !fits {
+            self.centres.clear();
+            self.centres.extend(places.iter().map(|place| place.centre));
+            let ways = places.iter().zip(reaches);
+            self.reaches = ways
+                .map(|(place, reach)| reach + SPARE * (reach - place.radius) + SKIN * place.radius)
+                .collect();
+            let ball =
+                |(place, reach): (&Place, &f64)| Ball { centre: place.centre, radius: *reach };
+            let balls: Vec<Ball> = places.iter().zip(&self.reaches).map(ball).collect();
+            self.pairs = overlapping(&balls);
+        }
+        let near = |&&(a, b): &&(u32, u32)| {
+            let [a, b] = [a, b].map(|k| k as usize);
+            let reach = reaches[a] + reaches[b];
+            (places[a].centre - places[b].centre).norm_squared() <= reach * reach
+        };
+        self.pairs.iter().filter(near).copied().collect()
+    }
+}

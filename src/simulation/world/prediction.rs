@@ -1,0 +1,303 @@
+//! Islands within a window: who may meet whom before its end.
+
+use super::{State, WorldBody};
+use crate::contact::pair::PairHistory;
+use crate::rock::Vec3;
+use crate::simulation::driver::RunSettings;
+use crate::solver::island::broad_phase::Ball;
+use crate::solver::island::partition::Partition;
+
+/// Passes in which islands grow by the reach of those that may be hit.
+const PASSES: usize = 3;
+
+/// Times that a hit is handed on within a short window.
+const HANDED_ON: usize = 1;
+
+/// … and within one that is long beside a contact.
+const LONG_HANDED_ON: usize = 4;
+
+/// A rock at a window's start.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// Centre (m).
+    pub(super) centre: Vec3,
+    /// Velocity (m/s).
+    velocity: Vec3,
+    /// Radius (m).
+    pub(super) radius: f64,
+    /// Mass (kg).
+    mass: f64,
+    /// Most that its velocity may change by weight, by what presses on it and by the mesh (m/s).
+    dv_bound: f64,
+    /// By how much its velocity changed when this window was gone through before (m/s), 0 if it was not.
+    predicted_dv: f64,
+}
+
+impl Place {
+    /// Largest speed of its own (m/s).
+    fn speed(&self) -> f64 {
+        self.velocity.norm() + self.dv_bound
+    }
+
+    /// A ball that holds the rock through `dt` (s) if it goes no further than `deviation_m` (m) off its straight way.
+    pub(super) fn swept(&self, deviation_m: f64, dt: f64) -> Ball {
+        let half = self.velocity * (0.5 * dt);
+        let radius = self.radius * (1.0 + ROUNDING) + half.norm() + deviation_m;
+        Ball { centre: self.centre + half, radius }
+    }
+}
+
+/// Where a rock is at `now_s` and what it may do within `dt` (s) if no other hits it.
+pub(super) fn place_of(body: &WorldBody, settings: &RunSettings, (now_s, dt): (f64, f64)) -> Place {
+    let sleeps = body.state == State::Asleep;
+    let velocity = if sleeps { Vec3::zeros() } else { body.velocity_at(settings, now_s) };
+    let speed = velocity.norm();
+    let lands = body.lands.as_ref().is_some_and(|(time_s, _)| *time_s <= now_s + dt);
+    let near_mesh = !body.member.flying && body.member.is_near_mesh(speed * dt);
+    let turned = if lands || near_mesh { 2.0 * speed } else { 0.0 };
+    let dv_bound = body.pressed_m_s + settings.gravity_m_s2 * dt + turned;
+    Place {
+        centre: body.position_at(settings, now_s),
+        velocity,
+        radius: body.member.body.radius,
+        mass: body.member.body.mass,
+        dv_bound: if sleeps { 0.0 } else { dv_bound },
+        predicted_dv: body.foreseen_m_s,
+    }
+}
+
+/// Speed that a rock may have after being hit, over the fastest speed around it (–): twice for a light one under a
+/// heavy one.
+const KICK: f64 = 2.2;
+/// Of a hit within a short window, the share that is allowed for: it takes its time (–).
+const LATE: f64 = 0.5;
+/// Share of the radius by which reaches are larger than they must be: rounding (–).
+const ROUNDING: f64 = 1e-6;
+
+/// How far a hit is handed on within a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Spread {
+    /// To all of an island.
+    Island,
+    /// To the next few rocks: the window is not much longer than a contact.
+    Neighbours,
+}
+
+/// A window ahead: its length (s), and how far a hit is handed on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ahead {
+    pub(super) dt: f64,
+    pub(super) spread: Spread,
+}
+
+/// Who may meet whom in a window.
+pub(super) struct Meetings {
+    /// In ascending order.
+    pub(super) pairs: Vec<(u32, u32)>,
+    pub(super) islands: Partition,
+    /// Change of each rock's velocity that was allowed for (m/s).
+    allowed: Vec<f64>,
+}
+
+/// Nearest that two rocks come to each other within `dt` (s) on straight ways, less their radii (m).
+fn nearest_gap(a: &Place, b: &Place, dt: f64) -> f64 {
+    let (apart, closing) = (a.centre - b.centre, a.velocity - b.velocity);
+    let speed2 = closing.norm_squared();
+    let t = if speed2 > 0.0 { (-apart.dot(&closing) / speed2).clamp(0.0, dt) } else { 0.0 };
+    (apart + closing * t).norm() - (a.radius + b.radius) * (1.0 + ROUNDING)
+}
+
+impl Meetings {
+    /// Rocks that were deviated off their ways further than allowed and, as far as one knows, may have met one that they
+    /// were not compared with, in ascending order. `after` gives each rock's place at the window's end and the largest
+    /// change of its velocity (m/s), `near` the pairs that can come into question, given how far each may deviate from its flight (m).
+    pub(super) fn missed(
+        &self,
+        places: &[Place],
+        dt: f64,
+        after: impl Fn(usize) -> (Vec3, f64),
+        near: impl FnOnce(&[f64]) -> Vec<(u32, u32)>,
+    ) -> Vec<usize> {
+        let is_thrown = |k: usize| after(k).1 > self.allowed[k] * (1.0 + ROUNDING);
+        if !(0..places.len()).any(is_thrown) {
+            return Vec::new();
+        }
+        // Off its straight way by no more than half of what it is off at the end and of what it could be.
+        let deviation_m = |(k, place): (usize, &Place)| {
+            let (end, off) = after(k);
+            let straight = place.centre + place.velocity * dt;
+            0.5 * ((end - straight).norm() + off.max(place.dv_bound) * dt)
+        };
+        let deviation_m: Vec<f64> = places.iter().enumerate().map(deviation_m).collect();
+        let mut missed = Vec::new();
+        for (a, b) in near(&deviation_m) {
+            let ends = [a as usize, b as usize];
+            let gap = nearest_gap(&places[ends[0]], &places[ends[1]], dt);
+            if gap <= deviation_m[ends[0]] + deviation_m[ends[1]]
+                && self.pairs.binary_search(&(a, b)).is_err()
+            {
+                missed.extend(ends.into_iter().filter(|&k| is_thrown(k)));
+            }
+        }
+        missed.sort_unstable();
+        missed.dedup();
+        missed
+    }
+}
+
+/// Pairs that may touch and the islands they form, where any rock of an island may be hit by its fastest: `near` gives the
+/// pairs that overlap if each rock may be anywhere within so far of its centre (m).
+pub(super) fn meetings_of_islands(
+    places: &[Place],
+    dt: f64,
+    mut near: impl FnMut(&[f64]) -> Vec<(u32, u32)>,
+) -> Meetings {
+    let mut fastest: Vec<f64> = places.iter().map(|place| KICK * place.speed()).collect();
+    let (mut pairs, mut islands) = (Vec::new(), Partition::alone(places.len()));
+    let mut allowed = Vec::new();
+    for _ in 0..PASSES {
+        let deviated = |(place, speed): (&Place, &f64)| {
+            let own = place.velocity.norm();
+            speed.max(own + place.predicted_dv) - own
+        };
+        allowed = places.iter().zip(&fastest).map(deviated).collect();
+        let reach = |(place, deviated): (&Place, &f64)| {
+            place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + deviated) * dt
+        };
+        pairs = near(&places.iter().zip(&allowed).map(reach).collect::<Vec<_>>());
+        islands = joined(&pairs, places.len());
+        let mut most = vec![0.0f64; places.len()];
+        for (place, k) in places.iter().zip(0..) {
+            let root = islands.of(k) as usize;
+            most[root] = most[root].max(KICK * place.speed());
+        }
+        for (speed, k) in fastest.iter_mut().zip(0..) {
+            *speed = most[islands.of(k) as usize];
+        }
+    }
+    Meetings { pairs, islands, allowed }
+}
+
+/// Pairs that may touch and the islands they form where rocks pass each other: only what changes the velocity of one
+/// relative to the other brings them together, and a hit is handed on to the next few. `held` are pairs that touch or are
+/// bonded, in ascending order; `near` as for [`meetings_of_islands`].
+pub(super) fn meetings_in_passing(
+    places: &[Place],
+    dt: f64,
+    held: &[(u32, u32)],
+    near: impl FnOnce(&[f64]) -> Vec<(u32, u32)>,
+) -> Meetings {
+    let fastest = places.iter().map(Place::speed).fold(0.0, f64::max);
+    let reach = |place: &Place| {
+        let deviated = place.dv_bound.max(place.predicted_dv).max(fastest);
+        place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + deviated) * dt
+    };
+    let mut pairs = near(&places.iter().map(reach).collect::<Vec<_>>());
+    if !held.is_empty() {
+        pairs.extend(held);
+        pairs.sort_unstable();
+        pairs.dedup();
+    }
+    let mut touching = held.iter().peekable();
+    let gap = |pair: &(u32, u32)| {
+        let touch = touching.next_if(|held| *held == pair).is_some();
+        let [a, b] = [pair.0, pair.1].map(|k| &places[k as usize]);
+        if touch { f64::NEG_INFINITY } else { nearest_gap(a, b, dt) }
+    };
+    let gaps: Vec<f64> = pairs.iter().map(gap).collect();
+    meetings_by_gaps(places, dt, (&pairs, &gaps), (LONG_HANDED_ON, 1.0))
+}
+
+fn joined(pairs: &[(u32, u32)], count: usize) -> Partition {
+    let mut islands = Partition::alone(count);
+    for &(a, b) in pairs {
+        islands.join(a, b);
+    }
+    islands
+}
+
+/// The same among rocks that `pair_histories` join.
+pub(super) fn meeting_ties(
+    pair_histories: &[PairHistory],
+    places: &[Place],
+    ahead: Ahead,
+) -> Meetings {
+    match ahead.spread {
+        Spread::Neighbours => meetings_of_neighbours(pair_histories, places, ahead.dt),
+        Spread::Island => meetings_of_islands(places, ahead.dt, |reaches| {
+            let meets = |pair_history: &&PairHistory| {
+                let [a, b] = [pair_history.a, pair_history.b].map(|k| k as usize);
+                let reach = reaches[a] + reaches[b];
+                pair_history.is_held()
+                    || (places[a].centre - places[b].centre).norm_squared() <= reach * reach
+            };
+            pair_histories
+                .iter()
+                .filter(meets)
+                .map(|pair_history| (pair_history.a, pair_history.b))
+                .collect()
+        }),
+    }
+}
+
+/// Pairs that may touch and the islands they form in a window not much longer than a contact: rocks go straight on but
+/// for hits, which are handed on to the next few.
+fn meetings_of_neighbours(pair_histories: &[PairHistory], places: &[Place], dt: f64) -> Meetings {
+    let gaps: Vec<f64> = pair_histories
+        .iter()
+        .map(|pair_history| {
+            if pair_history.is_held() {
+                f64::NEG_INFINITY
+            } else {
+                nearest_gap(&places[pair_history.a as usize], &places[pair_history.b as usize], dt)
+            }
+        })
+        .collect();
+    let pairs: Vec<(u32, u32)> =
+        pair_histories.iter().map(|pair_history| (pair_history.a, pair_history.b)).collect();
+    meetings_by_gaps(places, dt, (&pairs, &gaps), (HANDED_ON, LATE))
+}
+
+/// The same, given the nearest that each pair comes to each other on straight ways (m).
+fn meetings_by_gaps(
+    places: &[Place],
+    dt: f64,
+    (pairs, gaps): (&[(u32, u32)], &[f64]),
+    (handed_on, late): (usize, f64),
+) -> Meetings {
+    let mut allowed: Vec<f64> =
+        places.iter().map(|place| place.dv_bound.max(place.predicted_dv)).collect();
+    let meet = |allowed: &[f64]| -> Vec<(u32, u32)> {
+        let meets = |((a, b), gap): &(&(u32, u32), &f64)| {
+            **gap <= (allowed[*a as usize] + allowed[*b as usize]) * dt
+        };
+        pairs.iter().zip(gaps).filter(meets).map(|(pair, _)| *pair).collect()
+    };
+    for _ in 0..handed_on {
+        let before = allowed.clone();
+        for (a, b) in meet(&before) {
+            for (k, other) in [(a as usize, b as usize), (b as usize, a as usize)] {
+                let (own, its) = (&places[k], &places[other]);
+                // an elastic hit: twice the velocity of the common centre of mass
+                let share = 2.0 * its.mass / (own.mass + its.mass);
+                let closing = (own.velocity - its.velocity).norm() + before[other];
+                allowed[k] = allowed[k].max(own.dv_bound + late * share * closing);
+            }
+        }
+    }
+    let pairs = meet(&allowed);
+    let islands = joined(&pairs, places.len());
+    Meetings { pairs, islands, allowed }
+}
+
+/// Whether anything of an island moves other than along a parabola that goes on beyond `end_s`.
+pub(super) fn is_busy<'r, 'a: 'r>(
+    mut bodies: impl ExactSizeIterator<Item = &'r WorldBody<'a>>,
+    end_s: f64,
+) -> bool {
+    let alone = bodies.len() == 1;
+    bodies.any(|body| {
+        let flies_on = body.member.flying && body.lands.as_ref().is_some_and(|(t, _)| *t > end_s);
+        body.state == State::Moving && !(alone && flies_on)
+    })
+}

@@ -1,0 +1,81 @@
+//! A snapshot of a world, kept to go back to: a rock that was deviated further than its island allowed for may have run
+//! into another island that knew nothing of it.
+
+use super::bodies::BodyWorld;
+use super::{State, Stop, WorldBody};
+use crate::contact::pair::PairHistory;
+use crate::simulation::recorder::Mark;
+use crate::simulation::rest::RestCriterion;
+use crate::solver::island::Memory;
+
+/// All that later windows depend on.
+pub(super) struct Snapshot {
+    bodies: Vec<Option<Kept>>,
+    pair_histories: Vec<PairHistory>,
+    now_s: f64,
+}
+
+/// One rock of it.
+pub(super) struct Kept {
+    memory: Memory,
+    mark: Mark,
+    state: State,
+    lands: Option<(f64, Option<Stop>)>,
+    calm: RestCriterion,
+    h: f64,
+    pressed_m_s: f64,
+    began_j: (f64, f64),
+}
+
+impl WorldBody<'_> {
+    pub(super) fn keep(&self) -> Kept {
+        Kept {
+            memory: self.member.memory(),
+            mark: self.recorder.mark(),
+            state: self.state.clone(),
+            lands: self.lands.clone(),
+            calm: self.calm,
+            h: self.h,
+            pressed_m_s: self.pressed_m_s,
+            began_j: self.began_j,
+        }
+    }
+
+    pub(super) fn go_back(&mut self, kept: &Kept) {
+        self.member.recall(&kept.memory);
+        self.recorder.go_back(&kept.mark);
+        self.state.clone_from(&kept.state);
+        self.lands.clone_from(&kept.lands);
+        (self.calm, self.h, self.began_j) = (kept.calm, kept.h, kept.began_j);
+        self.pressed_m_s = kept.pressed_m_s;
+    }
+
+    /// When this is gone through again, it is known how far the rock was deviated.
+    pub(super) fn foresee(&mut self) {
+        self.foreseen_m_s = self.foreseen_m_s.max(2.0 * self.off.1);
+    }
+}
+
+impl BodyWorld<'_> {
+    /// Keeps the present.
+    pub(super) fn moment(&self) -> Snapshot {
+        // What is gone does not come back.
+        let kept = |body: &WorldBody| (!matches!(body.state, State::Gone(_))).then(|| body.keep());
+        Snapshot {
+            bodies: self.bodies.iter().map(|body| body.as_deref().and_then(kept)).collect(),
+            pair_histories: self.pair_histories.clone(),
+            now_s: self.now_s,
+        }
+    }
+
+    /// Goes back to a moment that was kept.
+    pub(super) fn go_back(&mut self, rolling_moment: &Snapshot) {
+        for (body, kept) in self.bodies.iter_mut().zip(&rolling_moment.bodies) {
+            if let (Some(body), Some(kept)) = (body, kept) {
+                body.go_back(kept);
+            }
+        }
+        self.pair_histories.clone_from(&rolling_moment.pair_histories);
+        self.now_s = rolling_moment.now_s;
+    }
+}

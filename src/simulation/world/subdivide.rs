@@ -1,0 +1,207 @@
+//! An island whose rocks mostly do not meet in a much shorter window is taken apart: each part goes through that on its
+//! own.
+
+use super::WorldBody;
+use super::prediction::{Ahead, Meetings, Place, Spread, is_busy, meeting_ties, place_of};
+use super::snapshot::Kept;
+use super::window::IslandWindow;
+use crate::contact::pair::PairHistory;
+use crate::rock::Vec3;
+use rayon::prelude::*;
+
+/// An island of no more rocks than this is stepped as a whole.
+const FEW: usize = 4;
+/// In how many windows one is cut in which most of an island's rocks cannot meet.
+const CUTS: u32 = 4;
+/// Shortest of them, in radians of the stiffest contact (–): less than a step of a quiet heap.
+const SHORTEST_PART: f64 = 1.5;
+/// Within so many radians of the stiffest contact a hit is handed on to the next few rocks only (–).
+const FAR: f64 = 12.0;
+/// Times that a window is gone through again because a rock was deviated further than was allowed for, before that is left
+/// to the whole world.
+const RETURNS: usize = 6;
+
+impl IslandWindow<'_> {
+    /// Takes the island to the end of its window.
+    pub(super) fn run(&mut self) {
+        if self.is_rigid_heap() {
+            self.run_rigid();
+            return;
+        }
+        if self.flies_through() {
+            return;
+        }
+        let stiffest = self
+            .pair_histories
+            .iter()
+            .map(|pair_history| pair_history.law.omega)
+            .fold(0.0, f64::max);
+        let Some(cuts) = self.falls_apart(stiffest) else {
+            self.run_whole();
+            return;
+        };
+        let (start_s, end_s) = (self.now_s, self.end_s);
+        for k in 1..=cuts {
+            let part = f64::from(k) / f64::from(cuts);
+            self.end_s = if k == cuts { end_s } else { start_s + part * (end_s - start_s) };
+            if self.goes_back {
+                self.run_parts_again(stiffest);
+            } else {
+                self.run_parts(stiffest);
+            }
+            self.now_s = self.end_s;
+        }
+    }
+
+    /// Whether all of the island flies and neither meets nor lands before the end of its window.
+    fn flies_through(&self) -> bool {
+        let flies_on = |body: &WorldBody| {
+            let lands = body.lands.as_ref();
+            body.member.flying && lands.is_some_and(|(time_s, _)| *time_s > self.end_s)
+        };
+        self.bodies.iter().all(|body| flies_on(body)) && self.next_event_s() > self.end_s
+    }
+
+    /// In how many much shorter windows most of the island's rocks are not joined: then those are cheaper than stepping
+    /// all together.
+    fn falls_apart(&self, stiffest: f64) -> Option<u32> {
+        let (count, length) = (self.bodies.len(), self.end_s - self.now_s);
+        let mut cuts = CUTS;
+        while count > FEW && length / f64::from(cuts) * stiffest >= SHORTEST_PART {
+            let dt = length / f64::from(cuts);
+            let mut meetings = self.meetings(&self.places(dt), (dt, stiffest));
+            let largest = meetings.islands.sizes().into_iter().max().unwrap_or(0);
+            if 4 * largest as usize <= 3 * count {
+                return Some(cuts);
+            }
+            cuts *= CUTS;
+        }
+        None
+    }
+
+    fn places(&self, dt: f64) -> Vec<Place> {
+        let place = |body: &WorldBody| place_of(body, self.settings, (self.now_s, dt));
+        self.bodies.iter().map(|body| place(body)).collect()
+    }
+
+    fn meetings(&self, places: &[Place], (dt, stiffest): (f64, f64)) -> Meetings {
+        let spread = if dt * stiffest > FAR { Spread::Island } else { Spread::Neighbours };
+        meeting_ties(&self.pair_histories, places, Ahead { dt, spread })
+    }
+
+    /// Takes the parts there, and again if a rock was deviated further than was allowed for.
+    fn run_parts_again(&mut self, stiffest: f64) {
+        let kept: Vec<Kept> = self.bodies.iter().map(|body| body.keep()).collect();
+        let pair_histories = self.pair_histories.clone();
+        for _ in 0..RETURNS {
+            if !self.run_parts(stiffest) {
+                return;
+            }
+            for (body, kept) in self.bodies.iter_mut().zip(&kept) {
+                body.go_back(kept);
+            }
+            self.pair_histories.clone_from(&pair_histories);
+            self.missed = false;
+            self.statistics.returns += 1;
+        }
+        self.run_parts(stiffest);
+    }
+
+    /// Takes the parts that cannot meet before the end of the window there, each on its own; whether some may have met
+    /// after all.
+    fn run_parts(&mut self, stiffest: f64) -> bool {
+        let dt = self.end_s - self.now_s;
+        let places = self.places(dt);
+        let mut meetings = self.meetings(&places, (dt, stiffest));
+        let (settings, now_s) = (self.settings, self.now_s);
+        let before: Vec<(Vec3, f64)> =
+            self.bodies.iter_mut().map(|body| body.watch_from(settings, now_s)).collect();
+        let mut homes: Vec<Option<Box<WorldBody>>> = Vec::new();
+        let mut jobs = self.take_apart(&mut meetings, &mut homes);
+        jobs.par_iter_mut().for_each(IslandWindow::run);
+        self.join(jobs, homes);
+        let after = |k: usize| {
+            let body = &self.bodies[k];
+            (body.position_at(self.settings, self.end_s), body.off.1)
+        };
+        // Pairs without a history are looked at by the island that this one is a part of.
+        let deviated = meetings.missed(&places, dt, after, |_| {
+            self.pair_histories
+                .iter()
+                .map(|pair_history| (pair_history.a, pair_history.b))
+                .collect()
+        });
+        for &k in &deviated {
+            self.bodies[k].foresee();
+        }
+        for (body, before) in self.bodies.iter_mut().zip(before) {
+            body.watch_on(before);
+        }
+        self.missed |= !deviated.is_empty();
+        self.missed
+    }
+}
+
+impl<'a> IslandWindow<'a> {
+    /// Makes a window of every part in which something may happen; the other rocks stay in `homes`, and pairs between parts
+    /// with the island.
+    fn take_apart(
+        &mut self,
+        meetings: &mut Meetings,
+        homes: &mut Vec<Option<Box<WorldBody<'a>>>>,
+    ) -> Vec<Self> {
+        let mut lists = meetings.islands.lists();
+        lists.retain(|list| is_busy(list.iter().map(|&k| &*self.bodies[k as usize]), self.end_s));
+        let mut part = vec![(u32::MAX, 0); self.bodies.len()];
+        for (list, number) in lists.iter().zip(0..) {
+            for (&k, place) in list.iter().zip(0..) {
+                part[k as usize] = (number, place);
+            }
+        }
+        let mut pair_histories: Vec<Vec<PairHistory>> = lists.iter().map(|_| Vec::new()).collect();
+        let mut pairs = meetings.pairs.iter().peekable();
+        self.pair_histories.retain(|pair_history| {
+            let (number, a) = part[pair_history.a as usize];
+            let meets = pairs.next_if(|pair| **pair == (pair_history.a, pair_history.b)).is_some();
+            let goes = meets && number != u32::MAX;
+            if goes {
+                pair_histories[number as usize].push(PairHistory {
+                    a,
+                    b: part[pair_history.b as usize].1,
+                    ..*pair_history
+                });
+            }
+            !goes
+        });
+        homes.extend(self.bodies.drain(..).map(Some));
+        let window = (self.now_s, self.end_s);
+        let mut jobs = Vec::with_capacity(lists.len());
+        for (list, pair_histories) in lists.into_iter().zip(pair_histories) {
+            let bodies = list.iter().filter_map(|&k| homes[k as usize].take()).collect();
+            let part = Self::new(self.settings, list, bodies, pair_histories, window);
+            jobs.push(Self { goes_back: false, ..part });
+        }
+        jobs
+    }
+
+    /// Takes the parts and their rocks back.
+    fn join(&mut self, jobs: Vec<Self>, mut homes: Vec<Option<Box<WorldBody<'a>>>>) {
+        for job in jobs {
+            self.missed |= job.missed;
+            self.statistics.add(&job.statistics);
+            let (list, bodies, pair_histories) = job.into_parts();
+            self.pair_histories.extend(pair_histories.into_iter().map(|pair_history| {
+                PairHistory {
+                    a: list[pair_history.a as usize],
+                    b: list[pair_history.b as usize],
+                    ..pair_history
+                }
+            }));
+            for (&k, body) in list.iter().zip(bodies) {
+                homes[k as usize] = Some(body);
+            }
+        }
+        self.pair_histories.sort_unstable_by_key(|pair_history| (pair_history.a, pair_history.b));
+        self.bodies.extend(homes.into_iter().flatten());
+    }
+}

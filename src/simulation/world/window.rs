@@ -1,0 +1,311 @@
+//! One island through one window: leap, meet, step, rest.
+
+mod rigid;
+
+use super::{State, WorldBody, WorldStats};
+use crate::contact::pair::{PairHistory, meeting_s};
+use crate::simulation::Stop;
+use crate::simulation::driver::RunSettings;
+use crate::solver::Scheme;
+use crate::solver::contact_state::Loss;
+use crate::solver::island::partition::Partition;
+use crate::solver::island::{Done, Given, Island};
+use crate::solver::step_control::{Control, ONSET, StepError};
+use crate::solver::tableau::{ESDIRK4, TR_BDF2};
+
+/// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
+const ROUNDING: f64 = 1e-11;
+
+/// A time that is nothing (s): the clock cannot tell less after an hour.
+const SOON_S: f64 = 1e-12;
+
+/// Rocks on their way. They are handed on between islands, and a pointer moves faster than a journey.
+type Rovers<'a> = Vec<Box<WorldBody<'a>>>;
+
+/// How a rock notes a step with its losses (J), what it gave to others (J), and whether it slides.
+type Going<'a> = fn(&mut WorldBody<'a>, &RunSettings, f64, (Loss, Given), bool);
+
+/// One island and its window.
+pub(super) struct IslandWindow<'a> {
+    pub(super) settings: &'a RunSettings<'a>,
+    pub(super) ids: Vec<u32>,
+    pub(super) bodies: Rovers<'a>,
+    pub(super) pair_histories: Vec<PairHistory>,
+    pub(super) now_s: f64,
+    pub(super) end_s: f64,
+    /// Whether it goes back by itself where a rock was deviated further than was allowed for.
+    pub(super) goes_back: bool,
+    /// Whether a rock was deviated so far that it may have met one of another island.
+    pub(super) missed: bool,
+    pub(super) statistics: WorldStats,
+}
+
+impl<'a> IslandWindow<'a> {
+    pub(super) fn new(
+        settings: &'a RunSettings<'a>,
+        ids: Vec<u32>,
+        bodies: Rovers<'a>,
+        pair_histories: Vec<PairHistory>,
+        (now_s, end_s): (f64, f64),
+    ) -> Self {
+        Self {
+            settings,
+            ids,
+            bodies,
+            pair_histories,
+            now_s,
+            end_s,
+            goes_back: true,
+            missed: false,
+            statistics: WorldStats::default(),
+        }
+    }
+
+    pub(super) fn into_parts(self) -> (Vec<u32>, Rovers<'a>, Vec<PairHistory>) {
+        (self.ids, self.bodies, self.pair_histories)
+    }
+
+    /// Takes all of the island to the end of the window together.
+    pub(super) fn run_whole(&mut self) {
+        for body in &mut self.bodies {
+            body.wake(self.settings, self.now_s);
+        }
+        loop {
+            let next_s = self.next_event_s().min(self.end_s);
+            if self.bodies.iter().all(|body| body.member.flying) {
+                if next_s >= self.end_s {
+                    return;
+                }
+                self.fly_to(next_s);
+                self.begin_contacts();
+            } else if !self.steps(next_s) {
+                return;
+            }
+        }
+    }
+
+    /// When the next flying rock touches mesh or another flying rock (s).
+    pub(super) fn next_event_s(&self) -> f64 {
+        let flying = self.bodies.iter().filter(|body| body.member.flying);
+        let landings = flying.filter_map(|body| body.lands.as_ref().map(|(time_s, _)| *time_s));
+        let first = landings.fold(f64::INFINITY, f64::min);
+        self.pair_histories
+            .iter()
+            .filter_map(|pair_history| self.meeting_s(pair_history))
+            .fold(first, f64::min)
+    }
+
+    /// When two flying rocks meet (s).
+    fn meeting_s(&self, pair_history: &PairHistory) -> Option<f64> {
+        let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.bodies[k as usize]);
+        if !a.member.flying || !b.member.flying || pair_history.is_held() {
+            return None;
+        }
+        let at = |body: &WorldBody| {
+            let (c, v) = (
+                body.position_at(self.settings, self.now_s),
+                body.velocity_at(self.settings, self.now_s),
+            );
+            (c, v, body.member.body.radius)
+        };
+        let ((c_a, v_a, r_a), (c_b, v_b, r_b)) = (at(a), at(b));
+        meeting_s(&(c_a - c_b), &(v_a - v_b), r_a + r_b).map(|t| self.now_s + t)
+    }
+
+    /// Whether two flying rocks approach and touch but for rounding.
+    fn meets_now(&self, pair_history: &PairHistory) -> bool {
+        let touching = |pair_history: &PairHistory| {
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.bodies[k as usize]);
+            let apart = a.recorder.now.position_m - b.recorder.now.position_m;
+            apart.norm() <= (a.member.body.radius + b.member.body.radius) * (1.0 + ROUNDING)
+        };
+        self.meeting_s(pair_history)
+            .is_some_and(|t| t - self.now_s <= SOON_S || touching(pair_history))
+    }
+
+    /// Moves flying rocks along their parabolas.
+    fn fly_to(&mut self, time_s: f64) {
+        for body in self.bodies.iter_mut().filter(|body| body.member.flying) {
+            body.fly_to(self.settings, time_s);
+        }
+        self.now_s = time_s;
+    }
+
+    /// Begins all contacts that are due now.
+    fn begin_contacts(&mut self) {
+        let due: Vec<bool> =
+            self.pair_histories.iter().map(|pair_history| self.meets_now(pair_history)).collect();
+        for (k, _) in due.iter().enumerate().filter(|(_, due)| **due) {
+            let ends = [self.pair_histories[k].a as usize, self.pair_histories[k].b as usize];
+            for end in ends {
+                self.bodies[end].begin(self.settings);
+            }
+            let [a, b] = ends.map(|end| &self.bodies[end].member.state);
+            let pair_history = &mut self.pair_histories[k];
+            let (n, _) = crate::contact::pair::between(&a.c, &b.c);
+            (pair_history.n, pair_history.closed) = (n, true);
+            pair_history.captured = -n.dot(&(a.v - b.v)) < pair_history.law.capture_m_s;
+            let h = ONSET / pair_history.law.omega;
+            for end in ends {
+                self.bodies[end].h = self.bodies[end].h.min(h);
+            }
+        }
+        for body in self.bodies.iter_mut().filter(|body| body.member.flying) {
+            let due = body.lands.as_ref().is_some_and(|(time_s, _)| *time_s <= self.now_s);
+            match body.lands.take_if(|_| due) {
+                Some((_, Some(stop))) => body.leave(stop),
+                Some((_, None)) => body.land(self.settings),
+                None => {}
+            }
+        }
+    }
+
+    /// Steps the island until a flying rock is due, all fly, or the window is over; whether it goes on.
+    fn steps(&mut self, until_s: f64) -> bool {
+        let control = Control {
+            tableau: if self.settings.step.scheme == Scheme::Reference {
+                &ESDIRK4
+            } else {
+                &TR_BDF2
+            },
+            tolerance: self.settings.step.tolerance_m_s,
+            impact: f64::INFINITY,
+            plane_impacts: false,
+        };
+        let now_s = self.now_s;
+        self.bodies.iter_mut().for_each(|body| body.fly_to(self.settings, now_s));
+        let mut island = self.cluster();
+        let mut goes_on = true;
+        while self.now_s < until_s {
+            let room = until_s - self.now_s;
+            let spent = (island.sweeps, island.jumps);
+            let tried = match self.settings.step.scheme {
+                Scheme::Dda => island.advance_fixed(self.settings.step, room),
+                Scheme::Rigid => island.advance_rigid(self.settings.step.step_s, room),
+                _ => island.advance(&control, room),
+            };
+            let done = match tried {
+                Ok(done) => done,
+                Err(stuck) => {
+                    self.fail(stuck);
+                    goes_on = false;
+                    break;
+                }
+            };
+            self.now_s = if done.dt >= room { until_s } else { self.now_s + done.dt };
+            let all_fly = self.note(&mut island, &done, (spent, WorldBody::step));
+            if all_fly {
+                break;
+            }
+        }
+        self.dissolve(island);
+        if self.now_s >= self.end_s {
+            self.fall_asleep();
+            return false;
+        }
+        if goes_on {
+            self.begin_contacts();
+        }
+        goes_on
+    }
+
+    /// The island as the solver sees it.
+    fn cluster(&mut self) -> Island<'a> {
+        let h = self.bodies.iter().filter(|body| !body.member.flying).map(|body| body.h);
+        let h = h.fold(f64::INFINITY, f64::min);
+        let members = self.bodies.iter_mut().map(|body| body.member.lend()).collect();
+        let mut island =
+            Island::new(self.settings.terrain, members, std::mem::take(&mut self.pair_histories));
+        island.h = h;
+        island
+    }
+
+    fn dissolve(&mut self, island: Island<'a>) {
+        self.pair_histories = island.pair_histories;
+        for (body, member) in self.bodies.iter_mut().zip(island.members) {
+            body.h = if member.flying { f64::INFINITY } else { island.h };
+            body.pressed_m_s = member.pressed_m_s(self.settings.terrain);
+            body.member = member;
+        }
+        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
+        {
+            for k in [pair_history.a, pair_history.b] {
+                let body = &mut self.bodies[k as usize];
+                body.pressed_m_s += pair_history.normal_force.abs()
+                    / (body.member.body.mass * pair_history.law.omega);
+            }
+        }
+    }
+
+    /// Writes one step into the journeys; whether all rocks fly now.
+    fn note(
+        &mut self,
+        island: &mut Island<'a>,
+        done: &Done,
+        ((swept, jumped), go): ((u64, u64), Going<'a>),
+    ) -> bool {
+        let (sweeps, jumps) = (island.sweeps - swept, island.jumps - jumped);
+        let rocks = self.bodies.len() as u64;
+        self.statistics.add(&WorldStats {
+            steps: 1,
+            rock_steps: rocks,
+            rejected: done.rejected,
+            sweeps,
+            jumps,
+            unsettled: u64::from(done.unsettled),
+            largest: rocks,
+            ..WorldStats::default()
+        });
+        // Only the rigid limit lists hits.
+        let mut hits = done.hits.iter().peekable();
+        let mut slides = vec![false; self.bodies.len()];
+        for pair_history in island
+            .pair_histories
+            .iter()
+            .filter(|pair_history| pair_history.closed && pair_history.slides)
+        {
+            (slides[pair_history.a as usize], slides[pair_history.b as usize]) = (true, true);
+        }
+        for (k, body) in self.bodies.iter_mut().enumerate() {
+            std::mem::swap(&mut body.member, &mut island.members[k]);
+            while let Some(hit) = hits.next_if(|hit| hit.rock == k) {
+                body.hit(hit, self.now_s);
+            }
+            let effort = &mut body.recorder.effort;
+            effort.steps += 1;
+            effort.rejected += done.rejected;
+            effort.sweeps += sweeps + jumps;
+            effort.unsettled += u64::from(done.unsettled);
+            let given = (done.losses[k], done.given[k]);
+            go(body, self.settings, self.now_s, given, slides[k]);
+            std::mem::swap(&mut body.member, &mut island.members[k]);
+        }
+        island.members.iter().all(|member| member.flying)
+    }
+
+    fn fail(&mut self, stuck: StepError) {
+        for body in &mut self.bodies {
+            body.leave(Stop::Failed(stuck.to_string()));
+        }
+    }
+
+    /// Puts to sleep what has been quiet for long enough together with all that it touches.
+    fn fall_asleep(&mut self) {
+        let mut islands = Partition::alone(self.bodies.len());
+        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
+        {
+            islands.join(pair_history.a, pair_history.b);
+        }
+        for list in islands.lists() {
+            let quiet = |k: &u32| {
+                let body = &self.bodies[*k as usize];
+                body.state == State::Moving && !body.member.flying && body.calm.rests()
+            };
+            if list.iter().all(quiet) {
+                for k in list {
+                    self.bodies[k as usize].state = State::Asleep;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,360 @@
+//! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
+
+use super::dda::DdaScratch;
+pub use super::environment::ContactEnvironment;
+use super::explicit_impact::ExplicitImpact;
+use super::friction_rolling::Mode;
+use super::law::{Body, StageContact};
+use super::plane_kernel::PlaneKernel;
+use super::tableau::STAGES;
+use crate::clock::{Clocks, Piece};
+use crate::contact::history::{ContactHistories, HISTORIES};
+use crate::contact::neighbours::Neighbours;
+use crate::contact::{ContactPoints, MOST};
+use crate::rock::Vec3;
+
+/// Power that goes into contacts (W) by kind, or energy (J) once summed over time. What springs store is counted
+/// in; it is nothing once the contact is over.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Loss {
+    /// Sliding friction on the slope.
+    pub friction: f64,
+    /// Normal and shear dashpots on the slope.
+    pub damping: f64,
+    /// Rolling friction on the slope.
+    pub rolling: f64,
+    /// Everything in contacts with trees.
+    pub trees: f64,
+}
+
+impl Loss {
+    /// Adds `other` times `factor`.
+    #[inline]
+    pub fn add(&mut self, other: &Self, factor: f64) {
+        self.friction += factor * other.friction;
+        self.damping += factor * other.damping;
+        self.rolling += factor * other.rolling;
+        self.trees += factor * other.trees;
+    }
+
+    /// The same, booked under trees where the triangle is one's.
+    #[must_use]
+    #[inline]
+    pub fn on(self, world: &ContactEnvironment, triangle: u32) -> Self {
+        if world.terrain.is_tree(triangle) {
+            Self { trees: self.sum(), ..Self::default() }
+        } else {
+            self
+        }
+    }
+
+    /// All of it.
+    pub fn sum(&self) -> f64 {
+        self.friction + self.damping + self.rolling + self.trees
+    }
+}
+
+/// Rates of change of a rock in contact.
+#[derive(Debug, Clone, Copy)]
+pub struct Rate {
+    /// Velocity (m/s).
+    pub c: Vec3,
+    /// Acceleration (m/s²).
+    pub v: Vec3,
+    /// Angular acceleration (rad/s²).
+    pub w: Vec3,
+    /// Of the shear springs (m/s), in the frames of the memories.
+    pub shear: [Vec3; HISTORIES],
+    /// Of the rolling springs (rad/s).
+    pub roll: [Vec3; HISTORIES],
+    /// Power lost (W).
+    pub loss: Loss,
+}
+
+impl Rate {
+    /// Takes over another's rates, of the springs the first `histories` only.
+    #[inline]
+    pub fn take(&mut self, from: &Self, histories: usize) {
+        (self.c, self.v, self.w, self.loss) = (from.c, from.v, from.w, from.loss);
+        self.shear[..histories].copy_from_slice(&from.shear[..histories]);
+        self.roll[..histories].copy_from_slice(&from.roll[..histories]);
+    }
+
+    /// Forgets the rates of the first `histories` springs.
+    #[inline]
+    pub fn clear(&mut self, histories: usize) {
+        self.shear[..histories].fill(Vec3::zeros());
+        self.roll[..histories].fill(Vec3::zeros());
+    }
+
+    /// No change.
+    pub const NONE: Self = Self {
+        c: Vec3::new(0.0, 0.0, 0.0),
+        v: Vec3::new(0.0, 0.0, 0.0),
+        w: Vec3::new(0.0, 0.0, 0.0),
+        shear: [Vec3::new(0.0, 0.0, 0.0); HISTORIES],
+        roll: [Vec3::new(0.0, 0.0, 0.0); HISTORIES],
+        loss: Loss { friction: 0.0, damping: 0.0, rolling: 0.0, trees: 0.0 },
+    };
+}
+
+/// A rock in contact.
+#[derive(Debug)]
+pub struct ContactState {
+    /// Centre (m, local).
+    pub c: Vec3,
+    /// Velocity (m/s).
+    pub v: Vec3,
+    /// Spin (rad/s).
+    pub w: Vec3,
+    /// Its contacts' memories.
+    pub histories: ContactHistories,
+    /// Features around it.
+    pub near: Neighbours,
+    /// Contact points at the last place asked.
+    pub touches: ContactPoints,
+    /// That place, if they were asked for with all slack.
+    pub(crate) looked_ahead: Option<Vec3>,
+    /// Rates at the stages of the step in hand; the first is that at its start.
+    pub rates: [Rate; STAGES],
+    /// Whether the first rate belongs to the present state.
+    pub fresh: bool,
+    /// Energy in the springs of the contacts at the present state (J), if the first rate is fresh.
+    pub stored: f64,
+    /// Contacts of the stage in hand.
+    pub contacts: [StageContact; MOST],
+    /// How many of them.
+    pub contact_count: usize,
+    /// The same of a rock on one plane.
+    pub plane_kernel: PlaneKernel,
+    /// An impact in its own time.
+    pub(crate) impact: ExplicitImpact,
+    /// Contacts that are about to be struck anew within an episode (`rigid`).
+    pub struck: ContactHistories,
+    /// Whether what is touched may give way: it is asked step by step.
+    pub may_yield: bool,
+    /// Whether the blow in hand has been announced (`rigid`).
+    pub(crate) is_struck: bool,
+    /// Work space of the fixed step.
+    pub scratch: DdaScratch,
+    /// Contact sweeps done.
+    pub sweeps: u64,
+    /// Where the time goes, if somebody asks.
+    pub clocks: Clocks,
+}
+
+/// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
+const MARGIN: f64 = 0.35;
+/// … at a touch no further than this, if that is enough for the impact (–) …
+const LEAST_MARGIN: f64 = 0.06;
+/// … which goes on for about so many contact times `π/ω` (–) …
+const IMPACT_WAY: f64 = 1.3;
+/// … and asked for up to this far beyond the radius (–), so that a stage sees what it is about to run into.
+const SLACK: f64 = 0.1;
+/// A gap this small is a touch (–, relative to R): rounding of the leap.
+pub const TOUCH: f64 = 1e-9;
+
+impl Default for ContactState {
+    fn default() -> Self {
+        // room for what is usually near, so that the first rock of a thread need not stop to make it
+        let near = Neighbours::default();
+        Self { near, ..Self::unused() }
+    }
+}
+
+impl ContactState {
+    /// Without memory taken: for rocks that are kept by the thousand.
+    pub fn unused() -> Self {
+        Self {
+            c: Vec3::zeros(),
+            v: Vec3::zeros(),
+            w: Vec3::zeros(),
+            histories: ContactHistories::default(),
+            near: Neighbours::empty(),
+            touches: ContactPoints::default(),
+            looked_ahead: None,
+            rates: [Rate::NONE; STAGES],
+            fresh: false,
+            stored: 0.0,
+            contacts: [StageContact::NONE; MOST],
+            contact_count: 0,
+            plane_kernel: PlaneKernel::default(),
+            impact: ExplicitImpact::default(),
+            struck: ContactHistories::default(),
+            is_struck: true,
+            may_yield: false,
+            scratch: DdaScratch::default(),
+            sweeps: 0,
+            clocks: Clocks::default(),
+        }
+    }
+}
+
+impl ContactState {
+    /// Takes a rock that has just touched; contacts slower than the capture speed are captured.
+    pub fn begin(&mut self, world: &ContactEnvironment, c: Vec3, v: Vec3, w: Vec3) {
+        (self.c, self.v, self.w) = (c, v, w);
+        self.histories.clear();
+        self.fresh = false;
+        self.plane_kernel.forget();
+        self.impact.forget();
+        self.struck.clear();
+        self.is_struck = true;
+        // Nothing of the rock before, not even a guess, may tell.
+        self.contacts.iter_mut().for_each(|contact| contact.mode = Mode::default());
+        if !self.near.covers(&c) {
+            let (r, margin) = (world.body.radius, self.way_of_impact(world));
+            self.near.collect(world.terrain, &c, r, margin, SLACK * r);
+        }
+        self.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        // An impact rebounds or not as a whole, by its fastest approach.
+        let captured = self.touches.iter().all(|touch| world.captures(touch, &v));
+        for (k, touch) in self.touches.iter().enumerate() {
+            self.histories.find(touch, &self.touches, (1 << k) - 1, || captured);
+            if !captured {
+                self.impact.meet(-touch.normal.dot(&v), world.least_impact_m_s());
+            }
+        }
+    }
+
+    /// Sees to it that the features around `c` are known.
+    #[inline]
+    pub fn know(&mut self, world: &ContactEnvironment, c: &Vec3) {
+        if !self.near.covers(c) {
+            self.collect(world, c);
+        }
+    }
+
+    /// Collects the features around `c`.
+    pub(crate) fn collect(&mut self, world: &ContactEnvironment, c: &Vec3) {
+        let r = world.body.radius;
+        let begun = self.clocks.now();
+        self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
+        self.clocks.stop(Piece::Geometry, begun);
+    }
+
+    /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
+    /// and the more often it is one face alone.
+    fn way_of_impact(&self, world: &ContactEnvironment) -> f64 {
+        let slowest = world.laws.iter().map(|law| law.omega).fold(f64::INFINITY, f64::min);
+        let way = IMPACT_WAY * std::f64::consts::PI / slowest * self.v.norm();
+        way.clamp(LEAST_MARGIN * world.body.radius, MARGIN * world.body.radius)
+    }
+
+    /// Asks for the touches at `c` nearer than `reach` (m).
+    #[inline]
+    pub fn look(&mut self, world: &ContactEnvironment, c: &Vec3, reach: f64) {
+        self.know(world, c);
+        self.looked_ahead = None;
+        let begun = self.clocks.now();
+        self.near.touches(world.terrain, c, reach, &mut self.touches);
+        self.clocks.stop(Piece::Geometry, begun);
+    }
+
+    /// Asks for the touches at `c` that a stage must know.
+    #[inline]
+    pub fn look_ahead(&mut self, world: &ContactEnvironment, c: &Vec3) {
+        self.look(world, c, world.body.radius * (1.0 + SLACK));
+    }
+
+    /// The same, if it was not asked for at `c` last.
+    #[inline]
+    pub fn look_ahead_again(&mut self, world: &ContactEnvironment, c: &Vec3) {
+        if self.looked_ahead != Some(*c) {
+            self.look_ahead(world, c);
+            self.looked_ahead = Some(*c);
+        }
+    }
+
+    /// The memory of touch `k` of the last look; a new one starts without stretch and without history of rates.
+    #[inline]
+    pub fn history_of(
+        &mut self,
+        world: &ContactEnvironment,
+        k: usize,
+        taken: u32,
+        v: &Vec3,
+    ) -> usize {
+        let (before, touch) = (self.histories.len(), &self.touches[k]);
+        // What is born while an impact rebounds belongs to it, however slow it is.
+        let rebounds = self.histories.iter().any(|history| !history.captured);
+        let slow = world.captures(touch, v);
+        let history = self.histories.find(touch, &self.touches, taken, || slow && !rebounds);
+        if history >= before {
+            if !slow {
+                self.impact.meet(-touch.normal.dot(v), world.least_impact_m_s());
+            }
+            for rate in &mut self.rates {
+                (rate.shear[history], rate.roll[history]) = (Vec3::zeros(), Vec3::zeros());
+            }
+        }
+        history
+    }
+
+    /// Hands the springs of contacts that merged into others to those; whether there were any.
+    pub(crate) fn merge_lost(&mut self, world: &ContactEnvironment) -> bool {
+        let Self { histories, near, .. } = self;
+        histories.merge_lost(|feature| near.patch_holding(world.terrain, feature))
+    }
+
+    /// Gives the rock another velocity and spin in the middle of a contact; its springs stay as they are.
+    pub fn redirect(&mut self, world: &ContactEnvironment, v: Vec3, w: Vec3) {
+        self.leave_plane(world);
+        (self.v, self.w) = (v, w);
+        self.fresh = false;
+    }
+
+    /// Whether nothing presses on the rock any more.
+    pub fn is_free(&self) -> bool {
+        self.histories.iter().all(|history| !history.closed)
+    }
+
+    /// Energy in motion (J): `m v²/2 + I w²/2`.
+    pub fn motion_j(&self, body: &Body) -> f64 {
+        0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
+    }
+
+    /// Longest step in which the centre stays where its features are known, or goes no further than `travel` (–,
+    /// relative to R), past one plane or among several features (s).
+    pub fn longest_step(&self, world: &ContactEnvironment, travel: f64) -> f64 {
+        let way = travel * world.body.radius;
+        let is_plane = self.near.plane().is_some();
+        let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
+        longest_step(&world.body, self.v.norm(), room)
+    }
+
+    /// Energy in the springs of the contacts (J), by the kind it was counted under:
+    /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
+    pub fn springs_j(&mut self, world: &ContactEnvironment) -> Loss {
+        let c = self.c;
+        self.look(world, &c, world.body.radius);
+        self.stored_j(world)
+    }
+
+    /// The same for the touches of the last look.
+    pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
+        let mut stored = Loss::default();
+        for touch in self.touches.iter() {
+            let penetration = (world.body.radius - touch.distance_m).max(0.0);
+            let pressed =
+                0.5 * world.law(touch.triangle).p_n * touch.gain2 * penetration * penetration;
+            stored
+                .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
+        }
+        for history in self.histories.iter() {
+            let law = world.law(history.triangle);
+            let damping = 0.5 * law.p_s * history.shear.norm_squared();
+            let rolling = 0.5 * law.k_r * history.roll.norm_squared();
+            stored.add(
+                &Loss { damping, rolling, ..Loss::default() }.on(world, history.triangle),
+                1.0,
+            );
+        }
+        stored
+    }
+}
+
+/// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.
+pub(crate) fn longest_step(body: &Body, speed: f64, room: f64) -> f64 {
+    2.0 * room / (speed + (speed * speed + 2.0 * body.gravity.norm() * room).sqrt())
+}

@@ -1,0 +1,349 @@
+//! Scheme `dda`: the paper's displacement-based step at a fixed time step.
+//!
+//! The unknown of a step is the displacement `D` under constant acceleration (Newmark β = 1/2, γ = 1, the
+//! right-Riemann rule): `(2M/Δt² + K) D = m g + (2M/Δt) V₀ + F`, `V₁ = 2D/Δt − V₀`. Contacts are those of the step's
+//! start, with their normals; whether they are open, sliding or sticking is found by open–close iteration.
+//!
+//! Solved is for `E = D − D₀`, what contacts add to the free displacement `D₀ = V₀ Δt + g Δt²/2`:
+//! `(2M/Δt² + K) E = F − K D₀`. It is the same equation; a motion no contact acts on keeps every bit.
+//!
+//! Work equals the change of kinetic energy exactly, `(V₁² − V₀²) M/2 = (F + m g)·D`, and all forces but gravity are
+//! those of springs at the step's end or against the step's displacement: springs lose `k (Δx)²/2` a step and nothing
+//! gains, however long the step. Dashpots act on the mean velocity `D/Δt` for that reason: on `V₁` they may add energy
+//! where a step turns the motion round.
+
+pub(crate) mod contact;
+pub(crate) mod slider;
+
+use super::Settings;
+use super::contact_state::{ContactEnvironment, ContactState, Loss};
+use super::law::Body;
+use super::step_control::{Advance, StepError};
+use crate::contact::submatrix::{Mat6, Vec6, inertia};
+use crate::contact::{ContactPoint, MOST};
+use crate::math;
+use crate::rock::Vec3;
+use contact::{Contact, Shape, Step};
+use nalgebra::{Cholesky, U6};
+use slider::Change;
+use std::f64::consts::PI;
+
+/// Changes of state in the open–close iteration (Shi's practice; the paper states no limit) …
+pub(crate) const ROUNDS: u32 = 6;
+/// … and solves with friction forces brought to agree, which need no new matrix.
+pub(crate) const SOLVES: u32 = 40;
+/// Longest way in one step (–, relative to R) where more than one plane is near: features are seen a tenth of the
+/// radius ahead.
+pub(crate) const TRAVEL: f64 = 0.09;
+/// Deepest penetration that still is one (–, relative to R). Where the centre passes the surface `V` turns round and
+/// the contact would push the rock through.
+pub(crate) const DEEPEST: f64 = 0.5;
+/// Contact oscillation per step (rad) from which an impact is turned round within one step: the longer, the livelier.
+pub const SINGLE_STEP_PHASE: f64 = 2.0;
+
+/// Normal restitution (–) that the step leaves of an undamped impact at `ω Δt` = `phase` (rad, > 0), without gravity.
+///
+/// The impact begins at the touch, where the leap ends. The step shrinks the oscillation by `ρ = (1+q)^(−1/2)` while
+/// its phase turns by `θ = acos((2−q)/(2 √(1+q)))`, `q = phase²/2`; the rock is out after `N = ⌈π/θ⌉ − 1` steps, with
+/// `e = −ρᴺ (cos Nθ − √(q/(8−q)) sin Nθ)`, about `exp(−π phase/4)` while the step resolves the impact. From phase 2 on
+/// one step turns it round, with `e = (q−1)/(q+1)`. An impact that begins within a step, on another contact, keeps
+/// `(1+q)^(−π/(2θ))` on average below phase 4 and anything less than the above beyond.
+pub fn own_restitution(phase: f64) -> f64 {
+    let q = 0.5 * phase * phase;
+    if phase >= SINGLE_STEP_PHASE {
+        return (q - 1.0) / (q + 1.0);
+    }
+    let angle = math::acos((2.0 - q) / (2.0 * (1.0 + q).sqrt()));
+    let steps = (PI / angle).ceil() - 1.0;
+    let (sine, cosine) = math::sin_cos(steps * angle);
+    math::pow(1.0 + q, -0.5 * steps) * ((q / (8.0 - q)).sqrt() * sine - cosine)
+}
+
+/// The fixed step of one contact episode.
+#[derive(Debug)]
+pub struct Fixed {
+    step_s: f64,
+    shear_memory: bool,
+    /// Energy in the springs at the present state (J).
+    stored: Loss,
+}
+
+impl Fixed {
+    /// Begins an episode.
+    pub fn new(settings: &Settings, world: &ContactEnvironment, state: &mut ContactState) -> Self {
+        let c = state.c;
+        state.look_ahead(world, &c);
+        let stored = state.stored_j(world);
+        Self { step_s: settings.step_s, shear_memory: settings.shear_memory, stored }
+    }
+
+    /// One step of at most `h_max` (s). Between steps the rock's contact points are those of its present place.
+    ///
+    /// # Errors
+    /// [`StepError`] if the rock sank in or its motion is no longer finite.
+    pub fn advance(
+        &mut self,
+        world: &ContactEnvironment,
+        state: &mut ContactState,
+        h_max: f64,
+    ) -> Result<Advance, StepError> {
+        let dt = self.step_s.min(h_max).min(state.longest_step(world, TRAVEL));
+        let step = Step {
+            dt,
+            free: free_motion(world, state, dt),
+            radius: world.body.radius,
+            compliance: compliance(&world.body, dt),
+            shear_memory: self.shear_memory,
+        };
+        meet(world, &step, state);
+        let (added, settled) = solve(world, &step, state).ok_or(StepError::NotFinite)?;
+        let d = step.free + added;
+        let mut done = Advance { dt, steps: 1, unsettled: !settled, ..Advance::default() };
+        for contact in state.scratch.contacts() {
+            if contact.depth(&d) > DEEPEST * step.radius {
+                return Err(StepError::SankIn);
+            }
+            done.loss.add(&contact.loss(&d).on(world, contact.triangle), 1.0);
+        }
+        carry_on(world, state, &d, &(added * (2.0 / dt)), dt);
+        let stored = state.stored_j(world);
+        done.loss.add(&stored, 1.0);
+        done.loss.add(&self.stored, -1.0);
+        self.stored = stored;
+        Ok(done)
+    }
+}
+
+fn six(a: &Vec3, b: &Vec3) -> Vec6 {
+    Vec6::new(a.x, a.y, a.z, b.x, b.y, b.z)
+}
+
+/// Displacement and rotation over `dt` without contacts.
+pub(crate) fn free_motion(world: &ContactEnvironment, state: &ContactState, dt: f64) -> Vec6 {
+    six(&(state.v * dt + world.body.gravity * (0.5 * dt * dt)), &(state.w * dt))
+}
+
+/// Way of the touched point per newton along the surface (m/N), turn of the sphere per newton metre, over `dt`.
+pub(crate) fn compliance(body: &Body, dt: f64) -> (f64, f64) {
+    let turn = 0.5 * dt * dt / body.inertia;
+    (0.5 * dt * dt / body.mass + body.radius * body.radius * turn, turn)
+}
+
+/// Work space of the steps.
+#[derive(Debug)]
+pub struct DdaScratch {
+    contacts: [Contact; MOST],
+    count: usize,
+    /// Memories that belong to the contacts.
+    taken: u32,
+    system: System,
+}
+
+impl Default for DdaScratch {
+    fn default() -> Self {
+        Self { contacts: [Contact::NONE; MOST], count: 0, taken: 0, system: System::default() }
+    }
+}
+
+/// Makes the touches of the step's start into contacts.
+fn meet(world: &ContactEnvironment, step: &Step, state: &mut ContactState) {
+    (state.scratch.count, state.scratch.taken) = (0, 0);
+    for k in 0..state.touches.len() {
+        add_contact(world, step, state, (k, state.touches[k].distance_m));
+    }
+}
+
+/// Makes touch `k` of the last look into a contact, its plane being so far from the centre at the step's start (m).
+fn add_contact(
+    world: &ContactEnvironment,
+    step: &Step,
+    state: &mut ContactState,
+    (k, distance_m): (usize, f64),
+) {
+    let v = state.v;
+    let history = state.history_of(world, k, state.scratch.taken, &v);
+    let touch = ContactPoint { distance_m, ..state.touches[k] };
+    let law = world.law_of(&state.touches, k);
+    let scratch = &mut state.scratch;
+    scratch.contacts[scratch.count] =
+        Contact::new(step, &law, &touch, (history, &state.histories[history]));
+    scratch.count += 1;
+    scratch.taken |= 1 << history;
+}
+
+/// Solves the step, and solves it again with the contacts that it ran into: a rock that rolls into a fold would
+/// otherwise find itself inside the other flank and be thrown out with energy nobody paid.
+///
+/// Ends with the touches of the step's end.
+fn solve(
+    world: &ContactEnvironment,
+    step: &Step,
+    state: &mut ContactState,
+) -> Option<(Vec6, bool)> {
+    loop {
+        let (added, settled) = state.scratch.settle(world, step, &mut state.sweeps)?;
+        let d = step.free + added;
+        let way: Vec3 = d.fixed_rows::<3>(0).into();
+        let end = state.c + way;
+        state.look_ahead(world, &end);
+        let touches = state.touches;
+        let before = state.scratch.count;
+        for (k, touch) in touches.iter().enumerate() {
+            let is_inside = touch.distance_m < step.radius && state.scratch.count < MOST;
+            if is_inside && !knows(state.scratch.contacts(), touch, &touches, &d) {
+                add_contact(world, step, state, (k, touch.distance_m - touch.normal.dot(&way)));
+            }
+        }
+        if state.scratch.count == before {
+            return Some((added, settled));
+        }
+    }
+}
+
+/// Whether a touch of the step's end took part in it, by itself or as the part of the surface that it came from.
+pub(crate) fn knows(
+    contacts: &[Contact],
+    touch: &ContactPoint,
+    touches: &[ContactPoint],
+    d: &Vec6,
+) -> bool {
+    contacts.iter().any(|contact| {
+        contact.feature == touch.feature
+            || contact.leads_to(touch, d)
+                && touches.iter().all(|other| other.feature != contact.feature)
+    })
+}
+
+impl DdaScratch {
+    fn contacts(&self) -> &[Contact] {
+        &self.contacts[..self.count]
+    }
+
+    /// Open–close iteration: what contacts add to the free displacement, and whether their states settled.
+    ///
+    /// A step that does not settle is solved by [`Self::stick`]. `None` if it has no solution.
+    fn settle(
+        &mut self,
+        world: &ContactEnvironment,
+        step: &Step,
+        sweeps: &mut u64,
+    ) -> Option<(Vec6, bool)> {
+        let contacts = &mut self.contacts[..self.count];
+        let inertia = inertia(world.body.mass, world.body.inertia, step.dt);
+        let mut rounds = 0;
+        for _ in 0..SOLVES {
+            *sweeps += 1;
+            let added = self.system.solve(&inertia, &step.free, contacts)?;
+            let d = step.free + added;
+            match contacts.iter_mut().map(|contact| contact.judge(&d)).max() {
+                None | Some(Change::None) => return Some((added, true)),
+                Some(Change::Load) => {}
+                Some(Change::Mode) => rounds += 1,
+            }
+            if rounds == ROUNDS {
+                break;
+            }
+        }
+        self.stick(&inertia, &step.free, sweeps).map(|added| (added, false))
+    }
+
+    /// The step without the search for states: contacts that begin inside hold and stick, even if they pull for this
+    /// one step; those that begin apart are smooth. That always has a solution, and no force in it adds energy.
+    ///
+    /// Of those that begin apart one at a time changes, the last first, which cannot go round in circles (Murty 1974).
+    fn stick(&mut self, inertia: &Mat6, free: &Vec6, sweeps: &mut u64) -> Option<Vec6> {
+        let contacts = &mut self.contacts[..self.count];
+        contacts.iter_mut().for_each(Contact::stick);
+        let mut added = Vec6::zeros();
+        for _ in 0..SOLVES {
+            *sweeps += 1;
+            added = self.system.solve(inertia, free, contacts)?;
+            let d = free + added;
+            if !contacts.iter_mut().rev().any(|contact| contact.open_or_close_apart(&d)) {
+                break;
+            }
+        }
+        Some(added)
+    }
+}
+
+/// The matrix of a step; it is made anew only when it has changed.
+#[derive(Debug)]
+struct System {
+    inertia: Mat6,
+    shapes: [Shape; MOST],
+    count: usize,
+    /// What the contacts add to the matrix.
+    springs: Mat6,
+    /// Factor of inertia and contacts; `None` if there is none.
+    factor: Option<Cholesky<f64, U6>>,
+}
+
+impl Default for System {
+    fn default() -> Self {
+        Self {
+            inertia: Mat6::zeros(),
+            shapes: [Shape::NONE; MOST],
+            count: 0,
+            springs: Mat6::zeros(),
+            factor: None,
+        }
+    }
+}
+
+impl System {
+    fn solve(&mut self, inertia: &Mat6, free: &Vec6, contacts: &[Contact]) -> Option<Vec6> {
+        let shapes = || contacts.iter().map(Contact::shape);
+        let same = self.shapes[..self.count].iter().copied().eq(shapes());
+        if !same || self.inertia != *inertia {
+            self.inertia = *inertia;
+            self.count = contacts.len();
+            self.shapes.iter_mut().zip(shapes()).for_each(|(known, shape)| *known = shape);
+            self.springs = shapes().fold(Mat6::zeros(), |sum, shape| sum + shape.stiffness());
+            self.factor = Cholesky::new(self.springs + inertia);
+        }
+        let mut load = -(self.springs * free);
+        for contact in contacts {
+            contact.add_load(&mut load);
+        }
+        self.factor.as_ref()?.solve_mut(&mut load);
+        load.iter().all(|x| x.is_finite()).then_some(load)
+    }
+}
+
+/// Moves the rock by `d`, and changes its velocity by what contacts added.
+fn carry_on(world: &ContactEnvironment, state: &mut ContactState, d: &Vec6, kick: &Vec6, dt: f64) {
+    for history in state.histories.iter_mut() {
+        history.closed = false;
+    }
+    for contact in state.scratch.contacts() {
+        contact.remember(d, &mut state.histories[contact.history]);
+    }
+    state.merge_lost(world);
+    state.histories.retain(|history| history.closed);
+    state.c += d.fixed_rows::<3>(0);
+    state.v += world.body.gravity * dt + kick.fixed_rows::<3>(0);
+    state.w += kick.fixed_rows::<3>(3);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The closed form against the step itself, taken again and again: rounding of some thousand steps.
+    #[test]
+    fn own_restitution_is_what_the_steps_leave() {
+        for phase in [0.001, 0.01, 0.1, 0.3, 0.5, 1.0, 1.99, 2.0, 3.0, 4.0, 10.0, 100.0] {
+            let q = 0.5 * phase * phase;
+            let (mut depth, mut speed) = (0.0f64, 1.0);
+            loop {
+                let next = (depth + speed) / (1.0 + q);
+                if next <= 0.0 {
+                    break;
+                }
+                (depth, speed) = (next, 2.0 * (next - depth) - speed);
+            }
+            assert!((own_restitution(phase) + speed).abs() < 1e-11, "{phase}: {speed}");
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What a rock in contact meets: the terrain, the law of every ground, and itself.
+
+use super::law::Body;
+use crate::contact::ContactPoint;
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+
+/// An approach slower than this is no impact (–, relative to `√(g R)`).
+const LEAST_IMPACT: f64 = 1e-3;
+
+/// What stays the same while one rock falls.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactEnvironment<'a> {
+    /// The mesh.
+    pub terrain: &'a Terrain,
+    /// The rock.
+    pub body: Body,
+    /// The law of every ground of the scene for this rock.
+    pub laws: &'a [Law],
+}
+
+impl ContactEnvironment<'_> {
+    /// The law of a triangle's ground.
+    #[inline]
+    pub fn law(&self, triangle: u32) -> &Law {
+        let sheet = self.terrain.sheet_of[triangle as usize];
+        &self.laws[self.terrain.sheets[sheet as usize].ground as usize]
+    }
+
+    /// Whether a contact is too slow to rebound.
+    #[inline]
+    pub fn captures(&self, touch: &ContactPoint, v: &Vec3) -> bool {
+        -touch.normal.dot(v) < self.law(touch.triangle).capture_m_s
+    }
+
+    /// Slowest approach that is an impact to be followed in its own time (m/s): slower than that a rock just presses.
+    pub(super) fn least_impact_m_s(&self) -> f64 {
+        LEAST_IMPACT * (self.body.gravity.norm() * self.body.radius).sqrt()
+    }
+
+    /// The law of touch `k` among others of the same instant.
+    #[inline]
+    pub fn law_of(&self, touches: &[ContactPoint], k: usize) -> Law {
+        let touch = &touches[k];
+        self.law(touch.triangle).of_patch(touch.gain2, self.dashpot_share(touches, k))
+    }
+
+    /// What the dashpot of touch `k` among others of the same instant takes of its own damping (–).
+    #[inline]
+    pub(super) fn dashpot_share(&self, touches: &[ContactPoint], k: usize) -> f64 {
+        if touches.len() == 1 { 1.0 } else { dashpot_share(touches, k, self.body.radius) }
+    }
+}
+
+/// What each dashpot takes of its own damping where several patches are pressed at once (–):
+/// `1/√(Σ_j max(0, n̂_i·n̂_j)²)` over those pressed. `n` parallel ones damp like one; at right angles nothing changes.
+fn dashpot_share(touches: &[ContactPoint], k: usize, radius: f64) -> f64 {
+    let normal = &touches[k].normal;
+    let others = touches
+        .iter()
+        .enumerate()
+        .filter(|(j, other)| *j != k && other.distance_m < radius)
+        .map(|(_, other)| normal.dot(&other.normal).max(0.0).powi(2));
+    1.0 / (1.0 + others.sum::<f64>()).sqrt()
+}

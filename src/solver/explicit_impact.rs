@@ -1,0 +1,219 @@
+//! An impact among any features, followed in its own time.
+//!
+//! While a contact rebounds it lasts about `π/ω`, `ω = √(p_N/m)`: in units of `1/ω` nothing is stiff, and an explicit pair of
+//! order five is the cheapest way to follow it ([`dormand_prince`](super::impact::dormand_prince)). The error is controlled
+//! relative to the speed of the impact, so that restitution is as right for a pebble as for a block. Geometry is that of every
+//! stage; force is continuous wherever patches meet (`contact::patch`), and where friction begins to slip or a further contact
+//! begins the step is cut.
+
+mod flow;
+
+use super::contact_state::{ContactEnvironment, ContactState, Loss, longest_step};
+use super::impact::dormand_prince::{growth, step};
+use super::stage::End;
+use super::step_control::{Advance, StepError, TRAVEL};
+use crate::contact::history::HISTORIES;
+use flow::{Among, SUMS};
+
+/// First step of an impact (rad of its oscillation).
+const FIRST: f64 = 0.3;
+/// Longest step (rad).
+const LONGEST: f64 = 0.9;
+/// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
+const KINKED: f64 = 0.1;
+/// Largest error of energy that is balanced (–, relative to motion).
+const BALANCED: f64 = 0.1;
+/// Shortest step (rad): a contact that begins within a step is met this exactly.
+const SHORTEST: f64 = 1e-9;
+
+/// An impact is over after so long (rad), or goes on as lasting contact.
+const LASTS: f64 = 20.0;
+
+/// What an impact needs besides the rock's state.
+#[derive(Debug, Default)]
+pub(crate) struct ExplicitImpact {
+    /// The step to try next (s), if there is one.
+    h: f64,
+    /// Fastest approach of the contacts (m/s).
+    speed_m_s: f64,
+    /// How much longer it is followed in its own time (rad).
+    left: f64,
+    /// Energy that the steps have gained (J).
+    gained: f64,
+}
+
+impl ExplicitImpact {
+    /// Forgets the impact before.
+    pub(crate) fn forget(&mut self) {
+        (self.speed_m_s, self.left) = (0.0, 0.0);
+    }
+
+    /// A contact begins at `speed_m_s` that may rebound; `slowest` is the speed from which on it is followed here.
+    pub(crate) fn meet(&mut self, speed_m_s: f64, slowest: f64) {
+        if speed_m_s <= slowest {
+            return;
+        }
+        if self.left <= 0.0 {
+            (self.h, self.gained) = (0.0, 0.0);
+        }
+        (self.speed_m_s, self.left) = (self.speed_m_s.max(speed_m_s), LASTS);
+    }
+}
+
+/// How far a step may go, and how exactly.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    /// Stiffest contact (rad/s).
+    omega: f64,
+    /// Longest step that cannot jump over a feature (s).
+    limit: f64,
+    /// Longest step asked for (s).
+    h_max: f64,
+    /// Local error allowed (m/s).
+    allowed: f64,
+}
+
+/// An accepted step.
+struct Accepted {
+    end: End,
+    dt: f64,
+    /// What it summed up (J).
+    sums: [f64; SUMS],
+    /// Energy in the normal springs at its start and end (J), if all of them push at both.
+    stored: Option<(Loss, Loss)>,
+}
+
+impl ContactState {
+    /// Whether an impact is going on.
+    pub(crate) fn is_rebounding(&self) -> bool {
+        self.impact.left > 0.0 && self.histories.iter().any(|history| !history.captured)
+    }
+
+    /// One accepted step of an impact, of at most `h_max` (s), in contacts of at most `omega` (rad/s); `tolerance` is the local
+    /// error allowed relative to the speed of the impact.
+    ///
+    /// # Errors
+    /// [`StepError`] if the motion is no longer finite.
+    pub(crate) fn step_impact(
+        &mut self,
+        world: &ContactEnvironment,
+        (omega, tolerance): (f64, f64),
+        h_max: f64,
+        done: &mut Advance,
+    ) -> Result<(), StepError> {
+        if self.impact.h == 0.0 {
+            self.impact.h = FIRST / omega;
+        }
+        let c = self.c;
+        self.know(world, &c);
+        let way = TRAVEL * world.body.radius;
+        let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST / omega);
+        let allowed = KINKED * tolerance * self.impact.speed_m_s;
+        let bounds = Bounds { omega, limit, h_max, allowed };
+        let known = self.histories.len();
+        let mut accepted = None;
+        if known <= 2 {
+            accepted = if world.laws.iter().any(|law| law.k_r > 0.0) {
+                self.step_among::<2, 21, 6>(world, &bounds, done)?
+            } else {
+                self.step_among::<2, 15, 6>(world, &bounds, done)?
+            };
+        }
+        if accepted.is_none() {
+            self.histories.truncate(known);
+            accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { 3 * HISTORIES }>(
+                world, &bounds, done,
+            )?;
+        }
+        if let Some(accepted) = accepted {
+            self.impact.left -= omega * accepted.dt;
+            self.accept_impact(world, &accepted, done);
+        }
+        Ok(())
+    }
+
+    /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more of them.
+    fn step_among<const C: usize, const N: usize, const P: usize>(
+        &mut self,
+        world: &ContactEnvironment,
+        bounds: &Bounds,
+        done: &mut Advance,
+    ) -> Result<Option<Accepted>, StepError> {
+        let Bounds { omega, limit, h_max, allowed } = *bounds;
+        let mut flow = Among::<C>::new(world, self, (omega, allowed));
+        let y = flow.begin::<N>();
+        let first = flow.rates_of::<N, P>(&y);
+        let before = flow.stored_j();
+        let known = flow.state.histories.len();
+        loop {
+            flow.state.histories.truncate(known);
+            let wished = flow.state.impact.h.min(limit);
+            let dt = wished.min(h_max);
+            let tried = step(&mut flow, &y, &first, dt);
+            if flow.is_crowded && C < HISTORIES {
+                return Ok(None);
+            }
+            let is_short = dt * omega < SHORTEST;
+            let cut = tried.cut(dt, allowed).filter(|_| !is_short);
+            if cut.is_none() && (tried.error2 <= 1.0 || is_short) {
+                if !tried.error2.is_finite() {
+                    return Err(StepError::NotFinite);
+                }
+                let least = if dt < wished { wished } else { 0.0 };
+                flow.state.impact.h = (dt * growth(tried.error2)).max(least);
+                let (end, after) = (flow.end(&tried.y), flow.stored_j());
+                flow.remember();
+                let stored = before.zip(after);
+                return Ok(Some(Accepted { end, dt, sums: tried.q, stored }));
+            }
+            done.rejected += 1;
+            let grown = if tried.error2.is_finite() { growth(tried.error2) } else { 0.2 };
+            flow.state.impact.h = dt * cut.unwrap_or(grown.min(0.9));
+        }
+    }
+
+    /// Takes over the step's end: motion, memories, losses. The last stage was there.
+    fn accept_impact(
+        &mut self,
+        world: &ContactEnvironment,
+        accepted: &Accepted,
+        done: &mut Advance,
+    ) {
+        let (body, end) = (&world.body, &accepted.end);
+        let before = self.motion_j(body);
+        let [friction, damping, rolling, trees, stores, tree_stores] = accepted.sums;
+        let mut loss = Loss { friction, damping, rolling, trees };
+        // Where springs push from the step's start to its end, what they store is known exactly.
+        if let Some((before, after)) = &accepted.stored {
+            loss.damping -= stores;
+            loss.trees -= tree_stores;
+            loss.add(after, 1.0);
+            loss.add(before, -1.0);
+        }
+        let lifted = -body.mass * body.gravity.dot(&(end.c - self.c));
+        (self.c, self.v, self.w) = (end.c, end.v, end.w);
+        // what the springs store is counted among the losses until they give it back
+        self.impact.gained += self.motion_j(body) + lifted + loss.sum() - before;
+        self.merge_lost(world);
+        self.histories.retain(|history| history.closed);
+        self.fresh = false;
+        if self.is_free() || self.impact.left <= 0.0 {
+            self.balance(world);
+        }
+        done.loss.add(&loss, 1.0);
+        done.dt += accepted.dt;
+        done.steps += 1;
+    }
+
+    /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of
+    /// the energy is what came in less what the contacts took.
+    fn balance(&mut self, world: &ContactEnvironment) {
+        let (gained, motion) = (self.impact.gained, self.motion_j(&world.body));
+        if gained.abs() < BALANCED * motion {
+            let kept = (1.0 - gained / motion).sqrt();
+            self.v *= kept;
+            self.w *= kept;
+        }
+        (self.impact.gained, self.impact.left) = (0.0, 0.0);
+    }
+}

@@ -1,0 +1,230 @@
+//! Rates of a rock and of the springs of its contacts, wherever it is.
+
+use crate::contact::ContactPoint;
+use crate::contact::history::carry;
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss, TOUCH};
+use crate::solver::impact::dormand_prince::{Flow, Rates};
+use crate::solver::law::{Action, Place};
+use crate::solver::stage::End;
+
+const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
+/// Where the way of the centre begins among the numbers that change; velocity, spin and the springs follow.
+const WAY: usize = 0;
+const V: usize = 3;
+const W: usize = 6;
+/// Where the springs begin: shear of all `C` contacts, then rolling of all, each with three numbers.
+const SPRINGS: usize = 9;
+/// What is summed up: losses by friction, damping, rolling and to trees, and what normal springs of slope and trees take up.
+pub(super) const SUMS: usize = 6;
+
+/// A contact at the state last asked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pressed {
+    /// Place of its memory.
+    pub(super) place: usize,
+    pub(super) touch: ContactPoint,
+    pub(super) at: Place,
+    pub(super) is_tree: bool,
+    /// Normal stiffness (N/m).
+    pub(super) p_n: f64,
+    /// Normal force (N), and whether friction is at its cap.
+    pub(super) normal_force: f64,
+    pub(super) slides: bool,
+}
+
+/// A rock with up to `C` contacts; a contact keeps the place of its memory.
+pub(super) struct Among<'a, 'w, const C: usize> {
+    world: &'a ContactEnvironment<'w>,
+    pub(super) state: &'a mut ContactState,
+    /// Stiffest contact (rad/s) and local error allowed (m/s).
+    scale: (f64, f64),
+    /// Whether there were more contacts than places.
+    pub(super) is_crowded: bool,
+    list: [Pressed; C],
+    len: usize,
+}
+
+impl Pressed {
+    const NONE: Self = Self {
+        place: 0,
+        touch: ContactPoint::NONE,
+        at: Place { n: ZERO, penetration: 0.0, shear: ZERO, roll: ZERO },
+        is_tree: false,
+        p_n: 0.0,
+        normal_force: 0.0,
+        slides: false,
+    };
+}
+
+fn three<const N: usize>(y: &[f64; N], at: usize) -> Vec3 {
+    Vec3::new(y[at], y[at + 1], y[at + 2])
+}
+
+fn put<const N: usize>(y: &mut [f64; N], at: usize, x: &Vec3) {
+    y[at..at + 3].copy_from_slice(x.as_slice());
+}
+
+impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
+    pub(super) fn new(
+        world: &'a ContactEnvironment<'w>,
+        state: &'a mut ContactState,
+        scale: (f64, f64),
+    ) -> Self {
+        Self { world, state, scale, is_crowded: false, list: [Pressed::NONE; C], len: 0 }
+    }
+
+    /// Whether rolling springs are among `N` numbers.
+    const fn rolls<const N: usize>() -> bool {
+        N > SPRINGS + 3 * C
+    }
+
+    /// The present state.
+    pub(super) fn begin<const N: usize>(&self) -> [f64; N] {
+        let mut y = [0.0; N];
+        put(&mut y, V, &self.state.v);
+        put(&mut y, W, &self.state.w);
+        for (k, history) in self.state.histories.iter().enumerate().take(C) {
+            put(&mut y, SPRINGS + 3 * k, &history.shear);
+            if Self::rolls::<N>() {
+                put(&mut y, SPRINGS + 3 * (C + k), &history.roll);
+            }
+        }
+        y
+    }
+
+    /// Contacts at the state last asked for.
+    pub(super) fn pressed(&self) -> &[Pressed] {
+        &self.list[..self.len]
+    }
+
+    /// Energy in the normal springs at the state last asked for (J), if all of them push.
+    pub(super) fn stored_j(&self) -> Option<Loss> {
+        let contacts = self.pressed();
+        if contacts.is_empty() || contacts.iter().any(|contact| contact.normal_force <= 0.0) {
+            return None;
+        }
+        let mut stored = Loss::default();
+        for contact in contacts {
+            let joule = 0.5 * contact.p_n * contact.at.penetration * contact.at.penetration;
+            *(if contact.is_tree { &mut stored.trees } else { &mut stored.damping }) += joule;
+        }
+        Some(stored)
+    }
+
+    /// Writes the contacts at the state last asked for into their memories.
+    pub(super) fn remember(&mut self) {
+        let histories = &mut self.state.histories;
+        histories.iter_mut().for_each(|history| history.closed = false);
+        for contact in &self.list[..self.len] {
+            let Pressed { place, touch, at, normal_force, slides, .. } = *contact;
+            let history = &mut histories[place];
+            (history.feature, history.triangle) = (touch.feature, touch.triangle);
+            (history.n, history.shear, history.roll) = (at.n, at.shear, at.roll);
+            (history.normal_force, history.slides) = (normal_force, slides);
+            history.closed = normal_force > 0.0 || at.penetration > 0.0;
+        }
+    }
+
+    /// Where and how fast the rock is.
+    pub(super) fn end<const N: usize>(&self, y: &[f64; N]) -> End {
+        End { c: self.state.c + three(y, WAY), v: three(y, V), w: three(y, W) }
+    }
+
+    /// Rates at `y`; its contacts are those of the rock's state then.
+    pub(super) fn rates_of<const N: usize, const P: usize>(
+        &mut self,
+        y: &[f64; N],
+    ) -> Rates<N, SUMS, P> {
+        let Self { world, state, .. } = self;
+        let body = &world.body;
+        let (by_mass, by_inertia) = (1.0 / body.mass, 1.0 / body.inertia);
+        let mut rates = Rates { y: [0.0; N], q: [0.0; SUMS], kinks: [[0.0; 2]; P] };
+        let (c, v, w) = (state.c + three(y, WAY), three(y, V), three(y, W));
+        state.look(world, &c, body.radius * (1.0 + TOUCH));
+        let (mut dv, mut dw, mut taken) = (body.gravity, Vec3::zeros(), 0);
+        self.len = 0;
+        for k in 0..state.touches.len() {
+            let touch = state.touches[k];
+            let known = state.histories.iter().position(|history| history.feature == touch.feature);
+            let place = known.unwrap_or_else(|| state.history_of(world, k, taken, &v));
+            taken |= 1 << place;
+            if place >= C {
+                self.is_crowded = true;
+                continue;
+            }
+            let (n, memory) = (touch.normal, &state.histories[place]);
+            let law = world.law(touch.triangle);
+            let damping = if memory.captured { law.c_n_captured } else { law.c_n };
+            let gain = if touch.gain2 == 1.0 { 1.0 } else { touch.gain2.sqrt() };
+            let share = gain * world.dashpot_share(&state.touches, k);
+            let p_n = law.p_n * touch.gain2;
+            let at = Place {
+                n,
+                penetration: (body.radius - touch.distance_m).max(0.0),
+                shear: carry(three(y, SPRINGS + 3 * place), &memory.n, &n),
+                roll: if Self::rolls::<N>() {
+                    three(y, SPRINGS + 3 * (C + place))
+                } else {
+                    Vec3::zeros()
+                },
+            };
+            let action = Action::of(body, law, (p_n, damping * share), &at, (&v, &w));
+            let [normal_force, pulls] = action.normal;
+            let approach = -n.dot(&v);
+            dv += (n * normal_force - action.shear_force) * by_mass;
+            dw += (n.cross(&action.shear_force) * body.radius - action.rolling_moment) * by_inertia;
+            put(&mut rates.y, SPRINGS + 3 * place, &carry(action.rates[0], &n, &memory.n));
+            if Self::rolls::<N>() {
+                put(&mut rates.y, SPRINGS + 3 * (C + place), &action.rates[1]);
+            }
+            let is_tree = world.terrain.is_tree(touch.triangle);
+            let [friction, damping, rolling] = action.powers(approach, &w);
+            let stores = p_n * at.penetration * approach;
+            if is_tree {
+                rates.q[3] += friction + damping + rolling;
+                rates.q[5] += stores;
+            } else {
+                rates.q[0] += friction;
+                rates.q[1] += damping;
+                rates.q[2] += rolling;
+                rates.q[4] += stores;
+            }
+            let (cap, most) = (law.friction * normal_force, law.rolling_m * normal_force);
+            // In units of acceleration, so that times a step they are speeds.
+            let turn = body.radius * by_inertia;
+            rates.kinks[3 * place] =
+                [(normal_force * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
+            rates.kinks[3 * place + 1] = [action.asked2[0] * by_mass * by_mass, cap * by_mass];
+            rates.kinks[3 * place + 2] = [action.asked2[1] * turn * turn, most * turn];
+            let slides = action.asked2[0] >= (cap * (1.0 - 1e-9)).powi(2);
+            self.list[self.len] = Pressed { place, touch, at, is_tree, p_n, normal_force, slides };
+            self.len += 1;
+        }
+        put(&mut rates.y, WAY, &v);
+        put(&mut rates.y, V, &dv);
+        put(&mut rates.y, W, &dw);
+        rates
+    }
+}
+
+impl<const C: usize, const N: usize, const P: usize> Flow<N, SUMS, P> for Among<'_, '_, C> {
+    #[inline]
+    fn rates(&mut self, _node: usize, y: &[f64; N]) -> Rates<N, SUMS, P> {
+        self.rates_of(y)
+    }
+
+    /// A spring that nothing presses on any more holds nothing: how it relaxes does not matter.
+    #[inline]
+    fn size2(&self, off: &[f64; N]) -> f64 {
+        let (omega, allowed) = self.scale;
+        let pressed = self.pressed().iter().filter(|contact| contact.normal_force > 0.0);
+        let stretch2 = pressed
+            .map(|contact| three(off, SPRINGS + 3 * contact.place).norm_squared())
+            .fold(three(off, WAY).norm_squared(), f64::max);
+        let worst2 = (stretch2 * omega * omega)
+            .max(three(off, V).norm_squared())
+            .max(three(off, W).norm_squared() * self.world.body.radius.powi(2));
+        worst2 / (allowed * allowed)
+    }
+}

@@ -1,0 +1,394 @@
+//! Shear force and rolling moment of one contact, solved in the contact's own frame.
+//!
+//! Both are springs with dashpots in series with sliders. They act on each other: shear turns the rock, the moment
+//! changes the slip. Of the four cases (stick or slip, each) two have closed forms and two a scalar equation for Newton.
+
+use super::law::Body;
+use crate::ground::Law;
+use crate::rock::Vec3;
+
+/// A vector along a surface, in the frame of a contact.
+pub(crate) type Along = [f64; 2];
+/// A vector in the frame of a contact: two tangents, then the normal.
+pub(crate) type Local = [f64; 3];
+
+/// Right-handed unit vectors of a contact: two tangents and the normal from the mesh to the centre.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Frame {
+    s: Vec3,
+    t: Vec3,
+    n: Vec3,
+}
+
+impl Frame {
+    /// The frame of a normal, without a branch and without a root (Duff et al. 2017).
+    #[inline]
+    pub(crate) fn of(n: &Vec3) -> Self {
+        let sign = 1.0f64.copysign(n.z);
+        let a = -1.0 / (sign + n.z);
+        let b = n.x * n.y * a;
+        let s = Vec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+        let t = Vec3::new(b, sign + n.y * n.y * a, -n.y);
+        Self { s, t, n: *n }
+    }
+
+    #[inline]
+    pub(crate) fn along(&self, x: &Vec3) -> Along {
+        [self.s.dot(x), self.t.dot(x)]
+    }
+
+    #[inline]
+    pub(crate) fn local(&self, x: &Vec3) -> Local {
+        [self.s.dot(x), self.t.dot(x), self.n.dot(x)]
+    }
+
+    #[inline]
+    pub(crate) fn out_along(&self, x: Along) -> Vec3 {
+        self.s * x[0] + self.t * x[1]
+    }
+
+    #[inline]
+    pub(crate) fn out_local(&self, x: Local) -> Vec3 {
+        self.s * x[0] + self.t * x[1] + self.n * x[2]
+    }
+}
+
+/// What a contact answers with over a stage of a given length: the same for all stages of a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Answers {
+    /// Shear force per slip speed (N s/m) and moment per spin (N m s) while they stick.
+    pub(crate) kap: f64,
+    pub(crate) kar: f64,
+    /// `1/(1 + B)`.
+    share_q: f64,
+    /// `C`.
+    c: f64,
+    /// `1/(1 + E)`.
+    share_m: f64,
+    /// `E R`.
+    er: f64,
+    /// `1/(1 − C E R/((1 + B)(1 + E)))`.
+    both: f64,
+}
+
+impl Answers {
+    #[inline]
+    pub(crate) fn of(body: &Body, law: &Law, h: f64) -> Self {
+        let (kap, kar) = (law.p_s * h + law.c_s, law.k_r * h + law.c_r);
+        let (turn_q, turn_m) = (kap * h / body.inertia, kar * h / body.inertia);
+        // The contact point's mass along the surface is 2/7 m.
+        Self::new((kap, kar), 3.5 * kap * h / body.mass, turn_m, (turn_q, body.radius))
+    }
+
+    /// The limit of stiff springs, for impulses: `q̂ = 2/7 m slip − 5/7 n × M/R` and `M̂ = I w + R n × q`.
+    #[inline]
+    pub(crate) fn rigid(radius: f64) -> Self {
+        let (c, er) = (5.0 / 7.0 / radius, radius);
+        Self { kap: 0.0, kar: 0.0, share_q: 1.0, c, share_m: 1.0, er, both: 3.5 }
+    }
+
+    #[inline]
+    fn new((kap, kar): (f64, f64), b: f64, e: f64, (turn_q, r): (f64, f64)) -> Self {
+        let (share_q, share_m, c, er) = (1.0 / (1.0 + b), 1.0 / (1.0 + e), turn_q * r, e * r);
+        let both = 1.0 / (1.0 - c * er * share_q * share_m);
+        Self { kap, kar, share_q, c, share_m, er, both }
+    }
+}
+
+/// The coupled shear force `q` and rolling moment `M` of one contact over one stage: each is the shortening to its cap of
+/// `q̂ = (a − C n × M)/(1 + B)` and `M̂ = (d + E R n × q)/(1 + E)`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pair<'a> {
+    pub(crate) answers: &'a Answers,
+    /// What the shear spring would hold without being moved by `q` and `M` (N).
+    pub(crate) a: Along,
+    /// The same of the rolling spring (N m).
+    pub(crate) d: Local,
+    /// Largest shear force (N) and rolling moment (N m).
+    pub(crate) caps: (f64, f64),
+}
+
+/// Newton steps for a ratio.
+const RATIO_STEPS: u32 = 30;
+/// A force below this part of its cap is held (–).
+const INSIDE: f64 = 1.0 - 1e-9;
+/// Change of a ratio, relative to it, after which Newton's next would be rounding (–): sweeps over several contacts wait for
+/// each of them to say the same again.
+const NEAR: f64 = 1e-7;
+
+/// `n × x`, along the surface.
+#[inline]
+fn turned(x: Along) -> Along {
+    [-x[1], x[0]]
+}
+
+#[inline]
+fn size2(x: Along) -> f64 {
+    x[0] * x[0] + x[1] * x[1]
+}
+
+#[inline]
+fn volume2(x: Local) -> f64 {
+    x[0] * x[0] + x[1] * x[1] + x[2] * x[2]
+}
+
+/// Shortens a vector along the surface to at most `cap`.
+#[inline]
+pub(crate) fn cut(x: Along, cap: f64) -> Along {
+    let size2 = size2(x);
+    if size2 > cap * cap {
+        let share = cap / size2.sqrt();
+        [x[0] * share, x[1] * share]
+    } else {
+        x
+    }
+}
+
+/// Shortens a moment to at most `cap`.
+#[inline]
+pub(crate) fn cut_moment(x: Local, cap: f64) -> Local {
+    let size2 = volume2(x);
+    if size2 > cap * cap { x.map(|x| x * (cap / size2.sqrt())) } else { x }
+}
+
+/// How much a ratio must grow (–, in logarithms) for a value to reach the one wanted, both squared; `grows` over `by` is how
+/// the value's logarithm grows with that of the ratio. Newton in logarithms, by at most a factor of
+/// 2.5 at once: a power is found in no time.
+#[inline]
+fn missing((value2, wanted2): (f64, f64), (grows, by): (f64, f64)) -> f64 {
+    ((wanted2 - value2) * by / ((wanted2 + value2) * grows).max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0)
+}
+
+/// A ratio by a cap that may be nothing.
+#[inline]
+fn by(ratio: f64, cap: f64) -> f64 {
+    ratio / cap.max(f64::MIN_POSITIVE)
+}
+
+/// Which of the two are at their caps.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) enum Mode {
+    /// Neither.
+    #[default]
+    Stick,
+    /// The moment, with the `μ` of [`Pair::rolling_alone`] by its cap.
+    Roll(f64),
+    /// The shear force.
+    Slide,
+    /// Both, with the `κ` of [`Pair::both_slip`] by the moment's cap.
+    Both(f64),
+}
+
+impl Pair<'_> {
+    /// Force and moment; `mode` is that of a solution nearby and becomes this one's. There is only one solution, so what
+    /// agrees with both laws is the one.
+    #[inline]
+    pub(crate) fn solve(&self, mode: &mut Mode) -> (Along, Local) {
+        let cap_m = self.caps.1;
+        let found = match *mode {
+            Mode::Stick => None,
+            Mode::Roll(by_cap) => self.rolls(Some(by_cap * cap_m)),
+            Mode::Slide => self.slides(),
+            Mode::Both(by_cap) => self.does_both(Some(by_cap * cap_m)),
+        };
+        let (found, q, rolling_moment) = found.unwrap_or_else(|| self.solve_anew());
+        *mode = found;
+        (q, rolling_moment)
+    }
+
+    fn solve_anew(&self) -> (Mode, Along, Local) {
+        let (cap_q, cap_m) = self.caps;
+        let (q, rolling_moment) = self.both_stick();
+        let m_fits = volume2(rolling_moment) <= cap_m * cap_m;
+        if m_fits && size2(q) <= cap_q * cap_q {
+            return (Mode::Stick, q, rolling_moment);
+        }
+        let one = if m_fits { None } else { self.rolls(None) };
+        one.or_else(|| self.slides()).unwrap_or_else(|| {
+            let (ratio, q, rolling_moment) = self.both_slip(None);
+            (Mode::Both(by(ratio, cap_m)), q, rolling_moment)
+        })
+    }
+
+    /// The moment at its cap, if shear then sticks and the moment does not.
+    #[inline]
+    fn rolls(&self, ratio: Option<f64>) -> Option<(Mode, Along, Local)> {
+        let (ratio, share, rolling_moment) = self.rolling_alone(ratio);
+        let q = self.shear_at(rolling_moment);
+        let rolls = share * INSIDE <= self.answers.share_m;
+        let mode = Mode::Roll(by(ratio, self.caps.1));
+        (rolls && size2(q) <= self.caps.0 * self.caps.0).then_some((mode, q, rolling_moment))
+    }
+
+    /// Shear at its cap, if the moment then sticks and shear does not.
+    #[inline]
+    fn slides(&self) -> Option<(Mode, Along, Local)> {
+        let (cap_q, cap_m) = self.caps;
+        let q = self.sliding_alone();
+        let rolling_moment = self.moment_at(q);
+        let slides = size2(self.shear_at(rolling_moment)) >= (INSIDE * cap_q).powi(2);
+        (slides && volume2(rolling_moment) <= cap_m * cap_m).then_some((
+            Mode::Slide,
+            q,
+            rolling_moment,
+        ))
+    }
+
+    /// Both at their caps, if neither sticks.
+    #[inline]
+    fn does_both(&self, ratio: Option<f64>) -> Option<(Mode, Along, Local)> {
+        let (cap_q, cap_m) = self.caps;
+        let (ratio, q, rolling_moment) = self.both_slip(ratio);
+        let slips = size2(self.shear_at(rolling_moment)) >= cap_q * cap_q
+            && ratio <= self.answers.c * self.answers.share_m;
+        slips.then_some((Mode::Both(by(ratio, cap_m)), q, rolling_moment))
+    }
+
+    /// `q̂` for a moment.
+    #[inline]
+    fn shear_at(&self, rolling_moment: Local) -> Along {
+        let y = turned([rolling_moment[0], rolling_moment[1]]);
+        [0, 1].map(|k| (self.a[k] - y[k] * self.answers.c) * self.answers.share_q)
+    }
+
+    /// `M̂` for a shear force.
+    #[inline]
+    fn moment_at(&self, q: Along) -> Local {
+        self.wound(q, self.answers.share_m)
+    }
+
+    /// Neither at its cap: with `y = n × M`, `(1+B) q + C y = a` and `E R q + (1+E) y = n × d`.
+    #[inline]
+    fn both_stick(&self) -> (Along, Local) {
+        let &Answers { share_q, c, share_m, er, both, .. } = self.answers;
+        let nd = turned([self.d[0], self.d[1]]);
+        let q = [0, 1].map(|k| (self.a[k] - nd[k] * (c * share_m)) * (share_q * both));
+        let y = [0, 1].map(|k| (nd[k] - self.a[k] * (er * share_q)) * (share_m * both));
+        (q, [y[1], -y[0], self.d[2] * share_m])
+    }
+
+    /// The moment at its cap while shear sticks: `M_t = μ G_t`, `M_n = λ G_n` with `λ = μ/(1 + μs)`; `|M|²` grows with
+    /// `μ`, so Newton finds where it is that of the cap. Returns `μ`, `λ` and the moment.
+    #[inline]
+    fn rolling_alone(&self, guess: Option<f64>) -> (f64, f64, Local) {
+        let y = turned(self.a);
+        let g = [0, 1].map(|k| self.d[k] + y[k] * (self.answers.er * self.answers.share_q));
+        let (t2, n2, cap) = (size2(g), self.d[2] * self.d[2], self.caps.1);
+        let s = self.answers.er * self.answers.c * self.answers.share_q;
+        let guess = guess.filter(|guess| *guess > 0.0);
+        let mut ratio = guess.unwrap_or_else(|| cap / (t2 + n2).sqrt().max(f64::MIN_POSITIVE));
+        let mut room = 1.0 / (1.0 + ratio * s);
+        for _ in 0..RATIO_STEPS {
+            let spun2 = n2 * room * room;
+            let size2 = t2 + spun2;
+            let grows = (t2 + spun2 * room, size2);
+            let share = missing((ratio * ratio * size2, cap * cap), grows);
+            let change = ratio * (share + 0.5 * share * share);
+            ratio += change;
+            if share.abs() <= NEAR {
+                // So little further on the line through it is as good.
+                room -= room * room * s * change;
+                break;
+            }
+            room = 1.0 / (1.0 + ratio * s);
+        }
+        let spun = ratio * room;
+        (ratio, spun, [g[0] * ratio, g[1] * ratio, self.d[2] * spun])
+    }
+
+    /// Shear at its cap while rolling sticks: `q ∥ a − C/(1+E) n × d`.
+    #[inline]
+    fn sliding_alone(&self) -> Along {
+        let y = turned([self.d[0], self.d[1]]);
+        let along = [0, 1].map(|k| self.a[k] - y[k] * (self.answers.c * self.answers.share_m));
+        let size = size2(along).sqrt();
+        if size > 0.0 { along.map(|x| x * (self.caps.0 / size)) } else { along }
+    }
+
+    /// Both at their caps: only directions are sought. With `M = κ/C (d + E R n × q)` what turns with `q` does not turn it:
+    /// `q ∥ a − κ n × d`, and `κ |n × d − E R q, d_n|` is `C` times the moment's cap. It grows with `κ`, so Newton finds
+    /// it. Returns `κ`, force and moment.
+    fn both_slip(&self, guess: Option<f64>) -> (f64, Along, Local) {
+        let (cap_q, cap_m) = self.caps;
+        let nd = turned([self.d[0], self.d[1]]);
+        let lever = self.answers.er * cap_q;
+        let (nd2, wanted) = (size2(nd), self.answers.c * cap_m);
+        let most2 = nd2 + lever * lever + self.d[2] * self.d[2];
+        let guess = guess.filter(|guess| *guess > 0.0);
+        let mut ratio = guess.unwrap_or_else(|| wanted / most2.sqrt().max(f64::MIN_POSITIVE));
+        let mut e = [0.0; 2];
+        for _ in 0..RATIO_STEPS {
+            let p = [0, 1].map(|k| self.a[k] - nd[k] * ratio);
+            let over = 1.0 / size2(p).sqrt().max(f64::MIN_POSITIVE);
+            e = p.map(|x| x * over);
+            let c = nd[0] * e[0] + nd[1] * e[1];
+            let size2 = most2 - 2.0 * lever * c;
+            let grows = (size2 + ratio * lever * (nd2 - c * c) * over, size2);
+            let share = missing((ratio * ratio * size2, wanted * wanted), grows);
+            let change = ratio * (share + 0.5 * share * share);
+            ratio += change;
+            if share.abs() <= NEAR {
+                // So little further on the tangent is as good.
+                e = [0, 1].map(|k| e[k] - (nd[k] - e[k] * c) * (over * change));
+                break;
+            }
+        }
+        let q = e.map(|x| x * cap_q);
+        (ratio, q, self.wound(q, ratio / self.answers.c))
+    }
+
+    /// `M̂` for a shear force, `share` of it instead of `1/(1 + E)`.
+    #[inline]
+    fn wound(&self, q: Along, share: f64) -> Local {
+        let y = turned(q);
+        let along = [0, 1].map(|k| (self.d[k] + y[k] * self.answers.er) * share);
+        [along[0], along[1], self.d[2] * share]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-1.0f64..1.0).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        /// A frame is orthonormal and right-handed for every normal, the straight-down one included.
+        #[test]
+        fn frames_are_right_handed(n in vector(), x in vector()) {
+            prop_assume!(n.norm() > 1e-3);
+            for n in [n.normalize(), Vec3::z(), -Vec3::z()] {
+                let frame = Frame::of(&n);
+                prop_assert!((frame.s.cross(&frame.t) - n).norm() < 1e-14);
+                prop_assert!((frame.out_local(frame.local(&x)) - x).norm() < 1e-14);
+            }
+        }
+
+        /// Whatever case is tried first, the result is the fixed point of both shortenings, to 1e-11 of the caps.
+        #[test]
+        fn shear_and_rolling_solve_their_equations(
+            a in prop::array::uniform2(-1.0f64..1.0), d in prop::array::uniform3(-1.0f64..1.0),
+            caps in prop::array::uniform2(0.01f64..2.0), spins in prop::bool::ANY,
+            b in 0.001f64..100.0, e in 0.001f64..100.0, r in 0.01f64..10.0, hint in 0.0f64..100.0,
+        ) {
+            // C E R = 5/7 B E, as a solid sphere has it
+            let c = 5.0 / 7.0 * b / r;
+            let d = [d[0] * r, d[1] * r, if spins { d[2] * r } else { 0.0 }];
+            let answers = Answers::new((b, e), b, e, (c / r, r));
+            let pair = Pair { answers: &answers, a, d, caps: (caps[0], caps[1] * r) };
+            for mode in [Mode::Stick, Mode::Roll(hint), Mode::Slide, Mode::Both(hint)] {
+                let (q, rolling_moment) = pair.solve(&mut { mode });
+                let at_m = cut(pair.shear_at(rolling_moment), pair.caps.0);
+                let at_q = cut_moment(pair.moment_at(q), pair.caps.1);
+                let off_q = size2([q[0] - at_m[0], q[1] - at_m[1]]).sqrt();
+                let off_m = volume2([0, 1, 2].map(|k| rolling_moment[k] - at_q[k])).sqrt();
+                prop_assert!(off_q <= 1e-11 * pair.caps.0 && off_m <= 1e-11 * pair.caps.1, "{mode:?} {off_q} {off_m}");
+                let (size_q, size_m) = (size2(q).sqrt(), volume2(rolling_moment).sqrt());
+                prop_assert!(size_q <= pair.caps.0 * (1.0 + 1e-12) && size_m <= pair.caps.1 * (1.0 + 1e-12));
+            }
+        }
+    }
+}

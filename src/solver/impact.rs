@@ -1,0 +1,74 @@
+//! Impacts followed in their own time `τ = ω t`, `ω = √(p_N/m)`, where nothing is stiff.
+//!
+//! The law is the one of `law.rs`, all three elements of it: normal force `max(0, p_N x + c_N x')`, shear and rolling a slider in
+//! series with (spring ∥ dashpot). An element whose dashpot or friction is zero is left out. Only mass, inertia and radius of
+//! [`Body`](super::law::Body) enter.
+//!
+//! **One plane, with weight** (schemes `adaptive` and `reference`):
+//!
+//! ```text
+//! let plane = Plane::new(&body, law, 1e-4); // once for a rock and a ground; 1e-10 for `reference`
+//! match plane.follow(&n, &v, &w) {          // first touch: penetration 0, n·v < 0, springs at rest, not captured
+//!     Followed::Left(out) => …,             // time, shift, velocity, spin, deepest, losses where penetration is 0 again
+//!     Followed::Stays => …,                 // gravity keeps it: step on from the touch
+//! }
+//! ```
+//!
+//! Normal motion is a closed form (`normal.rs`); slip, spin and springs are integrated by an explicit pair of order 5(4) under the
+//! known force (`pair.rs`, `run.rs`, `rub.rs`), steps ending where an element begins to slip or stick. `tolerance` is relative to
+//! `|v|`: at 1e-4 errors stay within about it, at 1e-6 and below rare ones reach some ten times it. Without friction and
+//! rolling friction nothing is integrated. Whether an impact is captured is the caller's to ask before.
+//!
+//! **Frozen geometry, no weight** (scheme `rigid`, the limit `p_N → ∞`): [`throw`] with up to [`MOST`](crate::contact::MOST)
+//! contacts, all at penetration zero; those that do not approach are pressed as soon as motion presses them.
+//!
+//! - Ratios of stiffness between grounds are kept; own time is that of the stiffest contact.
+//! - `stiffness_scale` (`|a|²` of a patch) multiplies `p_N`, its root `c_N`: the damping ratio stays. The shear and the rolling
+//!   spring of a patch are not scaled.
+//! - Dashpots share, `c_i = c_N/√(Σ_j max(0, n_i·n_j)²)` over the contacts with penetration now; steps end where one is pressed or
+//!   opens. The springs of a contact that opens are at rest when it is pressed again.
+//! - It ends when nothing pushes and nothing comes nearer ([`Settled::Free`]); when the motion of a rock that is pressed no longer
+//!   changes ([`Settled::Jammed`]); or after 300 radians of the softest contact ([`Settled::OutOfTime`]). An approach
+//!   below 1e-3 of the local error is none.
+//! - Then every approach left, and what a captured contact has given back of itself, is taken out of the velocity along the
+//!   normal and booked as damping: no contact approaches afterwards, captured ones do not separate unless thrown off by others.
+//! - Energy never rises: should the steps' error make it, velocity and spin are scaled back. With `e = 1` and no friction on all
+//!   contacts the law conserves energy, and velocity is scaled to its size before, up or down, by no more than that error.
+//! - One contact is the impact on a plane without weight: exact normal restitution.
+//!
+//! Losses are each ≥ 0 and add up to the energy that is gone to rounding: the parts are summed along the steps and scaled by the
+//! exact total. What springs store when a contact opens is in them, under damping and rolling.
+
+mod rigid_limit;
+mod normal_motion;
+pub(in crate::solver) mod dormand_prince;
+mod plane;
+mod sliders;
+mod integrate;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use plane::{Followed, Plane, Rebound};
+pub(crate) use rigid_limit::{FrozenContact, throw};
+
+/// What following an impact has cost.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Effort {
+    /// Steps taken.
+    pub(crate) steps: u32,
+    /// Steps thrown away.
+    pub(crate) rejected: u32,
+    /// Times the law was asked.
+    pub(crate) evaluations: u32,
+}
+
+/// How a frozen impact ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Settled {
+    /// Nothing pushes and nothing comes nearer.
+    Free,
+    /// Friction holds it in a wedge, its springs pressed in: it rests, or rolls along the wedge. What they store is lost.
+    Jammed,
+    /// It went on rattling: what was still coming nearer has been stopped without rebound.
+    OutOfTime,
+}

@@ -1,0 +1,137 @@
+//! Steps through the time of one contact on a plane, with the local error under control.
+
+use super::Effort;
+use super::dormand_prince::{Flow, NODES, Rates, growth, step};
+use super::normal_motion::{NormalMotion, Series};
+
+/// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits.
+const LONGEST: f64 = 0.9;
+/// Steps below this share of the whole are taken as they are (–): rounding.
+const SHORTEST: f64 = 1e-9;
+
+/// A flow under a force that is known.
+pub(super) trait Pressed<const N: usize, const Q: usize, const K: usize> {
+    /// Rates under the force `f`.
+    fn rates(&self, f: f64, y: &[f64; N]) -> Rates<N, Q, K>;
+    /// Square of an error.
+    fn size2(&self, off: &[f64; N]) -> f64;
+}
+
+/// The force along a contact, by series from step to step.
+struct Force<const D: usize> {
+    swing: NormalMotion,
+    gamma: f64,
+    now: [f64; 2],
+    nodes: [f64; 6],
+    series: Series<D>,
+}
+
+impl<const D: usize> Force<D> {
+    fn new(swing: NormalMotion, gamma: f64) -> Self {
+        let now = swing.onset(gamma);
+        let series = Series::new(now, swing.zeta, gamma);
+        Self { swing, gamma, now, nodes: [now[0]; 6], series }
+    }
+
+    /// Sets the forces at the stages of a step of length `h`.
+    #[inline]
+    fn aim(&mut self, h: f64) {
+        for (force, node) in self.nodes.iter_mut().zip(NODES).skip(1) {
+            *force = self.series.at(node * h).max(0.0);
+        }
+    }
+
+    /// Goes on by `h`.
+    #[inline]
+    fn pass(&mut self, h: f64) {
+        self.now = self.series.both(h);
+        self.series = Series::new(self.now, self.swing.zeta, self.gamma);
+    }
+}
+
+struct Under<'a, P, const D: usize> {
+    law: &'a P,
+    force: &'a Force<D>,
+    over_allowed2: f64,
+}
+
+impl<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
+    Flow<N, Q, K> for Under<'_, P, D>
+{
+    #[inline]
+    fn rates(&mut self, node: usize, y: &[f64; N]) -> Rates<N, Q, K> {
+        self.law.rates(self.force.nodes[node], y)
+    }
+
+    #[inline]
+    fn size2(&self, off: &[f64; N]) -> f64 {
+        self.law.size2(off) * self.over_allowed2
+    }
+}
+
+/// What is asked of a run.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Span {
+    pub(super) swing: NormalMotion,
+    pub(super) gamma: f64,
+    /// Length (1/ω).
+    pub(super) length: f64,
+    /// First step (1/ω).
+    pub(super) first: f64,
+    /// Local error allowed.
+    pub(super) allowed: f64,
+}
+
+/// Runs from `y` over the whole span; `D` terms of the force's series. Returns the end and the sums.
+pub(super) fn run<
+    P: Pressed<N, Q, K>,
+    const N: usize,
+    const Q: usize,
+    const K: usize,
+    const D: usize,
+>(
+    law: &P,
+    mut y: [f64; N],
+    span: &Span,
+    effort: &mut Effort,
+) -> ([f64; N], [f64; Q]) {
+    let mut force = Force::<D>::new(span.swing, span.gamma);
+    let over_allowed2 = 1.0 / (span.allowed * span.allowed);
+    let longest = LONGEST / (2.0 * span.swing.zeta).max(1.0);
+    let (mut sum, mut t, mut wish) = ([0.0; Q], 0.0, span.first);
+    let mut rates = law.rates(force.now[0], &y);
+    let mut kept = 0.0;
+    while t < span.length {
+        let left = span.length - t;
+        let wished = wish.min(longest);
+        let h = if wished >= left {
+            left
+        } else if 2.0 * wished > left {
+            0.5 * left
+        } else {
+            wished
+        };
+        force.aim(h);
+        let tried = step(&mut Under { law, force: &force, over_allowed2 }, &y, &rates, h);
+        effort.evaluations += 6;
+        let kink = tried.cut(h, span.allowed);
+        let short = h < SHORTEST * span.length;
+        if (tried.error2 <= 1.0 && kink.is_none()) || short {
+            (y, rates) = (tried.y, tried.last);
+            for (sum, q) in sum.iter_mut().zip(tried.q) {
+                *sum += q;
+            }
+            force.pass(h);
+            t = if h >= left { span.length } else { t + h };
+            wish = f64::max(h * growth(tried.error2), kept);
+            kept = 0.0;
+            effort.steps += 1;
+        } else {
+            effort.rejected += 1;
+            // Beyond a kink the law is as smooth as before it.
+            kept = if kink.is_some() { h.max(kept) } else { 0.0 };
+            wish = h * kink.unwrap_or_else(|| growth(tried.error2).min(0.7));
+        }
+    }
+    (y, sum)
+}

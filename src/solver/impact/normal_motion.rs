@@ -1,0 +1,230 @@
+//! The normal motion of one impact on a plane, with gravity, in closed form.
+//!
+//! In units of the approach speed `v_n` and of `1/ω` the penetration obeys `x'' = γ − 2ζ x' − x`, `x(0) = 0`, `x'(0) = 1`, with
+//! `γ = g_n/(ω v_n)`. With `S` the answer to a blow, `S(0) = 0`, `S'(0) = 1`, of the free swing,
+//!
+//! - `x = S + γ (1 − S' − 2ζ S)` and `x' = S' + γ S`;
+//! - the force over `m ω v_n` is `f = x + 2ζ x' = S + 2ζ S' + γ (1 − S')`, and `f'' = γ − f − 2ζ f'`;
+//! - it ends where `f` first falls to zero. There `x'' = γ`, so `x' = f' − 2ζ γ` and `x = −2ζ x'`.
+//!
+//! Without gravity that is at `t_c`, where `f' = −e`; gravity moves it by about `γ (1 + e)/e`. From there a Taylor series, whose
+//! terms follow from the equation itself, gives it to rounding without another sine (numerics 2.1, 2.2).
+
+use crate::ground::restitution;
+use crate::math;
+use std::f64::consts::TAU;
+
+/// Terms of the Taylor series about the end of contact.
+const TERMS: usize = 14;
+/// So far around it (–, in units of its shortest time) they give every digit.
+const NEAR: f64 = 0.3;
+/// Steps of Newton's rule at most, with halving where it would leave its bracket.
+const NEWTON: u32 = 80;
+/// Damping below this is none (–): what a search for that of `e = 1` leaves.
+pub(super) const NONE: f64 = 1e-12;
+/// Damping this near to critical is critical (–).
+const CRITICAL: f64 = 1e-9;
+
+/// One spring and dashpot without tension.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct NormalMotion {
+    /// Damping ratio `ζ` (–).
+    pub(super) zeta: f64,
+    /// Restitution without gravity (–).
+    kept: f64,
+    /// When contact ends without gravity (1/ω).
+    pub(super) contact: f64,
+}
+
+/// How an impact leaves the plane, in units of `v_n` and `1/ω`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Exit {
+    /// When the force falls to zero.
+    pub(super) lift: f64,
+    /// Free way out of the slab from there on.
+    pub(super) out: f64,
+    /// Speed away from the plane where the penetration is zero again.
+    pub(super) speed: f64,
+}
+
+impl NormalMotion {
+    pub(super) fn new(zeta: f64) -> Self {
+        let zeta = if zeta > NONE { zeta } else { 0.0 };
+        Self { zeta, kept: restitution(zeta), contact: time_at(zeta, zeta - 0.5 / zeta) }
+    }
+
+    /// Force and its rate at the touch.
+    #[inline]
+    pub(super) fn onset(&self, gamma: f64) -> [f64; 2] {
+        let zeta = self.zeta;
+        [2.0 * zeta, 1.0 - 2.0 * zeta * (2.0 * zeta - gamma)]
+    }
+
+    /// How the rock leaves; `None` if gravity keeps it.
+    pub(super) fn exit(&self, gamma: f64) -> Option<Exit> {
+        let (lift, rate) = self.lift_nearby(gamma).or_else(|| self.lift_anywhere(gamma))?;
+        let up = 2.0 * self.zeta * gamma - rate;
+        let x = 2.0 * self.zeta * up;
+        let left = up * up - 2.0 * gamma * x;
+        if up <= 0.0 || left <= 0.0 {
+            return None;
+        }
+        // Without damping nothing is lost, and no rounding may say otherwise.
+        let speed = if self.zeta == 0.0 { 1.0 } else { left.sqrt() };
+        Some(Exit { lift, out: 2.0 * x / (up + speed), speed })
+    }
+
+    /// Time of lift-off and the force's rate there, if it is close to the one without gravity.
+    #[inline]
+    fn lift_nearby(&self, gamma: f64) -> Option<(f64, f64)> {
+        let (zeta, e) = (self.zeta, self.kept);
+        let late = gamma * (1.0 + e) / e;
+        if late.abs() * (2.0 * zeta).max(1.0) > 0.5 * NEAR {
+            return None;
+        }
+        let series = Series::<TERMS>::new([gamma * (1.0 + e), -e], zeta, gamma);
+        let mut t = late;
+        for _ in 0..8 {
+            let [force, rate] = series.both(t);
+            let change = force / rate;
+            t -= change;
+            if change.abs() <= 1e-14 {
+                break;
+            }
+        }
+        let is_near = t.abs() * (2.0 * zeta).max(1.0) <= NEAR;
+        is_near.then(|| (self.contact + t, series.both(t)[1]))
+    }
+
+    /// The same, wherever it is: between the touch and the force's first trough.
+    fn lift_anywhere(&self, gamma: f64) -> Option<(f64, f64)> {
+        let mut hi = self.trough(gamma);
+        if hi.is_none() && gamma < 0.0 {
+            // Nothing holds the rock: the force falls to less than zero at last.
+            hi = (0..60).map(|k| 2f64.powi(k)).find(|t| self.force(gamma, *t)[0] <= 0.0);
+        }
+        let (mut lo, mut hi) = (0.0, hi.filter(|t| self.force(gamma, *t)[0] <= 0.0)?);
+        let mut t = if self.contact < hi { self.contact } else { 0.5 * hi };
+        for _ in 0..NEWTON {
+            let [force, rate] = self.force(gamma, t);
+            if force > 0.0 {
+                lo = t;
+            } else {
+                hi = t;
+            }
+            let next = t - force / rate;
+            let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+            let change = (next - t).abs();
+            t = next;
+            if change <= 1e-15 * hi {
+                break;
+            }
+        }
+        Some((t, self.force(gamma, t)[1]))
+    }
+
+    /// When the force has its first trough, if it has one: `f' = a S' − β S`, `a = 1 − 2ζβ`, `β = 2ζ − γ`.
+    fn trough(&self, gamma: f64) -> Option<f64> {
+        let zeta = self.zeta;
+        let beta = 2.0 * zeta - gamma;
+        let a = 1.0 - 2.0 * zeta * beta;
+        if 1.0 - zeta * zeta > CRITICAL {
+            let wd = (1.0 - zeta * zeta).sqrt();
+            let phase = math::atan2((a * zeta + beta) / wd, a);
+            return Some((-0.25 * TAU - phase).rem_euclid(TAU) / wd);
+        }
+        // Overdamped it turns once at most: up, if it began to fall.
+        let y = beta / a + zeta;
+        (a < 0.0 && y * y > zeta * zeta - 1.0 && y > 0.0).then(|| time_at(zeta, y))
+    }
+
+    /// Force and its rate at any time.
+    fn force(&self, gamma: f64, t: f64) -> [f64; 2] {
+        let (zeta, [s, ds]) = (self.zeta, answer(self.zeta, t));
+        let whole = s + 2.0 * zeta * ds;
+        [whole + gamma * (1.0 - ds), ds - (2.0 * zeta - gamma) * whole]
+    }
+
+    /// Largest penetration of an impact that leaves: where `S' = −γ S`.
+    pub(super) fn deepest(&self, gamma: f64) -> f64 {
+        let zeta = self.zeta;
+        let t = time_at(zeta, zeta - gamma);
+        gamma + math::exp(-zeta * t) * (1.0 - 2.0 * zeta * gamma + gamma * gamma).max(0.0).sqrt()
+    }
+}
+
+/// The first time at which `S'/S + ζ` is `y`.
+fn time_at(zeta: f64, y: f64) -> f64 {
+    let off = 1.0 - zeta * zeta;
+    if off.abs() <= CRITICAL {
+        return 1.0 / y;
+    }
+    let wd = off.abs().sqrt();
+    if off > 0.0 { math::atan2(wd, y) / wd } else { math::atanh(wd / y) / wd }
+}
+
+/// `S` and `S'`.
+fn answer(zeta: f64, t: f64) -> [f64; 2] {
+    let off = 1.0 - zeta * zeta;
+    let wd = off.abs().sqrt();
+    let (s, c) = if off.abs() <= CRITICAL {
+        (t, 1.0)
+    } else if off > 0.0 {
+        let (s, c) = math::sin_cos(wd * t);
+        (s / wd, c)
+    } else {
+        // Together with the fading, so that neither overflows.
+        let (slow, fast) = (math::exp((wd - zeta) * t), math::exp((-wd - zeta) * t));
+        let (s, c) = (0.5 * (slow - fast) / wd, 0.5 * (slow + fast));
+        return [s, c - zeta * s];
+    };
+    let fade = math::exp(-zeta * t);
+    [fade * s, fade * (c - zeta * s)]
+}
+
+/// The force's Taylor series about some time, of `N` terms.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Series<const N: usize>([f64; N]);
+
+/// `1/((k + 1)(k + 2))`.
+const OVER: [f64; 24] = {
+    let mut over = [0.0; 24];
+    let mut k = 0;
+    while k < 24 {
+        over[k] = 1.0 / ((k + 1) * (k + 2)) as f64;
+        k += 1;
+    }
+    over
+};
+
+impl<const N: usize> Series<N> {
+    #[inline]
+    pub(super) fn new([force, rate]: [f64; 2], zeta: f64, gamma: f64) -> Self {
+        let mut a = [0.0; N];
+        (a[0], a[1]) = (force, rate);
+        // The equation is that of `f − γ`, which has no constant term.
+        let mut below = force - gamma;
+        for k in 0..N - 2 {
+            a[k + 2] = -(below + 2.0 * zeta * (k + 1) as f64 * a[k + 1]) * OVER[k];
+            below = a[k + 1];
+        }
+        Self(a)
+    }
+
+    /// Its value `t` later.
+    #[inline]
+    pub(super) fn at(&self, t: f64) -> f64 {
+        self.0.iter().rev().fold(0.0, |sum, a| sum * t + a)
+    }
+
+    /// Its value and its rate `t` later.
+    #[inline]
+    pub(super) fn both(&self, t: f64) -> [f64; 2] {
+        let (mut value, mut rate) = (0.0, 0.0);
+        for a in self.0.iter().rev() {
+            rate = rate * t + value;
+            value = value * t + a;
+        }
+        [value, rate]
+    }
+}

@@ -1,0 +1,273 @@
+//! An impact on one plane, with gravity.
+
+use super::Effort;
+use super::integrate::{Pressed, Span, run};
+use super::normal_motion::{Exit, NormalMotion};
+use super::sliders::{Both, Element, Shear};
+use crate::ground::Law;
+use crate::math;
+use crate::rock::Vec3;
+use crate::solver::contact_state::Loss;
+use crate::solver::friction_rolling::{Along, Frame, Local};
+use crate::solver::law::Body;
+
+/// From this tolerance on a shorter series of the force is accurate enough (–).
+const COARSE: f64 = 1e-6;
+/// Local error of one step over the tolerance (–): the handful of an impact's steps then stay within about the tolerance.
+pub(super) const LOCAL: f64 = 0.3;
+/// First step at a tolerance of 1 (1/ω): the local error of order 5 is about (h/this)⁵.
+const FIRST: f64 = 3.5;
+
+/// How impacts of one rock on one ground go: all that does not change from impact to impact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plane {
+    body: Body,
+    /// `√(p_N/m)` (rad/s).
+    omega: f64,
+    swing: NormalMotion,
+    shear: Element,
+    rolling: Element,
+    tolerance: f64,
+    first: f64,
+}
+
+/// How an impact on a plane ended.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Followed {
+    /// The rock has left the plane.
+    Left(Rebound),
+    /// Gravity keeps it in contact: nothing has been followed.
+    Stays,
+}
+
+/// Motion after an impact, where the penetration is zero again.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rebound {
+    /// Time since the touch (s).
+    pub(crate) time_s: f64,
+    /// How far the centre has moved (m).
+    pub(crate) shift_m: Vec3,
+    /// Velocity (m/s).
+    pub(crate) velocity_m_s: Vec3,
+    /// Spin (rad/s).
+    pub(crate) spin_rad_s: Vec3,
+    /// Largest penetration (m).
+    pub(crate) deepest_m: f64,
+    /// Energy lost by kind (J), each ≥ 0: together exactly the energy before less that after, height included.
+    pub(crate) loss: Loss,
+    /// What it cost.
+    pub(crate) effort: Effort,
+}
+
+/// Motion along the plane and spin, with their losses, in units of mass, radius, approach speed and `1/ω`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Along2 {
+    pub(super) v: Along,
+    pub(super) w: Local,
+    /// Way.
+    pub(super) way: Along,
+    /// Lost by slipping, shear and rolling.
+    pub(super) lost: Local,
+}
+
+fn dot<const N: usize>(x: [f64; N], y: [f64; N]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+impl Plane {
+    /// Prepares the impacts of `body` on a ground of `law`; `tolerance` is the local error allowed of a step (–, relative to
+    /// the speed of the impact).
+    pub(crate) fn new(body: &Body, law: &Law, tolerance: f64) -> Self {
+        Self::of_patch(body, law, (law.c_n, 1.0), tolerance)
+    }
+
+    /// The same with its own normal damping (N s/m) and stiffness scale (–).
+    pub(super) fn of_patch(
+        body: &Body,
+        law: &Law,
+        (c_n, scale): (f64, f64),
+        tolerance: f64,
+    ) -> Self {
+        let p_n = law.p_n * scale;
+        let momentum = (law.p_n * body.mass).sqrt();
+        Self {
+            body: *body,
+            omega: (p_n / body.mass).sqrt(),
+            swing: NormalMotion::new(0.5 * c_n / momentum),
+            shear: Element::shear(body, law, p_n),
+            rolling: Element::rolling(body, law, p_n),
+            tolerance,
+            first: FIRST * math::pow(tolerance, 0.2),
+        }
+    }
+
+    /// Follows a rock that has just touched the plane with unit normal `n`, with velocity `v` (m/s), `n·v < 0`, and spin `w`
+    /// (rad/s).
+    pub(crate) fn follow(&self, n: &Vec3, v: &Vec3, w: &Vec3) -> Followed {
+        let frame = Frame::of(n);
+        let [vx, vy, vn] = frame.local(v);
+        let speed = -vn;
+        let (over, over_force) = (1.0 / speed, 1.0 / (self.omega * speed));
+        let [gx, gy, gn] = frame.local(&self.body.gravity).map(|g| g * over_force);
+        let Some(exit) = self.swing.exit(-gn) else { return Followed::Stays };
+        let mut effort = Effort::default();
+        let start = Start {
+            v: [vx * over, vy * over],
+            w: frame.local(w).map(|w| w * (over * self.body.radius)),
+            gravity: [gx, gy],
+            gamma: -gn,
+            allowed: LOCAL * self.tolerance * v.norm() * over,
+        };
+        let along = self.along(&start, &exit, &mut effort);
+        let unit_j = self.body.mass * speed * speed;
+        let pressed = 0.5 * (1.0 - exit.speed * exit.speed).max(0.0);
+        let (scale, spin) = (speed / self.omega, speed / self.body.radius);
+        Followed::Left(Rebound {
+            time_s: (exit.lift + exit.out) / self.omega,
+            shift_m: frame.out_along(along.way.map(|x| x * scale)),
+            velocity_m_s: frame.out_local([along.v[0], along.v[1], exit.speed].map(|v| v * speed)),
+            spin_rad_s: if self.rubs() { frame.out_local(along.w.map(|w| w * spin)) } else { *w },
+            deepest_m: self.swing.deepest(-gn) * scale,
+            loss: Loss {
+                friction: along.lost[0] * unit_j,
+                damping: (pressed + along.lost[1]) * unit_j,
+                rolling: along.lost[2] * unit_j,
+                trees: 0.0,
+            },
+            effort,
+        })
+    }
+
+    fn rubs(&self) -> bool {
+        self.shear.is_on() || self.rolling.is_on()
+    }
+
+    /// Everything but the normal motion, until the rock is out.
+    #[inline]
+    fn along(&self, start: &Start, exit: &Exit, effort: &mut Effort) -> Along2 {
+        let mut end = if self.rolling.is_on() {
+            self.rolls(start, exit.lift, effort)
+        } else if self.shear.is_on() {
+            self.shears(start, exit.lift, effort)
+        } else {
+            let t = exit.lift;
+            let way = [0, 1].map(|k| (start.v[k] + 0.5 * start.gravity[k] * t) * t);
+            let v = [0, 1].map(|k| start.v[k] + start.gravity[k] * t);
+            Along2 { v, w: start.w, way, lost: [0.0; 3] }
+        };
+        for k in 0..2 {
+            let gained = start.gravity[k] * exit.out;
+            end.way[k] += (end.v[k] + 0.5 * gained) * exit.out;
+            end.v[k] += gained;
+        }
+        end
+    }
+
+    fn span(&self, start: &Start, length: f64) -> Span {
+        let Self { swing, first, .. } = *self;
+        Span { swing, gamma: start.gamma, length, first, allowed: start.allowed }
+    }
+
+    /// `1 / (1 + m R²/I)` and its parts: what a blow along the surface does to slip, by mass and by inertia.
+    fn turns(&self) -> f64 {
+        self.body.mass * self.body.radius * self.body.radius / self.body.inertia
+    }
+
+    /// Shear alone: slip and spring decide, velocity and spin follow from the impulse.
+    fn shears(&self, start: &Start, t: f64, effort: &mut Effort) -> Along2 {
+        let turns = self.turns();
+        let flow = Shear { element: self.shear, lightness: 1.0 + turns, gravity: start.gravity };
+        let u = [start.v[0] - start.w[1], start.v[1] + start.w[0]];
+        let (y, [slipping, ways @ ..]) = self.run(&flow, [u[0], u[1], 0.0, 0.0], start, t, effort);
+        let g = start.gravity;
+        let free = [0, 1].map(|k| u[k] + g[k] * t);
+        // Impulse over mass, and its sum over time.
+        let blow = [0, 1].map(|k| (free[k] - y[k]) / flow.lightness);
+        let blown = [0, 1].map(|k| ((u[k] + 0.5 * g[k] * t) * t - ways[k]) / flow.lightness);
+        let way = [0, 1].map(|k| (start.v[k] + 0.5 * g[k] * t) * t - blown[k]);
+        let mut end = Along2 {
+            v: [0, 1].map(|k| start.v[k] + g[k] * t - blow[k]),
+            w: [start.w[0] - turns * blow[1], start.w[1] + turns * blow[0], start.w[2]],
+            way,
+            lost: [0.0; 3],
+        };
+        // The work of the shear force: its impulse times the mean slip, less what gravity brought in between.
+        let lost = self.settle(start, &mut end);
+        end.lost = [slipping.clamp(0.0, lost), 0.0, 0.0];
+        end.lost[1] = lost - end.lost[0];
+        end
+    }
+
+    /// Shear and rolling.
+    fn rolls(&self, start: &Start, t: f64, effort: &mut Effort) -> Along2 {
+        let flow = Both {
+            shear: self.shear,
+            rolling: self.rolling,
+            turns: self.turns(),
+            gravity: start.gravity,
+        };
+        let ([vx, vy], [wx, wy, wz]) = (start.v, start.w);
+        let begin = [vx, vy, wx, wy, wz, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let (y, [slipping, x, z, rolling, shear]) = self.run(&flow, begin, start, t, effort);
+        let mut end =
+            Along2 { v: [y[0], y[1]], w: [y[2], y[3], y[4]], way: [x, z], lost: [0.0; 3] };
+        let lost = self.settle(start, &mut end);
+        let slipping = slipping.max(0.0);
+        end.lost = shared(lost, [slipping, (shear - slipping).max(0.0), rolling.max(0.0)]);
+        end
+    }
+
+    #[inline]
+    fn run<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize>(
+        &self,
+        flow: &P,
+        begin: [f64; N],
+        start: &Start,
+        t: f64,
+        effort: &mut Effort,
+    ) -> ([f64; N], [f64; Q]) {
+        let span = self.span(start, t);
+        if start.allowed >= COARSE {
+            run::<P, N, Q, K, 9>(flow, begin, &span, effort)
+        } else {
+            run::<P, N, Q, K, 17>(flow, begin, &span, effort)
+        }
+    }
+
+    /// What was lost along the surface: energy before and what gravity brought less energy after. Where the error of the steps
+    /// would make that a gain, motion after is slowed by so much.
+    fn settle(&self, start: &Start, end: &mut Along2) -> f64 {
+        let over = 1.0 / self.turns();
+        let energy = |v: Along, w: Local| 0.5 * (dot(v, v) + over * dot(w, w));
+        let before = energy(start.v, start.w) + dot(start.gravity, end.way);
+        let after = energy(end.v, end.w);
+        if after > before {
+            let slower = (before.max(0.0) / after).sqrt();
+            (end.v, end.w) = (end.v.map(|v| v * slower), end.w.map(|w| w * slower));
+        }
+        (before - energy(end.v, end.w)).max(0.0)
+    }
+}
+
+/// Shares what is known to be lost as the steps have summed it up.
+pub(super) fn shared<const N: usize>(lost: f64, parts: [f64; N]) -> [f64; N] {
+    let sum: f64 = parts.iter().sum();
+    if sum > 0.0 {
+        parts.map(|part| part * (lost / sum))
+    } else {
+        let mut all = parts;
+        all[1] = lost;
+        all
+    }
+}
+
+/// Where an impact starts, in units of radius, approach speed and `1/ω`.
+struct Start {
+    v: Along,
+    w: Local,
+    gravity: Along,
+    /// Gravity into the plane.
+    gamma: f64,
+    /// Local error allowed.
+    allowed: f64,
+}

@@ -1,0 +1,310 @@
+//! The limit of stiff springs: contacts whose geometry does not change while the impact lasts.
+
+mod contacts;
+mod rates;
+
+use super::dormand_prince::{Rates, growth, step};
+use super::plane::{Followed, LOCAL, Plane, shared};
+use super::{Effort, Settled};
+use crate::contact::MOST;
+use crate::ground::Law;
+use crate::math;
+use crate::rock::Vec3;
+use crate::solver::contact_state::Loss;
+use crate::solver::law::Body;
+use contacts::Place;
+use rates::{ContactRates, W, speed_of};
+use std::f64::consts::TAU;
+
+/// One contact of a frozen impact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FrozenContact<'a> {
+    /// Unit normal from the ground into the rock.
+    pub(crate) normal: Vec3,
+    /// Law of its ground.
+    pub(crate) law: &'a Law,
+    /// Normal stiffness over `p_N` (–): `|a|²` of a patch.
+    pub(crate) stiffness_scale: f64,
+    /// Whether it gives nothing back.
+    pub(crate) captured: bool,
+}
+
+impl FrozenContact<'_> {
+    /// No contact.
+    pub(crate) const fn none() -> Self {
+        Self {
+            normal: Vec3::new(0.0, 0.0, 0.0),
+            law: &Law::NONE,
+            stiffness_scale: 1.0,
+            captured: true,
+        }
+    }
+}
+
+/// Motion after a frozen impact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Thrown {
+    /// Velocity (m/s).
+    pub(crate) velocity_m_s: Vec3,
+    /// Spin (rad/s).
+    pub(crate) spin_rad_s: Vec3,
+    /// Energy lost (J) by contact and kind, each ≥ 0: together exactly the energy before less that after.
+    pub(crate) loss: [Loss; MOST],
+    /// Which contacts threw the rock off.
+    pub(crate) rebounded: [bool; MOST],
+    /// How it ended.
+    pub(crate) settled: Settled,
+    /// What it cost.
+    pub(crate) effort: Effort,
+}
+
+/// No step is longer, in radians of the stiffest contact …
+const LONGEST: f64 = 0.9;
+/// … and the first one at a tolerance of 1 is this.
+const FIRST: f64 = 3.5;
+/// A step shorter than this is not cut at a kink (radians).
+const SHORTEST: f64 = 1e-9;
+/// An approach slower than this share of the error allowed is none (–).
+const NOTHING: f64 = 1e-3;
+/// Radians of the softest contact, flights between touches apart, after which an impact is ended: rattling between walls has no other end.
+const MOST_TIME: f64 = 300.0;
+/// A rock whose motion changes by no more than so many errors allowed over a swing of the softest contact is jammed (–).
+const QUIET: f64 = 3.0;
+/// Steps after which it is ended.
+const MOST_STEPS: u32 = 20_000;
+
+/// Follows one rock with velocity `v` (m/s) and spin `w` (rad/s) through an impact on all `contacts` (1 … [`MOST`]) at once, each
+/// of them at penetration zero; `tolerance` is relative to `|v|` (–).
+///
+/// # Panics
+/// Never: contacts beyond [`MOST`] are not looked at.
+pub(crate) fn throw(
+    body: &Body,
+    contacts: &[FrozenContact],
+    (v, w): (&Vec3, &Vec3),
+    tolerance: f64,
+) -> Thrown {
+    let contacts = &contacts[..contacts.len().min(MOST)];
+    let same = Thrown {
+        velocity_m_s: *v,
+        spin_rad_s: *w,
+        loss: [Loss::default(); MOST],
+        rebounded: [false; MOST],
+        settled: Settled::Free,
+        effort: Effort::default(),
+    };
+    if contacts.iter().all(|contact| contact.normal.dot(v) >= 0.0) {
+        return same;
+    }
+    if let [contact] = contacts {
+        return alone(body, contact, (v, w), tolerance, same);
+    }
+    let rolls = contacts.iter().any(|contact| contact.law.k_r > 0.0);
+    let how = (body, contacts, tolerance);
+    match (contacts.len(), rolls) {
+        (2, false) => several::<2, 15, 8, 6>(how, (v, w), same),
+        (2, true) => several::<2, 21, 8, 6>(how, (v, w), same),
+        (3, false) => several::<3, 18, 12, 9>(how, (v, w), same),
+        (3, true) => several::<3, 27, 12, 9>(how, (v, w), same),
+        (4, false) => several::<4, 21, 16, 12>(how, (v, w), same),
+        (4, true) => several::<4, 33, 16, 12>(how, (v, w), same),
+        _ => several::<MOST, { 9 + 6 * MOST }, { 4 * MOST }, { 3 * MOST }>(how, (v, w), same),
+    }
+}
+
+/// One contact: the impact on a plane without weight.
+fn alone(
+    body: &Body,
+    contact: &FrozenContact,
+    (v, w): (&Vec3, &Vec3),
+    tolerance: f64,
+    mut end: Thrown,
+) -> Thrown {
+    let body = Body { gravity: Vec3::zeros(), ..*body };
+    let (law, n) = (contact.law, &contact.normal);
+    let c_n = if contact.captured { law.c_n_captured } else { law.c_n };
+    let plane = Plane::of_patch(&body, law, (c_n, contact.stiffness_scale), tolerance);
+    let Followed::Left(rebound) = plane.follow(n, v, w) else {
+        // Without weight nothing keeps it but a speed too small to be squared.
+        end.velocity_m_s -= n * n.dot(v);
+        return end;
+    };
+    (end.velocity_m_s, end.spin_rad_s) = (rebound.velocity_m_s, rebound.spin_rad_s);
+    (end.loss[0], end.effort) = (rebound.loss, rebound.effort);
+    end.rebounded[0] = !contact.captured;
+    if contact.captured {
+        let up = n.dot(&end.velocity_m_s);
+        end.velocity_m_s -= n * up;
+        end.loss[0].damping += 0.5 * body.mass * up * up;
+    }
+    end
+}
+
+/// Several contacts; `K` of them at most, `N` numbers that change, `Q` that are summed up, `P` possible kinks.
+fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
+    (body, contacts, tolerance): (&Body, &[FrozenContact], f64),
+    (v, w): (&Vec3, &Vec3),
+    mut end: Thrown,
+) -> Thrown {
+    let speed = v.norm();
+    let flow = ContactRates::<K>::new(body, contacts, LOCAL * tolerance);
+    let mut run = Run::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
+    end.settled = run.follow(FIRST * math::pow(tolerance, 0.2));
+    end.effort = run.effort;
+    let start = (v / speed, w * (body.radius / speed));
+    let place = run.flow.contacts.come_to_an_end(start, run.place(), run.flow.nothing());
+    let mut parts = run.parts();
+    for (part, plastic) in parts.iter_mut().zip(place.plastic) {
+        part[1] += plastic;
+    }
+    let lost = run.flow.contacts.energy(start) - run.flow.contacts.energy((place.v, place.w));
+    let unit_j = body.mass * speed * speed;
+    let plane_kernel: [f64; 3 * MOST] = std::array::from_fn(|k| parts[k / 3][k % 3]);
+    let plane_kernel = shared(lost.max(0.0) * unit_j, plane_kernel);
+    for (k, loss) in end.loss.iter_mut().enumerate() {
+        let [friction, damping, rolling] =
+            [plane_kernel[3 * k], plane_kernel[3 * k + 1], plane_kernel[3 * k + 2]];
+        *loss = Loss { friction, damping, rolling, trees: 0.0 };
+    }
+    end.rebounded = std::array::from_fn(|k| {
+        k < contacts.len()
+            && !contacts[k].captured
+            && run.fastest[k] > 0.0
+            && contacts[k].normal.dot(&place.v) > 0.0
+    });
+    (end.velocity_m_s, end.spin_rad_s) = (place.v * speed, place.w * (speed / body.radius));
+    end
+}
+
+/// An impact being followed.
+struct Run<const K: usize, const N: usize, const Q: usize, const P: usize> {
+    flow: ContactRates<K>,
+    y: [f64; N],
+    sums: [f64; Q],
+    /// Fastest approach of each contact.
+    fastest: [f64; MOST],
+    effort: Effort,
+}
+
+impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q, P> {
+    fn new(flow: ContactRates<K>, v: Vec3, w: Vec3) -> Self {
+        let mut y = [0.0; N];
+        y[3..6].copy_from_slice(v.as_slice());
+        y[6..9].copy_from_slice(w.as_slice());
+        Self { flow, y, sums: [0.0; Q], fastest: [0.0; MOST], effort: Effort::default() }
+    }
+
+    /// Steps until nothing pushes and nothing comes nearer.
+    fn follow(&mut self, first: f64) -> Settled {
+        let (mut wish, mut kept, mut time) = (first, 0.0, 0.0);
+        let softest = self.flow.contacts.softest;
+        let (most, mut quiet) = (MOST_TIME / softest, Quiet::default());
+        // Whether the contacts have been changed without a step: once is enough.
+        let mut turned = false;
+        self.flow.press(&mut self.y);
+        let mut rates = self.flow.rates_of::<N, Q, P>(&self.y);
+        loop {
+            self.note();
+            if time > most || self.effort.steps + self.effort.rejected > MOST_STEPS {
+                return Settled::OutOfTime;
+            }
+            if self.flow.is_free(&self.y) {
+                let Some(wait) = self.flow.next_touch(&self.y) else { return Settled::Free };
+                // Exact and free of cost: not counted.
+                self.flow.drift(&mut self.y, wait);
+                self.effort.steps += 1;
+                rates = self.flow.rates_of(&self.y);
+                continue;
+            }
+            if quiet.stays(self.place(), time, QUIET * self.flow.allowed) > TAU / softest {
+                return Settled::Jammed;
+            }
+            let h = wish.min(self.flow.longest);
+            let tried = step(&mut self.flow, &self.y, &rates, h);
+            self.effort.evaluations += 6;
+            let kink = tried.cut(h, self.flow.allowed).filter(|_| h > SHORTEST);
+            if tried.error2 > 1.0 || kink.is_some() {
+                self.effort.rejected += 1;
+                // Beyond a kink the law is as smooth as before it.
+                kept = if kink.is_some() { h.max(kept) } else { 0.0 };
+                wish = h * kink.unwrap_or_else(|| growth(tried.error2).min(0.7));
+                continue;
+            }
+            match self.flow.crossing(&self.y, &tried.y, h) {
+                Some(Place::Now) if !turned => {
+                    turned = true;
+                    rates = self.flow.rates_of(&self.y);
+                }
+                Some(Place::At(share)) => {
+                    self.effort.rejected += 1;
+                    kept = h.max(kept);
+                    wish = h * share;
+                }
+                _ => {
+                    turned = false;
+                    self.y = tried.y;
+                    for (sum, q) in self.sums.iter_mut().zip(tried.q) {
+                        *sum += q;
+                    }
+                    time += h;
+                    self.effort.steps += 1;
+                    wish = f64::max(h * growth(tried.error2), kept);
+                    kept = 0.0;
+                    let changed = self.flow.press(&mut self.y);
+                    rates = if changed { self.flow.rates_of(&self.y) } else { tried.last };
+                }
+            }
+        }
+    }
+
+    /// Velocity, and spin times radius.
+    fn place(&self) -> (Vec3, Vec3) {
+        (speed_of(&self.y), W.map(|k| self.y[k]).into())
+    }
+
+    /// Notes how fast the contacts that are pressed come nearer.
+    fn note(&mut self) {
+        let v = speed_of(&self.y);
+        for (k, contact) in self.flow.contacts.list().iter().enumerate() {
+            if self.flow.pressed[k] {
+                self.fastest[k] = self.fastest[k].max(-contact.n.dot(&v));
+            }
+        }
+        self.flow.contacts.fastest = self.fastest;
+    }
+
+    /// What friction, dashpots and rolling of each contact have taken.
+    fn parts(&self) -> [[f64; 3]; MOST] {
+        let mut parts = [[0.0; 3]; MOST];
+        for (part, sums) in parts.iter_mut().zip(self.sums.chunks(4)) {
+            let [slipping, shear, rolling, normal] = [sums[0], sums[1], sums[2], sums[3]];
+            let slipping = slipping.max(0.0);
+            let damping = (shear - slipping).max(0.0) + normal.max(0.0);
+            *part = [slipping, damping, rolling.max(0.0)];
+        }
+        parts
+    }
+}
+
+/// Since when the motion of a rock has not changed.
+#[derive(Default)]
+struct Quiet {
+    since: f64,
+    motion: (Vec3, Vec3),
+}
+
+impl Quiet {
+    /// For how long velocity and spin have been the same, to `allowed`.
+    fn stays(&mut self, (v, w): (Vec3, Vec3), time: f64, allowed: f64) -> f64 {
+        let change2 = (v - self.motion.0).norm_squared().max((w - self.motion.1).norm_squared());
+        if change2 > allowed * allowed {
+            (self.since, self.motion) = (time, (v, w));
+        }
+        time - self.since
+    }
+}
+
+/// No rate of anything.
+fn still<const N: usize, const Q: usize, const P: usize>() -> Rates<N, Q, P> {
+    Rates { y: [0.0; N], q: [0.0; Q], kinks: [[0.0; 2]; P] }
+}

@@ -1,0 +1,269 @@
+//! Rates of a rock among several frozen contacts, and the moments at which contacts open and close.
+
+use super::contacts::{Contacts, Place};
+use super::{FrozenContact, LONGEST, NOTHING, still};
+use crate::contact::MOST;
+use crate::rock::Vec3;
+use crate::solver::impact::dormand_prince::{Flow, Rates};
+use crate::solver::law::Body;
+
+/// Where the way of the centre begins among the numbers that change; velocity, spin times radius and the springs follow.
+pub(super) const WAY: usize = 0;
+const V: [usize; 3] = [3, 4, 5];
+pub(super) const W: [usize; 3] = [6, 7, 8];
+/// Where the springs begin: shear of all `K` contacts, then rolling of all, each with three numbers.
+const SPRINGS: usize = 9;
+/// Halvings of a step in search of the moment of touch.
+const HALVINGS: u32 = 50;
+
+fn three<const N: usize>(y: &[f64; N], at: usize) -> Vec3 {
+    Vec3::new(y[at], y[at + 1], y[at + 2])
+}
+
+/// Velocity.
+pub(super) fn speed_of<const N: usize>(y: &[f64; N]) -> Vec3 {
+    three(y, V[0])
+}
+
+/// Up to `K` contacts and which of them are pressed.
+pub(super) struct ContactRates<const K: usize> {
+    pub(super) contacts: Contacts,
+    pub(super) pressed: [bool; MOST],
+    /// Normal damping of each among those pressed now.
+    damping: [f64; MOST],
+    /// Longest step.
+    pub(super) longest: f64,
+    /// Local error allowed.
+    pub(super) allowed: f64,
+}
+
+impl<const K: usize> ContactRates<K> {
+    pub(super) fn new(body: &Body, struck: &[FrozenContact], allowed: f64) -> Self {
+        let contacts = Contacts::new(body, struck);
+        let fastest =
+            contacts.list().iter().fold(1.0f64, |rate, contact| rate.max(contact.damping));
+        Self {
+            contacts,
+            // All of them at penetration zero: those that come nearer press at once.
+            pressed: [false; MOST],
+            damping: [0.0; MOST],
+            longest: LONGEST / fastest,
+            allowed,
+        }
+    }
+
+    /// Speed, and way, that is nothing.
+    pub(super) fn nothing(&self) -> f64 {
+        NOTHING * self.allowed
+    }
+
+    /// Penetration of contact `k` and its rate.
+    fn depth<const N: usize>(&self, k: usize, y: &[f64; N]) -> [f64; 2] {
+        let n = &self.contacts.list()[k].n;
+        [-n.dot(&three(y, WAY)), -n.dot(&speed_of(y))]
+    }
+
+    /// Finds which contacts are pressed and shares the dashpots among them; springs of those that have opened are at rest.
+    /// Whether anything has changed.
+    pub(super) fn press<const N: usize>(&mut self, y: &mut [f64; N]) -> bool {
+        let (nothing, mut changed) = (self.nothing(), false);
+        for k in 0..self.contacts.list().len() {
+            let [x, rate] = self.depth(k, y);
+            let pressed = x > nothing || (x >= -nothing && rate > -nothing);
+            changed |= pressed != self.pressed[k];
+            self.set(k, pressed, y);
+        }
+        if changed {
+            self.share();
+        }
+        changed
+    }
+
+    fn set<const N: usize>(&mut self, k: usize, pressed: bool, y: &mut [f64; N]) {
+        self.pressed[k] = pressed;
+        if !pressed {
+            y[SPRINGS + 3 * k..SPRINGS + 3 * k + 3].fill(0.0);
+            if N > SPRINGS + 3 * K {
+                let at = SPRINGS + 3 * (K + k);
+                y[at..at + 3].fill(0.0);
+            }
+        }
+    }
+
+    /// `c_i = c_N/√Σ max(0, n_i·n_j)²` over the contacts pressed.
+    fn share(&mut self) {
+        let list = self.contacts.list();
+        for (k, contact) in list.iter().enumerate() {
+            let others = list.iter().zip(self.pressed).filter(|(_, pressed)| *pressed);
+            let sum: f64 = others.map(|(other, _)| contact.n.dot(&other.n).max(0.0).powi(2)).sum();
+            self.damping[k] = contact.damping / sum.max(1.0).sqrt();
+        }
+    }
+
+    /// Normal force of contact `k`, if it could pull.
+    #[inline]
+    fn asked<const N: usize>(&self, k: usize, y: &[f64; N]) -> f64 {
+        let [x, rate] = self.depth(k, y);
+        self.contacts.list()[k].stiffness * x + self.damping[k] * rate
+    }
+
+    /// Whether no contact pushes.
+    pub(super) fn is_free<const N: usize>(&self, y: &[f64; N]) -> bool {
+        let nothing = self.nothing() * self.nothing();
+        (0..self.contacts.list().len()).all(|k| {
+            let [x, rate] = self.depth(k, y);
+            !self.pressed[k]
+                || (self.asked(k, y) <= nothing && rate <= 0.0)
+                || (x.abs() <= self.nothing() && rate.abs() <= self.nothing())
+        })
+    }
+
+    /// Time until a rock that nothing pushes touches again, if it does.
+    pub(super) fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
+        let nothing = self.nothing();
+        let waits = (0..self.contacts.list().len()).filter_map(|k| {
+            let [x, rate] = self.depth(k, y);
+            (rate > nothing).then(|| (-x / rate).max(0.0))
+        });
+        waits.min_by(f64::total_cmp)
+    }
+
+    /// Lets a free rock fly on for `wait`.
+    pub(super) fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait: f64) {
+        for k in 0..3 {
+            y[WAY + k] += wait * y[V[k]];
+        }
+        y[SPRINGS..].fill(0.0);
+        self.press(y);
+    }
+
+    /// Where in the step from `y` to `end` of length `h` the first contact opens or closes, if one does.
+    pub(super) fn crossing<const N: usize>(
+        &mut self,
+        y: &[f64; N],
+        end: &[f64; N],
+        h: f64,
+    ) -> Option<Place> {
+        let nothing = self.nothing();
+        let mut first: Option<(f64, usize)> = None;
+        for k in 0..self.contacts.list().len() {
+            let ([x, rate], [x1, rate1]) = (self.depth(k, y), self.depth(k, end));
+            let is_crossed = if self.pressed[k] { x1 < -nothing } else { x1 > nothing };
+            if !is_crossed {
+                continue;
+            }
+            let slow = self.pressed[k] && x <= nothing && rate <= nothing;
+            let at = if slow { 0.0 } else { root([x, rate * h], [x1, rate1 * h], self.pressed[k]) };
+            if first.is_none_or(|(found, _)| at < found) {
+                first = Some((at, k));
+            }
+        }
+        let (at, k) = first?;
+        if at * h > f64::EPSILON {
+            return Some(Place::At(at));
+        }
+        self.pressed[k] = !self.pressed[k];
+        self.share();
+        Some(Place::Now)
+    }
+
+    /// Rates of everything.
+    #[inline]
+    pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
+        &self,
+        y: &[f64; N],
+    ) -> Rates<N, Q, P> {
+        let mut rates = still::<N, Q, P>();
+        let rolls = N > SPRINGS + 3 * K;
+        let (v, w, turns) = (speed_of(y), three(y, W[0]), self.contacts.turns);
+        let (mut dv, mut dw) = (Vec3::zeros(), Vec3::zeros());
+        for (k, contact) in self.contacts.list().iter().enumerate().take(K) {
+            if !self.pressed[k] {
+                continue;
+            }
+            let (n, at) = (&contact.n, SPRINGS + 3 * k);
+            let asked = self.asked(k, y);
+            let normal_force = asked.max(0.0);
+            rates.kinks[3 * k] = [normal_force * normal_force, (-asked).max(0.0)];
+            let approach = -n.dot(&v);
+            let slip = v + n * approach + n.cross(&w);
+            let held = three(y, at);
+            let asked = slip + held;
+            let (share, slips, cap) = contact.shear.share(asked.norm_squared(), normal_force);
+            let p = asked * share;
+            let shear_force = p * contact.shear.damping;
+            put(&mut rates.y, at, &((p - held) * contact.shear.rate));
+            dv += n * normal_force - shear_force;
+            dw += n.cross(&shear_force) * turns;
+            rates.q[4 * k] = contact.shear.damping * cap * slips;
+            rates.q[4 * k + 1] = shear_force.dot(&slip);
+            rates.q[4 * k + 3] = normal_force * approach;
+            rates.kinks[3 * k + 1] = [asked.norm_squared(), cap];
+            if rolls {
+                let at = SPRINGS + 3 * (K + k);
+                let wound = three(y, at);
+                let asked = w + wound;
+                let (share, _, cap) = contact.rolling.share(asked.norm_squared(), normal_force);
+                rates.kinks[3 * k + 2] = [asked.norm_squared(), cap];
+                let p = asked * share;
+                let rolling_moment = p * contact.rolling.damping;
+                put(&mut rates.y, at, &((p - wound) * contact.rolling.rate));
+                dw -= rolling_moment * turns;
+                rates.q[4 * k + 2] = rolling_moment.dot(&w);
+            }
+        }
+        put(&mut rates.y, WAY, &v);
+        put(&mut rates.y, V[0], &dv);
+        put(&mut rates.y, W[0], &dw);
+        rates
+    }
+}
+
+fn put<const N: usize>(y: &mut [f64; N], at: usize, x: &Vec3) {
+    y[at..at + 3].copy_from_slice(x.as_slice());
+}
+
+impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
+    for ContactRates<K>
+{
+    #[inline]
+    fn rates(&mut self, _node: usize, y: &[f64; N]) -> Rates<N, Q, P> {
+        self.rates_of(y)
+    }
+
+    #[inline]
+    fn size2(&self, off: &[f64; N]) -> f64 {
+        let mut sum: f64 = off[..SPRINGS].iter().map(|x| x * x).sum();
+        for (k, contact) in self.contacts.list().iter().enumerate() {
+            let mut add = |at: usize, rate: f64| {
+                if rate > 0.0 {
+                    sum += three(off, at).norm_squared() / (rate * rate);
+                }
+            };
+            add(SPRINGS + 3 * k, contact.shear.rate);
+            if N > SPRINGS + 3 * K {
+                add(SPRINGS + 3 * (K + k), contact.rolling.rate);
+            }
+        }
+        sum / (self.allowed * self.allowed)
+    }
+}
+
+/// Where between 0 and 1 the cubic with values and slopes given at both ends crosses zero, downwards or upwards.
+fn root([x0, d0]: [f64; 2], [x1, d1]: [f64; 2], down: bool) -> f64 {
+    let (b, a) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
+    let is_before = |t: f64| {
+        let x = x0 + t * (d0 + t * (b + t * a));
+        if down { x >= 0.0 } else { x <= 0.0 }
+    };
+    let (mut lo, mut hi) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (lo + hi);
+        if is_before(middle) {
+            lo = middle;
+        } else {
+            hi = middle;
+        }
+    }
+    0.5 * (lo + hi)
+}

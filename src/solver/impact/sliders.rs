@@ -1,0 +1,164 @@
+//! Shear and rolling of one contact under a known force: slider in series with (spring ∥ dashpot), explicitly.
+//!
+//! In units of mass, radius, approach speed and `1/ω`. With `s = k ξ/c`, the speed at which the dashpot would hold what the
+//! spring holds, the law of an element reads `p = proj_{cap}(u + s)`, `s' = (k/c)(p − s)`, force `c p`: the slider slips by
+//! `u + s − p`, the dashpot moves by `p − s`.
+
+use super::dormand_prince::Rates;
+use super::integrate::Pressed;
+use crate::ground::Law;
+use crate::solver::law::Body;
+
+/// A slider in series with spring and dashpot.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Element {
+    /// Damping `c` (–); 0 = left out.
+    pub(super) damping: f64,
+    /// `k/c` (–).
+    pub(super) rate: f64,
+    /// The slider's limit over the normal force, and over `c` (–).
+    pub(super) cap: f64,
+}
+
+impl Element {
+    fn new(stiffness: f64, damping: f64, limit: f64) -> Self {
+        if damping > 0.0 && limit > 0.0 {
+            Self { damping, rate: stiffness / damping, cap: limit / damping }
+        } else {
+            Self { damping: 0.0, rate: 0.0, cap: 0.0 }
+        }
+    }
+
+    /// The shear element of a contact of stiffness `p_N` (N/m).
+    pub(super) fn shear(body: &Body, law: &Law, p_n: f64) -> Self {
+        let momentum = (p_n * body.mass).sqrt();
+        Self::new(law.p_s / p_n, law.c_s / momentum, law.friction)
+    }
+
+    /// Its rolling element; with the spin times the radius for a speed.
+    pub(super) fn rolling(body: &Body, law: &Law, p_n: f64) -> Self {
+        let momentum = (p_n * body.mass).sqrt();
+        let r2 = body.radius * body.radius;
+        Self::new(law.k_r / (r2 * p_n), law.c_r / (r2 * momentum), law.rolling_m / body.radius)
+    }
+
+    pub(super) fn is_on(&self) -> bool {
+        self.damping > 0.0
+    }
+
+    /// `p` and its shortening for what is asked, under the force `f`: `p = asked × share`, and both sizes.
+    #[inline]
+    pub(super) fn share(&self, asked2: f64, f: f64) -> (f64, f64, f64) {
+        let cap = self.cap * f;
+        if asked2 <= cap * cap {
+            (1.0, 0.0, cap)
+        } else {
+            let asked = asked2.sqrt();
+            (cap / asked, asked - cap, cap)
+        }
+    }
+}
+
+/// Shear alone: slip and spring.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shear {
+    pub(super) element: Element,
+    /// Mass over that of the contact point along the surface, `1 + m R²/I` (–).
+    pub(super) lightness: f64,
+    /// Gravity along the surface.
+    pub(super) gravity: [f64; 2],
+}
+
+/// Slip, spring `s`; summed up: what slipping takes, slip.
+impl Pressed<4, 3, 1> for Shear {
+    #[inline]
+    fn rates(&self, f: f64, y: &[f64; 4]) -> Rates<4, 3, 1> {
+        let Element { damping, rate, .. } = self.element;
+        let asked = [y[0] + y[2], y[1] + y[3]];
+        let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
+        let (share, slips, cap) = self.element.share(asked2, f);
+        let p = asked.map(|x| x * share);
+        let normal_force = self.lightness * damping;
+        let g = self.gravity;
+        Rates {
+            y: [
+                g[0] - normal_force * p[0],
+                g[1] - normal_force * p[1],
+                rate * (p[0] - y[2]),
+                rate * (p[1] - y[3]),
+            ],
+            q: [damping * cap * slips, y[0], y[1]],
+            kinks: [[asked2, cap]],
+        }
+    }
+
+    #[inline]
+    fn size2(&self, off: &[f64; 4]) -> f64 {
+        let over = 1.0 / self.element.rate;
+        let slip2 = off[0] * off[0] + off[1] * off[1];
+        slip2 + (off[2] * off[2] + off[3] * off[3]) * (over * over)
+    }
+}
+
+/// Shear and rolling.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Both {
+    pub(super) shear: Element,
+    pub(super) rolling: Element,
+    /// `m R²/I` (–).
+    pub(super) turns: f64,
+    /// Gravity along the surface.
+    pub(super) gravity: [f64; 2],
+}
+
+/// Velocity, spin, springs; summed up: what slipping takes, way, work of rolling and of shear.
+impl Pressed<10, 5, 2> for Both {
+    #[inline]
+    fn rates(&self, f: f64, y: &[f64; 10]) -> Rates<10, 5, 2> {
+        let (shear, rolling) = (self.shear, self.rolling);
+        let slip = [y[0] - y[3], y[1] + y[2]];
+        let asked = [slip[0] + y[5], slip[1] + y[6]];
+        let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
+        let (share, slips, cap) = shear.share(asked2, f);
+        let p = asked.map(|x| x * share);
+        let wound = [y[2] + y[7], y[3] + y[8], y[4] + y[9]];
+        let wound2 = wound[0] * wound[0] + wound[1] * wound[1] + wound[2] * wound[2];
+        let (share, _, most) = rolling.share(wound2, f);
+        let m = wound.map(|x| x * share);
+        let (c, turn, g) = (shear.damping, self.turns * shear.damping, self.gravity);
+        let stop = self.turns * rolling.damping;
+        Rates {
+            y: [
+                g[0] - c * p[0],
+                g[1] - c * p[1],
+                -turn * p[1] - stop * m[0],
+                turn * p[0] - stop * m[1],
+                -stop * m[2],
+                shear.rate * (p[0] - y[5]),
+                shear.rate * (p[1] - y[6]),
+                rolling.rate * (m[0] - y[7]),
+                rolling.rate * (m[1] - y[8]),
+                rolling.rate * (m[2] - y[9]),
+            ],
+            q: [
+                c * cap * slips,
+                y[0],
+                y[1],
+                rolling.damping * (m[0] * y[2] + m[1] * y[3] + m[2] * y[4]),
+                c * (p[0] * slip[0] + p[1] * slip[1]),
+            ],
+            kinks: [[asked2, cap], [wound2, most]],
+        }
+    }
+
+    #[inline]
+    fn size2(&self, off: &[f64; 10]) -> f64 {
+        let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+        let over = |element: &Element| {
+            if element.is_on() { 1.0 / (element.rate * element.rate) } else { 0.0 }
+        };
+        square(&off[..5])
+            + square(&off[5..7]) * over(&self.shear)
+            + square(&off[7..]) * over(&self.rolling)
+    }
+}

@@ -1,0 +1,154 @@
+//! The same law written as it is printed, in SI units and world vectors, followed by a fixed classical step that is far too
+//! short: slow and independent.
+
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::law::{Body, within};
+
+/// One contact of a frozen geometry.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Touch {
+    pub(super) n: Vec3,
+    pub(super) law: Law,
+    pub(super) c_n: f64,
+    pub(super) scale: f64,
+}
+
+/// Motion and memory; `way` is that of the centre.
+#[derive(Debug, Clone)]
+pub(super) struct State {
+    pub(super) way: Vec3,
+    pub(super) v: Vec3,
+    pub(super) w: Vec3,
+    pub(super) shear: Vec<Vec3>,
+    pub(super) roll: Vec<Vec3>,
+    /// Friction, shear and normal dashpots, rolling (J).
+    pub(super) lost: [f64; 3],
+}
+
+impl State {
+    pub(super) fn new(v: Vec3, w: Vec3, contacts: usize) -> Self {
+        let none = vec![Vec3::zeros(); contacts];
+        Self { way: Vec3::zeros(), v, w, shear: none.clone(), roll: none, lost: [0.0; 3] }
+    }
+
+    fn moved(&self, rate: &Self, h: f64) -> Self {
+        let sum = |x: &[Vec3], y: &[Vec3]| x.iter().zip(y).map(|(x, y)| x + y * h).collect();
+        Self {
+            way: self.way + rate.way * h,
+            v: self.v + rate.v * h,
+            w: self.w + rate.w * h,
+            shear: sum(&self.shear, &rate.shear),
+            roll: sum(&self.roll, &rate.roll),
+            lost: [0, 1, 2].map(|k| self.lost[k] + h * rate.lost[k]),
+        }
+    }
+}
+
+/// Penetration of a contact (m).
+fn depth(touch: &Touch, at: &State) -> f64 {
+    -touch.n.dot(&at.way)
+}
+
+/// Normal force of every contact (N); `pressed` are those that hold the rock.
+pub(super) fn pushes(touches: &[Touch], pressed: &[bool], at: &State) -> Vec<f64> {
+    let share = |k: usize| -> f64 {
+        let cosine = |j: usize| touches[k].n.dot(&touches[j].n).max(0.0);
+        let sum: f64 = (0..touches.len()).filter(|j| pressed[*j]).map(|j| cosine(j).powi(2)).sum();
+        1.0 / sum.sqrt()
+    };
+    let normal_force = |k: usize| {
+        let touch = &touches[k];
+        let c = touch.c_n * touch.scale.sqrt() * share(k);
+        touch.law.p_n * touch.scale * depth(touch, at) - c * touch.n.dot(&at.v)
+    };
+    (0..touches.len()).map(|k| if pressed[k] { normal_force(k).max(0.0) } else { 0.0 }).collect()
+}
+
+fn rate(body: &Body, touches: &[Touch], pressed: &[bool], at: &State) -> State {
+    let mut rate = State::new(body.gravity, Vec3::zeros(), touches.len());
+    rate.way = at.v;
+    let normal_force = pushes(touches, pressed, at);
+    for (k, touch) in touches.iter().enumerate() {
+        let (n, law, force) = (&touch.n, &touch.law, normal_force[k]);
+        let slip = body.slip(n, &at.v, &at.w);
+        let mut shear_force = Vec3::zeros();
+        if law.friction > 0.0 {
+            shear_force = within(at.shear[k] * law.p_s + slip * law.c_s, law.friction * force);
+            rate.shear[k] = (shear_force - at.shear[k] * law.p_s) / law.c_s;
+        }
+        let mut rolling_moment = Vec3::zeros();
+        if law.k_r > 0.0 {
+            rolling_moment = within(at.roll[k] * law.k_r + at.w * law.c_r, law.rolling_m * force);
+            rate.roll[k] = (rolling_moment - at.roll[k] * law.k_r) / law.c_r;
+        }
+        rate.v += (n * force - shear_force) / body.mass;
+        rate.w += (n.cross(&shear_force) * body.radius - rolling_moment) / body.inertia;
+        rate.lost[0] += shear_force.dot(&(slip - rate.shear[k]));
+        rate.lost[1] += shear_force.dot(&rate.shear[k]) - force * n.dot(&at.v);
+        rate.lost[2] += rolling_moment.dot(&at.w);
+    }
+    rate
+}
+
+/// One classical step of order 4.
+fn step(body: &Body, touches: &[Touch], pressed: &[bool], at: &State, h: f64) -> State {
+    let k1 = rate(body, touches, pressed, at);
+    let k2 = rate(body, touches, pressed, &at.moved(&k1, 0.5 * h));
+    let k3 = rate(body, touches, pressed, &at.moved(&k2, 0.5 * h));
+    let k4 = rate(body, touches, pressed, &at.moved(&k3, h));
+    let mut end = at.clone();
+    for (k, weight) in [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)] {
+        end = end.moved(&k, h * weight / 6.0);
+    }
+    end
+}
+
+/// Follows an impact with `per_radian` steps until no contact pushes and none comes nearer, then out of the slab of the one
+/// contact if there is but one; returns the end and its time (s).
+pub(super) fn follow(
+    body: &Body,
+    touches: &[Touch],
+    (v, w): (Vec3, Vec3),
+    per_radian: f64,
+) -> (State, f64) {
+    let omega = |touch: &Touch| (touch.law.p_n * touch.scale / body.mass).sqrt();
+    let h = 1.0 / (per_radian * touches.iter().map(omega).fold(0.0, f64::max));
+    let mut at = State::new(v, w, touches.len());
+    let mut pressed: Vec<bool> = touches.iter().map(|touch| touch.n.dot(&v) < 0.0).collect();
+    let mut t = 0.0;
+    for _ in 0..100_000_000u64 {
+        let next = step(body, touches, &pressed, &at, h);
+        let normal_force = pushes(touches, &pressed, &next);
+        let ends =
+            (0..touches.len()).all(|k| normal_force[k] <= 0.0 && touches[k].n.dot(&next.v) >= 0.0);
+        if ends && touches.len() == 1 {
+            // The moment of lift-off lies within this step.
+            let (mut lo, mut hi) = (0.0, h);
+            for _ in 0..60 {
+                let middle = 0.5 * (lo + hi);
+                let there = step(body, touches, &pressed, &at, middle);
+                if pushes(touches, &pressed, &there)[0] > 0.0 {
+                    lo = middle;
+                } else {
+                    hi = middle;
+                }
+            }
+            at = step(body, touches, &pressed, &at, hi);
+            let n = &touches[0].n;
+            let (x, up, g) = (depth(&touches[0], &at), n.dot(&at.v), -n.dot(&body.gravity));
+            let out = 2.0 * x / (up + (up * up - 2.0 * g * x).sqrt());
+            at.way += (at.v + body.gravity * (0.5 * out)) * out;
+            at.v += body.gravity * out;
+            return (at, t + hi + out);
+        }
+        (at, t) = (next, t + h);
+        if ends {
+            break;
+        }
+        for (k, touch) in touches.iter().enumerate() {
+            pressed[k] = depth(touch, &at) > 0.0;
+        }
+    }
+    (at, t)
+}

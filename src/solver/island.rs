@@ -1,0 +1,23 @@
+//! The step for rocks that touch each other: islands, force sweeps, block systems.
+//!
+//! Rocks that may touch within a short while form an island; islands know nothing of each other. An island takes the
+//! step of a single rock for all of its rocks at once; only the contact forces are sought together.
+
+mod accept;
+mod pair_contact;
+mod block_factor;
+mod dda_step;
+mod dda_system;
+pub mod broad_phase;
+mod assembly;
+pub mod partition;
+mod newton_step;
+mod dda_contact;
+mod body;
+mod rigid;
+mod stage;
+mod sweeps;
+
+pub use assembly::{Done, Given, Island};
+pub use body::{BodySlot, IslandBody, Memory};
+pub use rigid::{Hit, TRAVEL};

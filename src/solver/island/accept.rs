@@ -1,0 +1,173 @@
+//! The end of an accepted step: memories, bonds, angular momentum.
+
+use super::assembly::{Done, Given, Island};
+use super::body::IslandBody;
+use crate::contact::history::carry;
+use crate::contact::pair::{Bond, PairHistory, between};
+use crate::math;
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::law::within;
+use crate::solver::step_control;
+use crate::solver::tableau::Tableau;
+use nalgebra::Matrix3;
+
+impl Island<'_> {
+    /// Takes over the step's end.
+    pub(super) fn accept(&mut self, tableau: &Tableau, dt: f64) -> Done {
+        let mut done = Done { dt, ..Done::default() };
+        let before = self.angular_state();
+        for member in &mut self.members {
+            let mut loss = Loss::default();
+            let end = member.end;
+            let IslandBody { state, body, laws, .. } = &mut **member;
+            let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
+            step_control::accept(&world, tableau, state, (&end, dt), &mut loss);
+            // a merged contact acts otherwise than its rates say
+            self.fresh &= state.fresh;
+            done.losses.push(loss);
+            let mut given = Given::default();
+            for k in 0..tableau.stages {
+                given.add(&member.given[k], dt * tableau.work_weight(k));
+            }
+            done.given.push(given);
+            member.given[0] = member.given[tableau.stages - 1];
+        }
+        done.broken = self.accept_ties(tableau, dt);
+        for member in &mut self.members {
+            member.flying = member.state.is_free();
+        }
+        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
+        {
+            for k in [pair_history.a, pair_history.b] {
+                self.members[k as usize].flying = false;
+            }
+        }
+        self.keep_spin(before);
+        done
+    }
+
+    fn accept_ties(&mut self, tableau: &Tableau, dt: f64) -> u64 {
+        let (last, hh) = (tableau.stages - 1, tableau.diagonal * dt);
+        let mut broken = 0;
+        let mut pairs = self.pairs.iter().peekable();
+        for (k, pair_history) in self.pair_histories.iter_mut().enumerate() {
+            let Some(pair) = pairs.next_if(|pair| pair.pair_history == k) else {
+                (
+                    pair_history.closed,
+                    pair_history.normal_force,
+                    pair_history.shear_force,
+                    pair_history.shear,
+                ) = (false, 0.0, Vec3::zeros(), Vec3::zeros());
+                self.pair_rates[k][0] = Vec3::zeros();
+                continue;
+            };
+            let [a, b] = pair.ends.map(|k| &self.members[k]);
+            let (_, distance) = between(&a.state.c, &b.state.c);
+            let from = if pair_history.is_held() { pair_history.n } else { pair.n };
+            let rate = carry(self.pair_rates[k][last], &from, &pair.n);
+            let stretch = pair.stretch(hh);
+            // The spring turns with the two rocks about their line.
+            let turn = 0.5 * dt * (a.state.w + b.state.w).dot(&pair.n);
+            let turned = |x: Vec3| x * math::cos(turn) + pair.n.cross(&x) * math::sin(turn);
+            (pair_history.normal_force, pair_history.shear_force, pair_history.n) =
+                (pair.normal_force, pair.shear_force, pair.n);
+            pair_history.captured = pair.captured;
+            pair_history.closed =
+                pair.normal_force > 0.0 || distance < a.body.radius + b.body.radius;
+            pair_history.shear = if pair_history.closed || pair_history.bond.is_some() {
+                turned(stretch)
+            } else {
+                Vec3::zeros()
+            };
+            self.pair_rates[k][0] =
+                if pair_history.is_held() { turned(rate) } else { Vec3::zeros() };
+            pair_history.slides = pair_history.bond.is_none()
+                && pair_history.shear_force.norm()
+                    >= pair_history.law.friction * pair_history.normal_force * (1.0 - 1e-9);
+            let overload = |bond| {
+                Bond::overload(
+                    bond,
+                    pair_history.normal_force,
+                    pair_history.shear_force.norm(),
+                    pair_history.law.friction,
+                )
+            };
+            if pair_history.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0) {
+                break_bond(pair_history);
+                self.pair_forces[k] = (pair_history.normal_force, pair_history.shear_force);
+                self.fresh = false;
+                broken += 1;
+                pair_history.closed = distance < a.body.radius + b.body.radius;
+            }
+        }
+        broken
+    }
+}
+
+/// A broken bond keeps what friction can hold; the rest of its stretch is lost.
+pub(super) fn break_bond(pair_history: &mut PairHistory) {
+    pair_history.bond = None;
+    pair_history.captured = true;
+    pair_history.normal_force = pair_history.normal_force.max(0.0);
+    let cap = pair_history.law.friction * pair_history.normal_force / pair_history.law.p_s;
+    pair_history.shear = within(pair_history.shear, cap);
+    pair_history.shear_force =
+        within(pair_history.shear_force, pair_history.law.friction * pair_history.normal_force);
+}
+
+impl Island<'_> {
+    /// Angular momentum about the common centre of mass (kg m²/s) of an island that touches nothing but itself.
+    fn angular_state(&self) -> Option<Vec3> {
+        let alone =
+            self.members.iter().all(|m| m.state.histories.iter().all(|history| !history.closed))
+                && self.pair_histories.iter().any(PairHistory::is_held);
+        alone.then(|| self.angular_momentum())
+    }
+
+    fn centre(&self) -> (f64, Vec3, Vec3) {
+        let mut sum = (0.0, Vec3::zeros(), Vec3::zeros());
+        for member in &self.members {
+            sum.0 += member.body.mass;
+            sum.1 += member.state.c * member.body.mass;
+            sum.2 += member.state.v * member.body.mass;
+        }
+        (sum.0, sum.1 / sum.0, sum.2 / sum.0)
+    }
+
+    fn angular_momentum(&self) -> Vec3 {
+        let (_, c, v) = self.centre();
+        self.members.iter().fold(Vec3::zeros(), |sum, member| {
+            let orbit = (member.state.c - c).cross(&((member.state.v - v) * member.body.mass));
+            sum + orbit + member.state.w * member.body.inertia
+        })
+    }
+
+    /// Gives back the angular momentum that the step's own error took from a free island, by a turn of the whole:
+    /// far less than the tolerance, but a free collision keeps it to rounding.
+    fn keep_spin(&mut self, before: Option<Vec3>) {
+        let Some(before) = before else { return };
+        if self.members.iter().any(|m| m.state.histories.iter().any(|history| history.closed)) {
+            return;
+        }
+        let lost = before - self.angular_momentum();
+        let (_, c, _) = self.centre();
+        let spins = self.pair_histories.iter().any(|pair_history| pair_history.law.friction > 0.0);
+        let mut inertia = Matrix3::zeros();
+        for member in &self.members {
+            let d = member.state.c - c;
+            let (m, own) = (member.body.mass, if spins { member.body.inertia } else { 0.0 });
+            inertia += Matrix3::identity() * (own + m * d.norm_squared()) - d * d.transpose() * m;
+        }
+        let Ok(turn) = inertia.pseudo_inverse(1e-9 * inertia.norm()).map(|inverse| inverse * lost)
+        else {
+            return;
+        };
+        for member in self.members.iter_mut().map(|slot| &mut **slot) {
+            member.state.v += turn.cross(&(member.state.c - c));
+            if spins {
+                member.state.w += turn;
+            }
+        }
+    }
+}

@@ -1,0 +1,336 @@
+//! An island of rocks that may touch each other, and its adaptive step.
+
+use super::body::{BodySlot, IslandBody};
+use super::dda_system::Global;
+use super::pair_contact::PairContact;
+use super::rigid::{Hit, RigidIsland};
+use super::sweeps::ActiveSet;
+use crate::contact::pair::{PairHistory, between};
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::step_control::{self, Control, ONSET, Outcome, StepError, TRAVEL, Trial};
+use crate::solver::tableau::{STAGES, Tableau};
+use crate::terrain::Terrain;
+
+/// A gap between two rocks that counts as a touch (–, relative to the sum of their radii): rounding of the leap.
+pub(super) const TOUCH: f64 = 1e-9;
+/// Overload at which a bond does not simply break: the step is cut to find the moment.
+const OVERLOAD: f64 = 0.05;
+
+/// Energy that a rock gives away through its contacts with other rocks (J), or power (W).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Given {
+    /// Its half of what those contacts take.
+    pub lost: f64,
+    /// Handed on to the other rocks, negative if received.
+    pub passed_on: f64,
+}
+
+impl Given {
+    /// Of the two ends of a contact, from the work that each does on it.
+    pub(super) fn of_ends([a, b]: [f64; 2]) -> [Self; 2] {
+        let lost = 0.5 * (a + b);
+        [Self { lost, passed_on: a - lost }, Self { lost, passed_on: b - lost }]
+    }
+
+    /// Adds `other` times `factor`.
+    pub(super) fn add(&mut self, other: &Self, factor: f64) {
+        self.lost += factor * other.lost;
+        self.passed_on += factor * other.passed_on;
+    }
+
+    /// All of it.
+    pub fn sum(&self) -> f64 {
+        self.lost + self.passed_on
+    }
+}
+
+/// What one step did.
+#[derive(Debug, Clone, Default)]
+pub struct Done {
+    /// Time gone (s).
+    pub dt: f64,
+    /// Energy lost to the ground, for each rock (J).
+    pub losses: Vec<Loss>,
+    /// Energy given to other rocks, for each rock (J).
+    pub given: Vec<Given>,
+    /// Steps tried and deviated away.
+    pub rejected: u64,
+    /// Impacts on the mesh (`rigid`; with the others the memory of a contact tells).
+    pub hits: Vec<Hit>,
+    /// Whether contact states did not settle (`dda`, `rigid`).
+    pub unsettled: bool,
+    /// Bonds that broke.
+    pub broken: u64,
+}
+
+/// An island: rocks, and a history for every two of them that may touch.
+#[derive(Debug)]
+pub struct Island<'a> {
+    /// The mesh.
+    pub terrain: &'a Terrain,
+    /// The rocks.
+    pub members: Vec<BodySlot>,
+    /// The pairs, in ascending order; `a` and `b` are places in `members`.
+    pub pair_histories: Vec<PairHistory>,
+    /// Step to try next (s).
+    pub h: f64,
+    /// Sweeps over the contacts so far.
+    pub sweeps: u64,
+    /// Systems solved by factorisation so far.
+    pub jumps: u64,
+    /// Whether the first rates belong to the present state.
+    pub fresh: bool,
+    pub(super) pairs: Vec<PairContact>,
+    pub(super) stirred: ActiveSet,
+    pub(super) tolerance: f64,
+    /// Rates of the shear springs at each stage.
+    pub(super) pair_rates: Vec<[Vec3; STAGES]>,
+    /// Forces of the last solution.
+    pub(super) pair_forces: Vec<(f64, Vec3)>,
+    /// The global system of fixed steps.
+    pub(super) global: Global,
+    /// Work space of rigid steps.
+    pub(super) rigid: RigidIsland,
+}
+
+impl<'a> Island<'a> {
+    /// An island of these rocks.
+    pub fn new(
+        terrain: &'a Terrain,
+        members: Vec<BodySlot>,
+        pair_histories: Vec<PairHistory>,
+    ) -> Self {
+        let pair_forces = pair_histories
+            .iter()
+            .map(|pair_history| (pair_history.normal_force, pair_history.shear_force))
+            .collect();
+        Self {
+            terrain,
+            members,
+            h: f64::INFINITY,
+            sweeps: 0,
+            jumps: 0,
+            fresh: false,
+            pairs: Vec::new(),
+            stirred: ActiveSet::default(),
+            tolerance: 0.0,
+            pair_rates: vec![[Vec3::zeros(); STAGES]; pair_histories.len()],
+            pair_forces,
+            global: Global::default(),
+            rigid: RigidIsland::default(),
+            pair_histories,
+        }
+    }
+
+    /// One accepted step of at most `h_max` (s).
+    ///
+    /// # Errors
+    /// [`StepError`] if the step had to become too short to matter.
+    pub fn advance(&mut self, control: &Control, h_max: f64) -> Result<Done, StepError> {
+        self.tolerance = control.tolerance;
+        if !self.fresh {
+            self.rates_now();
+        }
+        let omega = self.omega();
+        if !self.h.is_finite() {
+            self.h = ONSET / omega;
+        }
+        self.members.iter_mut().for_each(|member| member.known = member.state.histories.len());
+        let mut rejected = 0;
+        let mut trial = Try { island: self, control, omega };
+        let dt = step_control::settle(&mut trial, control, h_max, &mut rejected)?;
+        Ok(Done { rejected, ..self.accept(control.tableau, dt) })
+    }
+
+    /// Whether motion, height and springs of the whole island together hold more at the step's end than at its start.
+    fn gains(&self, hh: f64) -> bool {
+        let (mut before, mut after, mut unknown) = (0.0, 0.0, 0.0);
+        for IslandBody { state, body, end, .. } in self.members.iter().map(|member| &**member) {
+            let motion =
+                0.5 * (body.mass * end.v.norm_squared() + body.inertia * end.w.norm_squared());
+            let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
+            before += state.motion_j(body) + state.stored;
+            after += motion + lifted + step_control::pressed_j(state, end, hh);
+            unknown += step_control::PLACE_ROUNDING * body.radius * body.mass * body.gravity.norm();
+        }
+        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
+        {
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
+            let (_, distance) = between(&a.state.c, &b.state.c);
+            let reach =
+                pair_history.bond.map_or(a.body.radius + b.body.radius, |bond| bond.length_m);
+            let penetration = if pair_history.bond.is_some() {
+                reach - distance
+            } else {
+                (reach - distance).max(0.0)
+            };
+            before += 0.5
+                * (pair_history.law.p_n * penetration * penetration
+                    + pair_history.law.p_s * pair_history.shear.norm_squared());
+        }
+        for pair in &self.pairs {
+            let ends = pair.ends.map(|k| (self.members[k].end.v, self.members[k].end.w));
+            let mut penetration = pair.penetration - hh * pair.speed([&ends[0], &ends[1]]);
+            if pair.bond.is_none() {
+                penetration = penetration.max(0.0);
+            }
+            if penetration > 0.0 || pair.normal_force > 0.0 || pair.bond.is_some() {
+                let shear = pair.stretch(hh);
+                after += 0.5
+                    * (pair.law.p_n * penetration * penetration
+                        + pair.law.p_s * shear.norm_squared());
+            }
+            let least = pair.levers[0].min(pair.levers[1]);
+            unknown += step_control::PLACE_ROUNDING * least * pair.normal_force.abs();
+        }
+        after > before + step_control::ROUNDING * before + unknown
+    }
+
+    /// Largest `√(p_N/m)` among the contacts there are or may be (rad/s).
+    fn omega(&self) -> f64 {
+        let pair_histories = self
+            .pair_histories
+            .iter()
+            .filter(|pair_history| pair_history.is_held())
+            .map(|pair_history| pair_history.law.omega);
+        let ground = self.members.iter().map(|member| member.omega(self.terrain));
+        let omega = pair_histories.chain(ground).fold(0.0, f64::max);
+        let all = self.members.iter().flat_map(|member| &member.laws).map(|law| law.omega);
+        if omega > 0.0 { omega } else { all.fold(1.0, f64::max) }
+    }
+
+    /// Longest step in which nothing jumps over a feature or another rock (s).
+    pub(super) fn travel_limit(&mut self) -> f64 {
+        let mut limit = f64::INFINITY;
+        for member in self.members.iter_mut().filter(|member| !member.flying) {
+            let IslandBody { state, body, laws, .. } = &mut **member;
+            let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
+            limit = limit.min(step_control::travel_limit(&world, state));
+        }
+        for pair_history in &self.pair_histories {
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
+            if a.flying && b.flying && !pair_history.is_held() {
+                continue;
+            }
+            let gap = (a.state.c - b.state.c).norm() - a.body.radius - b.body.radius;
+            let room = TRAVEL * a.body.radius.min(b.body.radius) + gap.max(0.0);
+            let speed = (a.state.v - b.state.v).norm();
+            if speed > 0.0 {
+                limit = limit.min(room / speed);
+            }
+        }
+        limit
+    }
+
+    /// One step to its last stage; its error relative to the tolerance, `None` if a stage does not settle.
+    fn attempt(&mut self, control: &Control, dt: f64) -> Option<f64> {
+        let tableau = control.tableau;
+        for i in 1..tableau.stages {
+            self.stage(tableau, i, dt)?;
+        }
+        if self.tears_badly() {
+            return None;
+        }
+        Some(dt * self.error(tableau) / control.tolerance)
+    }
+
+    /// Whether a bond is loaded far beyond its strength, which a shorter step would have found out.
+    fn tears_badly(&self) -> bool {
+        self.h * self.omega() > 1e-6
+            && self.pairs.iter().any(|pair| {
+                let used = |bond: &crate::contact::pair::Bond| {
+                    bond.overload(pair.normal_force, pair.shear_force.norm(), pair.law.friction)
+                };
+                let pair_history = &self.pair_histories[pair.pair_history];
+                // One that is overloaded from the start breaks at once: no shorter step changes that.
+                pair.bond.as_ref().is_some_and(|bond| {
+                    used(bond) > OVERLOAD
+                        && bond.overload(
+                            pair_history.normal_force,
+                            pair_history.shear_force.norm(),
+                            pair_history.law.friction,
+                        ) <= 0.0
+                })
+            })
+    }
+
+    /// Largest error of the embedded method (m/s²).
+    fn error(&self, tableau: &Tableau) -> f64 {
+        let weights = &tableau.error[..tableau.stages];
+        let mut worst2 = 0.0f64;
+        let mut omegas: Vec<f64> =
+            self.members.iter().map(|member| member.omega(self.terrain)).collect();
+        for (pair_history, rates) in self
+            .pair_histories
+            .iter()
+            .zip(&self.pair_rates)
+            .filter(|(pair_history, _)| pair_history.is_held())
+        {
+            for k in [pair_history.a as usize, pair_history.b as usize] {
+                omegas[k] = omegas[k].max(pair_history.law.omega);
+            }
+            let sums = rates.iter().zip(weights);
+            let drift = sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate * *weight);
+            worst2 = worst2.max(drift.norm_squared() * pair_history.law.omega.powi(2));
+        }
+        for (member, omega) in self.members.iter().zip(&omegas) {
+            let mut off = [Vec3::zeros(); 3];
+            for (rate, weight) in member.state.rates.iter().zip(weights) {
+                off[0] += rate.c * *weight;
+                off[1] += rate.v * *weight;
+                off[2] += rate.w * *weight;
+            }
+            let mut stretch2 = off[0].norm_squared();
+            for k in 0..member.state.histories.len() {
+                let sums = member.state.rates.iter().zip(weights);
+                let drift =
+                    sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * *weight);
+                stretch2 = stretch2.max(drift.norm_squared());
+            }
+            worst2 = worst2
+                .max(stretch2 * omega * omega)
+                .max(off[1].norm_squared())
+                .max(off[2].norm_squared() * member.body.radius.powi(2));
+        }
+        worst2.sqrt()
+    }
+}
+
+/// A step of the island, tried with any length.
+struct Try<'i, 'a> {
+    island: &'i mut Island<'a>,
+    control: &'i Control,
+    omega: f64,
+}
+
+impl Trial for Try<'_, '_> {
+    fn h(&mut self) -> &mut f64 {
+        &mut self.island.h
+    }
+
+    fn limit(&mut self) -> f64 {
+        self.island.travel_limit()
+    }
+
+    fn omega(&self) -> f64 {
+        self.omega
+    }
+
+    fn try_step(&mut self, dt: f64) -> Outcome {
+        let outcome = match self.island.attempt(self.control, dt) {
+            None => Outcome::Unsettled,
+            Some(error) if error <= 1.0 => {
+                let hh = self.control.tableau.diagonal * dt;
+                let gains = dt * self.omega > step_control::RESOLVED && self.island.gains(hh);
+                if gains { Outcome::Gains } else { return Outcome::Error(error) }
+            }
+            Some(error) => Outcome::Error(error),
+        };
+        // Memories that came up in a step deviated away go with it.
+        for member in self.island.members.iter_mut().map(|slot| &mut **slot) {
+            member.state.histories.truncate(member.known);
+        }
+        outcome
+    }
+}

@@ -1,0 +1,209 @@
+//! One rock of an island.
+
+use super::assembly::Given;
+use super::pair_contact::Motion;
+use crate::contact::Feature;
+use crate::contact::history::ContactHistory;
+use crate::contact::submatrix::Vec6;
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::dda::contact::Contact;
+use crate::solver::law::{Body, StageContact};
+use crate::solver::stage::End;
+use crate::solver::tableau::{STAGES, Tableau};
+use crate::terrain::Terrain;
+use std::ops::{Deref, DerefMut};
+
+/// One rock of an island.
+#[derive(Debug)]
+pub struct IslandBody {
+    /// Motion, contacts with the mesh and scratch space.
+    pub state: ContactState,
+    /// Mass, size, gravity.
+    pub body: Body,
+    /// The law of every ground for this rock.
+    pub laws: Vec<Law>,
+    /// Whether nothing touches it.
+    pub flying: bool,
+    /// Whether nothing touched it before the last step (`rigid`).
+    pub flew: bool,
+    /// Whether anything but its weight acted on it in the last step (`rigid`).
+    pub was_touched: bool,
+    pub(super) base: End,
+    pub(super) guess: Vec3,
+    /// Velocity and spin at the stage's end without contact forces …
+    pub(super) free: Motion,
+    /// … and with them.
+    pub(super) now: Motion,
+    pub(super) end: End,
+    /// Forces of the last solution, to start the next from.
+    pub(super) kept: Vec<(Feature, f64, Vec3, Vec3)>,
+    /// Power given to other rocks at each stage (W).
+    pub(super) given: [Given; STAGES],
+    pub(super) known: usize,
+    /// Contacts with the mesh in a fixed step.
+    pub(super) joints: Vec<Contact>,
+    /// Displacement in a fixed step: free, and what contacts add.
+    pub(super) ways: [Vec6; 2],
+}
+
+/// What a rock is and remembers between two steps: all that later steps depend on.
+#[derive(Debug)]
+pub struct Memory {
+    motion: (Vec3, Vec3, Vec3),
+    histories: Vec<ContactHistory>,
+    flying: bool,
+}
+
+/// Where a rock is kept. It is lent to its island while that steps; nothing but the address moves.
+#[derive(Debug, Default)]
+pub struct BodySlot(Option<Box<IslandBody>>);
+
+impl BodySlot {
+    /// A rock in its place.
+    pub fn new(member: IslandBody) -> Self {
+        Self(Some(Box::new(member)))
+    }
+
+    /// Lends the rock; the place stays empty until it is given back.
+    #[must_use]
+    pub fn lend(&mut self) -> Self {
+        Self(self.0.take())
+    }
+}
+
+#[expect(clippy::expect_used, reason = "a rock is away only while its island steps")]
+impl Deref for BodySlot {
+    type Target = IslandBody;
+    #[inline]
+    fn deref(&self) -> &IslandBody {
+        self.0.as_deref().expect("the rock is at home")
+    }
+}
+
+#[expect(clippy::expect_used, reason = "a rock is away only while its island steps")]
+impl DerefMut for BodySlot {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut IslandBody {
+        self.0.as_deref_mut().expect("the rock is at home")
+    }
+}
+
+impl IslandBody {
+    /// A rock in flight at `(c, v, w)`.
+    pub fn new(body: Body, laws: Vec<Law>, (c, v, w): (Vec3, Vec3, Vec3)) -> Self {
+        let zero = (Vec3::zeros(), Vec3::zeros());
+        let end = End { c, v, w };
+        let state = ContactState { c, v, w, ..ContactState::unused() };
+        Self {
+            state,
+            body,
+            laws,
+            flying: true,
+            flew: true,
+            was_touched: false,
+            base: end,
+            guess: c,
+            free: zero,
+            now: zero,
+            end,
+            kept: Vec::new(),
+            given: [Given::default(); STAGES],
+            known: 0,
+            joints: Vec::new(),
+            ways: [Vec6::zeros(); 2],
+        }
+    }
+
+    /// What the rock is and remembers between two steps.
+    pub fn memory(&self) -> Memory {
+        let state = &self.state;
+        Memory {
+            motion: (state.c, state.v, state.w),
+            histories: state.histories.to_vec(),
+            flying: self.flying,
+        }
+    }
+
+    /// Goes back to what it was.
+    pub fn recall(&mut self, memory: &Memory) {
+        let state = &mut self.state;
+        (state.c, state.v, state.w) = memory.motion;
+        state.histories.restore(&memory.histories);
+        state.fresh = false;
+        self.flying = memory.flying;
+        self.kept.clear();
+    }
+
+    pub(super) fn contacts(&self) -> &[StageContact] {
+        &self.state.contacts[..self.state.contact_count]
+    }
+
+    /// Speed that the springs of its contacts with the mesh may give it (m/s): `Σ F/(m ω)`.
+    pub fn pressed_m_s(&self, terrain: &Terrain) -> f64 {
+        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
+        let histories = self.state.histories.iter();
+        histories
+            .map(|history| {
+                history.normal_force / (self.body.mass * world.law(history.triangle).omega)
+            })
+            .sum()
+    }
+
+    /// Whether it touched the mesh, or nearly, when it last looked: its gap was less than `way` (m), at most a tenth of its
+    /// radius.
+    pub fn is_near_mesh(&self, way: f64) -> bool {
+        let reach = self.body.radius + way;
+        !self.state.histories.is_empty()
+            || self.state.touches.iter().any(|touch| touch.distance_m <= reach)
+    }
+
+    /// Stiffest contact with the mesh (rad/s), 0 if there is none.
+    pub(super) fn omega(&self, terrain: &Terrain) -> f64 {
+        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
+        self.state
+            .histories
+            .iter()
+            .map(|history| world.law(history.triangle).omega)
+            .fold(0.0, f64::max)
+    }
+}
+
+impl IslandBody {
+    pub(super) fn look(&mut self, terrain: &Terrain) {
+        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
+        let guess = self.guess;
+        self.state.look_ahead(&world, &guess);
+    }
+
+    pub(super) fn place_contacts(
+        &mut self,
+        terrain: &Terrain,
+        tableau: &Tableau,
+        (i, h): (usize, f64),
+    ) {
+        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
+        self.state.place_contacts(&world, tableau, (i, h), (&self.base, &self.guess));
+        for contact in &mut self.state.contacts[..self.state.contact_count] {
+            let kept = self.kept.iter().find(|kept| kept.0 == contact.feature);
+            if let Some((_, normal_force, shear_force, rolling_moment)) = kept {
+                (contact.normal_force, contact.shear_force, contact.rolling_moment) =
+                    (*normal_force, *shear_force, *rolling_moment);
+            }
+        }
+    }
+
+    pub(super) fn store(&mut self, terrain: &Terrain, (i, hh): (usize, f64)) {
+        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
+        let c = self.base.c + self.now.0 * hh;
+        self.end = End { c, v: self.now.0, w: self.now.1 };
+        let (base, end) = (self.base, self.end);
+        self.state.store(&world, &base, &end, (i, hh));
+        self.kept.clear();
+        let contacts = &self.state.contacts[..self.state.contact_count];
+        self.kept.extend(
+            contacts.iter().map(|s| (s.feature, s.normal_force, s.shear_force, s.rolling_moment)),
+        );
+    }
+}

@@ -1,0 +1,197 @@
+//! The contact of two rocks inside a fixed step: the paper's submatrices for two spheres, and the judgement of its state.
+//!
+//! With `V` from the first sphere to the second, `s = 1` for the first and `−1` for the second, the relative
+//! displacement is `Σ s_k T_k D_k`, and every submatrix of the sphere–edge contact becomes four:
+//! `K_kl += s_k s_l (p_N V_Nᵀ V_N + p_s T_kᵀ Q T_l)`, `F_k += s_k (p_N λ V_Nᵀ − p_s T_kᵀ ξ)`.
+
+use crate::contact::history::carry;
+use crate::contact::pair::{Bond, PairHistory, between};
+use crate::contact::submatrix::{
+    Mat3x6, Mat6, Vec6, displacement, force_at, friction_cap, normal_row, slip, touching_point,
+};
+use crate::rock::Vec3;
+use crate::solver::dda::slider::{Change, Slider};
+use crate::solver::law::Body;
+
+/// One contact of two rocks in a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DdaPairContact {
+    pub(super) pair_history: usize,
+    pub(super) ends: [usize; 2],
+    v: Vec3,
+    t: [Mat3x6; 2],
+    /// `λ` at the step's start (m).
+    gap: f64,
+    p_n: f64,
+    damper: f64,
+    tan_phi: f64,
+    bond: Option<Bond>,
+    captured: bool,
+    normal_force: f64,
+    pub(super) presses: bool,
+    shear: Slider,
+    memory: bool,
+    push_before: f64,
+}
+
+const SIGN: [f64; 2] = [1.0, -1.0];
+
+impl DdaPairContact {
+    /// The contact of pair `k` if the rocks are nearer than `slack` (m).
+    pub(super) fn over(
+        (k, pair_history): (usize, &PairHistory),
+        bodies: [&Body; 2],
+        at: [&Vec3; 2],
+        slack: f64,
+        (dt, memory): (f64, bool),
+    ) -> Option<Self> {
+        let (n, distance) = between(at[0], at[1]);
+        let reach =
+            pair_history.bond.map_or(bodies[0].radius + bodies[1].radius, |bond| bond.length_m);
+        if distance > reach + slack && pair_history.bond.is_none() {
+            return None;
+        }
+        let v = -n;
+        let points = [touching_point(&v, bodies[0].radius), touching_point(&-v, bodies[1].radius)];
+        let law = &pair_history.law;
+        let damped = law.c_s > 0.0;
+        let c_n = if pair_history.captured && damped { law.c_n_captured } else { law.c_n };
+        let compliance = |body: &Body| {
+            0.5 * dt * dt * (1.0 / body.mass + body.radius * body.radius / body.inertia)
+        };
+        // A new pair knows no normal yet, and from the opposite of `n` there is no shortest turn.
+        let from = if pair_history.is_held() { &pair_history.n } else { &n };
+        let shear = Slider {
+            stretch: if memory { carry(pair_history.shear, from, &n) } else { Vec3::zeros() },
+            spring: law.p_s,
+            damper: if memory { law.c_s / dt } else { 0.0 },
+            compliance: bodies.iter().map(|body| compliance(body)).sum(),
+            ..Slider::NONE
+        };
+        Some(Self {
+            pair_history: k,
+            ends: [pair_history.a as usize, pair_history.b as usize],
+            v,
+            t: points.map(|point| displacement(&point)),
+            gap: distance - reach,
+            p_n: law.p_n,
+            damper: c_n / dt,
+            tan_phi: law.friction,
+            bond: pair_history.bond,
+            captured: pair_history.captured,
+            normal_force: pair_history.normal_force,
+            presses: pair_history.is_held(),
+            shear,
+            memory,
+            push_before: pair_history.normal_force,
+        })
+    }
+
+    /// Penetration after the displacements `d` (m).
+    pub(super) fn depth(&self, d: [&Vec6; 2]) -> f64 {
+        normal_row(&self.v).dot(&(d[0] - d[1])) - self.gap
+    }
+
+    fn way(&self, d: [&Vec6; 2]) -> Vec3 {
+        slip(&self.v, &(self.t[0] * d[0] - self.t[1] * d[1]))
+    }
+
+    fn inside(&self) -> f64 {
+        if self.bond.is_some() { -self.gap } else { (-self.gap).max(0.0) }
+    }
+
+    fn normal_force(&self, d: [&Vec6; 2]) -> f64 {
+        let depth = self.depth(d);
+        self.p_n * depth + self.damper * (depth - self.inside())
+    }
+
+    /// Block `K_kl`.
+    pub(super) fn stiffness(&self, k: usize, l: usize) -> Mat6 {
+        if !self.presses {
+            return Mat6::zeros();
+        }
+        let row = normal_row(&self.v);
+        let normal = (row * (self.p_n + self.damper)) * row.transpose();
+        let shear = if self.shear.slides { 0.0 } else { self.shear.spring + self.shear.damper };
+        // T_kᵀ Q T_l, as Vᵀ T = V_N
+        let across = (self.t[k].transpose() * self.t[l] - row * row.transpose()) * shear;
+        (normal + across) * (SIGN[k] * SIGN[l])
+    }
+
+    /// Load `F_k`.
+    pub(super) fn load(&self, k: usize) -> Vec6 {
+        if !self.presses {
+            return Vec6::zeros();
+        }
+        // What the dashpot has done before the touch is not its work.
+        let constant = self.p_n * self.gap + self.damper * (self.gap + self.inside());
+        let shear_force = if self.shear.slides {
+            self.shear.friction
+        } else {
+            self.shear.stretch * self.shear.spring
+        };
+        (normal_row(&self.v) * constant - force_at(&self.t[k], &shear_force)) * SIGN[k]
+    }
+
+    /// Opens or closes; whether that changed anything.
+    pub(super) fn open_or_close(&mut self, d: [&Vec6; 2]) -> bool {
+        self.normal_force = self.normal_force(d);
+        if self.bond.is_some() {
+            return false;
+        }
+        self.normal_force = self.normal_force.max(0.0);
+        std::mem::replace(&mut self.presses, self.normal_force > 0.0) != self.presses
+    }
+
+    /// Compares its state with the displacements that came out.
+    pub(super) fn judge(&mut self, d: [&Vec6; 2]) -> Change {
+        let shear_force = self.drag(d);
+        let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
+        if self.presses && self.bond.is_none() {
+            let (way, cap) = (self.way(d), friction_cap(self.normal_force, self.tan_phi));
+            change = change.max(if self.memory {
+                self.shear.judge(&way, &shear_force, cap)
+            } else {
+                let before = friction_cap(self.push_before, self.tan_phi);
+                self.shear.judge_as_printed(&way, cap, before)
+            });
+        }
+        change
+    }
+
+    pub(super) fn stick(&mut self) {
+        self.shear.slides = self.tan_phi <= 0.0 && self.bond.is_none();
+    }
+
+    fn drag(&self, d: [&Vec6; 2]) -> Vec3 {
+        if self.presses { self.shear.force(&self.way(d)) } else { Vec3::zeros() }
+    }
+
+    /// Work on end `k` over its displacement (J): what the other rock and the springs give it.
+    pub(super) fn work(&self, k: usize, d: [&Vec6; 2]) -> f64 {
+        if !self.presses {
+            return 0.0;
+        }
+        let normal_force = normal_row(&self.v) * -self.normal_force(d);
+        ((normal_force - force_at(&self.t[k], &self.drag(d))) * SIGN[k]).dot(d[k])
+    }
+
+    /// Writes what it remembers of the step; whether a bond broke.
+    pub(super) fn remember(&self, d: [&Vec6; 2], pair_history: &mut PairHistory) -> bool {
+        let shear_force = self.drag(d);
+        pair_history.n = -self.v;
+        pair_history.shear =
+            if self.memory && self.presses { self.shear.end(&shear_force) } else { Vec3::zeros() };
+        (pair_history.normal_force, pair_history.shear_force, pair_history.captured) =
+            (self.normal_force, shear_force, self.captured);
+        pair_history.slides = self.presses && self.shear.slides;
+        pair_history.closed = self.presses || self.depth(d) > 0.0;
+        let overload =
+            |bond: &Bond| bond.overload(self.normal_force, shear_force.norm(), self.tan_phi);
+        let breaks = self.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0);
+        if breaks {
+            super::accept::break_bond(pair_history);
+        }
+        breaks
+    }
+}

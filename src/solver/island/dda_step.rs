@@ -1,0 +1,244 @@
+//! Scheme `dda` for an island: the paper's step at a fixed time step, open–close iteration over all contacts.
+
+use super::assembly::{Done, Given, Island};
+use super::body::IslandBody;
+use super::dda_contact::DdaPairContact;
+use crate::contact::ContactPoint;
+use crate::contact::submatrix::Vec6;
+use crate::rock::Vec3;
+use crate::solver::Settings;
+use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::dda::contact::{Contact, Step};
+use crate::solver::dda::slider::Change;
+use crate::solver::dda::{DEEPEST, ROUNDS, SOLVES, compliance, free_motion, knows};
+use crate::solver::step_control::StepError;
+use crate::terrain::Terrain;
+
+impl Island<'_> {
+    /// One step of the scheme `dda`, at most `h_max` (s) long.
+    ///
+    /// # Errors
+    /// [`StepError`] if a rock sank in or its motion is no longer finite.
+    pub fn advance_fixed(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
+        let dt = settings.step_s.min(h_max).min(self.travel_limit());
+        let memory = settings.shear_memory;
+        let terrain = self.terrain;
+        let before: Vec<Loss> =
+            self.members.iter_mut().map(|member| member.meet(terrain, (dt, memory))).collect();
+        let mut links = self.links(dt, memory);
+        let settled = self.solve_fixed(&mut links, (dt, memory)).ok_or(StepError::NotFinite)?;
+        let mut done = Done { dt, unsettled: !settled, ..Done::default() };
+        for (member, before) in self.members.iter_mut().zip(before) {
+            done.losses.push(member.carry_on(terrain, dt, &before)?);
+            done.given.push(Given::default());
+        }
+        self.remember(&links, &mut done)?;
+        Ok(done)
+    }
+
+    fn links(&self, dt: f64, memory: bool) -> Vec<DdaPairContact> {
+        let over = |(k, pair_history): (usize, &crate::contact::pair::PairHistory)| {
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
+            let slack = 0.1 * a.body.radius.min(b.body.radius);
+            let at = [&a.state.c, &b.state.c];
+            DdaPairContact::over((k, pair_history), [&a.body, &b.body], at, slack, (dt, memory))
+        };
+        self.pair_histories.iter().enumerate().filter_map(over).collect()
+    }
+
+    /// Solves the step, and again with the contacts that it ran into; whether the contact states settled.
+    fn solve_fixed(
+        &mut self,
+        links: &mut [DdaPairContact],
+        (dt, memory): (f64, bool),
+    ) -> Option<bool> {
+        loop {
+            let settled = self.settle_fixed(links, dt)?;
+            let mut more = false;
+            for member in &mut self.members {
+                more |= member.meet_more(self.terrain, (dt, memory));
+            }
+            if !more {
+                return Some(settled);
+            }
+        }
+    }
+
+    /// Open–close iteration; a step that does not settle is solved with all contacts sticking.
+    fn settle_fixed(&mut self, links: &mut [DdaPairContact], dt: f64) -> Option<bool> {
+        let mut rounds = 0;
+        for _ in 0..SOLVES {
+            self.sweeps += 1;
+            self.solve_once(links, dt)?;
+            match self.judge(links) {
+                Change::None => return Some(true),
+                Change::Load => {}
+                Change::Mode => rounds += 1,
+            }
+            if rounds == ROUNDS {
+                break;
+            }
+        }
+        for member in &mut self.members {
+            member.joints.iter_mut().for_each(Contact::stick);
+        }
+        links.iter_mut().for_each(DdaPairContact::stick);
+        for _ in 0..SOLVES {
+            self.sweeps += 1;
+            self.solve_once(links, dt)?;
+            let mut changed = false;
+            for member in &mut self.members {
+                let d = member.way();
+                for joint in &mut member.joints {
+                    changed |= joint.open_or_close(&d);
+                }
+            }
+            for link in links.iter_mut() {
+                let d = link.ends.map(|k| self.members[k].way());
+                changed |= link.open_or_close([&d[0], &d[1]]);
+            }
+            if !changed {
+                break;
+            }
+        }
+        Some(false)
+    }
+
+    fn solve_once(&mut self, links: &[DdaPairContact], dt: f64) -> Option<()> {
+        let solved = self.global.solve(&mut self.members, links, dt);
+        let finite = self.members.iter().all(|m| m.ways[1].iter().all(|x| x.is_finite()));
+        (solved && finite).then_some(())
+    }
+
+    fn judge(&mut self, links: &mut [DdaPairContact]) -> Change {
+        let mut change = Change::None;
+        for member in &mut self.members {
+            let d = member.way();
+            for joint in &mut member.joints {
+                change = change.max(joint.judge(&d));
+            }
+        }
+        for link in links {
+            let d = link.ends.map(|k| self.members[k].way());
+            change = change.max(link.judge([&d[0], &d[1]]));
+        }
+        change
+    }
+
+    fn remember(&mut self, links: &[DdaPairContact], done: &mut Done) -> Result<(), StepError> {
+        for pair_history in &mut self.pair_histories {
+            pair_history.closed = false;
+        }
+        for link in links {
+            let d = link.ends.map(|k| self.members[k].way());
+            let d = [&d[0], &d[1]];
+            let least = link.ends.map(|k| self.members[k].body.radius);
+            if link.depth(d) > DEEPEST * least[0].min(least[1]) {
+                return Err(StepError::SankIn);
+            }
+            let given = Given::of_ends([-link.work(0, d), -link.work(1, d)]);
+            for (end, given) in link.ends.into_iter().zip(given) {
+                done.given[end].add(&given, 1.0);
+            }
+            done.broken += u64::from(link.remember(d, &mut self.pair_histories[link.pair_history]));
+        }
+        for member in &mut self.members {
+            member.flying = member.state.is_free();
+        }
+        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
+        {
+            for k in [pair_history.a, pair_history.b] {
+                self.members[k as usize].flying = false;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl IslandBody {
+    /// Displacement of the step.
+    fn way(&self) -> Vec6 {
+        self.ways[0] + self.ways[1]
+    }
+
+    fn fixed_step(&self, (dt, shear_memory): (f64, bool)) -> Step {
+        Step {
+            dt,
+            free: self.ways[0],
+            radius: self.body.radius,
+            compliance: compliance(&self.body, dt),
+            shear_memory,
+        }
+    }
+
+    /// Makes the touches of the step's start into contacts; what their springs hold.
+    fn meet(&mut self, terrain: &Terrain, how: (f64, bool)) -> Loss {
+        let c = self.state.c;
+        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
+        self.state.look_ahead(&world, &c);
+        let stored = self.state.stored_j(&world);
+        self.ways = [free_motion(&world, &self.state, how.0), Vec6::zeros()];
+        self.joints.clear();
+        for k in 0..self.state.touches.len() {
+            self.add_joint(terrain, how, (k, self.state.touches[k].distance_m));
+        }
+        stored
+    }
+
+    fn add_joint(&mut self, terrain: &Terrain, how: (f64, bool), (k, distance_m): (usize, f64)) {
+        let step = self.fixed_step(how);
+        let Self { state, body, laws, joints, .. } = self;
+        let world = ContactEnvironment { terrain, body: *body, laws };
+        let taken = joints.iter().fold(0, |taken, joint| taken | 1 << joint.history);
+        let v = state.v;
+        let history = state.history_of(&world, k, taken, &v);
+        let touch = ContactPoint { distance_m, ..state.touches[k] };
+        let law = world.law_of(&state.touches, k);
+        joints.push(Contact::new(&step, &law, &touch, (history, &state.histories[history])));
+    }
+
+    /// Adds the contacts that the step ran into; whether there are any.
+    fn meet_more(&mut self, terrain: &Terrain, how: (f64, bool)) -> bool {
+        let d = self.way();
+        let way: Vec3 = d.fixed_rows::<3>(0).into();
+        let end = self.state.c + way;
+        let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
+        self.state.look_ahead(&world, &end);
+        let touches = self.state.touches;
+        let before = self.joints.len();
+        for (k, touch) in touches.iter().enumerate() {
+            let is_inside =
+                touch.distance_m < self.body.radius && self.joints.len() < crate::contact::MOST;
+            if is_inside && !knows(&self.joints, touch, &touches, &d) {
+                self.add_joint(terrain, how, (k, touch.distance_m - touch.normal.dot(&way)));
+            }
+        }
+        self.joints.len() > before
+    }
+
+    /// Moves the rock, and gives what its contacts with the mesh took.
+    fn carry_on(&mut self, terrain: &Terrain, dt: f64, before: &Loss) -> Result<Loss, StepError> {
+        let (d, kick) = (self.way(), self.ways[1] * (2.0 / dt));
+        let Self { state, body, laws, joints, .. } = self;
+        let world = ContactEnvironment { terrain, body: *body, laws };
+        let mut loss = Loss::default();
+        for history in state.histories.iter_mut() {
+            history.closed = false;
+        }
+        for joint in joints.iter() {
+            if joint.depth(&d) > DEEPEST * body.radius {
+                return Err(StepError::SankIn);
+            }
+            loss.add(&joint.loss(&d).on(&world, joint.triangle), 1.0);
+            joint.remember(&d, &mut state.histories[joint.history]);
+        }
+        state.merge_lost(&world);
+        state.histories.retain(|history| history.closed);
+        state.c += d.fixed_rows::<3>(0);
+        state.v += body.gravity * dt + kick.fixed_rows::<3>(0);
+        state.w += kick.fixed_rows::<3>(3);
+        loss.add(&state.stored_j(&world), 1.0);
+        loss.add(before, -1.0);
+        Ok(loss)
+    }
+}

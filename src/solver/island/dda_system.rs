@@ -1,0 +1,93 @@
+//! The paper's global system, Eq. (4), of an island in a fixed step: `(2M/Δt² + K) E = F − K D₀` in blocks of 6×6.
+//!
+//! Rocks that no other touches have a block of their own; the rest is factorised together by sparse Cholesky, whose
+//! symbolic part is kept as long as the same rocks touch.
+
+use super::block_factor::{Below, Factor};
+use super::body::BodySlot;
+use super::dda_contact::DdaPairContact;
+use crate::contact::submatrix::{Mat6, Vec6, inertia};
+use nalgebra::Cholesky;
+
+/// What is kept between solves.
+#[derive(Debug, Default)]
+pub(super) struct Global {
+    factor: Factor,
+    diagonal: Vec<Mat6>,
+    below: Vec<Below>,
+    load: Vec<f64>,
+}
+
+impl Global {
+    /// Writes into every member what contacts add to its free displacement over `dt`; false if there is no solution.
+    pub(super) fn solve(
+        &mut self,
+        members: &mut [BodySlot],
+        links: &[DdaPairContact],
+        dt: f64,
+    ) -> bool {
+        let mut blocks: Vec<Mat6> = Vec::with_capacity(members.len());
+        let mut loads: Vec<Vec6> = Vec::with_capacity(members.len());
+        for member in members.iter() {
+            let contacts = member
+                .joints
+                .iter()
+                .fold(Mat6::zeros(), |sum, joint| sum + joint.shape().stiffness());
+            let mut load = -(contacts * member.ways[0]);
+            member.joints.iter().for_each(|joint| joint.add_load(&mut load));
+            blocks.push(contacts + inertia(member.body.mass, member.body.inertia, dt));
+            loads.push(load);
+        }
+        let mut place = vec![usize::MAX; members.len()];
+        for link in links {
+            for k in 0..2 {
+                blocks[link.ends[k]] += link.stiffness(k, k);
+                loads[link.ends[k]] += link.load(k);
+                for l in 0..2 {
+                    let way = members[link.ends[l]].ways[0];
+                    loads[link.ends[k]] -= link.stiffness(k, l) * way;
+                }
+                place[link.ends[k]] = 0;
+            }
+        }
+        let mut linked = 0;
+        for (k, member) in members.iter_mut().enumerate() {
+            if place[k] == usize::MAX {
+                let Some(factor) = Cholesky::new(blocks[k]) else { return false };
+                member.ways[1] = factor.solve(&loads[k]);
+            } else {
+                place[k] = linked;
+                linked += 1;
+            }
+        }
+        linked == 0 || self.solve_linked(members, links, &place, (&blocks, &loads)).is_some()
+    }
+
+    fn solve_linked(
+        &mut self,
+        members: &mut [BodySlot],
+        links: &[DdaPairContact],
+        place: &[usize],
+        (blocks, loads): (&[Mat6], &[Vec6]),
+    ) -> Option<()> {
+        let linked = |k: &usize| place[*k] != usize::MAX;
+        self.diagonal.clear();
+        self.load.clear();
+        for k in (0..members.len()).filter(linked) {
+            self.diagonal.push(blocks[k]);
+            self.load.extend(loads[k].iter());
+        }
+        // Ties stand in ascending order of their ends, and so do the blocks below the diagonal by column and row.
+        self.below.clear();
+        self.below.extend(
+            links
+                .iter()
+                .map(|link| (place[link.ends[1]], place[link.ends[0]], link.stiffness(1, 0))),
+        );
+        self.factor.solve(&self.diagonal, &self.below, &mut self.load)?;
+        for (k, x) in (0..members.len()).filter(linked).zip(self.load.chunks_exact(6)) {
+            members[k].ways[1] = Vec6::from_column_slice(x);
+        }
+        Some(())
+    }
+}

@@ -1,0 +1,235 @@
+//! Newton jumps for a whole island: the stage linearised in the modes that the sweeps have found.
+//!
+//! The paper's global system of 6×6 blocks, Eq. (4), with the change of friction with the normal force, which makes it
+//! unsymmetric; solved by sparse LU.
+
+use super::body::{BodySlot, IslandBody};
+use super::pair_contact::{Motion, PairContact};
+
+use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
+use crate::rock::Vec3;
+use crate::solver::law::StageContact;
+use crate::solver::multi_contact::{Answer, Normal, Slider};
+use faer::prelude::Solve;
+use faer::sparse::{SparseColMat, Triplet};
+use nalgebra::{DMatrix, DVector, Matrix3};
+
+/// Most unknowns for which a dense matrix is cheaper: a sparse one costs as much before the first number is touched.
+const DENSE: usize = 48;
+
+/// One contact, linear around the present motion.
+struct Linear {
+    normal: Normal,
+    shear: Answer,
+    /// Slip and normal speed there, as far as they come from the ends that are sought.
+    slip: Vec3,
+    speed: f64,
+    n: Vec3,
+    /// Its ends that are sought: place, sign of the first or second body, lever.
+    ends: [Option<(usize, f64, f64)>; 2],
+}
+
+/// Six rows for each body of the island, triplets of the matrix.
+struct System {
+    triplets: Vec<Triplet<usize, usize, f64>>,
+    load: Vec<f64>,
+}
+
+/// Motions of the rocks that take part that solve the stage of length `h` linearised around the present ones, while the
+/// others go on as they do.
+pub(super) fn jump(
+    members: &[BodySlot],
+    pairs: &[PairContact],
+    takes_part: &[bool],
+    h: f64,
+) -> Option<Vec<Option<Motion>>> {
+    let mut rocks = 0;
+    let place: Vec<Option<usize>> = takes_part
+        .iter()
+        .map(|&part| {
+            rocks += usize::from(part);
+            part.then(|| rocks - 1)
+        })
+        .collect();
+    let size = 6 * rocks;
+    let mut system = System { triplets: Vec::with_capacity(72 * size), load: vec![0.0; size] };
+    for (member, place) in members.iter().zip(&place) {
+        let Some(k) = *place else { continue };
+        system.add_inertia(k, member, h);
+        for contact in member.contacts().iter().filter(|contact| contact.normal_force > 0.0) {
+            system.add_contact_force(k, member, contact, h);
+        }
+    }
+    for pair in pairs.iter().filter(|pair| pair.normal_force > 0.0 || pair.bond.is_some()) {
+        if pair.ends.iter().any(|&end| place[end].is_some()) {
+            system.add(&Linear::of_pair(pair, members, &place, h));
+        }
+    }
+    let motions = system.solve()?;
+    Some(place.iter().map(|place| place.map(|k| motions[k])).collect())
+}
+
+impl Linear {
+    fn of_pair(pair: &PairContact, members: &[BodySlot], place: &[Option<usize>], h: f64) -> Self {
+        let ends = pair.ends.map(|k| &members[k].now);
+        let (law, speed, trial) = (&pair.law, pair.speed(ends), pair.trial(ends, h));
+        let (normal, cap) = if pair.bond.is_some() {
+            (Normal { a: law.p_n * pair.penetration, b: law.p_n * h + pair.c_n }, f64::INFINITY)
+        } else {
+            let springs = (law.p_n, pair.c_n);
+            let normal =
+                Normal::line(springs, (pair.penetration, pair.normal_force), 1.0 / pair.inv_m, h);
+            (normal, law.friction)
+        };
+        let (normal_force, held) =
+            if pair.bond.is_some() { (1.0, 1.0) } else { (normal.at(speed), pair.normal_force) };
+        let slider = Slider::left(cap, law.p_s * h + law.c_s, (&pair.shear_force, held));
+        let still = (Vec3::zeros(), Vec3::zeros());
+        let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
+        let own = pair.speed(sought);
+        Self {
+            normal: Normal { a: normal.a - normal.b * (speed - own), ..normal },
+            shear: slider.at(trial, normal_force),
+            slip: pair.slip(sought),
+            speed: own,
+            n: pair.n,
+            ends: [0, 1].map(|k| {
+                place[pair.ends[k]].map(|at| (at, if k == 0 { 1.0 } else { -1.0 }, pair.levers[k]))
+            }),
+        }
+    }
+}
+
+impl System {
+    fn add_inertia(&mut self, k: usize, member: &IslandBody, h: f64) {
+        let (m, i) = (member.body.mass / h, member.body.inertia / h);
+        for axis in 0..3 {
+            let (row, turn) = (6 * k + axis, 6 * k + 3 + axis);
+            self.triplets.push(Triplet::new(row, row, m));
+            self.triplets.push(Triplet::new(turn, turn, i));
+            self.load[row] += m * member.free.0[axis];
+            self.load[turn] += i * member.free.1[axis];
+        }
+    }
+
+    fn add_contact_force(&mut self, k: usize, member: &IslandBody, contact: &StageContact, h: f64) {
+        let (body, law, (v, w)) = (&member.body, &contact.law, &member.now);
+        let normal = Normal::line(
+            (law.p_n, contact.c_n),
+            (contact.penetration, contact.normal_force),
+            body.mass,
+            h,
+        );
+        let speed = contact.n.dot(v);
+        let (stick, wound) = contact.trials(body, v, w, h);
+        let normal_force = normal.at(speed);
+        let shear = Slider::left(
+            law.friction,
+            law.p_s * h + law.c_s,
+            (&contact.shear_force, contact.normal_force),
+        );
+        let shear = shear.at(stick, normal_force);
+        let ends = [Some((k, 1.0, body.radius)), None];
+        self.add(&Linear {
+            normal,
+            shear,
+            slip: body.slip(&contact.n, v, w),
+            speed,
+            n: contact.n,
+            ends,
+        });
+        if law.rolling_m > 0.0 {
+            let roll = Slider::left(
+                law.rolling_m,
+                law.k_r * h + law.c_r,
+                (&contact.rolling_moment, contact.normal_force),
+            );
+            let roll = roll.at(wound, normal_force);
+            self.add_rolling(k, &roll, &normal, (&contact.n, speed, w));
+        }
+    }
+
+    fn add_rolling(
+        &mut self,
+        k: usize,
+        roll: &Answer,
+        normal: &Normal,
+        (n, speed, w): (&Vec3, f64, &Vec3),
+    ) {
+        let constant = roll.force - roll.jacobian * w + roll.along * (normal.b * speed);
+        let coupling = roll.along * n.transpose() * normal.b;
+        let mut block = Mat6::zeros();
+        block.fixed_view_mut::<3, 3>(3, 3).copy_from(&roll.jacobian);
+        block.fixed_view_mut::<3, 3>(3, 0).copy_from(&-coupling);
+        self.add_block((k, k), &block);
+        for axis in 0..3 {
+            self.load[6 * k + 3 + axis] -= constant[axis];
+        }
+    }
+
+    /// `K_kl += N_kᵀ b N_l + S_kᵀ (J S_l − e μ b N_l)`, with the rows `N` of the normal speed and `S` of the slip.
+    fn add(&mut self, contact: &Linear) {
+        let Linear { normal, shear, n, .. } = contact;
+        let constant =
+            shear.force - shear.jacobian * contact.slip + shear.along * (normal.b * contact.speed);
+        let rows = contact.ends.map(|end| end.map(|(k, sign, lever)| (k, rows(n, sign, lever))));
+        for (k, (n_k, s_k)) in rows.iter().flatten() {
+            for (l, (n_l, s_l)) in rows.iter().flatten() {
+                let shear_force = shear.jacobian * s_l - (shear.along * normal.b) * n_l.transpose();
+                self.add_block(
+                    (*k, *l),
+                    &((n_k * normal.b) * n_l.transpose() + s_k.transpose() * shear_force),
+                );
+            }
+            let load = n_k * normal.a - s_k.transpose() * constant;
+            for row in 0..6 {
+                self.load[6 * k + row] += load[row];
+            }
+        }
+    }
+
+    fn add_block(&mut self, (k, l): (usize, usize), block: &Mat6) {
+        for column in 0..6 {
+            for row in 0..6 {
+                let value = block[(row, column)];
+                self.triplets.push(Triplet::new(6 * k + row, 6 * l + column, value));
+            }
+        }
+    }
+
+    fn solve(self) -> Option<Vec<Motion>> {
+        let size = self.load.len();
+        let x = if size <= DENSE { self.solve_dense()? } else { self.solve_sparse()? };
+        let at = |k: usize| Vec3::new(x[k], x[k + 1], x[k + 2]);
+        let finite = x.iter().all(|x| x.is_finite());
+        finite.then(|| (0..size / 6).map(|k| (at(6 * k), at(6 * k + 3))).collect())
+    }
+
+    fn solve_dense(self) -> Option<Vec<f64>> {
+        let size = self.load.len();
+        let mut matrix = DMatrix::zeros(size, size);
+        for one in &self.triplets {
+            matrix[(one.row, one.col)] += one.val;
+        }
+        let mut load = DVector::from_vec(self.load);
+        matrix.lu().solve_mut(&mut load).then(|| load.data.into())
+    }
+
+    fn solve_sparse(self) -> Option<Vec<f64>> {
+        let size = self.load.len();
+        let matrix = SparseColMat::try_new_from_triplets(size, size, &self.triplets).ok()?;
+        let factor = matrix.sp_lu().ok()?;
+        let load = faer::Col::from_fn(size, |k| self.load[k]);
+        let x = factor.solve(&load);
+        Some((0..size).map(|k| x[k]).collect())
+    }
+}
+
+/// Rows of normal speed and slip of one end.
+fn rows(n: &Vec3, sign: f64, lever: f64) -> (Vec6, Mat3x6) {
+    let across = (Matrix3::identity() - n * n.transpose()) * sign;
+    let mut slip = Mat3x6::zeros();
+    slip.fixed_view_mut::<3, 3>(0, 0).copy_from(&across);
+    slip.fixed_view_mut::<3, 3>(0, 3).copy_from(&(n.cross_matrix() * lever));
+    (Vec6::new(n.x * sign, n.y * sign, n.z * sign, 0.0, 0.0, 0.0), slip)
+}

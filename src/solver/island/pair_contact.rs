@@ -1,0 +1,159 @@
+//! The contact of two rocks inside one implicit stage: the law of [`StageContact`](crate::solver::law::StageContact) with a second body.
+
+use crate::contact::pair::{Bond, PairHistory, between};
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::law::{Body, normal_force, within};
+
+/// A velocity and a spin.
+pub(super) type Motion = (Vec3, Vec3);
+
+/// One contact of two rocks: its state at the stage's base and the forces that are sought.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PairContact {
+    /// Which pair of rocks it belongs to.
+    pub(super) pair_history: usize,
+    /// The two rocks, as places in the island.
+    pub(super) ends: [usize; 2],
+    pub(super) law: Law,
+    /// Normal damping in force (N s/m).
+    pub(super) c_n: f64,
+    /// Too slow to rebound.
+    pub(super) captured: bool,
+    /// Holds in tension too.
+    pub(super) bond: Option<Bond>,
+    /// Unit normal from the second to the first.
+    pub(super) n: Vec3,
+    /// Penetration at the stage's base, along `n` (m).
+    pub(super) penetration: f64,
+    /// Stretch of the shear spring at the base (m).
+    pub(super) shear: Vec3,
+    /// Distances from the centres to the common point that is touched (m): forces with one line of action keep the
+    /// angular momentum.
+    pub(super) levers: [f64; 2],
+    /// Normal force (N), negative only in a bond.
+    pub(super) normal_force: f64,
+    /// Shear force: the first rock feels `−q`, the second `q` (N).
+    pub(super) shear_force: Vec3,
+    /// `1/m_a + 1/m_b` (1/kg).
+    pub(super) inv_m: f64,
+    /// The same for the touched point along the surface, `+ L_a²/I_a + L_b²/I_b` (1/kg).
+    pub(super) inv_t: f64,
+}
+
+impl PairContact {
+    /// The contact of a pair for centres at `at`, if they are near enough; no stretch and no forces yet.
+    pub(super) fn over(
+        pair_history: &PairHistory,
+        bodies: [&Body; 2],
+        at: [&Vec3; 2],
+        slack: f64,
+    ) -> Option<Self> {
+        let (n, distance) = between(at[0], at[1]);
+        let reach = bodies[0].radius + bodies[1].radius;
+        if distance > reach + slack && pair_history.bond.is_none() {
+            return None;
+        }
+        let levers = bodies.map(|body| distance * body.radius / reach);
+        let inv_m = 1.0 / bodies[0].mass + 1.0 / bodies[1].mass;
+        let turning = [0, 1].map(|k| levers[k] * levers[k] / bodies[k].inertia);
+        Some(Self {
+            pair_history: 0,
+            ends: [pair_history.a as usize, pair_history.b as usize],
+            law: pair_history.law,
+            c_n: if pair_history.captured {
+                pair_history.law.c_n_captured
+            } else {
+                pair_history.law.c_n
+            },
+            captured: pair_history.captured,
+            bond: pair_history.bond,
+            n,
+            penetration: pair_history.bond.map_or(reach, |bond| bond.length_m) - distance,
+            shear: Vec3::zeros(),
+            levers,
+            normal_force: pair_history.normal_force,
+            shear_force: Vec3::zeros(),
+            inv_m,
+            inv_t: inv_m + turning[0] + turning[1],
+        })
+    }
+
+    /// Whether it holds any force.
+    #[inline]
+    pub(super) fn acts(&self) -> bool {
+        self.normal_force != 0.0 || self.bond.is_some()
+    }
+
+    /// Normal speed apart (m/s).
+    #[inline]
+    pub(super) fn speed(&self, [a, b]: [&Motion; 2]) -> f64 {
+        self.n.dot(&(a.0 - b.0))
+    }
+
+    /// Slip of the first rock over the second at the touched point (m/s).
+    pub(super) fn slip(&self, [a, b]: [&Motion; 2]) -> Vec3 {
+        let u = a.0 - b.0;
+        u - self.n * self.n.dot(&u) + self.n.cross(&(a.1 * self.levers[0] + b.1 * self.levers[1]))
+    }
+
+    /// What the shear spring would hold if it did not slide (N).
+    pub(super) fn trial(&self, ends: [&Motion; 2], h: f64) -> Vec3 {
+        self.shear * self.law.p_s + self.slip(ends) * (self.law.p_s * h + self.law.c_s)
+    }
+
+    /// Forces for motions without this contact's own effect, over a stage of length `h`.
+    pub(super) fn solve(&mut self, ends: [&Motion; 2], h: f64) {
+        let (springs, vn) = ((self.law.p_n, self.c_n), self.speed(ends));
+        if self.bond.is_none() {
+            self.normal_force = normal_force(springs, self.penetration, vn, 1.0 / self.inv_m, h);
+            if self.normal_force <= 0.0 {
+                self.shear_force = Vec3::zeros();
+                return;
+            }
+        }
+        let free = self.trial(ends, h) / (1.0 + h * (self.law.p_s * h + self.law.c_s) * self.inv_t);
+        if self.bond.is_some() {
+            let stiff = self.law.p_n * h + self.c_n;
+            self.normal_force =
+                (self.law.p_n * self.penetration - stiff * vn) / (1.0 + stiff * h * self.inv_m);
+            self.shear_force = free;
+            return;
+        }
+        self.shear_force = within(free, self.law.friction * self.normal_force);
+    }
+
+    /// Forces at the present state, for the explicit first stage; gives the rate of the shear spring.
+    pub(super) fn act_now(&mut self, ends: [&Motion; 2]) -> Vec3 {
+        let (penetration, vn) = (self.penetration, self.speed(ends));
+        let held = self.shear * self.law.p_s;
+        let stick = held + self.slip(ends) * self.law.c_s;
+        if self.bond.is_some() {
+            (self.normal_force, self.shear_force) =
+                (self.law.p_n * penetration - self.c_n * vn, stick);
+        } else {
+            self.normal_force = (self.law.p_n * penetration.max(0.0) - self.c_n * vn).max(0.0);
+            self.shear_force = within(stick, self.law.friction * self.normal_force);
+        }
+        if self.law.c_s > 0.0 { (self.shear_force - held) / self.law.c_s } else { Vec3::zeros() }
+    }
+
+    /// Force and moment on end `k` (N, N m).
+    pub(super) fn load(&self, k: usize) -> Motion {
+        let force = self.n * self.normal_force - self.shear_force;
+        let rolling_moment = self.n.cross(&self.shear_force) * self.levers[k];
+        (if k == 0 { force } else { -force }, rolling_moment)
+    }
+
+    /// Adds `times` the effect over `h` on end `k` to its motion.
+    pub(super) fn act(&self, k: usize, body: &Body, times_h: f64, (v, w): &mut Motion) {
+        let (force, rolling_moment) = self.load(k);
+        *v += force * (times_h / body.mass);
+        *w += rolling_moment * (times_h / body.inertia);
+    }
+
+    /// Stretch of the shear spring at the stage's end: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`.
+    pub(super) fn stretch(&self, h: f64) -> Vec3 {
+        (self.shear_force * h + self.shear * self.law.c_s) / (h * self.law.p_s + self.law.c_s)
+    }
+}

@@ -1,0 +1,266 @@
+//! Scheme `rigid` for an island: the limit of stiff springs for rocks that touch each other.
+//!
+//! A step has three parts. Sustained contact is solved for the whole island at velocity level; then the impacts that the
+//! step ran into are taken in the order of their times; then what still overlaps is moved apart. The step's length
+//! follows from the way of the fastest rock alone, so that its cost grows with the number of rocks and no faster. An
+//! island of one rock is the single rock's scheme.
+
+mod contacts;
+mod position_correction;
+mod newton_step;
+mod impacts;
+mod resting_contacts;
+mod sweeps;
+
+use super::assembly::{Done, Given, Island};
+use super::body::{BodySlot, IslandBody};
+use crate::contact::pair::{PairHistory, between};
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::rigid::{HELD, capture_m_s, remember};
+use crate::solver::step_control::StepError;
+use crate::terrain::Terrain;
+use contacts::{Ball, BallContact, GroundContact};
+pub use impacts::Hit;
+use impacts::{Due, Scene};
+use std::collections::BinaryHeap;
+use sweeps::{ContactQueue, Leaning};
+
+/// Longest way of a rock in one step (–, relative to its radius). Impacts on the way are found wherever they are; a
+/// contact that is slid over meanwhile is off by the square of half of this.
+pub const TRAVEL: f64 = 0.2;
+
+/// Work space of the rigid steps of an island.
+#[derive(Debug, Default)]
+pub(super) struct RigidIsland {
+    balls: Vec<Ball>,
+    ground_contacts: Vec<GroundContact>,
+    ball_contacts: Vec<BallContact>,
+    losses: Vec<Loss>,
+    given: Vec<Given>,
+    hits: Vec<Hit>,
+    due: BinaryHeap<Due>,
+    /// Which pairs had a blow.
+    struck: Vec<bool>,
+    /// Ties or contacts of every rock: where its list begins, and the lists.
+    first: Vec<u32>,
+    links: Vec<u32>,
+    /// Contacts that one of their rocks has changed since.
+    asked: ContactQueue,
+    lean: Leaning,
+    /// What the normal impulses of sustained contacts took in this step (J).
+    taken_j: f64,
+    places: Vec<Vec3>,
+    /// Smallest capture speed (m/s).
+    capture_m_s: f64,
+    /// Length of the step in hand (s).
+    dt: f64,
+    sweeps: u64,
+    jumps: u64,
+}
+
+impl Island<'_> {
+    /// One step of the scheme `rigid`, at most `longest` and `h_max` (s) long.
+    ///
+    /// # Errors
+    /// [`StepError`] if motion is no longer finite.
+    pub fn advance_rigid(&mut self, longest: f64, h_max: f64) -> Result<Done, StepError> {
+        if let [member] = &mut self.members[..] {
+            return alone(self.terrain, member, (longest, h_max));
+        }
+        let mut island = std::mem::take(&mut self.rigid);
+        island.begin(&self.members, &self.pair_histories);
+        let dt = island.step_s(longest, h_max);
+        let (terrain, pair_histories) = (self.terrain, &self.pair_histories);
+        let settled = island.sustain(terrain, (&mut self.members, pair_histories), dt);
+        let mut scene = Scene { terrain, members: &mut self.members, pair_histories };
+        let struck = island.strike(&mut scene, dt);
+        island.part(&mut scene);
+        self.sweeps += std::mem::take(&mut island.sweeps);
+        self.jumps += std::mem::take(&mut island.jumps);
+        let finite = island.balls.iter().all(Ball::is_finite);
+        self.take_over(&island, dt);
+        let done = Done {
+            dt,
+            losses: std::mem::take(&mut island.losses),
+            given: std::mem::take(&mut island.given),
+            hits: std::mem::take(&mut island.hits),
+            unsettled: !(settled && struck),
+            ..Done::default()
+        };
+        self.rigid = island;
+        if finite { Ok(done) } else { Err(StepError::NotFinite) }
+    }
+
+    /// Takes over the end of the step.
+    fn take_over(&mut self, island: &RigidIsland, dt: f64) {
+        for (pair_history, struck) in self.pair_histories.iter_mut().zip(&island.struck) {
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| &island.balls[k as usize]);
+            let (n, distance) = between(&a.c, &b.c);
+            let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
+            pair_history.n = n;
+            pair_history.closed =
+                *struck && distance <= reach && pair_history.is_slow(&(a.v - b.v));
+            (pair_history.normal_force, pair_history.shear_force, pair_history.slides) =
+                (0.0, Vec3::zeros(), false);
+            pair_history.captured = true;
+            if distance > reach {
+                pair_history.captured = false;
+            }
+        }
+        for ball_contact in
+            island.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_force > 0.0)
+        {
+            let pair_history = &mut self.pair_histories[ball_contact.pair_history];
+            let [a, b] = ball_contact.ends.map(|k| &island.balls[k]);
+            (pair_history.normal_force, pair_history.shear_force) =
+                (ball_contact.normal_force / dt, ball_contact.shear_force / dt);
+            pair_history.slides = ball_contact.shear_force.norm()
+                >= ball_contact.friction * ball_contact.normal_force * (1.0 - 1e-9);
+            // what carried in this step is where the next begins to look for what carries
+            pair_history.closed |= pair_history.is_slow(&(a.v - b.v));
+        }
+        let mut ground_contacts = island
+            .ground_contacts
+            .iter()
+            .filter(|ground_contact| ground_contact.normal_force > 0.0)
+            .peekable();
+        for (k, (member, ball)) in self.members.iter_mut().zip(&island.balls).enumerate() {
+            let member = &mut **member;
+            member.kept.clear();
+            while let Some(ground_contact) =
+                ground_contacts.next_if(|ground_contact| ground_contact.ball == k)
+            {
+                let kept = (
+                    ground_contact.normal_force / dt,
+                    ground_contact.shear_force / dt,
+                    ground_contact.turn / dt,
+                );
+                member.kept.push((ground_contact.feature, kept.0, kept.1, kept.2));
+            }
+            member.land_on(self.terrain, ball);
+        }
+        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
+        {
+            for k in [pair_history.a, pair_history.b] {
+                self.members[k as usize].flying = false;
+            }
+        }
+    }
+}
+
+/// Lists for every rock the numbers of what joins it to another, or to itself alone.
+fn lay(ends: &[[usize; 2]], rocks: usize, (first, links): (&mut Vec<u32>, &mut Vec<u32>)) {
+    let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
+    first.clear();
+    first.resize(rocks + 1, 0);
+    for &ends in ends {
+        of(ends).for_each(|k| first[k] += 1);
+    }
+    let mut sum = 0;
+    for first in first.iter_mut() {
+        sum += *first;
+        *first = sum;
+    }
+    links.clear();
+    links.resize(sum as usize, 0);
+    // filled from behind, so that each list is in order and its beginning is left where it belongs
+    for place in (0..ends.len()).rev() {
+        for k in of(ends[place]) {
+            first[k] -= 1;
+            links[first[k] as usize] = place as u32;
+        }
+    }
+}
+
+/// One step of a rock that nothing but the mesh can touch.
+fn alone(
+    terrain: &Terrain,
+    member: &mut IslandBody,
+    (longest, h_max): (f64, f64),
+) -> Result<Done, StepError> {
+    member.flew = member.flying;
+    member.kept.clear();
+    let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
+    let done = crate::solver::rigid::advance(&world, &mut member.state, longest, h_max)?;
+    member.flying = member.state.is_free();
+    Ok(Done {
+        dt: done.dt,
+        losses: vec![done.loss],
+        given: vec![Given::default()],
+        ..Done::default()
+    })
+}
+
+impl PairHistory {
+    /// Whether two rocks with this velocity of the first relative to the second do not part.
+    fn is_slow(&self, apart_m_s: &Vec3) -> bool {
+        self.n.dot(apart_m_s) < capture_m_s(&self.law)
+    }
+}
+
+impl Ball {
+    fn is_finite(&self) -> bool {
+        self.c.iter().chain(self.v.iter()).chain(self.w.iter()).all(|x| x.is_finite())
+    }
+}
+
+impl RigidIsland {
+    /// Takes the rocks over at the start of a step.
+    fn begin(&mut self, members: &[BodySlot], pair_histories: &[PairHistory]) {
+        self.balls.clear();
+        let ball = |member: &BodySlot| {
+            let state = &member.state;
+            Ball::new(&member.body, (state.c, state.v, state.w))
+        };
+        self.balls.extend(members.iter().map(ball));
+        self.losses.clear();
+        self.losses.resize(members.len(), Loss::default());
+        self.given.clear();
+        self.given.resize(members.len(), Given::default());
+        self.struck.clear();
+        self.struck.resize(pair_histories.len(), false);
+        self.hits.clear();
+        let slowest = pair_histories
+            .iter()
+            .map(|pair_history| capture_m_s(&pair_history.law))
+            .fold(f64::INFINITY, f64::min);
+        self.capture_m_s = if slowest.is_finite() { slowest } else { 0.0 };
+    }
+
+    /// Length of the step (s): the time left in equal parts.
+    fn step_s(&self, longest: f64, h_max: f64) -> f64 {
+        let way = |ball: &Ball| {
+            let speed = ball.v.norm() + ball.body.gravity.norm() * h_max;
+            TRAVEL * ball.body.radius / speed.max(f64::MIN_POSITIVE)
+        };
+        let most = self.balls.iter().map(way).fold(longest, f64::min);
+        if most >= h_max { h_max } else { h_max / (h_max / most).ceil() }
+    }
+}
+
+impl IslandBody {
+    /// Takes over the end of a step in an island.
+    fn land_on(&mut self, terrain: &Terrain, ball: &Ball) {
+        self.flew = self.flying;
+        self.was_touched = ball.pushed || ball.moved;
+        let Self { state, body, laws, .. } = self;
+        let world = ContactEnvironment { terrain, body: *body, laws };
+        (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
+        remember(&world, state, |_| ball.pushed);
+        self.flying = state.is_free();
+    }
+}
+
+impl GroundContact {
+    /// Energy that the impulses take (J), at a mean velocity and spin.
+    fn loss(&self, world: &ContactEnvironment, (v, w): &(Vec3, Vec3)) -> Loss {
+        let loss = Loss {
+            friction: -self.shear_force.dot(&world.body.slip(&self.n, v, w)),
+            damping: -self.normal_force * self.n.dot(v),
+            rolling: -self.turn.dot(w),
+            trees: 0.0,
+        };
+        loss.on(world, self.triangle)
+    }
+}

@@ -1,0 +1,342 @@
+//! The rocks of an island inside one rigid step, and the impulses of their contacts.
+
+use crate::contact::Feature;
+use crate::contact::pair::{PairHistory, between};
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::friction_rolling::Mode;
+use crate::solver::impact::{FrozenContact, throw};
+use crate::solver::island::pair_contact::Motion;
+use crate::solver::law::{Body, within};
+use crate::solver::rigid::{IMPACT, rub};
+
+/// One rock inside a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ball {
+    pub(super) c: Vec3,
+    pub(super) v: Vec3,
+    pub(super) w: Vec3,
+    pub(super) body: Body,
+    /// Velocity and spin at the start of the step.
+    pub(super) before: Motion,
+    /// `1/m` (1/kg) and `1/I` (1/(kg m²)).
+    pub(super) inv: (f64, f64),
+    /// Change of speed in a sweep that has settled (m/s).
+    pub(super) allowed_m_s: f64,
+    /// How long before the end of the step its last blow was (s).
+    pub(super) since_s: f64,
+    /// Blows in this step.
+    pub(super) blows: u32,
+    /// How often it was set in another motion.
+    pub(super) times: u32,
+    /// Whether a contact pushed it, and whether it was moved out of something.
+    pub(super) pushed: bool,
+    pub(super) moved: bool,
+}
+
+impl Ball {
+    pub(super) fn new(body: &Body, (c, v, w): (Vec3, Vec3, Vec3)) -> Self {
+        let inv = (1.0 / body.mass, 1.0 / body.inertia);
+        Self {
+            c,
+            v,
+            w,
+            body: *body,
+            before: (v, w),
+            inv,
+            allowed_m_s: 0.0,
+            since_s: 0.0,
+            blows: 0,
+            times: 1,
+            pushed: false,
+            moved: false,
+        }
+    }
+
+    /// Takes an impulse (N s) and one of rotation (N m s).
+    #[inline]
+    pub(super) fn take(&mut self, (normal_force, turn): &Motion) {
+        self.v += normal_force * self.inv.0;
+        self.w += turn * self.inv.1;
+    }
+
+    /// The same for a blow that fell `s` (s) before the end of the step: the rock has gone on with what it got since.
+    pub(super) fn take_late(&mut self, blow: &Motion, s: f64) {
+        self.take(blow);
+        self.c += blow.0 * (self.inv.0 * s);
+    }
+
+    /// Work of an impulse at mean velocity `v` and spin `w` (J).
+    pub(super) fn work_j((normal_force, turn): &Motion, v: &Vec3, w: &Vec3) -> f64 {
+        normal_force.dot(v) + turn.dot(w)
+    }
+}
+
+/// The impulses of one contact: normal (N s), along the surface (N s), of rolling (N m s).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Impulses(f64, Vec3, Vec3);
+
+impl Impulses {
+    pub(super) const NONE: Self = Self(0.0, Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 0.0));
+
+    pub(super) fn plus(&self, other: &Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1, self.2 + other.2)
+    }
+
+    pub(super) fn less(&self, other: &Self) -> Self {
+        Self(self.0 - other.0, self.1 - other.1, self.2 - other.2)
+    }
+
+    pub(super) fn times(&self, factor: f64) -> Self {
+        Self(self.0 * factor, self.1 * factor, self.2 * factor)
+    }
+
+    /// Square of its size, with the weight of each kind.
+    pub(super) fn square(&self, [n, t, r]: [f64; 3]) -> f64 {
+        n * self.0 * self.0 + t * self.1.norm_squared() + r * self.2.norm_squared()
+    }
+
+    /// Within the cone of friction with these caps over the normal impulse.
+    fn within(&self, caps: (f64, f64)) -> Self {
+        let normal_force = self.0.max(0.0);
+        Self(
+            normal_force,
+            within(self.1, caps.0 * normal_force),
+            within(self.2, caps.1 * normal_force),
+        )
+    }
+}
+
+/// The contact of two rocks and its impulses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BallContact {
+    /// Which pair of rocks it belongs to.
+    pub(super) pair_history: usize,
+    /// The two rocks, as places in the island.
+    pub(super) ends: [usize; 2],
+    /// Unit normal from the second to the first.
+    pub(super) n: Vec3,
+    /// Distances from the centres to the common point that is touched (m).
+    pub(super) levers: [f64; 2],
+    /// `1/m_a + 1/m_b`, and the same for the touched point along the surface (1/kg).
+    pub(super) inv: (f64, f64),
+    /// Friction coefficient `tan φ` (–).
+    pub(super) friction: f64,
+    /// Normal speed apart wanted after the impulse (m/s).
+    pub(super) target: f64,
+    /// Normal impulse (N s), ≥ 0.
+    pub(super) normal_force: f64,
+    /// Impulse along the surface: the first rock feels `−q`, the second `q` (N s).
+    pub(super) shear_force: Vec3,
+    /// The counts of its rocks when it was solved last.
+    pub(super) seen: [u32; 2],
+}
+
+impl BallContact {
+    pub(super) fn impulses(&self) -> Impulses {
+        Impulses(self.normal_force, self.shear_force, Vec3::zeros())
+    }
+
+    /// Adds to its impulses what the cone allows, and acts with that.
+    pub(super) fn push_on(&mut self, step: &Impulses, a: &mut Ball, b: &mut Ball) {
+        let next = self.impulses().plus(step).within((self.friction, 0.0));
+        let change = Self {
+            normal_force: next.0 - self.normal_force,
+            shear_force: next.1 - self.shear_force,
+            ..*self
+        };
+        (self.normal_force, self.shear_force) = (next.0, next.1);
+        a.take(&change.load(0));
+        b.take(&change.load(1));
+    }
+
+    /// The contact of two rocks with centres at `at`, without impulses.
+    pub(super) fn new(
+        (pair_history, of): (usize, &PairHistory),
+        balls: [&Ball; 2],
+        at: [&Vec3; 2],
+    ) -> Self {
+        let (n, distance) = between(at[0], at[1]);
+        let reach = balls[0].body.radius + balls[1].body.radius;
+        // One common point: impulses with one line of action keep the angular momentum.
+        let levers = balls.map(|ball| distance * ball.body.radius / reach);
+        let inv_n = balls[0].inv.0 + balls[1].inv.0;
+        let turning = [0, 1].map(|k| levers[k] * levers[k] * balls[k].inv.1);
+        Self {
+            pair_history,
+            ends: [of.a as usize, of.b as usize],
+            n,
+            levers,
+            inv: (inv_n, inv_n + turning[0] + turning[1]),
+            friction: of.law.friction,
+            target: 0.0,
+            normal_force: 0.0,
+            shear_force: Vec3::zeros(),
+            seen: [0; 2],
+        }
+    }
+
+    /// Normal speed apart (m/s).
+    #[inline]
+    pub(super) fn speed(&self, a: &Ball, b: &Ball) -> f64 {
+        self.n.dot(&(a.v - b.v))
+    }
+
+    /// Slip of the first rock over the second at the touched point (m/s).
+    #[inline]
+    pub(super) fn slip(&self, a: &Ball, b: &Ball) -> Vec3 {
+        let u = a.v - b.v;
+        u - self.n * self.n.dot(&u) + self.n.cross(&(a.w * self.levers[0] + b.w * self.levers[1]))
+    }
+
+    /// Impulse and rotational impulse on end `k`.
+    #[inline]
+    pub(super) fn load(&self, k: usize) -> Motion {
+        let normal_force = self.n * self.normal_force - self.shear_force;
+        (
+            if k == 0 { normal_force } else { -normal_force },
+            self.n.cross(&self.shear_force) * self.levers[k],
+        )
+    }
+
+    /// Finds the impulses for motions that hold the present ones, and acts with what they change by; how much that
+    /// changes the speed at the contact (m/s).
+    #[inline]
+    pub(super) fn solve(&mut self, a: &mut Ball, b: &mut Ball) -> f64 {
+        let (held, shear_force) = (self.normal_force, self.shear_force);
+        let speed = self.speed(a, b);
+        let normal_force = (held + (self.target - speed) / self.inv.0).max(0.0);
+        if normal_force <= 0.0 && held <= 0.0 {
+            return 0.0;
+        }
+        let stick = shear_force + self.slip(a, b) / self.inv.1;
+        (self.normal_force, self.shear_force) =
+            (normal_force, within(stick, self.friction * normal_force));
+        let change = Self {
+            normal_force: normal_force - held,
+            shear_force: self.shear_force - shear_force,
+            ..*self
+        };
+        a.take(&change.load(0));
+        b.take(&change.load(1));
+        (change.normal_force.abs() * self.inv.0).max(change.shear_force.norm() * self.inv.1)
+    }
+}
+
+/// The contact of a rock with the mesh and its impulses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GroundContact {
+    /// The rock, as a place in the island.
+    pub(super) ball: usize,
+    pub(super) feature: Feature,
+    pub(super) triangle: u32,
+    /// Unit normal from the mesh to the centre.
+    pub(super) n: Vec3,
+    /// Friction (–) and rolling friction (m): the largest impulses over the normal one.
+    pub(super) caps: (f64, f64),
+    /// Normal speed wanted after the impulse (m/s).
+    pub(super) target: f64,
+    /// Normal impulse (N s), ≥ 0.
+    pub(super) normal_force: f64,
+    /// Impulse along the surface on the rock (N s).
+    pub(super) shear_force: Vec3,
+    /// Rolling impulse on the rock (N m s).
+    pub(super) turn: Vec3,
+    /// Which of friction and rolling holds.
+    mode: Mode,
+    /// The count of its rock when it was solved last.
+    pub(super) seen: u32,
+}
+
+impl GroundContact {
+    /// A contact without impulses.
+    pub(super) fn new(
+        ball: usize,
+        (feature, triangle): (Feature, u32),
+        n: Vec3,
+        law: &Law,
+    ) -> Self {
+        Self {
+            ball,
+            feature,
+            triangle,
+            n,
+            caps: (law.friction, law.rolling_m),
+            target: 0.0,
+            normal_force: 0.0,
+            shear_force: Vec3::zeros(),
+            turn: Vec3::zeros(),
+            mode: Mode::default(),
+            seen: 0,
+        }
+    }
+
+    /// Impulse and rotational impulse on the rock.
+    #[inline]
+    pub(super) fn load(&self, body: &Body) -> Motion {
+        (
+            self.n * self.normal_force + self.shear_force,
+            self.turn - self.n.cross(&self.shear_force) * body.radius,
+        )
+    }
+
+    pub(super) fn impulses(&self) -> Impulses {
+        Impulses(self.normal_force, self.shear_force, self.turn)
+    }
+
+    /// Adds to its impulses what the cone allows, and acts with that.
+    pub(super) fn push_on(&mut self, step: &Impulses, ball: &mut Ball) {
+        let next = self.impulses().plus(step).within(self.caps);
+        let change = next.less(&self.impulses());
+        let change =
+            Self { normal_force: change.0, shear_force: change.1, turn: change.2, ..*self };
+        (self.normal_force, self.shear_force, self.turn) = (next.0, next.1, next.2);
+        let load = change.load(&ball.body);
+        ball.take(&load);
+    }
+
+    /// Impulses of an impact at velocity `v` and spin `w`: the limit of stiff springs, the same as for a rock alone.
+    pub(super) fn impact(
+        &mut self,
+        (body, law): (&Body, &Law),
+        (v, w): (&Vec3, &Vec3),
+        captured: bool,
+    ) {
+        let struck = FrozenContact { normal: self.n, law, stiffness_scale: 1.0, captured };
+        let thrown = throw(body, &[struck], (v, w), IMPACT);
+        let load = (thrown.velocity_m_s - v) * body.mass;
+        self.normal_force = self.n.dot(&load).max(0.0);
+        self.shear_force = load - self.n * self.n.dot(&load);
+        self.turn =
+            (thrown.spin_rad_s - w) * body.inertia + self.n.cross(&self.shear_force) * body.radius;
+    }
+
+    /// Impulses for velocity `v` and spin `w` without this contact's own.
+    pub(super) fn strike(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
+        self.normal_force = (body.mass * (self.target - self.n.dot(v))).max(0.0);
+        if self.normal_force <= 0.0 {
+            (self.shear_force, self.turn) = (Vec3::zeros(), Vec3::zeros());
+            return;
+        }
+        let caps = (self.caps.0 * self.normal_force, self.caps.1 * self.normal_force);
+        (self.shear_force, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
+    }
+
+    /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that
+    /// changes the speed at the contact (m/s).
+    pub(super) fn solve(&mut self, ball: &mut Ball) -> f64 {
+        let held = *self;
+        let (normal_force, turn) = held.load(&ball.body);
+        let (v, w) = (ball.v - normal_force * ball.inv.0, ball.w - turn * ball.inv.1);
+        self.strike(&ball.body, &v, &w);
+        if held.normal_force <= 0.0 && self.normal_force <= 0.0 {
+            return 0.0;
+        }
+        let (normal_force, turn) = self.load(&ball.body);
+        (ball.v, ball.w) = (v + normal_force * ball.inv.0, w + turn * ball.inv.1);
+        let change = (self.normal_force - held.normal_force)
+            .abs()
+            .max((self.shear_force - held.shear_force).norm());
+        change.max((self.turn - held.turn).norm() / ball.body.radius) * ball.inv.0
+    }
+}

@@ -1,0 +1,249 @@
+//! Impacts within a step, in the order of their times.
+//!
+//! Rocks that came in faster than the capture speed overlap at the end of a step. When they touched is known: under the
+//! same gravity two rocks move in straight lines relative to each other, and one rock over the mesh in a parabola. Each
+//! blow is taken by itself at that time, the earliest first, and the rocks go on from there with what they got; blows
+//! that follow from it are found with the new paths. A blow between two rocks alone is therefore exact, whatever the
+//! step, and each takes energy.
+
+use super::RigidIsland;
+use super::contacts::{Ball, BallContact, GroundContact};
+use crate::contact::pair::PairHistory;
+use crate::rock::Vec3;
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::island::assembly::{Given, TOUCH};
+use crate::solver::island::body::{BodySlot, IslandBody};
+use crate::solver::rigid::capture_m_s;
+use crate::terrain::Terrain;
+use std::cmp::Reverse;
+
+/// Blows on one rock in one step from which on they do not rebound …
+const LIVELY: u32 = 200;
+/// … and after which the rest is left to the next step.
+const MOST: u32 = 400;
+/// A touch at the time of a blow that is no farther than this (–, relative to R): a mesh is not met on a parabola alone.
+const NEAR: f64 = 1e-3;
+
+/// A blow that is due: time before the end of the step (s, as the bits of a positive number: they keep the order), the
+/// place of its contact, the counts of its rocks.
+pub(super) type Due = (u64, Reverse<usize>, [u32; 2]);
+
+/// An impact on the mesh.
+#[derive(Debug, Clone, Copy)]
+pub struct Hit {
+    /// The rock, as a place in the island.
+    pub rock: usize,
+    /// Point that is touched (m).
+    pub point_m: Vec3,
+    /// Where on the mesh.
+    pub feature: crate::contact::FeatureKind,
+    /// Triangle whose ground answers.
+    pub triangle: u32,
+}
+
+/// What blows act on.
+pub(super) struct Scene<'s> {
+    pub(super) terrain: &'s Terrain,
+    pub(super) members: &'s mut [BodySlot],
+    pub(super) pair_histories: &'s [PairHistory],
+}
+
+impl Scene<'_> {
+    /// The rocks of a contact: pairs come first, then every rock with the mesh.
+    fn ends_of(&self, place: usize) -> [usize; 2] {
+        self.pair_histories
+            .get(place)
+            .map_or([place.saturating_sub(self.pair_histories.len()); 2], |pair_history| {
+                [pair_history.a as usize, pair_history.b as usize]
+            })
+    }
+}
+
+impl RigidIsland {
+    /// Takes all impacts of a step of length `dt` (s); whether none is left.
+    pub(super) fn strike(&mut self, scene: &mut Scene, dt: f64) -> bool {
+        self.due.clear();
+        for ball in &mut self.balls {
+            (ball.since_s, ball.blows) = (dt, 0);
+        }
+        for k in 0..scene.pair_histories.len() {
+            self.expect_pair(scene, k);
+        }
+        for k in 0..self.balls.len() {
+            self.expect_ground(scene, k);
+        }
+        if self.due.is_empty() {
+            return true;
+        }
+        self.lay_links(scene.pair_histories);
+        let mut all = true;
+        while let Some((bits, Reverse(place), counts)) = self.due.pop() {
+            let ends = scene.ends_of(place);
+            if ends.map(|k| self.balls[k].times) != counts {
+                continue;
+            }
+            if ends.iter().any(|&k| self.balls[k].blows >= MOST) {
+                all = false;
+                continue;
+            }
+            self.blow(scene, place, f64::from_bits(bits));
+            self.expect_more(scene, ends);
+        }
+        all
+    }
+
+    /// The pairs of every rock.
+    fn lay_links(&mut self, pair_histories: &[PairHistory]) {
+        let ends: Vec<[usize; 2]> = pair_histories
+            .iter()
+            .map(|pair_history| [pair_history.a as usize, pair_history.b as usize])
+            .collect();
+        super::lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
+    }
+
+    /// Looks for the blows that follow from one on these rocks.
+    fn expect_more(&mut self, scene: &mut Scene, ends: [usize; 2]) {
+        let both = if ends[0] == ends[1] { &ends[..1] } else { &ends[..] };
+        for &end in both {
+            for at in self.first[end]..self.first[end + 1] {
+                let pair_history = self.links[at as usize] as usize;
+                self.expect_pair(scene, pair_history);
+            }
+            self.expect_ground(scene, end);
+        }
+    }
+
+    /// Notes the blow of a pair, if one is due.
+    fn expect_pair(&mut self, scene: &Scene, place: usize) {
+        let pair_history = &scene.pair_histories[place];
+        let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
+        let (apart, closing) = (a.c - b.c, a.v - b.v);
+        let reach = a.body.radius + b.body.radius;
+        let (distance2, widest) = (apart.norm_squared(), reach * (1.0 + TOUCH));
+        let along = apart.dot(&closing);
+        if distance2 > widest * widest || along >= 0.0 {
+            return;
+        }
+        // |d − u s| = reach with the smaller cancellation; both parts of the root are positive
+        let inside = (reach * reach - distance2).max(0.0);
+        let root = (along * along + closing.norm_squared() * inside).sqrt();
+        let s = (inside / (root - along)).min(a.since_s).min(b.since_s);
+        let (n, _) = crate::contact::pair::between(&(a.c - a.v * s), &(b.c - b.v * s));
+        if -n.dot(&closing) >= capture_m_s(&pair_history.law) {
+            self.due.push((s.to_bits(), Reverse(place), [a.times, b.times]));
+        }
+    }
+
+    /// Notes the blow of a rock on the mesh, if one is due.
+    fn expect_ground(&mut self, scene: &mut Scene, k: usize) {
+        let ball = &self.balls[k];
+        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
+        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        state.look_ahead_again(&world, &ball.c);
+        let mut first: Option<f64> = None;
+        for touch in state.touches.iter() {
+            let s = time_of_touch(ball, &touch.normal, body.radius - touch.distance_m);
+            let is_fast = |s: &f64| {
+                let v = ball.v - body.gravity * *s;
+                -touch.normal.dot(&v) >= capture_m_s(world.law(touch.triangle))
+            };
+            if let Some(s) = s.filter(is_fast) {
+                first = Some(first.unwrap_or(0.0).max(s));
+            }
+        }
+        if let Some(s) = first {
+            let place = scene.pair_histories.len() + k;
+            self.due.push((s.to_bits(), Reverse(place), [ball.times; 2]));
+        }
+    }
+
+    /// Takes the blow of a contact, `s` (s) before the end of the step.
+    fn blow(&mut self, scene: &mut Scene, place: usize, s: f64) {
+        if place < scene.pair_histories.len() {
+            self.blow_pair(scene, place, s);
+        } else {
+            self.blow_ground(scene, place - scene.pair_histories.len(), s);
+        }
+    }
+
+    fn blow_pair(&mut self, scene: &Scene, place: usize, s: f64) {
+        let pair_history = &scene.pair_histories[place];
+        let ends = [pair_history.a as usize, pair_history.b as usize];
+        let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { return };
+        let at = [&*a, &*b].map(|ball| ball.c - ball.v * s);
+        let mut ball_contact = BallContact::new((place, pair_history), [a, b], [&at[0], &at[1]]);
+        let restitution =
+            if a.blows.max(b.blows) < LIVELY { pair_history.law.restitution } else { 0.0 };
+        ball_contact.target = -restitution * ball_contact.speed(a, b);
+        let before = [(a.v, a.w), (b.v, b.w)];
+        let (mut one, mut two) = (*a, *b);
+        ball_contact.solve(&mut one, &mut two);
+        let mut given = [0.0; 2];
+        for (k, ball) in [a, b].into_iter().enumerate() {
+            let load = ball_contact.load(k);
+            ball.take_late(&load, s);
+            let (v, w) = mean_late(ball, &before[k], s);
+            given[k] = -Ball::work_j(&load, &v, &w);
+            ball.is_struck(s);
+        }
+        for (end, given) in ends.into_iter().zip(Given::of_ends(given)) {
+            self.given[end].add(&given, 1.0);
+        }
+        self.struck[place] = true;
+    }
+
+    fn blow_ground(&mut self, scene: &mut Scene, k: usize, s: f64) {
+        let ball = &mut self.balls[k];
+        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
+        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        let v = ball.v - body.gravity * s;
+        let at = ball.c - (ball.v - body.gravity * (0.5 * s)) * s;
+        let reach = body.radius * (1.0 + NEAR);
+        state.look(&world, &at, reach);
+        if state.touches.iter().all(|touch| touch.normal.dot(&v) >= 0.0) {
+            state.look(&world, &ball.c, reach);
+        }
+        let hit = state
+            .touches
+            .iter()
+            .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))
+            .copied();
+        if let Some(touch) = hit {
+            let law = world.law(touch.triangle);
+            let mut ground_contact =
+                GroundContact::new(k, (touch.feature, touch.triangle), touch.normal, law);
+            ground_contact.impact((body, law), (&v, &ball.w), ball.blows >= LIVELY);
+            let before = (ball.v, ball.w);
+            ball.take_late(&ground_contact.load(body), s);
+            let mean = mean_late(ball, &before, s);
+            self.losses[k].add(&ground_contact.loss(&world, &mean), 1.0);
+            let point_m = at - ground_contact.n * body.radius;
+            let feature = touch.feature.kind;
+            self.hits.push(Hit { rock: k, point_m, feature, triangle: touch.triangle });
+        }
+        ball.is_struck(s);
+    }
+}
+
+impl Ball {
+    /// Notes that a blow fell `s` (s) before the end of the step.
+    fn is_struck(&mut self, s: f64) {
+        self.since_s = s;
+        self.blows += 1;
+        self.pushed = true;
+        self.times += 1;
+    }
+}
+
+/// Mean motion in a blow that fell `s` (s) before the end of the step, from the motions there without and with it.
+fn mean_late(ball: &Ball, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
+    ((before.0 + ball.v) * 0.5 - ball.body.gravity * s, (before.1 + ball.w) * 0.5)
+}
+
+/// How long before the end of the step a rock that is pressed in by `pen` (m) along `n` touched (s), on its parabola.
+fn time_of_touch(ball: &Ball, n: &Vec3, penetration: f64) -> Option<f64> {
+    let speed = -n.dot(&ball.v);
+    let root2 = speed * speed + 2.0 * n.dot(&ball.body.gravity) * penetration.max(0.0);
+    let touches = penetration >= -TOUCH * ball.body.radius && speed > 0.0 && root2 > 0.0;
+    touches.then(|| (2.0 * penetration.max(0.0) / (speed + root2.sqrt())).min(ball.since_s))
+}

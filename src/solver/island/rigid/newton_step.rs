@@ -1,0 +1,175 @@
+//! Where sweeps creep, the stirred part of the island is solved at once.
+//!
+//! A light rock under a heavy one, a high pile: each sweep hands on a small share of what must be carried. The modes that
+//! the sweeps have found make the step a linear system, that of [`jump`]; the rigid limit is a spring so stiff that what
+//! it gives way is lost beside the tolerance. The sweeps judge the result.
+
+use super::RigidIsland;
+use super::contacts::{Ball, BallContact, GroundContact};
+use crate::contact::pair::PairHistory;
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::island::body::BodySlot;
+use crate::solver::island::newton_step::jump;
+use crate::solver::island::pair_contact::{Motion, PairContact};
+use crate::solver::law::{StageContact, within};
+
+/// Impulse by speed of a spring that stands for a rigid contact, over the largest mass (–).
+const HOLD: f64 = 1e7;
+/// A jump of more rocks than this costs more than the sweeps that it may save.
+const MOST_ROCKS: usize = 64;
+
+impl RigidIsland {
+    /// Solves the rocks that were stirred since `times`, and their neighbours, at once; whether that was possible.
+    pub(super) fn jump(
+        &mut self,
+        (members, pair_histories): (&mut [BodySlot], &[PairHistory]),
+        times: &[u32],
+    ) -> bool {
+        let takes_part = self.stirred_since(times);
+        if takes_part.iter().filter(|part| **part).count() > MOST_ROCKS {
+            return false;
+        }
+        let heaviest = self.balls.iter().map(|ball| ball.body.mass).fold(0.0, f64::max);
+        let stiffness = HOLD * heaviest;
+        self.hand_over(members, stiffness);
+        let pair = |ball_contact: &BallContact| {
+            ball_contact.bridge(&pair_histories[ball_contact.pair_history], stiffness)
+        };
+        let pairs: Vec<PairContact> = self.ball_contacts.iter().map(pair).collect();
+        let Some(motions) = jump(members, &pairs, &takes_part, 1.0) else { return false };
+        self.act_on(&motions, stiffness);
+        self.drive();
+        true
+    }
+
+    /// Rocks that were set in another motion, and what touches them.
+    fn stirred_since(&self, times: &[u32]) -> Vec<bool> {
+        let core: Vec<bool> =
+            self.balls.iter().zip(times).map(|(ball, times)| ball.times != *times).collect();
+        let mut grown = core.clone();
+        for [a, b] in self
+            .ball_contacts
+            .iter()
+            .filter(|ball_contact| ball_contact.normal_force > 0.0)
+            .map(|ball_contact| ball_contact.ends)
+        {
+            grown[a] |= core[b];
+            grown[b] |= core[a];
+        }
+        grown
+    }
+
+    /// Motions and contacts with the mesh as the linear system wants them: a stage of length one, impulses for forces.
+    fn hand_over(&self, members: &mut [BodySlot], stiffness: f64) {
+        for (member, ball) in members.iter_mut().zip(&self.balls) {
+            let member = &mut **member;
+            member.free = (ball.before.0 + self.gain(ball), ball.before.1);
+            member.now = (ball.v, ball.w);
+            member.state.contact_count = 0;
+        }
+        for ground_contact in &self.ground_contacts {
+            let member = &mut *members[ground_contact.ball];
+            let state = &mut member.state;
+            if state.contact_count < state.contacts.len() {
+                state.contacts[state.contact_count] =
+                    ground_contact.spot(member.body.radius, stiffness);
+                state.contact_count += 1;
+            }
+        }
+    }
+
+    /// Sets every impulse of rocks that jumped to what the stiff springs give at their new motions.
+    fn act_on(&mut self, motions: &[Option<Motion>], stiffness: f64) {
+        for (ball, motion) in self.balls.iter_mut().zip(motions) {
+            if let Some((v, w)) = motion {
+                (ball.v, ball.w) = (*v, *w);
+            }
+        }
+        for ground_contact in self
+            .ground_contacts
+            .iter_mut()
+            .filter(|ground_contact| motions[ground_contact.ball].is_some())
+        {
+            ground_contact.give_way(&self.balls[ground_contact.ball], stiffness);
+        }
+        for ball_contact in &mut self.ball_contacts {
+            if ball_contact.ends.iter().any(|&k| motions[k].is_some()) {
+                let [a, b] = ball_contact.ends.map(|k| &self.balls[k]);
+                ball_contact.normal_force =
+                    (stiffness * (ball_contact.target - ball_contact.speed(a, b))).max(0.0);
+                ball_contact.shear_force = within(
+                    ball_contact.slip(a, b) * stiffness,
+                    ball_contact.friction * ball_contact.normal_force,
+                );
+            }
+        }
+    }
+
+    /// Motions from weight and all impulses together.
+    fn drive(&mut self) {
+        for k in 0..self.balls.len() {
+            let gain = self.gain(&self.balls[k]);
+            let ball = &mut self.balls[k];
+            (ball.v, ball.w) = (ball.before.0 + gain, ball.before.1);
+            ball.times += 1;
+        }
+        self.start_warm();
+    }
+
+    /// What weight adds to the velocity in the step in hand.
+    fn gain(&self, ball: &Ball) -> Vec3 {
+        ball.body.gravity * self.dt
+    }
+}
+
+/// A law whose springs give this impulse by speed, with the friction of another.
+fn law(stiffness: f64, (friction, rolling_m): (f64, f64), radius: f64) -> Law {
+    let k_r = if rolling_m > 0.0 { stiffness * radius * radius } else { 0.0 };
+    Law { p_n: stiffness, p_s: stiffness, k_r, friction, rolling_m, ..Law::NONE }
+}
+
+impl GroundContact {
+    fn spot(&self, radius: f64, stiffness: f64) -> StageContact {
+        StageContact {
+            feature: self.feature,
+            triangle: self.triangle,
+            law: law(stiffness, self.caps, radius),
+            n: self.n,
+            penetration: self.target,
+            normal_force: self.normal_force,
+            shear_force: -self.shear_force,
+            rolling_moment: -self.turn,
+            ..StageContact::NONE
+        }
+    }
+
+    fn give_way(&mut self, ball: &Ball, stiffness: f64) {
+        self.normal_force = (stiffness * (self.target - self.n.dot(&ball.v))).max(0.0);
+        let slip = ball.body.slip(&self.n, &ball.v, &ball.w);
+        let wound = ball.w * (stiffness * ball.body.radius.powi(2));
+        self.shear_force = -within(slip * stiffness, self.caps.0 * self.normal_force);
+        self.turn = -within(wound, self.caps.1 * self.normal_force);
+    }
+}
+
+impl BallContact {
+    fn bridge(&self, pair_history: &PairHistory, stiffness: f64) -> PairContact {
+        PairContact {
+            pair_history: self.pair_history,
+            ends: self.ends,
+            law: law(stiffness, (self.friction, 0.0), 1.0),
+            c_n: 0.0,
+            captured: pair_history.captured,
+            bond: None,
+            n: self.n,
+            penetration: self.target,
+            shear: Vec3::zeros(),
+            levers: self.levers,
+            normal_force: self.normal_force,
+            shear_force: self.shear_force,
+            inv_m: self.inv.0,
+            inv_t: self.inv.1,
+        }
+    }
+}

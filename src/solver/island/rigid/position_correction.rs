@@ -1,0 +1,122 @@
+//! Rocks that got into each other or into the mesh are moved out, without adding velocity.
+
+use super::RigidIsland;
+use super::contacts::Ball;
+use super::impacts::Scene;
+use crate::contact::pair::{PairHistory, between};
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, TOUCH};
+use crate::solver::island::body::IslandBody;
+
+/// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller
+/// radius).
+const SLACK: (f64, f64) = (1e-8, 1e-5);
+/// Layers of rocks that press there (–).
+const LAYERS: f64 = 4.0;
+/// Sweeps over what overlaps, at most.
+const SWEEPS: u32 = 30;
+
+impl PairHistory {
+    /// Overlap that is left alone (m).
+    fn slack_m(&self, balls: [&Ball; 2]) -> f64 {
+        let weight = |ball: &Ball| ball.body.mass * ball.body.gravity.norm();
+        let radius = balls[0].body.radius.min(balls[1].body.radius);
+        let pressed = LAYERS * (weight(balls[0]) + weight(balls[1])) / self.law.p_n;
+        pressed.clamp(SLACK.0 * radius, SLACK.1 * radius)
+    }
+}
+
+impl RigidIsland {
+    /// Moves apart what overlaps, each by its share of the mass; the height that a rock gains is paid by its motion.
+    pub(super) fn part(&mut self, scene: &mut Scene) {
+        self.places.clear();
+        self.places.extend(self.balls.iter().map(|ball| ball.c));
+        for _ in 0..SWEEPS {
+            let mut moved = false;
+            for pair_history in scene.pair_histories {
+                let ends = [pair_history.a as usize, pair_history.b as usize];
+                let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
+                let reach = a.body.radius + b.body.radius;
+                let allowed = reach - pair_history.slack_m([a, b]);
+                if (a.c - b.c).norm_squared() >= allowed * allowed {
+                    continue;
+                }
+                let (n, distance) = between(&a.c, &b.c);
+                let way = n * ((allowed - distance) / (a.inv.0 + b.inv.0));
+                a.c += way * a.inv.0;
+                b.c -= way * b.inv.0;
+                moved = true;
+            }
+            for k in 0..self.balls.len() {
+                moved |= self.push_out(scene, k);
+            }
+            if !moved {
+                break;
+            }
+        }
+        self.pay_for_height();
+    }
+
+    /// Moves a rock out of the mesh; whether it was in it.
+    fn push_out(&mut self, scene: &mut Scene, k: usize) -> bool {
+        let ball = &mut self.balls[k];
+        let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
+        let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
+        state.look_ahead_again(&world, &ball.c);
+        let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
+            let missing = body.radius - touch.distance_m - sum.dot(&touch.normal);
+            sum + touch.normal * missing.max(0.0)
+        });
+        ball.c += out;
+        out.norm_squared() > (TOUCH * body.radius).powi(2)
+    }
+
+    /// Pays for the height that rocks gain, first with what normal impulses took of them in this step: what sinks in by the
+    /// error of a step loses its energy there, and has it back when it is lifted out. The rest is paid by motion.
+    /// (Paid by motion alone, the lifting of 1e-5 R would stop a heap that begins to slide.)
+    fn pay_for_height(&mut self) {
+        let mut net_j = 0.0;
+        for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
+            ball.moved = ball.c != *from;
+            let lifted_j = -ball.body.mass * ball.body.gravity.dot(&(ball.c - from));
+            self.given[k].passed_on -= lifted_j;
+            net_j += lifted_j;
+        }
+        let owed_j = net_j - self.taken_j.max(0.0);
+        if owed_j > 0.0 {
+            self.pay_together(owed_j);
+        }
+    }
+
+    /// Takes energy (J) out of the motion of all rocks that are pushed, each its share.
+    fn pay_together(&mut self, owed_j: f64) {
+        let takes_part = |ball: &Ball| ball.pushed || ball.moved;
+        let motion_j: f64 =
+            self.balls.iter().filter(|ball| takes_part(ball)).map(Ball::motion_j).sum();
+        let share = if motion_j > 0.0 { (owed_j / motion_j).min(1.0) } else { 0.0 };
+        for (ball, given) in self.balls.iter_mut().zip(&mut self.given) {
+            if takes_part(ball) {
+                let own_j = share * ball.motion_j();
+                ball.slow_down(own_j);
+                given.passed_on += own_j;
+            }
+        }
+    }
+}
+
+impl Ball {
+    /// Energy in motion (J).
+    fn motion_j(&self) -> f64 {
+        0.5 * (self.body.mass * self.v.norm_squared() + self.body.inertia * self.w.norm_squared())
+    }
+
+    /// Loses energy (J) of its motion, as much as it has at most.
+    fn slow_down(&mut self, lost_j: f64) {
+        let motion_j = self.motion_j();
+        if motion_j > 0.0 && lost_j > 0.0 {
+            let kept = ((motion_j - lost_j) / motion_j).max(0.0).sqrt();
+            self.v *= kept;
+            self.w *= kept;
+        }
+    }
+}

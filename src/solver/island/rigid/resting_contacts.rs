@@ -1,0 +1,166 @@
+//! Sustained contact: impulses of all contacts of an island over one step, at velocity level.
+//!
+//! Projected Gauss–Seidel over normal impulse, friction and rolling friction with a warm start (Moreau, Jean). Velocity
+//! is stepped from its start to its end and acts with its mean, so that a resting contact stays where it is and the
+//! parabola is exact; a normal impulse never works on the rocks: what it may give back at the end of a step is at most
+//! what it took at its start.
+
+use super::RigidIsland;
+use super::contacts::{Ball, BallContact, GroundContact};
+use crate::contact::pair::{PairHistory, between};
+use crate::rock::Vec3;
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::island::assembly::Given;
+use crate::solver::island::body::BodySlot;
+use crate::solver::rigid::capture_m_s;
+use crate::terrain::Terrain;
+
+/// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained
+/// one: not if it is left or closed faster than the capture speed. That is an impact, and found at the end of the step. A
+/// gap that the capture speed closes within the step may close and no more: left alone, it would close under weight into
+/// an overlap.
+fn is_sustained((gap, speed): (f64, f64), capture: f64, dt: f64) -> bool {
+    let fall = gap.max(0.0);
+    speed * speed < capture * capture && fall <= dt * capture
+}
+
+/// Normal speed wanted at the end of a step of length `dt` (s) from the gap in its middle and the speed at its start: an
+/// open gap may close, and over an edge half of the turn is before the middle and half after it. A push never works.
+fn target(gap: f64, speed: f64, dt: f64) -> f64 {
+    -(gap / dt).max(speed).max(0.0)
+}
+
+impl RigidIsland {
+    /// Takes the rocks through the step without its impacts; whether the impulses settled.
+    pub(super) fn sustain(
+        &mut self,
+        terrain: &Terrain,
+        (members, pair_histories): (&mut [BodySlot], &[PairHistory]),
+        dt: f64,
+    ) -> bool {
+        self.stand(terrain, members, dt);
+        self.link(pair_histories, dt);
+        for ball in &mut self.balls {
+            ball.v += ball.body.gravity * dt;
+        }
+        self.start_warm();
+        let settled = self.settle((members, pair_histories), dt);
+        self.go_on(terrain, members, dt);
+        settled
+    }
+
+    /// Contacts with the mesh in the middle of the step.
+    fn stand(&mut self, terrain: &Terrain, members: &mut [BodySlot], dt: f64) {
+        self.ground_contacts.clear();
+        for (k, (member, ball)) in members.iter_mut().zip(&self.balls).enumerate() {
+            let member = &mut **member;
+            let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
+            let middle = ball.c + ball.v * (0.5 * dt);
+            member.state.look_ahead(&world, &middle);
+            for touch in member.state.touches.iter() {
+                let law = world.law(touch.triangle);
+                let (speed, capture) = (touch.normal.dot(&ball.v), capture_m_s(law));
+                let gap = touch.distance_m - ball.body.radius;
+                let start = (gap - 0.5 * dt * speed, speed);
+                if !is_sustained(start, capture, dt) {
+                    continue;
+                }
+                let place = (touch.feature, touch.triangle);
+                let mut ground_contact = GroundContact::new(k, place, touch.normal, law);
+                ground_contact.target = target(gap, speed, dt);
+                let kept = member.kept.iter().find(|kept| kept.0 == touch.feature);
+                if let Some((_, normal_force, shear_force, turn)) = kept {
+                    let along = shear_force - ground_contact.n * ground_contact.n.dot(shear_force);
+                    (
+                        ground_contact.normal_force,
+                        ground_contact.shear_force,
+                        ground_contact.turn,
+                    ) = (normal_force * dt, along * dt, turn * dt);
+                }
+                self.ground_contacts.push(ground_contact);
+            }
+        }
+    }
+
+    /// Contacts of rocks with each other in the middle of the step.
+    fn link(&mut self, pair_histories: &[PairHistory], dt: f64) {
+        self.ball_contacts.clear();
+        for (k, pair_history) in pair_histories.iter().enumerate() {
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
+            let at = [a, b].map(|ball| ball.c + ball.v * (0.5 * dt));
+            let (n, distance) = between(&at[0], &at[1]);
+            let gap = distance - a.body.radius - b.body.radius;
+            let (speed, capture) = (n.dot(&(a.v - b.v)), capture_m_s(&pair_history.law));
+            let start = (gap - 0.5 * dt * speed, speed);
+            if !is_sustained(start, capture, dt) {
+                continue;
+            }
+            let mut ball_contact = BallContact::new((k, pair_history), [a, b], [&at[0], &at[1]]);
+            ball_contact.target = target(gap, speed, dt);
+            (ball_contact.normal_force, ball_contact.shear_force) = (
+                pair_history.normal_force * dt,
+                (pair_history.shear_force - n * n.dot(&pair_history.shear_force)) * dt,
+            );
+            self.ball_contacts.push(ball_contact);
+        }
+    }
+
+    /// Acts with the impulses of the step before.
+    pub(super) fn start_warm(&mut self) {
+        for ground_contact in &self.ground_contacts {
+            let ball = &mut self.balls[ground_contact.ball];
+            let load = ground_contact.load(&ball.body);
+            ball.take(&load);
+        }
+        for ball_contact in
+            self.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_force > 0.0)
+        {
+            for k in 0..2 {
+                self.balls[ball_contact.ends[k]].take(&ball_contact.load(k));
+            }
+        }
+    }
+
+    /// Moves the rocks with their mean velocities and books what the impulses took.
+    fn go_on(&mut self, terrain: &Terrain, members: &[BodySlot], dt: f64) {
+        let mean = |ball: &Ball| -> (Vec3, Vec3) {
+            ((ball.v + ball.before.0) * 0.5, (ball.w + ball.before.1) * 0.5)
+        };
+        self.taken_j = 0.0;
+        for ground_contact in
+            self.ground_contacts.iter().filter(|ground_contact| ground_contact.normal_force > 0.0)
+        {
+            let (member, ball) = (&members[ground_contact.ball], &self.balls[ground_contact.ball]);
+            let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
+            let motion = mean(ball);
+            self.losses[ground_contact.ball].add(&ground_contact.loss(&world, &motion), 1.0);
+            self.taken_j -= ground_contact.normal_force * ground_contact.n.dot(&motion.0);
+        }
+        for ball_contact in
+            self.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_force > 0.0)
+        {
+            let [a, b] = ball_contact.ends.map(|k| mean(&self.balls[k]).0);
+            self.taken_j -= ball_contact.normal_force * ball_contact.n.dot(&(a - b));
+            let given = [0, 1].map(|k| {
+                let (v, w) = mean(&self.balls[ball_contact.ends[k]]);
+                -Ball::work_j(&ball_contact.load(k), &v, &w)
+            });
+            for (end, given) in ball_contact.ends.into_iter().zip(Given::of_ends(given)) {
+                self.given[end].add(&given, 1.0);
+            }
+        }
+        for ball_contact in
+            self.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_force > 0.0)
+        {
+            ball_contact.ends.into_iter().for_each(|k| self.balls[k].pushed = true);
+        }
+        for ground_contact in
+            self.ground_contacts.iter().filter(|ground_contact| ground_contact.normal_force > 0.0)
+        {
+            self.balls[ground_contact.ball].pushed = true;
+        }
+        for ball in &mut self.balls {
+            ball.c += mean(ball).0 * dt;
+        }
+    }
+}

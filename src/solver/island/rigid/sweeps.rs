@@ -1,0 +1,369 @@
+//! Sweeps over the contacts of an island until their impulses have settled.
+//!
+//! A sweep hands a load on from rock to rock; alone it would take as many as the square of the heap's height. From one sweep
+//! to the next the impulses therefore go on in a conjugate direction: `x ← S(x) + β p`, `p ← S(x) − x + β p`, with `β` the
+//! ratio of the squares of the last two sweeps' changes, and anew where that is no less than 1 (nonsmooth nonlinear
+//! conjugate gradients, Silcowitz, Niebe and Erleben 2010). The last word is a sweep's.
+
+use super::RigidIsland;
+use super::contacts::Impulses;
+use crate::contact::pair::PairHistory;
+use crate::solver::island::body::BodySlot;
+
+/// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
+/// others have settled and are passed over.
+const SWEEPS: (u32, u32) = (1000, 3000);
+/// Sweeps that judge a jump, at most.
+const SWEEPS_AFTER: u32 = 30;
+/// Jumps after which the impulses have not settled.
+const JUMPS: u32 = 4;
+/// Change of speed at a contact in one sweep below which it has settled: over what its weight alone gains in the step, and
+/// over the speed of the fastest of its rocks and their neighbours (–).
+const SETTLED: (f64, f64) = (5e-3, 3e-2);
+/// The first of them where an island is small: there it costs next to nothing to tell friction that just holds from friction
+/// that just does not (–).
+const SETTLED_FEW: f64 = 1e-3;
+/// Rocks of a small island, at most.
+const FEW: usize = 64;
+/// The same over the capture speed, where there is hardly any weight (–).
+const SETTLED_OF_CAPTURE: f64 = 1e-6;
+/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
+const STIRS: f64 = 0.2;
+
+impl RigidIsland {
+    /// Sweeps until nothing changes any more, helped along by jumps; whether that came about. A jump that does not bring
+    /// the sweeps nearer to rest is taken back, and no other is tried.
+    pub(super) fn settle(
+        &mut self,
+        (members, pair_histories): (&mut [BodySlot], &[PairHistory]),
+        dt: f64,
+    ) -> bool {
+        self.dt = dt;
+        self.allow();
+        let mut change = self.sweep_on(SWEEPS.0);
+        for _ in 0..JUMPS {
+            if change <= 1.0 {
+                return true;
+            }
+            let times: Vec<u32> = self.balls.iter().map(|ball| ball.times).collect();
+            if self.sweep_on(1) <= 1.0 {
+                return true;
+            }
+            let kept =
+                (self.balls.clone(), self.ground_contacts.clone(), self.ball_contacts.clone());
+            self.jumps += 1;
+            if !self.jump((&mut *members, pair_histories), &times) {
+                break;
+            }
+            let after = self.sweep_on(SWEEPS_AFTER);
+            if after > f64::max(1.0, 0.5 * change) {
+                (self.balls, self.ground_contacts, self.ball_contacts) = kept;
+                break;
+            }
+            change = after;
+        }
+        self.sweep_on(SWEEPS.1) <= 1.0
+    }
+
+    /// What may still change at every rock: the less the slower it and its neighbours are.
+    fn allow(&mut self) {
+        let few = self.balls.len() <= FEW;
+        let of_weight = if few { SETTLED_FEW } else { SETTLED.0 };
+        for ball in &mut self.balls {
+            let weight = of_weight * ball.body.gravity.norm() * self.dt;
+            let least = weight.max(SETTLED_OF_CAPTURE * self.capture_m_s);
+            ball.allowed_m_s = least + SETTLED.1 * ball.before.0.norm();
+        }
+        for [a, b] in self.ball_contacts.iter().map(|ball_contact| ball_contact.ends) {
+            let speeds = [a, b].map(|k| SETTLED.1 * self.balls[k].before.0.norm());
+            let Ok([a, b]) = self.balls.get_disjoint_mut([a, b]) else { continue };
+            a.allowed_m_s = a.allowed_m_s.max(speeds[1]);
+            b.allowed_m_s = b.allowed_m_s.max(speeds[0]);
+        }
+    }
+
+    /// Sweeps until nothing changes by more than is allowed, or so many times; the largest change of the last, over what
+    /// is allowed (–).
+    fn sweep_on(&mut self, most: u32) -> f64 {
+        let count = self.ground_contacts.len() + self.ball_contacts.len();
+        self.lay_contacts();
+        self.asked.all(count);
+        let mut change = f64::INFINITY;
+        self.lean.begin(count);
+        for k in 0..most {
+            self.sweeps += 1;
+            change = self.sweep(k % 2 == 1);
+            if change <= 1.0 {
+                break;
+            }
+            if k + 1 < most {
+                self.lean_on();
+            }
+        }
+        change
+    }
+
+    /// Goes on from a sweep's changes in the conjugate direction.
+    fn lean_on(&mut self) {
+        let list = std::mem::take(&mut self.lean.list);
+        let mut square = 0.0;
+        for &k in &list {
+            let (now, inv) = self.impulses(k as usize);
+            let change = now.less(&self.lean.of[k as usize].start);
+            square += change.square(inv);
+        }
+        let share = square / self.lean.square;
+        let leans = share < 1.0;
+        self.lean.square = square;
+        let map = self.lean.map;
+        self.lean.map += 1;
+        for &k in &list {
+            let (now, _) = self.impulses(k as usize);
+            let one = &mut self.lean.of[k as usize];
+            let change = now.less(&one.start);
+            if leans && one.led + 1 == map {
+                let step = one.way.times(share);
+                one.way = change.plus(&step);
+                self.push_on(k as usize, &step);
+            } else {
+                one.way = change;
+            }
+            self.lean.of[k as usize].led = map;
+        }
+        self.lean.list = list;
+        self.lean.list.clear();
+    }
+
+    /// The impulses of a contact, and the weights that make their squares energies.
+    fn impulses(&self, k: usize) -> (Impulses, [f64; 3]) {
+        let ground_contacts = self.ground_contacts.len();
+        if k < ground_contacts {
+            let ground_contact = &self.ground_contacts[k];
+            let ball = &self.balls[ground_contact.ball];
+            (ground_contact.impulses(), [ball.inv.0, 3.5 * ball.inv.0, ball.inv.1])
+        } else {
+            let ball_contact = &self.ball_contacts[k - ground_contacts];
+            (ball_contact.impulses(), [ball_contact.inv.0, ball_contact.inv.1, 0.0])
+        }
+    }
+
+    /// Adds to the impulses of a contact what its cone allows.
+    fn push_on(&mut self, k: usize, step: &Impulses) {
+        let ground_contacts = self.ground_contacts.len();
+        if k < ground_contacts {
+            let ground_contact = &mut self.ground_contacts[k];
+            let ball = &mut self.balls[ground_contact.ball];
+            ground_contact.push_on(step, ball);
+            ball.times += 1;
+            let end = ground_contact.ball;
+            self.ask(end);
+        } else {
+            let ball_contact = &mut self.ball_contacts[k - ground_contacts];
+            let ends = ball_contact.ends;
+            if let Ok([a, b]) = self.balls.get_disjoint_mut(ends) {
+                ball_contact.push_on(step, a, b);
+                (a.times, b.times) = (a.times + 1, b.times + 1);
+            }
+            self.ask(ends[0]);
+            self.ask(ends[1]);
+        }
+    }
+
+    /// One pass over the contacts that are asked, onwards or backwards; the largest change of speed, over what is allowed
+    /// (–).
+    fn sweep(&mut self, backwards: bool) -> f64 {
+        let mut change = 0.0f64;
+        let mut at = if backwards { self.asked.last() } else { self.asked.from(0) };
+        while let Some(k) = at {
+            change = change.max(self.sweep_contact(k));
+            at = if backwards { self.asked.below(k) } else { self.asked.from(k + 1) };
+        }
+        change
+    }
+
+    /// Feet come first, then knots.
+    fn sweep_contact(&mut self, k: usize) -> f64 {
+        self.asked.remove(k);
+        let ground_contacts = self.ground_contacts.len();
+        let start = if k < ground_contacts {
+            self.ground_contacts[k].impulses()
+        } else {
+            self.ball_contacts[k - ground_contacts].impulses()
+        };
+        let change = if k < ground_contacts {
+            self.sweep_ground_contact(k)
+        } else {
+            self.sweep_ball_contact(k - ground_contacts)
+        };
+        if change > STIRS {
+            self.lean.note(k, start);
+        }
+        change
+    }
+
+    /// The contacts of every rock.
+    fn lay_contacts(&mut self) {
+        let ground_contacts =
+            self.ground_contacts.iter().map(|ground_contact| [ground_contact.ball; 2]);
+        let ends: Vec<[usize; 2]> = ground_contacts
+            .chain(self.ball_contacts.iter().map(|ball_contact| ball_contact.ends))
+            .collect();
+        super::lay(&ends, self.balls.len(), (&mut self.first, &mut self.links));
+    }
+
+    /// Asks the contacts of a rock that was stirred: all others have seen their rocks as they are, and a sweep costs what
+    /// happens and not what is there.
+    fn ask(&mut self, ball: usize) {
+        for contact in &self.links[self.first[ball] as usize..self.first[ball + 1] as usize] {
+            self.asked.add(*contact as usize);
+        }
+    }
+
+    fn sweep_ground_contact(&mut self, k: usize) -> f64 {
+        let ground_contact = &mut self.ground_contacts[k];
+        let ball = &mut self.balls[ground_contact.ball];
+        if ground_contact.seen == ball.times {
+            return 0.0;
+        }
+        let change = ground_contact.solve(ball) / ball.allowed_m_s;
+        ball.times += u32::from(change > STIRS);
+        ground_contact.seen = ball.times;
+        let end = ground_contact.ball;
+        if change > STIRS {
+            self.ask(end);
+        }
+        change
+    }
+
+    fn sweep_ball_contact(&mut self, k: usize) -> f64 {
+        let ball_contact = &mut self.ball_contacts[k];
+        let Ok([a, b]) = self.balls.get_disjoint_mut(ball_contact.ends) else { return 0.0 };
+        if ball_contact.seen == [a.times, b.times] {
+            return 0.0;
+        }
+        let change = ball_contact.solve(a, b) / a.allowed_m_s.min(b.allowed_m_s);
+        let stirred = u32::from(change > STIRS);
+        (a.times, b.times) = (a.times + stirred, b.times + stirred);
+        ball_contact.seen = [a.times, b.times];
+        let ends = ball_contact.ends;
+        if change > STIRS {
+            self.ask(ends[0]);
+            self.ask(ends[1]);
+        }
+        change
+    }
+}
+
+/// The conjugate direction, contact by contact.
+#[derive(Debug, Default)]
+pub(super) struct Leaning {
+    of: Vec<One>,
+    list: Vec<u32>,
+    /// Number of the sweep in hand.
+    map: u32,
+    /// Square of the changes of the one before.
+    square: f64,
+}
+
+/// One contact's part of it.
+#[derive(Debug, Clone, Copy)]
+struct One {
+    /// Impulses before the sweep in hand.
+    start: Impulses,
+    /// The direction.
+    way: Impulses,
+    /// Sweep of which `start` is, and after which `way` was found.
+    begun: u32,
+    led: u32,
+}
+
+impl Leaning {
+    fn begin(&mut self, count: usize) {
+        let none = One { start: Impulses::NONE, way: Impulses::NONE, begun: 0, led: 0 };
+        self.of.clear();
+        self.of.resize(count, none);
+        self.list.clear();
+        self.map = 2;
+        self.square = 0.0;
+    }
+
+    fn note(&mut self, k: usize, start: Impulses) {
+        let one = &mut self.of[k];
+        if one.begun != self.map {
+            (one.begun, one.start) = (self.map, start);
+            self.list.push(k as u32);
+        }
+    }
+}
+
+/// A set of contacts, a bit for each.
+#[derive(Debug, Default)]
+pub(super) struct ContactQueue(Vec<u64>);
+
+impl ContactQueue {
+    /// Every number below `count`.
+    fn all(&mut self, count: usize) {
+        self.0.clear();
+        self.0.resize(count.div_ceil(64), u64::MAX);
+        let over = 64 * self.0.len() - count;
+        if let Some(last) = self.0.last_mut() {
+            *last >>= over;
+        }
+    }
+
+    fn add(&mut self, k: usize) {
+        self.0[k / 64] |= 1 << (k % 64);
+    }
+
+    fn remove(&mut self, k: usize) {
+        self.0[k / 64] &= !(1 << (k % 64));
+    }
+
+    /// The first at or after `k`.
+    fn from(&self, k: usize) -> Option<usize> {
+        let first = *self.0.get(k / 64)? & (u64::MAX << (k % 64));
+        let rest = self.0.iter().zip(0..).skip(k / 64 + 1).map(|(word, at)| (at, *word));
+        let mut words = std::iter::once((k / 64, first)).chain(rest);
+        words
+            .find(|(_, word)| *word != 0)
+            .map(|(at, word)| 64 * at + word.trailing_zeros() as usize)
+    }
+
+    /// The last before `k`.
+    fn below(&self, k: usize) -> Option<usize> {
+        let first = self.0.get(k / 64).map_or(0, |word| word & !(u64::MAX << (k % 64)));
+        let rest = (0..k / 64).rev().map(|at| (at, self.0[at]));
+        let mut words = std::iter::once((k / 64, first)).chain(rest);
+        words
+            .find(|(_, word)| *word != 0)
+            .map(|(at, word)| 64 * at + 63 - word.leading_zeros() as usize)
+    }
+
+    fn last(&self) -> Option<usize> {
+        self.below(64 * self.0.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ContactQueue;
+
+    /// Onwards and backwards give the same numbers, and none that was not put in.
+    #[test]
+    fn a_set_gives_back_its_numbers_in_order() {
+        let mut set = ContactQueue::default();
+        set.all(130);
+        assert_eq!((set.from(0), set.last()), (Some(0), Some(129)));
+        (0..130).filter(|k| k % 7 != 3).for_each(|k| set.remove(k));
+        set.add(64);
+        let onwards: Vec<usize> = std::iter::successors(set.from(0), |k| set.from(k + 1)).collect();
+        let mut backwards: Vec<usize> =
+            std::iter::successors(set.last(), |k| set.below(*k)).collect();
+        backwards.reverse();
+        let expected: Vec<usize> = (0..130).filter(|k| k % 7 == 3 || *k == 64).collect();
+        assert_eq!(onwards, expected);
+        assert_eq!(backwards, expected);
+        set.all(0);
+        assert_eq!((set.from(0), set.last()), (None, None));
+    }
+}

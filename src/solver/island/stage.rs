@@ -1,0 +1,158 @@
+//! One implicit stage of an island, and the rates at its start.
+
+use super::assembly::{Given, Island, TOUCH};
+use super::body::IslandBody;
+use super::pair_contact::PairContact;
+use crate::contact::history::carry;
+use crate::rock::Vec3;
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::stage::{AGREED, PASSES};
+use crate::solver::tableau::Tableau;
+
+impl Island<'_> {
+    /// Solves implicit stage `i` of a step of length `h` and stores its rates.
+    pub(super) fn stage(&mut self, tableau: &Tableau, i: usize, h: f64) -> Option<()> {
+        let hh = tableau.diagonal * h;
+        for member in &mut self.members {
+            let before = &member.state.rates[i - 1];
+            let (ahead_c, ahead_v) = (before.c, before.v);
+            member.base = member.state.base(tableau, i, h);
+            member.guess = member.base.c + (ahead_c + ahead_v * hh) * hh;
+            member.free = (member.base.v + member.body.gravity * hh, member.base.w);
+            member.look(self.terrain);
+        }
+        for _ in 0..PASSES {
+            for member in &mut self.members {
+                member.place_contacts(self.terrain, tableau, (i, h));
+            }
+            self.place_pairs(tableau, (i, h));
+            if !self.settle(hh) {
+                return None;
+            }
+            let mut agreed = true;
+            for member in &mut self.members {
+                let c = member.base.c + member.now.0 * hh;
+                let allowed = AGREED * member.body.radius;
+                agreed &= (c - member.guess).norm() <= allowed;
+                member.guess = c;
+                member.look(self.terrain);
+            }
+            if agreed {
+                self.store(i, hh);
+                return Some(());
+            }
+        }
+        None
+    }
+
+    /// Makes contacts of the pairs of rocks that are near, based at the stage's base.
+    fn place_pairs(&mut self, tableau: &Tableau, (i, h): (usize, f64)) {
+        self.pairs.clear();
+        for (k, pair_history) in self.pair_histories.iter().enumerate() {
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
+            let slack = 0.1 * a.body.radius.min(b.body.radius);
+            let bodies = [&a.body, &b.body];
+            let Some(mut pair) =
+                PairContact::over(pair_history, bodies, [&a.guess, &b.guess], slack)
+            else {
+                continue;
+            };
+            pair.pair_history = k;
+            let apart = pair.n.dot(&((a.base.c - b.base.c) - (a.guess - b.guess)));
+            pair.penetration -= apart;
+            if !pair_history.is_held() {
+                pair.captured = -pair.n.dot(&(a.base.v - b.base.v)) < pair_history.law.capture_m_s;
+                pair.c_n = if pair.captured {
+                    pair_history.law.c_n_captured
+                } else {
+                    pair_history.law.c_n
+                };
+            }
+            let from = if pair_history.is_held() { pair_history.n } else { pair.n };
+            let mut shear = pair_history.shear;
+            for (rate, a) in self.pair_rates[k].iter().zip(tableau.a[i]) {
+                shear += rate * (h * a);
+            }
+            pair.shear = carry(shear, &from, &pair.n);
+            (pair.normal_force, pair.shear_force) = self.pair_forces[k];
+            self.pairs.push(pair);
+        }
+    }
+
+    fn store(&mut self, i: usize, hh: f64) {
+        for member in &mut self.members {
+            member.given[i] = Given::default();
+        }
+        for (rates, pair_history) in self.pair_rates.iter_mut().zip(&self.pair_histories) {
+            rates[i] = Vec3::zeros();
+            debug_assert!(pair_history.a < pair_history.b);
+        }
+        for pair in &self.pairs {
+            let pair_history = &self.pair_histories[pair.pair_history];
+            let from = if pair_history.is_held() { pair_history.n } else { pair.n };
+            let rate = (pair.stretch(hh) - pair.shear) / hh;
+            self.pair_rates[pair.pair_history][i] = carry(rate, &pair.n, &from);
+            self.pair_forces[pair.pair_history] = (pair.normal_force, pair.shear_force);
+            let power = |k: usize| {
+                let (v, w) = &self.members[pair.ends[k]].now;
+                let (force, rolling_moment) = pair.load(k);
+                -force.dot(v) - rolling_moment.dot(w)
+            };
+            for (end, given) in pair.ends.into_iter().zip(Given::of_ends([power(0), power(1)])) {
+                self.members[end].given[i].add(&given, 1.0);
+            }
+        }
+        for member in &mut self.members {
+            member.store(self.terrain, (i, hh));
+        }
+    }
+
+    /// Rates at the present state, for the explicit first stage.
+    pub(super) fn rates_now(&mut self) {
+        for member in &mut self.members {
+            let IslandBody { state, body, laws, .. } = &mut **member;
+            let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
+            state.rates_now(&world);
+            member.given[0] = Given::default();
+        }
+        for (k, pair_history) in self.pair_histories.iter_mut().enumerate() {
+            self.pair_rates[k][0] = Vec3::zeros();
+            let ends = [pair_history.a as usize, pair_history.b as usize];
+            let [a, b] = ends.map(|k| &self.members[k]);
+            let touch = TOUCH * (a.body.radius + b.body.radius);
+            let at = [&a.state.c, &b.state.c];
+            let Some(mut pair) = PairContact::over(pair_history, [&a.body, &b.body], at, touch)
+            else {
+                continue;
+            };
+            let motions = [(a.state.v, a.state.w), (b.state.v, b.state.w)];
+            if !pair_history.is_held() {
+                pair.captured =
+                    -pair.speed([&motions[0], &motions[1]]) < pair_history.law.capture_m_s;
+                pair.c_n = if pair.captured {
+                    pair_history.law.c_n_captured
+                } else {
+                    pair_history.law.c_n
+                };
+                pair_history.n = pair.n;
+            }
+            pair.shear = carry(pair_history.shear, &pair_history.n, &pair.n);
+            let rate = pair.act_now([&motions[0], &motions[1]]);
+            self.pair_rates[k][0] = carry(rate, &pair.n, &pair_history.n);
+            let power = |k: usize| {
+                let (force, rolling_moment) = pair.load(k);
+                -force.dot(&motions[k].0) - rolling_moment.dot(&motions[k].1)
+            };
+            let given = Given::of_ends([power(0), power(1)]);
+            for end in 0..2 {
+                let member = &mut *self.members[ends[end]];
+                let (force, rolling_moment) = pair.load(end);
+                let rate = &mut member.state.rates[0];
+                rate.v += force / member.body.mass;
+                rate.w += rolling_moment / member.body.inertia;
+                member.given[0].add(&given[end], 1.0);
+            }
+        }
+        self.fresh = true;
+    }
+}

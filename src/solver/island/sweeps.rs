@@ -1,0 +1,299 @@
+//! Force sweeps: all contacts of an island solved one after the other until none changes.
+//!
+//! Nonlinear Gauss–Seidel in the forces, with the set-valued normal law and a warm start. A contact whose two rocks have
+//! not been stirred since it was solved is passed over, so a sweep costs what happens and not what is there. Where
+//! contacts oppose each other stiffly (a light rock under a heavy one, a high pile) sweeps creep; then the stirred part
+//! of the island is solved at once in the modes that they have found, and the sweeps judge the result.
+
+use super::assembly::Island;
+use super::body::IslandBody;
+use super::newton_step::jump;
+use super::pair_contact::Motion;
+use crate::solver::law::within;
+use crate::solver::multi_contact::Normal;
+
+/// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most. A jump
+/// costs as much as some hundred contacts.
+const SWEEPS: (usize, usize, usize) = (30, 4, 120);
+/// Jumps after which a stage is given up; the step is then halved.
+const JUMPS: usize = 10;
+/// Change of velocity by a change of force that is still to come, relative to the step's tolerance, below which the force
+/// has settled (–).
+const SETTLED: f64 = 1e-2;
+/// Part of that below which a change counts as settled however fast changes die out (–).
+const SETTLED_AT_ONCE: f64 = 1e-4;
+/// Part of that from which a change stirs the rocks: what is passed over adds up (–).
+const STIRS: f64 = 1e-4;
+/// An island of no more rocks than this is swept as a whole.
+const SMALL: usize = 4;
+/// Change of a force, relative to itself, that is rounding (–).
+const ROUNDING: f64 = 1e-11;
+
+/// Which rocks have been stirred, and what every contact has seen of that.
+#[derive(Debug, Default)]
+pub(super) struct ActiveSet {
+    /// How often each rock was set in another motion.
+    times: Vec<u32>,
+    /// The count at which each rock's contacts with the mesh were solved …
+    contacts: Vec<u32>,
+    /// … and each contact of two rocks.
+    pairs: Vec<[u32; 2]>,
+    /// Rocks whose forces changed in the last sweep.
+    pub(super) lately: Vec<bool>,
+    /// Largest change in the sweep in hand and in the two before, relative to what is allowed.
+    changes: [f64; 3],
+}
+
+impl ActiveSet {
+    /// Nothing has been solved yet.
+    fn begin(&mut self, rocks: usize, pairs: usize) {
+        self.times.clear();
+        self.times.resize(rocks, 1);
+        self.contacts.clear();
+        self.contacts.resize(rocks, 0);
+        self.pairs.clear();
+        self.pairs.resize(pairs, [0; 2]);
+        self.lately.clear();
+        self.lately.resize(rocks, true);
+        self.changes = [f64::INFINITY; 3];
+    }
+
+    /// Begins another sweep.
+    fn begin_sweep(&mut self) {
+        self.lately.fill(false);
+        self.changes = [0.0, self.changes[0], self.changes[1]];
+    }
+
+    /// Notes a change, relative to what is allowed.
+    fn note(&mut self, change: f64) {
+        self.changes[0] = self.changes[0].max(change);
+    }
+
+    /// Whether all changes still to come are small: `q + q² + …` times the last one, if each sweep leaves the share `q` of
+    /// the change before. Where sweeps creep, that is far more than the last change, and only the third sweep tells.
+    fn is_settled(&self) -> bool {
+        let [now, before, earlier] = self.changes;
+        let share = f64::max(now / before, before / earlier);
+        let knows = earlier.is_finite() && share < 1.0;
+        now <= SETTLED_AT_ONCE || knows && now <= 1.0 && now * share <= 1.0 - share
+    }
+
+    fn stir(&mut self, k: usize) {
+        self.times[k] += 1;
+        self.lately[k] = true;
+    }
+}
+
+impl Island<'_> {
+    /// Finds all contact forces of a stage of length `h`; whether they settled.
+    pub(super) fn settle(&mut self, h: f64) -> bool {
+        self.drive(h);
+        self.stirred.begin(self.members.len(), self.pairs.len());
+        for round in 0..JUMPS {
+            if self.sweep_on(h) {
+                return true;
+            }
+            if round + 1 < JUMPS {
+                self.jumps += 1;
+                self.jump_on(h);
+            }
+        }
+        false
+    }
+
+    /// Sweeps until nothing changes or a jump is due; whether nothing changes any more.
+    fn sweep_on(&mut self, h: f64) -> bool {
+        let mut most = SWEEPS.2;
+        let mut k = 0;
+        while k < most {
+            self.sweeps += 1;
+            self.stirred.begin_sweep();
+            self.sweep(h, k % 2 == 1);
+            if self.stirred.is_settled() {
+                return true;
+            }
+            let stirred = self.stirred.lately.iter().filter(|lately| **lately).count();
+            most = (SWEEPS.0 + SWEEPS.1 * stirred).min(SWEEPS.2);
+            k += 1;
+        }
+        false
+    }
+
+    /// Solves what was stirred lately at once.
+    fn jump_on(&mut self, h: f64) {
+        self.grow_stirred();
+        if let Some(motions) = jump(&self.members, &self.pairs, &self.stirred.lately, h) {
+            self.act_on(&motions, h);
+            self.drive(h);
+            self.stirred.begin(self.members.len(), self.pairs.len());
+        }
+    }
+
+    /// The neighbours of what was stirred take part in a jump.
+    fn grow_stirred(&mut self) {
+        let core = self.stirred.lately.clone();
+        for [a, b] in self.pairs.iter().filter(|pair| pair.acts()).map(|pair| pair.ends) {
+            self.stirred.lately[a] |= core[b];
+            self.stirred.lately[b] |= core[a];
+        }
+    }
+
+    /// Motions from all forces together.
+    fn drive(&mut self, h: f64) {
+        for member in &mut self.members {
+            let IslandBody { state, body, free, now, .. } = &mut **member;
+            *now = *free;
+            for contact in &state.contacts[..state.contact_count] {
+                let (dv, dw) = contact.effect(body, h);
+                now.0 += dv;
+                now.1 += dw;
+            }
+        }
+        for pair in self.pairs.iter().filter(|pair| pair.acts()) {
+            for k in 0..2 {
+                let IslandBody { body, now, .. } = &mut *self.members[pair.ends[k]];
+                pair.act(k, body, h, now);
+            }
+        }
+    }
+
+    /// One pass over the contacts, onwards or backwards.
+    fn sweep(&mut self, h: f64, backwards: bool) {
+        let (contacts, pairs) = (self.members.len(), self.pairs.len());
+        for k in 0..contacts + pairs {
+            let k = if backwards { contacts + pairs - 1 - k } else { k };
+            if k < contacts {
+                self.sweep_ground_contacts(k, h);
+            } else {
+                self.sweep_pair(k - contacts, h);
+            }
+        }
+    }
+
+    /// Whether contacts at rest are passed over: in a small island little is saved, and every digit counts.
+    fn passes_over(&self) -> bool {
+        self.members.len() > SMALL
+    }
+
+    fn sweep_ground_contacts(&mut self, k: usize, h: f64) {
+        if self.passes_over() && self.stirred.contacts[k] == self.stirred.times[k] {
+            return;
+        }
+        let IslandBody { state, body, now, .. } = &mut *self.members[k];
+        let count = state.contact_count;
+        let mut worst = 0.0f64;
+        for contact in &mut state.contacts[..count] {
+            let before = (contact.normal_force, contact.shear_force, contact.rolling_moment);
+            let (dv, dw) = contact.effect(body, h);
+            let free = (now.0 - dv, now.1 - dw);
+            contact.solve(body, &free.0, &free.1, h);
+            let (dv, dw) = contact.effect(body, h);
+            *now = (free.0 + dv, free.1 + dw);
+            let change = (contact.normal_force - before.0)
+                .abs()
+                .max((contact.shear_force - before.1).norm());
+            let change = change.max((contact.rolling_moment - before.2).norm() / body.radius);
+            let allowed = SETTLED * self.tolerance * body.mass / h;
+            worst =
+                worst.max(change / allowed.max(ROUNDING / SETTLED_AT_ONCE * contact.normal_force));
+        }
+        self.stirred.note(worst);
+        let seen = self.stirred.times[k];
+        if worst > STIRS {
+            self.stirred.stir(k);
+        }
+        // One contact alone is solved exactly; several must see each other's change.
+        self.stirred.contacts[k] = if count > 1 { seen } else { self.stirred.times[k] };
+    }
+
+    fn sweep_pair(&mut self, k: usize, h: f64) {
+        let passes_over = self.passes_over();
+        let pair = &mut self.pairs[k];
+        let ends = pair.ends;
+        if passes_over && self.stirred.pairs[k] == ends.map(|end| self.stirred.times[end]) {
+            return;
+        }
+        let before = (pair.normal_force, pair.shear_force);
+        let mut motions: [Motion; 2] = ends.map(|end| self.members[end].now);
+        if pair.acts() {
+            for k in 0..2 {
+                pair.act(k, &self.members[ends[k]].body, -h, &mut motions[k]);
+            }
+        }
+        pair.solve([&motions[0], &motions[1]], h);
+        let change = (pair.normal_force - before.0).abs().max((pair.shear_force - before.1).norm());
+        if pair.acts() || change > 0.0 {
+            for (k, motion) in motions.iter_mut().enumerate() {
+                let member = &mut *self.members[ends[k]];
+                pair.act(k, &member.body, h, motion);
+                member.now = *motion;
+            }
+        }
+        let allowed = SETTLED * self.tolerance / (h * pair.inv_m);
+        let worst = change / allowed.max(ROUNDING / SETTLED_AT_ONCE * pair.normal_force.abs());
+        self.stirred.note(worst);
+        if worst > STIRS {
+            for end in ends {
+                self.stirred.stir(end);
+            }
+        }
+        self.stirred.pairs[k] = ends.map(|end| self.stirred.times[end]);
+    }
+
+    /// Sets every force of rocks that jumped to what its law gives at their new motions.
+    fn act_on(&mut self, motions: &[Option<Motion>], h: f64) {
+        for (member, motion) in self.members.iter_mut().zip(motions) {
+            let Some((v, w)) = motion else { continue };
+            let IslandBody { state, body, now, .. } = &mut **member;
+            *now = (*v, *w);
+            for contact in &mut state.contacts[..state.contact_count] {
+                let law = contact.law;
+                let springs = (law.p_n, contact.c_n);
+                let line = Normal::line(
+                    springs,
+                    (contact.penetration, contact.normal_force),
+                    body.mass,
+                    h,
+                );
+                contact.normal_force = line.at(contact.n.dot(v));
+                let (stick, wound) = contact.trials(body, v, w, h);
+                contact.shear_force = within(stick, law.friction * contact.normal_force);
+                contact.rolling_moment = within(wound, law.rolling_m * contact.normal_force);
+            }
+        }
+        for pair in &mut self.pairs {
+            if pair.ends.iter().all(|&k| motions[k].is_none()) {
+                continue;
+            }
+            let ends = pair.ends.map(|k| &self.members[k].now);
+            let (law, speed, stick) = (pair.law, pair.speed(ends), pair.trial(ends, h));
+            if pair.bond.is_some() {
+                pair.normal_force = law.p_n * (pair.penetration - h * speed) - pair.c_n * speed;
+                pair.shear_force = stick;
+            } else {
+                let springs = (law.p_n, pair.c_n);
+                let pressed = (pair.penetration, pair.normal_force);
+                pair.normal_force = Normal::line(springs, pressed, 1.0 / pair.inv_m, h).at(speed);
+                pair.shear_force = within(stick, law.friction * pair.normal_force);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ActiveSet;
+
+    /// A contact is looked at again exactly when one of its rocks was stirred after it had been solved.
+    #[test]
+    fn what_is_stirred_is_solved_again() {
+        let mut stirred = ActiveSet::default();
+        stirred.begin(2, 1);
+        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
+        stirred.pairs[0] = [stirred.times[0], stirred.times[1]];
+        stirred.stir(1);
+        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
+        stirred.begin(2, 1);
+        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
+    }
+}

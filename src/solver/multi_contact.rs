@@ -1,0 +1,273 @@
+//! Several contacts of one rock at once: sweeps, helped along by Newton jumps in the six unknowns.
+//!
+//! Sweeping contact by contact settles slowly where two stiff contacts nearly oppose or nearly repeat each other.
+//! With the modes (open, closed, sticking, sliding) that the sweeps have found, the stage is one linear system for
+//! velocity and spin, the paper's 6×6 system of Eq. (4) for one rock; solving it jumps to where the sweeps were
+//! heading. The sweeps alone decide whether the result holds.
+
+use super::law::{Body, StageContact};
+use crate::rock::Vec3;
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+/// Sweeps between two jumps.
+const SWEEPS: u32 = 4;
+/// Jumps after which a stage is given up; the step is then halved.
+const JUMPS: u32 = 12;
+/// Change of a force, relative to the largest, below which the sweeps have settled (–).
+const SETTLED: f64 = 1e-9;
+/// A force below this part of its cap is held (–).
+const INSIDE: f64 = 1.0 - 1e-9;
+/// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
+const HOLD: f64 = 1e7;
+
+type Matrix6 = SMatrix<f64, 6, 6>;
+type Vector6 = SVector<f64, 6>;
+
+/// Solves all contacts of one stage from the free velocity and spin; `None` if the sweeps do not settle.
+pub(super) fn solve(
+    body: &Body,
+    contacts: &mut [StageContact],
+    free: (Vec3, Vec3),
+    h: f64,
+    sweeps: &mut u64,
+) -> Option<(Vec3, Vec3)> {
+    for contact in contacts.iter_mut() {
+        // Without a guess for friction a guess for the push alone would only mislead.
+        (contact.normal_force, contact.shear_force, contact.rolling_moment) =
+            (0.0, Vec3::zeros(), Vec3::zeros());
+    }
+    let mut now = free;
+    for _ in 0..JUMPS {
+        let mut calm = 0;
+        for _ in 0..SWEEPS {
+            *sweeps += 1;
+            if sweep(body, contacts, (&mut now, &mut calm), h) {
+                return Some(now);
+            }
+        }
+        if let Some(jumped) = jump(body, contacts, free, &now, h) {
+            act_on(body, contacts, &jumped, h);
+            now = driven(body, contacts, free, h);
+        }
+    }
+    None
+}
+
+/// One pass over the contacts; whether all agree. `calm` counts those that were asked since anything they answer to has
+/// changed.
+fn sweep(
+    body: &Body,
+    contacts: &mut [StageContact],
+    ((v, w), calm): (&mut (Vec3, Vec3), &mut usize),
+    h: f64,
+) -> bool {
+    let least = 1e-3 * body.mass * body.gravity.norm();
+    let scale = contacts.iter().map(|contact| contact.normal_force).fold(least, f64::max);
+    let count = contacts.len();
+    for contact in contacts.iter_mut() {
+        let before = (contact.normal_force, contact.shear_force, contact.rolling_moment);
+        let (dv, dw) = contact.effect(body, h);
+        let (vf, wf) = (*v - dv, *w - dw);
+        contact.solve(body, &vf, &wf, h);
+        let (dv, dw) = contact.effect(body, h);
+        (*v, *w) = (vf + dv, wf + dw);
+        let change2 = (contact.normal_force - before.0)
+            .powi(2)
+            .max((contact.shear_force - before.1).norm_squared())
+            .max((contact.rolling_moment - before.2).norm_squared() / body.radius.powi(2));
+        *calm = if change2 <= (SETTLED * scale.max(contact.normal_force)).powi(2) {
+            *calm + 1
+        } else {
+            1
+        };
+        if *calm >= count {
+            return true;
+        }
+    }
+    false
+}
+
+/// Free motion and all contact forces together.
+fn driven(
+    body: &Body,
+    contacts: &[StageContact],
+    (mut v, mut w): (Vec3, Vec3),
+    h: f64,
+) -> (Vec3, Vec3) {
+    for contact in contacts {
+        let (dv, dw) = contact.effect(body, h);
+        v += dv;
+        w += dw;
+    }
+    (v, w)
+}
+
+/// Sets every force to what its law gives at velocity and spin `at`.
+fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: f64) {
+    for contact in contacts {
+        let normal = Normal::of(body, contact, h);
+        contact.normal_force = normal.at(contact.n.dot(v));
+        let law = &contact.law;
+        let (stick, wound) = contact.trials(body, v, w, h);
+        contact.shear_force = super::law::within(stick, law.friction * contact.normal_force);
+        contact.rolling_moment = super::law::within(wound, law.rolling_m * contact.normal_force);
+    }
+}
+
+/// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Normal {
+    pub(crate) a: f64,
+    pub(crate) b: f64,
+}
+
+impl Normal {
+    /// The line of the mode the contact is in: open, pressed, or held exactly at the surface.
+    fn of(body: &Body, contact: &StageContact, h: f64) -> Self {
+        Self::line(
+            (contact.law.p_n, contact.c_n),
+            (contact.penetration, contact.normal_force),
+            body.mass,
+            h,
+        )
+    }
+
+    /// The same from spring and dashpot, penetration and push, and the mass that the push moves.
+    pub(crate) fn line(
+        (p_n, c_n): (f64, f64),
+        (penetration, normal_force): (f64, f64),
+        m: f64,
+        h: f64,
+    ) -> Self {
+        let b = p_n * h + c_n;
+        if normal_force <= 0.0 {
+            return Self { a: 0.0, b: 0.0 };
+        }
+        let speed = (p_n * penetration - normal_force) / b;
+        if penetration - h * speed < 0.0 {
+            // The push is less than spring and dashpot would give: it holds the rock at the surface.
+            let b = HOLD * m / h;
+            return Self { a: b * penetration / h, b };
+        }
+        Self { a: p_n * penetration, b }
+    }
+
+    pub(crate) fn at(&self, speed: f64) -> f64 {
+        (self.a - self.b * speed).max(0.0)
+    }
+}
+
+/// Velocity and spin that solve the stage linearised in its present modes.
+fn jump(
+    body: &Body,
+    contacts: &[StageContact],
+    free: (Vec3, Vec3),
+    now: &(Vec3, Vec3),
+    h: f64,
+) -> Option<(Vec3, Vec3)> {
+    let mut k = Matrix6::zeros();
+    let mut f = Vector6::zeros();
+    for axis in 0..3 {
+        (k[(axis, axis)], k[(axis + 3, axis + 3)]) = (body.mass / h, body.inertia / h);
+        (f[axis], f[axis + 3]) = (free.0[axis] * body.mass / h, free.1[axis] * body.inertia / h);
+    }
+    for contact in contacts.iter().filter(|contact| contact.normal_force > 0.0) {
+        add(&mut k, &mut f, body, contact, (now, h));
+    }
+    let x = k.lu().solve(&f)?;
+    let found = (x.fixed_rows::<3>(0).into(), x.fixed_rows::<3>(3).into());
+    x.iter().all(|x| x.is_finite()).then_some(found)
+}
+
+/// Adds one contact's forces, linear around `now`, to the system.
+fn add(
+    k: &mut Matrix6,
+    f: &mut Vector6,
+    body: &Body,
+    contact: &StageContact,
+    ((v, w), h): (&(Vec3, Vec3), f64),
+) {
+    let normal = Normal::of(body, contact, h);
+    let (law, n, r) = (&contact.law, contact.n, body.radius);
+    // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
+    let q = Matrix3::identity() - n * n.transpose();
+    let spin = n.cross_matrix() * r;
+    let (stick, wound) = contact.trials(body, v, w, h);
+    let normal_force = normal.at(n.dot(v));
+    // The sweeps know the mode. What the law gives at `now` does not: a newton of another contact that has changed
+    // since moves a stiff spring far beyond its cap.
+    let shear = Slider::left(
+        law.friction,
+        law.p_s * h + law.c_s,
+        (&contact.shear_force, contact.normal_force),
+    );
+    let roll = Slider::left(
+        law.rolling_m,
+        law.k_r * h + law.c_r,
+        (&contact.rolling_moment, contact.normal_force),
+    );
+    let (shear, roll) = (shear.at(stick, normal_force), roll.at(wound, normal_force));
+    let slip = body.slip(&n, v, w);
+    // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
+    let drag0 = shear.force - shear.jacobian * slip + shear.along * (normal.b * n.dot(v));
+    let moment0 = roll.force - roll.jacobian * w + roll.along * (normal.b * n.dot(v));
+    let (jq, js) = (q * shear.jacobian * q, shear.jacobian * spin);
+    let coupling = shear.along * n.transpose() * normal.b;
+    let (vv, vw) = (n * n.transpose() * normal.b + jq - coupling, q * js);
+    let wv =
+        spin.transpose() * (shear.jacobian * q - coupling) - roll.along * n.transpose() * normal.b;
+    let ww = spin.transpose() * js + roll.jacobian;
+    for (row, column, block) in [(0, 0, vv), (0, 3, vw), (3, 0, wv), (3, 3, ww)] {
+        let mut place = k.fixed_view_mut::<3, 3>(row, column);
+        place += block;
+    }
+    let mut force = f.fixed_rows_mut::<3>(0);
+    force += n * normal.a - drag0;
+    let mut torque = f.fixed_rows_mut::<3>(3);
+    torque -= spin.transpose() * drag0 + moment0;
+}
+
+/// A slider and its mode.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slider {
+    coefficient: f64,
+    stiffness: f64,
+    histories: bool,
+}
+
+/// A slider's force, and how that changes with the speed and with the push.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Answer {
+    pub(crate) force: Vec3,
+    pub(crate) jacobian: Matrix3<f64>,
+    /// Change of force with the push; zero while it sticks.
+    pub(crate) along: Vec3,
+}
+
+impl Slider {
+    /// The slider in the mode in which the sweeps left it with `force` under `push`; in no mode but sticking where the
+    /// push is without bound.
+    pub(crate) fn left(
+        coefficient: f64,
+        stiffness: f64,
+        (force, normal_force): (&Vec3, f64),
+    ) -> Self {
+        Self {
+            coefficient,
+            stiffness,
+            histories: force.norm() < coefficient * normal_force * INSIDE,
+        }
+    }
+
+    pub(crate) fn at(&self, trial: Vec3, normal_force: f64) -> Answer {
+        let (cap, size) = (self.coefficient * normal_force, trial.norm());
+        if self.histories || size <= cap {
+            let jacobian = Matrix3::identity() * self.stiffness;
+            return Answer { force: trial, jacobian, along: Vec3::zeros() };
+        }
+        let e = trial / size;
+        let across = Matrix3::identity() - e * e.transpose();
+        let jacobian = across * (self.stiffness * cap / size);
+        Answer { force: e * cap, jacobian, along: e * self.coefficient }
+    }
+}

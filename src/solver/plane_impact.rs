@@ -1,0 +1,72 @@
+//! A whole impact on one plane at once.
+
+use super::contact_state::{ContactEnvironment, ContactState, TOUCH};
+use super::impact::{Followed, Plane, Rebound};
+use super::step_control::Advance;
+use crate::contact::neighbours::Passage;
+use crate::contact::{ContactPoint, FeatureKind};
+use crate::math;
+use crate::rock::Vec3;
+
+impl ContactState {
+    /// All of an impact on one plane, if it is one: nothing else can be touched as far as the rock gets, springs are
+    /// unstretched, and the rock comes out again within `h_max` (s). `tolerance` as in [`Self::step_impact`].
+    pub(crate) fn bounce(
+        &mut self,
+        world: &ContactEnvironment,
+        tolerance: f64,
+        h_max: f64,
+        done: &mut Advance,
+    ) -> bool {
+        let [history] = &self.histories[..] else { return false };
+        let (face, is_face) = (history.feature.id, history.feature.kind == FeatureKind::Face);
+        let begins = !history.closed && is_face;
+        if !begins || self.may_yield || self.touches.iter().any(|touch| is_sunk(world, touch)) {
+            return false;
+        }
+        let (n, triangle) = (history.n, history.triangle);
+        let plane = Plane::new(&world.body, world.law(triangle), tolerance);
+        let Followed::Left(rebound) = plane.follow(&n, &self.v, &self.w) else { return false };
+        let passage = self.passage(&n, &rebound);
+        let is_known = passage.way_m <= self.near.room_m(&self.c);
+        if rebound.time_s > h_max || !is_known || !self.near.is_plane_on(face, &passage) {
+            return false;
+        }
+        self.c += rebound.shift_m;
+        (self.v, self.w) = (rebound.velocity_m_s, rebound.spin_rad_s);
+        self.histories.clear();
+        self.fresh = false;
+        self.impact.forget();
+        done.dt = rebound.time_s;
+        done.steps = u64::from(rebound.effort.steps);
+        done.rejected = u64::from(rebound.effort.rejected);
+        done.loss = rebound.loss.on(world, triangle);
+        true
+    }
+}
+
+/// Off the straight way from touch to lift-off is no more than so much of the time times the change of velocity (–): a
+/// constant force takes it an eighth of that away, one that acts at once in the middle a quarter.
+const BULGE: f64 = 0.25;
+
+impl ContactState {
+    /// Where the centre goes in an impact on the plane with normal `n`.
+    fn passage(&self, n: &Vec3, rebound: &Rebound) -> Passage {
+        let tangent = |x: &Vec3| x - n * n.dot(x);
+        let along = tangent(&rebound.shift_m);
+        let turned = tangent(&(rebound.velocity_m_s - self.v)).norm();
+        let off_m = BULGE * rebound.time_s * turned;
+        Passage {
+            start: self.c,
+            along,
+            into: n * -rebound.deepest_m,
+            off_m,
+            way_m: math::hypot(along.norm() + off_m, rebound.deepest_m),
+        }
+    }
+}
+
+/// Whether a touch is pressed in by more than rounding.
+fn is_sunk(world: &ContactEnvironment, touch: &ContactPoint) -> bool {
+    world.body.radius - touch.distance_m > 2.0 * TOUCH * world.body.radius
+}

@@ -1,0 +1,272 @@
+//! One step on a plane, tried with any length.
+
+use super::PlaneKernel;
+use super::state::{
+    PlaneForces, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, accelerations, dot, slip, square,
+    stored_j, three, two,
+};
+use crate::contact::neighbours::Neighbours;
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::friction_rolling::{Answers, Local, Mode, Pair};
+use crate::solver::law::{Body, normal_force};
+use crate::solver::step_control::{
+    Advance, Control, ONSET, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, StepFailure, Trial,
+    settle,
+};
+
+/// An impact is over after about so many radians of its contact (–): up to there its steps are taken in one go.
+const IMPACT: f64 = 3.5;
+
+/// A step being tried.
+pub(super) struct Try<'a, 'w> {
+    /// The step to try next (s).
+    pub(super) h: &'a mut f64,
+    /// The longest step that cannot jump over a feature (s).
+    pub(super) limit: f64,
+    /// Time within which steps may follow each other without a look around (s): the same whatever is left out.
+    pub(super) room_s: f64,
+    pub(super) control: &'a Control,
+    pub(super) world: &'a ContactEnvironment<'w>,
+    pub(super) law: &'a Law,
+    pub(super) plane_kernel: &'a mut PlaneKernel,
+    /// Normal damping in force (N s/m).
+    pub(super) c_n: f64,
+    pub(super) gravity: Local,
+    /// Penetration at `start` (m).
+    pub(super) penetration: f64,
+    /// Energy at the step's start, motion, springs and height over `start` (J).
+    pub(super) energy: f64,
+    /// The same at its end.
+    pub(super) energy_at_end: f64,
+    /// How far from `start` what is near is known, squared (m²).
+    pub(super) room2: f64,
+    pub(super) near: &'a Neighbours,
+    /// Centre where the ways are counted from (m).
+    pub(super) start: Vec3,
+    pub(super) face: u32,
+    /// How shear and rolling were when last asked.
+    pub(super) mode: Mode,
+    pub(super) end: State,
+    pub(super) press: PlaneForces,
+    pub(super) stored: f64,
+    pub(super) solved: u64,
+}
+/// What the stages of a step of one length have in common.
+struct Length {
+    /// Length of a stage (s).
+    hh: f64,
+    answers: Answers,
+    /// Reciprocals of what stretches shear and rolling spring (m/(N s), 1/(N m s)).
+    over_s: f64,
+    over_r: f64,
+}
+
+impl Length {
+    #[inline]
+    fn new(body: &Body, law: &Law, hh: f64) -> Self {
+        let answers = Answers::of(body, law, hh);
+        let over_r = if answers.kar > 0.0 { 1.0 / answers.kar } else { 0.0 };
+        Self { hh, over_s: 1.0 / answers.kap, over_r, answers }
+    }
+}
+
+impl Try<'_, '_> {
+    /// Solves implicit stage `i` of a step of length `dt`.
+    #[inline]
+    fn stage(&mut self, i: usize, dt: f64, by: &Length) {
+        let (body, law, tableau) = (&self.world.body, self.law, self.control.tableau);
+        let hh = by.hh;
+        let mut base = self.plane_kernel.state;
+        for (rate, a) in self.plane_kernel.rates.iter().zip(tableau.a[i]) {
+            for (base, rate) in base.iter_mut().zip(rate) {
+                *base += rate * (dt * a);
+            }
+        }
+        let spin = three(&base, SPIN);
+        let speed = [0, 1, 2].map(|k| base[SPEED + k] + self.gravity[k] * hh);
+        let penetration = self.penetration - base[WAY + 2];
+        let normal_force = normal_force((law.p_n, self.c_n), penetration, speed[2], body.mass, hh);
+        let (mut shear_force, mut rolling_moment) = ([0.0; 2], [0.0; 3]);
+        if normal_force > 0.0 {
+            let (slip, answers) = (slip(body, speed, spin), &by.answers);
+            let a = [0, 1].map(|k| base[SHEAR + k] * law.p_s + slip[k] * answers.kap);
+            let d = [0, 1, 2].map(|k| base[ROLL + k] * law.k_r + spin[k] * answers.kar);
+            let caps = (law.friction * normal_force, law.rolling_m * normal_force);
+            (shear_force, rolling_moment) = Pair { answers, a, d, caps }.solve(&mut self.mode);
+        }
+        let (dv, dw) = accelerations(body, normal_force, shear_force, rolling_moment);
+        let (rate, end) = (&mut self.plane_kernel.rates[i], &mut self.end);
+        for k in 0..3 {
+            let v = speed[k] + dv[k] * hh;
+            rate[WAY + k] = v;
+            rate[SPEED + k] = self.gravity[k] + dv[k];
+            rate[SPIN + k] = dw[k];
+        }
+        for k in 0..2 {
+            rate[SHEAR + k] = (shear_force[k] - law.p_s * base[SHEAR + k]) * by.over_s;
+        }
+        for k in 0..3 {
+            rate[ROLL + k] = (rolling_moment[k] - law.k_r * base[ROLL + k]) * by.over_r;
+        }
+        for k in 0..SIZE {
+            end[k] = base[k] + rate[k] * hh;
+        }
+        let press = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
+        let (speed, spin) = (three(end, SPEED), three(end, SPIN));
+        let shear_rate = two(rate, SHEAR);
+        self.plane_kernel.losses[i] =
+            press.losses(slip(body, speed, spin), (speed[2], spin), shear_rate);
+        self.press = press;
+        self.solved += 1;
+    }
+
+    /// What speaks against the stage's end, if anything: the rock must stay over the face and touch nothing else.
+    #[inline]
+    fn objection(&self, dt: f64) -> Option<Outcome> {
+        if square(three(&self.end, WAY)) > self.room2 {
+            return Some(Outcome::Elsewhere);
+        }
+        if self.near.plane() == Some(self.face) {
+            return None;
+        }
+        let centre = self.start + self.plane_kernel.frame.out_local(three(&self.end, WAY));
+        if !self.near.is_over(self.face, &centre) {
+            return Some(Outcome::Elsewhere);
+        }
+        let reach = self.world.body.radius;
+        if self.near.is_alone(self.world.terrain, self.face, (&centre, reach)) {
+            return None;
+        }
+        // It runs into something: what it meets must be resolved from the start, so come close first.
+        Some(if dt * self.law.omega > ONSET { Outcome::Unsettled } else { Outcome::Elsewhere })
+    }
+
+    /// Local error relative to the tolerance.
+    #[inline]
+    fn error(&self, dt: f64) -> f64 {
+        let tableau = self.control.tableau;
+        let mut off = [0.0; SIZE];
+        for (rate, weight) in self.plane_kernel.rates[..tableau.stages].iter().zip(tableau.error) {
+            for (off, rate) in off.iter_mut().zip(rate) {
+                *off += rate * weight;
+            }
+        }
+        let omega2 = self.law.omega * self.law.omega;
+        let worst2 = (square(three(&off, WAY)).max(square(two(&off, SHEAR))) * omega2)
+            .max(square(three(&off, SPEED)))
+            .max(square(three(&off, SPIN)) * self.world.body.radius.powi(2));
+        dt * worst2.sqrt() / self.control.tolerance
+    }
+
+    /// Motion, height and springs at the step's end (J).
+    #[inline]
+    fn end_j(&self) -> f64 {
+        let (body, end) = (&self.world.body, &self.end);
+        let (speed2, spin2) = (square(three(end, SPEED)), square(three(end, SPIN)));
+        let motion = 0.5 * (body.mass * speed2 + body.inertia * spin2);
+        motion + self.stored - body.mass * dot(self.gravity, three(end, WAY))
+    }
+
+    /// Whether that is more than at the step's start.
+    #[inline]
+    fn gains(&self) -> bool {
+        let body = &self.world.body;
+        let force = body.mass * body.gravity.norm() + self.press.normal_force;
+        let unknown = ROUNDING * self.energy.abs() + PLACE_ROUNDING * body.radius * force;
+        self.energy_at_end > self.energy + unknown
+    }
+
+    /// Steps until the rock is free, an impact would be over, or what is near is no longer known; why it stopped before
+    /// that, if it did.
+    pub(super) fn run(
+        &mut self,
+        (h_max, is_tree): (f64, bool),
+        done: &mut Advance,
+    ) -> Option<StepFailure> {
+        // A stem must be asked after every step whether it still stands.
+        let span = if is_tree { 0.0 } else { IMPACT / self.law.omega };
+        let (control, mut sum) = (self.control, [0.0; 3]);
+        let halt = loop {
+            let left = h_max - done.dt;
+            let dt = match settle(self, control, left, &mut done.rejected) {
+                Ok(dt) => dt,
+                Err(halt) => break Some(halt),
+            };
+            self.accept(dt, &mut sum);
+            done.steps += 1;
+            done.dt = if dt >= left { h_max } else { done.dt + dt };
+            if !self.press.closed || done.dt >= span.min(h_max) || !self.has_room(dt) {
+                break None;
+            }
+        };
+        let [friction, damping, rolling] = sum;
+        done.loss = Loss { friction, damping, rolling, trees: 0.0 };
+        halt
+    }
+
+    /// Goes on from the step's end; adds what went into friction, damping and rolling (J) to `sum`.
+    #[inline]
+    fn accept(&mut self, dt: f64, sum: &mut Local) {
+        let tableau = self.control.tableau;
+        for (k, losses) in self.plane_kernel.losses[..tableau.stages].iter().enumerate() {
+            let weight = dt * tableau.work_weight(k);
+            for (sum, loss) in sum.iter_mut().zip(losses) {
+                *sum += weight * loss;
+            }
+        }
+        self.energy = self.energy_at_end;
+        let last = tableau.stages - 1;
+        let plane_kernel = &mut *self.plane_kernel;
+        (plane_kernel.rates[0], plane_kernel.losses[0]) =
+            (plane_kernel.rates[last], plane_kernel.losses[last]);
+        plane_kernel.state = self.end;
+    }
+
+    /// Whether the next step stays where what is near is known, and within the longest step that was allowed for.
+    #[inline]
+    fn has_room(&mut self, dt: f64) -> bool {
+        self.room_s -= dt;
+        let (state, h) = (&self.plane_kernel.state, *self.h);
+        let ahead = [0, 1, 2].map(|k| state[WAY + k] + state[SPEED + k] * h);
+        h <= self.room_s && square(ahead) < self.room2
+    }
+}
+
+impl Trial for Try<'_, '_> {
+    fn h(&mut self) -> &mut f64 {
+        self.h
+    }
+
+    fn limit(&mut self) -> f64 {
+        self.limit
+    }
+
+    fn omega(&self) -> f64 {
+        self.law.omega
+    }
+
+    fn try_step(&mut self, dt: f64) -> Outcome {
+        let by = Length::new(&self.world.body, self.law, self.control.tableau.diagonal * dt);
+        for i in 1..self.control.tableau.stages {
+            self.stage(i, dt, &by);
+            if let Some(objection) = self.objection(dt) {
+                return objection;
+            }
+        }
+        let error = self.error(dt);
+        if error > 1.0 || error.is_nan() {
+            return Outcome::Error(error);
+        }
+        let penetration = (self.penetration - self.end[WAY + 2]).max(0.0);
+        self.press.closed = self.press.normal_force > 0.0 || penetration > 0.0;
+        self.stored =
+            if self.press.closed { stored_j(self.law, penetration, &self.end) } else { 0.0 };
+        self.energy_at_end = self.end_j();
+        if dt * self.law.omega > RESOLVED && self.gains() {
+            return Outcome::Gains;
+        }
+        Outcome::Error(error)
+    }
+}

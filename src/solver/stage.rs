@@ -1,0 +1,229 @@
+//! One implicit stage: the contact law solved with the geometry at the stage's end.
+
+use super::contact_state::{ContactEnvironment, ContactState, Loss, Rate, TOUCH};
+use super::law::{self, Action, Place, StageContact};
+use super::tableau::Tableau;
+use crate::contact::history::carry;
+use crate::rock::Vec3;
+
+/// Most passes in which geometry and forces are brought to agree.
+pub(crate) const PASSES: u32 = 10;
+/// Change of the centre, relative to the radius, below which they agree (–).
+pub(crate) const AGREED: f64 = 1e-9;
+
+impl StageContact {
+    /// Power that goes into the contact (W) at velocity `v` and spin `w`: what its springs store is counted in.
+    pub(super) fn loss(
+        &self,
+        world: &ContactEnvironment,
+        v: &Vec3,
+        w: &Vec3,
+        shear_rate: &Vec3,
+    ) -> Loss {
+        let slip = world.body.slip(&self.n, v, w);
+        let friction = self.shear_force.dot(&(slip - shear_rate));
+        let damping = self.shear_force.dot(shear_rate) - self.normal_force * self.n.dot(v);
+        let rolling = self.rolling_moment.dot(w);
+        if self.is_tree {
+            Loss { trees: friction + damping + rolling, ..Loss::default() }
+        } else {
+            Loss { friction, damping, rolling, trees: 0.0 }
+        }
+    }
+
+    /// Forces at the present state, for the explicit first stage; returns the rates of shear and rolling springs.
+    pub(super) fn act_now(
+        &mut self,
+        world: &ContactEnvironment,
+        v: &Vec3,
+        w: &Vec3,
+    ) -> (Vec3, Vec3) {
+        let at =
+            Place { n: self.n, penetration: self.penetration, shear: self.shear, roll: self.roll };
+        let law = &self.law;
+        let action = Action::of(&world.body, law, (law.p_n, self.c_n), &at, (v, w));
+        self.normal_force = action.normal[0];
+        (self.shear_force, self.rolling_moment) = (action.shear_force, action.rolling_moment);
+        (action.rates[0], action.rates[1])
+    }
+}
+
+/// Where a stage ends.
+#[derive(Debug, Clone, Copy)]
+pub struct End {
+    /// Centre (m).
+    pub c: Vec3,
+    /// Velocity (m/s).
+    pub v: Vec3,
+    /// Spin (rad/s).
+    pub w: Vec3,
+}
+
+impl ContactState {
+    /// The base of implicit stage `i`: the state plus the explicit part of the earlier stages.
+    pub(crate) fn base(&self, tableau: &Tableau, i: usize, h: f64) -> End {
+        let mut base = End { c: self.c, v: self.v, w: self.w };
+        for (rate, a) in self.rates.iter().zip(tableau.a[i]) {
+            base.c += rate.c * (h * a);
+            base.v += rate.v * (h * a);
+            base.w += rate.w * (h * a);
+        }
+        base
+    }
+
+    /// Solves implicit stage `i` of a step of length `h` and stores its rates; `None` if it does not settle.
+    pub fn stage(
+        &mut self,
+        world: &ContactEnvironment,
+        tableau: &Tableau,
+        i: usize,
+        h: f64,
+    ) -> Option<End> {
+        let base = self.base(tableau, i, h);
+        let hh = tableau.diagonal * h;
+        let (vf, wf) = (base.v + world.body.gravity * hh, base.w);
+        // Where it would be if it went on as in the stage before.
+        let before = &self.rates[i - 1];
+        let mut guess = base.c + (before.c + before.v * hh) * hh;
+        // Planes slid along may have ended on the way: what they say must be confirmed by the look at the end.
+        let mut looked =
+            !(self.near.covers(&guess) && self.touches.slide_to(world.terrain, &guess));
+        if looked {
+            self.look_ahead(world, &guess);
+        }
+        for _ in 0..PASSES {
+            self.place_contacts(world, tableau, (i, h), (&base, &guess));
+            let contacts = &mut self.contacts[..self.contact_count];
+            let (v, w) = law::solve(&world.body, contacts, vf, wf, hh, &mut self.sweeps)?;
+            let c = base.c + v * hh;
+            self.look_ahead(world, &c);
+            let moved = (c - guess).norm_squared();
+            let agrees = looked && moved <= (AGREED * world.body.radius).powi(2);
+            if agrees || self.stays_on_faces() {
+                let end = End { c, v, w };
+                self.store(world, &base, &end, (i, hh));
+                return Some(end);
+            }
+            (guess, looked) = (c, true);
+        }
+        None
+    }
+
+    /// Whether the last look found the very faces that the forces were computed with: planes are the same everywhere,
+    /// so the forces are exact wherever the rock was when they were computed.
+    #[inline]
+    fn stays_on_faces(&self) -> bool {
+        let contacts = &self.contacts[..self.contact_count];
+        contacts.len() == self.touches.len()
+            && contacts.iter().zip(self.touches.iter()).all(|(contact, touch)| {
+                touch.is_on_plane() && touch.feature == contact.feature && touch.normal == contact.n
+            })
+    }
+
+    /// Makes the contacts of the last look into contacts based at the stage's base.
+    pub(crate) fn place_contacts(
+        &mut self,
+        world: &ContactEnvironment,
+        tableau: &Tableau,
+        (i, h): (usize, f64),
+        (base, at): (&End, &Vec3),
+    ) {
+        self.contact_count = self.touches.len();
+        let mut taken = 0;
+        for k in 0..self.contact_count {
+            let history = self.history_of(world, k, taken, &base.v);
+            taken |= 1 << history;
+            let mut contact = self.contact_of(world, k, history);
+            let memory = &self.histories[history];
+            let (mut shear, mut roll) = (memory.shear, memory.roll);
+            for (rate, a) in self.rates.iter().zip(tableau.a[i]) {
+                shear += rate.shear[history] * (h * a);
+                roll += rate.roll[history] * (h * a);
+            }
+            contact.shear = carry(shear, &memory.n, &contact.n);
+            contact.roll = roll;
+            contact.penetration =
+                world.body.radius - self.touches[k].distance_m - contact.n.dot(&(base.c - at));
+            self.contacts[k] = contact;
+        }
+    }
+
+    /// The contact of touch `k` with the stretches of its memory and no penetration yet.
+    pub(super) fn contact_of(
+        &self,
+        world: &ContactEnvironment,
+        k: usize,
+        history: usize,
+    ) -> StageContact {
+        let (touch, memory) = (&self.touches[k], &self.histories[history]);
+        let law = world.law_of(&self.touches, k);
+        StageContact {
+            history,
+            feature: touch.feature,
+            triangle: touch.triangle,
+            c_n: if memory.captured { law.c_n_captured } else { law.c_n },
+            is_tree: world.terrain.is_tree(touch.triangle),
+            n: touch.normal,
+            penetration: 0.0,
+            shear: carry(memory.shear, &memory.n, &touch.normal),
+            roll: memory.roll,
+            normal_force: memory.normal_force,
+            shear_force: Vec3::zeros(),
+            rolling_moment: Vec3::zeros(),
+            mode: self.contacts[k].mode,
+            law,
+        }
+    }
+
+    /// Stores the rates of stage `i`.
+    pub(crate) fn store(
+        &mut self,
+        world: &ContactEnvironment,
+        base: &End,
+        end: &End,
+        (i, hh): (usize, f64),
+    ) {
+        let rate = &mut self.rates[i];
+        (rate.c, rate.v, rate.w) = (end.v, (end.v - base.v) / hh, (end.w - base.w) / hh);
+        rate.loss = Loss::default();
+        for k in 0..self.histories.len() {
+            (rate.shear[k], rate.roll[k]) = (Vec3::zeros(), Vec3::zeros());
+        }
+        for contact in &self.contacts[..self.contact_count] {
+            let (shear, roll) = contact.stretches(hh);
+            let (shear_rate, roll_rate) =
+                ((shear - contact.shear) / hh, (roll - contact.roll) / hh);
+            rate.shear[contact.history] =
+                carry(shear_rate, &contact.n, &self.histories[contact.history].n);
+            rate.roll[contact.history] = roll_rate;
+            rate.loss.add(&contact.loss(world, &end.v, &end.w, &shear_rate), 1.0);
+        }
+    }
+
+    /// Rates at the present state, for the explicit first stage.
+    pub fn rates_now(&mut self, world: &ContactEnvironment) {
+        let (c, v, w) = (self.c, self.v, self.w);
+        let body = &world.body;
+        self.look(world, &c, body.radius * (1.0 + TOUCH));
+        self.rates[0] = Rate { c: v, v: body.gravity, ..Rate::NONE };
+        let mut taken = 0;
+        for k in 0..self.touches.len() {
+            let history = self.history_of(world, k, taken, &v);
+            taken |= 1 << history;
+            let mut contact = self.contact_of(world, k, history);
+            contact.penetration = (body.radius - self.touches[k].distance_m).max(0.0);
+            let (shear_rate, roll_rate) = contact.act_now(world, &v, &w);
+            let back = self.histories[history].n;
+            let rate = &mut self.rates[0];
+            rate.v += (contact.n * contact.normal_force - contact.shear_force) / body.mass;
+            rate.w += (contact.n.cross(&contact.shear_force) * body.radius
+                - contact.rolling_moment)
+                / body.inertia;
+            rate.shear[history] = carry(shear_rate, &contact.n, &back);
+            rate.roll[history] = roll_rate;
+            rate.loss.add(&contact.loss(world, &v, &w, &shear_rate), 1.0);
+        }
+        self.stored = self.springs_j(world).sum();
+        self.fresh = true;
+    }
+}

@@ -1,0 +1,370 @@
+//! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
+
+use super::contact_state::{ContactEnvironment, ContactState, Loss};
+use super::stage::End;
+use super::tableau::Tableau;
+use super::{Scheme, Settings};
+use crate::contact::history::carry;
+use crate::math;
+
+/// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
+pub(crate) const ONSET: f64 = 0.3;
+/// Longest way in one step where more than one plane is near (–, relative to R).
+pub(crate) const TRAVEL: f64 = 0.15;
+/// The step controller's safety factor (–).
+const SAFETY: f64 = 0.9;
+/// Most that a step shrinks or grows at once (–).
+const RATIO: (f64, f64) = (0.2, 4.0);
+/// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
+const SHORTEST: f64 = 1e-9;
+
+/// A step this short, in radians of the stiffest contact, resolves everything: what it still gains is rounding (–).
+pub(crate) const RESOLVED: f64 = 1e-3;
+/// Gain of energy in one step that is rounding (–).
+pub(crate) const ROUNDING: f64 = 1e-10;
+/// Rounding of positions, relative to the radius (–).
+pub(crate) const PLACE_ROUNDING: f64 = 1e-11;
+
+/// Why a rock cannot go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum StepError {
+    /// No step, however short, settles.
+    #[error("the contact step would not settle, however short")]
+    Unsettled,
+    /// It is so deep in the mesh that its contacts mean nothing any more.
+    #[error("the rock sank in by half its radius: its contact springs are too soft for its speed")]
+    SankIn,
+    /// Position, velocity or spin are no longer numbers.
+    #[error("the motion is no longer finite")]
+    NotFinite,
+}
+
+/// What one advance did.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Advance {
+    /// Time gone (s).
+    pub dt: f64,
+    /// Energy lost by each kind of contact work (J).
+    pub loss: Loss,
+    /// Steps taken: one, or those of a whole impact.
+    pub steps: u64,
+    /// Steps tried and thrown away.
+    pub rejected: u64,
+    /// Whether the contact states did not settle (`dda`).
+    pub unsettled: bool,
+}
+
+/// How the step is controlled.
+#[derive(Debug, Clone, Copy)]
+pub struct Control {
+    /// The tableau.
+    pub tableau: &'static Tableau,
+    /// Local error allowed in lasting contact (m/s) …
+    pub tolerance: f64,
+    /// … and in an impact (–, relative to its speed).
+    pub impact: f64,
+    /// Whether an impact on one plane is followed as a whole.
+    pub plane_impacts: bool,
+}
+
+/// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most.
+const IMPACT: (f64, f64) = (4e-3, 2e-4);
+/// The same for the reference.
+const IMPACT_OF_REFERENCE: f64 = 1e-10;
+/// Local error allowed in lasting contact, whatever is asked for (–, relative to √(g R), the speed of a rock that tips over
+/// an edge).
+const PIVOT: f64 = 0.02;
+
+impl Control {
+    /// The control of a rock in `world`.
+    pub fn new(tableau: &'static Tableau, settings: &Settings, world: &ContactEnvironment) -> Self {
+        let own = (world.body.gravity.norm() * world.body.radius).sqrt();
+        let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
+        let impact = match settings.scheme {
+            Scheme::Reference => IMPACT_OF_REFERENCE,
+            _ => (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1),
+        };
+        Self {
+            tableau,
+            tolerance: settings.tolerance_m_s.min(relative),
+            impact,
+            plane_impacts: settings.plane_impacts,
+        }
+    }
+}
+
+/// First step after a touch (s).
+pub fn first_step(world: &ContactEnvironment, state: &ContactState) -> f64 {
+    ONSET / stiffest(world, state)
+}
+
+/// Largest `√(p_N/m)` among the contacts (rad/s).
+fn stiffest(world: &ContactEnvironment, state: &ContactState) -> f64 {
+    let omega =
+        state.histories.iter().map(|history| world.law(history.triangle).omega).fold(0.0, f64::max);
+    if omega > 0.0 { omega } else { world.laws.iter().map(|law| law.omega).fold(0.0, f64::max) }
+}
+
+/// One accepted step of at most `h_max` (s), or all those of an impact on one plane; `h` is the step to try and becomes the
+/// one to try next.
+///
+/// # Errors
+/// [`StepError`] if the step had to become too short to matter.
+pub fn advance(
+    world: &ContactEnvironment,
+    control: &Control,
+    state: &mut ContactState,
+    h: &mut f64,
+    h_max: f64,
+) -> Result<Advance, StepError> {
+    let mut done = Advance::default();
+    if state.is_rebounding() {
+        state.leave_plane(world);
+        if control.plane_impacts && state.bounce(world, control.impact, h_max, &mut done) {
+            return Ok(done);
+        }
+        let omega = stiffest(world, state);
+        return state.step_impact(world, (omega, control.impact), h_max, &mut done).map(|()| done);
+    }
+    if let Some(settled) = state.step_on_plane(world, control, (h, h_max), &mut done) {
+        return settled.map(|()| done);
+    }
+    state.leave_plane(world);
+    if !state.fresh {
+        state.rates_now(world);
+    }
+    let limit = travel_limit(world, state);
+    let (omega, known) = (stiffest(world, state), state.histories.len());
+    let mut trial = Try { world, control, state, h, limit, omega, known, end: None };
+    done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
+    done.steps = 1;
+    if let Some(end) = trial.end {
+        accept(world, control.tableau, state, (&end, done.dt), &mut done.loss);
+    }
+    Ok(done)
+}
+
+/// What one try of a step came to.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Outcome {
+    /// Its local error relative to the tolerance; accepted up to 1.
+    Error(f64),
+    /// Accurate, but with more energy than before: it has met a kink of the law in an unlucky place, and a shorter one
+    /// does not.
+    Gains,
+    /// A stage did not settle.
+    Unsettled,
+    /// The rock has left where the trial holds.
+    Elsewhere,
+}
+
+/// Why no step was found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum StepFailure {
+    /// No step, however short, settles.
+    Unsettled,
+    /// The trial does not hold where the rock goes.
+    Elsewhere,
+}
+
+impl From<StepFailure> for StepError {
+    fn from(_: StepFailure) -> Self {
+        Self::Unsettled
+    }
+}
+
+/// A step that can be tried with any length.
+pub(crate) trait Trial {
+    /// The step to try next (s).
+    fn h(&mut self) -> &mut f64;
+    /// The longest step that cannot jump over a feature (s).
+    fn limit(&mut self) -> f64;
+    /// Stiffest contact (rad/s).
+    fn omega(&self) -> f64;
+    /// Tries it with length `dt` (s).
+    fn try_step(&mut self, dt: f64) -> Outcome;
+}
+
+/// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
+/// try next.
+pub(crate) fn settle(
+    trial: &mut impl Trial,
+    control: &Control,
+    h_max: f64,
+    rejected: &mut u64,
+) -> Result<f64, StepFailure> {
+    loop {
+        let limit = trial.limit();
+        let wished = trial.h().min(limit);
+        let dt = wished.min(h_max);
+        let ratio = match trial.try_step(dt) {
+            Outcome::Error(error) if error <= 1.0 => {
+                let least = if dt < wished { wished } else { 0.0 };
+                *trial.h() = grown(control, dt, error).max(least);
+                return Ok(dt);
+            }
+            Outcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
+            Outcome::Gains => 0.4,
+            Outcome::Elsewhere => return Err(StepFailure::Elsewhere),
+            _ => 0.25,
+        };
+        *rejected += 1;
+        *trial.h() = dt * ratio;
+        if dt * ratio * trial.omega() < SHORTEST {
+            return Err(StepFailure::Unsettled);
+        }
+    }
+}
+
+/// A step of a rock among any features.
+struct Try<'a, 'w> {
+    world: &'a ContactEnvironment<'w>,
+    control: &'a Control,
+    state: &'a mut ContactState,
+    h: &'a mut f64,
+    limit: f64,
+    omega: f64,
+    /// Memories at the step's start.
+    known: usize,
+    end: Option<End>,
+}
+
+impl Trial for Try<'_, '_> {
+    fn h(&mut self) -> &mut f64 {
+        self.h
+    }
+
+    fn limit(&mut self) -> f64 {
+        self.limit
+    }
+
+    fn omega(&self) -> f64 {
+        self.omega
+    }
+
+    fn try_step(&mut self, dt: f64) -> Outcome {
+        self.state.histories.truncate(self.known);
+        let Some((end, error)) = attempt(self.world, self.control, self.state, dt, self.omega)
+        else {
+            return Outcome::Unsettled;
+        };
+        self.end = Some(end);
+        let hh = self.control.tableau.diagonal * dt;
+        if error <= 1.0 && dt * self.omega > RESOLVED && gains(self.world, self.state, &end, hh) {
+            return Outcome::Gains;
+        }
+        Outcome::Error(error)
+    }
+}
+
+/// Whether motion, height and springs together hold more at the step's end than at its start.
+fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -> bool {
+    let body = &world.body;
+    let motion = 0.5 * (body.mass * end.v.norm_squared() + body.inertia * end.w.norm_squared());
+    let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
+    let before = state.motion_j(body) + state.stored;
+    // Positions are rounded to about 1e-13 of a slope's size: times the forces, that much work is not known.
+    let force = body.mass * body.gravity.norm()
+        + state.contacts[..state.contact_count]
+            .iter()
+            .map(|contact| contact.normal_force)
+            .sum::<f64>();
+    let unknown = ROUNDING * before + PLACE_ROUNDING * body.radius * force;
+    motion + lifted + pressed_j(state, end, hh) > before + unknown
+}
+
+/// Energy in the springs of the contacts that are closed at the end of the step (J).
+pub(crate) fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
+    let closed = state.contacts[..state.contact_count]
+        .iter()
+        .filter(|contact| contact.is_closed(&end.v, hh));
+    let stored = closed.map(|contact| {
+        let (penetration, law) = (contact.pen_at(&end.v, hh).max(0.0), &contact.law);
+        let (shear, roll) = contact.stretches(hh);
+        0.5 * (law.p_n * penetration * penetration
+            + law.p_s * shear.norm_squared()
+            + law.k_r * roll.norm_squared())
+    });
+    stored.sum()
+}
+
+fn grown(control: &Control, dt: f64, error: f64) -> f64 {
+    dt * (SAFETY * math::pow(error, -control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
+}
+
+/// Longest step that cannot jump over a feature (s).
+pub(crate) fn travel_limit(world: &ContactEnvironment, state: &mut ContactState) -> f64 {
+    let c = state.c;
+    state.know(world, &c);
+    state.longest_step(world, TRAVEL)
+}
+
+/// One step: where it ends and its error relative to the tolerance; `None` if a stage does not settle.
+fn attempt(
+    world: &ContactEnvironment,
+    control: &Control,
+    state: &mut ContactState,
+    dt: f64,
+    omega: f64,
+) -> Option<(End, f64)> {
+    let tableau = control.tableau;
+    let mut end = None;
+    for i in 1..tableau.stages {
+        end = Some(state.stage(world, tableau, i, dt)?);
+    }
+    let mut off = [crate::rock::Vec3::zeros(); 3];
+    let mut stretch2 = 0.0f64;
+    for (rate, weight) in state.rates[..tableau.stages].iter().zip(tableau.error) {
+        off[0] += rate.c * weight;
+        off[1] += rate.v * weight;
+        off[2] += rate.w * weight;
+    }
+    for k in 0..state.histories.len() {
+        let stages = state.rates[..tableau.stages].iter().zip(tableau.error);
+        let drift = stages
+            .fold(crate::rock::Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * weight);
+        stretch2 = stretch2.max(drift.norm_squared());
+    }
+    let worst2 = (off[0].norm_squared().max(stretch2) * omega * omega)
+        .max(off[1].norm_squared())
+        .max(off[2].norm_squared() * world.body.radius.powi(2));
+    end.map(|end| (end, dt * worst2.sqrt() / control.tolerance))
+}
+
+/// Takes over the step's end: motion, memories, losses.
+pub(crate) fn accept(
+    world: &ContactEnvironment,
+    tableau: &Tableau,
+    state: &mut ContactState,
+    (end, dt): (&End, f64),
+    loss: &mut Loss,
+) {
+    for k in 0..tableau.stages {
+        loss.add(&state.rates[k].loss, dt * tableau.work_weight(k));
+    }
+    let last = tableau.stages - 1;
+    let hh = tableau.diagonal * dt;
+    state.stored = pressed_j(state, end, hh);
+    let (first, later) = state.rates.split_at_mut(last);
+    let next = &mut first[0];
+    next.take(&later[0], state.histories.len());
+    for history in state.histories.iter_mut() {
+        history.closed = false;
+    }
+    for contact in &state.contacts[..state.contact_count] {
+        let history = &mut state.histories[contact.history];
+        next.shear[contact.history] = carry(next.shear[contact.history], &history.n, &contact.n);
+        contact.remember(contact.stretches(hh), contact.is_closed(&end.v, hh), history);
+    }
+    state.fresh = !state.merge_lost(world);
+    let next = &mut state.rates[0];
+    let mut kept = 0;
+    for k in 0..state.histories.len() {
+        if state.histories[k].closed {
+            (next.shear[kept], next.roll[kept]) = (next.shear[k], next.roll[k]);
+            kept += 1;
+        }
+    }
+    state.histories.retain(|history| history.closed);
+    (state.c, state.v, state.w) = (end.c, end.v, end.w);
+}

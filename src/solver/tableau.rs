@@ -1,0 +1,115 @@
+//! Diagonally implicit Runge–Kutta tableaux with an explicit first stage.
+
+/// Most stages of a tableau.
+pub const STAGES: usize = 6;
+
+/// One tableau: every implicit stage has the same diagonal and the last stage is the step's result.
+#[derive(Debug)]
+pub struct Tableau {
+    /// Number of stages, the explicit first one included.
+    pub stages: usize,
+    /// Diagonal coefficient.
+    pub diagonal: f64,
+    /// Coefficients below the diagonal; the last row with the diagonal are the weights.
+    pub a: &'static [&'static [f64]],
+    /// Weights minus embedded weights: the error estimate.
+    pub error: [f64; STAGES],
+    /// `1/(order of the embedded method + 1)`.
+    pub exponent: f64,
+    /// Whether the embedded method is the one of higher order: its weights then measure the work done over a step.
+    pub embedded_is_finer: bool,
+}
+
+impl Tableau {
+    /// Weight of stage `k` in the step's result.
+    #[inline]
+    pub fn weight(&self, k: usize) -> f64 {
+        if k + 1 == self.stages { self.diagonal } else { self.a[self.stages - 1][k] }
+    }
+
+    /// Weight of stage `k` in the work done over the step: that of the finer of the two methods.
+    ///
+    /// The power that goes into contacts is one more component of the motion. Summed with the weights of the finer method
+    /// it is that of the exact motion from the step's start, to one order more than the step itself: what the motion's
+    /// energy then misses is what the step lost or gained by itself, not an error of the sum.
+    #[inline]
+    pub fn work_weight(&self, k: usize) -> f64 {
+        if self.embedded_is_finer { self.weight(k) - self.error[k] } else { self.weight(k) }
+    }
+}
+
+const SQRT2: f64 = std::f64::consts::SQRT_2;
+const W: f64 = SQRT2 / 4.0;
+const D: f64 = 1.0 - SQRT2 / 2.0;
+
+/// TR-BDF2 (Bank et al. 1985; embedded third order after Hosea and Shampine 1996): second order, stiffly accurate,
+/// L-stable, stage order two, so it keeps its order when the springs are stiff.
+pub static TR_BDF2: Tableau = Tableau {
+    stages: 3,
+    diagonal: D,
+    a: &[&[], &[D], &[W, W]],
+    error: [W - (1.0 - W) / 3.0, W - (3.0 * W + 1.0) / 3.0, D - D / 3.0, 0.0, 0.0, 0.0],
+    exponent: 1.0 / 3.0,
+    embedded_is_finer: true,
+};
+
+/// ESDIRK4(3)6L\[2\]SA (Kennedy and Carpenter 2003): fourth order, stage order two.
+pub static ESDIRK4: Tableau = Tableau {
+    stages: 6,
+    diagonal: 0.25,
+    a: &[
+        &[],
+        &[0.25],
+        &[8611.0 / 62500.0, -1743.0 / 31250.0],
+        &[5_012_029.0 / 34_652_500.0, -654_441.0 / 2_922_500.0, 174_375.0 / 388_108.0],
+        &[
+            15_267_082_809.0 / 155_376_265_600.0,
+            -71_443_401.0 / 120_774_400.0,
+            730_878_875.0 / 902_184_768.0,
+            2_285_395.0 / 8_070_912.0,
+        ],
+        &[82889.0 / 524_892.0, 0.0, 15625.0 / 83664.0, 69875.0 / 102_672.0, -2260.0 / 8211.0],
+    ],
+    error: [
+        82889.0 / 524_892.0 - 4_586_570_599.0 / 29_645_900_160.0,
+        0.0,
+        15625.0 / 83664.0 - 178_811_875.0 / 945_068_544.0,
+        69875.0 / 102_672.0 - 814_220_225.0 / 1_159_782_912.0,
+        -2260.0 / 8211.0 + 3_700_637.0 / 11_593_932.0,
+        0.25 - 61727.0 / 225_920.0,
+    ],
+    exponent: 0.25,
+    embedded_is_finer: false,
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Consistency and stage order two: `Σ a_ij = c_i`, `Σ a_ij c_j = c_i²/2` for every implicit stage, and the
+    /// error weights sum to nothing. 1e-15 times a few terms: rounding of the printed fractions.
+    #[test]
+    fn tableaux_have_stage_order_two_and_an_embedded_method() {
+        for tableau in [&TR_BDF2, &ESDIRK4] {
+            let n = tableau.stages;
+            let mut c = vec![0.0; n];
+            for i in 1..n {
+                c[i] = tableau.a[i].iter().sum::<f64>() + tableau.diagonal;
+                let rolling_moment: f64 = tableau.a[i].iter().zip(&c).map(|(a, c)| a * c).sum();
+                assert!(
+                    (rolling_moment + tableau.diagonal * c[i] - 0.5 * c[i] * c[i]).abs() < 2e-14,
+                    "stage {i}"
+                );
+            }
+            assert!((c[n - 1] - 1.0).abs() < 1e-14);
+            assert!(tableau.error.iter().sum::<f64>().abs() < 1e-14);
+            let third = |weight: fn(&Tableau, usize) -> f64| {
+                (0..n).map(|k| weight(tableau, k) * c[k] * c[k]).sum::<f64>() - 1.0 / 3.0
+            };
+            let order3 = n == 6;
+            assert_eq!(order3, third(Tableau::weight).abs() < 1e-13);
+            // the work is summed to third order at least
+            assert!(third(Tableau::work_weight).abs() < 1e-13);
+        }
+    }
+}
