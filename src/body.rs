@@ -90,7 +90,7 @@ impl Shape {
         }
         let core = Core::of(&hull.inset(ball))?;
         let inertia = solid.moments.map(|moment| moment / (solid.volume * unit * unit));
-        let reach = |core: &Core| core.corners.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let reach = |core: &Core| core.corners.iter().map(Vec3::norm).fold(0.0, f64::max);
         let beyond = hull.corners.iter().map(|p| core.distance(p) - ball).fold(f64::MIN, f64::max);
         let bound = reach(&core) + ball;
         Ok(Self { core, ball, inertia, bound, cut_off: beyond })

@@ -58,6 +58,7 @@ const TABLES: [&str; 4] = [RELEASES, PATHS, IMPACTS, CROSSINGS];
 
 /// What the results need to know of a plan.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each says of another file whether it is there")]
 pub struct RunInfo {
     /// Title of the scene.
     pub title: String,

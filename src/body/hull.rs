@@ -59,7 +59,7 @@ impl Core {
         if points.len() > MOST {
             return Err(BadSurface::TooMany(points.len()));
         }
-        let size = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let size = points.iter().map(Vec3::norm).fold(0.0, f64::max);
         let planes = supporting(points, FLAT * size);
         let on = |k: usize| planes.iter().filter(|plane| plane.points & (1 << k) != 0).count();
         let kept: Vec<usize> = (0..points.len()).filter(|&k| on(k) > 2).collect();

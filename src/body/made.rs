@@ -7,8 +7,8 @@ use crate::rock::Vec3;
 use std::f64::consts::TAU;
 
 /// The surface of a convex set of corners.
-fn surface_of(points: Vec<Vec3>) -> Surface {
-    let Ok(core) = Core::of(&points) else { return Surface::default() };
+fn surface_of(points: &[Vec3]) -> Surface {
+    let Ok(core) = Core::of(points) else { return Surface::default() };
     let fan = |corners: &Vec<u8>| {
         let corners = corners.clone();
         (1..corners.len() - 1).map(move |k| [corners[0], corners[k], corners[k + 1]].map(u32::from))
@@ -25,7 +25,7 @@ pub fn box_surface(sides: [f64; 3]) -> Surface {
             if k & (1 << axis) == 0 { -half } else { half }
         }))
     };
-    surface_of((0..8).map(corner).collect())
+    surface_of(&(0..8).map(corner).collect::<Vec<_>>())
 }
 
 /// A straight prism over a regular polygon of `count` corners, its axis along z; `ratio` is its height over the diameter of
@@ -35,7 +35,7 @@ pub fn prism_surface(count: u32, ratio: f64) -> Surface {
         let (sin, cos) = math::sin_cos(TAU * f64::from(k / 2) / f64::from(count));
         Vec3::new(cos, sin, if k.is_multiple_of(2) { -ratio } else { ratio })
     };
-    surface_of((0..2 * count).map(corner).collect())
+    surface_of(&(0..2 * count).map(corner).collect::<Vec<_>>())
 }
 
 /// The test block of EOTA (ETAG 027) with 26 faces, corners (±1/2, ±1/4, ±1/4) and permutations, stretched to `sides`.
@@ -47,7 +47,7 @@ pub fn eota(sides: [f64; 3]) -> Surface {
             sides[axis] * if k & (1 << axis) == 0 { -half } else { half }
         }))
     };
-    surface_of((0..24).map(corner).collect())
+    surface_of(&(0..24).map(corner).collect::<Vec<_>>())
 }
 
 /// 42 points spread over the unit sphere: the corners of an icosahedron and the middles of its edges, pushed out.
@@ -65,5 +65,5 @@ pub fn sphere_points() -> Vec<Vec3> {
             }
         }
     }
-    points.iter().map(|p| p.normalize()).collect()
+    points.iter().map(Vec3::normalize).collect()
 }

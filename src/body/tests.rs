@@ -48,7 +48,7 @@ fn eota_blocks_reach_as_far_as_they_should() {
         let solid = Solid::of(&surface);
         let volume = 17.0 / 24.0 * sides[2];
         let known = corner.norm() / crate::math::cbrt(0.75 * volume / std::f64::consts::PI);
-        let most = surface.points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let most = surface.points.iter().map(Vec3::norm).fold(0.0, f64::max);
         close(most / solid.equal_radius(), known);
         assert!((known - reach).abs() < 1e-6);
     }

@@ -32,6 +32,7 @@ pub struct Top {
 }
 
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::large_enum_variant, reason = "one at a time, made and dropped with its flight")]
 enum TopMotion {
     Still,
     /// About a principal axis, or a body with three equal moments: spin (rad/s) about a fixed axis.

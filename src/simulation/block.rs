@@ -121,6 +121,7 @@ impl Roll<'_> {
             let most_s = self.settings.step.step_s.min(left);
             let done = self.footing.step(&self.world, block, &mut self.moving, most_s);
             self.recorder.effort.steps += 1;
+            self.recorder.effort.unsettled += u64::from(done.unsettled);
             self.recorder.pay(&done.loss, 1.0);
             let to = Motion {
                 time_s: self.recorder.now.time_s + done.dt,

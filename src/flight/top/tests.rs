@@ -1,3 +1,8 @@
+#![allow(
+    clippy::excessive_precision,
+    reason = "digits as they were computed, one more than f64 has"
+)]
+
 use super::*;
 
 /// Leine's box 3 x 2 x 1 m of 1 kg.

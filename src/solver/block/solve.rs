@@ -122,14 +122,14 @@ fn within(x: Vec3, cap: f64) -> Vec3 {
     if size > cap { x * (cap / size) } else { x }
 }
 
-/// Sweeps until the impulses settle; velocity and spin after them. `sweeps` counts.
+/// Sweeps until the impulses settle, from velocity and spin without them; whether they did. `sweeps` counts.
 pub(crate) fn solve(
     mass: &Mass,
     contacts: &mut [Contact],
     (mut v, mut w): (Vec3, Vec3),
     sweeps: &mut u64,
-) -> (Vec3, Vec3) {
-    let alone = contacts.len() == 1;
+) -> bool {
+    let alone = contacts.len() <= 1;
     for _ in 0..SWEEPS {
         *sweeps += 1;
         let (mut change, mut scale) = (0.0_f64, f64::MIN_POSITIVE);
@@ -143,8 +143,8 @@ pub(crate) fn solve(
             contact.impulse = next;
         }
         if alone || change <= SETTLED * scale {
-            break;
+            return true;
         }
     }
-    (v, w)
+    false
 }
