@@ -1,31 +1,26 @@
-//! One scene through the library: read, plan, follow three rocks, print where they end.
+//! A scene through the library: read it, change a value, run it, print a percentile with its interval and one path.
 //!
 //! `cargo run --release --example library`
 #![allow(clippy::print_stdout, reason = "an example talks")]
 
-use rockfall::error::Result;
-use rockfall::plan::Plan;
-use rockfall::scene::Scene;
-use rockfall::simulation::{Scratch, simulate_release};
-use std::path::Path;
+use rockfall::{Distribution, Mode, Plan, Quantity, RunOptions, Scene};
 
-fn main() -> Result<()> {
-    let scene = Scene::read(Path::new("examples/quick.toml"))?;
-    let (terrain, health) = scene.read_terrain()?;
-    println!("{health}");
-    let plan = Plan::compile(&scene, terrain)?;
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut scene = Scene::read("examples/quick.toml".as_ref())?;
+    scene.release.count = 500;
+    scene.rocks.radius_m = Some(Distribution::fixed(0.4)?);
+    let plan = Plan::of_scene(&scene)?;
     println!("{plan}");
-    let mut scratch = Scratch::default();
-    for index in 0..3 {
-        let fallen = simulate_release(&plan, index, None, &mut scratch)?;
-        println!(
-            "rock {index}: {:?} after {:.1} s and {:.1} m, {} impacts, numerical remainder {:.1e} of its energy",
-            fallen.stop,
-            fallen.end.time_s,
-            fallen.runout_m(),
-            fallen.impact_count,
-            fallen.energy_balance_error(),
-        );
+    let existing = Mode::Overwrite;
+    let options = RunOptions { existing, ..RunOptions::into_folder("reports/library") };
+    let results = rockfall::run(&plan, &options)?;
+    let p95 = &results.statistic(Quantity::MaxTotal).percentiles["p95"];
+    if let (Some(low), Some(high)) = (p95.low_95, p95.high_95) {
+        println!("P95 of total energy: {:.0} J, 95 % interval {low:.0} to {high:.0} J", p95.value);
+    }
+    for at in results.path(0)? {
+        let [x, y, z] = at.position_m;
+        println!("{:.2} s: {x:.2} {y:.2} {z:.2} m, {:?}", at.time_s, at.state);
     }
     Ok(())
 }

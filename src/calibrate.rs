@@ -12,10 +12,10 @@ mod worth;
 pub use fitted::fitted_scene;
 pub use worth::{Measure, Told};
 
-use crate::chance::Distribution;
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Flaw, Result};
 use crate::hazard::Agreement;
+use crate::random::Distribution;
 use crate::scene::{GroundTable, Scene, VaryKey, VaryTable};
 use search::Search;
 use serde::{Deserialize, Serialize};

@@ -1,20 +1,23 @@
 //! The command line: what is asked, what is said, and the exit status. Only this file prints.
 
+mod calibrate;
 mod compare;
+mod mesh;
 mod signals;
 mod study;
+mod study_files;
 mod words;
 
-use crate::wiring::{self, Ended, Order, Part};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use rockfall::error::{Error, Result};
-use rockfall::output::Mode;
+use rockfall::output::{self, Mode};
 use rockfall::plan::Plan;
+use rockfall::report;
+use rockfall::run::{RunEnd, RunOptions, Selection, read_measured, run_observed};
 use rockfall::scene::Scene;
-use rockfall::study::aim::Aim;
+use rockfall::study::target_precision::TargetPrecision;
 use rockfall::study::verify::Verification;
-use rockfall::terrain::weld::Up;
 use std::fmt::Display;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -72,74 +75,13 @@ enum Command {
     /// List the grounds that `like` knows, with their sources
     Grounds,
     /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
-    Calibrate(CalibrateArgs),
+    Calibrate(calibrate::CalibrateArgs),
     /// Study the numerics: error against run time, stability
     #[command(subcommand)]
     Study(study::StudyCommand),
     /// Check, convert and make meshes
     #[command(subcommand)]
-    Mesh(MeshCommand),
-}
-
-#[derive(Debug, Subcommand)]
-enum MeshCommand {
-    /// Print the health of STL files as they will be welded
-    Check {
-        /// STL files
-        #[arg(required = true)]
-        files: Vec<PathBuf>,
-        /// Which axis of the files points up, as `up` in the scene: with y, (x, y, z) becomes (x, -z, y)
-        #[arg(long, value_name = "z|y", value_parser = words::up, default_value = "z")]
-        up: Up,
-    },
-    /// Turn a GeoTIFF or an ESRI ASCII grid into STL; subtract the map origin and print it
-    FromGrid {
-        /// Elevation model (.tif, .asc)
-        grid: PathBuf,
-        /// STL file to write
-        out: PathBuf,
-    },
-    /// Turn a list of trees into stems that stand on a slope
-    Stems {
-        /// List (CSV) with the columns `x, y, dbh_m, height_m`, or GeoJSON or Shapefile points with `dbh_m` and `height_m`
-        list: PathBuf,
-        /// The slope's STL file
-        terrain: PathBuf,
-        /// STL file to write, in the coordinates of the slope's file
-        out: PathBuf,
-        /// Map position of the slope file's (0, 0, 0), as `origin_m` in the scene: then the list is in map coordinates
-        #[arg(
-            long,
-            value_name = "X,Y,Z",
-            value_delimiter = ',',
-            num_args = 1,
-            allow_negative_numbers = true
-        )]
-        origin_m: Option<Vec<f64>>,
-    },
-    /// Write one of the made slopes and shapes
-    Make {
-        /// Which one
-        kind: String,
-        /// STL file to write
-        out: PathBuf,
-    },
-}
-
-#[derive(Debug, Args)]
-struct CalibrateArgs {
-    /// Scene files (TOML) with a table [calibrate]; several are fitted together, the first says what is varied
-    #[arg(required = true, value_name = "SCENE")]
-    scenes: Vec<PathBuf>,
-    /// Folder for trials, result and fitted scenes [default: reports/<first scene's name>]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Releases of each trial
-    #[arg(long, value_name = "N", value_parser = words::of_a_trial, default_value = "400")]
-    releases: usize,
-    /// Worker threads [default: all cores]
-    #[arg(long, value_name = "N", value_parser = words::at_least_1)]
-    threads: Option<usize>,
+    Mesh(mesh::MeshCommand),
 }
 
 #[derive(Debug, Args)]
@@ -164,10 +106,10 @@ struct RunArgs {
     only: Option<usize>,
     /// The K-th of N parts of the releases, K from 1 to N; `rockfall merge` puts them together
     #[arg(long, value_name = "K/N", value_parser = words::shard, conflicts_with = "only")]
-    shard: Option<Part>,
+    shard: Option<Selection>,
     /// Go on with more releases until a 95 % interval is narrower, as in "runout.p95 < 1.0 m"
     #[arg(long, value_name = "AIM", conflicts_with_all = ["only", "shard"])]
-    until: Option<Aim>,
+    until: Option<TargetPrecision>,
     /// Go on with an interrupted run in the same folder
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
@@ -189,22 +131,13 @@ pub(crate) fn main() -> ExitCode {
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
-        Command::Draw { dir } => wiring::draw(&dir).map(|()| ExitCode::SUCCESS),
+        Command::Draw { dir } => report::draw_again(&dir).map(|()| ExitCode::SUCCESS),
         Command::Compare(args) => compare::compare(&args),
         Command::Verify { out } => verify(&out),
         Command::Grounds => Ok(say(rockfall::scene::catalogue())),
-        Command::Calibrate(args) => calibrate(&args),
+        Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Study(command) => study::study(&command),
-        Command::Mesh(MeshCommand::Check { files, up }) => {
-            wiring::check_meshes(&files, up).map(say)
-        }
-        Command::Mesh(MeshCommand::FromGrid { grid, out }) => {
-            wiring::mesh_from_grid(&grid, &out).map(say)
-        }
-        Command::Mesh(MeshCommand::Stems { list, terrain, out, origin_m }) => {
-            wiring::mesh_of_stems((&list, &terrain), &out, origin_m.as_deref()).map(say)
-        }
-        Command::Mesh(MeshCommand::Make { kind, out }) => wiring::make_mesh(&kind, &out).map(say),
+        Command::Mesh(command) => mesh::mesh(command),
     };
     done.unwrap_or_else(|error| {
         complain(format_args!("error: {error}"));
@@ -212,22 +145,11 @@ pub(crate) fn main() -> ExitCode {
     })
 }
 
-fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
-    let scenes = args.scenes.iter().map(|scene| Scene::read(scene));
-    let scenes = scenes.collect::<Result<Vec<_>>>()?;
-    let name = args.scenes[0].file_stem().unwrap_or_default();
-    let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
-    let bar = bar(rockfall::calibrate::planned(&scenes[0]), "trials");
-    let said = wiring::calibrate(&scenes, (args.releases, args.threads), &out, || bar.inc(1))?;
-    bar.finish_and_clear();
-    Ok(say(said))
-}
-
 fn plan(scene: &Path) -> Result<ExitCode> {
     let scene = Scene::read(scene)?;
-    let (terrain, health) = scene.read_terrain()?;
-    let plan = Plan::compile(&scene, terrain)?;
-    wiring::read_measured(&plan)?;
+    let plan = Plan::of_scene(&scene)?;
+    read_measured(&plan)?;
+    let health = plan.mesh_health.as_ref().map(ToString::to_string).unwrap_or_default();
     Ok(say(format!("{health}\n{plan}")))
 }
 
@@ -240,26 +162,24 @@ fn verify(out: &Path) -> Result<ExitCode> {
 
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
     let mode = if overwrite { Mode::Overwrite } else { Mode::Merge };
-    wiring::merge(shards, out, mode)?;
+    report::draw_merged(&output::merge(shards, out, mode)?, &shards[0])?;
     Ok(say(format!("results in {}", out.display())))
 }
 
 fn run(args: &RunArgs) -> Result<ExitCode> {
     let scene = args.scene()?;
-    let (terrain, health) = scene.read_terrain()?;
-    let mut plan = Plan::compile(&scene, terrain)?;
-    let order = args.order();
+    let plan = Plan::of_scene(&scene)?;
+    let options = args.options();
     if !args.yes {
-        plan.cost(order.part.range(plan.count).len()).check()?;
+        plan.cost(options.selection.range(plan.count).len()).check()?;
     }
     if !args.quiet {
         say(&plan);
     }
-    let bar = args.progress(order.part.range(plan.count).len());
-    let ended = wiring::run(
-        &mut plan,
-        &health,
-        &order,
+    let bar = args.progress(options.selection.range(plan.count).len());
+    let ended = run_observed(
+        &plan,
+        &options,
         |flag| signals::stop_at(&flag),
         |done, asked| {
             bar.set_length(asked as u64);
@@ -267,15 +187,16 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
         },
     )?;
     match ended {
-        Ended::Interrupted(done, asked) => {
+        RunEnd::Interrupted { done, of } => {
             bar.abandon();
-            Ok(args.interrupted(done, asked))
+            Ok(args.interrupted(done, of))
         }
-        Ended::Complete(headline) => {
+        RunEnd::Complete(results) => {
             bar.finish();
             if !args.quiet {
-                say(format!("\n{}\n", headline.join("\n")));
-                say(format!("{} releases, results in {}", plan.count, order.out.display()));
+                say(format!("\n{}\n", report::headline(&results.hazard).join("\n")));
+                let releases = results.hazard.rocks();
+                say(format!("{releases} releases, results in {}", options.out.display()));
             }
             Ok(ExitCode::SUCCESS)
         }
@@ -288,55 +209,46 @@ impl RunArgs {
         let mut scene = Scene::read(&self.scene)?;
         scene.release.count = self.releases.unwrap_or(scene.release.count);
         scene.seed = self.seed.unwrap_or(scene.seed);
-        self.check_part(&scene)?;
+        self.selection().check(scene.release.count)?;
+        self.check_together(&scene)?;
         Ok(scene)
     }
 
-    /// The part of the releases that is asked for must be there.
-    fn check_part(&self, scene: &Scene) -> Result<()> {
-        let count = scene.release.count;
-        let refuse = |why: String| Err(Error::Request(why));
-        match self.part() {
-            Part::Only(only) if only >= count => refuse(format!(
-                "--only {only}: found {count} releases; write a number from 0 to {}",
-                count - 1
-            )),
-            Part::Shard { number, of } if of > count => refuse(format!(
-                "--shard {number}/{of}: found {count} releases; write at most as many parts"
-            )),
-            _ if self.until.is_some() && scene.release.together => refuse(
-                "--until: the rocks of this scene touch each other and fall together; write another [release] count"
-                    .to_owned(),
-            ),
-            Part::Shard { number, of } if scene.release.together => refuse(format!(
+    /// What is asked of rocks that fall together.
+    fn check_together(&self, scene: &Scene) -> Result<()> {
+        let remedy = match self.selection() {
+            _ if !scene.release.together => return Ok(()),
+            _ if self.until.is_some() => "--until: the rocks of this scene touch each other and fall together; write another [release] count".to_owned(),
+            Selection::Shard { number, of } => format!(
                 "--shard {number}/{of}: the rocks of this scene touch each other and fall together; leave it out"
-            )),
-            _ => Ok(()),
-        }
+            ),
+            _ => return Ok(()),
+        };
+        Err(Error::Request(remedy))
     }
 
-    fn part(&self) -> Part {
-        self.only.map(Part::Only).or(self.shard).unwrap_or(Part::All)
+    fn selection(&self) -> Selection {
+        self.only.map(Selection::Only).or(self.shard).unwrap_or(Selection::All)
     }
 
-    fn order(&self) -> Order {
+    fn options(&self) -> RunOptions {
         let name = self.scene.file_stem().unwrap_or_default();
-        let mode = match (self.resume, self.overwrite) {
+        let existing = match (self.resume, self.overwrite) {
             (true, _) => Mode::Resume,
             (_, true) => Mode::Overwrite,
             _ => Mode::Fresh,
         };
         let results = Path::new("reports").join(name);
         // A part of the releases has a folder of its own: it is not the scene's result.
-        let usual = match self.part() {
-            Part::All => results,
-            Part::Only(only) => results.join(format!("only_{only}")),
-            Part::Shard { number, of } => results.join(format!("shard_{number}_of_{of}")),
+        let usual = match self.selection() {
+            Selection::All => results,
+            Selection::Only(only) => results.join(format!("only_{only}")),
+            Selection::Shard { number, of } => results.join(format!("shard_{number}_of_{of}")),
         };
-        Order {
+        RunOptions {
             out: self.out.clone().unwrap_or(usual),
-            mode,
-            part: self.part(),
+            existing,
+            selection: self.selection(),
             threads: self.threads,
             until: self.until,
         }

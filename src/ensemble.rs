@@ -168,7 +168,7 @@ fn bytes_of(falls: &[Trajectory]) -> usize {
             + size_of_val::<[PathPoint]>(&fall.path)
             + size_of_val::<[Impact]>(&fall.impacts)
             + size_of_val::<[Crossing]>(&fall.crossings)
-            + size_of_val::<[CellPassage]>(&fall.visits)
+            + size_of_val::<[CellPassage]>(&fall.passages)
     };
     falls.iter().map(kept).sum()
 }

@@ -8,37 +8,101 @@
 //! scene.toml ─► Scene ─► Terrain ─► Plan ─► Trajectory × n ─► Hazard ─► CSV · JSON · SVG · HTML
 //! ```
 //!
-//! The modules below stand in the order of the floors of a house: each uses only modules above it in the list.
+//! ```
+//! use rockfall::{Plan, Quantity, RunOptions, Scene};
+//! # fn main() -> rockfall::Result<()> {
+//! let scene = Scene::read("examples/quick.toml".as_ref())?;
+//! let plan = Plan::of_scene(&scene)?;
+//! println!("{plan}");
+//! # if false {
+//! let results = rockfall::run(&plan, &RunOptions::into_folder("reports/quick"))?;
+//! println!("{:?}", results.statistic(Quantity::MaxTotal).percentiles["p95"]);
+//! # }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! What stands here is the public face. The modules behind it stand in the order of the floors of a house: each uses only
+//! modules above it in the list; their contents may change from one version to the next.
 //! SI units and `f64` throughout; z points up. The library prints nothing.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 // words
+#[doc(hidden)]
 pub mod error;
+#[doc(hidden)]
 pub mod math;
+#[doc(hidden)]
 pub mod file;
-pub mod clock;
-pub mod chance;
+#[doc(hidden)]
+pub mod stopwatch;
+#[doc(hidden)]
+pub mod random;
+#[doc(hidden)]
 pub mod rock;
+#[doc(hidden)]
 pub mod body;
+#[doc(hidden)]
 pub mod frequency;
 // world
+#[doc(hidden)]
 pub mod gis;
+#[doc(hidden)]
 pub mod ground;
+#[doc(hidden)]
 pub mod terrain;
 // physics
+#[doc(hidden)]
 pub mod contact;
+#[doc(hidden)]
 pub mod flight;
+#[doc(hidden)]
 pub mod solver;
 // question
+#[doc(hidden)]
 pub mod scene;
+#[doc(hidden)]
 pub mod release;
+#[doc(hidden)]
 pub mod plan;
 // run
+#[doc(hidden)]
 pub mod simulation;
+#[doc(hidden)]
 pub mod ensemble;
 // answer
+#[doc(hidden)]
 pub mod hazard;
+#[doc(hidden)]
 pub mod calibrate;
+#[doc(hidden)]
 pub mod output;
+#[doc(hidden)]
 pub mod report;
+#[doc(hidden)]
 pub mod study;
+#[doc(hidden)]
+pub mod run;
+
+pub use ensemble::Ensemble;
+pub use error::{Error, Result};
+pub use hazard::{
+    Annual, Barrier, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, LineQuantity,
+    LineSummary, Mean, Percentile, Proportion, Quantity, Residual, Row, Sample, Statistic,
+    StopKind,
+};
+pub use output::{ImpactRow, Mode, PathRow, Results, Summary};
+pub use plan::{EvaluationLine, MapGrid, Part, Plan};
+pub use random::Distribution;
+pub use report::{draw_again, headline};
+pub use rock::{Motion, Rock, Vec3};
+pub use run::{RunEnd, RunOptions, Selection, run, run_observed};
+pub use scene::Scene;
+pub use simulation::{
+    CellPassage, Crossing, Effort, Impact, PathPoint, PathState, Scratch, Stop, Trajectory,
+    simulate_release,
+};
+pub use study::target_precision::TargetPrecision;
+pub use terrain::Terrain;
+pub use terrain::grid::Grid;
+pub use terrain::health::Health;

@@ -6,7 +6,7 @@
 
 mod annual;
 mod calibration;
-mod claim;
+mod lock;
 mod folder;
 mod maps;
 mod merge;
@@ -19,11 +19,12 @@ mod summary;
 mod table;
 mod used;
 mod vector;
-mod whole;
+mod atomic_file;
 
+pub use atomic_file::write_atomic;
 pub use calibration::{read_calibration, write_calibration};
-pub use claim::Claim;
 pub use folder::{announce_figures, releases_in};
+pub use lock::FolderLock;
 pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
@@ -32,7 +33,6 @@ pub use site::{Site, Zone};
 pub use summary::{Run, Summary};
 pub use used::{copy_used, write_drawings, write_ground};
 pub use vector::write_terrain;
-pub use whole::write_whole;
 
 use crate::error::{Error, Result};
 use crate::frequency::Weights;
@@ -122,7 +122,7 @@ pub enum Mode {
 /// Results being written.
 #[derive(Debug)]
 pub struct Output {
-    claim: Claim,
+    lock: FolderLock,
     dir: PathBuf,
     info: RunInfo,
     releases: Table,
@@ -156,8 +156,8 @@ impl Output {
     pub fn create(info: RunInfo, dir: &Path, mode: Mode) -> Result<Self> {
         // looked at before it is touched: a folder that is refused stays as it is
         folder::look(dir, &info, mode)?;
-        let mut claim = Claim::on(dir)?;
-        let found = folder::prepare(dir, (&info, mode), &mut claim)?;
+        let mut lock = FolderLock::on(dir)?;
+        let found = folder::prepare(dir, (&info, mode), &mut lock)?;
         let bytes = found.as_ref().map(|found| &found.bytes);
         let columns = |plain: &[&'static str], more: &[&'static str]| {
             [plain, if info.has_blocks { more } else { &[] }].concat()
@@ -188,12 +188,12 @@ impl Output {
             read::recall(dir, &info.identity, found.done, &mut hazard)?;
             read::check_lengths(dir, &found.finished)?;
             is_marked = !found.finished.is_empty() && found.done == info.identity.releases;
-            claim.keep();
+            lock.keep();
         }
         let dir = dir.to_owned();
         let begun = Instant::now();
         let mut output = Self {
-            claim,
+            lock,
             dir,
             info,
             releases,
@@ -247,7 +247,7 @@ impl Output {
             if let Some(maps) = &mut self.maps {
                 let frequency = self.info.asked.frequency.as_ref();
                 let stratum = frequency.map_or(0, |one| one.stratum_of(row.index));
-                maps.add(stratum as u16, &fall.visits, (row.stop, row.end_m));
+                maps.add(stratum as u16, &fall.passages, (row.stop, row.end_m));
             }
             self.hazard.add(&row);
             self.hazard.totals.add(fall);
@@ -276,7 +276,7 @@ impl Output {
         self.marked = (Instant::now(), begun.elapsed());
         self.is_marked = true;
         if self.hazard.rocks() > 0 {
-            self.claim.keep();
+            self.lock.keep();
         }
         Ok(())
     }
@@ -298,7 +298,7 @@ impl Output {
         }
         let seconds = self.seconds();
         let is_part = self.info.is_shard || self.info.identity.is_part();
-        self.claim.keep();
+        self.lock.keep();
         let bytes = self.lengths()?;
         let done = self.hazard.rocks();
         if let Some(maps) = &self.maps {
@@ -322,7 +322,7 @@ impl Output {
             summary,
             hazard: self.hazard,
             lines: self.lines,
-            claim: Some(self.claim),
+            lock: Some(self.lock),
         };
         if results.summary.maps.is_some() {
             results.write_vectors()?;

@@ -9,21 +9,22 @@ mod listing;
 mod settings;
 mod slips;
 mod stiffness;
-mod watch;
+mod recorders;
 
 pub use annual::Year;
 pub use cost::Cost;
+pub use recorders::{EvaluationLine, Footprint, MapGrid, Piece, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
-pub use watch::{Curtain, Footprint, Lattice, Piece, Watch};
 
-use crate::chance::Distribution;
 use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
+use crate::random::Distribution;
 use crate::release::{self, Drawn, Lost, Release, Releases};
 use crate::rock::Rock;
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
 use crate::solver::{Scheme, Settings};
+use crate::terrain::health::Health;
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
 use std::path::PathBuf;
@@ -92,6 +93,8 @@ pub struct Plan {
     pub radii_m: [f64; 3],
     /// The meshes.
     pub terrain: Terrain,
+    /// Health of the meshes; none where the terrain was given and not read from files.
+    pub mesh_health: Option<Health>,
     /// The files that went in.
     pub input_files: Vec<InputFile>,
     /// Grounds by polygon, and what they have done to the triangles.
@@ -133,7 +136,7 @@ pub struct Plan {
     /// Kept impacts.
     pub impacts: Part<()>,
     /// Evaluation lines.
-    pub lines: Part<Vec<Curtain>>,
+    pub lines: Part<Vec<EvaluationLine>>,
     /// Barriers; each has an evaluation line of its name.
     pub barriers: Part<Vec<BarrierTable>>,
     /// Objects that rocks may hit; each has a curtain of its name.
@@ -141,7 +144,7 @@ pub struct Plan {
     /// Sources and their frequency.
     pub year: Part<Year>,
     /// Cells of the maps.
-    pub maps: Part<Lattice>,
+    pub maps: Part<MapGrid>,
     /// Grounds with values of the catalogue: name, what was taken, source.
     pub catalogued: Vec<String>,
     /// Up to which slope each ground stops a rolling sphere, in words.
@@ -173,7 +176,16 @@ const PATHS: usize = 500;
 pub const PATH_STEP_S: f64 = 0.05;
 
 impl Plan {
-    /// Works out what the scene needs.
+    /// Reads the meshes of a scene and works out what it needs.
+    ///
+    /// # Errors
+    /// A mesh that cannot be read or used, and as [`Self::compile`].
+    pub fn of_scene(scene: &Scene) -> Result<Self> {
+        let (terrain, health) = scene.read_terrain()?;
+        Ok(Self { mesh_health: Some(health), ..Self::compile(scene, terrain)? })
+    }
+
+    /// Works out what the scene needs on a terrain that is there already.
     ///
     /// # Errors
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
@@ -199,7 +211,7 @@ impl Plan {
         let plan = Self {
             title: scene.title.clone(),
             scene_file: scene.file.clone(),
-            scene_hash: scene.hash.clone(),
+            scene_hash: scene.hash_in_force(),
             version: concat!(env!("CARGO_PKG_VERSION"), "+", env!("ROCKFALL_BUILD")),
             mesh_origin_m: scene.origin_m,
             epsg: scene.epsg.or(terrain.epsg),
@@ -207,6 +219,7 @@ impl Plan {
             count: scene.release.count,
             releases,
             radii_m: scene.rocks.radius_m().reckoned(),
+            mesh_health: None,
             input_files: scene.inputs.clone(),
             ground_zones: Part::when(terrain.patched.clone(), "every file has one ground"),
             ground_names: scene.grounds.keys().cloned().collect(),
@@ -243,7 +256,7 @@ impl Plan {
                 scene.record.impacts.unwrap_or(false).then_some(()),
                 "not asked for, [record] impacts = true keeps them",
             ),
-            lines: Part::when(curtains(scene, &terrain)?, "the scene has none"),
+            lines: Part::when(evaluation_lines(scene, &terrain)?, "the scene has none"),
             barriers: Part::when(
                 Some(scene.barriers.clone()).filter(|all| !all.is_empty()),
                 "the scene has none",
@@ -251,7 +264,7 @@ impl Plan {
             objects,
             year,
             maps: Part::when(
-                lattice(scene, &terrain)?,
+                map_grid(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
             ),
             inputs: inputs::of(scene),
@@ -300,8 +313,8 @@ impl Plan {
     }
 
     /// What every rock is watched for.
-    pub fn watch(&self) -> Watch<'_> {
-        Watch {
+    pub fn recorders(&self) -> Recorders<'_> {
+        Recorders {
             lines: if let Part::Kept(lines) = &self.lines { lines } else { &[] },
             cells: if let Part::Kept(cells) = &self.maps { Some(cells) } else { None },
         }
@@ -355,30 +368,33 @@ fn paths(record: &RecordTable) -> Part<Paths> {
     Part::when((first > 0).then_some(Paths { first, step_s }), "[record] paths = 0")
 }
 
-fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Curtain>>> {
+fn evaluation_lines(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<EvaluationLine>>> {
     let lines = scene.lines.iter().map(|line| ("lines", &line.name, &line.points_m));
     let barriers =
         scene.barriers.iter().map(|barrier| ("barriers", &barrier.name, &barrier.points_m));
     let (low, high) = terrain.index.bounds();
-    let curtain = |(table, name, line): (&str, &String, &Polyline)| {
-        let curtain = Curtain::new(name, line, terrain.origin_m);
-        if curtain.is_near([low.x, low.y], [high.x, high.y]) {
-            return Ok(curtain);
+    let evaluation_line = |(table, name, line): (&str, &String, &Polyline)| {
+        let evaluation_line = EvaluationLine::new(name, line, terrain.origin_m);
+        if evaluation_line.is_near([low.x, low.y], [high.x, high.y]) {
+            return Ok(evaluation_line);
         }
         // A forgotten map origin, most likely: no rock would ever cross it.
         let (place, found) =
             (format!("[[{table}]] \"{name}\" points_m"), "found no terrain near it");
         Err(Error::input(&scene.file, place, found, release::outside(terrain)))
     };
-    let mut all: Vec<Curtain> = lines.chain(barriers).map(curtain).collect::<Result<_>>()?;
+    let mut all: Vec<EvaluationLine> =
+        lines.chain(barriers).map(evaluation_line).collect::<Result<_>>()?;
     let elsewhere = scene.barriers.iter().flat_map(BarrierTable::elsewhere);
-    all.extend(elsewhere.map(|(_, name, line)| Curtain::new(&name, &line, terrain.origin_m)));
-    all.extend(annual::curtains(scene, terrain)?);
+    all.extend(
+        elsewhere.map(|(_, name, line)| EvaluationLine::new(&name, &line, terrain.origin_m)),
+    );
+    all.extend(annual::evaluation_lines(scene, terrain)?);
     Ok(Some(all).filter(|all| !all.is_empty()))
 }
 
-fn lattice(scene: &Scene, terrain: &Terrain) -> Result<Option<Lattice>> {
-    scene.maps.as_ref().map(|maps| Lattice::over(terrain, maps, &scene.file)).transpose()
+fn map_grid(scene: &Scene, terrain: &Terrain) -> Result<Option<MapGrid>> {
+    scene.maps.as_ref().map(|maps| MapGrid::over(terrain, maps, &scene.file)).transpose()
 }
 
 fn can_exceed_0(value: Option<&Distribution>) -> bool {

@@ -5,10 +5,10 @@ mod shapes;
 mod sources;
 mod tried;
 
-use crate::chance::{Chance, Distribution, Purpose, stream, unit};
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
 use crate::ground::Ground;
+use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
@@ -136,9 +136,9 @@ impl Releases {
 
     /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
     /// one, so that every zone keeps its share.
-    fn draw_zone(&self, chance: &mut Chance, index: usize) -> Option<usize> {
+    fn draw_zone(&self, random: &mut RandomStream, index: usize) -> Option<usize> {
         let Where::Zones(zones) = self.place_of(index).0 else { return None };
-        Some(zones.pick(unit(chance)))
+        Some(zones.pick(unit(random)))
     }
 
     /// Looks for ground below an entry of the place, or beside a centre that is given with its height.
@@ -189,15 +189,15 @@ impl Releases {
         index: usize,
     ) -> (std::result::Result<Release, Box<Lost>>, usize) {
         let mut release = self.unplaced(index);
-        let mut chance = stream(self.seed, Purpose::Place, index);
+        let mut random = stream(self.seed, Purpose::Place, index);
         let is_fixed = matches!(self.place_of(index).0, Where::Points(_));
         let draws = if is_fixed { 1 } else { MOST_DRAWS };
-        let zone = self.draw_zone(&mut chance, index).unwrap_or_default();
+        let zone = self.draw_zone(&mut random, index).unwrap_or_default();
         let around_m = self.around_m(index, &release.rock);
         let mut lost = None;
         for drawn in 1..=draws {
-            let at_m = self.draw_place(&mut chance, (index, zone));
-            let why = match self.centre(terrain, (at_m, around_m), &mut chance, index) {
+            let at_m = self.draw_place(&mut random, (index, zone));
+            let why = match self.centre(terrain, (at_m, around_m), &mut random, index) {
                 Ok(centre) => {
                     release.motion.position_m = centre;
                     match self.check_clear(terrain, (index, around_m), &release) {
@@ -237,10 +237,10 @@ impl Releases {
     fn unplaced(&self, index: usize) -> Release {
         let grounds = self.draw_grounds(index);
         let rock = Rock { radius_m: self.draw_radius_m(index), density_kg_m3: self.density_kg_m3 };
-        let mut chance = stream(self.seed, Purpose::Start, index);
+        let mut random = stream(self.seed, Purpose::Start, index);
         let mut vector = |from: &[Distribution; 3]| {
             let [x, y, z] = from;
-            Vec3::new(x.draw(&mut chance), y.draw(&mut chance), z.draw(&mut chance))
+            Vec3::new(x.draw(&mut random), y.draw(&mut random), z.draw(&mut random))
         };
         let (velocity_m_s, spin_rad_s) = (vector(&self.velocity_m_s), vector(&self.spin_rad_s));
         let motion = Motion { time_s: 0.0, position_m: Vec3::zeros(), velocity_m_s, spin_rad_s };
@@ -248,9 +248,9 @@ impl Releases {
     }
 
     /// A place on the map, in a zone if there are some, and the height of the rock's centre where it is given.
-    fn draw_place(&self, chance: &mut Chance, of: (usize, usize)) -> (Corner, Option<f64>) {
+    fn draw_place(&self, random: &mut RandomStream, of: (usize, usize)) -> (Corner, Option<f64>) {
         let (index, zone) = of;
-        let even = [0; 3].map(|_| unit(chance));
+        let even = [0; 3].map(|_| unit(random));
         let (place, turn) = self.place_of(index);
         match place {
             Where::Points(points) => {
@@ -268,7 +268,7 @@ impl Releases {
         &self,
         terrain: &Terrain,
         ((at_m, fixed_m), radius_m): ((Corner, Option<f64>), f64),
-        chance: &mut Chance,
+        random: &mut RandomStream,
         index: usize,
     ) -> Result<Vec3> {
         let [x, y] = local(terrain, at_m);
@@ -278,7 +278,7 @@ impl Releases {
             return Ok(centre);
         }
         let ground_m = self.ground_m(terrain, at_m, &release_name(index))?;
-        let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(chance));
+        let gap_m = self.height_m.as_ref().map_or(0.0, |height| height.draw(random));
         Ok(clear_of(terrain, Vec3::new(x, y, ground_m + gap_m + radius_m), radius_m))
     }
 
@@ -338,24 +338,24 @@ impl Releases {
     }
 
     fn draw_grounds(&self, index: usize) -> Vec<Ground> {
-        let mut chance = stream(self.seed, Purpose::Grounds, index);
+        let mut random = stream(self.seed, Purpose::Grounds, index);
         // How a block rolls is its shape, which it keeps: the same quantile on every ground.
         let mut character = None;
         let draw_ground = |table: &GroundTable| Ground {
-            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut chance),
-            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut chance),
-            friction_angle_rad: table.friction_angle_deg.draw(&mut chance).to_radians(),
-            restitution: table.restitution.as_ref().map(|e| e.draw(&mut chance)),
+            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut random),
+            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut random),
+            friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
+            restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
             rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
-                let drawn = unit(&mut chance);
+                let drawn = unit(&mut random);
                 rolling.quantile(*character.get_or_insert(drawn))
             }),
             roughness_rad: table
                 .roughness_deg
                 .as_ref()
-                .map_or(0.0, |angle| angle.draw(&mut chance))
+                .map_or(0.0, |angle| angle.draw(&mut random))
                 .to_radians(),
-            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut chance)),
+            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
         };
         self.grounds.iter().map(draw_ground).collect()
     }

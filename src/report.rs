@@ -20,16 +20,16 @@ pub mod curves;
 mod distributions;
 pub mod figure;
 pub mod format;
-pub mod gather;
+pub mod from_results;
 mod hillshade;
 mod histogram;
 pub mod html;
-pub mod input;
+pub mod model;
 mod lines;
 mod maps;
 mod measured;
 pub mod panel;
-pub mod paper;
+pub mod canvas;
 mod plan_view;
 mod plausibility;
 pub mod raster;
@@ -43,10 +43,10 @@ pub mod view;
 
 use crate::error::{Error, Result};
 use crate::hazard::Hazard;
-use crate::output::{self, Claim, Results, write_whole};
+use crate::output::{self, FolderLock, Results, write_atomic};
 use crate::terrain::Terrain;
 use figure::{Drawing, FIGURES, Heading};
-use input::Report;
+use model::Report;
 use raster::GroundRaster;
 use std::fs;
 use std::path::Path;
@@ -96,7 +96,7 @@ pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
 /// When a result file cannot be read or a figure cannot be written.
 pub fn draw_again(dir: &Path) -> Result<()> {
     let results = output::read(dir)?;
-    let _claim = Claim::on(dir)?;
+    let _lock = FolderLock::on(dir)?;
     let ground = GroundRaster::read(dir)?;
     if let Some(mesh) = view::mesh_in(dir)? {
         view::write(&results, mesh, ground.as_ref())?;
@@ -107,14 +107,14 @@ pub fn draw_again(dir: &Path) -> Result<()> {
 /// Figures and page of results, with a link to their view where there is one.
 fn draw_all(results: &Results, ground: Option<GroundRaster>) -> Result<()> {
     let has_view = results.dir.join(view::PAGE).exists();
-    draw(&Report { has_view, ..gather::gather(results, ground)? }, &results.dir)
+    draw(&Report { has_view, ..from_results::gather(results, ground)? }, &results.dir)
 }
 
 /// Each headline statistic of the rocks with its 95 % interval, line by line, and what the computation warns of.
 pub fn headline(hazard: &Hazard) -> Vec<String> {
     let warnings =
-        [gather::warnings_first(hazard), hazard.totals.warnings(hazard.rocks())].concat();
-    let mut lines = html::plain_headline(&gather::headline(hazard));
+        [from_results::warnings_first(hazard), hazard.totals.warnings(hazard.rocks())].concat();
+    let mut lines = html::plain_headline(&from_results::headline(hazard));
     lines.extend(warnings.iter().map(|warning| format!("warning: {warning}")));
     lines
 }
@@ -134,9 +134,9 @@ pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     let names: Vec<&str> = drawn.iter().map(|(heading, _)| heading.file.as_str()).collect();
     output::announce_figures(dir, &names)?;
     for (heading, drawing) in &drawn {
-        write_whole(&figures.join(&heading.file), drawing.svg.as_bytes())?;
+        write_atomic(&figures.join(&heading.file), drawing.svg.as_bytes())?;
     }
-    write_whole(&dir.join("report.html"), html::page(report, &drawn).as_bytes())
+    write_atomic(&dir.join("report.html"), html::page(report, &drawn).as_bytes())
 }
 
 /// The figure that `rockfall study error` has left in `error/` below the results, if it has.

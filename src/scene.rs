@@ -49,14 +49,12 @@ pub use shapes::{CORNERS, Orientation, RandomWord, ShapeTable};
 pub use solver::SolverTable;
 pub use zones::{Zone, ZonePlace, Zones};
 
-use crate::chance::{Distribution, entries};
 use crate::error::{Error, Result};
 use crate::frequency::Frequency;
+use crate::random::{Distribution, entries};
 use crate::solver::Scheme;
 use crate::terrain::health::Health;
-use crate::terrain::patches::Patches;
-use crate::terrain::read::Source;
-use crate::terrain::{Sheet, Terrain};
+use crate::terrain::{Sheet, Terrain, patches::Patches, read::Source};
 use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
 use places::FARTHEST_M;
 use refusal::Refusal;
@@ -129,6 +127,9 @@ pub struct Scene {
     /// SHA-256 (hexadecimal) of the scene's text and of the bytes of every file that it names.
     #[serde(skip)]
     pub hash: String,
+    /// Digest of the values as read; empty for a text only parsed.
+    #[serde(skip)]
+    as_read: String,
     /// Those files.
     #[serde(skip)]
     pub inputs: Vec<InputFile>,
@@ -143,7 +144,7 @@ pub struct Scene {
     pub patches: Patches,
 }
 
-/// Gravity when a scene does not name it (m/s²); the interface's one default of the world.
+/// Gravity when a scene does not name it (m/s²).
 fn standard_gravity_m_s2() -> f64 {
     9.81
 }
@@ -152,8 +153,7 @@ impl Scene {
     /// Reads and checks a scene file, the drawings that it names, and takes the fingerprint of all files.
     ///
     /// # Errors
-    /// Whatever is wrong with the scene, with file, table, key and line; a file that is not there; a drawing that cannot be
-    /// used.
+    /// Whatever is wrong with the scene, with file, table, key and line; a file or drawing that cannot be used.
     pub fn read(file: &Path) -> Result<Self> {
         let text = crate::file::read_text(file)?;
         let mut scene = Self::parse(&text, file)?;
@@ -166,6 +166,7 @@ impl Scene {
         let again = "found a name that a line or barrier before has";
         scene.check_lines().map_err(|wrong| refuse(wrong.finding(again)))?;
         scene.hash = scene.fingerprint(&text).map_err(refuse)?;
+        scene.as_read = scene.digest();
         Ok(scene)
     }
 

@@ -210,7 +210,7 @@ pub struct Trajectory {
     /// First crossings of the plan's lines, in the order of lines.
     pub crossings: Vec<Crossing>,
     /// Cells of the plan's maps that it passed, in the order of cells.
-    pub visits: Vec<CellPassage>,
+    pub passages: Vec<CellPassage>,
     /// Energy ledger.
     pub ledger: Ledger,
     /// Potential energy released plus kinetic energy at the start (J): the scale of the ledger.
@@ -235,7 +235,7 @@ impl Trajectory {
             impacts: Vec::new(),
             path: Vec::new(),
             crossings: Vec::new(),
-            visits: Vec::new(),
+            passages: Vec::new(),
             ledger: Ledger::default(),
             released_j: 0.0,
             effort: Effort::default(),

@@ -3,11 +3,16 @@
 //! Counted by the allocator of a small crate, on this thread alone: counting needs `unsafe`, which this crate forbids
 //! itself.
 
+// the slope on which the developers' bench measures: no allocation counts where speed does
+#[path = "../bench/src/speed/slope.rs"]
+#[allow(dead_code, unreachable_pub, reason = "the bench uses more of it")]
+mod slope;
+
 use allocation_counter::measure;
 use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, simulate};
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
-use rockfall::study::speed::slope::{SCHEMES, Slope};
+use slope::{SCHEMES, Slope};
 
 /// Rocks that make room, and rocks that must find it.
 const WARM: usize = 12;
@@ -30,11 +35,11 @@ fn no_memory_is_taken_while_a_rock_falls() {
         let (mut steps, mut leaps) = (0, 0);
         for index in WARM..WARM + rocks {
             let release = slope.release(index);
-            let mut chance = rockfall::chance::stream(7, rockfall::chance::Purpose::Impacts, index);
+            let mut random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, index);
             let keep = Keep { path_step_s: None, impacts: false };
             let mut fallen = None;
             let taken = measure(|| {
-                fallen = Some(simulate(&course, &release, keep, &mut chance, &mut scratch));
+                fallen = Some(simulate(&course, &release, keep, &mut random, &mut scratch));
             });
             let fallen = fallen.expect("it has fallen");
             assert!(!matches!(fallen.stop, Stop::Failed(_)), "{:?}", fallen.stop);
@@ -58,11 +63,11 @@ fn a_kept_path_takes_memory() {
     let slope = Slope::of(10_000);
     let step = settings(SCHEMES[0].0, SCHEMES[0].1, None);
     let (course, release) = (slope.course(&step), slope.release(0));
-    let mut chance = rockfall::chance::stream(7, rockfall::chance::Purpose::Impacts, 0);
+    let mut random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, 0);
     let keep = Keep { path_step_s: Some(0.05), impacts: false };
     let mut scratch = Scratch::default();
     let taken = measure(|| {
-        drop(simulate(&course, &release, keep, &mut chance, &mut scratch));
+        drop(simulate(&course, &release, keep, &mut random, &mut scratch));
     });
     assert!(taken.count_total > 0);
 }

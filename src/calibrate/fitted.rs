@@ -1,8 +1,8 @@
 //! The fitted scene, written out.
 
 use super::{Calibration, put_all};
-use crate::chance::Distribution;
 use crate::error::{Error, Result};
+use crate::random::Distribution;
 use crate::scene::{GroundTable, Scene, VaryKey, VaryTable, rewritten};
 
 /// The text of a scene with the fitted values of all ends in the place of its own, and with the paths of its files in

@@ -1,9 +1,9 @@
 //! What a fit is worth: how far the measured ends tell the values, and how far computed ends lie from them.
 
 use super::search::{Search, Site};
-use crate::chance::{Chance, Purpose, stream, unit};
 use crate::error::Result;
 use crate::hazard::{Agreement, Spread, Way, effective};
+use crate::random::{Purpose, RandomStream, stream, unit};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -62,9 +62,9 @@ impl Search<'_> {
     /// The values that fit best when the measured ends are drawn again.
     fn told(&self, values: &[f64], seed: u64) -> Vec<Told> {
         let best = |redraw: usize| {
-            let mut chance = stream(seed, Purpose::Redraw, redraw);
+            let mut random = stream(seed, Purpose::Redraw, redraw);
             let drawn: Vec<Vec<Way>> =
-                self.sites.iter().map(|site| site.redraw(&mut chance)).collect();
+                self.sites.iter().map(|site| site.redraw(&mut random)).collect();
             let distance = |computed: &[Vec<(usize, Way)>]| -> f64 {
                 let each = drawn.iter().zip(computed).filter_map(|(measured, computed)| {
                     let ways: Vec<Way> = computed.iter().map(|(_, way)| *way).collect();
@@ -104,8 +104,8 @@ impl Search<'_> {
             let found = Spread::figures(&site.measured, &computed);
             let again: Vec<_> = (0..REDRAWS)
                 .map(|redraw| {
-                    let mut chance = stream(seed, Purpose::Redraw, redraw);
-                    Spread::figures(&site.redraw(&mut chance), &computed)
+                    let mut random = stream(seed, Purpose::Redraw, redraw);
+                    Spread::figures(&site.redraw(&mut random), &computed)
                 })
                 .collect();
             let one = |(at, (what, measured, computed)): (usize, (&'static str, f64, f64))| {
@@ -128,10 +128,10 @@ impl Site {
     }
 
     /// As many measured ends as they are worth, drawn from them with replacement.
-    fn redraw(&self, chance: &mut Chance) -> Vec<Way> {
+    fn redraw(&self, random: &mut RandomStream) -> Vec<Way> {
         let count = (self.effective().round() as usize).max(2);
         let rows = self.measured.len();
-        let row = |_| self.measured[((unit(chance) * rows as f64) as usize).min(rows - 1)];
+        let row = |_| self.measured[((unit(random) * rows as f64) as usize).min(rows - 1)];
         (0..count).map(row).collect()
     }
 }

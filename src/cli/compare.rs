@@ -1,9 +1,9 @@
 //! `rockfall compare`.
 
 use super::say;
-use crate::wiring;
 use clap::Args;
 use rockfall::error::Result;
+use rockfall::report::compare::Comparison;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -18,7 +18,10 @@ pub(super) struct CompareArgs {
     out: PathBuf,
 }
 
-/// Compares two finished runs and says what changes.
+/// Compares two finished runs, writes page, figures and table, and says what changes.
 pub(super) fn compare(args: &CompareArgs) -> Result<ExitCode> {
-    wiring::compare::compare(&args.a, &args.b, &args.out).map(say)
+    let comparison = Comparison::of(&args.a, &args.b)?;
+    comparison.write(&args.out)?;
+    let page = args.out.join("compare.html");
+    Ok(say(format!("{}\n\npage in {}", comparison.headline().join("\n"), page.display())))
 }

@@ -1,6 +1,6 @@
 //! Words of the command line: those that are numbers, and how one is written again.
 
-use crate::wiring::Part;
+use rockfall::run::Selection;
 use rockfall::scene::MOST_RELEASES;
 use rockfall::terrain::weld::Up;
 
@@ -10,10 +10,12 @@ const MOST_OF_A_TRIAL: usize = 100_000;
 /// Most worker threads: more than any machine has; a slip of the key must not start a hundred thousand.
 const MOST_THREADS: usize = 4096;
 
-pub(super) fn shard(text: &str) -> std::result::Result<Part, String> {
+pub(super) fn shard(text: &str) -> std::result::Result<Selection, String> {
     let numbers = text.split_once('/').map(|(number, of)| (number.parse(), of.parse()));
     match numbers {
-        Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => Ok(Part::Shard { number, of }),
+        Some((Ok(number), Ok(of))) if (1..=of).contains(&number) => {
+            Ok(Selection::Shard { number, of })
+        }
         _ => Err("write K/N, K from 1 to N: 3/16 is the third of 16 parts".to_owned()),
     }
 }

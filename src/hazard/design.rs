@@ -125,7 +125,7 @@ mod tests {
         assert!(rule().design(&rocks(59), &equal()).is_ok());
     }
 
-    /// Ranks of the exact binomial sum (tests/hazard.rs): 52 to 59 of 59, one-sided; 936 to 964 of 1000. Energy carries
+    /// Ranks of the exact binomial sum (tests/statistics/hazard.rs): 52 to 59 of 59, one-sided; 936 to 964 of 1000. Energy carries
     /// 1.1² · 2 = 2.42, height 1.5 and half a metre.
     #[test]
     #[expect(clippy::float_cmp, reason = "the same products of the same numbers")]

@@ -280,18 +280,18 @@ impl Maps {
     pub fn add(
         &mut self,
         stratum: u16,
-        visits: &[CellPassage],
+        passages: &[CellPassage],
         (stop, end_m): (StopKind, [f64; 3]),
     ) {
-        for visit in visits {
-            let cell = self.cells.entry(visit.cell).or_default();
+        for passage in passages {
+            let cell = self.cells.entry(passage.cell).or_default();
             cell.passages += 1;
-            cell.largest_j = cell.largest_j.max(visit.total_j);
-            cell.largest_m = cell.largest_m.max(visit.height_m);
-            cell.totals_j.add(visit.total_j, stratum);
-            cell.heights_m.add(visit.height_m, stratum);
+            cell.largest_j = cell.largest_j.max(passage.total_j);
+            cell.largest_m = cell.largest_m.max(passage.height_m);
+            cell.totals_j.add(passage.total_j, stratum);
+            cell.heights_m.add(passage.height_m, stratum);
             for (rocks, limit) in cell.above.iter_mut().zip(INTENSITY_J) {
-                if visit.total_j >= limit {
+                if passage.total_j >= limit {
                     rocks.add(stratum, 1);
                 }
             }
@@ -338,8 +338,8 @@ mod tests {
             MapFrame { west_m: 100.0, south_m: 50.0, cell_m: 2.0, columns: 3, rows: 2, epsg: None };
         let mut maps = Maps::new(frame, MapState::default());
         for (total_j, height_m) in [(29.9e3, 0.5), (30e3, 0.0), (299e3, 2.0)] {
-            let visits = [CellPassage { cell: 4, total_j, height_m }];
-            maps.add(0, &visits, (StopKind::AtRest, [103.0, 53.0 - height_m, 7.0]));
+            let passages = [CellPassage { cell: 4, total_j, height_m }];
+            maps.add(0, &passages, (StopKind::AtRest, [103.0, 53.0 - height_m, 7.0]));
         }
         let weights = Weights::equal(6);
         let value =
@@ -365,8 +365,8 @@ mod tests {
             let mut maps = Maps::new(frame, MapState::default());
             for k in 0..100 {
                 let total_j = if k < wild { 1e6 } else { 1e3 };
-                let visit = CellPassage { cell: 0, total_j, height_m: 0.0 };
-                maps.add(0, &[visit], (StopKind::LeftTerrain, [9.0; 3]));
+                let passage = CellPassage { cell: 0, total_j, height_m: 0.0 };
+                maps.add(0, &[passage], (StopKind::LeftTerrain, [9.0; 3]));
             }
             let weights = Weights::equal(100);
             let found = maps.values(Layer::Intensity, &weights).next().map(|(_, found)| found);

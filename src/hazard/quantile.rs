@@ -208,8 +208,8 @@ fn walk(mode: usize, next: impl Fn(usize) -> Option<(usize, f64)>) -> Vec<f64> {
 fn within<'a>(chances: impl Iterator<Item = &'a f64>, tail: f64) -> usize {
     let mut sum = 0.0;
     chances
-        .take_while(|&&chance| {
-            sum += chance;
+        .take_while(|&&random| {
+            sum += random;
             sum <= tail
         })
         .count()

@@ -1,6 +1,6 @@
 //! What a calibration found: every trial as a row, the result as JSON.
 
-use super::whole::{read_json, write_json, write_whole};
+use super::atomic_file::{read_json, write_atomic, write_json};
 use crate::calibrate::{Calibration, Ends, Trial};
 use crate::error::{Error, Result};
 use std::fmt::Write as _;
@@ -48,9 +48,9 @@ pub fn write_calibration(
         );
     }
     for (name, scene) in fitted {
-        write_whole(&dir.join(name), scene.as_bytes())?;
+        write_atomic(&dir.join(name), scene.as_bytes())?;
     }
-    write_whole(&dir.join("calibration.csv"), text.as_bytes())?;
+    write_atomic(&dir.join("calibration.csv"), text.as_bytes())?;
     write_json(&dir.join(RESULT), found)
 }
 

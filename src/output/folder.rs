@@ -1,10 +1,10 @@
 //! What a result folder holds already, and whether a run may use it.
 
 use super::annual::FREQUENCY;
-use super::claim::Claim;
+use super::atomic_file::{final_path, write_atomic};
+use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::summary::{SUMMARY, Summary};
-use super::whole::{as_whole, write_whole};
 use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
 use std::ffi::OsStr;
@@ -29,12 +29,12 @@ const FIGURES: &str = "figures";
 /// File in it that names those which belong to the results.
 const DRAWN: &str = ".drawn";
 
-/// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from. What is made anew the `claim`
+/// Makes `dir` ready: empty of results (none), or with what a resumed run goes on from. What is made anew the `lock`
 /// removes again if nothing comes of it.
 pub(super) fn prepare(
     dir: &Path,
     (info, mode): (&RunInfo, Mode),
-    claim: &mut Claim,
+    lock: &mut FolderLock,
 ) -> Result<Option<Progress>> {
     let found = look(dir, info, mode)?;
     if found.is_none() {
@@ -46,7 +46,7 @@ pub(super) fn prepare(
         let files = TABLES.iter().map(|name| dir.join(name));
         let state = std::iter::once(maps::state_path(dir, 0));
         let all = folder.into_iter().chain(state).chain(files).chain([dir.join(PROGRESS)]);
-        all.for_each(|path| claim.made(path));
+        all.for_each(|path| lock.made(path));
     }
     Ok(found)
 }
@@ -170,7 +170,7 @@ pub fn announce_figures(dir: &Path, names: &[&str]) -> Result<()> {
     all.dedup();
     let figures = dir.join(FIGURES);
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
-    write_whole(&figures.join(DRAWN), (all.join("\n") + "\n").as_bytes())
+    write_atomic(&figures.join(DRAWN), (all.join("\n") + "\n").as_bytes())
 }
 
 /// Names of the figures that have been drawn.
@@ -186,7 +186,7 @@ fn drawn(dir: &Path) -> Result<Vec<String>> {
 }
 
 fn is_figure(path: &Path) -> bool {
-    as_whole(path).extension().is_some_and(|ending| ending == "svg")
+    final_path(path).extension().is_some_and(|ending| ending == "svg")
 }
 
 fn refuse(dir: &Path, found: &str, remedy: &str) -> Result<Option<Progress>> {
@@ -198,7 +198,7 @@ fn clear(dir: &Path) -> Result<()> {
     let drawn = drawn(dir)?;
     let figures = dir.join(FIGURES);
     remove_all(&figures, |path| {
-        let whole = as_whole(path);
+        let whole = final_path(path);
         let name = whole.file_name().and_then(OsStr::to_str);
         name.is_some_and(|name| name == DRAWN || drawn.iter().any(|known| known == name))
     })?;

@@ -1,6 +1,6 @@
 //! Rasters in plan view: ESRI ASCII grids for every editor, GeoTIFF for every GIS.
 
-use super::whole::{as_whole, write_whole};
+use super::atomic_file::{final_path, write_atomic};
 use crate::error::{Error, Result};
 use crate::frequency::Weights;
 use crate::hazard::{Asked, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
@@ -69,12 +69,12 @@ fn write_raster(
         PathBuf::from(name)
     };
     if as_text {
-        write_whole(&named(".asc"), ascii(frame, cells).as_bytes())?;
+        write_atomic(&named(".asc"), ascii(frame, cells).as_bytes())?;
     }
     let tif = named(".tif");
     let bytes = geotiff(frame, said, cells)
         .map_err(|why| Error::file("write", &tif)(std::io::Error::other(why)))?;
-    write_whole(&tif, &bytes)
+    write_atomic(&tif, &bytes)
 }
 
 /// Rows from north to south, as both formats have them.
@@ -125,7 +125,7 @@ pub(super) fn write_state(dir: &Path, maps: &Maps, done: usize) -> Result<()> {
     fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
     let text = serde_json::to_vec(&maps.state())
         .map_err(|why| Error::file("write", &path)(std::io::Error::other(why)))?;
-    write_whole(&path, &text)
+    write_atomic(&path, &text)
 }
 
 /// Whether it is there: a finished run has removed it.
@@ -136,7 +136,7 @@ pub(super) fn has_state(dir: &Path, done: usize) -> bool {
 /// Reads it back.
 pub(super) fn read_state(dir: &Path, done: usize) -> Result<MapState> {
     let path = state_path(dir, done);
-    super::whole::read_json(&path)?.ok_or_else(|| {
+    super::atomic_file::read_json(&path)?.ok_or_else(|| {
         Error::input(
             &path,
             "file",
@@ -149,7 +149,7 @@ pub(super) fn read_state(dir: &Path, done: usize) -> Result<MapState> {
 /// Whether a file in the folder of the maps, whole or not, has a name that a run writes: it may hold others, a terrain
 /// for instance.
 pub(super) fn is_result(path: &Path) -> bool {
-    let whole = as_whole(path);
+    let whole = final_path(path);
     let text = |part: Option<&OsStr>| part.and_then(OsStr::to_str).unwrap_or_default().to_owned();
     let (stem, ending) = (text(whole.file_stem()), text(whole.extension()));
     match ending.as_str() {
@@ -177,7 +177,7 @@ fn is_of_year(stem: &str) -> bool {
 pub(super) fn keep_state(dir: &Path, done: Option<usize>) -> Result<()> {
     let kept = done.map(|done| state_path(dir, done));
     super::folder::remove_all(&dir.join(FOLDER), |path| {
-        let whole = as_whole(path);
+        let whole = final_path(path);
         let is_state = whole.extension().is_some_and(|ending| ending == STATE);
         is_state && is_result(path) && Some(whole) != kept
     })

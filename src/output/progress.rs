@@ -1,7 +1,7 @@
 //! What tells one run from another, and how far a run has come.
 
 use super::RunInfo;
-use super::whole::{read_json, write_json};
+use super::atomic_file::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::Totals;
 use serde::{Deserialize, Serialize};

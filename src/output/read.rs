@@ -1,13 +1,16 @@
 //! Results read back: what figures and pages are drawn from.
 
-use super::claim::Claim;
+use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::rows::{ImpactRow, PathRow};
 use super::summary::{SUMMARY, Summary};
 use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
-use crate::hazard::{Asked, CrossingRow, Hazard, Line, LineInfo, Row};
+use crate::hazard::{
+    Asked, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, Quantity, Row, Statistic,
+};
+use crate::terrain::grid::Grid;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -24,7 +27,7 @@ pub struct Results {
     pub lines: Vec<Line>,
     /// Keeps other processes away as long as the run that wrote them goes on.
     #[expect(dead_code, reason = "held until it is dropped")]
-    pub(super) claim: Option<Claim>,
+    pub(super) lock: Option<FolderLock>,
 }
 
 /// Reads the results in `dir`.
@@ -61,10 +64,53 @@ pub fn read(dir: &Path) -> Result<Results> {
     let mut lines = self::lines(&infos, asked, summary.identity.releases);
     recall_lines(dir, &mut lines)?;
     check_lengths(dir, &summary.bytes)?;
-    Ok(Results { dir: dir.to_owned(), summary, hazard, lines, claim: None })
+    Ok(Results { dir: dir.to_owned(), summary, hazard, lines, lock: None })
 }
 
 impl Results {
+    /// The results of a finished run in the folder `dir`.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn read(dir: &Path) -> Result<Self> {
+        read(dir)
+    }
+
+    /// Statistics of one quantity over all rocks: percentiles and mean with their 95 % intervals, in SI units.
+    pub fn statistic(&self, quantity: Quantity) -> Statistic {
+        self.hazard.statistic(quantity)
+    }
+
+    /// All first crossings of the evaluation line, barrier or object of this name; none if there is none.
+    pub fn line(&self, name: &str) -> Option<&Line> {
+        self.lines.iter().find(|line| line.info.name == name)
+    }
+
+    /// What each barrier stops, in the order of the scene.
+    pub fn barriers(&self) -> &[BarrierSummary] {
+        &self.summary.barriers
+    }
+
+    /// One of the maps, in map coordinates; none where the scene asks for none.
+    ///
+    /// # Errors
+    /// If its file cannot be read or understood.
+    pub fn map(&self, layer: Layer) -> Result<Option<Grid>> {
+        let path = self.dir.join(super::maps::FOLDER).join(layer.file()).with_extension("asc");
+        // results of an earlier version lack the newer layers
+        let is_there = self.summary.maps.is_some() && path.exists();
+        is_there.then(|| Grid::read(&path)).transpose()
+    }
+
+    /// The kept path of one release, in the order of time; empty if it kept none.
+    ///
+    /// # Errors
+    /// As [`Self::rows`].
+    pub fn path(&self, release: usize) -> Result<Vec<PathRow>> {
+        let is_its = |row: &Result<PathRow>| row.as_ref().map_or(true, |row| row.index == release);
+        self.paths()?.filter(is_its).collect()
+    }
+
     /// The rows of `releases.csv`, one by one.
     ///
     /// # Errors

@@ -1,9 +1,9 @@
 //! `summary.json`: what a run says, in one page for people and scripts.
 
 use super::RunInfo;
+use super::atomic_file::{read_json, write_json};
 use super::progress::Identity;
 use super::site::Site;
-use super::whole::{read_json, write_json};
 use crate::error::Result;
 use crate::hazard::{
     Annual, Asked, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion,

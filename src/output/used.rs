@@ -1,8 +1,8 @@
 //! What a run started from, for a GIS: the ground as it was used, and the places that the scene names.
 
+use super::atomic_file::write_atomic;
 use super::maps::FOLDER;
 use super::vector::Features;
-use super::whole::write_whole;
 use crate::error::{Error, Result};
 use crate::plan::{Part, Plan};
 use crate::release::Where;
@@ -25,7 +25,7 @@ pub fn write_ground(dir: &Path, image: &Image) -> Result<()> {
     let path = folder.join(FILES[0]);
     let bytes =
         encode(image).map_err(|why| Error::file("write", &path)(std::io::Error::other(why)))?;
-    write_whole(&path, &bytes)
+    write_atomic(&path, &bytes)
 }
 
 /// Writes the places of release, and lines and barriers, as GeoJSON that a scene can name again.
@@ -43,7 +43,7 @@ pub fn write_drawings(dir: &Path, plan: &Plan) -> Result<()> {
     file.finish()?;
     let mut file = Features::create(&lines, plan.epsg)?;
     let barriers = if let Part::Kept(all) = &plan.barriers { all.as_slice() } else { &[] };
-    for line in plan.watch().lines {
+    for line in plan.recorders().lines {
         let corners = line.corners_m(plan.terrain.origin_m);
         let barrier = barriers.iter().find(|barrier| barrier.name == line.name);
         // the scene's own digits where it has them: those of the curtain went through the origin
@@ -62,7 +62,7 @@ pub fn copy_used(from: &Path, to: &Path) -> Result<()> {
         let path = from.join(FOLDER).join(name);
         if path.exists() {
             let bytes = fs::read(&path).map_err(Error::file("read", &path))?;
-            write_whole(&to.join(FOLDER).join(name), &bytes)?;
+            write_atomic(&to.join(FOLDER).join(name), &bytes)?;
         }
     }
     Ok(())

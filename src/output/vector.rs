@@ -288,7 +288,7 @@ fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io:
 /// When the file cannot be written.
 pub fn write_terrain(dir: &Path, terrain: &Terrain, mesh_origin_m: [f64; 3]) -> Result<()> {
     let path = dir.join(super::maps::FOLDER).join("terrain.vtk");
-    super::write_whole(&path, &terrain_vtk(terrain, mesh_origin_m))
+    super::write_atomic(&path, &terrain_vtk(terrain, mesh_origin_m))
 }
 
 fn terrain_vtk(terrain: &Terrain, mesh_origin_m: [f64; 3]) -> Vec<u8> {

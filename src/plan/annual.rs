@@ -1,9 +1,9 @@
 //! What a scene asks of the year: sources, objects, and what to know of the numbers.
 
-use super::{Curtain, Part};
-use crate::chance::Distribution;
+use super::{EvaluationLine, Part};
 use crate::error::{Error, Result};
 use crate::frequency::{Frequency, Stratum, radius_of_m3};
+use crate::random::Distribution;
 use crate::release;
 use crate::rock::Rock;
 use crate::scene::{MatrixTable, ObjectTable, Scene};
@@ -112,18 +112,18 @@ pub(super) fn objects(scene: &Scene, warnings: &mut Vec<String>) -> Part<Vec<Obj
 ///
 /// # Errors
 /// An object that comes nowhere near the terrain.
-pub(super) fn curtains(scene: &Scene, terrain: &Terrain) -> Result<Vec<Curtain>> {
+pub(super) fn evaluation_lines(scene: &Scene, terrain: &Terrain) -> Result<Vec<EvaluationLine>> {
     let (low, high) = terrain.index.bounds();
-    let curtain = |table: &ObjectTable| {
-        let curtain = Curtain::of_object(table, terrain.origin_m);
-        if curtain.is_near([low.x, low.y], [high.x, high.y]) {
-            return Ok(curtain);
+    let evaluation_line = |table: &ObjectTable| {
+        let evaluation_line = EvaluationLine::of_object(table, terrain.origin_m);
+        if evaluation_line.is_near([low.x, low.y], [high.x, high.y]) {
+            return Ok(evaluation_line);
         }
         let place = format!("[[objects]] \"{}\"", table.name);
         let remedy = release::outside(terrain);
         Err(Error::input(&scene.file, place, "found no terrain near it", remedy))
     };
-    scene.objects.iter().map(curtain).collect()
+    scene.objects.iter().map(evaluation_line).collect()
 }
 
 /// Sources and objects as name and value for the report.

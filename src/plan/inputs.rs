@@ -1,7 +1,7 @@
 //! What went into a run, as name and value for the report.
 
 use super::annual;
-use crate::chance::Distribution;
+use crate::random::Distribution;
 use crate::scene::{GroundTable, MeshFile, ReportTable, Scene, known_ground};
 
 /// The inputs of a scene, name by name.

@@ -1,6 +1,6 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{Curtain, Part, Paths, Plan, RestRule, annual};
+use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual};
 use crate::ground::Ground;
 use crate::release::Where;
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
@@ -18,6 +18,12 @@ const LABEL: usize = 19;
 impl Plan {
     /// The listing, line by line; `rockfall plan` prints it and every report ends with it.
     pub fn lines(&self) -> Vec<String> {
+        self.lines_for(self.count)
+    }
+
+    /// The listing for another number of releases than the scene's: a target precision asks for more.
+    pub fn lines_for(&self, releases: usize) -> Vec<String> {
+        let count = releases;
         // Every field by name and no `..`: a part that is not listed does not compile.
         let Self {
             title,
@@ -27,10 +33,11 @@ impl Plan {
             mesh_origin_m: _, // the terrain's own says more
             epsg,
             seed,
-            count,
-            releases,
+            count: _, // as asked for
+            releases: places_of_release,
             radii_m: [smallest_m, median_m, largest_m],
             terrain,
+            mesh_health: _, // printed above the listing
             input_files,
             ground_zones,
             ground_names,
@@ -65,7 +72,7 @@ impl Plan {
             warnings,
             fast_warnings,
         } = self;
-        let place = places(releases.places());
+        let place = places(places_of_release.places());
         let mut list = List::default();
         list.line("scene", title);
         list.line("file", format!("{}, {}", scene_file.display(), fingerprint(scene_hash)));
@@ -103,7 +110,7 @@ impl Plan {
             format!("{stems}, each whole again for the next rock")
         });
         list.line("flight", format!("leapt over: {}", never(flight)));
-        list.shapes(releases.shapes(), orientation);
+        list.shapes(places_of_release.shapes(), orientation);
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.lines("rolling stops", rolling_stops.iter().cloned());
@@ -124,11 +131,11 @@ impl Plan {
             )
         });
         list.part("paths", paths, |Paths { first, step_s }| {
-            format!("kept for {} of {count} releases, every {step_s} s", first.min(count))
+            format!("kept for {} of {count} releases, every {step_s} s", first.min(&count))
         });
         list.part("impacts", impacts, |()| "kept".to_owned());
         list.part("lines", lines, |lines| {
-            let each = |line: &Curtain| format!("{} ({:.1} m)", line.name, line.length_m());
+            let each = |line: &EvaluationLine| format!("{} ({:.1} m)", line.name, line.length_m());
             let each: Vec<String> = lines.iter().map(each).collect();
             format!("{}: {}; crossings exact between stored points", lines.len(), each.join(", "))
         });
@@ -146,13 +153,13 @@ impl Plan {
             format!("{}: hit when the rim of a rock comes over them", each.join("; "))
         });
         match year {
-            Part::Kept(year) => list.lines("frequency", annual::lines(year, *count).into_iter()),
+            Part::Kept(year) => list.lines("frequency", annual::lines(year, count).into_iter()),
             Part::LeftOut(why) => list.line("frequency", format!("left out: {why}")),
         }
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
         });
-        let cost = self.cost(*count);
+        let cost = self.cost(count);
         let asks = if cost.is_modest() { "" } else { "; runs with --yes only" };
         list.line("at most", format!("{cost}{asks}"));
         if let Some(file) = deposits {

@@ -1,9 +1,9 @@
 //! Whether the contact springs carry the rocks, and what a fixed step does to them.
 
 use super::Settings;
-use crate::chance::Distribution;
 use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
+use crate::random::Distribution;
 use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene};
 use crate::solver::Scheme;

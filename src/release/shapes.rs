@@ -4,9 +4,9 @@ use crate::body::{
     BadSurface, Block, Shape, ShapeKind, Solid, Surface, box_surface, eota, prism_surface,
     sphere_points,
 };
-use crate::chance::{Chance, Distribution, Purpose, stream, unit};
 use crate::error::{Error, Result};
 use crate::math;
+use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Rock, Vec3};
 use crate::scene::{CORNERS, Orientation, Scene, ShapeTable};
 use crate::terrain::stl;
@@ -81,14 +81,14 @@ impl Shapes {
     /// The block of release `index`, of the size of its rock; none if it is a sphere.
     pub(super) fn draw(&self, seed: u64, index: usize, rock: &Rock) -> Option<Drawn> {
         let all = self.entries.last()?.sum;
-        let mut chance = stream(seed, Purpose::Shape, index);
-        let pick = all * unit(&mut chance);
+        let mut random = stream(seed, Purpose::Shape, index);
+        let pick = all * unit(&mut random);
         let entry = &self.entries[self.entries.partition_point(|entry| entry.sum <= pick)];
-        let drawn = [0; 4].map(|_| unit(&mut chance));
+        let drawn = [0; 4].map(|_| unit(&mut random));
         if entry.table.kind == ShapeKind::Sphere {
             return None;
         }
-        let attitude = self.turned.unwrap_or_else(|| random_turn(&mut chance));
+        let attitude = self.turned.unwrap_or_else(|| random_turn(&mut random));
         let mut next = drawn.into_iter();
         let mut quantile = |axis: &Distribution| axis.quantile(next.next().unwrap_or(0.5));
         let sides = sides_of(&entry.table, &mut quantile);
@@ -104,8 +104,8 @@ impl Shapes {
 }
 
 /// Uniform over all turns, of three numbers (Shoemake 1992).
-fn random_turn(chance: &mut Chance) -> Rotation3<f64> {
-    let [a, b, c] = [0; 3].map(|_| unit(chance));
+fn random_turn(random: &mut RandomStream) -> Rotation3<f64> {
+    let [a, b, c] = [0; 3].map(|_| unit(random));
     let ((sin_b, cos_b), (sin_c, cos_c)) = (math::sin_cos(TAU * b), math::sin_cos(TAU * c));
     let (less, more) = ((1.0 - a).sqrt(), a.sqrt());
     turn_of([more * cos_c, less * sin_b, less * cos_b, more * sin_c])

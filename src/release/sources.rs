@@ -1,9 +1,9 @@
 //! Places that release rocks, and the sizes of what each of them releases.
 
 use super::{Releases, Where};
-use crate::chance::{Purpose, stream, unit};
 use crate::error::{Error, Result};
 use crate::frequency::{Frequency, radius_of_m3};
+use crate::random::{Purpose, stream, unit};
 use crate::scene::{Area, Corner, Point, Polyline, Scene};
 use crate::terrain::Terrain;
 
@@ -60,10 +60,10 @@ impl Releases {
         if !self.radii_m.is_empty() {
             return self.radii_m[self.place_of(index).1 % self.radii_m.len()];
         }
-        let mut chance = stream(self.seed, Purpose::Size, index);
+        let mut random = stream(self.seed, Purpose::Size, index);
         let own = self.frequency.as_ref().filter(|one| one.draws_volumes());
-        let volume_m3 = own.and_then(|one| one.stratum(index).quantile_m3(unit(&mut chance)));
-        volume_m3.map_or_else(|| self.radius_m.draw(&mut chance), radius_of_m3)
+        let volume_m3 = own.and_then(|one| one.stratum(index).quantile_m3(unit(&mut random)));
+        volume_m3.map_or_else(|| self.radius_m.draw(&mut random), radius_of_m3)
     }
 
     /// The sources, their laws of size, and what is asked of the year; none where the scene says nothing of it.

@@ -1,12 +1,12 @@
 //! Speed, energy and bounce height of a few rocks along their ways.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, GREEN, INK, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{Fall, Path, Report, energy_unit};
+use super::model::{Fall, Path, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel, align};
-use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
 use crate::math;
 
@@ -75,14 +75,14 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
     let titles = ["Speed (m/s)", energy.as_str(), "Height (m)"];
     let panels = panels(&curves, titles);
     let bottom = panels[2].frame.bottom + FOOT_PX;
-    let svg = paint("along", (WIDTH_PX, bottom), "Along the way of three rocks", |paper| {
-        key(paper, &panels[0], &chosen);
+    let svg = paint("along", (WIDTH_PX, bottom), "Along the way of three rocks", |canvas| {
+        key(canvas, &panels[0], &chosen);
         for (k, panel) in panels.iter().enumerate() {
-            panel.grid(paper);
+            panel.grid(canvas);
             for (curve, pen) in curves[k].iter().zip(PENS) {
-                panel.line(paper, curve, pen);
+                panel.line(canvas, curve, pen);
             }
-            if k == 2 { panel.axes(paper) } else { panel.axes_above_another(paper) }
+            if k == 2 { panel.axes(canvas) } else { panel.axes_above_another(canvas) }
         }
     });
     let who = |rock: &Chosen<'_>| format!("release {} ({})", rock.path.index, rock.why);
@@ -127,14 +127,14 @@ fn panels(curves: &[Vec<Vec<(f64, f64)>>; 3], titles: [&str; 3]) -> [Panel; 3] {
     panels
 }
 
-fn key(paper: &Paper<'_>, panel: &Panel, chosen: &[Chosen<'_>]) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, chosen: &[Chosen<'_>]) {
     let y = panel.frame.top - 14.0;
     let mut x = panel.frame.left;
     for (rock, pen) in chosen.iter().zip(PENS) {
         let words = format!("release {}: {}", format::decimal(rock.path.index as f64, 0), rock.why);
-        paper.line(&[(x, y), (x + 20.0, y)], pen);
+        canvas.line(&[(x, y), (x + 20.0, y)], pen);
         x += 25.0 + text_width(&words, SMALL) + 18.0;
-        paper.text(
+        canvas.text(
             &Label::new(words.clone(), (x - 18.0 - text_width(&words, SMALL), y)).coloured(INK),
         );
     }

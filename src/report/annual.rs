@@ -1,12 +1,12 @@
 //! How often a year which energy is passed: the curve λ(E ≥ e) of a line or object, with its barriers and without them.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, GREY, INK, ORANGE, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{AnnualView, BandPoint, energy_unit};
+use super::model::{AnnualView, BandPoint, energy_unit};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
 use crate::math;
 
@@ -27,20 +27,20 @@ pub(super) fn draw(view: &AnnualView, number: usize) -> Drawing {
     let panel = panel(view, largest_j, (unit, size));
     let bottom = TOP_PX + HEIGHT_PX + FOOT_PX;
     let title = format!("Frequency a year at {}", view.name);
-    let svg = paint(&format!("annual-{number}"), (WIDTH_PX, bottom), &title, |paper| {
-        panel.grid(paper);
-        panel.grid_upright(paper);
+    let svg = paint(&format!("annual-{number}"), (WIDTH_PX, bottom), &title, |canvas| {
+        panel.grid(canvas);
+        panel.grid_upright(canvas);
         for years in &view.return_periods_years {
-            period(paper, &panel, *years);
+            period(canvas, &panel, *years);
         }
-        draw_curve(paper, &panel, (&view.without, size), (SKY, 0.35), WITHOUT);
+        draw_curve(canvas, &panel, (&view.without, size), (SKY, 0.35), WITHOUT);
         if let Some(with) = &view.with {
-            draw_curve(paper, &panel, (with, size), (ORANGE, 0.18), WITH);
+            draw_curve(canvas, &panel, (with, size), (ORANGE, 0.18), WITH);
         }
-        panel.axes(paper);
-        key(paper, &panel, view);
+        panel.axes(canvas);
+        key(canvas, &panel, view);
         if largest_j <= 0.0 {
-            panel.nothing(paper, "no rock comes here");
+            panel.nothing(canvas, "no rock comes here");
         }
     });
     Drawing { svg, caption: caption(view) }
@@ -77,16 +77,16 @@ fn panel(view: &AnnualView, largest_j: f64, (unit, size): (&str, f64)) -> Panel 
 }
 
 /// A line across at the frequency of a return period.
-fn period(paper: &Paper<'_>, panel: &Panel, years: f64) {
+fn period(canvas: &Canvas<'_>, panel: &Panel, years: f64) {
     let y = 1.0 / years;
-    panel.line(paper, &[(panel.x.low, y), (panel.x.high, y)], Pen::full(GREY, 0.9).dotted());
+    panel.line(canvas, &[(panel.x.low, y), (panel.x.high, y)], Pen::full(GREY, 0.9).dotted());
     let at = panel.at(panel.x.high, y);
     let words = format!("{} years", format::plain(years));
-    paper.text(&Label::new(words, (at.0 + 5.0, at.1)).coloured(GREY));
+    canvas.text(&Label::new(words, (at.0 + 5.0, at.1)).coloured(GREY));
 }
 
 fn draw_curve(
-    paper: &Paper<'_>,
+    canvas: &Canvas<'_>,
     panel: &Panel,
     (curve, size): (&[BandPoint], f64),
     (fill, opacity): (plotters::style::RGBColor, f64),
@@ -95,20 +95,20 @@ fn draw_curve(
     let shown = || curve.iter().filter(|point| point.x > 0.0);
     let band: Vec<(f64, f64, f64)> =
         shown().map(|point| (point.x / size, point.y.low, point.y.high)).collect();
-    panel.band(paper, &band, fill, opacity);
+    panel.band(canvas, &band, fill, opacity);
     let line: Vec<(f64, f64)> = shown().map(|point| (point.x / size, point.y.value)).collect();
-    panel.line(paper, &line, pen);
+    panel.line(canvas, &line, pen);
 }
 
-fn key(paper: &Paper<'_>, panel: &Panel, view: &AnnualView) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, view: &AnnualView) {
     if view.with.is_none() {
         return;
     }
     let y = panel.frame.top - 10.0;
     let mut x = panel.frame.left;
     for (words, pen) in [("without barriers", WITHOUT), ("with barriers", WITH)] {
-        paper.line(&[(x, y), (x + 22.0, y)], pen);
-        paper.text(&Label::new(words, (x + 27.0, y)).coloured(INK));
+        canvas.line(&[(x, y), (x + 22.0, y)], pen);
+        canvas.text(&Label::new(words, (x + 27.0, y)).coloured(INK));
         x += 27.0 + text_width(words, SMALL) + 20.0;
     }
 }

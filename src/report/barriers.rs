@@ -1,12 +1,12 @@
 //! One barrier: what arrives against what it can take, and how many it would stop at other heights and places.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, NORMAL, Pen, paint};
 use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{BarrierView, DesignView, Estimate, PlaceView, kilo};
+use super::model::{BarrierView, DesignView, Estimate, PlaceView, kilo};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, NORMAL, Paper, Pen, paint};
 use super::svg::path::{Frame, Spot};
 use plotters::style::RGBColor;
 
@@ -31,14 +31,14 @@ pub(super) fn draw(barrier: &BarrierView, number: usize) -> Drawing {
     let (heights, places) = lower_panels(barrier, top);
     let bottom = heights.frame.bottom + FOOT_PX;
     let title = format!("Barrier {}", barrier.name);
-    let svg = paint(&format!("barrier-{number}"), (WIDTH_PX, bottom), &title, |paper| {
-        head(paper, &cloud, "Rocks that arrive, and what it can take");
-        draw_cloud(paper, &cloud, (barrier, rocks), size);
-        head(paper, &heights, "Stopped by height");
-        draw_heights(paper, &heights, barrier);
+    let svg = paint(&format!("barrier-{number}"), (WIDTH_PX, bottom), &title, |canvas| {
+        head(canvas, &cloud, "Rocks that arrive, and what it can take");
+        draw_cloud(canvas, &cloud, (barrier, rocks), size);
+        head(canvas, &heights, "Stopped by height");
+        draw_heights(canvas, &heights, barrier);
         if let Some(places) = &places {
-            head(paper, places, "Stopped by place");
-            draw_places(paper, places, barrier);
+            head(canvas, places, "Stopped by place");
+            draw_places(canvas, places, barrier);
         }
     });
     Drawing { svg, caption: caption(barrier, rocks.len()) }
@@ -79,9 +79,9 @@ fn caption(barrier: &BarrierView, arriving: usize) -> String {
     )
 }
 
-fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
+fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
     let at = (panel.frame.left, panel.frame.top - 10.0);
-    paper.text(&Label::new(words, at).bold().sized(NORMAL));
+    canvas.text(&Label::new(words, at).bold().sized(NORMAL));
 }
 
 fn cloud_panel(barrier: &BarrierView, rocks: &[(f64, f64)], (unit, size): (&str, f64)) -> Panel {
@@ -102,47 +102,47 @@ fn cloud_panel(barrier: &BarrierView, rocks: &[(f64, f64)], (unit, size): (&str,
 }
 
 fn draw_cloud(
-    paper: &Paper<'_>,
+    canvas: &Canvas<'_>,
     panel: &Panel,
     (barrier, rocks): (&BarrierView, &[(f64, f64)]),
     size: f64,
 ) {
-    panel.grid(paper);
+    panel.grid(canvas);
     let edge = panel.at(barrier.capacity_j / size, barrier.height_m);
     let stopped =
         Frame { left: panel.frame.left, right: edge.0, top: edge.1, bottom: panel.frame.bottom };
-    paper.fill(&stopped, GREEN, 0.12);
+    canvas.fill(&stopped, GREEN, 0.12);
     let spots: Vec<Spot> = rocks
         .iter()
         .map(|rock| panel.at(rock.1 / size, rock.0))
         .filter(|&spot| panel.frame.holds(spot))
         .collect();
-    paper.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
-    paper.outline(&stopped, Pen::full(GREEN, 1.6));
+    canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
+    canvas.outline(&stopped, Pen::full(GREEN, 1.6));
     if let Some(design) = barrier.design {
-        draw_design(paper, panel, &design, size);
+        draw_design(canvas, panel, &design, size);
     }
-    panel.axes(paper);
+    panel.axes(canvas);
     if rocks.is_empty() {
-        panel.nothing(paper, "no rock arrives");
+        panel.nothing(canvas, "no rock arrives");
     }
 }
 
 /// The design as a diamond with the intervals of its energy and its height.
-fn draw_design(paper: &Paper<'_>, panel: &Panel, design: &DesignView, size: f64) {
+fn draw_design(canvas: &Canvas<'_>, panel: &Panel, design: &DesignView, size: f64) {
     let (energy, height) = (design.energy_j.over(size), design.height_m);
     let (x, y) = panel.at(energy.value, height.value);
     let pen = Pen::full(VERMILLION, 1.4);
     let end = |of: &Estimate, bound: f64| if bound.is_finite() { bound } else { of.value };
     let across = [energy.low, energy.high].map(|at| (end(&energy, at), height.value));
     let up = [height.low, height.high].map(|at| (energy.value, end(&height, at)));
-    panel.line(paper, &across, pen);
-    panel.line(paper, &up, pen);
-    paper.polygon(&[(x, y - 6.0), (x + 6.0, y), (x, y + 6.0), (x - 6.0, y)], VERMILLION, 1.0);
+    panel.line(canvas, &across, pen);
+    panel.line(canvas, &up, pen);
+    canvas.polygon(&[(x, y - 6.0), (x + 6.0, y), (x, y + 6.0), (x - 6.0, y)], VERMILLION, 1.0);
     let at = |dx: f64, dy: f64| Label::new("design", (x + dx, y + dy)).coloured(INK);
     let places = [at(9.0, -11.0), at(-9.0, -11.0).right(), at(9.0, 12.0), at(-9.0, 12.0).right()];
     if let Some(label) = places.iter().find(|label| panel.frame.contains(&label.frame())) {
-        paper.text_on_rim(label);
+        canvas.text_on_rim(label);
     }
 }
 
@@ -194,18 +194,18 @@ fn pen_of(place: usize) -> Pen {
     if other % 2 == 0 { pen.dashed() } else { pen.dotted() }
 }
 
-fn draw_heights(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
-    panel.grid(paper);
-    panel.upright(paper, barrier.height_m, Pen::full(GREEN, 1.4));
+fn draw_heights(canvas: &Canvas<'_>, panel: &Panel, barrier: &BarrierView) {
+    panel.grid(canvas);
+    panel.upright(canvas, barrier.height_m, Pen::full(GREEN, 1.4));
     // its own place last, on top of the others
     for (k, place) in barrier.places.iter().enumerate().rev() {
-        panel.line(paper, &staircase(barrier, place, panel.x.high), pen_of(k));
+        panel.line(canvas, &staircase(barrier, place, panel.x.high), pen_of(k));
     }
-    panel.axes(paper);
+    panel.axes(canvas);
 }
 
-fn draw_places(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
-    panel.grid(paper);
+fn draw_places(canvas: &Canvas<'_>, panel: &Panel, barrier: &BarrierView) {
+    panel.grid(canvas);
     for (k, place) in barrier.places.iter().enumerate() {
         let stops = |rock: &&(f64, f64)| rock.0 <= barrier.height_m && rock.1 <= barrier.capacity_j;
         let share = crate::hazard::Proportion::new(
@@ -216,11 +216,11 @@ fn draw_places(paper: &Paper<'_>, panel: &Panel, barrier: &BarrierView) {
             continue;
         }
         let at = |percent: f64| panel.at(place.offset_m, percent);
-        paper.line(&[at(100.0 * share.low_95), at(100.0 * share.high_95)], Pen::full(INK, 1.2));
+        canvas.line(&[at(100.0 * share.low_95), at(100.0 * share.high_95)], Pen::full(INK, 1.2));
         // its pen in the other panel: colours alone do not tell them apart
         let (x, y) = at(100.0 * share.share);
-        paper.line(&[(x - 16.0, y), (x + 16.0, y)], pen_of(k));
-        paper.disc((x, y), 4.0, pen_of(k).colour);
+        canvas.line(&[(x - 16.0, y), (x + 16.0, y)], pen_of(k));
+        canvas.disc((x, y), 4.0, pen_of(k).colour);
     }
-    panel.axes(paper);
+    panel.axes(canvas);
 }

@@ -14,7 +14,7 @@ mod populations;
 mod table;
 
 use crate::error::{Error, Result};
-use crate::output::{self, Results, write_whole};
+use crate::output::{self, Results, write_atomic};
 use populations::Population;
 use std::fs;
 use std::path::Path;
@@ -100,13 +100,13 @@ impl Comparison {
         fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
         let drawn = figures::all(self);
         for (heading, drawing) in &drawn {
-            write_whole(&figures.join(&heading.file), drawing.svg.as_bytes())?;
+            write_atomic(&figures.join(&heading.file), drawing.svg.as_bytes())?;
         }
-        write_whole(
+        write_atomic(
             &dir.join("differences.csv"),
             table::csv(&self.groups, self.paired).as_bytes(),
         )?;
-        write_whole(&dir.join("compare.html"), page::page(self, &drawn).as_bytes())
+        write_atomic(&dir.join("compare.html"), page::page(self, &drawn).as_bytes())
     }
 
     /// The differences that matter most, line by line for a terminal.

@@ -1,10 +1,10 @@
 //! A plain figure: lines over two axes, or spheres seen from the side.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, GREY, INK, ORANGE, SKY};
 use super::figure::WIDTH_PX;
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
 
 /// What to draw.
@@ -70,24 +70,24 @@ impl Curves {
         // long labels need more than the usual room
         panel.frame.left = panel.frame.left.max(panel.room_left());
         let size = (WIDTH_PX, TOP_PX + HEIGHT_PX + FOOT_PX);
-        paint(name, size, &self.title, |paper| {
-            panel.grid(paper);
+        paint(name, size, &self.title, |canvas| {
+            panel.grid(canvas);
             for line in &self.ground {
-                panel.line(paper, line, Pen::full(GREY, 1.4));
+                panel.line(canvas, line, Pen::full(GREY, 1.4));
             }
             for line in &self.lines {
-                panel.line(paper, line, Pen::full(BLUE, 1.0));
+                panel.line(canvas, line, Pen::full(BLUE, 1.0));
             }
             for line in &self.others {
-                panel.line(paper, line, Pen::full(ORANGE, 1.4).dashed());
+                panel.line(canvas, line, Pen::full(ORANGE, 1.4).dashed());
             }
             for &(x, y, radius) in &self.discs {
                 let px = radius * frame.height() / (panel.y.high - panel.y.low);
-                paper.disc(panel.at(x, y), px, INK);
-                paper.disc(panel.at(x, y), (px - 0.6).max(0.1), SKY);
+                canvas.disc(panel.at(x, y), px, INK);
+                canvas.disc(panel.at(x, y), (px - 0.6).max(0.1), SKY);
             }
-            panel.axes(paper);
-            self.key(paper, &panel);
+            panel.axes(canvas);
+            self.key(canvas, &panel);
         })
     }
 
@@ -95,14 +95,14 @@ impl Curves {
         !self.discs.is_empty() || !self.ground.is_empty()
     }
 
-    fn key(&self, paper: &Paper<'_>, panel: &Panel) {
+    fn key(&self, canvas: &Canvas<'_>, panel: &Panel) {
         let mut x = panel.frame.left;
         let pens = [Pen::full(BLUE, 1.4), Pen::full(ORANGE, 1.6).dashed()];
         for (name, pen) in self.names.iter().flatten().zip(pens) {
             // above the frame: no curve runs there
             let y = panel.frame.top - 10.0;
-            paper.line(&[(x, y), (x + 20.0, y)], pen);
-            paper.text(&Label::new(*name, (x + 25.0, y)));
+            canvas.line(&[(x, y), (x + 20.0, y)], pen);
+            canvas.text(&Label::new(*name, (x + 25.0, y)));
             x += 25.0 + text_width(name, SMALL) + 18.0;
         }
     }

@@ -1,13 +1,13 @@
 //! Small histograms of speed, energies, bounce height and impacts.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, bold_width, fitted, paint, text_width};
 use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{Quantity, Report, kilo};
+use super::model::{Quantity, Report, kilo};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, bold_width, fitted, paint, text_width};
 use super::svg::path::Frame;
 
 /// What is shown, left to right, top to bottom.
@@ -34,7 +34,7 @@ const MARKED: [(f64, Pen); 3] = [
 pub(super) fn draw(report: &Report) -> Drawing {
     let rows = SHOWN.len().div_ceil(COLUMNS);
     let height = rows as f64 * ROW_PX;
-    let svg = paint("distributions", (WIDTH_PX, height), "Distributions", |paper| {
+    let svg = paint("distributions", (WIDTH_PX, height), "Distributions", |canvas| {
         for (i, &quantity) in SHOWN.iter().enumerate() {
             let column = WIDTH_PX / COLUMNS as f64;
             let (left, top) = ((i % COLUMNS) as f64 * column, (i / COLUMNS) as f64 * ROW_PX);
@@ -44,7 +44,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
                 top: top + HEAD_PX,
                 bottom: top + HEAD_PX + PLOT_PX,
             };
-            Distribution::of(report, quantity, frame).draw(paper, 24.0);
+            Distribution::of(report, quantity, frame).draw(canvas, 24.0);
         }
     });
     let caption = "Distributions over all releases of each rock's largest value. The energies reach their \
@@ -85,36 +85,37 @@ impl<'a> Distribution<'a> {
     }
 
     /// Draws it with its head so far above the frame (px).
-    pub(super) fn draw(&self, paper: &Paper<'_>, head_px: f64) {
+    pub(super) fn draw(&self, canvas: &Canvas<'_>, head_px: f64) {
         let total = self.report.releases.len();
-        self.panel.grid(paper);
-        self.bins.bars(paper, &self.panel, total);
-        let mut words = self.percentiles(paper);
+        self.panel.grid(canvas);
+        self.bins.bars(canvas, &self.panel, total);
+        let mut words = self.percentiles(canvas);
         if total > 0 {
             words.push(format!("max {}", format::short(self.largest / self.unit_size)));
         }
-        self.panel.axes(paper);
+        self.panel.axes(canvas);
         if self.bins.beyond > 0 {
             let Frame { right, top, .. } = self.panel.frame;
             let words = format!("+{} →", format::decimal(self.bins.beyond as f64, 0));
-            paper.text_on_rim(&Label::new(words, (right - 4.0, top + 10.0)).right().coloured(GREY));
+            canvas
+                .text_on_rim(&Label::new(words, (right - 4.0, top + 10.0)).right().coloured(GREY));
         }
         let above = Frame { top: self.panel.frame.top - head_px, ..self.panel.frame };
-        head(paper, &above, self.quantity.name(), &words.join(" · "));
+        head(canvas, &above, self.quantity.name(), &words.join(" · "));
         if self.bins.counts.is_empty() {
-            self.panel.nothing(paper, if total == 0 { "no release" } else { "no finite value" });
+            self.panel.nothing(canvas, if total == 0 { "no release" } else { "no finite value" });
         }
     }
 
     /// Draws the percentile lines and returns their values in words.
-    fn percentiles(&self, paper: &Paper<'_>) -> Vec<String> {
+    fn percentiles(&self, canvas: &Canvas<'_>) -> Vec<String> {
         let known = self.report.quantiles.get(&self.quantity).map_or(&[][..], Vec::as_slice);
         let mut words = Vec::new();
         for (probability, pen) in MARKED {
             let found = known.iter().find(|q| (q.probability - probability).abs() < 1e-9);
             let Some(quantile) = found.filter(|q| q.at.value.is_finite()) else { continue };
             let value = quantile.at.value / self.unit_size;
-            self.panel.upright(paper, value, pen);
+            self.panel.upright(canvas, value, pen);
             let sign = format::sign(quantile.at.is);
             words.push(format!("P{:.0} {sign}{}", 100.0 * probability, format::short(value)));
         }
@@ -123,13 +124,13 @@ impl<'a> Distribution<'a> {
 }
 
 /// Name left and numbers right, in two lines where they do not fit in one.
-fn head(paper: &Paper<'_>, frame: &Frame, name: &str, words: &str) {
+fn head(canvas: &Canvas<'_>, frame: &Frame, name: &str, words: &str) {
     let y = frame.top;
     let fits = bold_width(name, NORMAL) + text_width(words, SMALL) + 8.0 < frame.width();
-    paper.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));
+    canvas.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));
     let y = if fits { y } else { y + 15.0 };
     let words = fitted(words, SMALL, frame.width());
-    paper.text(&Label::new(words, (frame.right, y)).right().coloured(GREY));
+    canvas.text(&Label::new(words, (frame.right, y)).right().coloured(GREY));
 }
 
 /// Name with its unit.

@@ -1,6 +1,6 @@
 //! The list of figures.
 
-use super::input::Report;
+use super::model::Report;
 use super::{distributions, plan_view, reach_angle, runout, side_view, stops};
 
 /// Width of every figure (px, 1/96 inch): 180 mm, the text width of an A4 page.

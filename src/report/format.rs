@@ -1,6 +1,6 @@
 //! Numbers and text as a reader expects them: thin-space thousands, a true minus, raised powers.
 
-use super::input::Is;
+use super::model::Is;
 
 /// Stands between groups of three digits.
 const THIN_SPACE: char = '\u{2009}';

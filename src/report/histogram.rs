@@ -1,9 +1,9 @@
 //! Counting values into bins of round width, for display only.
 
 use super::axis::{Axis, nice_step};
+use super::canvas::Canvas;
 use super::colour::SKY;
 use super::panel::Panel;
-use super::paper::Paper;
 use crate::math;
 
 /// Most and least number of bins over the range of the values.
@@ -113,11 +113,11 @@ impl Histogram {
     }
 
     /// The bars, as shares of `total` in per cent.
-    pub(super) fn bars(&self, paper: &Paper<'_>, panel: &Panel, total: usize) {
+    pub(super) fn bars(&self, canvas: &Canvas<'_>, panel: &Panel, total: usize) {
         for (i, &count) in self.counts.iter().enumerate() {
             let ends = [i, i + 1].map(|k| self.from + k as f64 * self.width);
             let [from, to] = if self.is_log { ends.map(|end| math::pow(10.0, end)) } else { ends };
-            panel.bar(paper, (from, to), percent_of(count, total), SKY);
+            panel.bar(canvas, (from, to), percent_of(count, total), SKY);
         }
     }
 }

@@ -1,13 +1,13 @@
 //! One evaluation line: where rocks pass, how high with how much energy, and how much is exceeded how often.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted, paint, text_width};
 use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{BandPoint, Line, kilo};
+use super::model::{BandPoint, Line, kilo};
 use super::panel::{FOOT_PX, Panel, align};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, fitted, paint, text_width};
 use super::svg::path::{Frame, Spot};
 use crate::hazard::INTENSITY_J;
 
@@ -46,25 +46,25 @@ pub(super) fn draw(line: &Line) -> Drawing {
     let bottom = cloud.frame.bottom + FOOT_PX + GAP_PX + CURVE_PX + FOOT_PX;
     let curves = lower_panels(line, cloud.frame.bottom + FOOT_PX + GAP_PX, (unit, size));
     let title = format!("Evaluation line {}", line.name);
-    let svg = paint(&format!("line-{}", line.number), (WIDTH_PX, bottom), &title, |paper| {
-        head(paper, &along, "Where rocks pass");
-        along.grid(paper);
-        bins.bars(paper, &along, line.releases);
-        along.axes(paper);
-        head(paper, &cloud, "Height and energy at the first crossing");
-        draw_cloud(paper, &cloud, line, size);
-        let behind = |of: fn(&super::input::Behind) -> &Vec<BandPoint>| {
+    let svg = paint(&format!("line-{}", line.number), (WIDTH_PX, bottom), &title, |canvas| {
+        head(canvas, &along, "Where rocks pass");
+        along.grid(canvas);
+        bins.bars(canvas, &along, line.releases);
+        along.axes(canvas);
+        head(canvas, &cloud, "Height and energy at the first crossing");
+        draw_cloud(canvas, &cloud, line, size);
+        let behind = |of: fn(&super::model::Behind) -> &Vec<BandPoint>| {
             line.behind.as_ref().map(of).map(Vec::as_slice)
         };
-        head(paper, &curves[0], "Energy exceeded");
+        head(canvas, &curves[0], "Energy exceeded");
         let pair = (&line.energy_exceedance[..], behind(|at| &at.energy_exceedance));
-        draw_curve(paper, &curves[0], pair, size);
-        intensities(paper, &curves[0], size);
-        head(paper, &curves[1], "Height exceeded");
+        draw_curve(canvas, &curves[0], pair, size);
+        intensities(canvas, &curves[0], size);
+        head(canvas, &curves[1], "Height exceeded");
         let pair = (&line.height_exceedance[..], behind(|at| &at.height_exceedance));
-        draw_curve(paper, &curves[1], pair, 1.0);
+        draw_curve(canvas, &curves[1], pair, 1.0);
         if line.behind.is_some() {
-            key(paper, &curves[1]);
+            key(canvas, &curves[1]);
         }
     });
     Drawing { svg, caption: caption(line) }
@@ -96,9 +96,9 @@ fn caption(line: &Line) -> String {
     )
 }
 
-fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
+fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
     let at = (panel.frame.left, panel.frame.top - 10.0);
-    paper.text(&Label::new(words, at).bold().sized(NORMAL));
+    canvas.text(&Label::new(words, at).bold().sized(NORMAL));
 }
 
 fn upper_panels(line: &Line, bins: &Histogram, (unit, size): (&str, f64)) -> (Panel, Panel) {
@@ -145,35 +145,35 @@ fn lower_panels(line: &Line, top: f64, (unit, size): (&str, f64)) -> [Panel; 2] 
     ]
 }
 
-fn draw_cloud(paper: &Paper<'_>, panel: &Panel, line: &Line, size: f64) {
-    panel.grid(paper);
+fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &Line, size: f64) {
+    panel.grid(canvas);
     let spots: Vec<Spot> = line
         .crossings
         .iter()
         .map(|at| panel.at(at.total_j / size, above(at.height_m)))
         .filter(|&spot| panel.frame.holds(spot))
         .collect();
-    paper.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
+    canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     for probability in MARKED {
         let pen = Pen::full(VERMILLION, 1.2);
         let pen = if probability < 0.9 { pen } else { pen.dashed() };
-        let of = |list: &[super::input::Quantile]| {
+        let of = |list: &[super::model::Quantile]| {
             let found = list.iter().find(|q| (q.probability - probability).abs() < 1e-9);
             found.map(|q| q.at.value).filter(|value| value.is_finite())
         };
         let words = format!("P{:.0}", 100.0 * probability);
         if let Some(energy) = of(&line.energy_quantiles) {
-            panel.upright(paper, energy / size, pen);
+            panel.upright(canvas, energy / size, pen);
             let at = panel.at(energy / size, panel.y.high);
-            name(paper, panel, &words, [(at.0 + 3.0, at.1 + 9.0), (at.0 - 24.0, at.1 + 9.0)]);
+            name(canvas, panel, &words, [(at.0 + 3.0, at.1 + 9.0), (at.0 - 24.0, at.1 + 9.0)]);
         }
         if let Some(height) = of(&line.height_quantiles) {
-            panel.line(paper, &[(panel.x.low, height), (panel.x.high, height)], pen);
+            panel.line(canvas, &[(panel.x.low, height), (panel.x.high, height)], pen);
             let (x, y) = panel.at(panel.x.high, height.max(0.0));
-            name(paper, panel, &words, [(x - 26.0, y - 8.0), (x - 26.0, y + 9.0)]);
+            name(canvas, panel, &words, [(x - 26.0, y - 8.0), (x - 26.0, y + 9.0)]);
         }
     }
-    panel.axes(paper);
+    panel.axes(canvas);
 }
 
 /// A height without what a rock presses into the ground; NaN where there is no ground.
@@ -182,23 +182,23 @@ fn above(height_m: f64) -> f64 {
 }
 
 /// Writes a word at the first place that is free.
-fn name(paper: &Paper<'_>, panel: &Panel, words: &str, places: [Spot; 2]) {
+fn name(canvas: &Canvas<'_>, panel: &Panel, words: &str, places: [Spot; 2]) {
     let labels = places.map(|at| Label::new(words, at).coloured(INK));
     let free =
-        |label: &&Label| panel.frame.contains(&label.frame()) && paper.is_free(&label.frame());
+        |label: &&Label| panel.frame.contains(&label.frame()) && canvas.is_free(&label.frame());
     if let Some(label) = labels.iter().find(free) {
-        paper.text_on_rim(label);
+        canvas.text_on_rim(label);
     }
 }
 
 /// A curve with its band, and the one behind barriers over it.
 fn draw_curve(
-    paper: &Paper<'_>,
+    canvas: &Canvas<'_>,
     panel: &Panel,
     (without, with): (&[BandPoint], Option<&[BandPoint]>),
     size: f64,
 ) {
-    panel.grid(paper);
+    panel.grid(canvas);
     for (curve, fill, pen) in [
         (Some(without), SKY, Pen::full(BLUE, 1.6)),
         (with, GREEN, Pen::full(DARK_GREEN, 1.6).dashed()),
@@ -207,22 +207,22 @@ fn draw_curve(
         let shown = curve.iter().filter(|p| !panel.x.is_log || p.x > 0.0);
         let band: Vec<(f64, f64, f64)> =
             shown.clone().map(|p| (p.x / size, p.y.low, p.y.high)).collect();
-        panel.band(paper, &band, fill, 0.25);
+        panel.band(canvas, &band, fill, 0.25);
         let line: Vec<(f64, f64)> =
             shown.map(|p| (p.x / size, p.y.value)).filter(|&(_, y)| y > 0.0).collect();
-        panel.line(paper, &line, pen);
+        panel.line(canvas, &line, pen);
     }
-    panel.axes(paper);
+    panel.axes(canvas);
 }
 
 /// The limits between weak, medium and strong.
-fn intensities(paper: &Paper<'_>, panel: &Panel, size: f64) {
+fn intensities(canvas: &Canvas<'_>, panel: &Panel, size: f64) {
     for limit in INTENSITY_J {
-        panel.upright(paper, limit / size, Pen::full(GREY, 0.8).dotted());
+        panel.upright(canvas, limit / size, Pen::full(GREY, 0.8).dotted());
         let (x, y) = panel.at(limit / size, panel.y.high);
         let words = format!("{:.0}\u{2009}kJ", limit / 1e3);
         name(
-            paper,
+            canvas,
             panel,
             &words,
             [(x + 3.0, y + 9.0), (x - text_width(&words, SMALL) - 3.0, y + 9.0)],
@@ -230,15 +230,15 @@ fn intensities(paper: &Paper<'_>, panel: &Panel, size: f64) {
     }
 }
 
-fn key(paper: &Paper<'_>, panel: &Panel) {
+fn key(canvas: &Canvas<'_>, panel: &Panel) {
     let y = panel.frame.top - 9.0;
     let mut right = panel.frame.right;
     for (words, pen) in
         [("with barriers", Pen::full(DARK_GREEN, 1.6).dashed()), ("without", Pen::full(BLUE, 1.6))]
     {
-        paper.text(&Label::new(words, (right, y)).right().coloured(GREY));
+        canvas.text(&Label::new(words, (right, y)).right().coloured(GREY));
         let end = right - text_width(words, SMALL) - 5.0;
-        paper.line(&[(end - 18.0, y), (end, y)], pen);
+        canvas.line(&[(end - 18.0, y), (end, y)], pen);
         right = end - 26.0;
     }
 }
@@ -264,14 +264,14 @@ pub(super) fn retention(lines: &[Line]) -> Drawing {
         Axis::linear(0.0, most, "Releases that cross (%)"),
         Axis::linear(0.0, rows, ""),
     );
-    let svg = paint("retention", (WIDTH_PX, frame.bottom + FOOT_PX), "Retention", |paper| {
-        panel.grid_upright(paper);
+    let svg = paint("retention", (WIDTH_PX, frame.bottom + FOOT_PX), "Retention", |canvas| {
+        panel.grid_upright(canvas);
         for (k, line) in lines.iter().enumerate() {
             let y = frame.top + row_px * (k as f64 + 0.5);
-            bar(paper, &panel, (line, &names[k]), y);
+            bar(canvas, &panel, (line, &names[k]), y);
         }
-        paper.outline(&frame, Pen::full(INK, 0.8));
-        panel.x_axis(paper);
+        canvas.outline(&frame, Pen::full(INK, 0.8));
+        panel.x_axis(canvas);
     });
     let caption = "Reach probability at each line, conditional on release, with Wilson's 95 % interval, from the highest line down. \
                    Light: without barriers; green, where rocks meet a barrier before: what is left by it. What is missing between \
@@ -279,7 +279,7 @@ pub(super) fn retention(lines: &[Line]) -> Drawing {
     Drawing { svg, caption: caption.to_owned() }
 }
 
-fn bar(paper: &Paper<'_>, panel: &Panel, (line, name): (&Line, &str), y: f64) {
+fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name): (&Line, &str), y: f64) {
     let frame = panel.frame;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let behind = line.behind.as_ref().map(|behind| behind.reach);
@@ -293,13 +293,13 @@ fn bar(paper: &Paper<'_>, panel: &Panel, (line, name): (&Line, &str), y: f64) {
             top: y + top,
             bottom: y + top + tall,
         };
-        paper.fill(&bar, colour, 1.0);
+        canvas.fill(&bar, colour, 1.0);
         let middle = 0.5 * (bar.top + bar.bottom);
-        paper.line(&[(at(reach.low), middle), (at(reach.high), middle)], Pen::full(INK, 1.2));
+        canvas.line(&[(at(reach.low), middle), (at(reach.high), middle)], Pen::full(INK, 1.2));
     }
-    paper.text(&Label::new(name, (frame.left - 6.0, y)).right());
+    canvas.text(&Label::new(name, (frame.left - 6.0, y)).right());
     let words = format::percent(line.reach.value, 1);
     let left =
         behind.map_or(String::new(), |reach| format!("left: {}", format::percent(reach.value, 1)));
-    paper.text(&Label::new(words, (frame.right + 6.0, y)).followed_by(left));
+    canvas.text(&Label::new(words, (frame.right + 6.0, y)).followed_by(left));
 }

@@ -1,12 +1,12 @@
 //! Maps in the report: how likely rocks come, with what intensity, energy and height, and where they stay.
 
 use super::axis::{Axis, round_step};
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{CellMap, Report, energy_unit};
+use super::model::{CellMap, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use super::plan_view::ground;
 use super::site;
 use super::svg::path::{Frame, Spot};
@@ -150,22 +150,22 @@ fn draw_layers(
     layers: &[Layer],
 ) -> String {
     let (panels, bottom) = panels(maps, layers);
-    paint(name, (WIDTH_PX, bottom), title, |paper| {
+    paint(name, (WIDTH_PX, bottom), title, |canvas| {
         for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
             let at = (panel.frame.left, panel.frame.top - 9.0);
-            paper.text(&Label::new(layer.title.clone(), at).bold().sized(NORMAL));
-            paper.clip(&format!("part{k}"), &panel.frame, || {
+            canvas.text(&Label::new(layer.title.clone(), at).bold().sized(NORMAL));
+            canvas.clip(&format!("part{k}"), &panel.frame, || {
                 if let Some(raster) = &report.ground {
-                    ground::shade(paper, panel, raster);
+                    ground::shade(canvas, panel, raster);
                 }
                 for (class, (_, colour)) in layer.classes.iter().enumerate() {
-                    cells(paper, panel, maps, (layer, class), *colour);
+                    cells(canvas, panel, maps, (layer, class), *colour);
                 }
-                site::zones(paper, panel, report);
-                site::marks(paper, panel, report);
+                site::zones(canvas, panel, report);
+                site::marks(canvas, panel, report);
             });
-            panel.axes(paper);
-            key(paper, panel, layer);
+            panel.axes(canvas);
+            key(canvas, panel, layer);
         }
     })
 }
@@ -206,7 +206,7 @@ fn panels(maps: &CellMap, layers: &[Layer]) -> (Vec<Panel>, f64) {
 
 /// The cells of one class; neighbours in a row are one rectangle.
 fn cells(
-    paper: &Paper<'_>,
+    canvas: &Canvas<'_>,
     panel: &Panel,
     maps: &CellMap,
     (layer, class): (&Layer, usize),
@@ -229,7 +229,7 @@ fn cells(
         (panel.at(x0 - half_m, y + half_m), panel.at(x1 + half_m, y - half_m))
     };
     let bars: Vec<(Spot, Spot)> = runs.into_iter().map(corners).collect();
-    paper.group(r#"opacity="0.8""#, || paper.rectangles(&bars, colour));
+    canvas.group(r#"opacity="0.8""#, || canvas.rectangles(&bars, colour));
 }
 
 /// Where each entry of a key stands, from the left end and by line, and how many lines there are.
@@ -247,14 +247,14 @@ fn key_places(layer: &Layer, width_px: f64) -> (Vec<(f64, usize)>, usize) {
     (places, line + 1)
 }
 
-fn key(paper: &Paper<'_>, panel: &Panel, layer: &Layer) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, layer: &Layer) {
     let top = panel.frame.bottom + FOOT_PX + 6.0;
     let (places, _) = key_places(layer, panel.frame.width());
     for ((name, colour), (x, line)) in layer.classes.iter().zip(places) {
         let (x, y) = (panel.frame.left + x, top + (line as f64 + 0.5) * KEY_PX);
         let patch = Frame { left: x, right: x + 10.0, top: y - 5.0, bottom: y + 5.0 };
-        paper.fill(&patch, *colour, 0.8);
-        paper.outline(&patch, Pen::full(INK, 0.4));
-        paper.text(&Label::new(name.clone(), (x + 13.0, y)));
+        canvas.fill(&patch, *colour, 0.8);
+        canvas.outline(&patch, Pen::full(INK, 0.4));
+        canvas.text(&Label::new(name.clone(), (x + 13.0, y)));
     }
 }

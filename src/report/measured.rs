@@ -1,12 +1,12 @@
 //! Measured and computed ends: distributions of runout, and where the rocks lie.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, NORMAL, Pen, paint};
 use super::colour::{BLUE, GREY, INK, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{Observed, Report};
+use super::model::{Observed, Report};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, NORMAL, Paper, Pen, paint};
 use super::plan_view::ground;
 use super::svg::path::{Frame, Spot};
 use crate::hazard::{Sample, Way};
@@ -22,26 +22,26 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
     let curves = curve_panel(observed);
     let map = map_panel(observed, curves.frame.bottom + FOOT_PX + GAP_PX);
     let size = (WIDTH_PX, map.frame.bottom + FOOT_PX);
-    let svg = paint("measured", size, "Measured and computed", |paper| {
-        head(paper, &curves, "Share that stops within a runout");
-        curves.grid(paper);
-        steps(paper, &curves, &observed.computed, Pen::full(BLUE, 1.6));
-        steps(paper, &curves, &observed.measured, Pen::full(VERMILLION, 1.6));
-        curves.axes(paper);
-        key(paper, &curves);
-        head(paper, &map, "Where the rocks lie");
-        paper.clip("map", &map.frame, || {
+    let svg = paint("measured", size, "Measured and computed", |canvas| {
+        head(canvas, &curves, "Share that stops within a runout");
+        curves.grid(canvas);
+        steps(canvas, &curves, &observed.computed, Pen::full(BLUE, 1.6));
+        steps(canvas, &curves, &observed.measured, Pen::full(VERMILLION, 1.6));
+        curves.axes(canvas);
+        key(canvas, &curves);
+        head(canvas, &map, "Where the rocks lie");
+        canvas.clip("map", &map.frame, || {
             if let Some(raster) = &report.ground {
-                let _ = ground::draw(paper, &map, raster);
+                let _ = ground::draw(canvas, &map, raster);
             }
-            paper.dots(&ends(&map, &observed.computed), 1.2, BLUE);
+            canvas.dots(&ends(&map, &observed.computed), 1.2, BLUE);
             let measured = ends(&map, &observed.measured);
-            paper.dots(&measured, 3.0, INK);
-            paper.dots(&measured, 2.4, VERMILLION);
+            canvas.dots(&measured, 3.0, INK);
+            canvas.dots(&measured, 2.4, VERMILLION);
             let starts = observed.measured.iter().map(|w| map.at(w.start_m[0], w.start_m[1]));
-            paper.dots(&starts.collect::<Vec<_>>(), 1.2, INK);
+            canvas.dots(&starts.collect::<Vec<_>>(), 1.2, INK);
         });
-        map.axes(paper);
+        map.axes(canvas);
     });
     let at = observed.agreement;
     let number = |value: f64| format::significant(value, 3);
@@ -61,19 +61,19 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
     Drawing { svg, caption }
 }
 
-fn head(paper: &Paper<'_>, panel: &Panel, words: &str) {
+fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
     let at = (panel.frame.left, panel.frame.top - 10.0);
-    paper.text(&Label::new(words, at).bold().sized(NORMAL));
+    canvas.text(&Label::new(words, at).bold().sized(NORMAL));
 }
 
-fn key(paper: &Paper<'_>, panel: &Panel) {
+fn key(canvas: &Canvas<'_>, panel: &Panel) {
     for (k, (words, colour)) in
         [("measured", VERMILLION), ("computed", BLUE)].into_iter().enumerate()
     {
         let y = panel.frame.top + 16.0 + 16.0 * k as f64;
         let x = panel.frame.left + 14.0;
-        paper.line(&[(x, y), (x + 22.0, y)], Pen::full(colour, 2.0));
-        paper.text(&Label::new(words, (x + 28.0, y)).coloured(GREY));
+        canvas.line(&[(x, y), (x + 22.0, y)], Pen::full(colour, 2.0));
+        canvas.text(&Label::new(words, (x + 28.0, y)).coloured(GREY));
     }
 }
 
@@ -86,14 +86,14 @@ fn curve_panel(observed: &Observed) -> Panel {
 }
 
 /// The empirical distribution as the steps it consists of.
-fn steps(paper: &Paper<'_>, panel: &Panel, ways: &[Way], pen: Pen) {
+fn steps(canvas: &Canvas<'_>, panel: &Panel, ways: &[Way], pen: Pen) {
     let sample = Sample::of(ways.iter().map(Way::runout_m));
     let n = sample.values().len() as f64;
     let corners = |(k, x): (usize, &f64)| [(*x, k as f64 / n), (*x, (k + 1) as f64 / n)];
     let line: Vec<(f64, f64)> = sample.values().iter().enumerate().flat_map(corners).collect();
-    panel.line(paper, &line, pen);
+    panel.line(canvas, &line, pen);
     if line.is_empty() {
-        panel.nothing(paper, "no rock");
+        panel.nothing(canvas, "no rock");
     }
 }
 

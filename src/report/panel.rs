@@ -1,8 +1,8 @@
 //! A framed plot: axes with ticks outside, lines, bands and bars, all cut at the frame.
 
 use super::axis::{Axis, Tick};
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, text_width};
 use super::colour::{INK, PALE};
-use super::paper::{Label, NORMAL, Paper, Pen, SMALL, text_width};
 use super::svg::path::{Frame, Spot, clipped, thinned};
 use plotters::style::RGBColor;
 
@@ -82,71 +82,71 @@ impl Panel {
     }
 
     /// Light lines across at the ticks, to be drawn before the data.
-    pub fn grid(&self, paper: &Paper<'_>) {
+    pub fn grid(&self, canvas: &Canvas<'_>) {
         for tick in self.y_ticks().iter().filter(|t| !t.label.is_empty()) {
             let y = self.at(self.x.low, tick.value).1;
-            paper.line(&[(self.frame.left, y), (self.frame.right, y)], GRID_PEN);
+            canvas.line(&[(self.frame.left, y), (self.frame.right, y)], GRID_PEN);
         }
     }
 
     /// Light lines upwards at the ticks, to be drawn before the data.
-    pub fn grid_upright(&self, paper: &Paper<'_>) {
+    pub fn grid_upright(&self, canvas: &Canvas<'_>) {
         for tick in self.x_ticks() {
-            self.upright(paper, tick.value, GRID_PEN);
+            self.upright(canvas, tick.value, GRID_PEN);
         }
     }
 
     /// Frame and both axes, to be drawn after the data.
-    pub fn axes(&self, paper: &Paper<'_>) {
-        self.x_axis(paper);
-        self.y_axis(paper);
+    pub fn axes(&self, canvas: &Canvas<'_>) {
+        self.x_axis(canvas);
+        self.y_axis(canvas);
     }
 
     /// Frame and y axis; ticks of the x axis without labels, which the panel below carries.
-    pub fn axes_above_another(&self, paper: &Paper<'_>) {
+    pub fn axes_above_another(&self, canvas: &Canvas<'_>) {
         for tick in self.x_ticks() {
             let x = self.at(tick.value, self.y.low).0;
-            paper.line(&[(x, self.frame.bottom), (x, self.frame.bottom + TICK_PX)], FRAME_PEN);
+            canvas.line(&[(x, self.frame.bottom), (x, self.frame.bottom + TICK_PX)], FRAME_PEN);
         }
-        self.y_axis(paper);
+        self.y_axis(canvas);
     }
 
     /// Ticks, labels and title below the frame.
-    pub fn x_axis(&self, paper: &Paper<'_>) {
+    pub fn x_axis(&self, canvas: &Canvas<'_>) {
         let bottom = self.frame.bottom;
         for tick in self.x_ticks() {
             let x = self.at(tick.value, self.y.low).0;
             let length = if tick.label.is_empty() { 0.6 * TICK_PX } else { TICK_PX };
-            paper.line(&[(x, bottom), (x, bottom + length)], FRAME_PEN);
+            canvas.line(&[(x, bottom), (x, bottom + length)], FRAME_PEN);
             let at = (x, bottom + TICK_PX + GAP_PX);
-            write_if_any(paper, &Label::new(tick.label, at).below().centred());
+            write_if_any(canvas, &Label::new(tick.label, at).below().centred());
         }
         let middle = 0.5 * (self.frame.left + self.frame.right);
         let below = bottom + TICK_PX + GAP_PX + SMALL + 5.0;
         let title = Label::new(self.x.title.clone(), (middle, below)).below().centred();
-        write_if_any(paper, &title.sized(NORMAL));
+        write_if_any(canvas, &title.sized(NORMAL));
     }
 
-    fn y_axis(&self, paper: &Paper<'_>) {
+    fn y_axis(&self, canvas: &Canvas<'_>) {
         let left = self.frame.left;
         for tick in self.y_ticks() {
             let y = self.at(self.x.low, tick.value).1;
             let length = if tick.label.is_empty() { 0.6 * TICK_PX } else { TICK_PX };
-            paper.line(&[(left - length, y), (left, y)], FRAME_PEN);
+            canvas.line(&[(left - length, y), (left, y)], FRAME_PEN);
             let at = (left - TICK_PX - GAP_PX, y);
-            write_if_any(paper, &Label::new(tick.label, at).right());
+            write_if_any(canvas, &Label::new(tick.label, at).right());
         }
         let middle = 0.5 * (self.frame.top + self.frame.bottom);
         let beside = left - self.labels_px() - TICK_PX - GAP_PX - 7.0;
         let title = Label::new(self.y.title.clone(), (beside, middle)).above().centred().upwards();
-        write_if_any(paper, &title.sized(NORMAL));
-        paper.outline(&self.frame, FRAME_PEN);
+        write_if_any(canvas, &title.sized(NORMAL));
+        canvas.outline(&self.frame, FRAME_PEN);
     }
 
     /// A line through values, thinned and cut at the frame.
-    pub fn line(&self, paper: &Paper<'_>, values: &[(f64, f64)], pen: Pen) {
+    pub fn line(&self, canvas: &Canvas<'_>, values: &[(f64, f64)], pen: Pen) {
         for part in self.on_paper(values) {
-            paper.line(&part, pen);
+            canvas.line(&part, pen);
         }
     }
 
@@ -157,7 +157,13 @@ impl Panel {
     }
 
     /// The area between two curves over the same `x`: `(x, low, high)`. A bound that is missing or outside ends at the frame.
-    pub fn band(&self, paper: &Paper<'_>, band: &[(f64, f64, f64)], fill: RGBColor, opacity: f64) {
+    pub fn band(
+        &self,
+        canvas: &Canvas<'_>,
+        band: &[(f64, f64, f64)],
+        fill: RGBColor,
+        opacity: f64,
+    ) {
         let edge = |x: f64, y: f64, else_y: f64| {
             let (x, y) = self.at(x, y);
             let y = if y.is_finite() { y } else { else_y };
@@ -167,11 +173,11 @@ impl Panel {
         let inside = band.iter().filter(|(x, ..)| (self.x.low..=self.x.high).contains(x));
         let lower = inside.clone().map(|&(x, low, _)| edge(x, low, self.frame.bottom));
         let upper = inside.clone().rev().map(|&(x, _, high)| edge(x, high, self.frame.top));
-        paper.polygon(&lower.chain(upper).collect::<Vec<_>>(), fill, opacity);
+        canvas.polygon(&lower.chain(upper).collect::<Vec<_>>(), fill, opacity);
     }
 
     /// A bar from the lower end of the y axis up to `y`, between two values of `x`.
-    pub fn bar(&self, paper: &Paper<'_>, (from, to): (f64, f64), y: f64, fill: RGBColor) {
+    pub fn bar(&self, canvas: &Canvas<'_>, (from, to): (f64, f64), y: f64, fill: RGBColor) {
         let (from, to) = (from.max(self.x.low), to.min(self.x.high));
         let height = self.y.share(y).clamp(0.0, 1.0) * self.frame.height();
         if to <= from || height <= 0.0 || height.is_nan() {
@@ -186,28 +192,28 @@ impl Panel {
             top: self.frame.bottom - height,
             bottom: self.frame.bottom,
         };
-        paper.fill(&bar, fill, 1.0);
+        canvas.fill(&bar, fill, 1.0);
     }
 
     /// A line across the whole height at `x`, if that is on the axis.
-    pub fn upright(&self, paper: &Paper<'_>, x: f64, pen: Pen) {
+    pub fn upright(&self, canvas: &Canvas<'_>, x: f64, pen: Pen) {
         if (self.x.low..=self.x.high).contains(&x) {
             let x = self.at(x, self.y.low).0;
-            paper.line(&[(x, self.frame.bottom), (x, self.frame.top)], pen);
+            canvas.line(&[(x, self.frame.bottom), (x, self.frame.top)], pen);
         }
     }
 
     /// Grey words in the middle of a frame that has nothing to show.
-    pub fn nothing(&self, paper: &Paper<'_>, why: &str) {
+    pub fn nothing(&self, canvas: &Canvas<'_>, why: &str) {
         let Frame { left, top, right, bottom } = self.frame;
         let middle = (0.5 * (left + right), 0.5 * (top + bottom));
-        paper.text(&Label::new(why, middle).centred().coloured(super::colour::GREY));
+        canvas.text(&Label::new(why, middle).centred().coloured(super::colour::GREY));
     }
 }
 
-fn write_if_any(paper: &Paper<'_>, label: &Label) {
+fn write_if_any(canvas: &Canvas<'_>, label: &Label) {
     if !label.is_empty() {
-        paper.text(label);
+        canvas.text(label);
     }
 }
 

@@ -4,12 +4,12 @@ mod furniture;
 pub(super) mod ground;
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Pen, paint};
 use super::colour::{self, BLUE, DARK_VERMILLION, ORANGE, PURPLE, VERMILLION, WHITE};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::Report;
+use super::model::Report;
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Paper, Pen, paint};
 use super::site;
 use super::svg::path::{Frame, Spot, clipped, thinned};
 use crate::math;
@@ -44,27 +44,27 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let height = panel.frame.bottom + FOOT_PX + key.height_px(WIDTH_PX - key_left) + 8.0;
     let fastest = fastest_m_s(report);
     let mut contours = None;
-    let svg = paint("plan", (WIDTH_PX, height), "Plan view", |paper| {
-        let names = site::places(paper, &panel, report);
-        paper.clip("map", &panel.frame, || {
+    let svg = paint("plan", (WIDTH_PX, height), "Plan view", |canvas| {
+        let names = site::places(canvas, &panel, report);
+        canvas.clip("map", &panel.frame, || {
             if let Some(ground) = &report.ground {
-                contours = ground::draw(paper, &panel, ground);
+                contours = ground::draw(canvas, &panel, ground);
             }
-            paths(paper, &panel, report, fastest);
-            ends(paper, &panel, report);
-            site::zones(paper, &panel, report);
-            site::marks(paper, &panel, report);
+            paths(canvas, &panel, report, fastest);
+            ends(canvas, &panel, report);
+            site::zones(canvas, &panel, report);
+            site::marks(canvas, &panel, report);
             if let Some(contours) = &contours {
-                contours.labels(paper);
+                contours.labels(canvas);
             }
-            site::names(paper, &names);
+            site::names(canvas, &names);
         });
         if report.releases.is_empty() && report.ground.is_none() {
-            panel.nothing(paper, "no release, no ground");
+            panel.nothing(canvas, "no release, no ground");
         }
-        panel.axes(paper);
-        furniture::draw(paper, &panel, (fastest, !report.paths.is_empty()));
-        key.draw(paper, (key_left, panel.frame.bottom + FOOT_PX + 4.0));
+        panel.axes(canvas);
+        furniture::draw(canvas, &panel, (fastest, !report.paths.is_empty()));
+        key.draw(canvas, (key_left, panel.frame.bottom + FOOT_PX + 4.0));
     });
     let interval = contours
         .map_or(String::new(), |c| format!(" Contour interval {} m.", format::plain(c.interval_m)));
@@ -164,7 +164,7 @@ fn fastest_m_s(report: &Report) -> f64 {
 }
 
 /// The paths, thinned, one group a speed class, slow ones below.
-fn paths(paper: &Paper<'_>, panel: &Panel, report: &Report, fastest_m_s: f64) {
+fn paths(canvas: &Canvas<'_>, panel: &Panel, report: &Report, fastest_m_s: f64) {
     let mut classes: Vec<Vec<Vec<Spot>>> = vec![Vec::new(); SPEED_CLASSES];
     for path in &report.paths {
         let spots: Vec<Spot> =
@@ -187,7 +187,7 @@ fn paths(paper: &Paper<'_>, panel: &Panel, report: &Report, fastest_m_s: f64) {
     let opacity = if many > 100.0 { 0.75 } else { 0.95 };
     for (i, lines) in classes.iter().enumerate() {
         let colour = colour::sequential((i as f64 + 0.5) / SPEED_CLASSES as f64);
-        paper.lines(lines, Pen { opacity, ..Pen::full(colour, width_px) });
+        canvas.lines(lines, Pen { opacity, ..Pen::full(colour, width_px) });
     }
 }
 
@@ -197,20 +197,20 @@ fn at_rest(report: &Report) -> impl Iterator<Item = [f64; 3]> + '_ {
 }
 
 /// Ends by stop reason; deposits as density where they are many.
-fn ends(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+fn ends(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     let radius = if report.releases.len() > MANY { 1.3 } else { 2.6 };
     let is_crowd = at_rest(report).count() > MANY;
     if is_crowd {
-        deposits(paper, panel, report);
+        deposits(canvas, panel, report);
     }
     for kind in ENDS.into_iter().filter(|kind| !(is_crowd && *kind == Mark::AtRest)) {
         let ends = report.releases.iter().filter(|fall| Mark::of(&fall.stop) == kind);
-        kind.draw(paper, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
+        kind.draw(canvas, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
     }
 }
 
 /// Squares that are the darker the more rocks lie in them.
-fn deposits(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+fn deposits(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     let mut cells: BTreeMap<(i64, i64), usize> = BTreeMap::new();
     for end in at_rest(report) {
         let (x, y) = panel.at(end[0], end[1]);
@@ -225,19 +225,19 @@ fn deposits(paper: &Paper<'_>, panel: &Panel, report: &Report) {
         let middle = |cell: i64| (cell as f64 + 0.5) * DEPOSIT_PX;
         let spots: Vec<Spot> = of_class.map(|(&(x, y), _)| (middle(x), middle(y))).collect();
         let colour = if class + 1 == DEPOSITS.len() { DARK_VERMILLION } else { VERMILLION };
-        paper.group(&format!(r#"opacity="{opacity}""#), || {
-            paper.squares(&spots, 0.5 * DEPOSIT_PX, colour);
+        canvas.group(&format!(r#"opacity="{opacity}""#), || {
+            canvas.squares(&spots, 0.5 * DEPOSIT_PX, colour);
         });
     }
 }
 
 /// A square of each class beside the other, for the key.
-fn density_symbol(paper: &Paper<'_>, at: Spot) {
+fn density_symbol(canvas: &Canvas<'_>, at: Spot) {
     for (class, (_, opacity)) in DEPOSITS.iter().enumerate() {
         let x = at.0 + (class as f64 - 1.5) * 4.0;
         let frame = Frame { left: x - 2.0, right: x + 2.0, top: at.1 - 3.0, bottom: at.1 + 3.0 };
         let colour = if class + 1 == DEPOSITS.len() { DARK_VERMILLION } else { VERMILLION };
-        paper.fill(&frame, colour, *opacity);
+        canvas.fill(&frame, colour, *opacity);
     }
 }
 
@@ -273,20 +273,20 @@ impl Mark {
     }
 
     /// Draws marks of a radius (px) on a white rim.
-    fn draw(self, paper: &Paper<'_>, spots: &[Spot], radius: f64) {
+    fn draw(self, canvas: &Canvas<'_>, spots: &[Spot], radius: f64) {
         let rim = radius + 0.6;
         match self {
             Self::AtRest => {
-                paper.dots(spots, rim, WHITE);
-                paper.dots(spots, radius, VERMILLION);
+                canvas.dots(spots, rim, WHITE);
+                canvas.dots(spots, radius, VERMILLION);
             }
             Self::LeftTerrain => {
-                paper.squares(spots, rim, WHITE);
-                paper.squares(spots, radius, BLUE);
+                canvas.squares(spots, rim, WHITE);
+                canvas.squares(spots, radius, BLUE);
             }
             Self::TimeUp => {
-                paper.squares(spots, rim, ORANGE);
-                paper.squares(spots, 0.5 * radius, WHITE);
+                canvas.squares(spots, rim, ORANGE);
+                canvas.squares(spots, 0.5 * radius, WHITE);
             }
             Self::Failed => {
                 let is_crowd = spots.len() > MANY;
@@ -296,9 +296,9 @@ impl Mark {
                 };
                 let crosses: Vec<Vec<Spot>> = spots.iter().flat_map(strokes).collect();
                 if !is_crowd {
-                    paper.lines(&crosses, Pen::full(WHITE, 2.8));
+                    canvas.lines(&crosses, Pen::full(WHITE, 2.8));
                 }
-                paper.lines(&crosses, Pen::full(PURPLE, if is_crowd { 0.9 } else { 1.6 }));
+                canvas.lines(&crosses, Pen::full(PURPLE, if is_crowd { 0.9 } else { 1.6 }));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Whether the whole looks like rockfall: what was looked at, what was found, what is known from the field.
 
 use super::format;
-use super::input::{Check, Is, Report};
+use super::model::{Check, Is, Report};
 use super::raster::GroundRaster;
 use super::reach_angle;
 use crate::output::Results;

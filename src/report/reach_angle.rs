@@ -1,13 +1,13 @@
 //! The reach angle against what is observed in the field.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{INK, ORANGE, VERMILLION};
 use super::distributions::Distribution;
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{Is, Quantity, Report};
+use super::model::{Is, Quantity, Report};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, Paper, Pen, SMALL, paint, text_width};
 use super::svg::path::Frame;
 
 /// Where medians of observed events lie (degrees): lowest, highest, kind of slope.
@@ -37,12 +37,12 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let x = &angles.panel.x;
     // both bands stay in sight
     angles.panel.x = Axis::linear(x.low.min(10.0), x.high.max(50.0), x.title.clone());
-    let svg = paint("reach", (WIDTH_PX, frame.bottom + FOOT_PX), "Reach angle", |paper| {
+    let svg = paint("reach", (WIDTH_PX, frame.bottom + FOOT_PX), "Reach angle", |canvas| {
         for (band, shade) in OBSERVED.iter().zip(SHADES) {
-            shaded(paper, &angles.panel, band, shade);
+            shaded(canvas, &angles.panel, band, shade);
         }
-        angles.draw(paper, 36.0);
-        key(paper, &angles.panel);
+        angles.draw(canvas, 36.0);
+        key(canvas, &angles.panel);
     });
     let verdict = match median(report) {
         Some((at, is)) if is_observed(at) => format!(
@@ -64,25 +64,25 @@ pub(super) fn draw(report: &Report) -> Drawing {
     Drawing { svg, caption }
 }
 
-fn shaded(paper: &Paper<'_>, panel: &Panel, &(low, high, _): &(f64, f64, &str), shade: f64) {
+fn shaded(canvas: &Canvas<'_>, panel: &Panel, &(low, high, _): &(f64, f64, &str), shade: f64) {
     let (left, right) = (panel.at(low, 0.0).0, panel.at(high, 0.0).0);
-    paper.fill(&Frame { left, right, ..panel.frame }, ORANGE, shade);
+    canvas.fill(&Frame { left, right, ..panel.frame }, ORANGE, shade);
     for x in [left, right] {
         let side = [(x, panel.frame.top), (x, panel.frame.bottom)];
-        paper.line(&side, Pen { opacity: 0.6, ..Pen::full(VERMILLION, 0.7) });
+        canvas.line(&side, Pen { opacity: 0.6, ..Pen::full(VERMILLION, 0.7) });
     }
 }
 
 /// The bands by name, in a line of their own above the frame.
-fn key(paper: &Paper<'_>, panel: &Panel) {
+fn key(canvas: &Canvas<'_>, panel: &Panel) {
     let y = panel.frame.top - 12.0;
     let mut x = panel.frame.left;
     for ((low, high, name), shade) in OBSERVED.iter().zip(SHADES) {
         let patch = Frame { left: x, right: x + 16.0, top: y - 5.0, bottom: y + 5.0 };
-        paper.fill(&patch, ORANGE, shade);
-        paper.outline(&patch, Pen::full(INK, 0.4));
+        canvas.fill(&patch, ORANGE, shade);
+        canvas.outline(&patch, Pen::full(INK, 0.4));
         let words = format!("{name}: {low} to {high}°");
         x += 22.0 + text_width(&words, SMALL) + 22.0;
-        paper.text(&Label::new(words, (patch.right + 5.0, y)));
+        canvas.text(&Label::new(words, (patch.right + 5.0, y)));
     }
 }

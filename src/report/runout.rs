@@ -1,13 +1,13 @@
 //! How far the rocks ran: exceedance with its band above, histogram below.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, Pen, SMALL, paint};
 use super::colour::{BLUE, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{Histogram, percent_of};
-use super::input::{Fall, Is, Quantile, Quantity, Report};
+use super::model::{Fall, Is, Quantile, Quantity, Report};
 use super::panel::{FOOT_PX, Panel, align};
-use super::paper::{Label, Paper, Pen, SMALL, paint};
 use super::svg::path::Frame;
 use crate::simulation::Stop;
 
@@ -25,23 +25,23 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let (upper, lower) = panels(report, &bins, runouts.len());
     let quantiles = report.quantiles.get(&Quantity::Runout).map_or(&[][..], Vec::as_slice);
     let height = lower.frame.bottom + FOOT_PX;
-    let svg = paint("runout", (WIDTH_PX, height), "Runout", |paper| {
-        upper.grid(paper);
-        lower.grid(paper);
-        exceedance(paper, &upper, report);
-        bins.bars(paper, &lower, runouts.len());
+    let svg = paint("runout", (WIDTH_PX, height), "Runout", |canvas| {
+        upper.grid(canvas);
+        lower.grid(canvas);
+        exceedance(canvas, &upper, report);
+        bins.bars(canvas, &lower, runouts.len());
         for quantile in quantiles {
             let pen = Pen::full(INK, 0.7).dotted();
-            upper.upright(paper, quantile.at.value, pen);
-            lower.upright(paper, quantile.at.value, pen);
+            upper.upright(canvas, quantile.at.value, pen);
+            lower.upright(canvas, quantile.at.value, pen);
         }
-        mark(paper, &upper, quantiles);
-        values(paper, &upper, report, quantiles);
-        open_end(paper, &upper, report);
-        upper.axes_above_another(paper);
-        lower.axes(paper);
+        mark(canvas, &upper, quantiles);
+        values(canvas, &upper, report, quantiles);
+        open_end(canvas, &upper, report);
+        upper.axes_above_another(canvas);
+        lower.axes(canvas);
         if runouts.is_empty() {
-            lower.nothing(paper, "no release");
+            lower.nothing(canvas, "no release");
         }
     });
     Drawing { svg, caption: caption(report, &bins) }
@@ -55,7 +55,7 @@ fn open_rocks(report: &Report) -> usize {
 }
 
 /// Says beside the end of a curve why it ends: beyond, rocks that left the terrain decide.
-fn open_end(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+fn open_end(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     let open = open_rocks(report);
     let last = report.runout_exceedance.last();
     let Some(last) =
@@ -67,8 +67,8 @@ fn open_end(paper: &Paper<'_>, panel: &Panel, report: &Report) {
     if !panel.frame.holds((x, y)) {
         return;
     }
-    paper.line(&[(x, y - 7.0), (x, y + 7.0)], Pen::full(BLUE, 1.6));
-    paper.line(&[(x, y), (x + 14.0, y)], Pen::full(BLUE, 1.2).dotted());
+    canvas.line(&[(x, y - 7.0), (x, y + 7.0)], Pen::full(BLUE, 1.6));
+    canvas.line(&[(x, y), (x + 14.0, y)], Pen::full(BLUE, 1.2).dotted());
     let words = format!("{} left or still moving: beyond, only ≥", format::decimal(open as f64, 0));
     let candidates = [14.0, -14.0, 28.0, -28.0, 42.0, 56.0].into_iter().flat_map(|dy| {
         let at = |dx: f64| Label::new(words.clone(), (x + dx, y + dy)).coloured(BLUE);
@@ -80,10 +80,10 @@ fn open_end(paper: &Paper<'_>, panel: &Panel, report: &Report) {
     };
     let free = |label: &Label| {
         let room = label.frame();
-        panel.frame.contains(&room) && paper.is_free(&room) && !on_curve(&room)
+        panel.frame.contains(&room) && canvas.is_free(&room) && !on_curve(&room)
     };
     if let Some(label) = candidates.into_iter().find(free) {
-        paper.text_on_rim(&label);
+        canvas.text_on_rim(&label);
     }
 }
 
@@ -136,24 +136,24 @@ fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
 }
 
 /// The curve as the steps it consists of, over its band.
-fn exceedance(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+fn exceedance(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     let curve = &report.runout_exceedance;
     let band: Vec<(f64, f64, f64)> = curve.iter().map(|p| (p.x, p.y.low, p.y.high)).collect();
-    panel.band(paper, &band, SKY, 0.35);
+    panel.band(canvas, &band, SKY, 0.35);
     // where the curve is 0 a logarithmic axis has no place: the line ends at the last rock
     let shown: Vec<(f64, f64)> = curve
         .iter()
         .map(|p| (p.x, p.y.value))
         .filter(|&(_, y)| !panel.y.is_log || y > 0.0)
         .collect();
-    panel.line(paper, &shown, Pen::full(BLUE, 1.6));
+    panel.line(canvas, &shown, Pen::full(BLUE, 1.6));
     if curve.is_empty() {
-        panel.nothing(paper, "no curve");
+        panel.nothing(canvas, "no curve");
     }
 }
 
 /// Percentiles on the curve with their intervals; their values in the corner that the curve leaves free.
-fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
+fn mark(canvas: &Canvas<'_>, panel: &Panel, quantiles: &[Quantile]) {
     for quantile in quantiles {
         let exceeded = 1.0 - quantile.probability;
         let (x, y) = panel.at(quantile.at.value, exceeded);
@@ -164,8 +164,8 @@ fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
             let end = panel.at(bound, exceeded).0;
             if end.is_finite() { end.clamp(panel.frame.left, panel.frame.right) } else { x }
         };
-        whisker(paper, (end(quantile.at.low), end(quantile.at.high)), y);
-        paper.disc((x, y), 3.0, VERMILLION);
+        whisker(canvas, (end(quantile.at.low), end(quantile.at.high)), y);
+        canvas.disc((x, y), 3.0, VERMILLION);
         // the curve falls: above and to the right of a point is free, below and to the left too
         let words = match quantile.at.is {
             Is::AtLeast => format!("{}\u{2009}≥", name(quantile)),
@@ -175,9 +175,9 @@ fn mark(paper: &Paper<'_>, panel: &Panel, quantiles: &[Quantile]) {
         let candidates =
             [at(6.0, -10.0), at(-6.0, -10.0).right(), at(-6.0, 11.0).right(), at(6.0, 11.0)];
         let fits =
-            |label: &Label| panel.frame.contains(&label.frame()) && paper.is_free(&label.frame());
+            |label: &Label| panel.frame.contains(&label.frame()) && canvas.is_free(&label.frame());
         if let Some(label) = candidates.into_iter().find(fits) {
-            paper.text_on_rim(&label);
+            canvas.text_on_rim(&label);
         }
     }
 }
@@ -186,16 +186,16 @@ fn name(quantile: &Quantile) -> String {
     format!("P{}", format::significant(100.0 * quantile.probability, 2))
 }
 
-fn whisker(paper: &Paper<'_>, (low, high): (f64, f64), y: f64) {
+fn whisker(canvas: &Canvas<'_>, (low, high): (f64, f64), y: f64) {
     let pen = Pen::full(VERMILLION, 1.4);
-    paper.line(&[(low, y), (high, y)], pen);
+    canvas.line(&[(low, y), (high, y)], pen);
     for x in [low, high] {
-        paper.line(&[(x, y - 4.0), (x, y + 4.0)], pen);
+        canvas.line(&[(x, y - 4.0), (x, y + 4.0)], pen);
     }
 }
 
 /// Values and intervals, one line each, in the free corner.
-fn values(paper: &Paper<'_>, panel: &Panel, report: &Report, quantiles: &[Quantile]) {
+fn values(canvas: &Canvas<'_>, panel: &Panel, report: &Report, quantiles: &[Quantile]) {
     let line_px = SMALL + 5.0;
     let lines = |left: f64, top: f64| -> Vec<Label> {
         let line = |(i, quantile): (usize, &Quantile)| {
@@ -217,12 +217,12 @@ fn values(paper: &Paper<'_>, panel: &Panel, report: &Report, quantiles: &[Quanti
         let room = Frame { left, top: top - line_px, right: left + widest, bottom: top + tall };
         let on_curve =
             report.runout_exceedance.iter().filter(|p| room.holds(panel.at(p.x, p.y.value)));
-        let taken = lines(left, top).iter().filter(|label| !paper.is_free(&label.frame())).count();
+        let taken = lines(left, top).iter().filter(|label| !canvas.is_free(&label.frame())).count();
         on_curve.count() + 1000 * taken
     };
     let best = corners.into_iter().min_by_key(|&corner| crowd(corner));
     for label in best.map_or(Vec::new(), |(left, top)| lines(left, top)) {
-        paper.text_on_rim(&label);
+        canvas.text_on_rim(&label);
     }
 }
 

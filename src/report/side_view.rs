@@ -3,12 +3,12 @@
 mod along;
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, Pen, SMALL, fitted, paint, text_width};
 use super::colour::{BLUE, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{Fall, MapMark, Path, Report};
+use super::model::{Fall, MapMark, Path, Report};
 use super::panel::{FOOT_PX, Panel, align};
-use super::paper::{Label, Paper, Pen, SMALL, fitted, paint, text_width};
 use super::svg::path::{Frame, Spot};
 use crate::math;
 use along::{Envelope, FallLine};
@@ -32,18 +32,18 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let line = FallLine::of(report);
     let view = View::of(report, &line);
     let height = view.speed.frame.bottom + FOOT_PX;
-    let svg = paint("side", (WIDTH_PX, height), "Side view", |paper| {
-        view.profile(paper, report, &line);
+    let svg = paint("side", (WIDTH_PX, height), "Side view", |canvas| {
+        view.profile(canvas, report, &line);
         let shown = [
             (&view.height, &view.heights, largest(report, |fall| fall.max_height_m)),
             (&view.speed, &view.speeds, largest(report, |fall| fall.max_speed_m_s)),
         ];
         for (panel, envelope, largest) in shown {
-            draw_envelope(paper, panel, envelope, largest);
+            draw_envelope(canvas, panel, envelope, largest);
         }
-        view.height.axes_above_another(paper);
-        view.speed.axes(paper);
-        view.marks(paper, report, &line);
+        view.height.axes_above_another(canvas);
+        view.speed.axes(canvas);
+        view.marks(canvas, report, &line);
     });
     Drawing { svg, caption: caption(report, &line, &view) }
 }
@@ -108,14 +108,14 @@ impl View {
         Self { ground, height, speed, heights, speeds }
     }
 
-    fn profile(&self, paper: &Paper<'_>, report: &Report, line: &FallLine) {
+    fn profile(&self, canvas: &Canvas<'_>, report: &Report, line: &FallLine) {
         let panel = &self.ground;
         let below = report.ground.as_ref().map_or(Vec::new(), |ground| {
             line.ground_below(report, ground, (panel.x.low, panel.x.high))
         });
         let strip: Vec<(f64, f64, f64)> =
             below.iter().map(|&[s, low, _, high]| (s, low, high)).collect();
-        panel.band(paper, &strip, GROUND_FILL, 0.6);
+        panel.band(canvas, &strip, GROUND_FILL, 0.6);
         let on_paper = |path: &Path| {
             let way = path.points.iter().map(|p| (line.along(p.place_m), p.place_m[2]));
             panel.on_paper(&way.collect::<Vec<_>>())
@@ -124,18 +124,18 @@ impl View {
         // one line a path, so that many of them add up to a darker blue
         let opacity = (1.0 - 0.3 * math::log10(report.paths.len().max(1) as f64)).clamp(0.2, 0.9);
         for path in &paths {
-            paper.line(path, Pen { opacity, ..Pen::full(BLUE, 0.7) });
+            canvas.line(path, Pen { opacity, ..Pen::full(BLUE, 0.7) });
         }
         let median: Vec<(f64, f64)> = below.iter().map(|&[s, _, z, _]| (s, z)).collect();
-        panel.line(paper, &median, Pen::full(GROUND_LINE, 1.5));
+        panel.line(canvas, &median, Pen::full(GROUND_LINE, 1.5));
         if report.paths.is_empty() {
-            panel.nothing(paper, "no path kept");
+            panel.nothing(canvas, "no path kept");
         }
-        panel.axes_above_another(paper);
+        panel.axes_above_another(canvas);
     }
 
     /// Where lines and barriers stand, through all panels, named above.
-    fn marks(&self, paper: &Paper<'_>, report: &Report, line: &FallLine) {
+    fn marks(&self, canvas: &Canvas<'_>, report: &Report, line: &FallLine) {
         let place = |mark: &MapMark| Some((line.meets(&mark.corners_m)?, mark.clone()));
         let mut marks: Vec<(f64, MapMark)> = report.marks.iter().filter_map(place).collect();
         marks.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -145,16 +145,16 @@ impl View {
             let pen = Pen::full(colour, if mark.barrier.is_some() { 1.6 } else { 0.9 });
             let pen = if mark.barrier.is_some() { pen } else { pen.dotted() };
             for panel in [&self.ground, &self.height, &self.speed] {
-                panel.upright(paper, at, pen);
+                panel.upright(canvas, at, pen);
             }
             let x = self.ground.at(at, self.ground.y.low).0;
-            name_above(paper, &self.ground.frame, (x, &mark.name), colour);
+            name_above(canvas, &self.ground.frame, (x, &mark.name), colour);
         }
     }
 }
 
 /// The name of a mark above the frame, or in it where a neighbour's stands above already.
-fn name_above(paper: &Paper<'_>, frame: &Frame, (x, name): (f64, &str), colour: RGBColor) {
+fn name_above(canvas: &Canvas<'_>, frame: &Frame, (x, name): (f64, &str), colour: RGBColor) {
     let words = fitted(name, SMALL, 0.4 * frame.width());
     let rows = [frame.top - 9.0, frame.top + 10.0, frame.top + 24.0, frame.top + 38.0];
     let candidates = rows.into_iter().flat_map(|y| {
@@ -166,10 +166,10 @@ fn name_above(paper: &Paper<'_>, frame: &Frame, (x, name): (f64, &str), colour: 
     });
     let free = |label: &Label| {
         let room = label.frame();
-        room.left >= frame.left && room.right <= frame.right && paper.is_free(&room)
+        room.left >= frame.left && room.right <= frame.right && canvas.is_free(&room)
     };
     if let Some(label) = candidates.into_iter().find(free) {
-        paper.text_on_rim(&label.coloured(colour));
+        canvas.text_on_rim(&label.coloured(colour));
     }
 }
 
@@ -196,26 +196,26 @@ fn place_below(above: &Panel, panel: &mut Panel) {
 }
 
 /// The maximum as a light area of steps, P95 as a heavy line, named above the frame.
-fn draw_envelope(paper: &Paper<'_>, panel: &Panel, envelope: &Envelope, largest: Option<f64>) {
-    panel.grid(paper);
+fn draw_envelope(canvas: &Canvas<'_>, panel: &Panel, envelope: &Envelope, largest: Option<f64>) {
+    panel.grid(canvas);
     let steps = |values: &[f64]| -> Vec<(f64, f64)> {
         let ends = |i: usize| [i, i + 1].map(|k| envelope.from_m + k as f64 * envelope.step_m);
         values.iter().enumerate().flat_map(|(i, &v)| ends(i).map(|x| (x, v))).collect()
     };
     for run in runs_of_numbers(&steps(&envelope.most)) {
         let area: Vec<_> = run.iter().map(|&(x, y)| (x, 0.0, y)).collect();
-        panel.band(paper, &area, SKY, 0.35);
-        panel.line(paper, &run, Pen::full(SKY, 1.0));
+        panel.band(canvas, &area, SKY, 0.35);
+        panel.line(canvas, &run, Pen::full(SKY, 1.0));
     }
     for run in runs_of_numbers(&steps(&envelope.p95)) {
-        panel.line(paper, &run, Pen::full(BLUE, 1.6));
+        panel.line(canvas, &run, Pen::full(BLUE, 1.6));
     }
     if let Some(largest) = largest {
-        panel.line(paper, &[(panel.x.low, largest), (panel.x.high, largest)], ALL);
+        panel.line(canvas, &[(panel.x.low, largest), (panel.x.high, largest)], ALL);
     }
-    key(paper, panel);
+    key(canvas, panel);
     if envelope.most.iter().all(|v| v.is_nan()) {
-        panel.nothing(paper, "no path kept");
+        panel.nothing(canvas, "no path kept");
     }
 }
 
@@ -224,15 +224,15 @@ fn runs_of_numbers(line: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
     line.split(|(_, y)| y.is_nan()).filter(|run| !run.is_empty()).map(<[_]>::to_vec).collect()
 }
 
-fn key(paper: &Paper<'_>, panel: &Panel) {
+fn key(canvas: &Canvas<'_>, panel: &Panel) {
     let y = panel.frame.top - 9.0;
     let mut right = panel.frame.right;
     for (name, pen) in
         [("largest of all", ALL), ("maximum", Pen::full(SKY, 1.6)), ("P95", Pen::full(BLUE, 1.8))]
     {
-        paper.text(&Label::new(name, (right, y)).right().coloured(GREY));
+        canvas.text(&Label::new(name, (right, y)).right().coloured(GREY));
         let end = right - text_width(name, SMALL) - 5.0;
-        paper.line(&[(end - 16.0, y), (end, y)], pen);
+        canvas.line(&[(end - 16.0, y), (end, y)], pen);
         right = end - 28.0;
     }
 }

@@ -1,10 +1,10 @@
 //! What stands on the map beside the rocks: release zone, evaluation lines and barriers, with their names.
 
+use super::canvas::{Canvas, Label, Pen, SMALL, fitted};
 use super::colour::{GREEN, INK, WHITE};
 use super::format;
-use super::input::{MapMark, Quantity, Report};
+use super::model::{MapMark, Quantity, Report};
 use super::panel::Panel;
-use super::paper::{Label, Paper, Pen, SMALL, fitted};
 use super::svg::path::{Frame, Spot, clipped};
 use crate::math;
 use crate::output::Zone;
@@ -21,43 +21,43 @@ const MOST_POINTS: usize = 200;
 const GAP_PX: f64 = 8.0;
 
 /// Draws the zones of release.
-pub(super) fn zones(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+pub(super) fn zones(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     for one in std::iter::once(&report.zone).chain(&report.further_zones) {
-        zone(paper, panel, one);
+        zone(canvas, panel, one);
     }
 }
 
-fn zone(paper: &Paper<'_>, panel: &Panel, zone: &Zone) {
+fn zone(canvas: &Canvas<'_>, panel: &Panel, zone: &Zone) {
     let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
     match zone {
         Zone::Points(_) if spots.len() <= MOST_POINTS => {
             for &spot in spots.iter().filter(|&&spot| panel.frame.holds(spot)) {
-                paper.disc(spot, 2.6, INK);
-                paper.disc(spot, 1.6, WHITE);
+                canvas.disc(spot, 2.6, INK);
+                canvas.disc(spot, 1.6, WHITE);
             }
         }
-        Zone::Points(_) => paper.dots(&spots, 0.9, INK),
+        Zone::Points(_) => canvas.dots(&spots, 0.9, INK),
         Zone::Polygon(_) | Zone::Line(_) => {
             if matches!(zone, Zone::Polygon(_)) {
                 spots.extend(spots.first().copied());
             }
             for part in clipped(&spots, &panel.frame) {
-                paper.line(&part, Pen { opacity: 0.7, ..Pen::full(WHITE, 3.0) });
-                paper.line(&part, ZONE);
+                canvas.line(&part, Pen { opacity: 0.7, ..Pen::full(WHITE, 3.0) });
+                canvas.line(&part, ZONE);
             }
         }
     }
 }
 
 /// Draws lines and barriers.
-pub(super) fn marks(paper: &Paper<'_>, panel: &Panel, report: &Report) {
+pub(super) fn marks(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     for mark in &report.marks {
         for part in on_paper(panel, mark) {
             let pen = if mark.barrier.is_some() { BARRIER } else { LINE };
-            paper.line(&part, Pen { opacity: 0.8, ..Pen::full(WHITE, pen.width_px + 2.2) });
-            paper.line(&part, pen);
+            canvas.line(&part, Pen { opacity: 0.8, ..Pen::full(WHITE, pen.width_px + 2.2) });
+            canvas.line(&part, pen);
             if mark.barrier.is_some() {
-                paper.lines(&teeth(&part), Pen::full(GREEN, 1.2));
+                canvas.lines(&teeth(&part), Pen::full(GREEN, 1.2));
             }
         }
     }
@@ -101,7 +101,7 @@ pub(super) fn in_words(mark: &MapMark) -> String {
 
 /// Finds room for the names of lines and barriers beside them and keeps it free; they are drawn with [`names`] when all
 /// else is.
-pub(super) fn places(paper: &Paper<'_>, panel: &Panel, report: &Report) -> Vec<Label> {
+pub(super) fn places(canvas: &Canvas<'_>, panel: &Panel, report: &Report) -> Vec<Label> {
     let inner = Frame {
         left: panel.frame.left + 3.0,
         right: panel.frame.right - 3.0,
@@ -115,9 +115,9 @@ pub(super) fn places(paper: &Paper<'_>, panel: &Panel, report: &Report) -> Vec<L
         let candidates = parts.iter().flat_map(|part| beside(part, &words));
         let found = candidates.map(|label| label.bold().coloured(colour)).find(|label| {
             let frame = label.frame();
-            inner.contains(&frame) && paper.is_free(&frame)
+            inner.contains(&frame) && canvas.is_free(&frame)
         })?;
-        paper.take(found.frame());
+        canvas.take(found.frame());
         Some(found)
     };
     report.marks.iter().filter_map(place).collect()
@@ -144,29 +144,29 @@ fn beside(part: &[Spot], words: &str) -> Vec<Label> {
 }
 
 /// Writes the names.
-pub(super) fn names(paper: &Paper<'_>, labels: &[Label]) {
+pub(super) fn names(canvas: &Canvas<'_>, labels: &[Label]) {
     for label in labels {
-        paper.text_on_rim(label);
+        canvas.text_on_rim(label);
     }
 }
 
 /// A short piece of each kind of mark, for a key.
-pub(super) fn symbol(paper: &Paper<'_>, at: Spot, is_barrier: bool) {
+pub(super) fn symbol(canvas: &Canvas<'_>, at: Spot, is_barrier: bool) {
     let part = [(at.0 - 7.0, at.1), (at.0 + 7.0, at.1)];
-    paper.line(&part, if is_barrier { BARRIER } else { LINE });
+    canvas.line(&part, if is_barrier { BARRIER } else { LINE });
     if is_barrier {
         let tooth = |x: f64| vec![(x, at.1 - TOOTH_PX.1), (x, at.1 + TOOTH_PX.1)];
-        paper.lines(&[tooth(at.0 - 3.5), tooth(at.0 + 3.5)], Pen::full(GREEN, 1.2));
+        canvas.lines(&[tooth(at.0 - 3.5), tooth(at.0 + 3.5)], Pen::full(GREEN, 1.2));
     }
 }
 
 /// A short piece of the zone's outline, for a key.
-pub(super) fn zone_symbol(paper: &Paper<'_>, at: Spot, zone: &Zone) {
+pub(super) fn zone_symbol(canvas: &Canvas<'_>, at: Spot, zone: &Zone) {
     match zone {
         Zone::Points(_) => {
-            paper.disc(at, 2.6, INK);
-            paper.disc(at, 1.6, WHITE);
+            canvas.disc(at, 2.6, INK);
+            canvas.disc(at, 1.6, WHITE);
         }
-        _ => paper.line(&[(at.0 - 7.0, at.1), (at.0 + 7.0, at.1)], ZONE),
+        _ => canvas.line(&[(at.0 - 7.0, at.1), (at.0 + 7.0, at.1)], ZONE),
     }
 }

@@ -1,12 +1,12 @@
 //! Why the rocks ended, as counts and shares.
 
 use super::axis::Axis;
+use super::canvas::{Canvas, Label, Pen, paint};
 use super::colour::{INK, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::input::{Report, StopShare};
+use super::model::{Report, StopShare};
 use super::panel::{FOOT_PX, Panel};
-use super::paper::{Label, Paper, Pen, paint};
 use super::svg::path::Frame;
 use crate::math;
 use crate::simulation::Stop;
@@ -28,16 +28,16 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let most = Axis::from_zero(ends.map(|share| 100.0 * share), "").high.min(100.0);
     let x = Axis::linear(0.0, most, "Share of releases (%)");
     let panel = Panel::new(frame, x, Axis::linear(0.0, lines, ""));
-    let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), "Stop reasons", |paper| {
-        panel.grid_upright(paper);
+    let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), "Stop reasons", |canvas| {
+        panel.grid_upright(canvas);
         for (line, share) in report.stops.iter().enumerate() {
-            bar(paper, &panel, line, share);
+            bar(canvas, &panel, line, share);
         }
         if report.stops.is_empty() {
-            panel.nothing(paper, "no release");
+            panel.nothing(canvas, "no release");
         }
-        panel.x_axis(paper);
-        paper.outline(&frame, Pen::full(INK, 0.8));
+        panel.x_axis(canvas);
+        canvas.outline(&frame, Pen::full(INK, 0.8));
     });
     let caption = "Stop reasons of all releases: number, share and 95 % interval of the share (Wilson). \
                    Failed rocks are counted, never restarted and never dropped.";
@@ -56,31 +56,31 @@ pub(super) fn name(stop: &Stop) -> &'static str {
     }
 }
 
-fn bar(paper: &Paper<'_>, panel: &Panel, line: usize, share: &StopShare) {
+fn bar(canvas: &Canvas<'_>, panel: &Panel, line: usize, share: &StopShare) {
     let y = panel.frame.top + (line as f64 + 0.5) * LINE_PX;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let percent = share.share;
     if percent.value > 0.0 {
         let (left, right) = (panel.frame.left, at(percent.value));
         let bar = Frame { left, right, top: y - 0.5 * BAR_PX, bottom: y + 0.5 * BAR_PX };
-        paper.fill(&bar, SKY, 1.0);
+        canvas.fill(&bar, SKY, 1.0);
     }
     if percent.low.is_finite() && percent.high.is_finite() {
         let (low, high) = (at(percent.low), at(percent.high));
         let pen = Pen::full(INK, 1.0);
-        paper.line(&[(low, y), (high, y)], pen);
+        canvas.line(&[(low, y), (high, y)], pen);
         for x in [low, high] {
-            paper.line(&[(x, y - 3.5), (x, y + 3.5)], pen);
+            canvas.line(&[(x, y - 3.5), (x, y + 3.5)], pen);
         }
     }
-    paper.text(&Label::new(name(&share.stop), (panel.frame.left - 8.0, y)).right());
+    canvas.text(&Label::new(name(&share.stop), (panel.frame.left - 8.0, y)).right());
     let count = format::decimal(share.count as f64, 0);
     let decimals = decimals_for(percent.high - percent.low);
     let words = format!("{count} ({})", format::percent(percent.value, decimals));
     let x = panel.frame.right + 10.0;
     let bound = |share: f64| format::percent(share, decimals);
     let interval = format::interval(&bound(percent.low), &bound(percent.high));
-    paper.text(&Label::new(words, (x, y)).followed_by(interval));
+    canvas.text(&Label::new(words, (x, y)).followed_by(interval));
 }
 
 /// Decimals of a percentage that an interval of some width (share) leaves meaningful.

@@ -39,12 +39,12 @@ type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
 /// Writes shapes to a string; writing cannot fail.
 #[derive(Debug)]
-pub struct Canvas<'a> {
+pub struct SvgBackend<'a> {
     body: &'a mut String,
     size_tenths: (u32, u32),
 }
 
-impl<'a> Canvas<'a> {
+impl<'a> SvgBackend<'a> {
     /// A canvas of `size_px` (width, height) that appends to `body`.
     pub fn new(body: &'a mut String, size_px: (f64, f64)) -> Self {
         let tenths = |px: f64| (px * TENTHS).round() as u32;
@@ -88,7 +88,7 @@ impl<'a> Canvas<'a> {
     }
 }
 
-impl DrawingBackend for Canvas<'_> {
+impl DrawingBackend for SvgBackend<'_> {
     type ErrorType = Infallible;
 
     fn get_size(&self) -> (u32, u32) {

@@ -23,7 +23,7 @@ mod walls;
 use super::raster::GroundRaster;
 use crate::error::{Error, Result};
 use crate::hazard::Row;
-use crate::output::{Results, write_whole};
+use crate::output::{Results, write_atomic};
 use layers::MapLayers;
 use mesh::Mesh;
 use paths::Ways;
@@ -93,8 +93,8 @@ impl Shown {
 /// When a result file cannot be read or a file cannot be written.
 pub fn write(results: &Results, mesh: Mesh, ground: Option<&GroundRaster>) -> Result<()> {
     let shown = Shown::of(results, mesh, ground)?;
-    write_whole(&results.dir.join(PAGE), page::page(&shown).as_bytes())?;
-    write_whole(&results.dir.join(GLB), &glb::glb(&shown))
+    write_atomic(&results.dir.join(PAGE), page::page(&shown).as_bytes())?;
+    write_atomic(&results.dir.join(GLB), &glb::glb(&shown))
 }
 
 /// The terrain of the view in `dir`, which was drawn when the meshes were at hand; none where there is no view.

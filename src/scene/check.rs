@@ -1,7 +1,7 @@
 //! What a number may be, and complaints about the one that was found.
 
-use crate::chance::{Distribution, LARGEST};
 use crate::error::Flaw;
+use crate::random::{Distribution, LARGEST};
 
 /// One step from the top of a scene towards a value.
 #[derive(Debug, Clone, PartialEq, Eq)]

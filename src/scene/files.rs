@@ -176,6 +176,24 @@ impl Scene {
         Ok(format!("{:x}", hash.finalize()))
     }
 
+    /// The hash of text and files; another one where a program has changed a value after reading them, so that results of
+    /// one scene are never taken for those of another. Seed and number of releases stay out: results name them apart.
+    pub fn hash_in_force(&self) -> String {
+        let now = self.digest();
+        if self.as_read.is_empty() || now == self.as_read {
+            return self.hash.clone();
+        }
+        format!("{:x}", Sha256::digest(format!("{}{now}", self.hash)))
+    }
+
+    /// Digest of all values but seed and number of releases.
+    pub(super) fn digest(&self) -> String {
+        let (hash, as_read) = (String::new(), String::new());
+        let mut values = Self { seed: 0, hash, as_read, ..self.clone() };
+        values.release.count = 0;
+        format!("{:x}", Sha256::digest(format!("{values:?}")))
+    }
+
     /// CSV files: table and key that name them.
     fn tables(&self) -> Vec<((&'static str, &'static str), &Path)> {
         let blocks = self.release.table.iter().map(|path| (("release", "table"), path.as_path()));

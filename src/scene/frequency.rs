@@ -2,8 +2,8 @@
 
 use super::check::{Allowed, Checked, Complaint, number};
 use super::places::{Area, Point, Polyline};
-use crate::chance::{Distribution, Entries};
 use crate::frequency::{Class, Frequency, Law, Source, radius_of_m3};
+use crate::random::{Distribution, Entries};
 use serde::{Deserialize, Deserializer};
 
 /// How often rocks are released: one law, or one for each of several sources.

@@ -2,7 +2,7 @@
 
 use super::catalogue::{CATALOGUE, known_ground};
 use super::check::{Allowed, Checked, Complaint, drawn, suggest};
-use crate::chance::Distribution;
+use crate::random::Distribution;
 use crate::solver::Scheme;
 use serde::Deserialize;
 

@@ -4,9 +4,9 @@ use super::blocks::Block;
 pub use super::geometry::Corner;
 use super::geometry::{meet, minus, twice_area};
 use super::holes::bridged;
-use crate::chance::Entries;
 use crate::error::Flaw;
 use crate::math;
+use crate::random::Entries;
 use serde::Deserialize;
 
 /// A point of release.

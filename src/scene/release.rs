@@ -5,7 +5,7 @@ use super::check::{Allowed, Checked, Complaint, drawn};
 use super::places::{Area, Corner, Point, Polyline};
 use super::shapes::Orientation;
 use super::zones::Zones;
-use crate::chance::{Distribution, entries};
+use crate::random::{Distribution, entries};
 use serde::Deserialize;
 use std::path::PathBuf;
 

@@ -3,8 +3,8 @@
 use super::check::{Allowed, Checked, drawn, number, optional};
 use super::frequency;
 use super::shapes::ShapeTable;
-use crate::chance::Distribution;
 use crate::frequency::Frequency;
+use crate::random::Distribution;
 use serde::Deserialize;
 
 /// The rocks.

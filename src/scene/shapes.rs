@@ -3,7 +3,7 @@
 use super::Scene;
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
 use crate::body::{SHARPEST, ShapeKind, most_corners};
-use crate::chance::Distribution;
+use crate::random::Distribution;
 use crate::solver::Scheme;
 use serde::Deserialize;
 use std::path::PathBuf;

@@ -46,7 +46,7 @@ pub(super) fn follow_block(
     let form = Form { rock: release.rock, block: Some(block) };
     let turned = turned(block, &moving);
     let start = (release.motion, Some(turned));
-    let recorder = Recorder::new(settings.terrain, form, start, (keep, settings.watch));
+    let recorder = Recorder::new(settings.terrain, form, start, (keep, settings.recorders));
     let mut roll = Roll { settings, world, block, footing, moving, recorder };
     let stop = loop {
         if let Some(stop) = roll.fly().or_else(|| roll.touch()) {

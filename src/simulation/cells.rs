@@ -3,7 +3,7 @@
 use super::form::{Form, Instant, Turned};
 use super::recorder::between;
 use crate::flight::Parabola;
-use crate::plan::Lattice;
+use crate::plan::MapGrid;
 use crate::rock::{Motion, Vec3};
 use crate::terrain::Terrain;
 
@@ -21,12 +21,12 @@ pub struct CellPassage {
 /// The cells of one rock so far.
 #[derive(Debug)]
 pub(super) struct CellPassages<'a> {
-    cells: Option<&'a Lattice>,
+    cells: Option<&'a MapGrid>,
     found: Vec<CellPassage>,
 }
 
 impl<'a> CellPassages<'a> {
-    pub(super) fn of(cells: Option<&'a Lattice>) -> Self {
+    pub(super) fn of(cells: Option<&'a MapGrid>) -> Self {
         Self { cells, found: Vec::new() }
     }
 
@@ -45,7 +45,7 @@ impl<'a> CellPassages<'a> {
 
     /// One entry a cell, in the order of cells.
     pub(super) fn into_found(mut self) -> Vec<CellPassage> {
-        self.found.sort_by_key(|visit| visit.cell);
+        self.found.sort_by_key(|passage| passage.cell);
         self.found.dedup_by(|next, kept| {
             let same = next.cell == kept.cell;
             if same {
@@ -112,16 +112,16 @@ impl CellPassage {
 }
 
 /// Adds to the last cell if that is the same: most steps stay in theirs.
-fn add(found: &mut Vec<CellPassage>, visit: CellPassage) {
-    match found.last_mut().filter(|last| last.cell == visit.cell) {
-        Some(last) => last.join(&visit),
-        None => found.push(visit),
+fn add(found: &mut Vec<CellPassage>, passage: CellPassage) {
+    match found.last_mut().filter(|last| last.cell == passage.cell) {
+        Some(last) => last.join(&passage),
+        None => found.push(passage),
     }
 }
 
 /// Calls `pass` with every cell under the straight way between two places and the shares of the way at which it is
 /// entered and left (Amanatides and Woo 1987).
-fn walk(cells: &Lattice, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) {
+fn walk(cells: &MapGrid, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) {
     let [from, to] = ends.map(|end| cells.place(end.x, end.y));
     let mut at = from.map(|x| x.floor() as i64);
     let last = to.map(|x| x.floor() as i64);
@@ -154,8 +154,8 @@ fn walk(cells: &Lattice, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) 
 mod tests {
     use super::*;
 
-    const CELLS: Lattice =
-        Lattice { west_m: -10.0, south_m: 5.0, cell_m: 2.0, columns: 7, rows: 4 };
+    const CELLS: MapGrid =
+        MapGrid { west_m: -10.0, south_m: 5.0, cell_m: 2.0, columns: 7, rows: 4 };
 
     fn walked(from: [f64; 2], to: [f64; 2]) -> Vec<(u32, f64, f64)> {
         let mut cells = Vec::new();

@@ -4,7 +4,7 @@ use super::form::{Form, Instant, Turned};
 use super::recorder::between;
 use crate::flight::Parabola;
 use crate::math;
-use crate::plan::{Curtain, Footprint, Piece};
+use crate::plan::{EvaluationLine, Footprint, Piece};
 use crate::rock::{Motion, Vec3};
 use crate::scene::Corner;
 use crate::terrain::Terrain;
@@ -42,12 +42,12 @@ impl Crossing {
 /// The crossings of one rock so far.
 #[derive(Debug)]
 pub(super) struct Crossings<'a> {
-    lines: &'a [Curtain],
+    lines: &'a [EvaluationLine],
     found: Vec<Crossing>,
 }
 
 impl<'a> Crossings<'a> {
-    pub(super) fn of(lines: &'a [Curtain]) -> Self {
+    pub(super) fn of(lines: &'a [EvaluationLine]) -> Self {
         Self { lines, found: Vec::new() }
     }
 
@@ -130,26 +130,26 @@ impl<'a> Crossings<'a> {
     ) {
         let low = [0, 1].map(|k| hull.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
         let high = [0, 1].map(|k| hull.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
-        for (line, curtain) in self.lines.iter().enumerate() {
-            if let Some(footprint) = curtain.footprint {
+        for (line, evaluation_line) in self.lines.iter().enumerate() {
+            if let Some(footprint) = evaluation_line.footprint {
                 let rim_m = form.rim_m();
                 let free = |k: usize| [low[k] - rim_m, high[k] + rim_m];
                 let ([west, east], [south, north]) = (free(0), free(1));
                 let is_known = self.found.iter().any(|crossing| crossing.line == line);
-                if is_known || !curtain.is_near([west, south], [east, north]) {
+                if is_known || !evaluation_line.is_near([west, south], [east, north]) {
                     continue;
                 }
-                if let Some((s, along_m)) = enter((curtain, footprint), rim_m, hull, &at) {
+                if let Some((s, along_m)) = enter((evaluation_line, footprint), rim_m, hull, &at) {
                     self.note((terrain, form), line, (at(s), along_m), 1);
                 }
                 continue;
             }
-            if !curtain.is_near(low, high) {
+            if !evaluation_line.is_near(low, high) {
                 continue;
             }
-            let last = curtain.pieces.len() - 1;
+            let last = evaluation_line.pieces.len() - 1;
             let mut met: Vec<(f64, f64)> = Vec::new();
-            for (k, piece) in curtain.pieces.iter().enumerate() {
+            for (k, piece) in evaluation_line.pieces.iter().enumerate() {
                 for s in when(piece) {
                     let share = piece.share(flat(&at(s).motion.position_m));
                     // a corner belongs to the piece that it begins
@@ -215,7 +215,7 @@ const SHORTEST_M: f64 = 1e-5;
 /// The way is gone along by what is free each time (conservative advancement): no place on it is farther from the next
 /// than three times the longest side of the hull allows, so the first touch cannot be jumped over.
 fn enter(
-    (curtain, footprint): (&Curtain, Footprint),
+    (evaluation_line, footprint): (&EvaluationLine, Footprint),
     rim_m: f64,
     hull: [Corner; 4],
     at: impl Fn(f64) -> Instant,
@@ -224,7 +224,7 @@ fn enter(
     let fastest_m = 3.0 * hull.windows(2).map(side).fold(0.0, f64::max);
     let mut s = 0.0;
     while s <= 1.0 {
-        let (gap_m, along_m) = curtain.gap_m(footprint, flat(&at(s).motion.position_m));
+        let (gap_m, along_m) = evaluation_line.gap_m(footprint, flat(&at(s).motion.position_m));
         let free_m = gap_m - rim_m;
         if free_m <= TOUCH_M {
             return Some((s, along_m));

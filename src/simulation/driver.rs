@@ -7,18 +7,18 @@ use super::rest::RestCriterion;
 use super::roughness::Roughness;
 use super::trees::StemLoad;
 use super::{Stop, Trajectory};
-use crate::chance::{Chance, Purpose, stream};
-use crate::clock::{Clocks, Piece};
 use crate::error::Result;
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
-use crate::plan::{PATH_STEP_S, Part, Plan, RestRule, Watch};
+use crate::plan::{PATH_STEP_S, Part, Plan, Recorders, RestRule};
+use crate::random::{Purpose, RandomStream, stream};
 use crate::release::{Drawn, Release};
 use crate::rock::{Motion, Vec3};
 use crate::solver::block::Footing;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
 use crate::solver::law::Body;
 use crate::solver::{self, Scheme, Settings, Stepper};
+use crate::stopwatch::{Piece, Stopwatches};
 use crate::terrain::Terrain;
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -37,7 +37,7 @@ pub struct RunSettings<'a> {
     /// Simulated time after which a rock is out of time (s).
     pub longest_s: f64,
     /// Evaluation lines and map cells.
-    pub watch: Watch<'a>,
+    pub recorders: Recorders<'a>,
 }
 
 /// Work space of one thread; nothing of one rock is left for the next.
@@ -52,16 +52,16 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// With clocks that run; see [`Self::clocks`].
+    /// With clocks that run; see [`Self::stopwatches`].
     pub fn timed() -> Self {
         let mut scratch = Self::default();
-        scratch.state.clocks = Clocks::running();
+        scratch.state.stopwatches = Stopwatches::running();
         scratch
     }
 
     /// Where the time of all journeys so far went.
-    pub fn clocks(&self) -> &Clocks {
-        &self.state.clocks
+    pub fn stopwatches(&self) -> &Stopwatches {
+        &self.state.stopwatches
     }
 
     fn make_laws(&mut self, release: &Release, capture: &Capture) {
@@ -85,13 +85,13 @@ pub fn simulate(
     settings: &RunSettings,
     release: &Release,
     keep: Keep,
-    chance: &mut Chance,
+    random: &mut RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, &capture_of(settings));
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
-    scratch.load.begin(settings.terrain, &mut scratch.state.near.gone, chance);
+    scratch.load.begin(settings.terrain, &mut scratch.state.near.gone, random);
     let world = ContactEnvironment {
         terrain: settings.terrain,
         body: Body::new(&release.rock, settings.gravity_m_s2),
@@ -102,13 +102,13 @@ pub fn simulate(
         world,
         state: &mut scratch.state,
         load: &mut scratch.load,
-        chance,
+        random,
         roughness: Roughness::default(),
         recorder: Recorder::new(
             settings.terrain,
             Form { rock: release.rock, block: None },
             (release.motion, None),
-            (keep, settings.watch),
+            (keep, settings.recorders),
         ),
     };
     // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
@@ -162,8 +162,8 @@ pub fn simulate_release(
     let fallen = if let Some(drawn) = plan.block(index, &release.rock) {
         simulate_block(&settings, (&release, &drawn), keep, scratch)
     } else {
-        let mut chance = stream(plan.seed, Purpose::Impacts, index);
-        simulate(&settings, &release, keep, &mut chance, scratch)
+        let mut random = stream(plan.seed, Purpose::Impacts, index);
+        simulate(&settings, &release, keep, &mut random, scratch)
     };
     Ok(Trajectory { index, ..fallen })
 }
@@ -177,7 +177,7 @@ impl<'a> RunSettings<'a> {
             step: &plan.step,
             rest: plan.rest,
             longest_s: plan.longest_s,
-            watch: plan.watch(),
+            recorders: plan.recorders(),
         }
     }
 }
@@ -198,7 +198,7 @@ pub(super) struct Fall<'a> {
     pub(super) world: ContactEnvironment<'a>,
     pub(super) state: &'a mut ContactState,
     pub(super) load: &'a mut StemLoad,
-    pub(super) chance: &'a mut Chance,
+    pub(super) random: &'a mut RandomStream,
     pub(super) roughness: Roughness,
     pub(super) recorder: Recorder<'a>,
 }
@@ -221,7 +221,7 @@ impl Fall<'_> {
             radius: self.world.body.radius,
         };
         let left = self.settings.longest_s - now.time_s;
-        let begun = self.state.clocks.now();
+        let begun = self.state.stopwatches.now();
         let (dt, stop) = match time_of_impact_past(
             self.settings.terrain,
             &flight,
@@ -235,11 +235,11 @@ impl Fall<'_> {
         };
         // a touch at the very end of the time comes too late
         let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
-        self.state.clocks.stop(Piece::Leap, begun);
+        self.state.stopwatches.stop(Piece::Leap, begun);
         self.recorder.effort.leaps += 1;
-        let begun = self.state.clocks.now();
+        let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
-        self.state.clocks.stop(Piece::NotesInFlight, begun);
+        self.state.stopwatches.stop(Piece::NotesInFlight, begun);
         // flights count too: between two plates a rock may fly without end and without getting on in time
         stop.or_else(|| self.over_budget())
     }
@@ -309,11 +309,11 @@ impl Fall<'_> {
                 spin_rad_s: self.state.w,
             };
             let slides = self.state.histories.iter().any(|history| history.slides);
-            let begun = self.state.clocks.now();
+            let begun = self.state.stopwatches.now();
             self.recorder.step(to, slides);
             self.leave_facet_in_time();
             self.recorder.end_impact_in_time();
-            self.state.clocks.stop(Piece::NotesInContact, begun);
+            self.state.stopwatches.stop(Piece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.over_budget());
             if self.state.is_free() {

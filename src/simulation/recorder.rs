@@ -8,7 +8,7 @@ use super::{
 };
 use crate::flight::Parabola;
 use crate::flight::top::Top;
-use crate::plan::Watch;
+use crate::plan::Recorders;
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::solver::contact_state::Loss;
@@ -36,7 +36,7 @@ pub(super) struct Recorder<'a> {
     pub(super) path: Vec<PathPoint>,
     pub(super) impacts: Vec<Impact>,
     pub(super) crossings: Crossings<'a>,
-    pub(super) visits: CellPassages<'a>,
+    pub(super) passages: CellPassages<'a>,
     pub(super) impact_count: u32,
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
@@ -59,7 +59,7 @@ pub(super) struct Mark {
     path: usize,
     impacts: usize,
     crossings: Vec<Crossing>,
-    visits: (usize, Option<CellPassage>),
+    passages: (usize, Option<CellPassage>),
     counts: (u32, u32),
     ledger: Ledger,
     open_impact: Option<(Impact, f64)>,
@@ -71,7 +71,7 @@ impl<'a> Recorder<'a> {
         terrain: &'a Terrain,
         form: Form<'a>,
         (start, turned): (Motion, Option<Turned>),
-        (keep, watch): (Keep, Watch<'a>),
+        (keep, recorders): (Keep, Recorders<'a>),
     ) -> Self {
         let mut recorder = Self {
             terrain,
@@ -82,8 +82,8 @@ impl<'a> Recorder<'a> {
             extremes: Extremes::default(),
             path: Vec::new(),
             impacts: Vec::new(),
-            crossings: Crossings::of(watch.lines),
-            visits: CellPassages::of(watch.cells),
+            crossings: Crossings::of(recorders.lines),
+            passages: CellPassages::of(recorders.cells),
             impact_count: 0,
             tree_impact_count: 0,
             ledger: Ledger::default(),
@@ -105,7 +105,7 @@ impl<'a> Recorder<'a> {
             path: self.path.len(),
             impacts: self.impacts.len(),
             crossings: self.crossings.found().to_vec(),
-            visits: self.visits.mark(),
+            passages: self.passages.mark(),
             counts: (self.impact_count, self.tree_impact_count),
             ledger: self.ledger,
             open_impact: self.open_impact,
@@ -120,7 +120,7 @@ impl<'a> Recorder<'a> {
         self.path.truncate(mark.path);
         self.impacts.truncate(mark.impacts);
         self.crossings.go_back(&mark.crossings);
-        self.visits.go_back(mark.visits);
+        self.passages.go_back(mark.passages);
         (self.impact_count, self.tree_impact_count) = mark.counts;
         (self.open_impact, self.next_point_s) = (mark.open_impact, mark.next_point_s);
     }
@@ -174,7 +174,7 @@ impl<'a> Recorder<'a> {
             self.note_height(&at(dt * f64::from(k) / f64::from(points + 1)));
         }
         self.crossings.fly((self.terrain, &self.form), flight, dt, at);
-        self.visits.fly((self.terrain, &self.form), flight, dt, at);
+        self.passages.fly((self.terrain, &self.form), flight, dt, at);
         let end = at(dt);
         self.now.time_s += dt;
         (self.now.position_m, self.now.velocity_m_s) = (flight.centre(dt), flight.velocity(dt));
@@ -191,7 +191,7 @@ impl<'a> Recorder<'a> {
     pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
         let from = std::mem::replace(&mut self.now, to);
         self.crossings.step((self.terrain, &self.form), [&from, &to], self.turned);
-        self.visits.step(&self.form, [&from, &to], self.turned);
+        self.passages.step(&self.form, [&from, &to], self.turned);
         let dt = to.time_s - from.time_s;
         while self.next_point_s <= to.time_s {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };
@@ -232,7 +232,7 @@ impl<'a> Recorder<'a> {
             impacts: self.impacts,
             path: self.path,
             crossings: self.crossings.into_found(),
-            visits: self.visits.into_found(),
+            passages: self.passages.into_found(),
             ledger: self.ledger,
             released_j,
             effort: self.effort,

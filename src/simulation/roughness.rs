@@ -9,8 +9,8 @@
 //! that the number of its small impacts, which is a matter of stiffness and steps, does not decide how often it is deflected.
 
 use super::driver::Fall;
-use crate::chance::{Chance, unit};
 use crate::math;
+use crate::random::{RandomStream, unit};
 use crate::rock::Vec3;
 use nalgebra::{Rotation3, Unit};
 use std::f64::consts::TAU;
@@ -62,7 +62,7 @@ impl Fall<'_> {
         let turn = if let Some(facet) = known {
             facet.turn
         } else {
-            let Some(turn) = draw(self.chance, &normal, most, &v) else { return };
+            let Some(turn) = draw(self.random, &normal, most, &v) else { return };
             self.roughness.facet = Some(Facet { centre: self.state.c, ground, turn });
             turn
         };
@@ -94,15 +94,15 @@ impl Fall<'_> {
 }
 
 /// A facet that a rock with velocity `v` sees, as the rotation from the surface with `normal` to it.
-fn draw(chance: &mut Chance, normal: &Vec3, most: f64, v: &Vec3) -> Option<Rotation3<f64>> {
+fn draw(random: &mut RandomStream, normal: &Vec3, most: f64, v: &Vec3) -> Option<Rotation3<f64>> {
     let speed = v.norm();
     let beside = if normal.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
     let across = normal.cross(&beside);
     (0..DRAWS).find_map(|_| {
-        let around = math::turn(&Unit::new_normalize(*normal), TAU * unit(chance));
+        let around = math::turn(&Unit::new_normalize(*normal), TAU * unit(random));
         let axis = Unit::new_normalize(around * across);
-        let turn = math::turn(&axis, most * unit(chance));
+        let turn = math::turn(&axis, most * unit(random));
         let seen = -(turn * normal).dot(v);
-        (seen > speed * unit(chance)).then_some(turn)
+        (seen > speed * unit(random)).then_some(turn)
     })
 }

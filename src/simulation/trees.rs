@@ -7,8 +7,8 @@
 //! rock alone: the next finds it whole.
 
 use super::driver::Fall;
-use crate::chance::{Chance, Purpose, beside};
 use crate::contact::history::ContactHistories;
+use crate::random::{Purpose, RandomStream, beside};
 use crate::rock::Vec3;
 use crate::solver::contact_state::TOUCH;
 use crate::solver::{Scheme, Stepper};
@@ -28,18 +28,18 @@ pub(super) struct StemLoad {
 
 impl StemLoad {
     /// All stems stand again, with limits drawn for this rock.
-    pub(super) fn begin(&mut self, terrain: &Terrain, gone: &mut Vec<u32>, chance: &Chance) {
+    pub(super) fn begin(&mut self, terrain: &Terrain, gone: &mut Vec<u32>, random: &RandomStream) {
         gone.clear();
         let Some(stems) = &terrain.stems else { return };
         gone.reserve(stems.count());
         self.taken.clear();
         self.taken.reserve(stems.count());
         self.pressed = None;
-        let mut chance = beside(chance, Purpose::Stems);
+        let mut random = beside(random, Purpose::Stems);
         self.limits_j.clear();
         let limits = stems.limits_j.iter();
         self.limits_j.extend(
-            limits.map(|limit| limit.as_ref().map_or(f64::INFINITY, |l| l.draw(&mut chance))),
+            limits.map(|limit| limit.as_ref().map_or(f64::INFINITY, |l| l.draw(&mut random))),
         );
     }
 

@@ -177,7 +177,7 @@ fn body<'a>(
             settings.terrain,
             Form { rock: release.rock, block: None },
             (motion, None),
-            (keep, settings.watch),
+            (keep, settings.recorders),
         ),
         state: State::Moving,
         lands: None,

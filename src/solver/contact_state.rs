@@ -7,11 +7,11 @@ use super::friction_rolling::Mode;
 use super::law::{Body, StageContact};
 use super::plane_kernel::PlaneKernel;
 use super::tableau::STAGES;
-use crate::clock::{Clocks, Piece};
 use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
 use crate::contact::{ContactPoints, MOST};
 use crate::rock::Vec3;
+use crate::stopwatch::{Piece, Stopwatches};
 
 /// Power that goes into contacts (W) by kind, or energy (J) once summed over time. What springs store is counted
 /// in; it is nothing once the contact is over.
@@ -140,7 +140,7 @@ pub struct ContactState {
     /// Contact sweeps done.
     pub sweeps: u64,
     /// Where the time goes, if somebody asks.
-    pub clocks: Clocks,
+    pub stopwatches: Stopwatches,
 }
 
 /// Features are collected for the rock's centre up to this far from where it was (–, relative to R) …
@@ -185,7 +185,7 @@ impl ContactState {
             may_yield: false,
             scratch: DdaScratch::default(),
             sweeps: 0,
-            clocks: Clocks::default(),
+            stopwatches: Stopwatches::default(),
         }
     }
 }
@@ -228,9 +228,9 @@ impl ContactState {
     /// Collects the features around `c`.
     pub(crate) fn collect(&mut self, world: &ContactEnvironment, c: &Vec3) {
         let r = world.body.radius;
-        let begun = self.clocks.now();
+        let begun = self.stopwatches.now();
         self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
-        self.clocks.stop(Piece::Geometry, begun);
+        self.stopwatches.stop(Piece::Geometry, begun);
     }
 
     /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
@@ -246,9 +246,9 @@ impl ContactState {
     pub fn look(&mut self, world: &ContactEnvironment, c: &Vec3, reach: f64) {
         self.know(world, c);
         self.looked_ahead = None;
-        let begun = self.clocks.now();
+        let begun = self.stopwatches.now();
         self.near.touches(world.terrain, c, reach, &mut self.touches);
-        self.clocks.stop(Piece::Geometry, begun);
+        self.stopwatches.stop(Piece::Geometry, begun);
     }
 
     /// Asks for the touches at `c` that a stage must know.
@@ -282,7 +282,7 @@ impl ContactState {
         let history = self.histories.find(touch, &self.touches, taken, || slow && !rebounds);
         if history >= before {
             if !slow {
-                self.impact.meet(-touch.normal.dot(v), world.least_impact_m_s());
+                self.impact.try_meeting(-touch.normal.dot(v));
             }
             for rate in &mut self.rates {
                 (rate.shear[history], rate.roll[history]) = (Vec3::zeros(), Vec3::zeros());

@@ -8,11 +8,12 @@
 
 mod flow;
 
-use super::contact_state::{ContactEnvironment, ContactState, Loss, longest_step};
+use super::contact_state::{ContactEnvironment, ContactState, Loss, TOUCH, longest_step};
+use super::impact::LOCAL;
 use super::impact::dormand_prince::{growth, step};
 use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
-use crate::contact::history::HISTORIES;
+use crate::contact::history::{ContactHistory, HISTORIES};
 use flow::{Among, SUMS};
 
 /// First step of an impact (rad of its oscillation).
@@ -20,7 +21,7 @@ const FIRST: f64 = 0.3;
 /// Longest step (rad).
 const LONGEST: f64 = 0.9;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
-const KINKED: f64 = 0.1;
+const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion).
 const BALANCED: f64 = 0.1;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
@@ -40,12 +41,30 @@ pub(crate) struct ExplicitImpact {
     left: f64,
     /// Energy that the steps have gained (J).
     gained: f64,
+    /// Fastest approach to a contact that has come up in the try in hand (m/s).
+    tried_m_s: f64,
 }
 
 impl ExplicitImpact {
     /// Forgets the impact before.
     pub(crate) fn forget(&mut self) {
-        (self.speed_m_s, self.left) = (0.0, 0.0);
+        (self.speed_m_s, self.left, self.tried_m_s) = (0.0, 0.0, 0.0);
+    }
+
+    /// A try is made anew: what it met before has not been met.
+    pub(crate) fn try_anew(&mut self) {
+        self.tried_m_s = 0.0;
+    }
+
+    /// A try meets a contact at `speed_m_s` that may rebound.
+    pub(crate) fn try_meeting(&mut self, speed_m_s: f64) {
+        self.tried_m_s = self.tried_m_s.max(speed_m_s);
+    }
+
+    /// The try has become a step.
+    pub(crate) fn accept_meeting(&mut self, slowest: f64) {
+        self.meet(self.tried_m_s, slowest);
+        self.tried_m_s = 0.0;
     }
 
     /// A contact begins at `speed_m_s` that may rebound; `slowest` is the speed from which on it is followed here.
@@ -108,7 +127,7 @@ impl ContactState {
         self.know(world, &c);
         let way = TRAVEL * world.body.radius;
         let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST / omega);
-        let allowed = KINKED * tolerance * self.impact.speed_m_s;
+        let allowed = LOCAL * tolerance * self.impact.speed_m_s;
         let bounds = Bounds { omega, limit, h_max, allowed };
         let known = self.histories.len();
         let mut accepted = None;
@@ -127,7 +146,7 @@ impl ContactState {
         }
         if let Some(accepted) = accepted {
             self.impact.left -= omega * accepted.dt;
-            self.accept_impact(world, &accepted, done);
+            self.accept_impact(world, &accepted, &bounds, done);
         }
         Ok(())
     }
@@ -147,6 +166,7 @@ impl ContactState {
         let known = flow.state.histories.len();
         loop {
             flow.state.histories.truncate(known);
+            flow.begin_try();
             let wished = flow.state.impact.h.min(limit);
             let dt = wished.min(h_max);
             let tried = step(&mut flow, &y, &first, dt);
@@ -155,19 +175,20 @@ impl ContactState {
             }
             let is_short = dt * omega < SHORTEST;
             let cut = tried.cut(dt, allowed).filter(|_| !is_short);
-            if cut.is_none() && (tried.error2 <= 1.0 || is_short) {
-                if !tried.error2.is_finite() {
+            let error2 = tried.error2 * if flow.is_smooth { 1.0 } else { 1.0 / (KINKED * KINKED) };
+            if cut.is_none() && (error2 <= 1.0 || is_short) {
+                if !error2.is_finite() {
                     return Err(StepError::NotFinite);
                 }
                 let least = if dt < wished { wished } else { 0.0 };
-                flow.state.impact.h = (dt * growth(tried.error2)).max(least);
+                flow.state.impact.h = (dt * growth(error2)).max(least);
                 let (end, after) = (flow.end(&tried.y), flow.stored_j());
                 flow.remember();
                 let stored = before.zip(after);
                 return Ok(Some(Accepted { end, dt, sums: tried.q, stored }));
             }
             done.rejected += 1;
-            let grown = if tried.error2.is_finite() { growth(tried.error2) } else { 0.2 };
+            let grown = if error2.is_finite() { growth(error2) } else { 0.2 };
             flow.state.impact.h = dt * cut.unwrap_or(grown.min(0.9));
         }
     }
@@ -177,6 +198,7 @@ impl ContactState {
         &mut self,
         world: &ContactEnvironment,
         accepted: &Accepted,
+        bounds: &Bounds,
         done: &mut Advance,
     ) {
         let (body, end) = (&world.body, &accepted.end);
@@ -196,13 +218,44 @@ impl ContactState {
         self.impact.gained += self.motion_j(body) + lifted + loss.sum() - before;
         self.merge_lost(world);
         self.histories.retain(|history| history.closed);
+        self.impact.accept_meeting(world.least_impact_m_s());
         self.fresh = false;
+        done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
         if self.is_free() || self.impact.left <= 0.0 {
             self.balance(world);
         }
         done.loss.add(&loss, 1.0);
-        done.dt += accepted.dt;
         done.steps += 1;
+    }
+
+    /// Flies out of contacts that push no more, if nothing else is in the way there; within
+    /// `longest` (s); returns the time that took (s).
+    fn let_go(&mut self, world: &ContactEnvironment, bounds: &Bounds, longest: f64) -> f64 {
+        let dt = LONGEST / bounds.omega;
+        if self.histories.is_empty() || dt > longest.min(bounds.limit) {
+            return 0.0;
+        }
+        // What spring and dashpot would pull with grows as long as `p_N v_n` outdoes `c_N g`.
+        let leaves = |history: &ContactHistory| {
+            let law = world.law(history.triangle);
+            let damping = law.c_n.max(law.c_n_captured);
+            let n = &history.n;
+            let weight = n.dot(&world.body.gravity).min(0.0);
+            history.normal_force <= 0.0
+                && law.p_n * (n.dot(&self.v) + weight * dt) > -damping * weight
+        };
+        if !self.histories.iter().all(leaves) {
+            return 0.0;
+        }
+        let (v, g) = (self.v, world.body.gravity);
+        let c = self.c + (v + g * (0.5 * dt)) * dt;
+        self.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        if !self.touches.is_empty() {
+            return 0.0;
+        }
+        (self.c, self.v) = (c, v + g * dt);
+        self.histories.clear();
+        dt
     }
 
     /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of

@@ -48,6 +48,7 @@ mod integrate;
 #[cfg(test)]
 mod tests;
 
+pub(super) use plane::LOCAL;
 pub(crate) use plane::{Followed, Plane, Rebound};
 pub(crate) use rigid_limit::{FrozenContact, throw};
 

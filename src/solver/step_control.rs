@@ -244,6 +244,7 @@ impl Trial for Try<'_, '_> {
 
     fn try_step(&mut self, dt: f64) -> Outcome {
         self.state.histories.truncate(self.known);
+        self.state.impact.try_anew();
         let Some((end, error)) = attempt(self.world, self.control, self.state, dt, self.omega)
         else {
             return Outcome::Unsettled;
@@ -366,5 +367,6 @@ pub(crate) fn accept(
         }
     }
     state.histories.retain(|history| history.closed);
+    state.impact.accept_meeting(world.least_impact_m_s());
     (state.c, state.v, state.w) = (end.c, end.v, end.w);
 }

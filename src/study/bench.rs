@@ -1,9 +1,9 @@
 //! One rock on a made mesh, computed through the library's own journey.
 
-use crate::chance::{Purpose, stream};
 use crate::ground::Ground;
 use crate::math;
 use crate::plan::RestRule;
+use crate::random::{Purpose, stream};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
@@ -73,7 +73,7 @@ impl Setup {
     /// Follows the rock; the ends are in the coordinates of the facets, impacts and path stay local.
     pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
         let course = RunSettings {
-            watch: crate::plan::Watch::default(),
+            recorders: crate::plan::Recorders::default(),
             terrain,
             gravity_m_s2: self.gravity_m_s2,
             step,
@@ -87,9 +87,9 @@ impl Setup {
             spin_rad_s: self.spin_rad_s,
         };
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
-        let mut chance = stream(1, Purpose::Impacts, 0);
+        let mut random = stream(1, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
-        let mut fallen = simulate(&course, &release, keep, &mut chance, scratch);
+        let mut fallen = simulate(&course, &release, keep, &mut random, scratch);
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;
         fallen

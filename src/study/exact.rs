@@ -2,7 +2,7 @@
 
 use super::bench::goes_by_tolerance;
 use super::cases::{CASES, Case};
-use super::speed::machine::OwnTime;
+use super::processor_time::ProcessorTime;
 use crate::math;
 use crate::simulation::{Effort, Scratch, Trajectory};
 use crate::solver::Scheme;
@@ -129,7 +129,7 @@ fn timed(mut run: impl FnMut() -> Trajectory) -> (Trajectory, f64) {
     let mut times = Vec::new();
     let begun = Instant::now();
     let journey = loop {
-        let (start, own) = (Instant::now(), OwnTime::begin());
+        let (start, own) = (Instant::now(), ProcessorTime::begin());
         let journey = black_box(run());
         let passed = start.elapsed();
         // The system counts a thread's own time in ticks of some milliseconds; a short run is seldom interrupted.

@@ -2,11 +2,11 @@
 
 use super::exact::{CaseStudy, Curve};
 use crate::report::axis::Axis;
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use crate::report::svg::path::Frame;
 use crate::solver::Scheme;
 use plotters::style::RGBColor;
@@ -19,7 +19,7 @@ const KEY_PX: f64 = 190.0;
 const FLOOR: f64 = 1e-12;
 
 /// The colour of a scheme in every figure of the studies.
-pub(super) fn colour(scheme: Scheme) -> RGBColor {
+pub fn colour(scheme: Scheme) -> RGBColor {
     match scheme {
         Scheme::Dda => VERMILLION,
         Scheme::Adaptive => BLUE,
@@ -52,15 +52,15 @@ pub(super) fn draw(study: &CaseStudy) -> String {
     let x = Axis::log(fast, slow, "Run time (s)");
     let mut panel = Panel::new(frame, x, Axis::log(least, most, "Error of the result (–)"));
     panel.frame.left = panel.room_left();
-    paint(study.case.name, (WIDTH_PX, panel.frame.bottom + FOOT_PX), study.case.title, |paper| {
-        paper.text(&Label::new(study.case.title, (panel.frame.left, 12.0)).sized(NORMAL).bold());
-        panel.grid(paper);
-        panel.grid_upright(paper);
+    paint(study.case.name, (WIDTH_PX, panel.frame.bottom + FOOT_PX), study.case.title, |canvas| {
+        canvas.text(&Label::new(study.case.title, (panel.frame.left, 12.0)).sized(NORMAL).bold());
+        panel.grid(canvas);
+        panel.grid_upright(canvas);
         for curve in &study.curves {
-            draw_curve(paper, &panel, curve);
+            draw_curve(canvas, &panel, curve);
         }
-        panel.axes(paper);
-        key(paper, &panel, study);
+        panel.axes(canvas);
+        key(canvas, &panel, study);
     })
 }
 
@@ -68,34 +68,34 @@ fn shown(error: f64) -> f64 {
     error.max(FLOOR)
 }
 
-fn draw_curve(paper: &Paper<'_>, panel: &Panel, curve: &Curve) {
+fn draw_curve(canvas: &Canvas<'_>, panel: &Panel, curve: &Curve) {
     let ink = colour(curve.rungs.scheme);
     let finite = curve.points.iter().filter(|point| point.error.is_finite());
     let values: Vec<(f64, f64)> = finite.map(|p| (p.seconds, shown(p.error))).collect();
-    panel.line(paper, &values, Pen::full(ink, 1.4));
+    panel.line(canvas, &values, Pen::full(ink, 1.4));
     for &(x, y) in &values {
-        paper.mark(shape(curve.rungs.scheme), panel.at(x, y), 2.6, ink);
+        canvas.mark(shape(curve.rungs.scheme), panel.at(x, y), 2.6, ink);
     }
 }
 
 /// Names of the schemes with their measured and theoretical orders.
-fn key(paper: &Paper<'_>, panel: &Panel, study: &CaseStudy) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, study: &CaseStudy) {
     let left = panel.frame.right + 14.0;
     let mut y = panel.frame.top + 8.0;
     for curve in &study.curves {
         let scheme = curve.rungs.scheme;
         let middle = y;
-        paper.line(&[(left, middle), (left + 18.0, middle)], Pen::full(colour(scheme), 1.4));
-        paper.mark(shape(scheme), (left + 9.0, middle), 2.6, colour(scheme));
-        paper.text(&Label::new(scheme.name(), (left + 24.0, y)).bold());
-        paper.text(
+        canvas.line(&[(left, middle), (left + 18.0, middle)], Pen::full(colour(scheme), 1.4));
+        canvas.mark(shape(scheme), (left + 9.0, middle), 2.6, colour(scheme));
+        canvas.text(&Label::new(scheme.name(), (left + 24.0, y)).bold());
+        canvas.text(
             &Label::new(order_in_words(curve), (left + 24.0, y + SMALL + 3.0)).coloured(GREY),
         );
         y += 2.0 * SMALL + 16.0;
     }
     for line in savings_in_words(study) {
         debug_assert!(text_width(&line, SMALL) < KEY_PX);
-        paper.text(&Label::new(line, (left, y)).coloured(PURPLE));
+        canvas.text(&Label::new(line, (left, y)).coloured(PURPLE));
         y += SMALL + 4.0;
     }
 }

@@ -9,10 +9,10 @@ use super::cases::{Case, has_springs, rolling_off_an_edge};
 use crate::ground::{Capture, Damping, Law};
 use crate::math;
 use crate::report::axis::Axis;
+use crate::report::canvas::{Label, NORMAL, Pen, SMALL, paint};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::paper::{Label, NORMAL, Pen, SMALL, paint};
 use crate::report::svg::path::Frame;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -178,30 +178,30 @@ pub(super) fn draw(ladders: &[Ladder]) -> String {
     let mut panel = Panel::new(frame, x, Axis::log(least, most, "Error of the place (m)"));
     panel.frame.left = panel.room_left();
     let title = "A sphere tips over an edge without slip: order at fixed steps";
-    paint("order", (WIDTH_PX, panel.frame.bottom + FOOT_PX), title, |paper| {
-        paper.text(&Label::new(title, (panel.frame.left, 12.0)).sized(NORMAL).bold());
-        panel.grid(paper);
-        panel.grid_upright(paper);
+    paint("order", (WIDTH_PX, panel.frame.bottom + FOOT_PX), title, |canvas| {
+        canvas.text(&Label::new(title, (panel.frame.left, 12.0)).sized(NORMAL).bold());
+        panel.grid(canvas);
+        panel.grid_upright(canvas);
         let (left, mut y) = (panel.frame.right + 14.0, panel.frame.top + 8.0);
         for ladder in ladders {
             let ink = super::exact_figure::colour(ladder.scheme);
             let points = ladder.errors.iter().filter(|point| point.1 > 0.0);
             let points: Vec<(f64, f64)> = points.map(|&(n, error)| (f64::from(n), error)).collect();
-            panel.line(paper, &points, Pen::full(ink, 1.4));
+            panel.line(canvas, &points, Pen::full(ink, 1.4));
             for &(x, y) in &points {
-                paper.disc(panel.at(x, y), 2.6, ink);
+                canvas.disc(panel.at(x, y), 2.6, ink);
             }
-            paper.line(&[(left, y), (left + 18.0, y)], Pen::full(ink, 1.4));
-            paper.text(&Label::new(ladder.scheme.name(), (left + 24.0, y)).bold());
+            canvas.line(&[(left, y), (left + 18.0, y)], Pen::full(ink, 1.4));
+            canvas.text(&Label::new(ladder.scheme.name(), (left + 24.0, y)).bold());
             let words = format!(
                 "order {} (theory {})",
                 format::decimal(ladder.order(), 2),
                 format::plain(ladder.theory)
             );
-            paper.text(&Label::new(words, (left + 24.0, y + SMALL + 3.0)));
+            canvas.text(&Label::new(words, (left + 24.0, y + SMALL + 3.0)));
             y += 2.0 * SMALL + 16.0;
         }
-        panel.axes(paper);
+        panel.axes(canvas);
     })
 }
 

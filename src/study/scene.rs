@@ -5,8 +5,8 @@
 //! difference; what is left is drawn again and again to say how far it can be trusted.
 
 use super::bench::goes_by_tolerance;
-use super::speed::machine::Busy;
-use super::spread::{Interval, Ladder, Paired};
+use super::bootstrap::{Interval, Ladder, Paired};
+use super::processor_time::Busy;
 use crate::ensemble::Ensemble;
 use crate::error::Result;
 use crate::hazard::{Percentile, Row};
@@ -19,7 +19,7 @@ use crate::terrain::coarser::{coarser, slope_edge_m};
 use std::ops::Range;
 use std::time::Instant;
 
-pub use super::subject::{Of, QUANTITIES, Subject};
+pub use super::statistic::{Of, QUANTITIES, StudyQuantity};
 
 /// Percentiles of the study (per cent).
 pub const PERCENTS: [u8; 3] = [50, 95, 99];
@@ -99,7 +99,7 @@ pub struct SceneStudy {
     /// On coarser meshes and the scene's own, from coarse to fine; empty where they were not asked for.
     pub meshes: Vec<Mesh>,
     /// What was looked at.
-    pub subjects: Vec<Subject>,
+    pub subjects: Vec<StudyQuantity>,
     /// Each of [`PERCENTS`] for each subject.
     pub statistics: Vec<Statistic>,
 }
@@ -149,7 +149,7 @@ pub fn study(
     let mut rungs: Vec<Rung> =
         relatives.iter().map(|&relative| Rung::new(&own_step, relative)).collect();
     // All settings take turns, so that a machine that is busy for a while slows all of them alike.
-    let subjects = Subject::all(&plan);
+    let subjects = StudyQuantity::all(&plan);
     for block in blocks(plan.count) {
         for rung in &mut rungs {
             plan.step = rung.step;
@@ -202,7 +202,7 @@ pub fn study(
 /// All releases on the slope with longer edges; last its own mesh, where they have been already.
 fn meshes(
     plan: &mut Plan,
-    subjects: &[Subject],
+    subjects: &[StudyQuantity],
     ensemble: &Ensemble,
     (own, done): (&Rung, impl Fn(&Rung, f64)),
 ) -> Result<Vec<Mesh>> {
@@ -260,7 +260,7 @@ impl Rung {
     fn run(
         &mut self,
         plan: &Plan,
-        subjects: &[Subject],
+        subjects: &[StudyQuantity],
         releases: Range<usize>,
         ensemble: &Ensemble,
     ) -> Result<()> {
@@ -282,7 +282,7 @@ impl Rung {
         Ok(())
     }
 
-    fn add(&mut self, subjects: &[Subject], row: &Row, fall: &Trajectory) {
+    fn add(&mut self, subjects: &[StudyQuantity], row: &Row, fall: &Trajectory) {
         let failed = !row.stop.counts();
         self.failed += usize::from(failed);
         self.rise_j = self.rise_j.max(fall.ledger.rise_j);

@@ -2,10 +2,10 @@
 
 use super::scene::{Of, SceneStudy, Statistic};
 use crate::report::axis::Axis;
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use crate::report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel, align};
-use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use crate::report::svg::path::Frame;
 
 const PLOT_PX: f64 = 150.0;
@@ -27,21 +27,21 @@ pub(super) fn draw(study: &SceneStudy) -> String {
         align([a, b, c]);
     }
     let bottom = panels.last().map_or(TOP_PX, |panel| panel.frame.bottom);
-    paint("error", (WIDTH_PX, bottom + FOOT_PX), "Error over run time", |paper| {
-        key(paper, panels.first(), !study.meshes.is_empty());
+    paint("error", (WIDTH_PX, bottom + FOOT_PX), "Error over run time", |canvas| {
+        key(canvas, panels.first(), !study.meshes.is_empty());
         for (panel, statistic) in panels.iter().zip(&shown) {
-            panel.grid(paper);
-            draw_statistic(paper, panel, study, statistic);
+            panel.grid(canvas);
+            draw_statistic(canvas, panel, study, statistic);
         }
         let (last, rest) = match panels.split_last() {
             Some((last, rest)) => (Some(last), rest),
             None => (None, &[][..]),
         };
         for panel in rest {
-            panel.axes_above_another(paper);
+            panel.axes_above_another(canvas);
         }
         if let Some(last) = last {
-            last.axes(paper);
+            last.axes(canvas);
         }
     })
 }
@@ -104,24 +104,24 @@ fn meshes(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64, f64)> {
     study.meshes.iter().map(one).collect()
 }
 
-fn draw_statistic(paper: &Paper<'_>, panel: &Panel, study: &SceneStudy, statistic: &Statistic) {
+fn draw_statistic(canvas: &Canvas<'_>, panel: &Panel, study: &SceneStudy, statistic: &Statistic) {
     let inside = |error: f64| error.max(panel.y.low);
     let sampled = sampling(study, statistic);
-    panel.line(paper, &sampled, Pen::full(BLUE, 1.4));
+    panel.line(canvas, &sampled, Pen::full(BLUE, 1.4));
     for &(t, error) in &sampled {
-        paper.mark(0, panel.at(t, error), 2.4, BLUE);
+        canvas.mark(0, panel.at(t, error), 2.4, BLUE);
     }
     let steps = steps(study, statistic);
     let meshes = meshes(study, statistic);
     for (shape, (bars, ink)) in [(&steps, VERMILLION), (&meshes, GREEN)].into_iter().enumerate() {
         let middle: Vec<(f64, f64)> =
             bars.iter().map(|&(t, error, _)| (t, inside(error))).collect();
-        panel.line(paper, &middle, Pen::full(ink, 1.4));
+        panel.line(canvas, &middle, Pen::full(ink, 1.4));
         for &(t, error, most) in bars {
             let (spot, end) = (panel.at(t, inside(error)), panel.at(t, inside(most)));
-            paper.line(&[spot, end], Pen::full(ink, 0.8));
-            paper.line(&[(end.0 - 3.0, end.1), (end.0 + 3.0, end.1)], Pen::full(ink, 0.8));
-            paper.mark(1 + shape, spot, 2.4, ink);
+            canvas.line(&[spot, end], Pen::full(ink, 0.8));
+            canvas.line(&[(end.0 - 3.0, end.1), (end.0 + 3.0, end.1)], Pen::full(ink, 0.8));
+            canvas.mark(1 + shape, spot, 2.4, ink);
         }
     }
     let own_steps = panel.at(steps[study.own].0, inside(steps[study.own].1));
@@ -129,20 +129,20 @@ fn draw_statistic(paper: &Paper<'_>, panel: &Panel, study: &SceneStudy, statisti
     let own_sample = sampled.last().map(|&(t, error)| panel.at(t, error));
     for (x, y) in own_sample.into_iter().chain(own_mesh).chain([own_steps]) {
         let ring = Frame { left: x - 5.0, right: x + 5.0, top: y - 5.0, bottom: y + 5.0 };
-        paper.outline(&ring, Pen::full(INK, 1.0));
+        canvas.outline(&ring, Pen::full(INK, 1.0));
     }
 }
 
-fn key(paper: &Paper<'_>, first: Option<&Panel>, with_meshes: bool) {
+fn key(canvas: &Canvas<'_>, first: Option<&Panel>, with_meshes: bool) {
     let Some(panel) = first else { return };
     let mut x = panel.frame.left;
     let title = format!("Error of the {SHOWN}th percentiles over run time");
-    paper.text(&Label::new(title, (x, 12.0)).sized(NORMAL).bold());
+    canvas.text(&Label::new(title, (x, 12.0)).sized(NORMAL).bold());
     let own = "the scene's own setting";
     let own_x = panel.frame.right - text_width(own, SMALL);
     let ring = Frame { left: own_x - 15.0, right: own_x - 5.0, top: 7.0, bottom: 17.0 };
-    paper.outline(&ring, Pen::full(INK, 1.0));
-    paper.text(&Label::new(own, (own_x, 12.0)).coloured(GREY));
+    canvas.outline(&ring, Pen::full(INK, 1.0));
+    canvas.text(&Label::new(own, (own_x, 12.0)).coloured(GREY));
     for (shape, (ink, words, is_there)) in [
         (BLUE, "sampling: half the 95 % interval", true),
         (VERMILLION, "steps: estimate and 95 % bound", true),
@@ -152,9 +152,9 @@ fn key(paper: &Paper<'_>, first: Option<&Panel>, with_meshes: bool) {
     .enumerate()
     {
         if is_there {
-            paper.line(&[(x, 30.0), (x + 18.0, 30.0)], Pen::full(ink, 1.4));
-            paper.mark(shape, (x + 9.0, 30.0), 2.4, ink);
-            paper.text(&Label::new(words, (x + 23.0, 30.0)));
+            canvas.line(&[(x, 30.0), (x + 18.0, 30.0)], Pen::full(ink, 1.4));
+            canvas.mark(shape, (x + 9.0, 30.0), 2.4, ink);
+            canvas.text(&Label::new(words, (x + 23.0, 30.0)));
             x += 23.0 + text_width(words, SMALL) + 16.0;
         }
     }

@@ -1,8 +1,8 @@
 //! The page of a scene's errors: sentences, tables, CSV.
 
 use super::bench::goes_by_tolerance;
+use super::bootstrap::Interval;
 use super::scene::{Rung, SceneStudy, Statistic};
-use super::spread::Interval;
 use crate::report::format::{self, significant};
 use crate::solver::Settings;
 use std::fmt::Write as _;

@@ -4,11 +4,11 @@ use super::bench::goes_by_tolerance;
 use super::stability::{Map, Verdict};
 use crate::math;
 use crate::report::axis::Axis;
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use crate::report::colour::{GREEN, GREY, INK, ORANGE, PURPLE, WHITE};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use crate::report::svg::path::Frame;
 use plotters::style::RGBColor;
 
@@ -29,17 +29,17 @@ fn colour(verdict: Verdict) -> RGBColor {
 /// Draws one panel a scheme, the rebound in every cell.
 pub(super) fn draw(maps: &[Map]) -> String {
     let bottom = TOP_PX + maps.len() as f64 * (PLOT_PX + GAP_PX) - GAP_PX + FOOT_PX;
-    paint("stability", (WIDTH_PX, bottom + 4.0), "Stiffness against step", |paper| {
-        key(paper);
+    paint("stability", (WIDTH_PX, bottom + 4.0), "Stiffness against step", |canvas| {
+        key(canvas);
         for (row, map) in maps.iter().enumerate() {
             let panel = panel(map, row);
-            cells(paper, &panel, map);
-            paper.text(
+            cells(canvas, &panel, map);
+            canvas.text(
                 &Label::new(map.scheme.name(), (panel.frame.left, panel.frame.top - 10.0))
                     .sized(NORMAL)
                     .bold(),
             );
-            axes(paper, &panel, map);
+            axes(canvas, &panel, map);
         }
     })
 }
@@ -58,51 +58,51 @@ fn panel(map: &Map, row: usize) -> Panel {
 }
 
 /// Labels in the middle of each column and row, titles beyond.
-fn axes(paper: &Paper<'_>, panel: &Panel, map: &Map) {
+fn axes(canvas: &Canvas<'_>, panel: &Panel, map: &Map) {
     let Frame { left, top, right, bottom } = panel.frame;
     let label = |value: f64| format::power_of_ten(math::log10(value).round() as i32);
     for &stiffness in &map.stiffness_n_m {
         let x = panel.at(math::log10(stiffness).round(), panel.y.low).0;
-        paper.text(&Label::new(label(stiffness), (x, bottom + 5.0)).below().centred());
+        canvas.text(&Label::new(label(stiffness), (x, bottom + 5.0)).below().centred());
     }
     for &fineness in &map.fineness {
         let y = panel.at(panel.x.low, math::log10(fineness).round()).1;
-        paper.text(&Label::new(label(fineness), (left - 6.0, y)).right());
+        canvas.text(&Label::new(label(fineness), (left - 6.0, y)).right());
     }
     let title = |words: &str, at: (f64, f64)| Label::new(words, at).centred().sized(NORMAL);
-    paper.text(&title(&panel.x.title, (0.5 * (left + right), bottom + 22.0)).below());
-    paper.text(&title(&panel.y.title, (left - 40.0, 0.5 * (top + bottom))).above().upwards());
-    paper.outline(&panel.frame, Pen::full(INK, 0.8));
+    canvas.text(&title(&panel.x.title, (0.5 * (left + right), bottom + 22.0)).below());
+    canvas.text(&title(&panel.y.title, (left - 40.0, 0.5 * (top + bottom))).above().upwards());
+    canvas.outline(&panel.frame, Pen::full(INK, 0.8));
 }
 
-fn cells(paper: &Paper<'_>, panel: &Panel, map: &Map) {
+fn cells(canvas: &Canvas<'_>, panel: &Panel, map: &Map) {
     for cell in &map.cells {
         let (x, y) = (math::log10(cell.stiffness_n_m).round(), math::log10(cell.fineness).round());
         let (left, bottom) = panel.at(x - 0.5, y - 0.5);
         let (right, top) = panel.at(x + 0.5, y + 0.5);
         let frame = Frame { left, top, right, bottom };
-        paper.fill(&frame, colour(cell.verdict), 0.75);
-        paper.outline(&frame, Pen::full(WHITE, 0.8));
+        canvas.fill(&frame, colour(cell.verdict), 0.75);
+        canvas.outline(&frame, Pen::full(WHITE, 0.8));
         let middle = panel.at(x, y);
-        paper.text(&Label::new(format!("{:.2}", cell.rebound), middle).centred().coloured(INK));
+        canvas.text(&Label::new(format!("{:.2}", cell.rebound), middle).centred().coloured(INK));
     }
 }
 
-fn key(paper: &Paper<'_>) {
+fn key(canvas: &Canvas<'_>) {
     let mut x = LEFT_PX;
     for (verdict, words) in [
         (Verdict::Accurate, "accurate: within 2 %"),
         (Verdict::Stable, "stable: finite, no energy gained"),
         (Verdict::Unstable, "unstable"),
     ] {
-        paper.fill(
+        canvas.fill(
             &Frame { left: x, top: 8.0, right: x + 14.0, bottom: 20.0 },
             colour(verdict),
             0.75,
         );
-        paper.text(&Label::new(words, (x + 19.0, 14.0)));
+        canvas.text(&Label::new(words, (x + 19.0, 14.0)));
         x += 19.0 + text_width(words, SMALL) + 18.0;
     }
     let words = "Rebound over approach speed of a rock of 0.5 m at 5 m/s; exact 0.50, less on soft springs.";
-    paper.text(&Label::new(words, (LEFT_PX, 32.0)).coloured(GREY));
+    canvas.text(&Label::new(words, (LEFT_PX, 32.0)).coloured(GREY));
 }

@@ -8,7 +8,7 @@ pub use paper::{EXAMPLES, Example};
 
 use crate::error::{Error, Result};
 use crate::math;
-use crate::output::write_whole;
+use crate::output::write_atomic;
 use crate::report::curves::Curves;
 use crate::solver::Scheme;
 use std::fmt::Write as _;
@@ -132,10 +132,10 @@ impl Verification {
         std::fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
         let mut page = format!("# Verification\n\n{}", self.table());
         for (name, curves) in &self.figures {
-            write_whole(&figures.join(format!("{name}.svg")), curves.draw(name).as_bytes())?;
+            write_atomic(&figures.join(format!("{name}.svg")), curves.draw(name).as_bytes())?;
             let _ = write!(page, "\n![{0}](figures/{name}.svg)\n\n{0}\n", curves.title);
         }
-        write_whole(&dir.join("README.md"), page.as_bytes())
+        write_atomic(&dir.join("README.md"), page.as_bytes())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::Terrain;
 use super::groups::Groups;
-use crate::chance::Distribution;
+use crate::random::Distribution;
 use crate::rock::Vec3;
 
 /// No stem, or one that stands for good.

@@ -11,9 +11,9 @@ pub mod episode;
 pub mod together;
 pub mod zoo;
 
-use rockfall::chance::{Purpose, stream};
 use rockfall::ground::Ground;
 use rockfall::plan::RestRule;
+use rockfall::random::{Purpose, stream};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
@@ -106,7 +106,7 @@ impl Case {
             step: &step,
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
-            watch: rockfall::plan::Watch::default(),
+            recorders: rockfall::plan::Recorders::default(),
         };
         let motion = Motion {
             time_s: 0.0,
@@ -115,9 +115,9 @@ impl Case {
             spin_rad_s: w.into(),
         };
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
-        let mut chance = stream(seed, Purpose::Impacts, 0);
+        let mut random = stream(seed, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
-        let mut fallen = simulate(&course, &release, keep, &mut chance, &mut Scratch::default());
+        let mut fallen = simulate(&course, &release, keep, &mut random, &mut Scratch::default());
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;
         fallen

@@ -3,7 +3,7 @@
 use super::{CASE, GROUND, terrain};
 use rockfall::contact::pair::Strength;
 use rockfall::ground::Ground;
-use rockfall::plan::{RestRule, Watch};
+use rockfall::plan::{Recorders, RestRule};
 use rockfall::release::Release;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
@@ -64,7 +64,7 @@ impl World {
             step: &step,
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
-            watch: Watch::default(),
+            recorders: Recorders::default(),
         };
         let release = |&(radius_m, density_kg_m3, c, v, w): &Sphere| Release {
             rock: Rock { radius_m, density_kg_m3 },

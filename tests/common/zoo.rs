@@ -1,25 +1,25 @@
 //! Meshes of every awkward kind, and the slow but obvious geometry that the fast one is compared with.
 
 use super::terrain;
-use rockfall::chance::{Chance, Purpose, stream, unit};
 use rockfall::contact::closest::closest_on;
 use rockfall::flight::Parabola;
+use rockfall::random::{Purpose, RandomStream, stream, unit};
 use rockfall::rock::Vec3;
 use rockfall::terrain::Terrain;
 use rockfall::terrain::stl::Facet;
 
 /// Evenly drawn from a range.
-pub fn between(chance: &mut Chance, from: f64, to: f64) -> f64 {
-    from + (to - from) * unit(chance)
+pub fn between(random: &mut RandomStream, from: f64, to: f64) -> f64 {
+    from + (to - from) * unit(random)
 }
 
 /// A point in the cube of half width `half`.
-pub fn point(chance: &mut Chance, half: f64) -> Vec3 {
-    Vec3::from_fn(|_, _| between(chance, -half, half))
+pub fn point(random: &mut RandomStream, half: f64) -> Vec3 {
+    Vec3::from_fn(|_, _| between(random, -half, half))
 }
 
 /// A stream of chance for one case of one test.
-pub fn dice(seed: u64, index: usize) -> Chance {
+pub fn dice(seed: u64, index: usize) -> RandomStream {
     stream(seed, Purpose::Place, index)
 }
 
@@ -30,20 +30,20 @@ pub const KINDS: [&str; 8] =
 /// A mesh of one kind, about 4 m wide and with at most some 130 triangles; every third one has faces flipped at
 /// random, so that no test can rely on winding.
 pub fn zoo(kind: usize, index: usize) -> Terrain {
-    let chance = &mut dice(100 + kind as u64, index);
+    let random = &mut dice(100 + kind as u64, index);
     let mut facets = match KINDS[kind] {
-        "rough" => heights(chance, 8, 0.4),
-        "spiky" => heights(chance, 6, 1.6),
-        "terraces" => terraces(chance),
-        "soup" => soup(chance),
-        "fans" => fans(chance),
-        "walls" => walls(chance),
-        "seams" => seams(chance),
-        _ => stones(chance),
+        "rough" => heights(random, 8, 0.4),
+        "spiky" => heights(random, 6, 1.6),
+        "terraces" => terraces(random),
+        "soup" => soup(random),
+        "fans" => fans(random),
+        "walls" => walls(random),
+        "seams" => seams(random),
+        _ => stones(random),
     };
     if index % 3 == 2 {
         for facet in &mut facets {
-            if unit(chance) < 0.5 {
+            if unit(random) < 0.5 {
                 facet.swap(1, 2);
             }
         }
@@ -52,19 +52,19 @@ pub fn zoo(kind: usize, index: usize) -> Terrain {
 }
 
 /// A jagged height field: ridges, valleys, peaks, pits.
-fn heights(chance: &mut Chance, cells: usize, amplitude: f64) -> Vec<Facet> {
+fn heights(random: &mut RandomStream, cells: usize, amplitude: f64) -> Vec<Facet> {
     let z: Vec<f64> =
-        (0..(cells + 1).pow(2)).map(|_| between(chance, -amplitude, amplitude)).collect();
-    lattice(cells, |i, j| z[i * (cells + 1) + j])
+        (0..(cells + 1).pow(2)).map(|_| between(random, -amplitude, amplitude)).collect();
+    map_grid(cells, |i, j| z[i * (cells + 1) + j])
 }
 
 /// Flat treads and vertical-free risers: heights rounded to steps, so that many edges are flat.
-fn terraces(chance: &mut Chance) -> Vec<Facet> {
-    let z: Vec<f64> = (0..81).map(|_| (3.0 * unit(chance)).floor() * 0.5).collect();
-    lattice(8, |i, j| z[i / 2 * 9 + j / 2])
+fn terraces(random: &mut RandomStream) -> Vec<Facet> {
+    let z: Vec<f64> = (0..81).map(|_| (3.0 * unit(random)).floor() * 0.5).collect();
+    map_grid(8, |i, j| z[i / 2 * 9 + j / 2])
 }
 
-fn lattice(cells: usize, z: impl Fn(usize, usize) -> f64) -> Vec<Facet> {
+fn map_grid(cells: usize, z: impl Fn(usize, usize) -> f64) -> Vec<Facet> {
     let at = |i: usize, j: usize| {
         let place = |k: usize| 4.0 * k as f64 / cells as f64 - 2.0;
         Vec3::new(place(i), place(j), z(i, j))
@@ -84,34 +84,34 @@ fn lattice(cells: usize, z: impl Fn(usize, usize) -> f64) -> Vec<Facet> {
 }
 
 /// Loose triangles that run through each other.
-fn soup(chance: &mut Chance) -> Vec<Facet> {
+fn soup(random: &mut RandomStream) -> Vec<Facet> {
     (0..30)
         .map(|_| {
-            let middle = point(chance, 1.5);
-            [0; 3].map(|_| middle + point(chance, 0.8))
+            let middle = point(random, 1.5);
+            [0; 3].map(|_| middle + point(random, 0.8))
         })
         .collect()
 }
 
 /// Sheets that share one edge, three to six at a time.
-fn fans(chance: &mut Chance) -> Vec<Facet> {
+fn fans(random: &mut RandomStream) -> Vec<Facet> {
     let mut facets = Vec::new();
     for _ in 0..4 {
-        let (a, b) = (point(chance, 1.5), point(chance, 1.5));
-        for _ in 0..3 + (4.0 * unit(chance)) as usize {
-            facets.push([a, b, point(chance, 2.0)]);
+        let (a, b) = (point(random, 1.5), point(random, 1.5));
+        for _ in 0..3 + (4.0 * unit(random)) as usize {
+            facets.push([a, b, point(random, 2.0)]);
         }
     }
     facets
 }
 
 /// Upright and level plates with corners on binary fractions: their boxes have no thickness and no rounding.
-fn walls(chance: &mut Chance) -> Vec<Facet> {
+fn walls(random: &mut RandomStream) -> Vec<Facet> {
     let mut facets = Vec::new();
     for _ in 0..8 {
-        let axis = (3.0 * unit(chance)) as usize;
-        let on = |chance: &mut Chance| (between(chance, -8.0, 8.0)).round() * 0.25;
-        let (level, u, v) = (on(chance), on(chance), on(chance));
+        let axis = (3.0 * unit(random)) as usize;
+        let on = |random: &mut RandomStream| (between(random, -8.0, 8.0)).round() * 0.25;
+        let (level, u, v) = (on(random), on(random), on(random));
         let at = |du: f64, dv: f64| {
             let mut p = Vec3::zeros();
             (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (level, u + du, v + dv);
@@ -124,8 +124,8 @@ fn walls(chance: &mut Chance) -> Vec<Facet> {
 }
 
 /// A folded sheet in two halves that meet along a seam with different vertices on either side.
-fn seams(chance: &mut Chance) -> Vec<Facet> {
-    let (tilt, fold) = (between(chance, -0.5, 0.5), between(chance, -0.6, 0.6));
+fn seams(random: &mut RandomStream) -> Vec<Facet> {
+    let (tilt, fold) = (between(random, -0.5, 0.5), between(random, -0.6, 0.6));
     let z = |x: f64, y: f64| tilt * y + if x > 0.0 { fold * x } else { 0.0 };
     let at = |x: f64, y: f64| Vec3::new(x, y, z(x, y));
     let mut facets = Vec::new();
@@ -141,11 +141,11 @@ fn seams(chance: &mut Chance) -> Vec<Facet> {
 }
 
 /// Closed tetrahedra lying about.
-fn stones(chance: &mut Chance) -> Vec<Facet> {
+fn stones(random: &mut RandomStream) -> Vec<Facet> {
     let mut facets = Vec::new();
     for _ in 0..6 {
-        let middle = point(chance, 1.5);
-        let [a, b, c, d] = [0; 4].map(|_| middle + point(chance, 0.7));
+        let middle = point(random, 1.5);
+        let [a, b, c, d] = [0; 4].map(|_| middle + point(random, 0.7));
         facets.extend([[a, b, c], [a, c, d], [a, d, b], [b, d, c]]);
     }
     facets

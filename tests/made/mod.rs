@@ -70,9 +70,9 @@ pub fn info(releases: usize) -> RunInfo {
 }
 
 /// Numbers that belong to one rock.
-struct Chance(ChaCha8Rng);
+struct RandomStream(ChaCha8Rng);
 
-impl Chance {
+impl RandomStream {
     fn number(&mut self, scale: f64) -> f64 {
         scale * self.0.random::<f64>()
     }
@@ -124,13 +124,13 @@ impl Chance {
         (0..=index % 2).map(crossing).collect()
     }
 
-    fn visits(&mut self) -> Vec<CellPassage> {
-        let visit = |cell: u32| CellPassage {
+    fn passages(&mut self) -> Vec<CellPassage> {
+        let passage = |cell: u32| CellPassage {
             cell: 5 * cell,
             total_j: self.number(1e5),
             height_m: if cell == 2 { 0.0 } else { self.number(4.0) },
         };
-        (0..8).map(visit).collect()
+        (0..8).map(passage).collect()
     }
 
     fn extremes(&mut self) -> Extremes {
@@ -164,24 +164,24 @@ fn stop(index: usize) -> Stop {
 
 /// The journey of rock `index`.
 pub fn fall(index: usize) -> Trajectory {
-    let mut chance = Chance(ChaCha8Rng::seed_from_u64(7));
-    chance.0.set_stream(index as u64);
+    let mut random = RandomStream(ChaCha8Rng::seed_from_u64(7));
+    random.0.set_stream(index as u64);
     let mut fall = Trajectory {
         index,
-        rock: Rock { radius_m: 0.1 + chance.number(0.5), density_kg_m3: 2700.0 },
+        rock: Rock { radius_m: 0.1 + random.number(0.5), density_kg_m3: 2700.0 },
         shape: None,
-        start: chance.motion(0.0),
-        end: chance.motion(12.5),
+        start: random.motion(0.0),
+        end: random.motion(12.5),
         stop: stop(index),
-        extremes: chance.extremes(),
+        extremes: random.extremes(),
         impact_count: 1 + index as u32 % 2,
         tree_impact_count: index as u32 % 2,
-        impacts: vec![chance.impact(index); 1 + index % 2],
-        crossings: if index.is_multiple_of(4) { vec![] } else { chance.crossings(index) },
-        visits: chance.visits(),
-        path: if index < PATHS { chance.path() } else { vec![] },
-        ledger: chance.ledger(),
-        released_j: chance.number(1e6),
+        impacts: vec![random.impact(index); 1 + index % 2],
+        crossings: if index.is_multiple_of(4) { vec![] } else { random.crossings(index) },
+        passages: random.passages(),
+        path: if index < PATHS { random.path() } else { vec![] },
+        ledger: random.ledger(),
+        released_j: random.number(1e6),
         effort: Effort { steps: index as u64, leaps: 3, sweeps: 9, ..Effort::default() },
     };
     if matches!(fall.stop, Stop::Failed(_)) {

@@ -4,5 +4,5 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 mkdir -p reports/trust
-ROCKFALL_KILLS=${1:?number of kills} cargo test --test kill -- --nocapture | tee /dev/stderr \
+ROCKFALL_KILLS=${1:?number of kills} cargo test --test commands kill:: -- --nocapture | tee /dev/stderr \
     | grep -E '^[0-9]+ kills in|^test result' > reports/trust/kills.txt

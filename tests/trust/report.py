@@ -24,8 +24,8 @@ def bad_inputs():
     meshes = len((ROOT / "tests/bad_meshes/messages.txt").read_text().splitlines())
     return (
         f"{scenes} wrong scenes (`tests/bad`) and {meshes} wrong meshes (`tests/bad_meshes`), each with the message that it must "
-        f"give: {scenes + meshes} inputs refused with exit status 2 and one line (`cargo test --test bad_input`, in every run of "
-        "the check). Folders that cannot be written, full disks and disks that may only be read: `cargo test --test full_disk`; "
+        f"give: {scenes + meshes} inputs refused with exit status 2 and one line (`cargo test --test commands bad_input::`, in every run of "
+        "the check). Folders that cannot be written, full disks and disks that may only be read: `cargo test --test commands full_disk::`; "
         "the full ones are resumed to the same bytes once there is room."
     )
 
@@ -91,7 +91,7 @@ clock on the wall: the machine did other things meanwhile.
 
 ## Rust
 
-The stated minimum, {rust}, is checked twice: no dependency states a newer one (`cargo test --test rust_version`), and clippy's
+The stated minimum, {rust}, is checked twice: no dependency states a newer one (`cargo test --test commands rust_version::`), and clippy's
 `incompatible_msrv` refuses any part of the standard library that came later. There is no `unsafe` (`unsafe_code = "forbid"`).
 """
     (TRUST / "README.md").write_text(re.sub(r"\n{3,}", "\n\n", text))

@@ -2,9 +2,9 @@
 
 #![allow(missing_docs, dead_code, unreachable_pub, clippy::unwrap_used)]
 
-use rockfall::chance::{Purpose, stream, unit};
 use rockfall::frequency::{Frequency, Law, Source, radius_of_m3};
 use rockfall::hazard::{Annual, AnnualPlace, Asked, Barrier, CrossingRow, LineInfo, Rate, annual};
+use rockfall::random::{Purpose, stream, unit};
 use std::convert::Infallible;
 
 pub const DENSITY_KG_M3: f64 = 2700.0;
@@ -50,10 +50,10 @@ pub fn line(name: &str) -> LineInfo {
 pub fn crossings(asked: &Asked, seed: u64, releases: usize) -> Vec<CrossingRow> {
     let frequency = asked.frequency.as_ref().unwrap();
     let one = |index: usize| {
-        let mut chance = stream(seed, Purpose::Size, index);
-        let volume_m3 = frequency.stratum(index).quantile_m3(unit(&mut chance)).unwrap();
+        let mut random = stream(seed, Purpose::Size, index);
+        let volume_m3 = frequency.stratum(index).quantile_m3(unit(&mut random)).unwrap();
         let energy_j = 0.5 * DENSITY_KG_M3 * volume_m3 * SPEED_M_S * SPEED_M_S;
-        (unit(&mut chance) < REACH).then(|| row(index, "road", volume_m3, energy_j))
+        (unit(&mut random) < REACH).then(|| row(index, "road", volume_m3, energy_j))
     };
     (0..releases).filter_map(one).collect()
 }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::body::{Shape, Solid, box_surface, eota, sphere_points};
-use crate::chance::{Chance, Purpose, stream, unit};
 use crate::math::turn;
+use crate::random::{Purpose, RandomStream, stream, unit};
 use crate::rock::Rock;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
@@ -15,7 +15,7 @@ use std::path::Path;
 /// Random flights of the test; `ROCKFALL_FLIGHTS` asks for more.
 const FLIGHTS: usize = 1500;
 
-fn even(chance: &mut Chance, low: f64, high: f64) -> f64 {
+fn even(chance: &mut RandomStream, low: f64, high: f64) -> f64 {
     low + (high - low) * unit(chance)
 }
 

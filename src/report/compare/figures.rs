@@ -5,11 +5,11 @@ use super::populations::{Measure, Population};
 use super::table::{Group, Line};
 use crate::hazard::{Quantity, Sample, Values};
 use crate::report::axis::Axis;
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use crate::report::colour::{BLUE, GREY, INK, PALE, VERMILLION};
 use crate::report::figure::{Drawing, Heading, WIDTH_PX};
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, paint, text_width};
 use crate::report::svg::path::Frame;
 
 const A_PEN: Pen = Pen::full(BLUE, 1.6);
@@ -72,25 +72,27 @@ fn changes(groups: &[Group]) -> Drawing {
     let reach = reach.fold(0.05_f64, |most, x| most.max(x.abs())).min(MOST_CHANGE);
     let x = Axis::linear(-105.0 * reach, 105.0 * reach, "Change from A to B (% of A)");
     let panel = Panel::new(frame, x, Axis::linear(0.0, 1.0, ""));
-    let svg = paint("compare", (WIDTH_PX, bottom + FOOT_PX), "What changes from A to B", |paper| {
-        panel.grid_upright(paper);
-        panel.upright(paper, 0.0, Pen::full(GREY, 1.2));
-        for (k, (name, values)) in rows.iter().enumerate() {
-            let y = frame.top + ROW_PX * (k as f64 + 0.5);
-            paper.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
-            let [at, low, high] = values.map(|x| panel.at(100.0 * x.clamp(-reach, reach), 0.0).0);
-            let is_clear = values[1] > 0.0 || values[2] < 0.0;
-            let colour = if is_clear { VERMILLION } else { INK };
-            paper.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
-            paper.disc((at, y), 3.2, colour);
-            paper.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
-        }
-        paper.outline(&frame, Pen::full(INK, 0.8));
-        panel.x_axis(paper);
-        if rows.is_empty() {
-            panel.nothing(paper, "nothing to compare");
-        }
-    });
+    let svg =
+        paint("compare", (WIDTH_PX, bottom + FOOT_PX), "What changes from A to B", |canvas| {
+            panel.grid_upright(canvas);
+            panel.upright(canvas, 0.0, Pen::full(GREY, 1.2));
+            for (k, (name, values)) in rows.iter().enumerate() {
+                let y = frame.top + ROW_PX * (k as f64 + 0.5);
+                canvas.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
+                let [at, low, high] =
+                    values.map(|x| panel.at(100.0 * x.clamp(-reach, reach), 0.0).0);
+                let is_clear = values[1] > 0.0 || values[2] < 0.0;
+                let colour = if is_clear { VERMILLION } else { INK };
+                canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
+                canvas.disc((at, y), 3.2, colour);
+                canvas.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
+            }
+            canvas.outline(&frame, Pen::full(INK, 0.8));
+            panel.x_axis(canvas);
+            if rows.is_empty() {
+                panel.nothing(canvas, "nothing to compare");
+            }
+        });
     let beyond = rows.iter().flat_map(|(_, values)| values).any(|x| x.abs() > MOST_CHANGE);
     let caption = format!(
         "Change of each statistic over its value in A, with its 95 % interval; vermillion where the interval leaves out zero. \
@@ -113,13 +115,13 @@ fn exceedance(name: &str, pair: &[Population; 2], curves: &[(Measure, [&Values; 
     let band = HEAD_PX + CURVE_PX + FOOT_PX;
     let height = KEY_PX + band * curves.len().div_ceil(2) as f64;
     let title = &pair[0].name;
-    let svg = paint(name, (WIDTH_PX, height), title, |paper| {
-        key(paper);
+    let svg = paint(name, (WIDTH_PX, height), title, |canvas| {
+        key(canvas);
         for (k, (measure, values)) in curves.iter().enumerate() {
             let top = KEY_PX + band * (k / 2) as f64 + HEAD_PX;
             let left = half * (k % 2) as f64;
             let frame = Frame { left, top, right: left + half - 14.0, bottom: top + CURVE_PX };
-            one_panel(paper, frame, *measure, *values);
+            one_panel(canvas, frame, *measure, *values);
         }
     });
     let count =
@@ -132,16 +134,16 @@ fn exceedance(name: &str, pair: &[Population; 2], curves: &[(Measure, [&Values; 
     Drawing { svg, caption }
 }
 
-fn key(paper: &Paper<'_>) {
+fn key(canvas: &Canvas<'_>) {
     let mut x = 60.0;
     for (name, pen) in [("A", A_PEN), ("B", B_PEN)] {
-        paper.line(&[(x, 11.0), (x + 26.0, 11.0)], pen);
-        paper.text(&Label::new(name, (x + 32.0, 11.0)).bold());
+        canvas.line(&[(x, 11.0), (x + 26.0, 11.0)], pen);
+        canvas.text(&Label::new(name, (x + 32.0, 11.0)).bold());
         x += 70.0;
     }
 }
 
-fn one_panel(paper: &Paper<'_>, frame: Frame, measure: Measure, values: [&Values; 2]) {
+fn one_panel(canvas: &Canvas<'_>, frame: Frame, measure: Measure, values: [&Values; 2]) {
     let (name, unit, size) = measure.words();
     let samples = values.map(|values| Sample::of(values.iter().map(|(_, x)| x / size)));
     let far = samples.iter().filter_map(|sample| Some(sample.percentile(1.0 - BEYOND)?.value));
@@ -151,15 +153,15 @@ fn one_panel(paper: &Paper<'_>, frame: Frame, measure: Measure, values: [&Values
         Panel::new(frame, x, Axis::log(1.0 / rocks.clamp(10, 200) as f64, 1.0, "Share exceeding"));
     panel.frame.left += panel.room_left();
     let at = (panel.frame.left, panel.frame.top - 9.0);
-    paper.text(&Label::new(name, at).bold().sized(NORMAL));
-    panel.grid(paper);
+    canvas.text(&Label::new(name, at).bold().sized(NORMAL));
+    panel.grid(canvas);
     for (sample, pen) in samples.iter().zip([A_PEN, B_PEN]) {
         let curve: Vec<(f64, f64)> =
             sample.exceedance().iter().map(|point| (point.value, point.share)).collect();
-        panel.line(paper, &curve, pen);
+        panel.line(canvas, &curve, pen);
     }
-    panel.axes(paper);
+    panel.axes(canvas);
     if rocks == 0 {
-        panel.nothing(paper, "no rock");
+        panel.nothing(canvas, "no rock");
     }
 }

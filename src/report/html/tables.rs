@@ -3,7 +3,7 @@
 use super::note;
 use crate::math;
 use crate::report::format::{self, escape};
-use crate::report::input::{Estimate, Is, Row, Table, energy_unit};
+use crate::report::model::{Estimate, Is, Row, Table, energy_unit};
 use std::fmt::Write as _;
 
 /// The headline statistics of all rocks.

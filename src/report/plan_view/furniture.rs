@@ -3,11 +3,11 @@
 use super::{Mark, RIGHT_PX};
 use crate::output::Zone;
 use crate::report::axis::{Axis, nice_step};
+use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, text_width};
 use crate::report::colour::{GREEN, INK, WHITE};
 use crate::report::format;
-use crate::report::input::Report;
+use crate::report::model::Report;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::paper::{Label, NORMAL, Paper, Pen, SMALL, text_width};
 use crate::report::site;
 use crate::report::svg::path::Frame;
 
@@ -15,43 +15,43 @@ const LINE_PX: f64 = 17.0;
 const PEN: Pen = Pen::full(INK, 0.8);
 
 /// North arrow, colour bar up to `fastest` (m/s) if there are paths, and scale bar.
-pub(super) fn draw(paper: &Paper<'_>, panel: &Panel, (fastest, has_paths): (f64, bool)) {
+pub(super) fn draw(canvas: &Canvas<'_>, panel: &Panel, (fastest, has_paths): (f64, bool)) {
     let left = panel.frame.right + 18.0;
-    north_arrow(paper, (left + 6.0, panel.frame.top));
+    north_arrow(canvas, (left + 6.0, panel.frame.top));
     if has_paths {
-        colour_bar(paper, panel, left, fastest);
+        colour_bar(canvas, panel, left, fastest);
     }
-    scale_bar(paper, panel);
+    scale_bar(canvas, panel);
 }
 
-fn north_arrow(paper: &Paper<'_>, (x, top): (f64, f64)) {
-    paper.text(&Label::new("N", (x, top)).below().centred().bold().sized(NORMAL));
+fn north_arrow(canvas: &Canvas<'_>, (x, top): (f64, f64)) {
+    canvas.text(&Label::new("N", (x, top)).below().centred().bold().sized(NORMAL));
     let (tip, foot) = (top + 13.0, top + 36.0);
-    paper.polygon(&[(x, tip), (x, foot - 5.0), (x - 6.0, foot)], INK, 1.0);
-    paper.line(&[(x, tip), (x + 6.0, foot), (x, foot - 5.0), (x, tip)], PEN);
+    canvas.polygon(&[(x, tip), (x, foot - 5.0), (x - 6.0, foot)], INK, 1.0);
+    canvas.line(&[(x, tip), (x + 6.0, foot), (x, foot - 5.0), (x, tip)], PEN);
 }
 
-fn colour_bar(paper: &Paper<'_>, panel: &Panel, left: f64, fastest: f64) {
+fn colour_bar(canvas: &Canvas<'_>, panel: &Panel, left: f64, fastest: f64) {
     let top = panel.frame.top + 58.0;
     let bottom = panel.frame.bottom.min(top + 260.0);
     let bar = Frame { left, top, right: left + 12.0, bottom };
-    paper.colour_bar(&bar);
+    canvas.colour_bar(&bar);
     let scale = Axis::linear(0.0, fastest, "");
     let count = (bar.height() / 30.0).clamp(2.0, 6.0) as usize;
     let mut widest: f64 = 0.0;
     for tick in scale.ticks(count) {
         let y = bottom - scale.share(tick.value) * bar.height();
-        paper.line(&[(bar.right, y), (bar.right + 4.0, y)], PEN);
+        canvas.line(&[(bar.right, y), (bar.right + 4.0, y)], PEN);
         widest = widest.max(text_width(&tick.label, SMALL));
-        paper.text(&Label::new(tick.label, (bar.right + 7.0, y)));
+        canvas.text(&Label::new(tick.label, (bar.right + 7.0, y)));
     }
     let x = (bar.right + 7.0 + widest + 5.0).min(panel.frame.right + RIGHT_PX - NORMAL);
     let middle = (x, 0.5 * (top + bottom));
-    paper.text(&Label::new("Speed (m/s)", middle).below().centred().upwards().sized(NORMAL));
+    canvas.text(&Label::new("Speed (m/s)", middle).below().centred().upwards().sized(NORMAL));
 }
 
 /// A bar of round length near the lower right corner of the map.
-fn scale_bar(paper: &Paper<'_>, panel: &Panel) {
+fn scale_bar(canvas: &Canvas<'_>, panel: &Panel) {
     let per_metre = panel.frame.width() / (panel.x.high - panel.x.low);
     let longest = nice_step((panel.x.high - panel.x.low) * 0.13);
     let length = longest * per_metre;
@@ -65,10 +65,10 @@ fn scale_bar(paper: &Paper<'_>, panel: &Panel) {
     for (from, to, fill) in [(left, left + 0.5 * length, INK), (left + 0.5 * length, right, WHITE)]
     {
         let half = Frame { left: from, top: y - 2.5, right: to, bottom: y + 2.5 };
-        paper.fill(&half, fill, 1.0);
-        paper.outline(&half, Pen::full(INK, 0.6));
+        canvas.fill(&half, fill, 1.0);
+        canvas.outline(&half, Pen::full(INK, 0.6));
     }
-    paper.text(&Label::new(label, (left - 6.0, y)).right());
+    canvas.text(&Label::new(label, (left - 6.0, y)).right());
 }
 
 /// The marks on the map and what they mean.
@@ -139,20 +139,20 @@ impl Key {
         self.places(width_px).last().map_or(0.0, |(line, _)| (line + 1) as f64 * LINE_PX)
     }
 
-    pub(super) fn draw(&self, paper: &Paper<'_>, (left, top): (f64, f64)) {
+    pub(super) fn draw(&self, canvas: &Canvas<'_>, (left, top): (f64, f64)) {
         for ((symbol, text), (line, x)) in
-            self.entries.iter().zip(self.places(paper.size_px().0 - left))
+            self.entries.iter().zip(self.places(canvas.size_px().0 - left))
         {
             let at = (left + x + 7.0, top + (line as f64 + 0.5) * LINE_PX);
             match symbol {
-                Symbol::Density => super::density_symbol(paper, at),
-                Symbol::Mark(mark) => mark.draw(paper, &[at], 3.0),
-                Symbol::Zone(zone) => site::zone_symbol(paper, at, zone),
-                Symbol::Line => site::symbol(paper, at, false),
-                Symbol::Barrier => site::symbol(paper, at, true),
-                Symbol::Tree => paper.disc(at, 3.0, GREEN),
+                Symbol::Density => super::density_symbol(canvas, at),
+                Symbol::Mark(mark) => mark.draw(canvas, &[at], 3.0),
+                Symbol::Zone(zone) => site::zone_symbol(canvas, at, zone),
+                Symbol::Line => site::symbol(canvas, at, false),
+                Symbol::Barrier => site::symbol(canvas, at, true),
+                Symbol::Tree => canvas.disc(at, 3.0, GREEN),
             }
-            paper.text(&Label::new(text.clone(), (at.0 + 12.0, at.1)));
+            canvas.text(&Label::new(text.clone(), (at.0 + 12.0, at.1)));
         }
     }
 }

@@ -2,12 +2,12 @@
 
 use crate::math;
 use crate::report::axis::round_step;
+use crate::report::canvas::{Canvas, Label, Pen, text_width};
 use crate::report::colour::{GREEN, WHITE};
 use crate::report::contour::Field;
 use crate::report::format;
 use crate::report::hillshade;
 use crate::report::panel::Panel;
-use crate::report::paper::{Label, Paper, Pen, text_width};
 use crate::report::raster::GroundRaster;
 use crate::report::svg::path::{Frame, Spot, clipped, thinned};
 use plotters::style::RGBColor;
@@ -39,30 +39,30 @@ pub(in crate::report) struct Contours {
 
 impl Contours {
     /// Heights on the index contours, upright to read.
-    pub(super) fn labels(&self, paper: &Paper<'_>) {
+    pub(super) fn labels(&self, canvas: &Canvas<'_>) {
         for (at, degrees, text) in &self.labels {
             let label = Label::new(text.clone(), *at).centred().sized(LABEL_PX).coloured(LINE);
-            paper.text_turned(&label, *degrees);
+            canvas.text_turned(&label, *degrees);
         }
     }
 }
 
 /// Draws everything below the paths.
 pub(in crate::report) fn draw(
-    paper: &Paper<'_>,
+    canvas: &Canvas<'_>,
     panel: &Panel,
     ground: &GroundRaster,
 ) -> Option<Contours> {
-    paper.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
-    let contours = contours(paper, panel, ground);
-    trees(paper, panel, ground);
+    canvas.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
+    let contours = contours(canvas, panel, ground);
+    trees(canvas, panel, ground);
     contours
 }
 
 /// Draws the shape of the ground and its trees, without contours.
-pub(in crate::report) fn shade(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) {
-    paper.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
-    trees(paper, panel, ground);
+pub(in crate::report) fn shade(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster) {
+    canvas.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
+    trees(canvas, panel, ground);
 }
 
 /// Map coordinates of a place on the paper (m).
@@ -88,7 +88,7 @@ fn slope(panel: &Panel, ground: &GroundRaster, at: Spot) -> (f64, f64) {
     (across(half, 0.0), across(0.0, half))
 }
 
-fn contours(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<Contours> {
+fn contours(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster) -> Option<Contours> {
     let frame = &panel.frame;
     let size = ((frame.width() / GRID_PX) as usize + 2, (frame.height() / GRID_PX) as usize + 2);
     let field = Field::sample((frame.left, frame.top), GRID_PX, size, |x, y| {
@@ -120,14 +120,14 @@ fn contours(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) -> Option<C
             let decimals = (-math::log10(interval_m).floor()).max(0.0) as usize;
             let text = format::decimal(level_m, decimals);
             let before = labels.len();
-            label_lines((paper, panel), &lines, &text, &mut labels);
+            label_lines((canvas, panel), &lines, &text, &mut labels);
             // a line does not run through its own label
             let radius = 0.5 * text_width(&text, LABEL_PX) + 2.0;
             labels[before..].iter().fold(lines, |lines, (at, ..)| outside(&lines, *at, radius))
         } else {
             lines
         };
-        paper.lines(&lines, pen);
+        canvas.lines(&lines, pen);
     }
     Some(Contours { interval_m, labels })
 }
@@ -177,7 +177,7 @@ fn pieces_outside(a: Spot, b: Spot, at: Spot, radius: f64) -> Vec<(Spot, Spot)> 
 
 /// Puts one label on each long line, at its longest straight piece that is far from other labels and from the frame.
 fn label_lines(
-    (paper, panel): (&Paper<'_>, &Panel),
+    (canvas, panel): (&Canvas<'_>, &Panel),
     lines: &[Vec<Spot>],
     text: &str,
     labels: &mut Vec<(Spot, f64, String)>,
@@ -198,7 +198,7 @@ fn label_lines(
                 top: at.1 - half,
                 bottom: at.1 + half,
             };
-            paper.is_free(&room)
+            canvas.is_free(&room)
                 && from_edge > half + 4.0
                 && nearest.fold(f64::INFINITY, f64::min) > LABELS_APART_PX
         };
@@ -214,7 +214,7 @@ fn label_lines(
 }
 
 /// Stems: discs where they are small on paper, outlines where they are large.
-fn trees(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) {
+fn trees(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster) {
     let cell_px = ground.cell_m / (panel.x.high - panel.x.low) * panel.frame.width();
     let mut discs: BTreeMap<u32, Vec<Spot>> = BTreeMap::new();
     let mut large = vec![false; ground.trees.len()];
@@ -235,13 +235,13 @@ fn trees(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster) {
         }
     }
     for (tenths, spots) in &discs {
-        paper.dots(spots, f64::from(*tenths) / 10.0 + 0.5, WHITE);
-        paper.dots(spots, f64::from(*tenths) / 10.0, GREEN);
+        canvas.dots(spots, f64::from(*tenths) / 10.0 + 0.5, WHITE);
+        canvas.dots(spots, f64::from(*tenths) / 10.0, GREEN);
     }
-    outlines(paper, panel, ground, &large);
+    outlines(canvas, panel, ground, &large);
 }
 
-fn outlines(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster, large: &[bool]) {
+fn outlines(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster, large: &[bool]) {
     if !large.contains(&true) {
         return;
     }
@@ -260,7 +260,7 @@ fn outlines(paper: &Paper<'_>, panel: &Panel, ground: &GroundRaster, large: &[bo
         };
         let outline: Vec<Spot> = line.iter().map(place).collect();
         if outline.iter().any(|&spot| panel.frame.holds(spot)) {
-            paper.polygon(&outline, GREEN, 0.85);
+            canvas.polygon(&outline, GREEN, 0.85);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::GroundRaster;
 use crate::error::{Error, Result};
-use crate::output::{write_ground, write_whole};
+use crate::output::{write_atomic, write_ground};
 use crate::terrain::geotiff::Image;
 use std::fmt::Write as _;
 use std::fs;
@@ -71,7 +71,7 @@ impl GroundRaster {
             }
             text.push('\n');
         }
-        write_whole(path, text.as_bytes())
+        write_atomic(path, text.as_bytes())
     }
 
     /// Reads back what [`GroundRaster::write`] wrote: the same raster, bit for bit. `Ok(None)` when there is no `maps/ground.asc`.

@@ -2,7 +2,7 @@
 
 use crate::math;
 use crate::report::axis::nice_step;
-use crate::report::input::{Point, Report};
+use crate::report::model::{Point, Report};
 use crate::report::raster::GroundRaster;
 
 /// Steps aimed at along the line.

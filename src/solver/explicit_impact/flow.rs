@@ -1,7 +1,7 @@
 //! Rates of a rock and of the springs of its contacts, wherever it is.
 
-use crate::contact::ContactPoint;
 use crate::contact::history::carry;
+use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss, TOUCH};
 use crate::solver::impact::dormand_prince::{Flow, Rates};
@@ -41,6 +41,10 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     scale: (f64, f64),
     /// Whether there were more contacts than places.
     pub(super) is_crowded: bool,
+    /// Whether the try in hand has met one face only: no patches, nothing that comes or goes.
+    pub(super) is_smooth: bool,
+    /// The one face met at the step's start; [`Feature::NONE`] if it was something else.
+    face: Option<Feature>,
     list: [Pressed; C],
     len: usize,
 }
@@ -71,7 +75,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         state: &'a mut ContactState,
         scale: (f64, f64),
     ) -> Self {
-        Self { world, state, scale, is_crowded: false, list: [Pressed::NONE; C], len: 0 }
+        let list = [Pressed::NONE; C];
+        Self { world, state, scale, is_crowded: false, is_smooth: true, face: None, list, len: 0 }
     }
 
     /// Whether rolling springs are among `N` numbers.
@@ -91,6 +96,12 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             }
         }
         y
+    }
+
+    /// Begins another try from the same state.
+    pub(super) fn begin_try(&mut self) {
+        self.state.impact.try_anew();
+        self.is_smooth = true;
     }
 
     /// Contacts at the state last asked for.
@@ -143,6 +154,12 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         let (c, v, w) = (state.c + three(y, WAY), three(y, V), three(y, W));
         state.look(world, &c, body.radius * (1.0 + TOUCH));
         let (mut dv, mut dw, mut taken) = (body.gravity, Vec3::zeros(), 0);
+        let face = match &state.touches[..] {
+            [touch] if touch.is_on_plane() => touch.feature,
+            _ => Feature::NONE,
+        };
+        let first = *self.face.get_or_insert(face);
+        self.is_smooth &= face == first && face != Feature::NONE;
         self.len = 0;
         for k in 0..state.touches.len() {
             let touch = state.touches[k];
@@ -156,7 +173,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             let (n, memory) = (touch.normal, &state.histories[place]);
             let law = world.law(touch.triangle);
             let damping = if memory.captured { law.c_n_captured } else { law.c_n };
-            let gain = if touch.gain2 == 1.0 { 1.0 } else { touch.gain2.sqrt() };
+            let gain = touch.gain2.sqrt();
             let share = gain * world.dashpot_share(&state.touches, k);
             let p_n = law.p_n * touch.gain2;
             let at = Place {

@@ -14,7 +14,7 @@ use crate::solver::law::Body;
 /// From this tolerance on a shorter series of the force is accurate enough (–).
 const COARSE: f64 = 1e-6;
 /// Local error of one step over the tolerance (–): the handful of an impact's steps then stay within about the tolerance.
-pub(super) const LOCAL: f64 = 0.3;
+pub(in crate::solver) const LOCAL: f64 = 0.3;
 /// First step at a tolerance of 1 (1/ω): the local error of order 5 is about (h/this)⁵.
 const FIRST: f64 = 3.5;
 

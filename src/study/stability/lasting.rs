@@ -1,9 +1,9 @@
 //! What shows only after long, or among many.
 
 use super::{Notes, RISE, Way, sprung};
-use crate::chance::{Purpose, stream, unit};
 use crate::ground::Ground;
 use crate::math;
+use crate::random::{Purpose, stream, unit};
 use crate::rock::{Rock, Vec3};
 use crate::simulation::{Scratch, Stop};
 use crate::solver::Scheme;
@@ -72,8 +72,8 @@ pub(super) fn random_releases(way: &Way, notes: &mut Notes) {
     let (mut lost, mut rise, mut remainder) = (0u32, 0.0f64, 0.0f64);
     let mut scratch = Scratch::default();
     for index in 0..rocks {
-        let mut chance = stream(11, Purpose::Place, index);
-        let mut between = |low: f64, high: f64| low + (high - low) * unit(&mut chance);
+        let mut random = stream(11, Purpose::Place, index);
+        let mut between = |low: f64, high: f64| low + (high - low) * unit(&mut random);
         let (x, y) = (between(60.0, 240.0), between(20.0, 60.0));
         let rock = Rock { radius_m: between(0.15, 1.0), ..ROCK };
         let ground = Ground { rolling_friction: 0.5, restitution: Some(0.4), ..GROUND };

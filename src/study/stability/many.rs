@@ -3,7 +3,7 @@
 use super::{Notes, RISE, Way, is_finite, same_bits};
 use crate::contact::pair::Strength;
 use crate::math;
-use crate::plan::{RestRule, Watch};
+use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{
@@ -28,8 +28,8 @@ fn together(
 ) -> Vec<Trajectory> {
     let step = settings(way.scheme, way.fineness, None);
     let rest = RestRule { speed_m_s: 0.02, time_s: f64::INFINITY };
-    let watch = Watch::default();
-    let course = RunSettings { terrain: on, gravity_m_s2, step: &step, rest, longest_s, watch };
+    let recorders = Recorders::default();
+    let course = RunSettings { terrain: on, gravity_m_s2, step: &step, rest, longest_s, recorders };
     let release = |&(density_kg_m3, z, up): &Sphere| Release {
         rock: Rock { radius_m: RADIUS_M, density_kg_m3 },
         motion: Motion {

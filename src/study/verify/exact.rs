@@ -4,7 +4,7 @@ use super::{Row, Verification, timed};
 use crate::contact::pair::Strength;
 use crate::error::Result;
 use crate::ground::Ground;
-use crate::plan::{RestRule, Watch};
+use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{Keep, Observer, PairMaterial, RunSettings, Trajectory, simulate_world};
@@ -94,9 +94,9 @@ fn rocks(
         capture_speed_m_s: None,
     };
     let rest = RestRule { speed_m_s: 0.02, time_s: 1.0 };
-    let watch = Watch::default();
+    let recorders = Recorders::default();
     let course =
-        RunSettings { terrain: &terrain, gravity_m_s2, step: &step, rest, longest_s, watch };
+        RunSettings { terrain: &terrain, gravity_m_s2, step: &step, rest, longest_s, recorders };
     let releases: Vec<Release> = places
         .iter()
         .zip([velocity_m_s, [0.0; 3]])

@@ -17,7 +17,7 @@ pub(super) fn hash(seed: u64, i: u64, j: u64) -> f64 {
 pub(super) fn value(seed: u64, wave_m: f64, x_m: f64, y_m: f64) -> f64 {
     let (u, v) = (x_m / wave_m, y_m / wave_m);
     let (i, j) = (u.floor(), v.floor());
-    let at = |di: i64, dj: i64| hash(seed, lattice(i, di), lattice(j, dj));
+    let at = |di: i64, dj: i64| hash(seed, map_grid(i, di), map_grid(j, dj));
     let (s, t) = (fade(u - i), fade(v - j));
     let south = at(0, 0) + s * (at(1, 0) - at(0, 0));
     let north = at(0, 1) + s * (at(1, 1) - at(0, 1));
@@ -31,7 +31,7 @@ pub(super) fn gradient(seed: u64, wave_m: f64, x_m: f64, y_m: f64) -> f64 {
     let (i, j) = (u.floor(), v.floor());
     let (a, b) = (u - i, v - j);
     let at = |di: i64, dj: i64| {
-        let (i, j) = (lattice(i, di), lattice(j, dj));
+        let (i, j) = (map_grid(i, di), map_grid(j, dj));
         hash(seed, i, j) * (a - di as f64) + hash(!seed, i, j) * (b - dj as f64)
     };
     let (s, t) = (fade(a), fade(b));
@@ -41,7 +41,7 @@ pub(super) fn gradient(seed: u64, wave_m: f64, x_m: f64, y_m: f64) -> f64 {
 }
 
 /// The number of a lattice line, negative ones wrapped around.
-fn lattice(line: f64, further: i64) -> u64 {
+fn map_grid(line: f64, further: i64) -> u64 {
     (line as i64 + further).cast_unsigned()
 }
 

@@ -2,7 +2,7 @@
 #![allow(clippy::float_cmp)]
 
 use super::*;
-use crate::terrain::grid::triangulate as lattice;
+use crate::terrain::grid::triangulate as map_grid;
 use crate::terrain::weld::{Piece, Up, weld};
 use proptest::prelude::*;
 use std::path::Path;
@@ -12,7 +12,7 @@ const SCREE: u16 = 7;
 
 /// A tilted lattice of 12 x 12 squares of 1 m.
 fn slope() -> Vec<Facet> {
-    lattice(13, 13, |column, row| {
+    map_grid(13, 13, |column, row| {
         let (x, y) = (column as f64, row as f64);
         Some(Vec3::new(x, y, 0.5 * x - 0.25 * y))
     })

@@ -1,0 +1,64 @@
+//! `rockfall calibrate`.
+
+use super::words::{of_a_trial, threads};
+use super::{bar, say};
+use clap::Args;
+use rockfall::calibrate::{self, Ends, Trial};
+use rockfall::ensemble::Ensemble;
+use rockfall::error::Result;
+use rockfall::output;
+use rockfall::scene::Scene;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct CalibrateArgs {
+    /// Scene files (TOML) with a table [calibrate]; several are fitted together, the first says what is varied
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// Folder for trials, result and fitted scenes [default: reports/<first scene's name>]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Releases of each trial
+    #[arg(long, value_name = "N", value_parser = of_a_trial, default_value = "400")]
+    releases: usize,
+    /// Worker threads [default: all cores]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+}
+
+/// Fits the ground values that the scenes name to their measured ends.
+pub(super) fn calibrate(args: &CalibrateArgs) -> Result<ExitCode> {
+    let scenes = args.scenes.iter().map(|scene| Scene::read(scene));
+    let scenes = scenes.collect::<Result<Vec<_>>>()?;
+    let name = args.scenes[0].file_stem().unwrap_or_default();
+    let out = args.out.clone().unwrap_or_else(|| Path::new("reports").join(name));
+    let bar = bar(rockfall::calibrate::planned(&scenes[0]), "trials");
+    let said = fit(&scenes, (args.releases, args.threads), &out, || bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(say(said))
+}
+
+/// Calibrates scenes together, writes all trials and the fitted scenes into `out` and says what was found.
+fn fit(
+    scenes: &[Scene],
+    (releases, threads): (usize, Option<usize>),
+    out: &Path,
+    progress: impl Fn(),
+) -> Result<String> {
+    let ensemble = Ensemble::new(threads)?;
+    let mut trials: Vec<(Ends, Trial)> = Vec::new();
+    let found = calibrate::calibrate(scenes, &ensemble, releases, &mut |ends, trial| {
+        trials.push((ends, trial.clone()));
+        progress();
+    })?;
+    let vary = scenes[0].calibrate.as_ref().map_or(&[][..], |table| &table.vary);
+    let mut fitted = Vec::new();
+    for scene in scenes {
+        let name = scene.file.file_stem().unwrap_or_default().to_string_lossy();
+        fitted.push((format!("{name}_fitted.toml"), calibrate::fitted_scene(scene, vary, &found)?));
+    }
+    output::write_calibration(out, &found, (&trials, &fitted))?;
+    let out = out.display();
+    Ok(format!("{found}all trials in {out}/calibration.csv, fitted scenes beside it"))
+}

@@ -1,0 +1,228 @@
+//! What is watched along every rock's way: evaluation lines and the cells of maps, in local coordinates.
+
+use crate::error::{Error, Result};
+use crate::math;
+use crate::rock::Vec3;
+use crate::scene::{Corner, MapsTable, ObjectTable, Polyline};
+use crate::terrain::Terrain;
+use std::path::Path;
+
+/// An evaluation line: a vertical curtain over a polyline. Or an object, which has a footprint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EvaluationLine {
+    /// Name in the results.
+    pub name: String,
+    /// Its straight pieces, one behind the other.
+    pub pieces: Vec<Piece>,
+    /// Of an object; none of a line.
+    pub footprint: Option<Footprint>,
+    low_m: Corner,
+    high_m: Corner,
+}
+
+/// What an object covers in plan view. A rock hits it when its rim comes over it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Footprint {
+    /// All within half the width (m) of the pieces.
+    Strip {
+        /// Half the width (m), 0 or more.
+        half_width_m: f64,
+    },
+    /// The inside of the pieces, which close.
+    Area,
+}
+
+/// A straight piece of a curtain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Its start (m, local).
+    pub from_m: Corner,
+    /// From its start to its end (m).
+    pub way_m: Corner,
+    /// Length of the line before it (m).
+    pub along_m: f64,
+}
+
+impl Piece {
+    /// Its length (m), positive.
+    pub fn length_m(&self) -> f64 {
+        math::hypot(self.way_m[0], self.way_m[1])
+    }
+
+    /// Distance of a point from the line through the piece (m), positive on its left.
+    pub fn side_m(&self, at_m: Corner) -> f64 {
+        let (x, y) = (at_m[0] - self.from_m[0], at_m[1] - self.from_m[1]);
+        (self.way_m[0] * y - self.way_m[1] * x) / self.length_m()
+    }
+
+    /// How far along the piece a point lies (–): 0 at its start, 1 at its end.
+    pub fn share(&self, at_m: Corner) -> f64 {
+        let (x, y) = (at_m[0] - self.from_m[0], at_m[1] - self.from_m[1]);
+        let [dx, dy] = self.way_m;
+        (x * dx + y * dy) / (dx * dx + dy * dy)
+    }
+}
+
+impl EvaluationLine {
+    /// The curtain over a line given in map coordinates.
+    pub fn new(name: &str, line: &Polyline, origin_m: Vec3) -> Self {
+        let local = |corner: &Corner| [corner[0] - origin_m.x, corner[1] - origin_m.y];
+        let corners: Vec<Corner> = line.corners_m().iter().map(local).collect();
+        let mut along_m = 0.0;
+        let mut pieces = Vec::new();
+        for pair in corners.windows(2) {
+            let way_m = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+            let piece = Piece { from_m: pair[0], way_m, along_m };
+            along_m += piece.length_m();
+            pieces.push(piece);
+        }
+        let extreme = |of: fn(f64, f64) -> f64, from: f64| {
+            corners.iter().fold([from; 2], |end, c| [of(end[0], c[0]), of(end[1], c[1])])
+        };
+        let low_m = extreme(f64::min, f64::INFINITY);
+        let high_m = extreme(f64::max, f64::NEG_INFINITY);
+        Self { name: name.to_owned(), pieces, footprint: None, low_m, high_m }
+    }
+
+    /// The curtain over the footprint of an object.
+    pub fn of_object(object: &ObjectTable, origin_m: Vec3) -> Self {
+        let outline = object.polygon_m.as_ref().and_then(|area| {
+            let corners = area.corners_m();
+            let closed: Vec<Corner> = corners.iter().chain(corners.first()).copied().collect();
+            Polyline::try_from(closed).ok()
+        });
+        let line = object.points_m.as_ref().or(outline.as_ref());
+        let half_width_m = 0.5 * object.width_m.unwrap_or(0.0);
+        let footprint = match object.polygon_m {
+            Some(_) => Footprint::Area,
+            None => Footprint::Strip { half_width_m },
+        };
+        // the scene's check has made sure that there is a line or an outline
+        let empty = Self {
+            name: object.name.clone(),
+            pieces: Vec::new(),
+            footprint: None,
+            low_m: [f64::INFINITY; 2],
+            high_m: [f64::NEG_INFINITY; 2],
+        };
+        let plain = line.map_or(empty, |line| Self::new(&object.name, line, origin_m));
+        Self {
+            footprint: Some(footprint),
+            low_m: plain.low_m.map(|low| low - half_width_m),
+            high_m: plain.high_m.map(|high| high + half_width_m),
+            ..plain
+        }
+    }
+
+    /// Distance in plan view of a point from an object's footprint (m), 0 or less over it; and where along its line or
+    /// outline (m) it is nearest.
+    pub fn gap_m(&self, footprint: Footprint, at_m: Corner) -> (f64, f64) {
+        let to_piece = |piece: &Piece| {
+            let share = piece.share(at_m).clamp(0.0, 1.0);
+            let away = [0, 1].map(|k| at_m[k] - piece.from_m[k] - share * piece.way_m[k]);
+            (math::hypot(away[0], away[1]), piece.along_m + share * piece.length_m())
+        };
+        let nearest = self.pieces.iter().map(to_piece).min_by(|a, b| a.0.total_cmp(&b.0));
+        let (distance_m, along_m) = nearest.unwrap_or((f64::INFINITY, 0.0));
+        let gap_m = match footprint {
+            Footprint::Strip { half_width_m } => distance_m - half_width_m,
+            Footprint::Area if self.encloses(at_m) => -distance_m,
+            Footprint::Area => distance_m,
+        };
+        (gap_m, along_m)
+    }
+
+    /// Whether a point lies inside closed pieces: a ray to the east crosses an odd number of them.
+    fn encloses(&self, [x, y]: Corner) -> bool {
+        let crosses = |piece: &&Piece| {
+            let ([x0, y0], [dx, dy]) = (piece.from_m, piece.way_m);
+            (y0 > y) != (y0 + dy > y) && x < x0 + (y - y0) / dy * dx
+        };
+        self.pieces.iter().filter(crosses).count() % 2 == 1
+    }
+
+    /// Its length (m).
+    pub fn length_m(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |last| last.along_m + last.length_m())
+    }
+
+    /// Its corners in map coordinates (m).
+    pub fn corners_m(&self, origin_m: Vec3) -> Vec<Corner> {
+        let end = self
+            .pieces
+            .last()
+            .map(|last| [last.from_m[0] + last.way_m[0], last.from_m[1] + last.way_m[1]]);
+        let corners = self.pieces.iter().map(|piece| piece.from_m).chain(end);
+        corners.map(|[x, y]| [x + origin_m.x, y + origin_m.y]).collect()
+    }
+
+    /// Whether a box in plan view comes near enough to be looked at.
+    #[inline]
+    pub fn is_near(&self, low_m: Corner, high_m: Corner) -> bool {
+        (0..2).all(|axis| low_m[axis] <= self.high_m[axis] && high_m[axis] >= self.low_m[axis])
+    }
+}
+
+/// The square cells of all maps. Cell 0 is the most south-western, its eastern neighbour is cell 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapGrid {
+    /// Western edge (m, local).
+    pub west_m: f64,
+    /// Southern edge (m, local).
+    pub south_m: f64,
+    /// Side of a cell (m), positive.
+    pub cell_m: f64,
+    /// Number of columns.
+    pub columns: u32,
+    /// Number of rows.
+    pub rows: u32,
+}
+
+/// Most cells of a map: what a raster file of 32-bit numbers holds without special formats.
+const MOST_CELLS: f64 = 250e6;
+
+impl MapGrid {
+    /// Cells over the whole terrain, with edges at multiples of the cell on the map.
+    ///
+    /// # Errors
+    /// A cell so small that there would be too many.
+    pub fn over(terrain: &Terrain, asked: &MapsTable, scene: &Path) -> Result<Self> {
+        let (low, high) = terrain.index.bounds();
+        let origin = terrain.origin_m;
+        let cell_m = asked.cell_m;
+        let edge = |at: f64, origin: f64| ((at + origin) / cell_m).floor() * cell_m - origin;
+        let (west_m, south_m) = (edge(low.x, origin.x), edge(low.y, origin.y));
+        let count = |from: f64, to: f64| ((to - from) / cell_m).ceil().max(1.0);
+        let (columns, rows) = (count(west_m, high.x), count(south_m, high.y));
+        if columns * rows > MOST_CELLS {
+            let found = format!("found {cell_m}, which gives {columns} x {rows} cells");
+            let least = cell_m * (columns * rows / MOST_CELLS).sqrt();
+            let remedy = format!("write {least:.1e} or more");
+            return Err(Error::input(scene, "[maps] cell_m", found, remedy));
+        }
+        Ok(Self { west_m, south_m, cell_m, columns: columns as u32, rows: rows as u32 })
+    }
+
+    /// A place in units of cells, from the south-western corner.
+    #[inline]
+    pub fn place(&self, x_m: f64, y_m: f64) -> [f64; 2] {
+        [(x_m - self.west_m) / self.cell_m, (y_m - self.south_m) / self.cell_m]
+    }
+
+    /// The cell of a column and row; none outside.
+    #[inline]
+    pub fn cell(&self, column: i64, row: i64) -> Option<u32> {
+        let inside = (0..i64::from(self.columns)).contains(&column)
+            && (0..i64::from(self.rows)).contains(&row);
+        inside.then(|| row as u32 * self.columns + column as u32)
+    }
+}
+
+/// What is watched; nothing by default.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Recorders<'a> {
+    /// Evaluation lines.
+    pub lines: &'a [EvaluationLine],
+    /// Cells of the maps.
+    pub cells: Option<&'a MapGrid>,
+}

@@ -1,0 +1,338 @@
+//! The report's numbers, gathered from the result files of a run: a report drawn again is the same report.
+
+mod annual;
+mod arrivals;
+mod barriers;
+mod lines;
+mod maps;
+mod measured;
+
+use super::model::{
+    About, BandPoint, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row, StopShare,
+    Table, Text,
+};
+use super::raster::GroundRaster;
+use super::{format, plausibility};
+use crate::error::Result;
+use crate::hazard::{self, Exceedance, Hazard, Open, PERCENTS, Percentile, Sample, StopKind};
+use crate::output::PathRow;
+use crate::output::Results;
+use crate::rock::Vec3;
+use crate::simulation::Stop;
+
+/// Quantities of the tables, with their names in the hazard.
+const TABLED: [(Quantity, hazard::Quantity); 8] = [
+    (Quantity::Runout, hazard::Quantity::Runout),
+    (Quantity::ReachAngle, hazard::Quantity::ReachAngle),
+    (Quantity::Speed, hazard::Quantity::MaxSpeed),
+    (Quantity::Translational, hazard::Quantity::MaxTranslational),
+    (Quantity::Rotational, hazard::Quantity::MaxRotational),
+    (Quantity::Total, hazard::Quantity::MaxTotal),
+    (Quantity::Height, hazard::Quantity::MaxHeight),
+    (Quantity::Impacts, hazard::Quantity::Impacts),
+];
+
+/// Gathers the report of a finished run.
+///
+/// # Errors
+/// A result file that cannot be read.
+pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report> {
+    let hazard = &results.hazard;
+    let releases =
+        results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
+    let lines = lines::lines(results, ground.as_ref())?;
+    let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
+    let mut report = Report {
+        text: text_of(results),
+        releases,
+        paths: paths_of(results)?,
+        runout_exceedance: band(&hazard.sample(hazard::Quantity::Runout).exceedance()),
+        quantiles: TABLED.map(|(here, there)| (here, quantiles(hazard, there))).into(),
+        stops: StopKind::ALL
+            .into_iter()
+            .filter(|kind| !kind.is_unusual() || hazard.ended(*kind).count > 0)
+            .map(|kind| stop_share(hazard, kind))
+            .collect(),
+        headline: headline(hazard),
+        arrivals: arrivals::tables(results, &order),
+        zone: results.summary.site.release.clone(),
+        further_zones: results.summary.site.further_releases.clone(),
+        marks: lines::marks(results),
+        tables: [table(hazard)]
+            .into_iter()
+            .chain(annual::tables(results))
+            .chain(lines::tables(results))
+            .chain(barriers::tables(results, ground.as_ref()))
+            .chain(measured::tables(results)?)
+            .collect(),
+        lines,
+        annual: annual::views(results),
+        has_view: false,
+        barriers: barriers::views(results, ground.as_ref())?,
+        maps: maps::maps(results)?,
+        observed: measured::observed(results)?,
+        ground,
+        checks: Vec::new(),
+    };
+    report.checks = plausibility::checks(&report, results);
+    let failed = report.checks.iter().filter(|check| !check.passes);
+    let failed: Vec<String> =
+        failed.map(|check| format!("{}: {}", check.name, check.found)).collect();
+    report.text.warnings = [warnings_first(hazard), report.text.warnings, failed].concat();
+    Ok(report)
+}
+
+/// What rocks that left the terrain do to the numbers, before anything else.
+pub(super) fn warnings_first(hazard: &Hazard) -> Vec<String> {
+    let left = hazard.ended(StopKind::LeftTerrain);
+    let late = hazard.ended(StopKind::TimeUp);
+    let said = |share: &hazard::Proportion, what: &str, remedy: &str| {
+        format!(
+            "{} of {} rocks ({}) {what}: their runout is a lower and their reach angle an upper bound, and so is every percentile that they decide (≥, ≤; no interval on that side). {remedy}",
+            format::decimal(share.count as f64, 0),
+            format::decimal(share.of as f64, 0),
+            format::percent(share.share, usize::from(share.share < 0.1)),
+        )
+    };
+    let left = (left.count > 0).then(|| {
+        said(&left, "left the terrain", "Give terrain that reaches farther if they matter.")
+    });
+    let late = (late.count > 0).then(|| {
+        said(&late, "were still moving when their time was up", "Give a longer [solver] longest_s.")
+    });
+    let spent = hazard.ended(StopKind::OverBudget);
+    let spent = (spent.count > 0).then(|| {
+        said(
+            &spent,
+            "were still moving when their budget of work was spent",
+            "Ask why: see how the rocks ended.",
+        )
+    });
+    left.into_iter().chain(late).chain(spent).collect()
+}
+
+/// The exceedance curve with its band upright: the intervals of the percentiles lie along x, figures want them along y.
+fn band(curve: &[Exceedance]) -> Vec<BandPoint> {
+    let low: Vec<(f64, f64)> = curve.iter().filter_map(|at| Some((at.low_95?, at.share))).collect();
+    let high: Vec<(f64, f64)> =
+        curve.iter().filter_map(|at| Some((at.high_95?, at.share))).collect();
+    let point = |at: &Exceedance| BandPoint {
+        x: at.value,
+        y: Estimate::new(at.share, share_at(&low, at.value), share_at(&high, at.value)),
+    };
+    // where rocks that left the terrain decide, there is no curve
+    curve.iter().filter(|at| !at.censored).map(point).collect()
+}
+
+/// Share at `x` on a curve of points that rise in x and fall in share: 1 before the curve, 0 after it.
+fn share_at(curve: &[(f64, f64)], x: f64) -> f64 {
+    let k = curve.partition_point(|&(value, _)| value < x);
+    match (k.checked_sub(1).and_then(|before| curve.get(before)), curve.get(k)) {
+        (Some(&(x0, y0)), Some(&(x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+        (None, Some(_)) => 1.0,
+        _ => 0.0,
+    }
+}
+
+fn estimate(value: f64, low: Option<f64>, high: Option<f64>) -> Estimate {
+    Estimate::new(value, low.unwrap_or(f64::NAN), high.unwrap_or(f64::NAN))
+}
+
+/// A percentile of so many rocks, whose true values may be open on one side; too few rocks give none.
+fn of_percentile(found: &Percentile, (rocks, open): (usize, Option<Open>)) -> Estimate {
+    if rocks < found.needs {
+        return Estimate::lacking(found.needs - rocks);
+    }
+    let is = match (found.censored, open) {
+        (true, Some(Open::Below)) => Is::AtMost,
+        (true, _) => Is::AtLeast,
+        (false, _) => Is::Value,
+    };
+    Estimate { is, ..estimate(found.value, found.low_95, found.high_95) }
+}
+
+/// Percentile `p` (0..1) of a sample whose true values may be open on one side; none of nothing.
+fn percentile_of(sample: &Sample, p: f64, open: Option<Open>) -> Option<Estimate> {
+    Some(of_percentile(&sample.percentile(p)?, (sample.values().len(), open)))
+}
+
+fn stop_of(kind: StopKind) -> Stop {
+    match kind {
+        StopKind::AtRest => Stop::AtRest,
+        StopKind::LeftTerrain => Stop::LeftTerrain,
+        StopKind::TimeUp => Stop::TimeUp,
+        StopKind::OverBudget => Stop::OverBudget,
+        StopKind::NotReleased => Stop::NotReleased(""),
+        StopKind::Failed => Stop::Failed(String::new()),
+    }
+}
+
+fn fall_of(row: &hazard::Row) -> Fall {
+    Fall {
+        stop: stop_of(row.stop),
+        runout_m: row.runout_m,
+        drop_m: row.drop_m,
+        reach_angle_deg: row.reach_angle_deg,
+        max_speed_m_s: row.max_speed_m_s,
+        max_translational_j: row.max_translational_j,
+        max_rotational_j: row.max_rotational_j,
+        max_total_j: row.max_total_j,
+        max_height_m: row.max_height_m,
+        impacts: row.impacts,
+        tree_impacts: row.tree_impacts,
+        start_m: row.start_m,
+        end_m: row.end_m,
+    }
+}
+
+fn paths_of(results: &Results) -> Result<Vec<Path>> {
+    let mut paths: Vec<Path> = Vec::new();
+    for row in results.paths()? {
+        let row: PathRow = row?;
+        if paths.last().is_none_or(|path| path.index != row.index) {
+            paths.push(Path { index: row.index, points: Vec::new() });
+        }
+        if let Some(path) = paths.last_mut() {
+            path.points.push(Point {
+                time_s: row.time_s,
+                place_m: row.position_m,
+                speed_m_s: Vec3::from(row.velocity_m_s).norm(),
+                clearance_m: row.clearance_m,
+                state: row.state,
+            });
+        }
+    }
+    Ok(paths)
+}
+
+fn quantiles(hazard: &Hazard, quantity: hazard::Quantity) -> Vec<Quantile> {
+    let sample = hazard.sample(quantity);
+    let one = |percent: u8| {
+        let probability = f64::from(percent) / 100.0;
+        let at = percentile_of(&sample, probability, quantity.open())?;
+        at.value.is_finite().then_some(Quantile { probability, at })
+    };
+    PERCENTS.into_iter().filter_map(one).collect()
+}
+
+fn stop_share(hazard: &Hazard, kind: StopKind) -> StopShare {
+    let ended = hazard.ended(kind);
+    let share = estimate(ended.share, Some(ended.low_95), Some(ended.high_95));
+    StopShare { stop: stop_of(kind), count: ended.count, share }
+}
+
+/// What an engineer asks first: the middle and the far end of runout, and the design values of the rest.
+pub(super) fn headline(hazard: &Hazard) -> Vec<Row> {
+    use hazard::Quantity::{MaxHeight, MaxSpeed, MaxTotal, MaxTranslational, ReachAngle, Runout};
+    let asked = [
+        ("Runout, 50 %", Runout, 0.50, "m"),
+        ("Runout, 95 %", Runout, 0.95, "m"),
+        ("Runout, 99 %", Runout, 0.99, "m"),
+        ("Reach angle, 50 %", ReachAngle, 0.50, "°"),
+        ("Maximum speed, 95 %", MaxSpeed, 0.95, "m/s"),
+        ("Maximum translational energy, 95 %", MaxTranslational, 0.95, "J"),
+        ("Maximum total energy, 95 %", MaxTotal, 0.95, "J"),
+        ("Maximum bounce height, 95 %", MaxHeight, 0.95, "m"),
+    ];
+    let row = |(name, quantity, p, unit): (&str, hazard::Quantity, f64, &str)| {
+        let estimate = percentile_of(&hazard.sample(quantity), p, quantity.open())?;
+        Some(Row { name: name.to_owned(), estimate, unit: unit.to_owned() })
+    };
+    asked.into_iter().filter_map(row).collect()
+}
+
+fn table(hazard: &Hazard) -> Table {
+    let rows = TABLED.map(|(here, there)| (here.name(), here, hazard.sample(there), there.open()));
+    let rocks = hazard.rocks();
+    let note = format!(
+        "Conditional on release, over {} {}. Percentiles with 95 % intervals ({}); an end that the sample is too small for is left open.",
+        format::decimal(rocks as f64, 0),
+        format::counted(rocks, "rock", "rocks"),
+        if hazard.weights().is_some() {
+            "weighted by what each rock stands for, Woodruff's"
+        } else {
+            "distribution-free, order statistics"
+        }
+    );
+    statistics_table("Statistics over all releases", note, &rows)
+}
+
+/// What a row of a table of statistics is made from: name, the quantity whose unit it has, values, and on which side
+/// true values may lie.
+type StatisticsRow<'a> = (&'a str, Quantity, Sample, Option<Open>);
+
+/// A table of mean, percentiles and maximum; energies all in one unit.
+fn statistics_table(title: &str, note: String, rows: &[StatisticsRow<'_>]) -> Table {
+    let percents = PERCENTS.map(|percent| format!("{percent}\u{2009}%"));
+    let columns =
+        ["mean".to_owned()].into_iter().chain(percents).chain(["maximum".to_owned()]).collect();
+    let largest = |sample: &Sample| sample.values().last().copied().unwrap_or(0.0);
+    let energies = rows.iter().filter(|(_, like, ..)| like.is_energy());
+    let most_j = energies.map(|(.., sample, _)| largest(sample)).fold(0.0, f64::max);
+    let rows = rows.iter().map(|(name, like, sample, open)| {
+        let (unit, size) = like.unit(if like.is_energy() { most_j } else { largest(sample) });
+        let is = match (sample.bounds() > 0, open) {
+            (true, Some(Open::Below)) => Is::AtMost,
+            (true, _) => Is::AtLeast,
+            (false, _) => Is::Value,
+        };
+        let mean = sample
+            .mean()
+            .map(|mean| Estimate { is, ..estimate(mean.value, mean.low_95, mean.high_95) });
+        let most = sample.values().last().map(|&most| Estimate { is, ..Estimate::plain(most) });
+        let middle =
+            PERCENTS.map(|percent| percentile_of(sample, f64::from(percent) / 100.0, *open));
+        let cells = [mean].into_iter().chain(middle).chain([most]);
+        let name = if unit.is_empty() { (*name).to_owned() } else { format!("{name} ({unit})") };
+        (name, cells.map(|cell| cell.map(|x| x.over(size))).collect())
+    });
+    let about = About::Rocks;
+    Table { title: title.to_owned(), note, columns, rows: rows.collect(), about }
+}
+
+/// Warnings that concern rocks above a speed, where some came so fast.
+fn fast_warnings(results: &Results) -> Vec<String> {
+    let speeds = results.hazard.sample(hazard::Quantity::MaxSpeed);
+    let fastest = speeds.values().last().copied().unwrap_or(0.0);
+    let all = &results.summary.site.fast_warnings;
+    all.iter().filter(|one| fastest > one.above_m_s).map(|one| one.text.clone()).collect()
+}
+
+fn text_of(results: &Results) -> Text {
+    let summary = &results.summary;
+    let lines = |value: &serde_json::Value| -> Vec<String> {
+        let table = value.get("table").and_then(serde_json::Value::as_array);
+        table.into_iter().flatten().filter_map(|line| line.as_str().map(str::to_owned)).collect()
+    };
+    // The plan's lines are a name and what is said of it.
+    let planned = |name: &str| {
+        let said = |line: &String| line.strip_prefix(name).map(|rest| rest.trim().to_owned());
+        summary.plan.iter().find_map(said).unwrap_or_default()
+    };
+    Text {
+        title: summary.title.clone(),
+        subtitle: planned("file "),
+        scheme: format!("Scheme in force: {}.", planned("scheme ")),
+        title_block: summary.title_block.clone(),
+        inputs: summary.inputs.clone(),
+        terrain_source: [summary.sources[0].clone(), planned("terrain ")]
+            .into_iter()
+            .filter(|words| !words.is_empty())
+            .collect::<Vec<_>>()
+            .join("; "),
+        parameter_source: summary.sources[1].clone(),
+        plan: summary.plan.clone(),
+        warnings: [
+            &summary.warnings[..],
+            &fast_warnings(results)[..],
+            &summary.totals.warnings(results.hazard.rocks()),
+        ]
+        .concat(),
+        mesh_health: lines(&summary.mesh_health),
+        seed: summary.identity.seed,
+        version: summary.identity.version.clone(),
+        scene_hash: summary.identity.scene_hash.clone(),
+        rate_per_s: Some(summary.run.releases_per_second),
+        energy_remainder: summary.largest_energy_balance_error.map(|largest| largest.value),
+    }
+}

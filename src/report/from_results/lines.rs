@@ -1,0 +1,230 @@
+//! Lines of the report, gathered from the summary and the crossings.
+
+use super::super::format;
+use super::super::model::{
+    About, BandPoint, Behind, Estimate, Line, LinePoint, MapMark, Quantile, Quantity, Table,
+};
+use super::super::raster::GroundRaster;
+use super::{estimate, percentile_of, statistics_table};
+use crate::error::Result;
+use crate::frequency::Weights;
+use crate::hazard::{
+    self, Barrier, CrossingRow, LineQuantity, PERCENTS, Proportion, Residual, Sample,
+};
+use crate::output::Results;
+
+/// Quantities of a line's table: name, and the quantity of a release with the same unit.
+const TABLED: [(LineQuantity, &str, Quantity); 7] = [
+    (LineQuantity::Speed, "Speed", Quantity::Speed),
+    (LineQuantity::Translational, "Translational energy", Quantity::Translational),
+    (LineQuantity::Rotational, "Rotational energy", Quantity::Rotational),
+    (LineQuantity::Total, "Total energy", Quantity::Total),
+    (LineQuantity::Height, "Height, vertical", Quantity::Height),
+    (LineQuantity::HeightNormal, "Height, normal to slope", Quantity::Height),
+    (LineQuantity::Descent, "Descent of the path", Quantity::ReachAngle),
+];
+/// Points of a curve of exceedance: more than there are pixels.
+const POINTS: usize = 400;
+
+/// The lines of the scene with their numbers in it, from 1: other places of barriers stand with the barriers.
+pub(super) fn shown(results: &Results) -> impl Iterator<Item = (usize, &hazard::Line)> {
+    let own = results.lines.iter().filter(|line| !line.info.of_barrier);
+    own.enumerate().map(|(k, line)| (k + 1, line))
+}
+
+/// Objects stand with what a year brings.
+fn is_object(results: &Results, name: &str) -> bool {
+    results.summary.asked.objects.iter().any(|object| object.name == name)
+}
+
+/// The barrier on a line, if one stands there.
+fn barrier_on<'a>(results: &'a Results, name: &str) -> Option<&'a Barrier> {
+    let mut barriers = results.summary.barriers.iter().map(|one| &one.barrier);
+    barriers.find(|barrier| barrier.name == name)
+}
+
+/// Lines and barriers on the map.
+pub(super) fn marks(results: &Results) -> Vec<MapMark> {
+    let mark = |(_, line): (usize, &hazard::Line)| MapMark {
+        name: line.info.name.clone(),
+        corners_m: line.info.corners_m.clone(),
+        barrier: barrier_on(results, &line.info.name).map(|b| (b.height_m, b.capacity_j)),
+    };
+    shown(results).map(mark).collect()
+}
+
+/// All lines with their first crossings, in downslope order.
+pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<Vec<Line>> {
+    let releases = results.hazard.rocks();
+    let elevation = |corners: &[[f64; 2]]| ground.map_or(f64::NAN, |g| mean_height(g, corners));
+    let mut lines: Vec<Line> = shown(results)
+        .filter(|(_, line)| !is_object(results, &line.info.name))
+        .map(|(number, line)| Line {
+            number,
+            is_barrier: barrier_on(results, &line.info.name).is_some(),
+            elevation_m: elevation(&line.info.corners_m),
+            ..empty(line, releases)
+        })
+        .collect();
+    let weights = results.hazard.weights().unwrap_or_else(|| Weights::equal(releases));
+    let barriers: Vec<Barrier> =
+        results.summary.barriers.iter().map(|one| one.barrier.clone()).collect();
+    let mut rock: Vec<CrossingRow> = Vec::new();
+    for row in results.crossings()? {
+        let row = row?;
+        if rock.first().is_some_and(|first| first.index != row.index) {
+            take(&barriers, &mut rock, &mut lines);
+        }
+        rock.push(row);
+    }
+    take(&barriers, &mut rock, &mut lines);
+    for line in &mut lines {
+        let residual = results.summary.residual.iter().find(|at| at.line == line.name);
+        line.behind =
+            residual.filter(|at| !at.behind.is_empty()).map(|at| behind(line, at, &weights));
+        let all = || line.crossings.iter();
+        line.energy_exceedance = exceedance(all().map(energy), &weights);
+        line.height_exceedance = exceedance(all().map(height), &weights);
+    }
+    // stable: lines without ground keep the order of the scene, behind the others
+    let key =
+        |line: &Line| if line.elevation_m.is_nan() { f64::NEG_INFINITY } else { line.elevation_m };
+    lines.sort_by(|a, b| key(b).total_cmp(&key(a)));
+    Ok(lines)
+}
+
+fn take(barriers: &[Barrier], rock: &mut Vec<CrossingRow>, lines: &mut [Line]) {
+    let passes = hazard::unstopped(barriers, rock);
+    for (row, passes) in rock.drain(..).zip(passes) {
+        if let Some(line) = lines.iter_mut().find(|line| line.name == row.line) {
+            line.crossings.push(LinePoint {
+                release: row.index,
+                along_m: row.along_m,
+                height_m: row.height_m,
+                total_j: row.total_j(),
+                passes,
+            });
+        }
+    }
+}
+
+/// Release and total energy (J) of a crossing.
+fn energy(at: &LinePoint) -> (usize, f64) {
+    (at.release, at.total_j)
+}
+
+/// Release and height without what a rock presses into the ground (m); NaN where there is no ground.
+fn height(at: &LinePoint) -> (usize, f64) {
+    (at.release, if at.height_m < 0.0 { 0.0 } else { at.height_m })
+}
+
+fn behind(line: &Line, at: &Residual, weights: &Weights) -> Behind {
+    let passing = || line.crossings.iter().filter(|at| at.passes);
+    Behind {
+        barriers: at.behind.clone(),
+        reach: of_share(&at.with.reach),
+        energy_exceedance: exceedance(passing().map(energy), weights),
+        height_exceedance: exceedance(passing().map(height), weights),
+    }
+}
+
+/// Mean height of the ground along a line (m); NaN where there is none.
+fn mean_height(ground: &GroundRaster, corners: &[[f64; 2]]) -> f64 {
+    let pieces = corners.windows(2).flat_map(|pair| {
+        (0..=20).map(move |k| {
+            let share = f64::from(k) / 20.0;
+            [0, 1].map(|axis| pair[0][axis] + share * (pair[1][axis] - pair[0][axis]))
+        })
+    });
+    let heights: Vec<f64> =
+        pieces.map(|[x, y]| ground.height_at(x, y)).filter(|z| z.is_finite()).collect();
+    heights.iter().sum::<f64>() / heights.len() as f64
+}
+
+/// Share of all releases above each of some values, by what each stands for, with Wilson's interval.
+fn exceedance(values: impl Iterator<Item = (usize, f64)>, weights: &Weights) -> Vec<BandPoint> {
+    let mut sorted: Vec<(usize, f64)> = values.filter(|(_, value)| value.is_finite()).collect();
+    sorted.sort_by(|one, other| one.1.total_cmp(&other.1));
+    let stride = sorted.len().div_ceil(POINTS).max(1);
+    let last = sorted.len().checked_sub(1);
+    let ranks = (0..sorted.len()).step_by(stride).chain(last);
+    let share = |above: &[(usize, f64)]| {
+        of_share(&hazard::share_of(weights, above.iter().map(|(release, _)| *release)))
+    };
+    let point = |rank: usize| BandPoint { x: sorted[rank].1, y: share(&sorted[rank + 1..]) };
+    let first = sorted.first().map(|_| BandPoint { x: 0.0, y: share(&sorted) });
+    first.into_iter().chain(ranks.map(point)).collect()
+}
+
+/// A share with its interval.
+pub(super) fn of_share(share: &Proportion) -> Estimate {
+    estimate(share.share, Some(share.low_95), Some(share.high_95))
+}
+
+fn empty(line: &hazard::Line, releases: usize) -> Line {
+    let (energy, height) = (line.sample(LineQuantity::Total), line.sample(LineQuantity::Height));
+    Line {
+        name: line.info.name.clone(),
+        number: 0,
+        is_barrier: false,
+        elevation_m: f64::NAN,
+        length_m: line.info.length_m,
+        releases,
+        reach: of_share(&line.reach(releases)),
+        crossing_again: line.crossing_again(),
+        crossings: Vec::new(),
+        energy_quantiles: quantiles(&energy),
+        height_quantiles: quantiles(&height),
+        energy_exceedance: Vec::new(),
+        height_exceedance: Vec::new(),
+        behind: None,
+    }
+}
+
+fn quantiles(sample: &Sample) -> Vec<Quantile> {
+    let one = |percent: &u8| {
+        let probability = f64::from(*percent) / 100.0;
+        let at = percentile_of(sample, probability, None)?;
+        at.value.is_finite().then_some(Quantile { probability, at })
+    };
+    PERCENTS.iter().filter_map(one).collect()
+}
+
+/// One table a line that rocks cross.
+pub(super) fn tables(results: &Results) -> Vec<Table> {
+    let releases = results.hazard.rocks();
+    let table = |(_, line): (usize, &hazard::Line)| {
+        let reach = line.reach(releases);
+        if reach.count == 0 {
+            return None;
+        }
+        let percent = |share: f64| format::percent(share, 2);
+        let count = |n: usize| format::decimal(n as f64, 0);
+        let object = is_object(results, &line.info.name);
+        let [what, verb, verbs, one] = if object {
+            ["Object", "hits it", "hit it", "touch"]
+        } else {
+            ["Evaluation line", "crosses", "cross", "crossing"]
+        };
+        let again = line.crossing_again();
+        let again = if object {
+            String::new()
+        } else {
+            let verb = format::counted(again, "crosses", "cross");
+            format!("; {} {verb} more than once", count(again))
+        };
+        let note = format!(
+            "Conditional on release: {} of {} releases {}, reach probability {} ({} to {}){again}. Values at the first {one}.",
+            count(reach.count),
+            count(releases),
+            format::counted(reach.count, verb, verbs),
+            percent(reach.share),
+            percent(reach.low_95),
+            percent(reach.high_95),
+        );
+        let rows = TABLED.map(|(quantity, name, like)| (name, like, line.sample(quantity), None));
+        let title = format!("{what} “{}”", line.info.name);
+        Some(Table { about: About::Lines, ..statistics_table(&title, note, &rows) })
+    };
+    shown(results).filter_map(table).collect()
+}

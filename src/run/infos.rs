@@ -1,0 +1,104 @@
+//! What the results need to know of a plan: where things stand, lines, barriers, maps.
+
+use crate::error::{Error, Result};
+use crate::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
+use crate::output::{Site, Zone};
+use crate::plan::{self, EvaluationLine, Plan};
+use crate::release::Where;
+use crate::scene::{self, Area, BarrierTable, DesignTable, Polyline, ZonePlace};
+
+/// Where meshes and releases lie.
+pub(super) fn site(plan: &Plan) -> Site {
+    let mut zones = plan.releases.places().iter().flat_map(zones);
+    Site {
+        mesh_origin_m: plan.mesh_origin_m,
+        release: zones.next().unwrap_or_default(),
+        further_releases: zones.collect(),
+        fast_warnings: plan.fast_warnings.clone(),
+    }
+}
+
+/// Outlines of a place of release.
+fn zones(place: &Where) -> Vec<Zone> {
+    let line = |line: &Polyline| Zone::Line(line.corners_m().to_vec());
+    let area = |area: &Area| Zone::Polygon(area.corners_m().to_vec());
+    let drawn = |one: &scene::Zone| match &one.place {
+        ZonePlace::Points(points) => vec![Zone::Points(points.clone())],
+        ZonePlace::Lines(lines) => lines.iter().map(line).collect(),
+        ZonePlace::Areas(areas) => areas.iter().map(area).collect(),
+    };
+    match place {
+        Where::Points(points) => {
+            vec![Zone::Points(points.iter().map(|point| point.at_m).collect())]
+        }
+        Where::Line(one) => vec![line(one)],
+        Where::Area(one) => vec![area(one)],
+        Where::Zones(zones) => zones.list().iter().flat_map(drawn).collect(),
+    }
+}
+
+pub(super) fn line_infos(plan: &Plan) -> Vec<LineInfo> {
+    let plan::Part::Kept(tables) = &plan.barriers else { return infos(plan, &[]) };
+    let moved: Vec<String> =
+        tables.iter().flat_map(BarrierTable::elsewhere).map(|(_, name, _)| name).collect();
+    infos(plan, &moved)
+}
+
+/// All lines; the `moved` ones are other places of barriers.
+fn infos(plan: &Plan, moved: &[String]) -> Vec<LineInfo> {
+    let info = |line: &EvaluationLine| LineInfo {
+        name: line.name.clone(),
+        length_m: line.length_m(),
+        corners_m: line.corners_m(plan.terrain.origin_m),
+        of_barrier: moved.contains(&line.name),
+    };
+    plan.recorders().lines.iter().map(info).collect()
+}
+
+pub(super) fn barriers(plan: &Plan) -> Vec<Barrier> {
+    let plan::Part::Kept(tables) = &plan.barriers else { return Vec::new() };
+    let rule = |rule: &DesignTable| Rule {
+        standard: rule.standard().map(str::to_owned),
+        percentile: rule.percentile(),
+        speed_factors: rule.speed_factors(),
+        mass_factors: rule.mass_factors.clone(),
+        height_factors: rule.height_factors(),
+        free_height_m: rule.free_height_m,
+        free_distance_m: rule.free_distance_m(),
+    };
+    let barrier = |table: &BarrierTable| Barrier {
+        name: table.name.clone(),
+        height_m: table.height_m,
+        capacity_j: table.capacity_j,
+        design: table.design.as_ref().map(rule),
+        elsewhere: table
+            .elsewhere()
+            .map(|(offset_m, line, _)| Elsewhere { offset_m, line })
+            .collect(),
+    };
+    tables.iter().map(barrier).collect()
+}
+
+pub(super) fn map_frame(plan: &Plan) -> Option<MapFrame> {
+    let cells = plan.recorders().cells?;
+    // edges lie at multiples of the cell: the digits that the origin cost come back
+    let whole = |edge_m: f64| (edge_m / cells.cell_m).round() * cells.cell_m;
+    Some(MapFrame {
+        west_m: whole(cells.west_m + plan.terrain.origin_m.x),
+        south_m: whole(cells.south_m + plan.terrain.origin_m.y),
+        cell_m: cells.cell_m,
+        columns: cells.columns,
+        rows: cells.rows,
+        epsg: plan.epsg,
+    })
+}
+
+/// Health of the meshes as the summary has it: figures, and the table as it is printed. Null where the plan was compiled on
+/// a terrain that was not read from files.
+pub(super) fn mesh_health(plan: &Plan) -> Result<serde_json::Value> {
+    let Some(health) = &plan.mesh_health else { return Ok(serde_json::Value::Null) };
+    let mut value = serde_json::to_value(health)
+        .map_err(|error| Error::Request(format!("the mesh health cannot be written: {error}")))?;
+    value["table"] = health.to_string().lines().collect();
+    Ok(value)
+}

@@ -1,0 +1,61 @@
+//! What a plan asks of the year, as the results need it.
+
+use crate::error::{Error, Result};
+use crate::hazard::{Asked, Matrix, Object, Vehicles};
+use crate::plan::{self, Plan};
+use crate::scene::{MatrixTable, ObjectTable};
+
+/// What is asked of the year.
+pub(super) fn asked(plan: &Plan) -> Asked {
+    let plan::Part::Kept(tables) = &plan.objects else {
+        return Asked { objects: Vec::new(), ..asked_of_sources(plan) };
+    };
+    let object = |table: &ObjectTable| {
+        let outline = table.polygon_m.as_ref().map(|area| area.corners_m().to_vec());
+        let line = table.points_m.as_ref().map(|line| line.corners_m().to_vec());
+        Object {
+            name: table.name.clone(),
+            corners_m: line.or(outline).unwrap_or_default(),
+            width_m: table.width_m,
+            occupancy: table.occupancy,
+            vulnerability: table.vulnerability,
+            persons: table.persons,
+            vehicles: table.vehicles.map(|one| Vehicles {
+                per_day: one.per_day,
+                speed_km_h: one.speed_km_h,
+                length_m: one.length_m,
+                own_per_day: one.own_per_day,
+            }),
+        }
+    };
+    Asked { objects: tables.iter().map(object).collect(), ..asked_of_sources(plan) }
+}
+
+fn asked_of_sources(plan: &Plan) -> Asked {
+    let plan::Part::Kept(year) = &plan.year else { return Asked::default() };
+    let matrix = |table: &MatrixTable| Matrix {
+        name: table.name.clone(),
+        source: table.source.clone(),
+        energies_j: table.energies_j.clone(),
+        return_periods_years: table.return_periods_years.clone(),
+        levels: table.levels.clone(),
+    };
+    Asked {
+        frequency: Some(year.frequency.clone()),
+        objects: Vec::new(),
+        matrix: year.matrix.as_ref().map(matrix),
+        most_j: year.most_j.clone(),
+    }
+}
+
+/// Refuses to aim at an interval that does not know of weights.
+pub(super) fn allows(plan: &Plan, targets: bool) -> Result<()> {
+    let plan::Part::Kept(year) = &plan.year else { return Ok(()) };
+    if !targets || year.frequency.weights(plan.count).are_equal() {
+        return Ok(());
+    }
+    Err(Error::Request(
+        "--until: found sizes that are sampled by importance ([frequency] with volumes), and the aim takes all rocks alike; write --releases N instead"
+            .to_owned(),
+    ))
+}

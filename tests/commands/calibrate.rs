@@ -1,0 +1,230 @@
+//! A calibration finds values that are known, says how far it knows them, and writes the scene that has them.
+#![allow(clippy::unwrap_used, reason = "a test that cannot run the program has failed")]
+
+use crate::program;
+
+use program::rockfall;
+use rockfall::hazard::Way;
+use rockfall::output::read_calibration;
+use rockfall::release::Releases;
+use rockfall::rock::Vec3;
+use rockfall::scene::Scene;
+use rockfall::terrain::stl::write_ascii;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn word(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// A level square of 80 m.
+fn plate(dir: &Path) {
+    let p = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+    let corners = [p(-40.0, -40.0), p(40.0, -40.0), p(40.0, 40.0), p(-40.0, 40.0)];
+    let facets = [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
+    write_ascii(&dir.join("plate.stl"), "plate", &facets).unwrap();
+}
+
+/// Rocks thrown along a level: how far they roll tells their rolling friction, and next to nothing of restitution.
+fn thrown(dir: &Path, name: &str, speed: [f64; 2], more: &str) -> PathBuf {
+    plate(dir);
+    let text = format!(
+        r#"title = "{name}"
+seed = 4
+[[terrain]]
+mesh = "plate.stl"
+ground = "meadow"
+[grounds.meadow]
+normal_stiffness_n_m = 1e7
+shear_stiffness_n_m = 2.5e6
+friction_angle_deg = 35.0
+restitution = 0.3   # a remark that stays
+rolling_friction = 0.45
+[rocks]
+density_kg_m3 = 2700.0
+radius_m = {{ uniform = [0.15, 0.25] }}
+[release]
+count = 40
+height_m = 0.0
+velocity_m_s = [{{ uniform = {speed:?} }}, {{ uniform = [-0.5, 0.5] }}, 0.0]
+spin_rad_s = [0.0, 0.0, 0.0]
+points_m = [[-30.0, 0.0], [-30.0, 2.0]]
+{more}
+"#
+    );
+    let file = dir.join(format!("{name}.toml"));
+    fs::write(&file, text).unwrap();
+    file
+}
+
+/// Runs a scene and writes its ends as if they were measured; each block thrown twice.
+fn measure(scene: &Path, seed: &str) -> PathBuf {
+    let out = scene.with_extension("out");
+    let done = rockfall(&["run", word(scene), "--quiet", "--seed", seed, "--out", word(&out)]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let mut text = "release_x_m,release_y_m,x_m,y_m,block\n".to_owned();
+    for (number, row) in
+        fs::read_to_string(out.join("releases.csv")).unwrap().lines().skip(1).enumerate()
+    {
+        let cells: Vec<&str> = row.split(',').collect();
+        let [from_x, from_y, x, y] = [5, 6, 8, 9].map(|at| cells[at]);
+        writeln!(text, "{from_x},{from_y},{x},{y},{}", number / 2).unwrap();
+    }
+    let ends = scene.with_extension("csv");
+    fs::write(&ends, text).unwrap();
+    ends
+}
+
+/// Two scenes whose true rolling friction is known are fitted together.
+#[test]
+fn a_known_value_is_found_and_an_idle_one_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let names = [("slow", [3.0, 5.0], "11"), ("fast", [5.0, 7.0], "12")];
+    let scenes = names.map(|(name, speed, seed)| {
+        let scene = thrown(dir.path(), name, speed, "");
+        let ends = measure(&scene, seed);
+        let vary = r#"vary = [
+    { ground = "meadow", key = "rolling_friction", from = 0.2, to = 0.8, before = 0.7 },
+    { ground = "meadow", key = "restitution", from = 0.1, to = 0.5, before = 0.3 },
+]"#;
+        let more = format!("[calibrate]\ndeposits = {:?}\n{vary}", ends.file_name().unwrap());
+        thrown(dir.path(), name, speed, &more)
+    });
+    let out = dir.path().join("fit");
+    let args =
+        ["calibrate", word(&scenes[0]), word(&scenes[1]), "--releases", "40", "--out", word(&out)];
+    let done = rockfall(&args);
+    let said = String::from_utf8(done.stdout).unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let found = read_calibration(&out).unwrap().unwrap();
+    let [rolling, restitution] = &found.told[..] else { panic!("{:?}", found.told) };
+    // the interval is that of the values tried: at the ends half a step of the last grid wider
+    let step = 0.5 * (0.6 / 5.0) * 2.0 / 4.0;
+    assert!(rolling.low_95 - step <= 0.45 && 0.45 <= rolling.high_95 + step, "{said}");
+    assert!(rolling.is_told && rolling.high_95 - rolling.low_95 < 0.25, "{said}");
+    assert!(!restitution.is_told, "{said}");
+    assert!(said.contains("meadow.restitution") && said.contains("hardly tell it"), "{said}");
+    let whole = found.whole.unwrap();
+    assert!(whole.all.ks < whole.all.ks_limit && found.before.all.ks > 1.3 * whole.all.ks);
+    assert_eq!(found.ends.0, 80);
+    assert!(found.measures.iter().any(|m| m.what.starts_with("share past") && m.scene == "fast"));
+    // the scene that has the values, with everything else as it was
+    for name in ["slow", "fast"] {
+        let fitted = out.join(format!("{name}_fitted.toml"));
+        let text = fs::read_to_string(&fitted).unwrap();
+        assert!(text.contains("# a remark that stays"), "{text}");
+        let scene = Scene::read(&fitted).unwrap();
+        let rolling = scene.grounds["meadow"].rolling_friction.as_ref().unwrap();
+        assert!((rolling.as_fixed().unwrap() - whole.values[0]).abs() < 1e-6);
+        assert!(rockfall(&["plan", word(&fitted)]).status.success());
+    }
+    let page = rockfall(&["run", word(&scenes[0]), "--quiet", "--overwrite", "--out", word(&out)]);
+    assert!(page.status.success());
+    let page = fs::read_to_string(out.join("report.html")).unwrap_or_default();
+    assert!(page.contains("What the measured ends tell"), "the report tells of the fit beside it");
+}
+
+/// A slope without what is varied is refused.
+#[test]
+fn scenes_that_do_not_fit_together_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let one = thrown(dir.path(), "one", [3.0, 5.0], "");
+    let ends = measure(&one, "1");
+    let vary = r#"vary = [{ ground = "meadow", key = "rolling_friction", from = 0.2, to = 0.8, before = 0.7 }]"#;
+    let one =
+        thrown(dir.path(), "one", [3.0, 5.0], &format!("[calibrate]\ndeposits = {ends:?}\n{vary}"));
+    let other = thrown(dir.path(), "other", [3.0, 5.0], "");
+    let said = rockfall(&["calibrate", word(&one), word(&other)]);
+    let said = String::from_utf8(said.stderr).unwrap();
+    assert!(said.contains("other.toml: [calibrate]: found nothing; write deposits"), "{said}");
+}
+
+/// Blocks one by one: place and size of the row, in turn; masses become radii.
+#[test]
+fn measured_blocks_are_replayed_one_by_one() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = thrown(dir.path(), "table", [3.0, 5.0], "");
+    let text = fs::read_to_string(&scene).unwrap();
+    let text = text.replace("points_m = [[-30.0, 0.0], [-30.0, 2.0]]", "table = \"blocks.csv\"");
+    fs::write(&scene, text).unwrap();
+    let table = dir.path().join("blocks.csv");
+    // 2700 4/3 π 0.2³ = 90.478 kg
+    fs::write(
+        &table,
+        "block,x_m,y_m,mass_kg\na,-30,1,90.47786842338604\nb,-20,2.5,11.309733552923255\n",
+    )
+    .unwrap();
+    let out = dir.path().join("out");
+    let done = rockfall(&["run", word(&scene), "--quiet", "--releases", "4", "--out", word(&out)]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let rows = fs::read_to_string(out.join("releases.csv")).unwrap();
+    let wanted = [(0.2, -30.0, 1.0), (0.1, -20.0, 2.5)];
+    for (row, (radius, x, y)) in rows.lines().skip(1).zip(wanted.into_iter().cycle()) {
+        let number = |at: usize| row.split(',').nth(at).unwrap().parse::<f64>().unwrap();
+        assert!((number(3) - radius).abs() < 1e-12, "{row}");
+        assert!((number(5) - x).abs() < 1e-9 && (number(6) - y).abs() < 1e-9, "{row}");
+    }
+    let hash = |text: &str| {
+        fs::write(&table, text).unwrap();
+        Scene::read(&scene).map(|scene| scene.hash)
+    };
+    let first = hash("x_m,y_m,radius_m\n-30,1,0.2\n").unwrap();
+    assert_ne!(first, hash("x_m,y_m,radius_m\n-30,1,0.3\n").unwrap());
+    for (text, says) in [
+        ("x_m,radius_m\n1,1\n", "line 1: found the columns x_m, radius_m"),
+        ("x_m,y_m,radius_m\n", "rows: found no block"),
+        ("x_m,y_m,radius_m\n1,north,1\n", "line 2: found `north`"),
+        ("x_m,y_m,mass_kg\n1,1,-5\n", "line 2: found -5"),
+        ("x_m,y_m,radius_m\n1,1,1e-9\n", "radius_m or mass_kg: found another; write a value in"),
+    ] {
+        let said = hash(text).unwrap_err().to_string();
+        assert!(said.contains("blocks.csv") && said.contains(says), "{said}");
+    }
+}
+
+/// A block that rolls badly on one ground rolls badly on the other: the same quantile on both.
+#[test]
+fn a_block_keeps_its_character_on_all_grounds() {
+    let dir = tempfile::tempdir().unwrap();
+    let more = "[grounds.scree]\nnormal_stiffness_n_m = 1e7\nshear_stiffness_n_m = 2.5e6\nfriction_angle_deg = 35.0\nrestitution = 0.3\nrolling_friction = { uniform = [0.2, 0.6] }";
+    let scene = thrown(dir.path(), "two", [3.0, 5.0], more);
+    let text = fs::read_to_string(&scene).unwrap();
+    fs::write(
+        &scene,
+        text.replace("rolling_friction = 0.45", "rolling_friction = { uniform = [0.1, 0.3] }"),
+    )
+    .unwrap();
+    let scene = Scene::read(&scene).unwrap();
+    let (terrain, _) = scene.read_terrain().unwrap();
+    let releases = Releases::compile(&scene, &terrain).unwrap();
+    let mut seen = Vec::new();
+    for index in 0..50 {
+        let grounds = releases.release(&terrain, index).unwrap().grounds;
+        let [meadow, scree] = [0, 1].map(|at| grounds[at].rolling_friction);
+        assert!((scree - 2.0 * meadow).abs() < 1e-12, "{meadow} {scree}");
+        seen.push(meadow);
+    }
+    let (least, most) = seen.iter().fold((1.0_f64, 0.0_f64), |(a, b), x| (a.min(*x), b.max(*x)));
+    assert!(most - least > 0.15, "they are drawn rock by rock");
+}
+
+/// Listed values print their true quantiles, however they are written.
+#[test]
+fn unsorted_lists_have_true_quantiles() {
+    let text = fs::read_to_string("tests/bad/tolerance_zero.toml").unwrap();
+    let text = text
+        .replace("tolerance_m_s = 0.0", "")
+        .replace("radius_m = 0.15", "radius_m = { values = [0.3, 0.1, 0.2], weights = [1, 1, 2] }");
+    let scene = Scene::parse(&text, Path::new("scene.toml")).unwrap();
+    let found = [0.1, 0.3, 0.6, 0.9].map(|p| scene.rocks.radius_m().quantile(p).to_string());
+    assert_eq!(found, ["0.1", "0.2", "0.2", "0.3"]);
+}
+
+/// Which throws are of one block is read where the file tells it.
+#[test]
+fn blocks_of_measured_ends_are_read() {
+    let blocks = Way::read_blocks(Path::new("terrain/tschamut/observed_deposition.csv")).unwrap();
+    assert_eq!(blocks.len(), 80);
+    assert_eq!(blocks.iter().filter(|block| *block == "1").count(), 29);
+}

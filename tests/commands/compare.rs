@@ -1,0 +1,244 @@
+//! Two runs compared: intervals keep what they promise, a run beside itself differs by nothing, pages hold what is in the table.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use crate::program;
+#[allow(dead_code, reason = "shared with the tests of the report")]
+use crate::svg;
+
+use program::rockfall;
+use rockfall::hazard::{Difference, Reading, Values};
+use rockfall::math::{self, exp};
+use rockfall::random::{Purpose, stream, unit};
+use rockfall::report::compare::Comparison;
+use std::path::{Path, PathBuf};
+
+/// Releases of each made run.
+const ROCKS: usize = 400;
+/// Made pairs of runs: the coverage found has a standard deviation of 0.4 %.
+const PAIRS: usize = 3000;
+
+/// Pairs of standard normal numbers with a correlation of 0.8, and a third one beside them.
+fn draws(seed: usize) -> Vec<[f64; 3]> {
+    let mut random = stream(seed as u64, Purpose::Redraw, 0);
+    // Box and Muller (1958)
+    let mut draw = || {
+        let (far, turn) = (unit(&mut random), unit(&mut random));
+        (-2.0 * math::ln(far)).sqrt() * math::cos(std::f64::consts::TAU * turn)
+    };
+    (0..ROCKS)
+        .map(|_| {
+            let (one, other, third) = (draw(), draw(), draw());
+            [one, 0.8 * one + 0.6 * other, third]
+        })
+        .collect()
+}
+
+/// Share of the made pairs in which `of` gives an interval that holds `truth`.
+fn coverage(truth: f64, of: impl Fn(&[[f64; 3]]) -> Difference) -> f64 {
+    let holds = |seed: &usize| {
+        let (low, high) = of(&draws(*seed)).interval.expect("enough rocks");
+        (low..=high).contains(&truth)
+    };
+    (0..PAIRS).filter(holds).count() as f64 / PAIRS as f64
+}
+
+fn values(draws: &[[f64; 3]], of: impl Fn(&[f64; 3]) -> f64) -> Values {
+    draws.iter().enumerate().map(|(k, draw)| (k, of(draw))).collect()
+}
+
+/// Name, true difference, and how the statistic is read.
+type Case<'a> = (&'a str, f64, &'a dyn Fn(&Values) -> Reading);
+
+/// Skewed, like energies: exp(z) against 1.3 exp(0.9 z').
+fn energies(draws: &[[f64; 3]]) -> [Values; 2] {
+    [values(draws, |z| exp(0.6 * z[0])), values(draws, |z| 1.3 * exp(0.54 * z[1]))]
+}
+
+/// The 95 % intervals hold the true difference in 93 to 97 of 100 made pairs, paired or not.
+#[test]
+fn intervals_hold_the_truth_as_often_as_they_promise() {
+    let quantile = |z: f64| 1.3 * exp(0.54 * z) - exp(0.6 * z);
+    let z95 = 1.644_853_626_951_472_7;
+    let mean = 1.3 * exp(0.54 * 0.54 / 2.0) - exp(0.6 * 0.6 / 2.0);
+    for paired in [true, false] {
+        // without pairing the second run comes from the draws of another seed, as it would
+        let both = |draws_a: &[[f64; 3]]| {
+            let [a, b] = energies(draws_a);
+            if paired { [a, b] } else { [a, values(draws_a, |z| 1.3 * exp(0.54 * z[2]))] }
+        };
+        let percentile = |p: f64| move |values: &Values| Reading::percentile(values, p).unwrap();
+        let cases: [Case<'_>; 3] = [
+            ("mean", mean, &|values| Reading::mean(values).unwrap()),
+            ("median", quantile(0.0), &percentile(0.5)),
+            ("P95", quantile(z95), &percentile(0.95)),
+        ];
+        for (name, truth, read) in cases {
+            let found = coverage(truth, |draws| {
+                let [a, b] = both(draws);
+                Difference::between(&read(&a), &read(&b), paired)
+            });
+            println!("{name}, paired {paired}: {found}");
+            assert!((0.93..=0.97).contains(&found), "{name}, paired {paired}: {found}");
+        }
+    }
+}
+
+/// The same for shares, common and rare, and for rocks of which only some come to a line.
+#[test]
+fn shares_and_rocks_at_a_line_keep_their_promise_too() {
+    let above = |values: &Values, limit: f64| -> Vec<usize> {
+        values.iter().filter(|(_, x)| *x > limit).map(|(k, _)| *k).collect()
+    };
+    // P(z > 0.5) against P(z' > 0.3), and 2.3 % against 4.5 %
+    let upper = |limit: f64| 0.5 * math::erfc(limit / std::f64::consts::SQRT_2);
+    for (limit_a, limit_b) in [(0.5, 0.3), (2.0, 1.7)] {
+        let truth = upper(limit_b) - upper(limit_a);
+        for (paired, other) in [(true, 1), (false, 2)] {
+            let found = coverage(truth, |draws| {
+                let (a, b) = (values(draws, |z| z[0]), values(draws, |z| z[other]));
+                let (a, b) = (above(&a, limit_a), above(&b, limit_b));
+                Difference::of_shares((&a, ROCKS), (&b, ROCKS), paired)
+            });
+            println!("share {limit_a}, paired {paired}: {found}");
+            assert!((0.93..=0.97).contains(&found), "share {limit_a}, paired {paired}: {found}");
+        }
+    }
+    // a rock crosses where its third number is large; then its energy is exp of the first
+    let median = 1.3_f64 - 1.0;
+    let found = coverage(median, |draws| {
+        let [mut a, mut b] = energies(draws);
+        a.retain(|(k, _)| draws[*k][2] > -0.2);
+        b.retain(|(k, _)| draws[*k][2] > 0.3);
+        let read = |values: &Values| Reading::percentile(values, 0.5).unwrap();
+        Difference::between(&read(&a), &read(&b), true)
+    });
+    println!("median at a line: {found}");
+    assert!((0.93..=0.97).contains(&found), "median at a line: {found}");
+}
+
+/// Pairing pays: with a correlation of 0.8 the interval of the mean is less than two thirds as wide.
+#[test]
+fn common_chance_narrows_the_interval() {
+    let [a, b] = energies(&draws(7));
+    let width = |paired: bool| {
+        let read = |values: &Values| Reading::mean(values).unwrap();
+        let (low, high) = Difference::between(&read(&a), &read(&b), paired).interval.unwrap();
+        high - low
+    };
+    assert!(width(true) < 0.67 * width(false), "{} {}", width(true), width(false));
+}
+
+/// The quick example, some of it changed, run in a folder of its own.
+fn run(dir: &Path, name: &str, releases: &str, change: impl Fn(String) -> String) -> PathBuf {
+    let folder = std::fs::canonicalize("terrain").unwrap();
+    let scene = std::fs::read_to_string("examples/quick.toml").unwrap();
+    let scene = change(scene.replace("../terrain", folder.to_str().unwrap()));
+    let path = dir.join(format!("{name}.toml"));
+    std::fs::write(&path, scene).unwrap();
+    let out = dir.join(name);
+    let words = [
+        "run",
+        path.to_str().unwrap(),
+        "--quiet",
+        "--releases",
+        releases,
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    let said = rockfall(&words);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    out
+}
+
+/// With a net of 3 m and 200 kJ on the meadow's line, and behind it.
+const NET: &str = "\n[[barriers]]\nname = \"net\"\npoints_m = [[0.0, 18.0], [24.0, 18.0]]\nheight_m = 3.0\ncapacity_j = 2e5\n";
+
+#[test]
+fn a_run_beside_itself_differs_by_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let one = run(dir.path(), "one", "80", |scene| scene + NET);
+    let comparison = Comparison::of(&one, &one).unwrap();
+    assert_eq!(comparison.largest(), (0.0, 0.0));
+    let out = dir.path().join("out");
+    let folders = [one.to_str().unwrap(), one.to_str().unwrap()];
+    let said = rockfall(&["compare", folders[0], folders[1], "--out", out.to_str().unwrap()]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let table = std::fs::read_to_string(out.join("differences.csv")).unwrap();
+    assert!(table.lines().count() > 30, "{table}");
+    for row in table.lines().skip(1) {
+        let ends: Vec<&str> = row.rsplit(',').take(4).collect();
+        let is_zero = |text: &str| matches!(text, "0" | "-0" | "NaN");
+        assert!(
+            ends[0] == "true" && is_zero(ends[1]) && is_zero(ends[2]) && ends[3] == "0",
+            "{row}"
+        );
+    }
+    let page = std::fs::read_to_string(out.join("compare.html")).unwrap();
+    svg::check_nesting(&page, "compare.html");
+    assert!(
+        page.contains("one and the same run") && !page.contains("<script") && !page.contains("NaN")
+    );
+}
+
+/// With and without the trees: the hash, the mesh and the impacts differ, and the pages say what.
+#[test]
+fn what_differs_is_named_and_what_changes_is_shown() {
+    let dir = tempfile::tempdir().unwrap();
+    let with = run(dir.path(), "with", "150", |scene| scene);
+    let without = run(dir.path(), "without", "200", |scene| {
+        let (before, rest) = scene.split_once("[[trees]]").unwrap();
+        let (_, after) = rest.split_once("[grounds.rock]").unwrap();
+        let (after, tail) = after.split_once("[grounds.trunk]").unwrap();
+        let (_, tail) = tail.split_once("[rocks]").unwrap();
+        format!("{before}[grounds.rock]{after}[rocks]{tail}{NET}")
+    });
+    let comparison = Comparison::of(&with, &without).unwrap();
+    let (largest, width) = comparison.largest();
+    assert!(largest > 0.0 && width > 0.0);
+    let out = dir.path().join("out");
+    comparison.write(&out).unwrap();
+    let page = std::fs::read_to_string(out.join("compare.html")).unwrap();
+    svg::check_nesting(&page, "compare.html");
+    for words in [
+        "Hash of scene and meshes",
+        "Plan: trees",
+        "Only in B: net.",
+        "Only the releases 0 to 149",
+        "pair by pair",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    let drawn: Vec<PathBuf> = std::fs::read_dir(out.join("figures"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    assert!(drawn.len() >= 3);
+    for path in drawn {
+        let drawing = std::fs::read_to_string(&path).unwrap();
+        svg::check(&drawing, &path.display().to_string());
+        assert!(page.contains(&drawing));
+    }
+    let table = std::fs::read_to_string(out.join("differences.csv")).unwrap();
+    let trees = table.lines().find(|row| row.contains("Impacts on trees")).unwrap();
+    // without trees none is hit: the value of B is 0, and the change is clear
+    let numbers: Vec<&str> = trees.split(',').collect();
+    let at = |back: usize| numbers[numbers.len() - back].parse::<f64>().unwrap();
+    assert!(at(5).abs() < 1e-300 && at(6) > 0.0 && at(2) < 0.0, "{trees}");
+}
+
+/// Two seeds do not pair; a folder with results is never written over.
+#[test]
+fn other_seeds_do_not_pair_and_results_stay_as_they_are() {
+    let dir = tempfile::tempdir().unwrap();
+    let one = run(dir.path(), "one", "30", |scene| scene);
+    let other = run(dir.path(), "other", "30", |scene| scene.replace("seed = 1", "seed = 2"));
+    let comparison = Comparison::of(&one, &other).unwrap();
+    let out = dir.path().join("out");
+    comparison.write(&out).unwrap();
+    let page = std::fs::read_to_string(out.join("compare.html")).unwrap();
+    assert!(page.contains("Two seeds: nothing pairs") && page.contains("<td>1</td><td>2</td>"));
+    let message = program::message(comparison.write(&one));
+    assert!(message.contains("holds the results of a run"), "{message}");
+    let message = program::message(Comparison::of(&one, &out));
+    assert!(message.contains("holds no results"), "{message}");
+}

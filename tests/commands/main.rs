@@ -1,0 +1,34 @@
+//! The program as its users start it.
+//!
+//! One program for all of it: linking takes longer than most of these tests.
+
+#[path = "../drawn/mod.rs"]
+mod drawn;
+#[path = "../made/mod.rs"]
+mod made;
+#[path = "../program/mod.rs"]
+mod program;
+#[path = "../site/mod.rs"]
+mod site;
+#[path = "../tiff/mod.rs"]
+mod tiff;
+#[path = "../statistics/report/svg.rs"]
+#[allow(dead_code, reason = "the figures of a report ask more of it")]
+mod svg;
+
+mod bad_input;
+mod belongs;
+mod blocks;
+mod bounded;
+mod calibrate;
+mod compare;
+mod data_in;
+mod edges;
+mod full_disk;
+mod kill;
+mod rust_version;
+mod same_everywhere;
+mod shards;
+mod until;
+mod view;
+mod year;

@@ -1,0 +1,91 @@
+//! A run that goes on until an interval is narrow is the run of as many releases, whenever it was killed.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot run the program has failed"
+)]
+#![cfg(unix)]
+
+use crate::program;
+
+use program::{command, same_results};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Instant;
+
+/// Kills in the test. More by `ROCKFALL_KILLS=100 cargo test --test commands until::`.
+const KILLS: usize = 12;
+/// Kills of one run before it is left to end.
+const KILLS_OF_ONE_RUN: usize = 4;
+/// Three rounds, with maps, lines, paths and impacts.
+const AIM: &str = "speed.p50 < 0.3 m/s";
+
+fn run(out: &Path, more: &[&str]) -> Command {
+    let scene = ["run", "examples/quick.toml", "--quiet", "--out", out.to_str().unwrap()];
+    command(&[&scene[..], more].concat())
+}
+
+fn until(out: &Path, more: &[&str]) -> Command {
+    run(out, &[&["--releases", "60", "--until", AIM], more].concat())
+}
+
+fn succeed(mut command: Command) {
+    let done = command.output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+}
+
+fn releases(out: &Path) -> usize {
+    std::fs::read_to_string(out.join("releases.csv")).unwrap().lines().count() - 1
+}
+
+/// Maps, summary, tables and figures; a finished run that is asked for more goes on to the same.
+#[test]
+fn an_aim_ends_with_the_run_of_as_many_releases() {
+    let dir = tempfile::tempdir().unwrap();
+    let [aimed, plain, extended] = ["aimed", "plain", "extended"].map(|name| dir.path().join(name));
+    succeed(until(&aimed, &[]));
+    let count = releases(&aimed).to_string();
+    assert!(releases(&aimed) > 120, "{count} releases were enough for a round or two");
+    succeed(run(&plain, &["--releases", &count]));
+    same_results(&plain, &aimed);
+    succeed(run(&extended, &["--releases", "60"]));
+    succeed(until(&extended, &["--resume"]));
+    same_results(&plain, &extended);
+}
+
+/// SIGKILL at random moments of all rounds.
+#[test]
+fn a_killed_aim_is_resumed_to_the_same_bytes() {
+    let wanted = std::env::var("ROCKFALL_KILLS").map_or(KILLS, |kills| kills.parse().unwrap());
+    let dir = tempfile::tempdir().unwrap();
+    let reference = dir.path().join("reference");
+    let begun = Instant::now();
+    succeed(until(&reference, &[]));
+    let whole = begun.elapsed();
+    let mut random = ChaCha8Rng::seed_from_u64(18);
+    let (mut kills, mut runs) = (0, 0);
+    while kills < wanted {
+        let out = dir.path().join(format!("killed_{runs}"));
+        for _ in 0..KILLS_OF_ONE_RUN {
+            let mut child = until(&out, &["--resume"])
+                .stderr(Stdio::piped())
+                .stdout(Stdio::null())
+                .spawn()
+                .unwrap();
+            sleep(whole.mul_f64(random.random::<f64>()));
+            child.kill().unwrap();
+            let ended = child.wait_with_output().unwrap();
+            let said = String::from_utf8_lossy(&ended.stderr);
+            assert!(ended.status.success() || ended.status.code().is_none(), "{said}");
+            kills += usize::from(ended.status.code().is_none());
+        }
+        succeed(until(&out, &["--resume"]));
+        same_results(&reference, &out);
+        std::fs::remove_dir_all(&out).unwrap();
+        runs += 1;
+    }
+    println!("{kills} kills in {runs} runs of {whole:?}");
+}

@@ -1,0 +1,101 @@
+//! Leaving out changes the cost, never the answer.
+#![allow(clippy::unwrap_used, reason = "a test that cannot read its scene has failed")]
+
+use crate::common;
+use common::zoo::{KINDS, between, dice, point, zoo};
+use rockfall::contact::neighbours::Neighbours;
+use rockfall::contact::{ContactPoint, ContactPoints};
+use rockfall::flight::{FlightEnd, Parabola, time_of_impact};
+use rockfall::plan::Plan;
+use rockfall::rock::Vec3;
+use rockfall::scene::Scene;
+use rockfall::simulation::{Effort, Scratch, Trajectory, simulate_release};
+use rockfall::terrain::Terrain;
+use std::path::Path;
+
+fn plan(scene: &str) -> Plan {
+    let mut scene = Scene::read(Path::new(scene)).unwrap();
+    scene.release.count = 40;
+    scene.record.paths = Some(0);
+    scene.record.impacts = Some(false);
+    let (terrain, _) = scene.read_terrain().unwrap();
+    Plan::compile(&scene, terrain).unwrap()
+}
+
+fn falls(plan: &Plan) -> Vec<Trajectory> {
+    let mut scratch = Scratch::default();
+    (0..plan.count)
+        .map(|index| simulate_release(plan, index, None, &mut scratch).unwrap())
+        .collect()
+}
+
+#[test]
+fn a_lean_plan_gives_the_same_rocks_as_a_full_one() {
+    for scene in ["examples/quick.toml", "examples/tyrol.toml", "examples/paper_slope.toml"] {
+        let lean = falls(&plan(scene).without_kernels());
+        let full = falls(&plan(scene).keep_everything());
+        assert!(lean.iter().all(|rock| rock.path.is_empty() && rock.impacts.is_empty()));
+        for (lean, full) in lean.into_iter().zip(full) {
+            assert!(!full.path.is_empty() && full.impacts.len() == full.impact_count as usize);
+            // how many triangles are looked at is cost: a corner that never is touched first can still end a search
+            let effort = Effort { triangles: lean.effort.triangles, ..full.effort };
+            let bare = Trajectory { path: Vec::new(), impacts: Vec::new(), effort, ..full };
+            assert_eq!(lean, bare, "{scene}");
+        }
+    }
+}
+
+fn touches(terrain: &Terrain, centre: &Vec3, radius: f64) -> Vec<ContactPoint> {
+    let (mut near, mut touches) = (Neighbours::default(), ContactPoints::default());
+    near.collect(terrain, centre, radius, 0.35 * radius, 0.1 * radius);
+    near.touches(terrain, centre, radius, &mut touches);
+    touches.iter().copied().collect()
+}
+
+/// Flat edges, the corners that no ball can touch, and those that cannot be touched from where the ball is: with and
+/// without them every rock touches the same features, and every flight ends at the same moment, on every kind of mesh.
+#[test]
+fn features_left_out_are_never_touched() {
+    let (mut left_out, mut out_of_sight) = (0, 0);
+    let (mut touched, mut landed) = (0, 0);
+    for (kind, mesh) in (0..KINDS.len()).flat_map(|kind| (0..12).map(move |mesh| (kind, mesh))) {
+        let (lean, full) = (zoo(kind, mesh), zoo(kind, mesh).with_every_feature().from_anywhere());
+        let count = lean.features.count;
+        out_of_sight += lean.features.brims.iter().filter(|one| one.front | one.back != 0).count();
+        left_out += count.saddles + count.flat_corners + count.flat_edges;
+        for index in 0..200 {
+            let random = &mut dice(700, index + 1000 * mesh);
+            let radius = 0.05 * 20f64.powf(between(random, 0.0, 1.0));
+            // near corners, where what is left out would have been
+            let vertex = between(random, 0.0, lean.vertices_m.len() as f64) as usize;
+            let far = radius * between(random, 0.0, 1.1);
+            let centre = lean.vertices_m[vertex] + point(random, 1.0).normalize() * far;
+            let found = touches(&lean, &centre, radius);
+            assert_eq!(found, touches(&full, &centre, radius), "{} {mesh} {index}", KINDS[kind]);
+            touched += found.len();
+            let flight = Parabola {
+                start: centre + point(random, 1.0).normalize() * (2.0 * radius),
+                velocity: point(random, 5.0),
+                gravity: 9.81,
+                radius,
+            };
+            // a rock that starts pressed in does not leap: it starts in contact
+            if !touches(&full, &flight.start, radius).is_empty() {
+                continue;
+            }
+            let end = time_of_impact(&lean, &flight, 5.0, &mut 0);
+            let whole = time_of_impact(&full, &flight, 5.0, &mut 0);
+            // an edge's time may be rounded otherwise in the narrower window that a neighbour leaves
+            let same = match (end, whole) {
+                (FlightEnd::Touch(one), FlightEnd::Touch(other)) => {
+                    (one - other).abs() <= 1e-14 * one.max(1.0)
+                }
+                _ => end == whole,
+            };
+            assert!(same, "{} {mesh} {index}: {end:?} {whole:?}", KINDS[kind]);
+            landed += usize::from(matches!(end, FlightEnd::Touch(_)));
+        }
+    }
+    assert!(left_out > 1000 && touched > 5000 && landed > 4000, "{left_out} {touched} {landed}");
+    assert!(out_of_sight > 1000, "{out_of_sight}");
+}

@@ -1,0 +1,28 @@
+//! Physics: exact cases, oracles, conservation and the schemes against each other.
+//!
+//! One program for all of it: linking takes longer than most of these tests.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod dda;
+mod dda_energy;
+mod exact_edge;
+mod exact_plane;
+mod heap;
+mod ledger;
+mod leaving_out;
+mod oracle_contact;
+mod oracle_flight;
+mod pairs;
+mod paper;
+mod patch;
+mod pyramid;
+mod question;
+mod rigid_blows;
+mod rigid_heap;
+mod roughness;
+mod schemes_agree;
+mod stems;
+mod traps;
+mod world_ledger;

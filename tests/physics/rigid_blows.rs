@@ -1,0 +1,119 @@
+//! Blows between rocks that share one world in the rigid limit, against exact answers.
+#![allow(clippy::unwrap_used, reason = "a test that has no rock has failed")]
+
+use crate::common;
+
+use common::terrain;
+use common::together::{Sphere, WORLD, World, energy_j};
+use rockfall::rock::Vec3;
+use rockfall::simulation::Trajectory;
+use rockfall::terrain::Terrain;
+
+/// Two far triangles whose box is 100 m wide: nothing but the other spheres is touched.
+fn space() -> Terrain {
+    let corner = |at: f64| {
+        let p = Vec3::repeat(at);
+        [p, p + Vec3::x(), p + Vec3::y()]
+    };
+    terrain(vec![corner(-50.0), corner(50.0)])
+}
+
+fn free(x: f64, y: f64, v: [f64; 3]) -> Sphere {
+    (0.5, 2700.0, [x, y, 20.0], v, [0.0; 3])
+}
+
+/// Linear momentum (kg m/s) and angular momentum about the origin (kg m²/s).
+fn momentum(falls: &[Trajectory], at_end: bool) -> (Vec3, Vec3) {
+    falls.iter().fold((Vec3::zeros(), Vec3::zeros()), |(p, l), fall| {
+        let motion = if at_end { fall.end } else { fall.start };
+        let (m, i) = (fall.rock.mass_kg(), fall.rock.inertia_kg_m2());
+        let own = motion.velocity_m_s * m;
+        (p + own, l + motion.position_m.cross(&own) + motion.spin_rad_s * i)
+    })
+}
+
+/// Momentum and angular momentum differ by rounding, of the largest single ones.
+fn momenta_are_kept(falls: &[Trajectory]) {
+    let ((p, l), (q, k)) = (momentum(falls, false), momentum(falls, true));
+    let size = falls.iter().map(|f| f.rock.mass_kg() * f.extremes.speed_m_s).fold(0.0, f64::max);
+    let arm = falls.iter().map(|f| f.end.position_m.norm()).fold(1.0, f64::max);
+    assert!((q - p).norm() <= 1e-12 * size, "{:e}", (q - p).norm() / size);
+    assert!((k - l).norm() <= 1e-12 * size * arm, "{:e}", (k - l).norm() / size / arm);
+}
+
+/// `v1' = (m1 − e m2)/(m1 + m2) v`, `v2' = (1 + e) m1/(m1 + m2) v`, and the place to where both go on is that of the
+/// exact moment of the touch.
+#[test]
+fn head_on_two_spheres_share_the_momentum_by_their_masses() {
+    let terrain = space();
+    for e in [0.0, 0.3, 0.9, 1.0] {
+        for ratio in [1.0, 1e3, 1e6, 1e-6] {
+            let world = World { restitution: e, ..WORLD };
+            let mut spheres = [free(-1.0, 0.0, [1.0, 0.0, 0.0]), free(1.0, 0.0, [0.0; 3])];
+            spheres[1].1 *= ratio;
+            let (falls, census) = world.run(&terrain, &spheres, 2.0);
+            let speeds = [0, 1].map(|k| falls[k].end.velocity_m_s.x);
+            let exact = [(1.0 - e * ratio) / (1.0 + ratio), (1.0 + e) / (1.0 + ratio)];
+            for k in 0..2 {
+                assert!((speeds[k] - exact[k]).abs() < 1e-12, "{e} {ratio}: {speeds:?} {exact:?}");
+                let x = [0.0, 1.0][k] + exact[k];
+                let place = falls[k].end.position_m.x + terrain.origin_m.x;
+                assert!((place - x).abs() < 1e-9, "{e} {ratio}: {place} {x}");
+            }
+            momenta_are_kept(&falls);
+            assert_eq!(census.unsettled, 0);
+        }
+    }
+}
+
+/// An oblique blow with spin: momentum and angular momentum to rounding, friction along the slip within its cone.
+#[test]
+fn an_oblique_blow_keeps_both_momenta() {
+    for offset in [0.1, 0.5, 0.8] {
+        for angle in [0.0f64, 10.0, 30.0] {
+            let world = World { friction_angle_rad: angle.to_radians(), ..WORLD };
+            let mut spheres =
+                [free(-1.5, offset, [3.0, 0.2, 0.1]), free(1.0, 0.0, [-1.0, 0.0, 0.0])];
+            spheres[0].4 = [1.0, -2.0, 5.0];
+            spheres[1].1 *= 3.0;
+            let (falls, _) = world.run(&space(), &spheres, 1.5);
+            momenta_are_kept(&falls);
+            let impulse =
+                (falls[0].end.velocity_m_s - falls[0].start.velocity_m_s) * falls[0].rock.mass_kg();
+            assert!(impulse.norm() > 100.0, "they missed");
+            // the normal at the touch: relative motion is a straight line
+            let apart = falls[0].start.position_m - falls[1].start.position_m;
+            let u = falls[0].start.velocity_m_s - falls[1].start.velocity_m_s;
+            let t = rockfall::contact::pair::meeting_s(&apart, &u, 1.0).unwrap();
+            let n = apart + u * t;
+            let push = impulse.dot(&n);
+            let drag = (impulse - n * push).norm();
+            assert!(drag <= (angle.to_radians().tan() + 1e-9) * push);
+            assert_eq!(angle == 0.0, drag < 1e-9 * push);
+            let after = falls[0].end.velocity_m_s - falls[1].end.velocity_m_s;
+            assert!((n.dot(&after) + 0.5 * n.dot(&u)).abs() < 1e-9);
+            assert!(energy_j(&falls, true, 0.0) < energy_j(&falls, false, 0.0));
+        }
+    }
+}
+
+/// Five equal spheres in touch, one comes in: with e = 1 the last leaves with its speed and the others stand; energy and
+/// momentum are kept.
+#[test]
+fn a_cradle_hands_on() {
+    let world = World { restitution: 1.0, ..WORLD };
+    for gap in [0.0, 1e-4, 0.05] {
+        let mut spheres: Vec<Sphere> =
+            (0..5).map(|k| free((1.0 + gap) * f64::from(k), 0.0, [0.0; 3])).collect();
+        spheres[0].2[0] -= 0.7;
+        spheres[0].3 = [2.0, 0.0, 0.0];
+        let (falls, census) = world.run(&space(), &spheres, 1.5);
+        for (k, fall) in falls.iter().enumerate() {
+            let exact = if k == 4 { 2.0 } else { 0.0 };
+            let speed = fall.end.velocity_m_s.x;
+            assert!((speed - exact).abs() < 1e-12, "{gap}: {k} goes at {speed}");
+        }
+        momenta_are_kept(&falls);
+        assert_eq!(census.unsettled, 0);
+    }
+}

@@ -1,0 +1,137 @@
+//! Traps that cost rocks or joules elsewhere, each sprung once.
+
+use crate::common;
+use common::{CASE, Case, GROUND, terrain};
+use rockfall::contact::history::carry;
+use rockfall::ground::Ground;
+use rockfall::rock::Vec3;
+use rockfall::simulation::{Stop, Trajectory};
+use rockfall::solver::Scheme;
+use rockfall::terrain::make;
+
+const REST: [f64; 3] = [0.0; 3];
+
+fn on(stiffness: f64, restitution: f64) -> Case {
+    let ground = Ground {
+        normal_stiffness_n_m: stiffness,
+        shear_stiffness_n_m: 0.25 * stiffness,
+        restitution: Some(restitution),
+        ..GROUND
+    };
+    Case { ground, tolerance_m_s: 0.05, ..CASE }
+}
+
+fn drop_on_flat(case: &Case, height_m: f64) -> Trajectory {
+    let flat = terrain(make::jittered_plane(4.0, 8, 0.0));
+    case.run(&flat, [[0.1, 0.2, 0.5 + height_m], REST, REST], 60.0)
+}
+
+/// A plastic contact's force is nothing long before the rock is out of the slab: whoever leaps then sinks through.
+#[test]
+fn a_contact_without_force_is_not_left_while_pressed_in() {
+    for restitution in [0.0, 0.05, 0.2] {
+        let fallen = drop_on_flat(&on(1e8, restitution), 5.0);
+        assert_eq!(fallen.stop, Stop::AtRest, "e = {restitution}");
+        // pressed in by its weight, 1.4e-4 m
+        assert!((fallen.end.position_m.z - 0.5).abs() < 1e-3);
+    }
+}
+
+/// A leap that starts with a gap of exactly nothing and moves in has no change of sign to find.
+#[test]
+fn a_start_exactly_at_the_surface_is_a_touch() {
+    let flat = terrain(make::jittered_plane(4.0, 8, 0.0));
+    for inside in [0.0, 1e-17, 1e-13] {
+        let fallen =
+            on(1e14, 0.5).run(&flat, [[0.1, 0.2, 0.5 - inside], [0.0, 0.0, -1.0], REST], 20.0);
+        assert_eq!(fallen.stop, Stop::AtRest);
+        assert!(fallen.ledger.rise_j <= 1e-9 * 700.0, "{}", fallen.ledger.rise_j);
+    }
+}
+
+/// A rock that starts on the back side of a plane far away may still land on its front.
+#[test]
+fn a_plane_met_from_behind_can_be_landed_on() {
+    let sheet = terrain(make::jittered_plane(2.0, 4, 0.0));
+    // from below, past the border, up and back onto the sheet
+    let fallen = on(1e9, 0.3).run(&sheet, [[-4.0, 0.1, -1.0], [2.0, 0.0, 9.0], REST], 1.9);
+    assert_ne!(fallen.stop, Stop::LeftTerrain);
+    assert!(fallen.impact_count >= 1 && fallen.end.position_m.z > 0.49, "{:?}", fallen.end);
+}
+
+/// The dashpot makes the force jump at the touch: without a set of forces there, the implicit step has no solution.
+#[test]
+fn slow_touches_of_stiff_springs_have_a_solution() {
+    for stiffness in [1e9, 1e11, 1e13] {
+        let fallen = drop_on_flat(&on(stiffness, 0.9), 0.5);
+        assert_eq!(fallen.stop, Stop::AtRest, "{stiffness:e}");
+        assert!(fallen.ledger.rise_j <= 1e-9 * 7000.0);
+    }
+}
+
+/// Two stiff flanks at once: sweeps that have not settled must not be taken.
+#[test]
+fn stages_that_do_not_settle_are_not_taken() {
+    let groove = terrain(make::v_groove(4.0, std::f64::consts::FRAC_PI_4));
+    for stiffness in [1e9, 1e11, 1e13] {
+        let fallen = on(stiffness, 0.4).run(&groove, [[0.3, 0.0, 2.0], REST, REST], 60.0);
+        assert_eq!(fallen.stop, Stop::AtRest, "{stiffness:e}");
+        assert!(fallen.ledger.rise_j <= 1e-9 * 3e4, "{}", fallen.ledger.rise_j);
+    }
+}
+
+/// With rebounds below the local error a rock would flutter for ever: the capture speed follows the tolerance.
+#[test]
+fn a_coarse_tolerance_does_not_flutter() {
+    for tolerance_m_s in [0.05, 0.1, 0.3] {
+        let fallen = drop_on_flat(&Case { tolerance_m_s, ..on(1e10, 0.6) }, 2.0);
+        assert_eq!(fallen.stop, Stop::AtRest, "{tolerance_m_s}");
+    }
+}
+
+/// A spring's stretch turns with the normal: its length stays, and it stays tangent.
+#[test]
+fn a_stretch_turns_with_the_normal() {
+    let from = Vec3::new(0.1, -0.2, 0.97).normalize();
+    let to = Vec3::new(-0.3, 0.4, 0.8).normalize();
+    let stretch = from.cross(&Vec3::new(0.3, 0.9, -0.2)) * 1e-4;
+    let carried = carry(stretch, &from, &to);
+    assert!((carried.norm() - stretch.norm()).abs() < 1e-18 && carried.dot(&to).abs() < 1e-19);
+}
+
+/// Steps tried and thrown away leave no trace: with many rejected, the ledger still closes.
+#[test]
+fn rejected_steps_leave_no_trace() {
+    let fallen =
+        drop_on_flat(&Case { scheme: Scheme::Reference, tolerance_m_s: 1e-7, ..on(1e9, 0.5) }, 1.0);
+    assert!(fallen.effort.rejected > 0);
+    assert!(fallen.energy_balance_error() < 1e-4, "{}", fallen.energy_balance_error());
+    assert!(fallen.ledger.rise_j <= 1e-9 * fallen.released_j);
+}
+
+/// Where only one plane is near, steps are as long as the way through the known features, not a share of the radius.
+#[test]
+fn a_plane_is_crossed_in_long_steps() {
+    let flat = terrain(make::jittered_plane(40.0, 4, 0.0));
+    let fallen = CASE.run(&flat, [[-30.0, 0.3, 0.5], [10.0, 0.0, 0.0], [0.0, 20.0, 0.0]], 5.0);
+    let way = fallen.end.position_m.x + 30.0;
+    assert!(way > 40.0);
+    // steps of a tenth of the radius would be 20 a metre
+    assert!(
+        (fallen.effort.steps as f64) < 12.0 * way,
+        "{} steps over {way} m",
+        fallen.effort.steps
+    );
+}
+
+/// The textbook's damping (which lets the contact pull) would give 0.550 where 0.5 is asked, 0.325 where 0.2 is.
+#[test]
+fn the_restitution_asked_for_is_the_one_obtained() {
+    for e in [0.2, 0.5, 0.8] {
+        let case = Case { scheme: Scheme::Reference, tolerance_m_s: 1e-6, ..on(1e13, e) };
+        let fallen = drop_on_flat(&case, 10.0);
+        let first = fallen.impacts[0];
+        // gravity takes about g/(v ω) = 7e-6 of it
+        assert!((first.speed_out_m_s / first.speed_in_m_s - e).abs() < 1e-4, "{e}");
+    }
+}

@@ -1,0 +1,167 @@
+//! Crossings of lines against the parabola, and lines and maps against each other.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use rockfall::plan::{Part, Plan};
+use rockfall::scene::Scene;
+use rockfall::simulation::{Scratch, Stop, Trajectory, simulate_release};
+use std::path::Path;
+
+fn plan_of(text: &str) -> Plan {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/inline.toml");
+    let scene = Scene::parse(text, &file).unwrap();
+    let (terrain, _) = scene.read_terrain().unwrap();
+    Plan::compile(&scene, terrain).unwrap()
+}
+
+fn quick(more: &str) -> Plan {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml");
+    let text = std::fs::read_to_string(file).unwrap();
+    let (physics, _) = text.split_once("[[lines]]").unwrap();
+    plan_of(&format!("{physics}\n{more}"))
+}
+
+fn falls(plan: &Plan, count: usize) -> Vec<Trajectory> {
+    let mut scratch = Scratch::default();
+    (0..count).map(|index| simulate_release(plan, index, None, &mut scratch).unwrap()).collect()
+}
+
+const LINES: &str = r#"
+[[lines]]
+name = "row edge"
+points_m = [[0.0, 26.0], [40.0, 26.0]]
+[[lines]]
+name = "in two pieces"
+points_m = [[0.0, 26.0], [17.3, 26.0], [40.0, 26.0]]
+[[lines]]
+name = "reversed"
+points_m = [[40.0, 26.0], [0.0, 26.0]]
+[[lines]]
+name = "bent"
+points_m = [[0.0, 40.0], [20.0, 42.0], [40.0, 40.0]]
+[[lines]]
+name = "behind the release"
+points_m = [[0.0, 0.5], [40.0, 0.5]]
+"#;
+
+/// A rock thrown flat from 20 m above the meadow flies past the line before it lands. By hand: at 10 m/s the line 8 m
+/// away is passed after 0.8 s, 0.5 · 9.81 · 0.8² lower, at `v_z` = −7.848 m/s, 8 m along.
+#[test]
+fn a_flight_crosses_where_the_parabola_says() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml"))
+            .unwrap();
+    let (physics, _) = text.split_once("[release]").unwrap();
+    let plan = plan_of(&format!(
+        "{physics}\n[release]\ncount = 1\nvelocity_m_s = [0.0, 10.0, 0.0]\nspin_rad_s = [0.0, 3.0, 0.0]\n\
+         points_m = [[18.0, 45.0, 30.0]]\n[[lines]]\nname = \"l\"\npoints_m = [[10.0, 53.0], [30.0, 53.0]]\n"
+    ));
+    let fall = &falls(&plan, 1)[0];
+    let crossing = fall.crossings[0];
+    let origin = plan.terrain.origin_m;
+    let mut motion = crossing.motion;
+    motion.position_m += origin;
+    // rounding of a dozen operations on numbers near 50
+    let near = |found: f64, exact: f64| assert!((found - exact).abs() < 1e-12, "{found} {exact}");
+    near(motion.time_s, 0.8);
+    near(crossing.along_m, 8.0);
+    near(motion.position_m.y, 53.0);
+    near(motion.position_m.z, 30.0 - 0.5 * 9.81 * 0.64);
+    near(motion.velocity_m_s.z, -9.81 * 0.8);
+    near(crossing.descent_deg(), (0.7848_f64).atan().to_degrees());
+    near(
+        motion.rotational_j(&fall.rock),
+        0.2 * fall.rock.mass_kg() * (3.0 * fall.rock.radius_m).powi(2),
+    );
+    let ground = plan.terrain.ground_below(18.0 - origin.x, 53.0 - origin.y).unwrap() + origin.z;
+    near(crossing.height_m, motion.position_m.z - fall.rock.radius_m - ground);
+    assert!(crossing.height_normal_m <= crossing.height_m && crossing.times == 1);
+}
+
+/// The same line whole, in pieces and backwards: the same crossings, to rounding of the length along it. A rock that
+/// starts below a line and goes down never crosses it.
+#[test]
+fn the_same_line_gives_the_same_crossings() {
+    let plan = quick(LINES);
+    let falls = falls(&plan, 60);
+    for fall in &falls {
+        let at = |line: usize| fall.crossings.iter().find(|crossing| crossing.line == line);
+        let (Some(whole), Some(pieces), Some(back)) = (at(0), at(1), at(2)) else {
+            assert!([0, 1, 2].iter().all(|line| at(*line).is_none()), "rock {}", fall.index);
+            continue;
+        };
+        assert!((whole.motion.time_s - pieces.motion.time_s).abs() < 1e-9);
+        assert!((whole.along_m - pieces.along_m).abs() < 1e-9);
+        assert!((whole.along_m + back.along_m - 40.0).abs() < 1e-9);
+        assert!((whole.motion.position_m.y + plan.terrain.origin_m.y - 26.0).abs() < 1e-9);
+        assert_eq!(whole.times, pieces.times);
+        assert!(at(4).is_none());
+    }
+    assert!(falls.iter().filter(|fall| !fall.crossings.is_empty()).count() > 50);
+}
+
+/// A rock that crosses the edge between two rows of cells passes a cell on either side, and its energy in one of them
+/// is not below that at the edge.
+#[test]
+fn lines_and_maps_agree() {
+    let plan = quick(&format!("{LINES}\n[maps]\ncell_m = 2.0\n"));
+    let Part::Kept(cells) = plan.maps else { panic!("the maps are asked for") };
+    let (mut crossed, mut at_rest) = (0, 0);
+    for fall in falls(&plan, 60) {
+        let Some(crossing) = fall.crossings.iter().find(|crossing| crossing.line == 0) else {
+            assert!(fall.passages.iter().all(|passage| passage.cell / cells.columns < 13));
+            continue;
+        };
+        crossed += 1;
+        let column = (crossing.along_m / 2.0).floor() as u32;
+        let total_j =
+            crossing.motion.translational_j(&fall.rock) + crossing.motion.rotational_j(&fall.rock);
+        let beside = |row: u32| {
+            let number = row * cells.columns + column;
+            fall.passages.iter().find(|passage| passage.cell == number)
+        };
+        let (above, below) = (beside(12).unwrap(), beside(13).unwrap());
+        // the ends of both parts are the crossing itself, computed along another way
+        let most = above.total_j.max(below.total_j);
+        assert!(most >= total_j * (1.0 - 1e-9), "{most} {total_j}");
+        let largest = fall.passages.iter().map(|passage| passage.total_j).fold(0.0, f64::max);
+        // what leaves the terrain may be fastest beyond the last cell
+        if fall.stop == Stop::AtRest {
+            let most = fall.extremes.total_j;
+            assert!((largest / most - 1.0).abs() < 1e-9, "{largest} {most}");
+            at_rest += 1;
+        }
+    }
+    assert!(crossed > 40 && at_rest > 20, "{crossed} {at_rest}");
+}
+
+/// Watching costs time, never an answer.
+#[test]
+fn watching_changes_no_rock() {
+    let (lean, full) = (quick(""), quick(&format!("{LINES}\n[maps]\ncell_m = 2.0\n")));
+    assert!(!lean.lines.is_kept() && !lean.maps.is_kept());
+    for (one, other) in falls(&lean, 20).into_iter().zip(falls(&full, 20)) {
+        assert!(one.crossings.is_empty() && one.passages.is_empty());
+        let blind = Trajectory { crossings: vec![], passages: vec![], ..other };
+        assert_eq!(format!("{one:?}"), format!("{blind:?}"));
+    }
+}
+
+/// A rock thrown up the slope comes back: its first crossing counts, by hand `(45 − 40)/8` s after the throw, and it is
+/// known to have crossed again.
+#[test]
+fn a_rock_that_comes_back_crosses_twice_and_counts_once() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quick.toml"))
+            .unwrap();
+    let (physics, _) = text.split_once("[release]").unwrap();
+    let plan = plan_of(&format!(
+        "{physics}\n[release]\ncount = 1\nvelocity_m_s = [0.0, -8.0, 6.0]\nspin_rad_s = [0.0, 0.0, 0.0]\n\
+         points_m = [[18.0, 45.0, 6.0]]\n[[lines]]\nname = \"l\"\npoints_m = [[0.0, 40.0], [40.0, 40.0]]\n"
+    ));
+    let fall = &falls(&plan, 1)[0];
+    let crossing = fall.crossings[0];
+    assert_eq!((fall.crossings.len(), crossing.times), (1, 2), "{:?}", fall.end);
+    assert!((crossing.motion.time_s - 0.625).abs() < 1e-12);
+    assert!((crossing.along_m - 18.0).abs() < 1e-12 && crossing.motion.velocity_m_s.y < 0.0);
+}

@@ -1,0 +1,125 @@
+//! Lines, barriers and maps as a site in map coordinates has them: long names, seven digits, crowds and nobody.
+
+use super::slope;
+use rockfall::output::Zone;
+use rockfall::report::model::{
+    BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, Line, LinePoint, MapMark,
+    PlaceView, Quantile, Report,
+};
+
+const EAST_M: f64 = 2_600_000.0;
+const NORTH_M: f64 = 1_200_000.0;
+
+/// A barrier that so many rocks reach, some of them with no ground below, and fewer at another place.
+pub(crate) fn net(rocks: usize) -> BarrierView {
+    let top_m = |k: usize| if k % 7 == 6 { f64::INFINITY } else { 0.3 + 0.1 * k as f64 };
+    let place = |offset_m: f64, rocks: usize| PlaceView {
+        offset_m,
+        arriving: 0.5,
+        rocks: (0..rocks).map(|k| (top_m(k), 1e4 * k as f64)).collect(),
+    };
+    let design = DesignView {
+        height_m: Estimate::new(4.2, 3.9, 5.0),
+        energy_j: Estimate::new(6e5, 5e5, f64::NAN),
+    };
+    BarrierView {
+        name: "<net> & \"fence\"".to_owned(),
+        height_m: 3.0,
+        capacity_j: 4e5,
+        design: (rocks > 0).then_some(design),
+        design_lacks: if rocks > 0 { 0 } else { 59 },
+        percentile: Some(95.0),
+        left_is_uphill: Some(false),
+        places: vec![place(0.0, rocks), place(-10.0, rocks / 2), place(20.0, 0)],
+    }
+}
+
+/// A line that so many rocks cross; every third is stopped by a barrier before.
+fn line(number: usize, name: &str, rocks: usize) -> Line {
+    let energy = |k: usize| 400.0 * 1.07_f64.powi(i32::try_from(k % 120).expect("below 120"));
+    let point = |k: usize| LinePoint {
+        release: k,
+        along_m: (k * 7 % 60) as f64,
+        height_m: 0.02 * (k % 90) as f64 - 0.01,
+        total_j: energy(k),
+        passes: !k.is_multiple_of(3),
+    };
+    let share = |k: usize| Estimate::new(1.0 / (k + 2) as f64, 0.5 / (k + 2) as f64, 0.9);
+    let curve = |size: f64| -> Vec<BandPoint> {
+        (0..rocks.min(50)).map(|k| BandPoint { x: size * k as f64, y: share(k) }).collect()
+    };
+    let marked = |size: f64| {
+        [0.5, 0.95].map(|p| Quantile { probability: p, at: Estimate::plain(p * size) }).into()
+    };
+    Line {
+        name: name.to_owned(),
+        number,
+        is_barrier: false,
+        elevation_m: 900.0 - number as f64,
+        length_m: 60.0,
+        releases: 1000,
+        reach: Estimate::new(rocks as f64 / 1000.0, 0.0, 0.4),
+        crossing_again: 1,
+        crossings: (0..rocks).map(point).collect(),
+        energy_quantiles: marked(3e5),
+        height_quantiles: marked(1.5),
+        energy_exceedance: curve(9e3),
+        height_exceedance: curve(0.04),
+        behind: (number == 2).then(|| Behind {
+            barriers: vec!["upper net".to_owned()],
+            reach: Estimate::new(0.01, 0.005, 0.02),
+            energy_exceedance: curve(4e3),
+            height_exceedance: curve(0.02),
+        }),
+    }
+}
+
+/// Lines and nets across the slope, two of them near each other, with names that hardly fit.
+fn marks() -> Vec<MapMark> {
+    let mark = |name: &str, y: f64, barrier| MapMark {
+        name: name.to_owned(),
+        corners_m: vec![[EAST_M - 400.0, NORTH_M + y], [EAST_M + 500.0, NORTH_M + y + 3.0]],
+        barrier,
+    };
+    vec![
+        mark("cantonal road between the upper and the lower village, western verge", 30.0, None),
+        mark("footpath", 34.0, None),
+        mark("upper net of the first stage of construction", 90.0, Some((4.0, 1e6))),
+        mark("lower net", 60.0, Some((3.0, 5e5))),
+    ]
+}
+
+fn maps() -> CellMap {
+    let cells = || (0..40 * 60_u32).filter(|cell| (cell * 7) % 11 < 6);
+    let layer = |of: fn(u32) -> f64| cells().map(|cell| (cell, of(cell))).collect();
+    CellMap {
+        west_m: EAST_M + 20.0,
+        south_m: NORTH_M,
+        cell_m: 2.5,
+        columns: 40,
+        reach: layer(|cell| 1e-4 * f64::from(1 + cell % 3000)),
+        intensity: layer(|cell| f64::from(1 + cell % 3)),
+        energy_j: layer(|cell| 50.0 * f64::from(1 + cell % 2000).powi(2)),
+        height_m: layer(|cell| 0.01 * f64::from(cell % 700)),
+        deposits: layer(|cell| f64::from(1 + cell % 90)),
+        exceeds: layer(|cell| 1e-3 * f64::from(1 + cell % 300)),
+        intensity_cells: [400, 400, 400],
+    }
+}
+
+/// A site with all of it.
+pub(crate) fn site() -> Report {
+    let area = [[40.0, 185.0], [100.0, 185.0], [100.0, 195.0], [40.0, 195.0]];
+    Report {
+        zone: Zone::Polygon(area.map(|[x, y]| [EAST_M + x, NORTH_M + y]).into()),
+        marks: marks(),
+        lines: vec![
+            line(2, "cantonal road between the upper and the lower village, western verge", 230),
+            line(1, "footpath", 12),
+            line(3, "nobody's line", 0),
+        ],
+        barriers: vec![net(60), net(0)],
+        maps: Some(maps()),
+        ..slope::report(700, 60)
+    }
+}
