@@ -20,8 +20,7 @@ use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::random::Distribution;
-use crate::release::{self, Drawn, Lost, Release, Releases};
-use crate::rock::Rock;
+use crate::release::{self, Lost, Release, Releases};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
 use crate::solver::{Scheme, Settings};
 use crate::terrain::health::Health;
@@ -300,16 +299,6 @@ impl Plan {
     /// As [`Self::release`].
     pub fn try_release(&self, index: usize) -> std::result::Result<Release, Box<Lost>> {
         self.releases.try_release(&self.terrain, index)
-    }
-
-    /// The shape of release `index`, of the size of its rock; none for a sphere.
-    pub fn block(&self, index: usize, rock: &Rock) -> Option<Drawn> {
-        self.releases.block(index, rock)
-    }
-
-    /// Whether some rocks have shapes.
-    pub fn has_blocks(&self) -> bool {
-        self.releases.shapes.has_blocks()
     }
 
     /// What every rock is watched for.

@@ -14,7 +14,7 @@ use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTabl
 use crate::terrain::Terrain;
 use clear::{clear_of, distance_m};
 pub use shapes::Drawn;
-pub(crate) use shapes::Shapes;
+use shapes::Shapes;
 use std::path::PathBuf;
 
 /// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
@@ -85,7 +85,7 @@ pub struct Releases {
     radii_m: Vec<f64>,
     density_kg_m3: f64,
     grounds: Vec<GroundTable>,
-    pub(crate) shapes: Shapes,
+    shapes: Shapes,
 }
 
 impl Releases {
@@ -221,6 +221,11 @@ impl Releases {
     /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
     pub fn block(&self, index: usize, rock: &Rock) -> Option<Drawn> {
         self.shapes.draw(self.seed, index, rock)
+    }
+
+    /// Whether some rocks have shapes.
+    pub fn has_blocks(&self) -> bool {
+        self.shapes.has_blocks()
     }
 
     /// What the plan says of each shape; empty for spheres alone.

@@ -218,7 +218,10 @@ impl List {
         self.lines("shape", shapes.iter().cloned());
         self.line("orientation", "computed for blocks, free rotation in closed form; left out for spheres, which look the same from every side");
         self.line("impacts of blocks", "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part");
-        self.line("cost of shape", "a block takes some 20 to 100 times as long as a sphere, the more the more corners it has");
+        self.line(
+            "cost of shape",
+            "a block is followed corner by corner and edge by edge: time grows with their number",
+        );
     }
 
     /// What of the mesh can never be touched.

@@ -40,12 +40,12 @@ struct Entry {
 
 /// The shapes of a scene; empty for spheres alone.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Shapes {
+pub(super) struct Shapes {
     entries: Vec<Entry>,
     /// A fixed turn; none if it is drawn.
     turned: Option<Rotation3<f64>>,
     /// What the plan says of each.
-    pub(crate) lines: Vec<String>,
+    pub(super) lines: Vec<String>,
 }
 
 impl Shapes {
@@ -74,7 +74,7 @@ impl Shapes {
     }
 
     /// Whether some rocks are no spheres.
-    pub(crate) fn has_blocks(&self) -> bool {
+    pub(super) fn has_blocks(&self) -> bool {
         !self.entries.is_empty()
     }
 

@@ -159,7 +159,7 @@ pub fn simulate_release(
     };
     let keep = kept(plan, index, paths);
     let settings = RunSettings::of(plan);
-    let fallen = if let Some(drawn) = plan.block(index, &release.rock) {
+    let fallen = if let Some(drawn) = plan.releases.block(index, &release.rock) {
         simulate_block(&settings, (&release, &drawn), keep, scratch)
     } else {
         let mut random = stream(plan.seed, Purpose::Impacts, index);

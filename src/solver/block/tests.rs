@@ -182,7 +182,7 @@ fn a_cube_tips_about_its_lower_edge() {
 }
 
 /// A box 2 x 0.2 x 0.2 m tilted by 30° falls at 3 m/s on its lower corners, without friction, e = 0.5: with the lever of those
-/// corners its centre keeps v' = −v + (1 + e) v m_n/m, and it spins with m_n (1 + e) v a/I.
+/// corners its centre keeps `v' = −v + (1 + e) v m_n/m`, and it spins with `m_n (1 + e) v a/I`.
 #[test]
 fn a_tilted_box_is_thrown_by_its_corners() {
     for ball in [0.002, 0.02] {
