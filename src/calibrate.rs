@@ -1,12 +1,14 @@
 //! Ground values fitted to measured ends: a search over values, scored on ends that it has not seen, and how far the ends
 //! tell the values at all.
 //!
-//! The ends are cut in two halves, row by row. The values are fitted to one half and scored on the other, then the other
-//! way round, and at last fitted to all. What the held-out halves say is what the fit is worth elsewhere. The measured
-//! ends are then drawn again many times: the values that fit these best spread as far as the ends leave them open.
+//! The ends are cut into parts, throws of one block together. The values are fitted to all but one part and scored on
+//! that, for each part in turn, and at last fitted to all. What the parts held out say is what the fit is worth
+//! elsewhere. The measured ends are then drawn again many times: the values that fit these best spread as far as the ends
+//! leave them open.
 
 mod fitted;
 mod search;
+mod site;
 mod worth;
 
 pub use fitted::fitted_scene;
@@ -16,9 +18,10 @@ use crate::ensemble::Ensemble;
 use crate::error::{Error, Flaw, Result};
 use crate::hazard::Agreement;
 use crate::random::Distribution;
-use crate::scene::{GroundTable, Scene, VaryKey, VaryTable};
+use crate::scene::{CalibrateTable, GroundTable, Scene, VaryKey, VaryTable};
 use search::Search;
 use serde::{Deserialize, Serialize};
+use site::Site;
 use std::fmt;
 
 /// Most quantities that are fitted at a time.
@@ -37,12 +40,14 @@ pub struct Trial {
     pub all: Agreement,
 }
 
-/// Measured ends that are fitted.
+/// Some of the measured ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ends {
-    /// Rows 1, 3, 5, … (0) or 2, 4, 6, … (1) of each file.
-    Half(usize),
-    /// All rows.
+    /// All but those of one part.
+    Without(usize),
+    /// Those of one part.
+    Only(usize),
+    /// All of them.
     All,
 }
 
@@ -57,28 +62,25 @@ pub struct Calibration {
     pub trials: usize,
     /// With the values that would stand there without calibration.
     pub before: Trial,
-    /// Fitted to the first half (rows 1, 3, 5, … of the file).
-    pub first: Trial,
-    /// Fitted to the second half.
-    pub second: Trial,
+    /// Fitted to all but one part of the ends and scored on that, part by part; none where none was held out.
+    pub held_out: Vec<Trial>,
+    /// Whether throws of one block were held out together.
+    #[serde(default)]
+    pub by_block: bool,
     /// Fitted to all ends.
-    #[serde(default)]
-    pub whole: Option<Trial>,
+    pub whole: Trial,
     /// How far the ends tell each value.
-    #[serde(default)]
     pub told: Vec<Told>,
     /// Measured and computed ends of the fit to all, scene by scene.
-    #[serde(default)]
     pub measures: Vec<Measure>,
     /// Measured ends, and how many independent ones they are worth: throws of one block are alike.
-    #[serde(default)]
     pub ends: (usize, f64),
 }
 
 /// Number of trials of a calibration, for a bar of progress.
 pub fn planned(scene: &Scene) -> usize {
-    let values = scene.calibrate.as_ref().map_or(0, |table| table.vary.len());
-    3 * search::trials(values)
+    let Some(table) = &scene.calibrate else { return 0 };
+    (table.parts() + 1) * search::trials(table.vary.len())
 }
 
 /// Calibrates scenes together; the first says what is varied. `tried` hears of every trial.
@@ -92,13 +94,15 @@ pub fn calibrate(
     releases: usize,
     tried: &mut dyn FnMut(Ends, &Trial),
 ) -> Result<Calibration> {
-    let vary = vary_of(scenes)?;
-    let mut search = Search::new(scenes, vary, ensemble, releases)?;
+    let (vary, parts) = vary_of(scenes)?;
+    let mut search = Search::new(scenes, vary, ensemble, (releases, parts.max(1)))?;
     let before: Vec<f64> = vary.iter().map(|vary| vary.before).collect();
-    let before = search.trial(&before, Ends::Half(0))?;
-    let (first, trials) = search.best(Ends::Half(0), tried)?;
-    let (second, _) = search.best(Ends::Half(1), tried)?;
-    let (whole, _) = search.best(Ends::All, tried)?;
+    let before = search.trial(&before, Ends::All)?;
+    let mut held_out = Vec::new();
+    for part in 0..parts {
+        held_out.push(search.best(Ends::Without(part), tried)?.0);
+    }
+    let (whole, trials) = search.best(Ends::All, tried)?;
     let name = |vary: &VaryTable| format!("{}.{}", vary.ground, vary.key.name());
     let (told, measures, ends) = search.worth(&whole.values, scenes[0].seed)?;
     Ok(Calibration {
@@ -106,17 +110,17 @@ pub fn calibrate(
         releases,
         trials,
         before,
-        first,
-        second,
-        whole: Some(whole),
+        held_out,
+        by_block: search.sites.iter().any(Site::knows_blocks),
+        whole,
         told,
         measures,
         ends,
     })
 }
 
-/// What is varied; every scene must have it, and measured ends.
-fn vary_of(scenes: &[Scene]) -> Result<&[VaryTable]> {
+/// What is varied, which every scene must have beside measured ends, and the parts that are held out in turn.
+fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
     let wrong = |scene: &Scene, found: &str, remedy: String| {
         Err(Error::input(&scene.file, "[calibrate]", found, remedy))
     };
@@ -137,7 +141,7 @@ fn vary_of(scenes: &[Scene]) -> Result<&[VaryTable]> {
             return wrong(scene, "found another set of grounds", remedy);
         }
     }
-    Ok(vary)
+    Ok((vary, first.calibrate.as_ref().map_or(0, CalibrateTable::parts)))
 }
 
 /// Puts values into the grounds of a scene.
@@ -159,6 +163,9 @@ fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
     match key {
         VaryKey::FrictionAngleDeg => ground.friction_angle_deg = fixed,
         VaryKey::Restitution => ground.restitution = Some(fixed),
+        VaryKey::TangentialRatio => {
+            (ground.tangential_ratio, ground.shear_stiffness_n_m) = (Some(fixed), None);
+        }
         VaryKey::RollingFriction => ground.rolling_friction = Some(fixed),
         VaryKey::RollingFrictionSpread if value > 0.0 => {
             let low = ground.rolling_friction.as_ref().map_or(0.0, |rolling| rolling.support().0);
@@ -173,39 +180,41 @@ fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
 
 impl fmt::Display for Calibration {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(to, "{} trials of {} releases for each half", self.trials, self.releases)?;
-        let whose = [
-            ("before", &self.before),
-            ("fit on 1st half", &self.first),
-            ("fit on 2nd half", &self.second),
-        ];
-        let whole = self.whole.as_ref().map(|whole| ("fit on all", whole));
-        for (who, trial) in whose.into_iter().chain(whole) {
-            let values = self.names.iter().zip(&trial.values);
-            let values: Vec<String> =
-                values.map(|(name, value)| format!("{name} = {value:.4}")).collect();
-            writeln!(to, "{who:<16} {}", values.join(", "))?;
-            for (what, of) in [
-                ("fitted half", &trial.fitted),
-                ("held-out half", &trial.kept_apart),
-                ("all", &trial.all),
-            ] {
-                writeln!(
-                    to,
-                    "  {what:<14} runout {:.1} m (measured {:.1}), KS {:.3} (limit {:.3}), area {:.1} m, side {:.1} m (measured {:.1})",
-                    of.computed_mean_m,
-                    of.measured_mean_m,
-                    of.ks,
-                    of.ks_limit,
-                    of.area_m,
-                    of.computed_side_m,
-                    of.measured_side_m
-                )?;
-            }
+        writeln!(to, "{} trials of {} releases for each fit", self.trials, self.releases)?;
+        self.write_trial(to, "before", &self.before)?;
+        for (part, trial) in self.held_out.iter().enumerate() {
+            let who = format!("fit without part {} of {}", part + 1, self.held_out.len());
+            self.write_trial(to, &who, trial)?;
         }
+        self.write_trial(to, "fit on all", &self.whole)?;
         let (ends, effective) = self.ends;
         writeln!(to, "{ends} measured ends, worth {effective:.0} independent ones")?;
         self.told.iter().try_for_each(|told| writeln!(to, "{told}"))?;
         self.measures.iter().try_for_each(|measure| writeln!(to, "{measure}"))
+    }
+}
+
+impl Calibration {
+    fn write_trial(&self, to: &mut fmt::Formatter<'_>, who: &str, trial: &Trial) -> fmt::Result {
+        let values = self.names.iter().zip(&trial.values);
+        let values: Vec<String> =
+            values.map(|(name, value)| format!("{name} = {value:.4}")).collect();
+        writeln!(to, "{who:<16} {}", values.join(", "))?;
+        let parts = [("fitted ends", &trial.fitted), ("held-out ends", &trial.kept_apart)];
+        // before, and fitted on all, there is nothing apart
+        let parts = parts.into_iter().filter(|_| trial.fitted.measured < trial.all.measured);
+        parts.chain([("all ends", &trial.all)]).try_for_each(|(what, of)| {
+            writeln!(
+                to,
+                "  {what:<14} runout {:.1} m (measured {:.1}), KS {:.3} (limit {:.3}), area {:.1} m, side {:.1} m (measured {:.1})",
+                of.computed_mean_m,
+                of.measured_mean_m,
+                of.ks,
+                of.ks_limit,
+                of.area_m,
+                of.computed_side_m,
+                of.measured_side_m
+            )
+        })
     }
 }

@@ -74,7 +74,7 @@ enum Command {
     },
     /// List the grounds that `like` knows, with their sources
     Grounds,
-    /// Fit the ground values named under [calibrate] to measured ends: on half of them, scored on the other half
+    /// Fit the ground values named under [calibrate] to measured ends, scored on ends held out
     Calibrate(calibrate::CalibrateArgs),
     /// Study the numerics: error against run time, stability
     #[command(subcommand)]
@@ -162,7 +162,9 @@ fn verify(out: &Path) -> Result<ExitCode> {
 
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
     let mode = if overwrite { Mode::Overwrite } else { Mode::Merge };
-    report::draw_merged(&output::merge(shards, out, mode)?, &shards[0])?;
+    output::merge(shards, out, mode)
+        .and_then(|results| report::draw_merged(&results, &shards[0]))
+        .map_err(|error| error.on_full_disk("make room and merge again with --overwrite"))?;
     Ok(say(format!("results in {}", out.display())))
 }
 
@@ -185,7 +187,8 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
             bar.set_length(asked as u64);
             bar.set_position(done as u64);
         },
-    )?;
+    )
+    .map_err(|error| error.on_full_disk("make room and go on with --resume"))?;
     match ended {
         RunEnd::Interrupted { done, of } => {
             bar.abandon();
@@ -288,6 +291,11 @@ fn bar(asked: usize, what: &str) -> ProgressBar {
 
 /// Says what is wrong; where even that cannot be written (a full disk, nobody there) the status must do.
 fn complain(text: impl Display) {
+    // what stands in a file must not steer the terminal, nor break the line
+    let shown = |c: char| {
+        if c.is_control() && c != '\n' { c.escape_default().to_string() } else { c.to_string() }
+    };
+    let text: String = text.to_string().chars().map(shown).collect();
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 

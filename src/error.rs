@@ -44,12 +44,15 @@ fn remedy(kind: ErrorKind) -> &'static str {
         ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {
             "a file stands where a folder should be: write another path"
         }
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            "make room and go on with --resume, or write a path on another disk"
-        }
+        kind if is_full(kind) => "make room, or write a path on another disk",
         ErrorKind::InvalidData => "write the path of a text file in UTF-8",
         _ => "check the disk, or write another path",
     }
+}
+
+/// Whether the system has no more room.
+fn is_full(kind: ErrorKind) -> bool {
+    matches!(kind, ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge)
 }
 
 /// What is wrong with a value and what to write instead: an [`Error::Input`] that does not yet know its place.
@@ -82,6 +85,19 @@ impl Error {
             place: place.into(),
             found: found.into(),
             remedy: remedy.into(),
+        }
+    }
+
+    /// The same, where a command goes on in its own way once a full disk has room again.
+    #[must_use]
+    pub fn on_full_disk(self, remedy: &str) -> Self {
+        match self {
+            Self::File { file, action, source } if is_full(source.kind()) => {
+                let file = file.display();
+                let another = "or write a path on another disk";
+                Self::Request(format!("{file}: cannot {action}: {source}; {remedy}, {another}"))
+            }
+            other => other,
         }
     }
 

@@ -44,6 +44,17 @@ pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Reads the first 4096 bytes of a file, see [`open`].
+///
+/// # Errors
+/// As [`open`].
+pub fn head(path: &Path) -> Result<Vec<u8>> {
+    let mut head = Vec::new();
+    let file = open(path, LONGEST_MESH)?;
+    file.take(4096).read_to_end(&mut head).map_err(Error::file("read", path))?;
+    Ok(head)
+}
+
 /// Reads a whole text, see [`open`].
 ///
 /// # Errors

@@ -152,6 +152,14 @@ pub fn read(path: &Path) -> Result<Layer> {
     Ok(layer)
 }
 
+/// Whether bytes begin like a drawing: GeoJSON, a Shapefile, or a GeoPackage, which is refused with words.
+pub(crate) fn begins_like_drawing(head: &[u8]) -> bool {
+    let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+    shapefile::begins_like_shapefile(head)
+        || text.trim_ascii_start().starts_with(b"{")
+        || head.starts_with(ELSEWHERE[0].0)
+}
+
 /// How other files begin, and what they are.
 const ELSEWHERE: [(&[u8], &str); 4] = [
     (b"SQLite format 3\0", "a GeoPackage"),

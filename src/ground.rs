@@ -165,15 +165,29 @@ impl Law {
 /// `e(ζ) = exp(−2 ζ acos ζ / √(1−ζ²))`; the contact ends when the force falls to zero, not when the spring is
 /// back at its length (the textbook's `exp(−π ζ/√(1−ζ²))`), so nothing ever pulls.
 pub fn restitution(zeta: f64) -> f64 {
+    math::exp(-2.0 * zeta * angle_over_sine(zeta))
+}
+
+/// `acos ζ / √(1−ζ²)`, beyond ζ = 1 with acosh.
+fn angle_over_sine(zeta: f64) -> f64 {
     let off = 1.0 - zeta * zeta;
-    let angle_over_sine = if off.abs() < 1e-9 {
+    if off.abs() < 1e-9 {
         1.0 + off / 6.0
     } else if off > 0.0 {
         math::acos(zeta) / off.sqrt()
     } else {
         math::acosh(zeta) / (-off).sqrt()
-    };
-    math::exp(-2.0 * zeta * angle_over_sine)
+    }
+}
+
+/// Share of its slip that an impact on a plane gives back where it sticks throughout (–), for a ratio `p_s/p_N` (–);
+/// negative where the slip goes on when the rock leaves.
+///
+/// The slip is that of the contact point's `2/7 m` on the critically damped shear spring, `u = u₀ (1 − ω_s t) e^(−ω_s t)`
+/// with `ω_s = ω √(7/2 p_s/p_N)`, over the `2 acos ζ/√(1 − ζ²)` radians of ω that [`restitution`] ends after.
+pub fn tangential_restitution(ratio: f64, damping: &Damping) -> f64 {
+    let phase = (3.5 * ratio).sqrt() * 2.0 * angle_over_sine(damping.ratio);
+    (phase - 1.0) * math::exp(-phase)
 }
 
 /// The damping ratio ζ that gives restitution `e` (0..1), the inverse of [`restitution`] by bisection.

@@ -22,8 +22,9 @@ mod sum;
 mod totals;
 
 pub use annual::{
-    Above, Annual, AnnualFigures, AnnualPlace, Asked, ExceedancePoint, Matrix, Object, Rate,
-    ReturnEnergy, Risk, RiskKind, Saved, Vehicles, YearMap, annual, share_of, year_maps,
+    Above, Annual, AnnualBarrier, AnnualFigures, AnnualPlace, Asked, ExceedancePoint, Matrix,
+    Object, Rate, ReturnEnergy, Risk, RiskKind, Saved, Vehicles, YearMap, annual, share_of,
+    year_maps,
 };
 pub use barriers::{
     Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge,
@@ -32,7 +33,7 @@ pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
-pub use observed::{Agreement, Spread, Way, effective};
+pub use observed::{Agreement, Spread, Way, Weighted, distances, effective, rank, runouts};
 pub use proportion::Proportion;
 pub use quantile::{Open, Percentile, Ranks};
 pub use quantity::Quantity;
@@ -166,13 +167,8 @@ impl Hazard {
 
     /// All values of one quantity, sorted: for curves and histograms.
     pub fn sample(&self, quantity: Quantity) -> Sample {
-        let values = self.values[quantity as usize].iter().copied();
-        let first = self.first.unwrap_or(0);
-        let ended =
-            (first..first + self.rocks()).filter(|at| self.failed.binary_search(at).is_err());
         let weights = self.weights();
-        let weighs = |release| weights.as_ref().map_or(1.0, |all| all.of_release(release));
-        let each = values.zip(ended.map(weighs));
+        let each = self.weighed(quantity, weights.as_ref());
         match quantity.open() {
             Some(open) => {
                 let seen = each.zip(self.is_open.iter().copied());
@@ -183,6 +179,24 @@ impl Hazard {
             }
             None => Sample::weighted(each),
         }
+    }
+
+    /// The same, the values of rocks that would have gone on taken as they were seen.
+    pub fn sample_as_seen(&self, quantity: Quantity) -> Sample {
+        Sample::weighted(self.weighed(quantity, self.weights().as_ref()))
+    }
+
+    /// Values in the order of releases, each with what it weighs.
+    fn weighed<'a>(
+        &'a self,
+        quantity: Quantity,
+        weights: Option<&'a Weights>,
+    ) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let first = self.first.unwrap_or(0);
+        let ended =
+            (first..first + self.rocks()).filter(|at| self.failed.binary_search(at).is_err());
+        let weighs = move |release| weights.map_or(1.0, |all| all.of_release(release));
+        self.values(quantity).iter().copied().zip(ended.map(weighs))
     }
 
     /// The values of one quantity in the order of releases (failed rocks have none).

@@ -24,7 +24,7 @@ mod atomic_file;
 
 pub use atomic_file::write_atomic;
 pub use calibration::{read_calibration, write_calibration};
-pub use folder::{announce_figures, releases_in};
+pub use folder::{Mode, announce_figures, releases_in};
 pub use lock::FolderLock;
 pub use merge::merge;
 pub use progress::Identity;
@@ -37,11 +37,11 @@ pub use vector::write_terrain;
 
 use crate::error::{Error, Result};
 use crate::frequency::Weights;
-use crate::hazard;
 use crate::hazard::{
-    Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
+    self, Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
 };
 use crate::rock::Vec3;
+use crate::scene::Language;
 use crate::simulation::{ShapeOf, Trajectory};
 use opened::{open, open_maps};
 use progress::{PROGRESS, Progress};
@@ -99,25 +99,12 @@ pub struct RunInfo {
     pub title_block: Vec<(String, String)>,
     /// Where terrain and ground values come from, in words.
     pub sources: [String; 2],
+    /// In which language page and figures speak.
+    pub language: Language,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Health of the meshes.
     pub mesh_health: serde_json::Value,
-}
-
-/// What to do with results that the folder holds already.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mode {
-    /// Refuse them.
-    Fresh,
-    /// The same for parts that are put together, where there is nothing to go on with.
-    Merge,
-    /// Go on with them; start when there are none; nothing is left to do when they are complete.
-    Resume,
-    /// The same, also where they are the first of the releases asked for.
-    Extend,
-    /// Replace them.
-    Overwrite,
 }
 
 /// Results being written.

@@ -21,8 +21,8 @@ use crate::error::{Error, Result};
 use crate::ground::Ground;
 use crate::random::Distribution;
 use crate::release::{self, Lost, Release, Releases};
-use crate::scene::{BarrierTable, InputFile, ObjectTable, Polyline, RecordTable, Scene};
-use crate::solver::{Scheme, Settings};
+use crate::scene::{BarrierTable, InputFile, Language, ObjectTable, Polyline, RecordTable, Scene};
+use crate::solver::Settings;
 use crate::terrain::health::Health;
 use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
@@ -148,6 +148,8 @@ pub struct Plan {
     pub catalogued: Vec<String>,
     /// Up to which slope each ground stops a rolling sphere, in words.
     pub rolling_stops: Vec<String>,
+    /// Ratio of the springs and tangential restitution of each ground, in words.
+    pub tangential: Vec<String>,
     /// File of measured ends that the report compares with.
     pub deposits: Option<PathBuf>,
     /// What went in, as name and value.
@@ -156,6 +158,8 @@ pub struct Plan {
     pub title_block: Vec<(String, String)>,
     /// Where terrain and ground values come from, in words; the first may be empty.
     pub sources: [String; 2],
+    /// In which language page and figures speak.
+    pub language: Language,
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
     /// What it should know if rocks come so fast.
@@ -272,8 +276,10 @@ impl Plan {
                 scene.report.terrain_source.clone().unwrap_or_default(),
                 inputs::ground_source(scene, &grounds::catalogued(scene)),
             ],
+            language: scene.report.language.unwrap_or_default(),
             catalogued: grounds::catalogued(scene),
             rolling_stops: grounds::rolling_stops(scene),
+            tangential: grounds::tangential(scene),
             deposits: scene.calibrate.as_ref().map(|table| table.deposits.clone()),
             warnings,
             fast_warnings,
@@ -339,7 +345,7 @@ fn bonds(scene: &Scene) -> Part<Strength> {
     let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
         return Part::LeftOut("releases are independent");
     };
-    if scene.solver.scheme() == Scheme::Rigid {
+    if !scene.solver.scheme().has_springs() {
         return Part::LeftOut("a bond breaks by its springs, and the rigid limit has none");
     }
     let strength =

@@ -12,7 +12,7 @@ use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
-use clear::{clear_of, distance_m};
+use clear::{clear_of, distance_m, is_inside_tree};
 pub use shapes::Drawn;
 use shapes::Shapes;
 use std::path::PathBuf;
@@ -74,8 +74,9 @@ pub struct Releases {
     file: PathBuf,
     seed: u64,
     gravity_m_s2: f64,
-    /// One, or one for each source.
+    /// One, or one for each source; zones that are sources are one.
     places: Vec<Where>,
+    zones_are_sources: bool,
     height_m: Option<Distribution>,
     velocity_m_s: [Distribution; 3],
     spin_rad_s: [Distribution; 3],
@@ -112,6 +113,7 @@ impl Releases {
             seed: scene.seed,
             gravity_m_s2: scene.gravity_m_s2,
             places,
+            zones_are_sources: scene.has_zone_sources(),
             height_m: asked.height_m.clone(),
             velocity_m_s: asked.velocity_m_s.clone(),
             spin_rad_s: asked.spin_rad_s.clone(),
@@ -135,10 +137,12 @@ impl Releases {
     }
 
     /// Draws the zone of a release, the first number of its stream: a place that cannot be used is drawn again in the same
-    /// one, so that every zone keeps its share.
+    /// one, so that every zone keeps its share. A zone that is a source has its own releases.
     fn draw_zone(&self, random: &mut RandomStream, index: usize) -> Option<usize> {
         let Where::Zones(zones) = self.place_of(index).0 else { return None };
-        Some(zones.pick(unit(random)))
+        let drawn = zones.pick(unit(random));
+        let source = self.frequency.as_ref().filter(|_| self.zones_are_sources);
+        Some(source.map_or(drawn, |frequency| frequency.stratum(index).source))
     }
 
     /// Looks for ground below an entry of the place, or beside a centre that is given with its height.
@@ -216,26 +220,6 @@ impl Releases {
         }
         // at least one place was drawn
         (lost.map_or(Ok(release), Err), draws)
-    }
-
-    /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
-    pub fn block(&self, index: usize, rock: &Rock) -> Option<Drawn> {
-        self.shapes.draw(self.seed, index, rock)
-    }
-
-    /// Whether some rocks have shapes.
-    pub fn has_blocks(&self) -> bool {
-        self.shapes.has_blocks()
-    }
-
-    /// What the plan says of each shape; empty for spheres alone.
-    pub fn shapes(&self) -> &[String] {
-        &self.shapes.lines
-    }
-
-    /// Radius of the ball around a rock (m): what must be clear where it starts, however it is turned.
-    fn around_m(&self, index: usize, rock: &Rock) -> f64 {
-        self.block(index, rock).map_or(rock.radius_m, |drawn| drawn.block.bound_m)
     }
 
     /// Everything of a release but its place.
@@ -326,13 +310,16 @@ impl Releases {
         // beyond the edge there is no ground to be under
         let buried = terrain.ground_under(centre.x, centre.y, centre.z).is_none()
             && terrain.ground_below(centre.x, centre.y).is_some();
-        if depth_m <= 2.0 * pressed_m + TYPED_DEPTH * around_m && !buried {
+        let caged = is_inside_tree(terrain, centre);
+        if depth_m <= 2.0 * pressed_m + TYPED_DEPTH * around_m && !buried && !caged {
             return Ok(());
         }
         let [x, y, z]: [f64; 3] = (centre + terrain.origin_m).into();
         let who = format!("{} at ({x}, {y}, {z})", release_name(index));
         let found = if buried {
             "found its centre under the terrain".to_owned()
+        } else if caged {
+            "found its centre inside a tree".to_owned()
         } else {
             format!("found it {depth_m:.2e} m deep in the ground or a tree")
         };
@@ -346,21 +333,25 @@ impl Releases {
         let mut random = stream(self.seed, Purpose::Grounds, index);
         // How a block rolls is its shape, which it keeps: the same quantile on every ground.
         let mut character = None;
-        let draw_ground = |table: &GroundTable| Ground {
-            normal_stiffness_n_m: table.normal_stiffness_n_m.draw(&mut random),
-            shear_stiffness_n_m: table.shear_stiffness_n_m.draw(&mut random),
-            friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
-            restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
-            rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
-                let drawn = unit(&mut random);
-                rolling.quantile(*character.get_or_insert(drawn))
-            }),
-            roughness_rad: table
-                .roughness_deg
-                .as_ref()
-                .map_or(0.0, |angle| angle.draw(&mut random))
-                .to_radians(),
-            roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+        let draw_ground = |table: &GroundTable| {
+            let normal_stiffness_n_m = table.normal_stiffness_n_m.draw(&mut random);
+            Ground {
+                normal_stiffness_n_m,
+                shear_stiffness_n_m: table
+                    .shear_n_m(normal_stiffness_n_m, |value| value.draw(&mut random)),
+                friction_angle_rad: table.friction_angle_deg.draw(&mut random).to_radians(),
+                restitution: table.restitution.as_ref().map(|e| e.draw(&mut random)),
+                rolling_friction: table.rolling_friction.as_ref().map_or(0.0, |rolling| {
+                    let drawn = unit(&mut random);
+                    rolling.quantile(*character.get_or_insert(drawn))
+                }),
+                roughness_rad: table
+                    .roughness_deg
+                    .as_ref()
+                    .map_or(0.0, |angle| angle.draw(&mut random))
+                    .to_radians(),
+                roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+            }
         };
         self.grounds.iter().map(draw_ground).collect()
     }

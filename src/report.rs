@@ -40,10 +40,12 @@ mod site;
 mod stops;
 pub mod svg;
 pub mod view;
+pub mod words;
 
 use crate::error::{Error, Result};
 use crate::hazard::Hazard;
 use crate::output::{self, FolderLock, Results, write_atomic};
+use crate::scene::Language;
 use crate::terrain::Terrain;
 use figure::{Drawing, FIGURES, Heading};
 use model::Report;
@@ -51,6 +53,7 @@ use raster::GroundRaster;
 use std::fs;
 use std::path::Path;
 use view::mesh::Mesh;
+use words::{Words, fill};
 
 /// Draws a finished run: `figures/*.svg`, `report.html`, and the ground it was drawn on, below the run's folder.
 ///
@@ -112,9 +115,11 @@ fn draw_all(results: &Results, ground: Option<GroundRaster>) -> Result<()> {
 
 /// Each headline statistic of the rocks with its 95 % interval, line by line, and what the computation warns of.
 pub fn headline(hazard: &Hazard) -> Vec<String> {
+    let words = Words::of(Language::En);
     let warnings =
-        [from_results::warnings_first(hazard), hazard.totals.warnings(hazard.rocks())].concat();
-    let mut lines = html::plain_headline(&from_results::headline(hazard));
+        [from_results::warnings_first(hazard, words), hazard.totals.warnings(hazard.rocks())]
+            .concat();
+    let mut lines = html::plain_headline(&from_results::headline(hazard, words), words);
     lines.extend(warnings.iter().map(|warning| format!("warning: {warning}")));
     lines
 }
@@ -130,7 +135,7 @@ pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
     let mut drawn = drawings(report);
-    drawn.extend(error_study(dir));
+    drawn.extend(error_study(dir, report.words()));
     let names: Vec<&str> = drawn.iter().map(|(heading, _)| heading.file.as_str()).collect();
     output::announce_figures(dir, &names)?;
     for (heading, drawing) in &drawn {
@@ -140,62 +145,67 @@ pub fn draw(report: &Report, dir: &Path) -> Result<()> {
 }
 
 /// The figure that `rockfall study error` has left in `error/` below the results, if it has.
-fn error_study(dir: &Path) -> Option<(Heading, Drawing)> {
+fn error_study(dir: &Path, words: &Words) -> Option<(Heading, Drawing)> {
     let file = html::ERROR_STUDY;
     let svg = fs::read_to_string(dir.join("error").join(file)).ok()?;
-    let title = "Error against run time".to_owned();
-    let caption = "Errors of the 95th percentiles from chance in the sample, from the steps and, where it was studied, from the \
-                   mesh, over the run time that they cost, as `rockfall study error` found them.";
-    let heading = Heading { file: file.to_owned(), title };
+    let heading = Heading { file: file.to_owned(), title: words.error_study.to_owned() };
     Some((
         heading,
-        Drawing { svg: svg[svg.find("<svg")?..].to_owned(), caption: caption.to_owned() },
+        Drawing {
+            svg: svg[svg.find("<svg")?..].to_owned(),
+            caption: words.error_study_caption.to_owned(),
+        },
     ))
 }
 
 /// All figures, drawn. Lines and barriers that no rock reaches have a sentence on the page and no figure.
 pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
+    let words = report.words();
     let heading =
         |file: &str, title: &str| Heading { file: file.to_owned(), title: title.to_owned() };
+    let named = |template: &str, name: &str| fill(template, &[("name", &words.quoted(name))]);
     let mut drawn: Vec<(Heading, Drawing)> = FIGURES
         .iter()
-        .map(|figure| (heading(figure.file, figure.title), (figure.draw)(report)))
+        .map(|figure| (heading(figure.file, (figure.title)(words)), (figure.draw)(report)))
         .collect();
     if let Some(drawing) = along_paths::draw(report) {
-        drawn.push((heading("along.svg", "Along the way"), drawing));
+        drawn.push((heading("along.svg", words.along_title), drawing));
     }
     if let Some(observed) = &report.observed {
         drawn.push((
-            heading("measured.svg", "Measured and computed"),
+            heading("measured.svg", words.measured_title),
             measured::draw(report, observed),
         ));
     }
     if let Some(cells) = &report.maps {
-        drawn.push((heading("maps.svg", "Reach and intensity"), maps::draw(report, cells)));
+        drawn.push((heading("maps.svg", words.maps_title), maps::draw(report, cells)));
         let values = maps::draw_values(report, cells);
-        drawn.push((heading("maps_values.svg", "Energy, height and deposits"), values));
+        drawn.push((heading("maps_values.svg", words.map_values_title), values));
     }
     if report.lines.len() > 1 {
-        drawn.push((heading("retention.svg", "Retention"), lines::retention(&report.lines)));
+        drawn.push((
+            heading("retention.svg", words.retention),
+            lines::retention(&report.lines, words),
+        ));
     }
     for (number, view) in report.annual.iter().enumerate() {
         let file = format!("annual_{}.svg", number + 1);
-        let title = format!("Frequency a year at “{}”", view.name);
-        drawn.push((heading(&file, &title), annual::draw(view, number + 1)));
+        let title = named(words.year_title, &view.name);
+        drawn.push((heading(&file, &title), annual::draw(words, view, number + 1)));
     }
     // what passes a barrier's line stands in the barrier's own figure
     let own = report.lines.iter().filter(|line| !line.is_barrier);
-    for line in own.filter(|line| lines::nobody(line).is_none()) {
+    for line in own.filter(|line| line.is_met()) {
         // names of lines may hold anything: files are numbered
         let file = format!("line_{}.svg", line.number);
-        let title = format!("Evaluation line “{}”", line.name);
-        drawn.push((heading(&file, &title), lines::draw(line)));
+        let title = named(words.line_title, &line.name);
+        drawn.push((heading(&file, &title), lines::draw(words, line)));
     }
     let barriers = report.barriers.iter().enumerate();
-    for (number, barrier) in barriers.filter(|(_, one)| barriers::nobody(one).is_none()) {
+    for (number, barrier) in barriers.filter(|(_, one)| one.is_met()) {
         let file = format!("barrier_{}.svg", number + 1);
-        let title = format!("Barrier “{}”", barrier.name);
-        drawn.push((heading(&file, &title), barriers::draw(barrier, number + 1)));
+        let title = named(words.barrier_name, &barrier.name);
+        drawn.push((heading(&file, &title), barriers::draw(words, barrier, number + 1)));
     }
     drawn
 }

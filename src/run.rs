@@ -79,7 +79,6 @@ pub fn run_observed(
     begin: impl FnOnce(Arc<AtomicBool>) -> Result<()>,
     progress: impl Fn(usize, usize),
 ) -> Result<RunEnd> {
-    year::allows(plan, options.until.is_some())?;
     options.selection.check(plan.count)?;
     let ensemble = Ensemble::new(options.threads)?;
     begin(ensemble.stop_flag())?;
@@ -187,6 +186,7 @@ impl Round<'_> {
             plan: plan.lines_for(releases),
             inputs: plan.inputs.clone(),
             title_block: plan.title_block.clone(),
+            language: plan.language,
             sources: plan.sources.clone(),
             warnings: plan.warnings.clone(),
             mesh_health: infos::mesh_health(plan)?,
@@ -226,12 +226,12 @@ fn more(until: Option<&TargetPrecision>, hazard: &Hazard, done: usize) -> Result
     if let Some(why) = target.refusal(hazard) {
         return Err(Error::Request(format!("{why}; finish these with --releases {done} --resume")));
     }
-    let values = hazard.values(target.quantity);
-    let needed = target.needs(values, done);
+    let sample = hazard.sample_as_seen(target.quantity);
+    let needed = target.needs(&sample, done);
     if needed > MOST_RELEASES as f64 {
         return Err(Error::Request(format!(
             "--until \"{target}\": {done} releases are written, and about {needed:.0e} would be needed; write a wider interval, or finish these with --releases {done} --resume"
         )));
     }
-    Ok(target.next(values, done).map(|next| next.min(MOST_RELEASES)))
+    Ok(target.next(&sample, done).map(|next| next.min(MOST_RELEASES)))
 }

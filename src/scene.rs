@@ -15,6 +15,7 @@ mod geometry;
 mod ground_zones;
 mod grounds;
 mod holes;
+mod matrix;
 mod meshes;
 mod object;
 mod places;
@@ -27,6 +28,7 @@ mod shapes;
 mod solver;
 mod source;
 mod wording;
+mod zone_sources;
 mod zones;
 
 pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
@@ -35,13 +37,14 @@ pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use drawn::{BarrierEntry, LineEntry};
 pub use files::InputFile;
-pub use frequency::{ClassTable, FrequencyTable, MatrixTable, SourceTable};
+pub use frequency::{ClassTable, FrequencyTable, SourceTable};
 pub use ground_zones::GroundZones;
 pub use grounds::GroundTable;
+pub use matrix::{KnownMatrix, MATRICES, MatrixEntry, MatrixTable};
 pub use meshes::{CropTable, MeshFile, MeshTable};
 pub use object::{ObjectTable, VehiclesTable};
 pub use places::{Area, Corner, Point, Polyline};
-pub use record::{LineTable, MapsTable, RecordTable, ReportTable};
+pub use record::{Language, LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
@@ -50,9 +53,7 @@ pub use solver::SolverTable;
 pub use zones::{Zone, ZonePlace, Zones};
 
 use crate::error::{Error, Result};
-use crate::frequency::Frequency;
 use crate::random::{Distribution, entries};
-use crate::solver::Scheme;
 use crate::terrain::health::Health;
 use crate::terrain::{Sheet, Terrain, patches::Patches, read::Source};
 use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
@@ -159,10 +160,12 @@ impl Scene {
         let mut scene = Self::parse(&text, file)?;
         scene.read_blocks()?;
         let refuse = |wrong| Lookup::of(file, &text).refuse(wrong);
-        scene.take_drawn().map_err(|wrong| match wrong {
-            Refusal::Key(complaint) => refuse(*complaint),
-            Refusal::File(error) => error,
-        })?;
+        scene.take_drawn().and_then(|()| scene.take_zone_sources()).map_err(
+            |wrong| match wrong {
+                Refusal::Key(complaint) => refuse(*complaint),
+                Refusal::File(error) => error,
+            },
+        )?;
         let again = "found a name that a line or barrier before has";
         scene.check_lines().map_err(|wrong| refuse(wrong.finding(again)))?;
         scene.hash = scene.fingerprint(&text).map_err(refuse)?;
@@ -204,7 +207,7 @@ impl Scene {
                 let found = wrong.found.unwrap_or_else(|| "found another".to_owned());
                 Error::input(table, "radius_m or mass_kg", found, wrong.remedy)
             };
-            self.rocks.check(self.sources().as_ref()).map_err(wrong)?;
+            self.rocks.check().map_err(wrong)?;
         }
         self.release.blocks = blocks;
         Ok(())
@@ -215,14 +218,10 @@ impl Scene {
         self.grounds.keys().position(|known| known == name)
     }
 
-    /// The sources of rocks, their laws of size, and what is asked of the year; none without `[frequency]`.
-    pub fn sources(&self) -> Option<Frequency> {
-        self.frequency.as_ref().and_then(FrequencyTable::compile)
-    }
-
     /// The files of slope and trees, ready for [`Terrain::read`].
     pub fn mesh_sources(&self) -> Vec<Source> {
-        let starts = self.release.boxes_m();
+        let sources = self.frequency.iter().flat_map(|table| &table.sources);
+        let starts = self.release.boxes_m(&sources.cloned().collect::<Vec<_>>());
         let source = |mesh: &MeshFile, is_tree| Source {
             sheet: Sheet {
                 path: mesh.path().to_owned(),
@@ -271,17 +270,8 @@ impl Scene {
             }
             ground.check(scheme).map_err(|wrong| wrong.inside(name).inside("grounds"))?;
         }
-        if let Some(frequency) = &self.frequency {
-            frequency.check().map_err(|wrong| wrong.inside("frequency"))?;
-        }
-        let sources = self.sources();
-        if self.release.table.is_some() && sources.as_ref().is_some_and(Frequency::draws_volumes) {
-            let remedy =
-                "remove it, or write per_year = … in [frequency]: a table has blocks of its own";
-            let about = Complaint::about("table", remedy);
-            return Err(about.finding("found it beside volumes of [frequency]").inside("release"));
-        }
-        self.rocks.check(sources.as_ref()).map_err(|wrong| wrong.inside("rocks"))?;
+        self.check_frequency()?;
+        self.rocks.check().map_err(|wrong| wrong.inside("rocks"))?;
         let placed = self.frequency.as_ref().is_some_and(|table| !table.sources.is_empty());
         self.release.check(placed).map_err(|wrong| wrong.inside("release"))?;
         self.solver.check().map_err(|wrong| wrong.inside("solver"))?;
@@ -376,12 +366,12 @@ impl Scene {
             let remedy = "write the table [rocks.contact]: rocks that share one world can touch";
             return Err(Complaint::missing("contact", remedy).inside("rocks"));
         };
-        if contact.restitution.is_none() && scheme != Scheme::Dda {
+        if contact.restitution.is_none() && !scheme.has_fixed_step() {
             let remedy = "write restitution = 0..1; only scheme \"dda\" can do without";
             let missing = Complaint::missing("restitution", remedy);
             return Err(missing.inside("contact").inside("rocks"));
         }
-        if matches!(scheme, Scheme::Rigid) && contact.has_bonds() {
+        if !scheme.has_springs() && contact.has_bonds() {
             let remedy = "write \"adaptive\", \"reference\" or \"dda\": a bond breaks by its springs, and the rigid limit has none; with tensile_strength_pa = 0 and cohesion_pa = 0 in [rocks.contact] \"rigid\" can be used";
             return Err(Complaint::about("scheme", remedy).inside("solver"));
         }

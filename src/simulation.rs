@@ -5,6 +5,7 @@ mod rest;
 mod crossings;
 mod driver;
 mod form;
+mod impacts;
 mod recorder;
 mod roughness;
 mod trees;
@@ -138,9 +139,10 @@ pub struct Impact {
     pub sheet: u16,
     /// Speed of the centre before (m/s).
     pub speed_in_m_s: f64,
-    /// Speed of the centre after (m/s).
+    /// Speed of the centre when its patch lets go, or when its time is up (m/s).
     pub speed_out_m_s: f64,
-    /// Mechanical energy lost (J).
+    /// Energy that went into contacts with the mesh (J), ≥ 0; impacts at the same time share it by the squares of their
+    /// approach speeds.
     pub energy_lost_j: f64,
 }
 

@@ -11,50 +11,18 @@ pub(crate) mod impact;
 pub mod island;
 pub(crate) mod multi_contact;
 pub mod law;
+pub mod scheme;
 pub mod rigid;
 pub(crate) mod friction_rolling;
 pub mod stage;
 pub mod tableau;
 pub mod environment;
+mod springs;
+pub(crate) mod yielding;
 
 use contact_state::{ContactEnvironment, ContactState};
+pub use scheme::Scheme;
 use step_control::{Advance, Control, StepError};
-use tableau::{ESDIRK4, TR_BDF2};
-
-/// How a step is taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Scheme {
-    /// The paper's displacement-based step at a fixed time step.
-    Dda,
-    /// TR-BDF2 with error control; the default.
-    Adaptive,
-    /// The same law with the fourth-order tableau and a tight tolerance.
-    Reference,
-    /// Rigid limit: impact map and velocity stepping.
-    Rigid,
-}
-
-impl Scheme {
-    /// Its name in scene files and results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Dda => "dda",
-            Self::Adaptive => "adaptive",
-            Self::Reference => "reference",
-            Self::Rigid => "rigid",
-        }
-    }
-
-    /// Budget of work of one rock: steps, accepted or not, and flights. A minute of fall takes a few thousand, with the
-    /// paper's fixed step of 1e-5 s six million.
-    pub const fn most_work(self) -> u64 {
-        match self {
-            Self::Dda => 20_000_000,
-            Self::Adaptive | Self::Reference | Self::Rigid => 5_000_000,
-        }
-    }
-}
 
 /// Settings of the step, all in force (defaults already filled in by the plan).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,11 +55,12 @@ pub enum Stepper {
 impl Stepper {
     /// Begins an episode.
     pub fn new(settings: &Settings, world: &ContactEnvironment, state: &mut ContactState) -> Self {
-        let tableau = match settings.scheme {
-            Scheme::Rigid => return Self::Rigid(settings.step_s),
-            Scheme::Reference => &ESDIRK4,
-            Scheme::Dda => return Self::Dda(dda::Fixed::new(settings, world, state)),
-            Scheme::Adaptive => &TR_BDF2,
+        let Some(tableau) = settings.scheme.tableau() else {
+            return if settings.scheme.has_springs() {
+                Self::Dda(dda::Fixed::new(settings, world, state))
+            } else {
+                Self::Rigid(settings.step_s)
+            };
         };
         let control = Control::new(tableau, settings, world);
         Self::Controlled(control, step_control::first_step(world, state))

@@ -26,6 +26,7 @@ pub mod verify;
 pub mod stability;
 mod stability_figure;
 mod statistic;
+mod weighing;
 
 use crate::error::{Error, Result};
 use crate::output::write_atomic;
@@ -50,7 +51,7 @@ pub fn write_exact(
 ) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
-    for study in studies {
+    for study in studies.iter().filter(|study| study.says_something()) {
         let file = figures.join(format!("{}.svg", study.case.name));
         write_atomic(&file, exact_figure::draw(study).as_bytes())?;
     }

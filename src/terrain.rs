@@ -74,25 +74,26 @@ pub struct Terrain {
 impl Terrain {
     /// Indexes a welded mesh.
     pub fn new(welded: Welded, sheets: Vec<Sheet>) -> Self {
-        let corners = |t: usize| welded.corners_m(t);
-        let (index, order) = Index::build((0..welded.triangles.len()).map(corners));
-        let triangles: Vec<[u32; 3]> =
-            order.iter().map(|&k| welded.triangles[k as usize]).collect();
-        let features = Features::of(&welded.vertices_m, &triangles);
-        let sheet_of: Vec<u16> = order.iter().map(|&k| welded.sheet_of[k as usize]).collect();
+        let (index, order) = Index::build(welded.triangles.len(), |t| welded.corners_m(t as usize));
+        let Welded { vertices_m, triangles, sheet_of, facet_of, edges, origin_m, .. } = welded;
+        let triangles = in_order(&order, triangles);
+        let (sheet_of, facet_of) = (in_order(&order, sheet_of), in_order(&order, facet_of));
+        let edges = edges.reordered(&order);
+        drop(order);
+        let features = Features::of_edges(edges, &vertices_m, &triangles);
         let is_ground = |(_, sheet): &(_, &u16)| !sheets[**sheet as usize].is_tree;
         let ground = features.faces.iter().zip(&sheet_of).filter(is_ground).map(|(face, _)| face);
         let floor = Floor::of(ground, triangles.len(), index.bounds());
         Self {
-            origin_m: welded.origin_m,
-            sheet_of,
-            floor,
-            facet_of: order.iter().map(|&k| welded.facet_of[k as usize]).collect(),
-            vertices_m: welded.vertices_m,
+            origin_m,
+            vertices_m,
             triangles,
+            sheet_of,
+            facet_of,
             sheets,
             features,
             index,
+            floor,
             stems: None,
             epsg: None,
             patched: None,
@@ -177,4 +178,9 @@ impl Terrain {
             f64::NEG_INFINITY
         }
     }
+}
+
+/// A list in another order.
+fn in_order<T: Copy>(order: &[u32], list: Vec<T>) -> Vec<T> {
+    order.iter().map(|&k| list[k as usize]).collect()
 }

@@ -1,6 +1,6 @@
 //! Point clouds: LAZ says what LAS says, and a thinned cloud is the slope it was measured on.
 #![cfg(feature = "cloud")]
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking")]
 
 use las::point::{Classification, Format};
 use las::{Builder, Point, Writer};
@@ -127,7 +127,7 @@ fn a_damaged_or_empty_cloud_is_refused() {
     assert!(parse(whole[..300].to_vec(), &Options::default()).is_err());
 }
 
-/// A slope as STL and as points at the same corners: other diagonals, the same statistics.
+/// A slope as STL and as points at the same corners: the same triangles, the same statistics.
 #[test]
 fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
     let dir = tempfile::tempdir().unwrap();
@@ -152,6 +152,27 @@ fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
         }
     });
     std::fs::write(dir.path().join("slope.laz"), file_of(points.collect(), true)).unwrap();
+    // on a lattice both are cut along the same diagonals
+    let source = |name: &str, options| {
+        let sheet = Sheet { path: dir.path().join(name), ground: 0, is_tree: false };
+        Source { sheet, up: Up::Z, scale: 1.0, options: Some(options) }
+    };
+    let coarse = Options { resample_m: Some(2.0), ..Options::default() };
+    let [mesh, cloud] =
+        [("slope.stl", Options::default()), ("slope.laz", coarse)].map(|(name, options)| {
+            let terrain = Terrain::read(&[source(name, options)], Vec3::zeros(), None).unwrap().0;
+            let corners = |t: u32| {
+                let mut corners = terrain.corners_m(t).map(|p| {
+                    <[f64; 3]>::from((p + terrain.origin_m) * 1e3).map(|mm| mm.round() as i64)
+                });
+                corners.sort_unstable();
+                corners
+            };
+            let mut all: Vec<_> = (0..terrain.triangles.len() as u32).map(corners).collect();
+            all.sort_unstable();
+            all
+        });
+    assert!(mesh == cloud);
     let runouts = |terrain: &str| -> Vec<f64> {
         let scene = format!(
             "title = \"Cloud\"\nseed = 5\n[[terrain]]\nground = \"rock\"\n{terrain}\n\
@@ -198,4 +219,57 @@ fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
         "{difference} of {}, {error}",
         mean(&mesh)
     );
+}
+
+/// Written by another program (laspy, where it is installed): every version and point format, plain and packed, with the
+/// coordinate system as WKT; all hold the same ground.
+#[test]
+fn what_laspy_writes_is_read() {
+    const SCRIPT: &str = "
+import sys
+try:
+    import laspy, numpy
+except ImportError:
+    print('none'); sys.exit()
+k = numpy.arange(900)
+x, y = 2600000.25 + k % 30, 1200000.75 + k // 30
+z = 50 + 0.5 * (x - 2600000) - 0.25 * (y - 1200000)
+n = 0
+for version, formats in (('1.2', (0, 1, 2, 3)), ('1.4', (0, 1, 6, 7, 8))):
+    for fmt in formats:
+        for end in ('las', 'laz'):
+            header = laspy.LasHeader(point_format=fmt, version=version)
+            header.offsets, header.scales = [2600000, 1200000, 0], [0.001] * 3
+            cloud = laspy.LasData(header)
+            cloud.x, cloud.y, cloud.z = x, y, numpy.where(k % 7 == 0, z + 9, z)
+            cloud.classification = numpy.where(k % 7 == 0, 5, 2).astype('u1')
+            cloud.write(f'{sys.argv[1]}/{version}_{fmt}.{end}')
+            n += 1
+print(n)
+";
+    let dir = tempfile::tempdir().unwrap();
+    let said = std::process::Command::new("python3")
+        .args(["-c", SCRIPT, dir.path().to_str().unwrap()])
+        .output();
+    let said = said
+        .map(|said| String::from_utf8_lossy(&said.stdout).trim().to_owned())
+        .unwrap_or_default();
+    let Ok(count) = said.parse::<usize>() else {
+        eprintln!("skipped: python3 has no laspy ({said})");
+        return;
+    };
+    let mut first: Option<Cloud> = None;
+    let mut seen = 0;
+    for entry in std::fs::read_dir(dir.path()).unwrap() {
+        let path = entry.unwrap().path();
+        let found = cloud::read(&path, &Options::default()).unwrap();
+        assert_eq!(found.points_m().len(), 771, "{}", path.display());
+        for point in found.points_m() {
+            // all of these are multiples of a millimetre, stored as whole numbers of them
+            assert!((point.z - ground_m(point.x, point.y)).abs() < 1e-3, "{point}");
+        }
+        assert_eq!(*first.get_or_insert_with(|| found.clone()), found, "{}", path.display());
+        seen += 1;
+    }
+    assert_eq!(seen, count);
 }

@@ -1,16 +1,16 @@
 //! Table, page and figure of the cost against the number of rocks in one world.
 
 use crate::scaling::{Cost, Phase, World, exponent};
-use plotters::style::RGBColor;
 use rockfall::error::{Error, Result};
 use rockfall::output::write_atomic;
 use rockfall::report::axis::Axis;
 use rockfall::report::canvas::{Canvas, Label, NORMAL, Pen, paint};
-use rockfall::report::colour::{BLUE, GREEN, GREY, INK, ORANGE};
+use rockfall::report::colour::{GREY, INK};
 use rockfall::report::figure::WIDTH_PX;
 use rockfall::report::panel::{FOOT_PX, Panel};
 use rockfall::report::svg::path::Frame;
 use rockfall::solver::Scheme;
+use rockfall::study::exact_figure::{colour, shape};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -280,14 +280,6 @@ type Value = dyn Fn(&World) -> f64;
 const PLOT_PX: f64 = 120.0;
 const TOP_PX: f64 = 26.0;
 
-fn colour(scheme: Scheme) -> RGBColor {
-    match scheme {
-        Scheme::Dda => ORANGE,
-        Scheme::Rigid => GREEN,
-        Scheme::Adaptive | Scheme::Reference => BLUE,
-    }
-}
-
 /// Time of a step, memory and cost over the number of spheres.
 fn figure(worlds: &[World]) -> String {
     let megabytes =
@@ -297,12 +289,12 @@ fn figure(worlds: &[World]) -> String {
     };
     let rate = |phase: Phase| move |world: &World| world.cost(phase).map_or(f64::NAN, Cost::rate);
     let panels: [(&str, &Value); 6] = [
-        ("Step of all, falling (ms)", &step(Phase::Falling)),
-        ("Step of all, impacts (ms)", &step(Phase::Impacts)),
-        ("Step of all, settling (ms)", &step(Phase::Settling)),
+        ("Falling: step (ms)", &step(Phase::Falling)),
+        ("Impacts: step (ms)", &step(Phase::Impacts)),
+        ("Settling: step (ms)", &step(Phase::Settling)),
         ("Memory (MB)", &megabytes),
-        ("s per s, impacts", &rate(Phase::Impacts)),
-        ("s per s, settling", &rate(Phase::Settling)),
+        ("Impacts: time (s/s)", &rate(Phase::Impacts)),
+        ("Settling: time (s/s)", &rate(Phase::Settling)),
     ];
     let height = TOP_PX + panels.len() as f64 * (PLOT_PX + FOOT_PX + 12.0);
     paint("scaling", (WIDTH_PX, height), "Cost against number of spheres", |canvas| {
@@ -334,7 +326,7 @@ fn draw_panel(canvas: &Canvas<'_>, worlds: &[World], (top, title): (f64, &str), 
         let points: Vec<_> = points.into_iter().filter(|point| point.1.is_finite()).collect();
         panel.line(canvas, &points, Pen::full(colour(scheme), 1.6));
         for &(x, y) in &points {
-            canvas.disc(panel.at(x, y), 3.0, colour(scheme));
+            canvas.mark(shape(scheme), panel.at(x, y), 2.8, colour(scheme));
         }
     }
     panel.axes(canvas);
@@ -343,9 +335,10 @@ fn draw_panel(canvas: &Canvas<'_>, worlds: &[World], (top, title): (f64, &str), 
 fn key(canvas: &Canvas<'_>) {
     let mut x = 74.0;
     for scheme in SCHEMES {
-        canvas.disc((x, 12.0), 4.0, colour(scheme));
+        canvas.mark(shape(scheme), (x, 12.0), 3.2, colour(scheme));
         canvas.text(&Label::new(scheme.name(), (x + 9.0, 12.0)).sized(NORMAL).coloured(INK));
         x += 90.0;
     }
-    canvas.text(&Label::new("dashed: in proportion to the number", (x, 12.0)).coloured(GREY));
+    let words = "dashed: in proportion to the number; s/s: run time over simulated time";
+    canvas.text(&Label::new(words, (x, 12.0)).coloured(GREY));
 }

@@ -11,9 +11,8 @@ use crate::scene::{GroundTable, Scene, VaryKey, VaryTable, rewritten};
 /// # Errors
 /// A scene file that has changed meanwhile.
 pub fn fitted_scene(scene: &Scene, vary: &[VaryTable], found: &Calibration) -> Result<String> {
-    let values = found.whole.as_ref().map_or(&found.first.values, |whole| &whole.values);
     let mut fitted = scene.clone();
-    put_all(&mut fitted, vary, values)?;
+    put_all(&mut fitted, vary, &found.whole.values)?;
     let mut changes = Vec::new();
     for vary in vary {
         let key = match vary.key {
@@ -37,6 +36,7 @@ fn value_of(ground: &GroundTable, key: &str) -> Option<String> {
     let value = match key {
         "friction_angle_deg" => Some(&ground.friction_angle_deg),
         "restitution" => ground.restitution.as_ref(),
+        "tangential_ratio" => ground.tangential_ratio.as_ref(),
         "rolling_friction" => ground.rolling_friction.as_ref(),
         _ => ground.roughness_deg.as_ref(),
     };

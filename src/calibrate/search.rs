@@ -1,13 +1,11 @@
 //! The search: grids that narrow round the best values, even points where there are many values.
 
-use super::{Ends, Trial, put_all};
+use super::site::{Computed, Site};
+use super::{Ends, Trial};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
-use crate::hazard::{Agreement, Row, Way};
-use crate::plan::Plan;
+use crate::hazard::Agreement;
 use crate::scene::{Scene, VaryTable};
-use crate::simulation::{Scratch, simulate_release};
-use crate::terrain::Terrain;
 
 /// Values tried of each quantity in the first grid, and in each refinement: of one or two quantities, and of three.
 const GRID: [[usize; 3]; 2] = [[6, 5, 5], [5, 4, 4]];
@@ -26,20 +24,6 @@ pub(super) fn trials(values: usize) -> usize {
     GRID[usize::from(values > 2)].iter().map(|steps| steps.pow(values as u32)).sum()
 }
 
-/// Computed ways with their release numbers.
-pub(super) type Computed = Vec<(usize, Way)>;
-
-/// One scene and what was measured on it.
-pub(super) struct Site {
-    scene: Scene,
-    pub(super) measured: Vec<Way>,
-    /// The block that each measured end belongs to; empty if the file does not tell.
-    pub(super) blocks: Vec<String>,
-    terrain: Option<Terrain>,
-    /// Places of release, taken in turn: as many as measured ends, each end has its own.
-    places: usize,
-}
-
 /// The search over one set of ends after the other.
 pub(super) struct Search<'a> {
     pub(super) sites: Vec<Site>,
@@ -54,9 +38,9 @@ impl<'a> Search<'a> {
         scenes: &[Scene],
         vary: &'a [VaryTable],
         ensemble: &'a Ensemble,
-        releases: usize,
+        (releases, parts): (usize, usize),
     ) -> Result<Self> {
-        let sites = scenes.iter().map(|scene| Site::of(scene, releases));
+        let sites = scenes.iter().map(|scene| Site::of(scene, releases, parts));
         Ok(Self { sites: sites.collect::<Result<_>>()?, vary, ensemble, known: Vec::new() })
     }
 
@@ -95,7 +79,7 @@ impl<'a> Search<'a> {
 
     fn nothing(&self) -> Error {
         let remedy = "release rocks that do not fail";
-        Error::input(&self.sites[0].scene.file, "[calibrate]", "found no computed end", remedy)
+        Error::input(self.sites[0].file(), "[calibrate]", "found no computed end", remedy)
     }
 
     /// Compares all releases with these values with the measured ends.
@@ -107,7 +91,7 @@ impl<'a> Search<'a> {
             let each = sites.map(|(site, computed)| site.compare(computed, of));
             Agreement::joined(&each.collect::<Option<Vec<_>>>()?)
         };
-        let apart = if let Ends::Half(half) = ends { Ends::Half(1 - half) } else { Ends::All };
+        let apart = if let Ends::Without(part) = ends { Ends::Only(part) } else { Ends::All };
         let found = |of: Ends| compare(of).ok_or_else(|| self.nothing());
         Ok(Trial {
             values: values.to_vec(),
@@ -124,80 +108,11 @@ impl<'a> Search<'a> {
         }
         let mut all = Vec::new();
         for site in &mut self.sites {
-            put_all(&mut site.scene, self.vary, values)?;
-            all.push(site.compute(self.ensemble)?);
+            all.push(site.compute((self.vary, values), self.ensemble)?);
         }
         self.known.push((values.to_vec(), all));
         Ok(self.known.len() - 1)
     }
-}
-
-impl Site {
-    pub(super) fn title(&self) -> String {
-        self.scene.title.clone()
-    }
-
-    fn of(scene: &Scene, releases: usize) -> Result<Self> {
-        let deposits = scene.calibrate.as_ref().map(|table| table.deposits.as_path());
-        let (measured, blocks) = match deposits {
-            Some(deposits) => (Way::read(deposits)?, Way::read_blocks(deposits)?),
-            None => (Vec::new(), Vec::new()),
-        };
-        let (terrain, _) = scene.read_terrain()?;
-        let asked = &scene.release;
-        let places = asked.points_m.as_ref().map_or(asked.blocks.len(), Vec::len);
-        let mut scene = bare(scene, releases);
-        if places == measured.len() {
-            // every measured rock as often as any other
-            scene.release.count = releases.next_multiple_of(places);
-        }
-        Ok(Self { scene, measured, blocks, terrain: Some(terrain), places })
-    }
-
-    /// Computes all releases.
-    fn compute(&mut self, ensemble: &Ensemble) -> Result<Computed> {
-        let terrain = match self.terrain.take() {
-            Some(terrain) => terrain,
-            None => self.scene.read_terrain()?.0,
-        };
-        let plan = Plan::compile(&self.scene, terrain)?;
-        let origin_m = plan.terrain.origin_m;
-        let mut computed = Computed::new();
-        let one =
-            |index: usize, scratch: &mut Scratch| simulate_release(&plan, index, None, scratch);
-        for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {
-            let way = |fall| Way::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
-            computed.extend(falls?.iter().filter_map(way));
-        }
-        self.terrain = Some(plan.terrain);
-        Ok(computed)
-    }
-
-    /// Compares some of the ends. Where every measured rock has its release point, a half is computed from its own.
-    fn compare(&self, computed: &Computed, of: Ends) -> Option<Agreement> {
-        let rows = self.measured.len();
-        let wanted = |row: usize| match of {
-            Ends::Half(half) => row % 2 == half,
-            Ends::All => true,
-        };
-        let measured: Vec<Way> =
-            (0..rows).filter(|row| wanted(*row)).map(|row| self.measured[row]).collect();
-        let computed: Vec<Way> = computed
-            .iter()
-            .filter(|(index, _)| self.places != rows || wanted(index % rows))
-            .map(|(_, way)| *way)
-            .collect();
-        Agreement::of(&measured, &computed)
-    }
-}
-
-/// The scene without anything that a trial has no use for.
-fn bare(scene: &Scene, releases: usize) -> Scene {
-    let mut bare = scene.clone();
-    bare.release.count = releases;
-    (bare.record.paths, bare.record.impacts) = (Some(0), Some(false));
-    (bare.lines, bare.barriers, bare.maps) = (Vec::new(), Vec::new(), None);
-    bare
 }
 
 /// Whether the distributions of one comparison lie nearer than those of another.

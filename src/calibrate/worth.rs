@@ -1,9 +1,10 @@
 //! What a fit is worth: how far the measured ends tell the values, and how far computed ends lie from them.
 
-use super::search::{Search, Site};
+use super::search::Search;
+use super::site::{Computed, Site};
 use crate::error::Result;
-use crate::hazard::{Agreement, Spread, Way, effective};
-use crate::random::{Purpose, RandomStream, stream, unit};
+use crate::hazard::Spread;
+use crate::random::{Purpose, stream};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -53,7 +54,7 @@ impl Search<'_> {
         let place = self.place(values)?;
         let (mut ends, mut worth) = (0, 0.0);
         for site in &self.sites {
-            ends += site.measured.len();
+            ends += site.measured().len();
             worth += site.effective();
         }
         Ok((self.told(values, seed), self.measures(place, seed), (ends, worth)))
@@ -63,14 +64,11 @@ impl Search<'_> {
     fn told(&self, values: &[f64], seed: u64) -> Vec<Told> {
         let best = |redraw: usize| {
             let mut random = stream(seed, Purpose::Redraw, redraw);
-            let drawn: Vec<Vec<Way>> =
+            let drawn: Vec<Vec<usize>> =
                 self.sites.iter().map(|site| site.redraw(&mut random)).collect();
-            let distance = |computed: &[Vec<(usize, Way)>]| -> f64 {
-                let each = drawn.iter().zip(computed).filter_map(|(measured, computed)| {
-                    let ways: Vec<Way> = computed.iter().map(|(_, way)| *way).collect();
-                    Some(measured.len() as f64 * Agreement::of(measured, &ways)?.ks)
-                });
-                each.sum()
+            let distance = |computed: &[Computed]| -> f64 {
+                let each = self.sites.iter().zip(&drawn).zip(computed);
+                each.map(|((site, rows), computed)| site.distance(computed, rows)).sum()
             };
             let distances: Vec<f64> =
                 self.known.iter().map(|(_, computed)| distance(computed)).collect();
@@ -99,13 +97,13 @@ impl Search<'_> {
 
     fn measures(&self, place: usize, seed: u64) -> Vec<Measure> {
         let sites = self.sites.iter().zip(&self.known[place].1);
-        let of_site = |(site, computed): (&Site, &Vec<(usize, Way)>)| {
-            let computed: Vec<Way> = computed.iter().map(|(_, way)| *way).collect();
-            let found = Spread::figures(&site.measured, &computed);
+        let of_site = |(site, computed): (&Site, &Computed)| {
+            let all: Vec<usize> = (0..site.measured().len()).collect();
+            let found = site.figures(computed, &all);
             let again: Vec<_> = (0..REDRAWS)
                 .map(|redraw| {
                     let mut random = stream(seed, Purpose::Redraw, redraw);
-                    Spread::figures(&site.redraw(&mut random), &computed)
+                    site.figures(computed, &site.redraw(&mut random))
                 })
                 .collect();
             let one = |(at, (what, measured, computed)): (usize, (&'static str, f64, f64))| {
@@ -121,18 +119,14 @@ impl Search<'_> {
 }
 
 impl Site {
-    /// Independent ends that the measured ones are worth.
-    fn effective(&self) -> f64 {
-        let runouts: Vec<f64> = self.measured.iter().map(Way::runout_m).collect();
-        effective(&runouts, &self.blocks)
-    }
-
-    /// As many measured ends as they are worth, drawn from them with replacement.
-    fn redraw(&self, random: &mut RandomStream) -> Vec<Way> {
-        let count = (self.effective().round() as usize).max(2);
-        let rows = self.measured.len();
-        let row = |_| self.measured[((unit(random) * rows as f64) as usize).min(rows - 1)];
-        (0..count).map(row).collect()
+    /// Figures of some measured ends and of what was computed beside them: what, measured, computed.
+    fn figures(&self, computed: &Computed, rows: &[usize]) -> Vec<(&'static str, f64, f64)> {
+        let mut figures = Spread::figures(&self.ends(rows), &self.weighted(computed, rows));
+        if let Some([mean, off]) = self.ranks(computed, rows) {
+            figures.push(("mean rank among computed ends of the same place (–)", mean, 0.5));
+            figures.push(("largest distance of these ranks from even ones (–)", off, 0.0));
+        }
+        figures
     }
 }
 

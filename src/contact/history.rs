@@ -37,6 +37,8 @@ pub struct ContactHistory {
     pub closed: bool,
     /// Whether its beginning has been noted down.
     pub announced: bool,
+    /// As which of the rock's impacts, from 1; 0 where it was none.
+    pub impact: u32,
 }
 
 impl ContactHistory {
@@ -53,6 +55,7 @@ impl ContactHistory {
             slides: false,
             closed: false,
             announced: false,
+            impact: 0,
         }
     }
 }

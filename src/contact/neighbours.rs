@@ -343,7 +343,7 @@ impl Neighbours {
     pub(crate) fn is_covered(
         &self,
         terrain: &Terrain,
-        ground_contact: &Vec3,
+        nearest: &Vec3,
         centre: &Vec3,
         distance: f64,
     ) -> bool {
@@ -351,7 +351,7 @@ impl Neighbours {
         self.sheets.iter().any(|&t| {
             let corners = terrain.corners_m(t);
             let gap = |p: &Vec3| (p - closest_on(&corners, p)).norm();
-            gap(ground_contact) <= near && gap(centre) < distance * (1.0 - 1e-12)
+            gap(nearest) <= near && gap(centre) < distance * (1.0 - 1e-12)
         })
     }
 
@@ -363,11 +363,10 @@ impl Neighbours {
             return;
         }
         let near2 = (SAME * self.radius).powi(2);
-        let ground_contact = centre - touch.normal * touch.distance_m;
+        let nearest = centre - touch.normal * touch.distance_m;
         let known = touches.iter().any(|other| {
             (other.normal - touch.normal).norm_squared() <= SAME * SAME
-                && (centre - other.normal * other.distance_m - ground_contact).norm_squared()
-                    <= near2
+                && (centre - other.normal * other.distance_m - nearest).norm_squared() <= near2
         });
         if !known {
             touches.add(touch);

@@ -116,8 +116,8 @@ pub fn rolling_stiffness(k_r: f64) -> Mat6 {
 
 /// A moment (N m) about the centre `→ F`.
 #[inline]
-pub fn moment_load(rolling_moment: &Vec3) -> Vec6 {
-    Vec6::new(0.0, 0.0, 0.0, rolling_moment.x, rolling_moment.y, rolling_moment.z)
+pub fn moment_load(moment_n_m: &Vec3) -> Vec6 {
+    Vec6::new(0.0, 0.0, 0.0, moment_n_m.x, moment_n_m.y, moment_n_m.z)
 }
 
 /// Inertia in a step of `dt` (s) with constant acceleration: `2 M/dt² → K`, `M = (m, I)`.

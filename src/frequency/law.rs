@@ -1,6 +1,6 @@
 //! Magnitude–frequency laws, cut into strata.
 
-use super::STRATA_PER_DECADE;
+use super::{STRATA, STRATA_PER_DECADE};
 use crate::math;
 use serde::{Deserialize, Serialize};
 
@@ -86,6 +86,13 @@ impl Law {
         }
     }
 
+    /// Whether its rates and their squares are numbers that a computer tells apart from 0 and from infinity: none of its
+    /// strata comes more seldom than 10⁻¹²⁰ or more often than 10¹² times a year.
+    pub fn is_countable(&self) -> bool {
+        let rates = self.strata(0, STRATA);
+        rates.iter().all(|stratum| (1e-120..=1e12).contains(&stratum.per_year))
+    }
+
     /// Events a year of all sizes together (1/year).
     pub fn per_year(&self) -> f64 {
         self.strata(0, 1).iter().map(|stratum| stratum.per_year).sum()
@@ -98,7 +105,8 @@ impl Law {
                 format!("{per_year} events a year of the scene's rocks")
             }
             Self::PowerLaw { per_year_at_1m3, exponent, volume_m3: [least, largest] } => format!(
-                "{per_year_at_1m3} V^-{exponent} events a year of V m³ or more, {least} to {largest} m³"
+                "{} V^-{exponent} events a year of V m³ or more, {least} to {largest} m³",
+                six_digits(*per_year_at_1m3)
             ),
             Self::Classes(classes) => {
                 let class = |class: &Class| {
@@ -109,6 +117,11 @@ impl Law {
             }
         }
     }
+}
+
+/// A number that may have been computed, without digits that tell nothing.
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 impl Stratum {

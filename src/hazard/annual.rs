@@ -4,12 +4,14 @@
 //! release), *passage* frequency (their product, summed over sources) and *energy exceedance* (passage with more than an
 //! energy). Everything here is a number a year; what is conditional on release stands with lines, maps and barriers.
 
+mod barriers;
 mod cells;
 mod curve;
 mod places;
 mod rate;
 mod risk;
 
+pub use barriers::AnnualBarrier;
 pub use cells::{YearMap, year_maps};
 pub use curve::{ExceedancePoint, ReturnEnergy};
 pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, annual};
@@ -17,7 +19,7 @@ pub(in crate::hazard) use rate::proportion;
 pub use rate::{Rate, share_of};
 pub use risk::{Object, Risk, RiskKind, Vehicles};
 
-use crate::frequency::Frequency;
+use crate::frequency::{Frequency, radius_of_m3};
 use serde::{Deserialize, Serialize};
 
 /// What a scene asks of the year.
@@ -32,6 +34,19 @@ pub struct Asked {
     pub matrix: Option<Matrix>,
     /// Most energy that a rock of each stratum can ever have (J); may be empty, then nothing is known of it.
     pub most_j: Vec<f64>,
+    /// Radius of the largest rock of each stratum (m); of one without entry its law says it.
+    pub largest_m: Vec<f64>,
+}
+
+impl Asked {
+    /// Radius of the largest rock of a stratum (m); 0 where nothing says it.
+    fn largest_m(&self, stratum: usize) -> f64 {
+        let of_law = || {
+            let stratum = self.frequency.as_ref()?.strata().get(stratum)?;
+            stratum.volume_m3.map(|[_, largest]| radius_of_m3(largest))
+        };
+        self.largest_m.get(stratum).copied().or_else(of_law).unwrap_or(0.0)
+    }
 }
 
 /// Levels of hazard by energy and return period, as the scene has them.

@@ -85,6 +85,15 @@ pub struct AtPlace {
 
 /// Heights of the sensitivity over the barrier's own (–).
 const HEIGHTS: [f64; 7] = [0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5];
+/// Which of them is its own.
+const OWN_HEIGHT: usize = 3;
+
+impl AtPlace {
+    /// Share of the arriving rocks that a barrier of its own height stops.
+    pub fn at_own_height(&self) -> Option<&Proportion> {
+        self.by_height.get(OWN_HEIGHT).map(|(_, share)| share)
+    }
+}
 
 /// A rock that arrives at a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]

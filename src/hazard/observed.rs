@@ -2,10 +2,9 @@
 
 mod spread;
 
-pub use spread::{Spread, effective};
+pub use spread::{Spread, effective, rank};
 
 use super::row::Row;
-use super::sample::Sample;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
 use crate::math;
@@ -20,6 +19,9 @@ pub struct Way {
     /// Where it ended (m).
     pub end_m: [f64; 2],
 }
+
+/// A way and what it weighs (–).
+pub type Weighted = (Way, f64);
 
 /// Columns that a file of measured ends must have; it may have more.
 #[derive(Debug, Deserialize)]
@@ -145,35 +147,69 @@ impl Agreement {
 
     /// Compares measured and computed ways; none if either is empty.
     pub fn of(measured: &[Way], computed: &[Way]) -> Option<Self> {
-        let runouts = |ways: &[Way]| Sample::of(ways.iter().map(Way::runout_m));
-        let (one, other) = (runouts(measured), runouts(computed));
-        let (n, m) = (one.values().len() as f64, other.values().len() as f64);
-        let (ks, area_m) = distances(one.values(), other.values());
+        let computed: Vec<Weighted> = computed.iter().map(|way| (*way, 1.0)).collect();
+        Self::of_weighted(measured, &computed)
+    }
+
+    /// The same where computed ways weigh unlike (–): those of weight 0 take no part.
+    pub fn of_weighted(measured: &[Way], computed: &[Weighted]) -> Option<Self> {
+        let even: Vec<Weighted> = measured.iter().map(|way| (*way, 1.0)).collect();
+        let (one, other) = (runouts(&even), runouts(computed));
+        let (n, m) = (one.len() as f64, other.len() as f64);
+        let mean = |runouts: &[(f64, f64)]| {
+            let weight: f64 = runouts.iter().map(|(_, weight)| weight).sum();
+            let sum: f64 = runouts.iter().map(|(runout, weight)| runout * weight).sum();
+            (!runouts.is_empty()).then(|| sum / weight)
+        };
+        let (measured_mean_m, computed_mean_m) = (mean(&one)?, mean(&other)?);
+        let (ks, area_m) = distances(&one, &other);
         let along = mean_direction(measured);
         Some(Self {
-            measured: one.values().len(),
-            computed: other.values().len(),
-            measured_mean_m: one.mean()?.value,
-            computed_mean_m: other.mean()?.value,
+            measured: one.len(),
+            computed: other.len(),
+            measured_mean_m,
+            computed_mean_m,
             ks,
             ks_limit: 1.36 * ((n + m) / (n * m)).sqrt(),
             area_m,
-            measured_side_m: side_sd_m(measured, along),
-            computed_side_m: side_sd_m(computed, along),
+            measured_side_m: Spread::of(&even, along).across_m(),
+            computed_side_m: Spread::of(computed, along).across_m(),
         })
     }
 }
 
-/// Largest difference of two empirical distributions, and the area between them, from sorted values.
-fn distances(one: &[f64], other: &[f64]) -> (f64, f64) {
-    let share = |sorted: &[f64], x: f64| {
-        sorted.partition_point(|value| *value <= x) as f64 / sorted.len() as f64
-    };
-    let mut all: Vec<f64> = one.iter().chain(other).copied().collect();
-    all.sort_by(f64::total_cmp);
-    let gap = |x: f64| (share(one, x) - share(other, x)).abs();
-    let largest = all.iter().map(|x| gap(*x)).fold(0.0, f64::max);
-    let area = all.windows(2).map(|pair| gap(pair[0]) * (pair[1] - pair[0])).sum();
+/// Runouts (m) and weights, ascending; what weighs nothing or is no number is left out.
+pub fn runouts(ways: &[Weighted]) -> Vec<(f64, f64)> {
+    let runouts = ways.iter().map(|(way, weight)| (way.runout_m(), *weight));
+    let mut sorted: Vec<(f64, f64)> =
+        runouts.filter(|(runout, weight)| runout.is_finite() && *weight > 0.0).collect();
+    sorted.sort_by(|one, other| one.0.total_cmp(&other.0));
+    sorted
+}
+
+/// Largest difference (–) of two empirical distributions, and the area between them (unit of the values), from sorted
+/// values with weights.
+pub fn distances(one: &[(f64, f64)], other: &[(f64, f64)]) -> (f64, f64) {
+    let total = |values: &[(f64, f64)]| -> f64 { values.iter().map(|(_, weight)| weight).sum() };
+    let (whole_one, whole_other) = (total(one), total(other));
+    let (mut i, mut j, mut below_one, mut below_other) = (0, 0, 0.0, 0.0);
+    let (mut largest, mut area, mut before) = (0.0_f64, 0.0, None);
+    while i < one.len() || j < other.len() {
+        let next = |values: &[(f64, f64)], at: usize| values.get(at).map_or(f64::INFINITY, |v| v.0);
+        let x = next(one, i).min(next(other, j));
+        let gap = (below_one / whole_one - below_other / whole_other).abs();
+        area += before.map_or(0.0, |before| gap * (x - before));
+        while next(one, i) <= x && i < one.len() {
+            below_one += one[i].1;
+            i += 1;
+        }
+        while next(other, j) <= x && j < other.len() {
+            below_other += other[j].1;
+            j += 1;
+        }
+        largest = largest.max((below_one / whole_one - below_other / whole_other).abs());
+        before = Some(x);
+    }
     (largest, area)
 }
 
@@ -182,19 +218,6 @@ fn mean_direction(ways: &[Way]) -> [f64; 2] {
     let sum = ways.iter().map(Way::vector_m).fold([0.0, 0.0], |s, v| [s[0] + v[0], s[1] + v[1]]);
     let length = math::hypot(sum[0], sum[1]).max(f64::MIN_POSITIVE);
     [sum[0] / length, sum[1] / length]
-}
-
-/// Standard deviation of the ends across a direction (m).
-fn side_sd_m(ways: &[Way], along: [f64; 2]) -> f64 {
-    let sides: Vec<f64> = ways
-        .iter()
-        .map(Way::vector_m)
-        .map(|[x, y]| along[0] * y - along[1] * x)
-        .filter(|side| side.is_finite())
-        .collect();
-    let n = sides.len() as f64;
-    let mean = sides.iter().sum::<f64>() / n;
-    (sides.iter().map(|side| (side - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt()
 }
 
 #[cfg(test)]
@@ -217,5 +240,18 @@ mod tests {
         assert!((found.computed_mean_m - 4.5).abs() < 1e-15);
         assert!(found.computed_side_m.abs() < 1e-12);
         assert!((found.ks_limit - 1.36 * 0.5_f64.sqrt()).abs() < 1e-15);
+    }
+
+    /// A computed end that weighs twice is two computed ends, and one that weighs nothing is none.
+    #[test]
+    fn weights_are_numbers_of_ends() {
+        let (measured, twice) = (ways(&[1.0, 2.0, 4.0]), ways(&[3.0, 3.0, 5.0]));
+        let weighted: Vec<Weighted> =
+            ways(&[9.0, 3.0, 5.0]).into_iter().zip([0.0, 2.0, 1.0]).collect();
+        let one = Agreement::of(&measured, &twice).unwrap();
+        let other = Agreement::of_weighted(&measured, &weighted).unwrap();
+        assert!((one.ks - other.ks).abs() < 1e-15 && (one.area_m - other.area_m).abs() < 1e-15);
+        assert!((one.computed_mean_m - other.computed_mean_m).abs() < 1e-15);
+        assert_eq!(other.computed, 2);
     }
 }

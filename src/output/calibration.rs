@@ -11,7 +11,7 @@ type Fitted = (String, String);
 
 const RESULT: &str = "calibration.json";
 
-/// Writes `calibration.csv` (every trial with the half that it was fitted to), `calibration.json`, and the fitted scenes
+/// Writes `calibration.csv` (every trial with the part that was held out), `calibration.json`, and the fitted scenes
 /// under their names.
 ///
 /// # Errors
@@ -23,13 +23,13 @@ pub fn write_calibration(
 ) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     let mut text = format!(
-        "half,{},fit_area_m,fit_ks,fit_mean_m,apart_area_m,apart_ks,apart_mean_m\n",
+        "held_out,{},fit_area_m,fit_ks,fit_mean_m,apart_area_m,apart_ks,apart_mean_m\n",
         found.names.join(",")
     );
     for (ends, trial) in trials {
-        let half = match ends {
-            Ends::Half(half) => (half + 1).to_string(),
-            Ends::All => "all".to_owned(),
+        let held_out = match ends {
+            Ends::Without(part) | Ends::Only(part) => (part + 1).to_string(),
+            Ends::All => "none".to_owned(),
         };
         let values: Vec<String> = trial.values.iter().map(f64::to_string).collect();
         let (fit, apart) = (&trial.fitted, &trial.kept_apart);
@@ -37,7 +37,7 @@ pub fn write_calibration(
         let _ = writeln!(
             text,
             "{},{},{},{},{},{},{},{}",
-            half,
+            held_out,
             values.join(","),
             fit.area_m,
             fit.ks,

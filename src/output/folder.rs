@@ -5,12 +5,27 @@ use super::atomic_file::{final_path, write_atomic};
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::summary::{SUMMARY, Summary};
-use super::{CROSSINGS, IMPACTS, Mode, PATHS, RELEASES, RunInfo, TABLES, maps};
+use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
 use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
+
+/// What to do with results that the folder holds already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Refuse them.
+    Fresh,
+    /// The same for parts that are put together, where there is nothing to go on with.
+    Merge,
+    /// Go on with them; start when there are none; nothing is left to do when they are complete.
+    Resume,
+    /// The same, also where they are the first of the releases asked for.
+    Extend,
+    /// Replace them.
+    Overwrite,
+}
 
 /// Result files besides `progress.json`.
 const FILES: [&str; 9] = [

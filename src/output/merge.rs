@@ -74,6 +74,7 @@ impl Shard {
             inputs,
             title_block,
             sources,
+            language,
             warnings,
             mesh_health,
             lines,
@@ -108,6 +109,7 @@ impl Shard {
             inputs,
             title_block,
             sources,
+            language,
             warnings,
             mesh_health,
         })

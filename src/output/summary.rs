@@ -9,6 +9,7 @@ use crate::hazard::{
     Annual, Asked, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion,
     Quantity, Residual, Statistic, StopKind, Totals, Way,
 };
+use crate::scene::Language;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -122,6 +123,9 @@ pub struct Summary {
     /// Where terrain and ground values come from, in words.
     #[serde(default)]
     pub sources: [String; 2],
+    /// In which language page and figures speak.
+    #[serde(default)]
+    pub language: Language,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Health of the meshes.
@@ -167,6 +171,7 @@ impl Summary {
             inputs: info.inputs,
             title_block: info.title_block,
             sources: info.sources,
+            language: info.language,
             warnings: info.warnings,
             mesh_health: info.mesh_health,
             definitions: owned(&DEFINITIONS),

@@ -5,7 +5,7 @@ use super::maps::FOLDER;
 use super::vector::Features;
 use crate::error::{Error, Result};
 use crate::plan::{Part, Plan};
-use crate::release::Where;
+use crate::release::{Releases, Where};
 use crate::scene::{Area, BarrierTable, Corner, Polyline, Zone, ZonePlace};
 use crate::terrain::geotiff::{Image, encode};
 use serde_json::{Value, json};
@@ -37,7 +37,9 @@ pub fn write_drawings(dir: &Path, plan: &Plan) -> Result<()> {
     fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
     let [_, zones, lines] = FILES.map(|name| folder.join(name));
     let mut file = Features::create(&zones, plan.epsg)?;
-    for (geometry, properties) in plan.releases.places().iter().flat_map(places) {
+    for (geometry, properties) in
+        plan.releases.places().iter().flat_map(|place| places(place, &plan.releases))
+    {
         file.add(&geometry, &properties)?;
     }
     file.finish()?;
@@ -78,7 +80,7 @@ fn of_line(name: &str, barrier: Option<&BarrierTable>) -> Value {
 }
 
 /// Geometry and properties of every place of release.
-fn places(place: &Where) -> Vec<(Value, Value)> {
+fn places(place: &Where, releases: &Releases) -> Vec<(Value, Value)> {
     match place {
         Where::Points(points) => {
             let points: Vec<Corner> = points.iter().map(|point| point.at_m).collect();
@@ -90,11 +92,17 @@ fn places(place: &Where) -> Vec<(Value, Value)> {
         }
         Where::Zones(zones) => {
             let zone = |(number, zone): (usize, &Zone)| {
-                let mut properties = json!({ "name": zone.name, "share": zones.share(number) });
+                let share = releases.share_of_zone(zones, number);
+                let mut properties = json!({ "name": zone.name, "share": share });
+                let [least, largest] = zone.volumes_m3;
                 let values = [
                     ("weight", zone.weight),
                     ("volume_m3", zone.volume_m3),
                     ("frequency_per_year", zone.frequency_per_year),
+                    ("per_year_at_1m3", zone.per_year_at_1m3),
+                    ("exponent", zone.exponent),
+                    ("volume_min_m3", least),
+                    ("volume_max_m3", largest),
                 ];
                 for (name, value) in values {
                     if let Some(value) = value {

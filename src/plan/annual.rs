@@ -6,11 +6,14 @@ use crate::frequency::{Frequency, Stratum, radius_of_m3};
 use crate::random::Distribution;
 use crate::release;
 use crate::rock::Rock;
-use crate::scene::{MatrixTable, ObjectTable, Scene};
+use crate::scene::{MatrixTable, ObjectTable, Scene, Zone};
 use crate::terrain::Terrain;
 
 /// Fewest rocks of a stratum with which the intervals hold what they promise, as simulated runs say.
 const FEW_ROCKS: usize = 20;
+
+/// Most strata: maps and curves name them by two bytes.
+const MOST_STRATA: usize = u16::MAX as usize;
 
 /// What is asked of the year.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +24,8 @@ pub struct Year {
     pub matrix: Option<MatrixTable>,
     /// Most energy that a rock of each stratum can ever have (J).
     pub most_j: Vec<f64>,
+    /// Radius of the largest rock of each stratum (m).
+    pub largest_m: Vec<f64>,
 }
 
 /// The sources; none where the scene has none.
@@ -32,12 +37,18 @@ pub(super) fn year(
     terrain: &Terrain,
     warnings: &mut Vec<String>,
 ) -> Result<Part<Year>> {
+    warnings.extend(of_zones(scene));
     let Some(frequency) = scene.sources() else {
         return Ok(Part::LeftOut(
             "the scene has no [frequency], every number is conditional on release",
         ));
     };
     let (strata, count) = (frequency.strata().len(), scene.release.count);
+    if strata > MOST_STRATA {
+        let found = format!("found {strata} classes of size and source");
+        let remedy = format!("write at most {MOST_STRATA}: join zones, sources or classes");
+        return Err(Error::input(&scene.file, "[frequency]", found, remedy));
+    }
     if count < strata {
         let found = format!("found {count} releases for {strata} classes of size and source");
         let remedy = format!("write {} or more", FEW_ROCKS * strata);
@@ -55,9 +66,27 @@ pub(super) fn year(
                 .to_owned(),
         );
     }
-    let matrix = scene.frequency.as_ref().and_then(|table| table.matrix.clone());
-    let most_j = most_j(scene, terrain, &frequency);
-    Ok(Part::Kept(Year { frequency, matrix, most_j }))
+    let matrix = scene.frequency.as_ref().and_then(|table| table.matrix.as_ref()?.table());
+    let largest_m: Vec<f64> =
+        frequency.strata().iter().map(|stratum| largest_m(scene, stratum)).collect();
+    let most_j = most_j(scene, terrain, &largest_m);
+    Ok(Part::Kept(Year { frequency, matrix, most_j, largest_m }))
+}
+
+/// What properties of zones say in vain.
+fn of_zones(scene: &Scene) -> Option<String> {
+    let zones = scene.release.zone_list.as_ref()?;
+    let file = zones.file.display();
+    if scene.has_zone_sources() {
+        let is_weighted = zones.list().iter().any(|zone| zone.weight.is_some());
+        return is_weighted.then(|| {
+            format!("the weights of {file} are not used: every class of size and source gets the same number of rocks, and each rock stands for its part of the frequency of its zone")
+        });
+    }
+    let says = scene.frequency.is_none() && zones.list().iter().any(Zone::says_how_often);
+    says.then(|| {
+        format!("{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source")
+    })
 }
 
 /// What the numerics may add to the energy of a rock, over all that it has (–): ten times what was ever measured.
@@ -67,11 +96,7 @@ const UNBOUNDED_J: f64 = 1e300;
 
 /// Most energy that a rock of each stratum can ever have (J): that of its start and of a fall through the whole height of
 /// the terrain.
-fn most_j(scene: &Scene, terrain: &Terrain, frequency: &Frequency) -> Vec<f64> {
-    let largest = |value: &Distribution| {
-        let (low, high) = value.support();
-        low.abs().max(high.abs())
-    };
+fn most_j(scene: &Scene, terrain: &Terrain, largest_m: &[f64]) -> Vec<f64> {
     let squares = |vector: &[Distribution; 3]| -> f64 {
         vector.iter().map(|value| largest(value).powi(2)).sum()
     };
@@ -80,9 +105,7 @@ fn most_j(scene: &Scene, terrain: &Terrain, frequency: &Frequency) -> Vec<f64> {
     let top_m = points.map(|z| z - terrain.origin_m.z).fold(high.z, f64::max);
     let gap_m = scene.release.height_m.as_ref().map_or(0.0, largest);
     let (v2, w2) = (squares(&scene.release.velocity_m_s), squares(&scene.release.spin_rad_s));
-    let most = |stratum: &Stratum| {
-        let own = stratum.volume_m3.map(|[_, largest]| radius_of_m3(largest));
-        let radius_m = own.unwrap_or_else(|| largest(scene.rocks.radius_m()));
+    let most = |&radius_m: &f64| {
         let rock = Rock { radius_m, density_kg_m3: scene.rocks.density_kg_m3 };
         // a rock over steep ground may be lifted by some radii until it is clear of it
         let drop_m = top_m - low.z + gap_m + LIFTED * radius_m;
@@ -90,7 +113,19 @@ fn most_j(scene: &Scene, terrain: &Terrain, frequency: &Frequency) -> Vec<f64> {
         let start_j = 0.5 * (rock.mass_kg() * v2 + rock.inertia_kg_m2() * w2);
         (NUMERICS * (fall_j + start_j)).min(UNBOUNDED_J)
     };
-    frequency.strata().iter().map(most).collect()
+    largest_m.iter().map(most).collect()
+}
+
+/// Radius of the largest rock of a stratum (m).
+fn largest_m(scene: &Scene, stratum: &Stratum) -> f64 {
+    let own = stratum.volume_m3.map(|[_, largest]| radius_of_m3(largest));
+    own.unwrap_or_else(|| largest(scene.rocks.radius_m()))
+}
+
+/// The largest amount of a value.
+fn largest(value: &Distribution) -> f64 {
+    let (low, high) = value.support();
+    low.abs().max(high.abs())
 }
 
 /// More radii than a release is ever lifted by (–).
@@ -162,7 +197,7 @@ pub(super) fn words(object: &ObjectTable) -> String {
 
 /// The sources in words, one line each, and how they are sampled.
 pub(super) fn lines(year: &Year, count: usize) -> Vec<String> {
-    let Year { frequency, matrix, most_j: _ } = year;
+    let Year { frequency, matrix, most_j: _, largest_m: _ } = year;
     let mut lines: Vec<String> = frequency
         .sources()
         .iter()

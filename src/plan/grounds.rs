@@ -1,7 +1,7 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
 use crate::error::{Error, Result};
-use crate::ground::Ground;
+use crate::ground::{Damping, Ground, tangential_restitution};
 use crate::math;
 use crate::release::NO_WIDTH_M;
 use crate::scene::{GroundTable, Scene, known_ground};
@@ -57,6 +57,21 @@ pub(super) fn rolling_stops(scene: &Scene) -> Vec<String> {
         format!("{name}: on slopes of up to {middle:.1}°{spread}")
     };
     scene.grounds.iter().map(stops).collect()
+}
+
+/// What each ground gives back of the slip of an impact that sticks, at its median values.
+pub(super) fn tangential(scene: &Scene) -> Vec<String> {
+    let answer = |(name, ground): (&String, &GroundTable)| {
+        let normal_n_m = ground.normal_stiffness_n_m.quantile(0.5);
+        let ratio = ground.shear_n_m(normal_n_m, |value| value.quantile(0.5)) / normal_n_m;
+        let restitution = ground.restitution.as_ref().map(|e| e.quantile(0.5));
+        let back = restitution.map_or_else(String::new, |e| {
+            let back = tangential_restitution(ratio, &Damping::of(Some(e)));
+            format!(", tangential restitution {back:.3} where an impact sticks")
+        });
+        format!("{name}: shear over normal spring {ratio:.4}{back}")
+    };
+    scene.grounds.iter().map(answer).collect()
 }
 
 /// Warns of grounds of the catalogue under a slope on which nothing stops a sphere.

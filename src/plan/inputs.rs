@@ -34,11 +34,14 @@ fn sizes(scene: &Scene) -> String {
 fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, String) {
     let lies = |meshes: &[MeshFile]| meshes.iter().any(|mesh| mesh.ground == name);
     let what = if lies(&scene.trees) && !lies(&scene.terrain) { "Trees" } else { "Ground" };
+    let along = match (&ground.tangential_ratio, &ground.shear_stiffness_n_m) {
+        (Some(ratio), _) => format!("{} times that", words(ratio, "")),
+        (None, own) => own.as_ref().map_or_else(String::new, |own| words(own, " N/m")),
+    };
     let mut parts = vec![
         format!(
-            "springs {} normal, {} along the surface",
-            words(&ground.normal_stiffness_n_m, " N/m"),
-            words(&ground.shear_stiffness_n_m, " N/m")
+            "springs {} normal, {along} along the surface",
+            words(&ground.normal_stiffness_n_m, " N/m")
         ),
         format!("friction angle {}", words(&ground.friction_angle_deg, "°")),
     ];
@@ -71,7 +74,15 @@ fn words(value: &Distribution, unit: &str) -> String {
 
 /// The rows of the title block: who, for whom, when; only what the scene says.
 pub(super) fn title_block(report: &ReportTable) -> Vec<(String, String)> {
-    let ReportTable { client, project, author, date, terrain_source: _, ground_source: _ } = report;
+    let ReportTable {
+        client,
+        project,
+        author,
+        date,
+        terrain_source: _,
+        ground_source: _,
+        language: _,
+    } = report;
     [("Client", client), ("Project", project), ("Author", author), ("Date", date)]
         .into_iter()
         .filter_map(|(name, value)| Some((name.to_owned(), value.clone()?)))

@@ -2,7 +2,7 @@
 
 use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual};
 use crate::ground::Ground;
-use crate::release::Where;
+use crate::release::{Releases, Where};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
 use crate::solver::dda::own_restitution;
 use crate::solver::{Scheme, Settings};
@@ -65,14 +65,16 @@ impl Plan {
             maps,
             catalogued,
             rolling_stops,
+            tangential,
             deposits,
             inputs: _,      // with the report
             title_block: _, // with the report
             sources: _,     // with the report
+            language: _,    // with the report
             warnings,
             fast_warnings,
         } = self;
-        let place = places(places_of_release.places());
+        let place = places(places_of_release);
         let mut list = List::default();
         list.line("scene", title);
         list.line("file", format!("{}, {}", scene_file.display(), fingerprint(scene_hash)));
@@ -102,6 +104,7 @@ impl Plan {
                 format!("{speed:.4} m/s on {name}, {whose}: slower impacts do not rebound"),
             );
         }
+        list.lines("tangential answer", tangential.iter().cloned());
         list.line("impacts on one plane", plane_impacts(step));
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));
@@ -117,10 +120,10 @@ impl Plan {
         list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
-            let how = if step.scheme == Scheme::Rigid {
-                "; impacts in the order of their times, sustained contact swept"
-            } else {
+            let how = if step.scheme.has_springs() {
                 ""
+            } else {
+                "; impacts in the order of their times, sustained contact swept"
             };
             format!("islands of rocks that may touch, each with its own step{how}")
         });
@@ -233,7 +236,7 @@ impl List {
         );
         self.line(
             "hollow edges",
-            "left out around each rock: hollow on one side of a sheet is sharp on the other; on the hollow side the faces touch",
+            "all kept, however sharp: a rock so deep in a fold that it reaches the edge presses on both sides as one contact",
         );
         self.line(
             "corners",
@@ -261,21 +264,20 @@ fn never(part: &Part<Infallible>) -> &'static str {
     }
 }
 
-fn places(all: &[Where]) -> String {
-    match all {
-        [one] => place(one),
-        all => all.iter().map(place).collect::<Vec<_>>().join(", "),
-    }
+fn places(releases: &Releases) -> String {
+    let words = |one: &Where| place(one, releases.zones_are_sources());
+    releases.places().iter().map(words).collect::<Vec<_>>().join(", ")
 }
 
-fn place(place: &Where) -> String {
+fn place(place: &Where, zones_are_sources: bool) -> String {
     match place {
         Where::Points(points) => format!("from {} points in turn", points.len()),
         Where::Line(line) => format!("along a line of {:.1} m", line.length_m()),
         Where::Area(area) => format!("over an area of {:.1} m²", area.area_m2()),
         Where::Zones(zones) => {
             let file = zones.file.display();
-            format!("over {} zones of {file}, {}", zones.list().len(), shared_by(zones))
+            let how = if zones_are_sources { "each a source of its own" } else { shared_by(zones) };
+            format!("over {} zones of {file}, {how}", zones.list().len())
         }
     }
 }
@@ -330,11 +332,11 @@ fn fingerprint(hash: &str) -> String {
 
 /// How rocks answer each other.
 fn one_world(scheme: Scheme, ground: &Ground) -> String {
-    let springs = if scheme == Scheme::Rigid {
-        "springs left out: the rigid limit has none".to_owned()
-    } else {
+    let springs = if scheme.has_springs() {
         let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
         format!("springs of {p_n:e} and {p_s:e} N/m")
+    } else {
+        "springs left out: the rigid limit has none".to_owned()
     };
     let restitution = ground.restitution.map_or_else(
         || "restitution of the scheme itself".to_owned(),

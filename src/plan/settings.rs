@@ -1,7 +1,7 @@
 //! The step in force: what the scene asks for, the rest filled in.
 
 use crate::scene::SolverTable;
-use crate::solver::{Scheme, Settings};
+use crate::solver::Settings;
 
 /// Local error of the adaptive scheme (m/s): statistics of runout no longer change below it.
 const TOLERANCE_M_S: f64 = 0.05;
@@ -13,19 +13,15 @@ const RIGID_STEP_S: f64 = 0.01;
 /// The step in force, defaults filled in. What a scheme has no use for is 0 (tolerance) or without limit (step).
 pub(super) fn in_force(solver: &SolverTable) -> Settings {
     let scheme = solver.scheme();
-    let (tolerance_m_s, step_s) = match scheme {
-        Scheme::Adaptive => (TOLERANCE_M_S, f64::INFINITY),
-        Scheme::Reference => (REFERENCE_TOLERANCE_M_S, f64::INFINITY),
-        Scheme::Rigid => (0.0, RIGID_STEP_S),
-        // the scene check has made sure that dda has a step of its own
-        Scheme::Dda => (0.0, f64::INFINITY),
-    };
+    // the scene check has made sure that dda has a step of its own
+    let tolerance_m_s = scheme.of([0.0, TOLERANCE_M_S, REFERENCE_TOLERANCE_M_S, 0.0]);
+    let step_s = if scheme.has_springs() { f64::INFINITY } else { RIGID_STEP_S };
     Settings {
         scheme,
         tolerance_m_s: solver.tolerance_m_s.unwrap_or(tolerance_m_s),
         step_s: solver.step_s.unwrap_or(step_s),
         shear_memory: solver.shear_memory.unwrap_or(true),
-        plane_impacts: matches!(scheme, Scheme::Adaptive | Scheme::Reference),
+        plane_impacts: scheme.controls_error(),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
 }

@@ -6,7 +6,6 @@ use crate::ground::{Capture, Damping, Ground, Law};
 use crate::random::Distribution;
 use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene};
-use crate::solver::Scheme;
 use crate::solver::dda::SINGLE_STEP_PHASE;
 use crate::terrain::Terrain;
 
@@ -20,6 +19,9 @@ const SELDOM_PASSED_M_S: f64 = 40.0;
 /// Contact oscillation per step (rad) above which an impact is not resolved: the scheme then eats more than a
 /// fifth of the speed.
 const RESOLVED_PHASE: f64 = 0.3;
+
+/// Shear over normal spring (–): beyond, nothing that a ground may be.
+const SHEAR: [f64; 2] = [1e-6, 1e3];
 
 /// A warning that concerns rocks above a speed: where none comes so fast, there is nothing to warn of.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -48,7 +50,7 @@ pub(super) fn own_dissipation(
     step_s: f64,
     warnings: &mut Vec<String>,
 ) -> Vec<OwnDissipation> {
-    if scene.solver.scheme() != Scheme::Dda {
+    if !scene.solver.scheme().has_fixed_step() {
         return Vec::new();
     }
     let dissipation = |(name, ground): (&String, &GroundTable)| {
@@ -94,7 +96,7 @@ pub(super) fn flutter(step: &Settings, warnings: &mut Vec<String>) {
 /// A fixed step so short that a rock may spend its budget of work before its time is up.
 pub(super) fn too_short(step: &Settings, longest_s: f64, warnings: &mut Vec<String>) {
     let most = step.scheme.most_work() as f64;
-    if step.scheme == Scheme::Dda && longest_s > most * step.step_s {
+    if step.scheme.has_fixed_step() && longest_s > most * step.step_s {
         warnings.push(format!(
             "step_s = {:e} lets a rock fall for {:.3} s at most before its budget of {most} steps is spent; write a longer step, or a longest_s below that",
             step.step_s,
@@ -113,9 +115,10 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
     let median = |value: &Distribution| value.quantile(0.5);
     let rock = rock(scene, median(scene.rocks.radius_m()));
     let of = |table: &GroundTable| {
+        let normal_stiffness_n_m = median(&table.normal_stiffness_n_m);
         let ground = Ground {
-            normal_stiffness_n_m: median(&table.normal_stiffness_n_m),
-            shear_stiffness_n_m: median(&table.shear_stiffness_n_m),
+            normal_stiffness_n_m,
+            shear_stiffness_n_m: table.shear_n_m(normal_stiffness_n_m, median),
             friction_angle_rad: median(&table.friction_angle_deg).to_radians(),
             restitution: table.restitution.as_ref().map(median),
             rolling_friction: 0.0,
@@ -128,13 +131,40 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
     scene.grounds.values().map(of).collect()
 }
 
+/// Refuses shear springs so far from the normal one that they are no ground: too soft, a contact takes for ever to slip.
+fn check_shear(scene: &Scene) -> Result<()> {
+    let fixed = |value: f64| [value; 3];
+    let between = scene.rocks.contact.as_ref().map(|contact| {
+        let springs = [contact.normal_stiffness_n_m, contact.shear_stiffness_n_m].map(fixed);
+        ("[rocks.contact]".to_owned(), springs)
+    });
+    let grounds = scene.grounds.iter().filter_map(|(name, ground)| {
+        let springs = [&ground.normal_stiffness_n_m, ground.shear_stiffness_n_m.as_ref()?];
+        Some((format!("[grounds.{name}]"), springs.map(Distribution::reckoned)))
+    });
+    for (table, [[soft, _, stiff], [low, _, high]]) in grounds.chain(between) {
+        let (least, most) = (SHEAR[0] * soft, SHEAR[1] * stiff);
+        if low < least || high > most {
+            let wrong = if low < least { low } else { high };
+            let found = format!("found {wrong:e} beside a normal spring of {soft:e}");
+            let remedy = format!(
+                "write a value in {least:e}..{most:e}; usual is 0.25 to 1 times the normal spring"
+            );
+            let place = format!("{table} shear_stiffness_n_m");
+            return Err(Error::input(&scene.file, place, found, remedy));
+        }
+    }
+    Ok(())
+}
+
 /// Refuses springs that cannot carry the largest rock and warns of those that an impact presses too deep.
 pub(super) fn check(
     scene: &Scene,
     terrain: &Terrain,
     warnings: &mut Vec<FastWarning>,
 ) -> Result<()> {
-    if scene.solver.scheme() == Scheme::Rigid {
+    check_shear(scene)?;
+    if !scene.solver.scheme().has_springs() {
         return Ok(());
     }
     let largest = rock(scene, scene.rocks.radius_m().reckoned()[2]);

@@ -1,10 +1,12 @@
 //! Room for a rock where it starts.
 
 use crate::flight::{FlightEnd, Parabola, time_of_impact};
+use crate::math;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::Triangle;
+use std::f64::consts::TAU;
 
 /// A rock over steep ground may be in it although its lowest point is clear: then it is lifted, straight up, until it
 /// just touches. The place itself where it is clear already, or where no such height is near.
@@ -22,6 +24,43 @@ pub(super) fn clear_of(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
 
 /// A rock in steep ground is lifted by up to this many radii (–): enough for slopes up to 80°.
 const LIFT: f64 = 6.0;
+
+/// Whether a point is inside a tree, hollow or not: in every horizontal direction there is one.
+pub(super) fn is_inside_tree(terrain: &Terrain, point: &Vec3) -> bool {
+    if terrain.sheets.iter().all(|sheet| !sheet.is_tree) {
+        return false;
+    }
+    let directions: [Vec3; DIRECTIONS] = std::array::from_fn(|k| {
+        // not along the axes, as the sides of made stems are
+        let (sin, cos) = math::sin_cos(TAU * (k as f64 + 0.37) / DIRECTIONS as f64);
+        Vec3::new(cos, sin, 0.0) * INSIDE_TREE_M
+    });
+    let mut meets = [false; DIRECTIONS];
+    terrain.index.near(point, INSIDE_TREE_M, |start, count| {
+        for triangle in (start..start + count).filter(|&t| terrain.is_tree(t)) {
+            let corners = terrain.corners_m(triangle).map(|corner| corner - point);
+            for (met, direction) in meets.iter_mut().zip(&directions) {
+                *met |= is_crossed(&corners, direction);
+            }
+        }
+    });
+    meets.iter().all(|met| *met)
+}
+
+/// No tree is thicker than twice this (m).
+const INSIDE_TREE_M: f64 = 4.0;
+/// Horizontal directions looked in.
+const DIRECTIONS: usize = 12;
+
+/// Whether the way from the origin to `end` goes through a triangle.
+fn is_crossed([a, b, c]: &[Vec3; 3], end: &Vec3) -> bool {
+    // signs of the volumes that the way spans with the sides
+    let sides = [a.cross(b).dot(end), b.cross(c).dot(end), c.cross(a).dot(end)];
+    let is_through = sides.iter().all(|x| *x >= 0.0) || sides.iter().all(|x| *x <= 0.0);
+    let n = (b - a).cross(&(c - a));
+    let (height, reach) = (n.dot(a), n.dot(end));
+    is_through && reach != 0.0 && (0.0..=1.0).contains(&(height / reach))
+}
 
 /// Distance from a point to the nearest triangle (m), or `reach_m` when none is nearer.
 pub(super) fn distance_m(terrain: &Terrain, point: &Vec3, reach_m: f64) -> f64 {

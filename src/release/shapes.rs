@@ -1,5 +1,6 @@
 //! The shape of rock number i and how it is turned.
 
+use super::Releases;
 use crate::body::{
     BadSurface, Block, Shape, ShapeKind, Solid, Surface, box_surface, eota, prism_surface,
     sphere_points,
@@ -100,6 +101,28 @@ impl Shapes {
         let block = Block::new(&made, rock);
         let sides = [sides[1] / sides[0], sides[2] / sides[0]];
         Some(Drawn { kind: entry.table.kind, sides, block, attitude })
+    }
+}
+
+impl Releases {
+    /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
+    pub fn block(&self, index: usize, rock: &Rock) -> Option<Drawn> {
+        self.shapes.draw(self.seed, index, rock)
+    }
+
+    /// Whether some rocks have shapes.
+    pub fn has_blocks(&self) -> bool {
+        self.shapes.has_blocks()
+    }
+
+    /// What the plan says of each shape; empty for spheres alone.
+    pub fn shapes(&self) -> &[String] {
+        &self.shapes.lines
+    }
+
+    /// Radius of the ball around a rock (m): what must be clear where it starts, however it is turned.
+    pub(super) fn around_m(&self, index: usize, rock: &Rock) -> f64 {
+        self.block(index, rock).map_or(rock.radius_m, |drawn| drawn.block.bound_m)
     }
 }
 

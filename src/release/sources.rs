@@ -4,7 +4,7 @@ use super::{Releases, Where};
 use crate::error::{Error, Result};
 use crate::frequency::{Frequency, radius_of_m3};
 use crate::random::{Purpose, stream, unit};
-use crate::scene::{Area, Corner, Point, Polyline, Scene};
+use crate::scene::{Area, Corner, Point, Polyline, Scene, Zones};
 use crate::terrain::Terrain;
 
 impl Releases {
@@ -69,6 +69,23 @@ impl Releases {
     /// The sources, their laws of size, and what is asked of the year; none where the scene says nothing of it.
     pub fn frequency(&self) -> Option<&Frequency> {
         self.frequency.as_ref()
+    }
+
+    /// The share of all releases that a zone gets (–).
+    pub fn share_of_zone(&self, zones: &Zones, zone: usize) -> f64 {
+        match self.frequency.as_ref().filter(|_| self.zones_are_sources) {
+            None => zones.share(zone),
+            Some(frequency) => {
+                let strata = frequency.strata();
+                let own = strata.iter().filter(|stratum| stratum.source == zone).count();
+                own as f64 / strata.len() as f64
+            }
+        }
+    }
+
+    /// Whether zones are sources, each with a frequency of its own.
+    pub fn zones_are_sources(&self) -> bool {
+        self.zones_are_sources
     }
 
     /// Where rocks are released: one place, or one for each source.

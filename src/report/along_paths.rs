@@ -8,6 +8,7 @@ use super::format;
 use super::model::{Fall, Path, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::Frame;
+use super::words::{Words, fill};
 use crate::math;
 
 const TOP_PX: f64 = 30.0;
@@ -36,10 +37,11 @@ fn chosen(report: &Report) -> Vec<Chosen<'_>> {
     let middle = rocks.get(rocks.len() / 2).copied();
     let strongest =
         rocks.iter().copied().max_by(|a, b| a.0.max_total_j.total_cmp(&b.0.max_total_j));
+    let words = report.words();
     let picked = [
-        ("median runout", middle),
-        ("most energy", strongest),
-        ("farthest", rocks.last().copied()),
+        (words.median_runout, middle),
+        (words.most_energy, strongest),
+        (words.farthest, rocks.last().copied()),
     ];
     let mut chosen: Vec<Chosen<'_>> = Vec::new();
     for (why, rock) in picked {
@@ -57,6 +59,7 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
     if chosen.is_empty() {
         return None;
     }
+    let words = report.words();
     let most_j = chosen.iter().map(|rock| rock.fall.max_translational_j).fold(0.0, f64::max);
     let (unit, size) = energy_unit(most_j);
     let curves: [Vec<Vec<(f64, f64)>>; 3] = [
@@ -71,12 +74,12 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
             if height_m < 0.0 { 0.0 } else { height_m }
         }),
     ];
-    let energy = format!("Transl. energy ({unit})");
-    let titles = ["Speed (m/s)", energy.as_str(), "Height (m)"];
-    let panels = panels(&curves, titles);
+    let energy = fill(words.along_energy, &[("unit", &unit)]);
+    let titles = [words.speed_axis, energy.as_str(), words.height_axis];
+    let panels = panels(&curves, titles, words);
     let bottom = panels[2].frame.bottom + FOOT_PX;
-    let svg = paint("along", (WIDTH_PX, bottom), "Along the way of three rocks", |canvas| {
-        key(canvas, &panels[0], &chosen);
+    let svg = paint("along", (WIDTH_PX, bottom), words.along_alt, |canvas| {
+        key(canvas, &panels[0], &chosen, words);
         for (k, panel) in panels.iter().enumerate() {
             panel.grid(canvas);
             for (curve, pen) in curves[k].iter().zip(PENS) {
@@ -85,14 +88,16 @@ pub(super) fn draw(report: &Report) -> Option<Drawing> {
             if k == 2 { panel.axes(canvas) } else { panel.axes_above_another(canvas) }
         }
     });
-    let who = |rock: &Chosen<'_>| format!("release {} ({})", rock.path.index, rock.why);
+    let who = |rock: &Chosen<'_>| in_words(rock, words.along_rock_caption);
     let who: Vec<String> = chosen.iter().map(who).collect();
-    let caption = format!(
-        "Along the way of chosen rocks with a stored path, over the distance travelled in plan view: {}. Height: vertical, \
-         from the ground right below to the lowest point.",
-        who.join(", ")
-    );
+    let caption = fill(words.along_caption, &[("who", &who.join(", "))]);
     Some(Drawing { svg, caption })
+}
+
+/// Number of a rock and why it is shown.
+fn in_words(rock: &Chosen<'_>, text: &str) -> String {
+    let n = format::decimal(rock.path.index as f64, 0);
+    fill(text, &[("n", &n), ("why", &rock.why)])
 }
 
 /// A value of each rock over the distance it has travelled in plan view.
@@ -113,9 +118,9 @@ fn along(chosen: &[Chosen<'_>], value: impl Fn(&Chosen<'_>, usize) -> f64) -> Ve
     chosen.iter().map(curve).collect()
 }
 
-fn panels(curves: &[Vec<Vec<(f64, f64)>>; 3], titles: [&str; 3]) -> [Panel; 3] {
+fn panels(curves: &[Vec<Vec<(f64, f64)>>; 3], titles: [&str; 3], words: &Words) -> [Panel; 3] {
     let ways = curves[0].iter().flatten().map(|p| p.0);
-    let x = Axis::from_zero(ways, "Distance travelled in plan view (m)");
+    let x = Axis::from_zero(ways, words.along_axis);
     let mut panels = [0, 1, 2].map(|k| {
         let top = TOP_PX + k as f64 * (PLOT_PX + GAP_PX);
         let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
@@ -127,15 +132,14 @@ fn panels(curves: &[Vec<Vec<(f64, f64)>>; 3], titles: [&str; 3]) -> [Panel; 3] {
     panels
 }
 
-fn key(canvas: &Canvas<'_>, panel: &Panel, chosen: &[Chosen<'_>]) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, chosen: &[Chosen<'_>], words: &Words) {
     let y = panel.frame.top - 14.0;
     let mut x = panel.frame.left;
     for (rock, pen) in chosen.iter().zip(PENS) {
-        let words = format!("release {}: {}", format::decimal(rock.path.index as f64, 0), rock.why);
+        let said = in_words(rock, words.along_rock);
         canvas.line(&[(x, y), (x + 20.0, y)], pen);
-        x += 25.0 + text_width(&words, SMALL) + 18.0;
-        canvas.text(
-            &Label::new(words.clone(), (x - 18.0 - text_width(&words, SMALL), y)).coloured(INK),
-        );
+        x += 25.0 + text_width(&said, SMALL) + 18.0;
+        let left = x - 18.0 - text_width(&said, SMALL);
+        canvas.text(&Label::new(said, (left, y)).coloured(INK));
     }
 }

@@ -8,6 +8,7 @@ use super::format;
 use super::model::{AnnualView, BandPoint, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::Frame;
+use super::words::{Words, fill};
 use crate::math;
 
 const TOP_PX: f64 = 26.0;
@@ -20,47 +21,40 @@ const WITHOUT: Pen = Pen::full(BLUE, 1.7);
 const WITH: Pen = Pen::full(ORANGE, 1.7).dashed();
 
 /// Draws the curves of one place.
-pub(super) fn draw(view: &AnnualView, number: usize) -> Drawing {
+pub(super) fn draw(words: &Words, view: &AnnualView, number: usize) -> Drawing {
     let energies = view.curves().flatten().map(|point| point.x);
     let largest_j = energies.fold(0.0, f64::max);
     let (unit, size) = energy_unit(largest_j);
-    let panel = panel(view, largest_j, (unit, size));
+    let panel = panel(words, view, largest_j, (unit, size));
     let bottom = TOP_PX + HEIGHT_PX + FOOT_PX;
-    let title = format!("Frequency a year at {}", view.name);
+    let title = fill(words.year_title, &[("name", &view.name)]);
     let svg = paint(&format!("annual-{number}"), (WIDTH_PX, bottom), &title, |canvas| {
         panel.grid(canvas);
         panel.grid_upright(canvas);
         for years in &view.return_periods_years {
-            period(canvas, &panel, *years);
+            period(canvas, &panel, *years, words);
         }
         draw_curve(canvas, &panel, (&view.without, size), (SKY, 0.35), WITHOUT);
         if let Some(with) = &view.with {
             draw_curve(canvas, &panel, (with, size), (ORANGE, 0.18), WITH);
         }
         panel.axes(canvas);
-        key(canvas, &panel, view);
+        key(canvas, &panel, view, words);
         if largest_j <= 0.0 {
-            panel.nothing(canvas, "no rock comes here");
+            panel.nothing(canvas, words.nothing_comes);
         }
     });
-    Drawing { svg, caption: caption(view) }
+    Drawing { svg, caption: caption(view, words) }
 }
 
-fn caption(view: &AnnualView) -> String {
-    let what = if view.is_object { "hits of" } else { "passages of" };
-    let barriers = match view.with {
-        Some(_) => " Full: as if there were no barrier; dashed: what no barrier stops before.",
-        None => "",
-    };
-    format!(
-        "A year, not conditional on release: frequency of {what} “{}” with at least the total energy e, λ(E ≥ e), with pointwise \
-         95 % band. Grey: frequencies of the return periods.{barriers} Above the largest energy of any rock the curve is not known; \
-         its band says how little.",
-        view.name
-    )
+fn caption(view: &AnnualView, words: &Words) -> String {
+    let what = if view.is_object { words.hits_of } else { words.passages_of };
+    let what = fill(what, &[("name", &words.quoted(&view.name))]);
+    let barriers = if view.with.is_some() { words.year_barriers } else { "" };
+    fill(words.year_caption, &[("what", &what), ("barriers", &barriers)])
 }
 
-fn panel(view: &AnnualView, largest_j: f64, (unit, size): (&str, f64)) -> Panel {
+fn panel(words: &Words, view: &AnnualView, largest_j: f64, (unit, size): (&str, f64)) -> Panel {
     let positive = |value: &f64| *value > 0.0 && value.is_finite();
     let rates = || view.curves().flatten().map(|point| point.y.value).filter(positive);
     let periods = || view.return_periods_years.iter().map(|years| 1.0 / years);
@@ -70,18 +64,22 @@ fn panel(view: &AnnualView, largest_j: f64, (unit, size): (&str, f64)) -> Panel 
     let from_j = from_j.fold(f64::INFINITY, f64::min).max(largest_j * math::pow(10.0, -DECADES));
     let frame =
         Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom: TOP_PX + HEIGHT_PX };
-    let x = Axis::log(from_j / size, largest_j / size, format!("Total energy e ({unit})"));
-    let mut panel = Panel::new(frame, x, Axis::log(least, most, "λ(E ≥ e) (1/year)"));
+    let x = Axis::log(
+        from_j / size,
+        largest_j / size,
+        fill(words.year_energy_axis, &[("unit", &unit)]),
+    );
+    let mut panel = Panel::new(frame, x, Axis::log(least, most, words.year_axis));
     panel.frame.left = panel.room_left();
     panel
 }
 
 /// A line across at the frequency of a return period.
-fn period(canvas: &Canvas<'_>, panel: &Panel, years: f64) {
+fn period(canvas: &Canvas<'_>, panel: &Panel, years: f64, words: &Words) {
     let y = 1.0 / years;
     panel.line(canvas, &[(panel.x.low, y), (panel.x.high, y)], Pen::full(GREY, 0.9).dotted());
     let at = panel.at(panel.x.high, y);
-    let words = format!("{} years", format::plain(years));
+    let words = fill(words.years, &[("n", &format::plain(years))]);
     canvas.text(&Label::new(words, (at.0 + 5.0, at.1)).coloured(GREY));
 }
 
@@ -100,15 +98,15 @@ fn draw_curve(
     panel.line(canvas, &line, pen);
 }
 
-fn key(canvas: &Canvas<'_>, panel: &Panel, view: &AnnualView) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, view: &AnnualView, words: &Words) {
     if view.with.is_none() {
         return;
     }
     let y = panel.frame.top - 10.0;
     let mut x = panel.frame.left;
-    for (words, pen) in [("without barriers", WITHOUT), ("with barriers", WITH)] {
+    for (name, pen) in [(words.without_barriers, WITHOUT), (words.with_barriers, WITH)] {
         canvas.line(&[(x, y), (x + 22.0, y)], pen);
-        canvas.text(&Label::new(words, (x + 27.0, y)).coloured(INK));
-        x += 27.0 + text_width(words, SMALL) + 20.0;
+        canvas.text(&Label::new(name, (x + 27.0, y)).coloured(INK));
+        x += 27.0 + text_width(name, SMALL) + 20.0;
     }
 }

@@ -1,7 +1,7 @@
 //! A plain figure: lines over two axes, or spheres seen from the side.
 
 use super::axis::Axis;
-use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
+use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, GREY, INK, ORANGE, SKY};
 use super::figure::WIDTH_PX;
 use super::panel::{FOOT_PX, Panel};
@@ -29,7 +29,9 @@ pub struct Curves {
 }
 
 const HEIGHT_PX: f64 = 260.0;
-const TOP_PX: f64 = 24.0;
+/// Room above the frame for the title, and a line more for the key (px).
+const TOP_PX: f64 = 26.0;
+const KEY_PX: f64 = 18.0;
 
 impl Curves {
     /// Nothing to draw yet.
@@ -57,8 +59,8 @@ impl Curves {
         };
         let (x, y) = (range(|p| p.0), range(|p| p.1));
         let (mut x, mut y) = (x, y);
-        let frame =
-            Frame { left: 60.0, top: TOP_PX, right: WIDTH_PX - 16.0, bottom: TOP_PX + HEIGHT_PX };
+        let top = TOP_PX + if self.names.is_some() { KEY_PX } else { 0.0 };
+        let frame = Frame { left: 60.0, top, right: WIDTH_PX - 16.0, bottom: top + HEIGHT_PX };
         if self.is_seen_from_the_side() {
             // one scale for both axes
             let scale = f64::min(frame.width() / (x.1 - x.0), frame.height() / (y.1 - y.0));
@@ -69,8 +71,10 @@ impl Curves {
             Panel::new(frame, Axis::linear(x.0, x.1, self.x), Axis::linear(y.0, y.1, self.y));
         // long labels need more than the usual room
         panel.frame.left = panel.frame.left.max(panel.room_left());
-        let size = (WIDTH_PX, TOP_PX + HEIGHT_PX + FOOT_PX);
+        let size = (WIDTH_PX, top + HEIGHT_PX + FOOT_PX);
         paint(name, size, &self.title, |canvas| {
+            let at = (panel.frame.left, 12.0);
+            canvas.text(&Label::new(self.title.clone(), at).bold().sized(NORMAL));
             panel.grid(canvas);
             for line in &self.ground {
                 panel.line(canvas, line, Pen::full(GREY, 1.4));

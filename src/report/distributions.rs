@@ -32,9 +32,10 @@ const MARKED: [(f64, Pen); 3] = [
 
 /// Draws one panel a quantity.
 pub(super) fn draw(report: &Report) -> Drawing {
+    let words = report.words();
     let rows = SHOWN.len().div_ceil(COLUMNS);
     let height = rows as f64 * ROW_PX;
-    let svg = paint("distributions", (WIDTH_PX, height), "Distributions", |canvas| {
+    let svg = paint("distributions", (WIDTH_PX, height), words.distributions_title, |canvas| {
         for (i, &quantity) in SHOWN.iter().enumerate() {
             let column = WIDTH_PX / COLUMNS as f64;
             let (left, top) = ((i % COLUMNS) as f64 * column, (i / COLUMNS) as f64 * ROW_PX);
@@ -47,10 +48,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
             Distribution::of(report, quantity, frame).draw(canvas, 24.0);
         }
     });
-    let caption = "Distributions over all releases of each rock's largest value. The energies reach their \
-                   largest values at different instants, so they do not add up; their axes are logarithmic. Lines: P50 full, P95 \
-                   dashed, P99 dotted. “+n →”: so many rocks lie beyond the end of the axis.";
-    Drawing { svg, caption: caption.to_owned() }
+    Drawing { svg, caption: words.distributions_caption.to_owned() }
 }
 
 /// The values of one quantity, ready to be drawn.
@@ -78,20 +76,22 @@ impl<'a> Distribution<'a> {
             Quantity::ReachAngle => Histogram::of(&values),
             _ => Histogram::clipped(&values),
         };
+        let words = report.words();
         let tallest = percent_of(bins.largest(), si.len());
-        let y = Axis::from_zero([1.02 * tallest], "Releases (%)");
-        let panel = Panel::new(frame, bins.axis(&titled(quantity.name(), unit)), y);
+        let y = Axis::from_zero([1.02 * tallest], words.releases_percent);
+        let panel = Panel::new(frame, bins.axis(&titled(quantity.name(words), unit)), y);
         Self { report, quantity, bins, panel, largest, unit_size }
     }
 
     /// Draws it with its head so far above the frame (px).
     pub(super) fn draw(&self, canvas: &Canvas<'_>, head_px: f64) {
+        let said = self.report.words();
         let total = self.report.releases.len();
         self.panel.grid(canvas);
         self.bins.bars(canvas, &self.panel, total);
         let mut words = self.percentiles(canvas);
         if total > 0 {
-            words.push(format!("max {}", format::short(self.largest / self.unit_size)));
+            words.push(format!("{} {}", said.max, format::short(self.largest / self.unit_size)));
         }
         self.panel.axes(canvas);
         if self.bins.beyond > 0 {
@@ -101,9 +101,9 @@ impl<'a> Distribution<'a> {
                 .text_on_rim(&Label::new(words, (right - 4.0, top + 10.0)).right().coloured(GREY));
         }
         let above = Frame { top: self.panel.frame.top - head_px, ..self.panel.frame };
-        head(canvas, &above, self.quantity.name(), &words.join(" · "));
+        head(canvas, &above, self.quantity.name(said), &words.join(" · "));
         if self.bins.counts.is_empty() {
-            self.panel.nothing(canvas, if total == 0 { "no release" } else { "no finite value" });
+            self.panel.nothing(canvas, if total == 0 { said.no_release } else { said.no_finite });
         }
     }
 

@@ -111,16 +111,6 @@ pub fn counted<'a>(count: usize, one: &'a str, many: &'a str) -> &'a str {
     if count == 1 { one } else { many }
 }
 
-/// Two written bounds as an interval; one that is no number leaves it open.
-pub fn interval(low: &str, high: &str) -> String {
-    match (low == NO_NUMBER, high == NO_NUMBER) {
-        (false, false) => format!("{low} to {high}"),
-        (false, true) => format!("at least {low}"),
-        (true, false) => format!("at most {high}"),
-        (true, true) => NO_NUMBER.to_owned(),
-    }
-}
-
 /// A share (0..1) in per cent with a fixed number of decimals.
 pub fn percent(share: f64, decimals: usize) -> String {
     if !share.is_finite() {
@@ -163,7 +153,6 @@ mod tests {
         assert_eq!(significant(123_456.0, 3), "123\u{2009}456");
         assert_eq!(scientific(1e-5, 0), "10⁻⁵");
         assert_eq!(power_of_ten(12), "10¹²");
-        assert_eq!(interval("1", NO_NUMBER), "at least 1");
         assert_eq!(percent(0.9996, 1), "100.0\u{2009}%");
         assert_eq!([2.5, 10.0, 0.025, 1e4].map(plain), ["2.5", "10", "0.025", "10\u{2009}000"]);
     }

@@ -8,10 +8,11 @@ mod maps;
 mod measured;
 
 use super::model::{
-    About, BandPoint, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row, StopShare,
-    Table, Text,
+    About, BandPoint, Check, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row,
+    StopShare, Table, Text,
 };
 use super::raster::GroundRaster;
+use super::words::{Words, fill};
 use super::{format, plausibility};
 use crate::error::Result;
 use crate::hazard::{self, Exceedance, Hazard, Open, PERCENTS, Percentile, Sample, StopKind};
@@ -38,12 +39,15 @@ const TABLED: [(Quantity, hazard::Quantity); 8] = [
 /// A result file that cannot be read.
 pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report> {
     let hazard = &results.hazard;
+    let language = results.summary.language;
+    let words = Words::of(language);
     let releases =
         results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
     let lines = lines::lines(results, ground.as_ref())?;
     let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
     let mut report = Report {
-        text: text_of(results),
+        language,
+        text: text_of(results, words),
         releases,
         paths: paths_of(results)?,
         runout_exceedance: band(&hazard.sample(hazard::Quantity::Runout).exceedance()),
@@ -53,17 +57,17 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
             .filter(|kind| !kind.is_unusual() || hazard.ended(*kind).count > 0)
             .map(|kind| stop_share(hazard, kind))
             .collect(),
-        headline: headline(hazard),
-        arrivals: arrivals::tables(results, &order),
+        headline: headline(hazard, words),
+        arrivals: arrivals::tables(results, words, &order),
         zone: results.summary.site.release.clone(),
         further_zones: results.summary.site.further_releases.clone(),
         marks: lines::marks(results),
-        tables: [table(hazard)]
+        tables: [table(hazard, words)]
             .into_iter()
-            .chain(annual::tables(results))
-            .chain(lines::tables(results))
-            .chain(barriers::tables(results, ground.as_ref()))
-            .chain(measured::tables(results)?)
+            .chain(annual::tables(results, words))
+            .chain(lines::tables(results, words))
+            .chain(barriers::tables(results, words, ground.as_ref()))
+            .chain(measured::tables(results, words)?)
             .collect(),
         lines,
         annual: annual::views(results),
@@ -75,40 +79,39 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         checks: Vec::new(),
     };
     report.checks = plausibility::checks(&report, results);
+    let said =
+        |check: &Check| fill(words.check_failed, &[("name", &check.name), ("found", &check.found)]);
     let failed = report.checks.iter().filter(|check| !check.passes);
-    let failed: Vec<String> =
-        failed.map(|check| format!("{}: {}", check.name, check.found)).collect();
-    report.text.warnings = [warnings_first(hazard), report.text.warnings, failed].concat();
+    let failed: Vec<String> = failed.map(said).collect();
+    report.text.warnings = [warnings_first(hazard, words), report.text.warnings, failed].concat();
     Ok(report)
 }
 
 /// What rocks that left the terrain do to the numbers, before anything else.
-pub(super) fn warnings_first(hazard: &Hazard) -> Vec<String> {
-    let left = hazard.ended(StopKind::LeftTerrain);
-    let late = hazard.ended(StopKind::TimeUp);
-    let said = |share: &hazard::Proportion, what: &str, remedy: &str| {
-        format!(
-            "{} of {} rocks ({}) {what}: their runout is a lower and their reach angle an upper bound, and so is every percentile that they decide (≥, ≤; no interval on that side). {remedy}",
-            format::decimal(share.count as f64, 0),
-            format::decimal(share.of as f64, 0),
-            format::percent(share.share, usize::from(share.share < 0.1)),
-        )
+pub(super) fn warnings_first(hazard: &Hazard, words: &Words) -> Vec<String> {
+    let kinds = [
+        (StopKind::LeftTerrain, words.have_left, words.remedy_left),
+        (StopKind::TimeUp, words.have_no_time, words.remedy_time),
+        (StopKind::OverBudget, words.have_no_budget, words.remedy_budget),
+    ];
+    let said = |(kind, what, remedy): (StopKind, &str, &str)| {
+        let share = hazard.ended(kind);
+        let count = |n: usize| format::decimal(n as f64, 0);
+        let percent = format::percent(share.share, usize::from(share.share < 0.1));
+        (share.count > 0).then(|| {
+            fill(
+                words.censored,
+                &[
+                    ("n", &count(share.count)),
+                    ("of", &count(share.of)),
+                    ("share", &percent),
+                    ("what", &what),
+                    ("remedy", &remedy),
+                ],
+            )
+        })
     };
-    let left = (left.count > 0).then(|| {
-        said(&left, "left the terrain", "Give terrain that reaches farther if they matter.")
-    });
-    let late = (late.count > 0).then(|| {
-        said(&late, "were still moving when their time was up", "Give a longer [solver] longest_s.")
-    });
-    let spent = hazard.ended(StopKind::OverBudget);
-    let spent = (spent.count > 0).then(|| {
-        said(
-            &spent,
-            "were still moving when their budget of work was spent",
-            "Ask why: see how the rocks ended.",
-        )
-    });
-    left.into_iter().chain(late).chain(spent).collect()
+    kinds.into_iter().filter_map(said).collect()
 }
 
 /// The exceedance curve with its band upright: the intervals of the percentiles lie along x, figures want them along y.
@@ -116,21 +119,23 @@ fn band(curve: &[Exceedance]) -> Vec<BandPoint> {
     let low: Vec<(f64, f64)> = curve.iter().filter_map(|at| Some((at.low_95?, at.share))).collect();
     let high: Vec<(f64, f64)> =
         curve.iter().filter_map(|at| Some((at.high_95?, at.share))).collect();
+    // beyond the last known upper bound the share is no larger than there
+    let least = high.last().map_or(f64::NAN, |(_, share)| *share);
     let point = |at: &Exceedance| BandPoint {
         x: at.value,
-        y: Estimate::new(at.share, share_at(&low, at.value), share_at(&high, at.value)),
+        y: Estimate::new(at.share, share_at(&low, at.value, 0.0), share_at(&high, at.value, least)),
     };
     // where rocks that left the terrain decide, there is no curve
     curve.iter().filter(|at| !at.censored).map(point).collect()
 }
 
-/// Share at `x` on a curve of points that rise in x and fall in share: 1 before the curve, 0 after it.
-fn share_at(curve: &[(f64, f64)], x: f64) -> f64 {
+/// Share at `x` on a curve of points that rise in x and fall in share: 1 before the curve, `after` behind it.
+fn share_at(curve: &[(f64, f64)], x: f64, after: f64) -> f64 {
     let k = curve.partition_point(|&(value, _)| value < x);
     match (k.checked_sub(1).and_then(|before| curve.get(before)), curve.get(k)) {
         (Some(&(x0, y0)), Some(&(x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
         (None, Some(_)) => 1.0,
-        _ => 0.0,
+        _ => after,
     }
 }
 
@@ -222,39 +227,42 @@ fn stop_share(hazard: &Hazard, kind: StopKind) -> StopShare {
 }
 
 /// What an engineer asks first: the middle and the far end of runout, and the design values of the rest.
-pub(super) fn headline(hazard: &Hazard) -> Vec<Row> {
+pub(super) fn headline(hazard: &Hazard, words: &Words) -> Vec<Row> {
     use hazard::Quantity::{MaxHeight, MaxSpeed, MaxTotal, MaxTranslational, ReachAngle, Runout};
     let asked = [
-        ("Runout, 50 %", Runout, 0.50, "m"),
-        ("Runout, 95 %", Runout, 0.95, "m"),
-        ("Runout, 99 %", Runout, 0.99, "m"),
-        ("Reach angle, 50 %", ReachAngle, 0.50, "°"),
-        ("Maximum speed, 95 %", MaxSpeed, 0.95, "m/s"),
-        ("Maximum translational energy, 95 %", MaxTranslational, 0.95, "J"),
-        ("Maximum total energy, 95 %", MaxTotal, 0.95, "J"),
-        ("Maximum bounce height, 95 %", MaxHeight, 0.95, "m"),
+        (words.runout, Runout, 0.50, "m"),
+        (words.runout, Runout, 0.95, "m"),
+        (words.runout, Runout, 0.99, "m"),
+        (words.reach_angle, ReachAngle, 0.50, "°"),
+        (words.max_speed, MaxSpeed, 0.95, "m/s"),
+        (words.max_translational, MaxTranslational, 0.95, "J"),
+        (words.max_total, MaxTotal, 0.95, "J"),
+        (words.max_height, MaxHeight, 0.95, "m"),
     ];
     let row = |(name, quantity, p, unit): (&str, hazard::Quantity, f64, &str)| {
+        let percent = format::decimal(100.0 * p, 0);
+        let name = fill(words.percentile_of, &[("quantity", &name), ("percent", &percent)]);
         let estimate = percentile_of(&hazard.sample(quantity), p, quantity.open())?;
-        Some(Row { name: name.to_owned(), estimate, unit: unit.to_owned() })
+        Some(Row { name, estimate, unit: unit.to_owned() })
     };
     asked.into_iter().filter_map(row).collect()
 }
 
-fn table(hazard: &Hazard) -> Table {
-    let rows = TABLED.map(|(here, there)| (here.name(), here, hazard.sample(there), there.open()));
-    let rocks = hazard.rocks();
-    let note = format!(
-        "Conditional on release, over {} {}. Percentiles with 95 % intervals ({}); an end that the sample is too small for is left open.",
-        format::decimal(rocks as f64, 0),
-        format::counted(rocks, "rock", "rocks"),
-        if hazard.weights().is_some() {
-            "weighted by what each rock stands for, Woodruff's"
-        } else {
-            "distribution-free, order statistics"
-        }
-    );
-    statistics_table("Statistics over all releases", note, &rows)
+fn table(hazard: &Hazard, words: &Words) -> Table {
+    let rows =
+        TABLED.map(|(here, there)| (here.name(words), here, hazard.sample(there), there.open()));
+    let how = if hazard.weights().is_some() { words.woodruff } else { words.order_statistics };
+    let note =
+        fill(words.all_statistics_note, &[("rocks", &words.rocks(hazard.rocks())), ("how", &how)]);
+    statistics_table(words, words.all_statistics.to_owned(), note, &rows)
+}
+
+/// Columns of a table of statistics: mean, percentiles, maximum.
+fn statistics(words: &Words) -> Vec<String> {
+    let percents = PERCENTS.map(|percent| format!("{percent}\u{2009}%"));
+    let ends = [words.mean, words.maximum].map(str::to_owned);
+    let [mean, maximum] = ends;
+    [mean].into_iter().chain(percents).chain([maximum]).collect()
 }
 
 /// What a row of a table of statistics is made from: name, the quantity whose unit it has, values, and on which side
@@ -262,10 +270,13 @@ fn table(hazard: &Hazard) -> Table {
 type StatisticsRow<'a> = (&'a str, Quantity, Sample, Option<Open>);
 
 /// A table of mean, percentiles and maximum; energies all in one unit.
-fn statistics_table(title: &str, note: String, rows: &[StatisticsRow<'_>]) -> Table {
-    let percents = PERCENTS.map(|percent| format!("{percent}\u{2009}%"));
-    let columns =
-        ["mean".to_owned()].into_iter().chain(percents).chain(["maximum".to_owned()]).collect();
+fn statistics_table(
+    words: &Words,
+    title: String,
+    note: String,
+    rows: &[StatisticsRow<'_>],
+) -> Table {
+    let columns = statistics(words);
     let largest = |sample: &Sample| sample.values().last().copied().unwrap_or(0.0);
     let energies = rows.iter().filter(|(_, like, ..)| like.is_energy());
     let most_j = energies.map(|(.., sample, _)| largest(sample)).fold(0.0, f64::max);
@@ -284,10 +295,12 @@ fn statistics_table(title: &str, note: String, rows: &[StatisticsRow<'_>]) -> Ta
             PERCENTS.map(|percent| percentile_of(sample, f64::from(percent) / 100.0, *open));
         let cells = [mean].into_iter().chain(middle).chain([most]);
         let name = if unit.is_empty() { (*name).to_owned() } else { format!("{name} ({unit})") };
-        (name, cells.map(|cell| cell.map(|x| x.over(size))).collect())
+        let clean =
+            |x: Estimate| if *like == Quantity::Height { x.above_a_mm() } else { x.over(size) };
+        (name, cells.map(|cell| cell.map(clean)).collect())
     });
     let about = About::Rocks;
-    Table { title: title.to_owned(), note, columns, rows: rows.collect(), about }
+    Table { title, note, columns, rows: rows.collect(), about }
 }
 
 /// Warnings that concern rocks above a speed, where some came so fast.
@@ -298,7 +311,19 @@ fn fast_warnings(results: &Results) -> Vec<String> {
     all.iter().filter(|one| fastest > one.above_m_s).map(|one| one.text.clone()).collect()
 }
 
-fn text_of(results: &Results) -> Text {
+/// The title block, its rows named in the language of the page.
+fn title_block(rows: &[(String, String)], words: &Words) -> Vec<(String, String)> {
+    let name = |name: &str| match name {
+        "Client" => words.client.to_owned(),
+        "Project" => words.project.to_owned(),
+        "Author" => words.author.to_owned(),
+        "Date" => words.date.to_owned(),
+        other => other.to_owned(),
+    };
+    rows.iter().map(|(known, value)| (name(known), value.clone())).collect()
+}
+
+fn text_of(results: &Results, words: &Words) -> Text {
     let summary = &results.summary;
     let lines = |value: &serde_json::Value| -> Vec<String> {
         let table = value.get("table").and_then(serde_json::Value::as_array);
@@ -312,8 +337,8 @@ fn text_of(results: &Results) -> Text {
     Text {
         title: summary.title.clone(),
         subtitle: planned("file "),
-        scheme: format!("Scheme in force: {}.", planned("scheme ")),
-        title_block: summary.title_block.clone(),
+        scheme: fill(words.scheme_in_force, &[("scheme", &planned("scheme "))]),
+        title_block: title_block(&summary.title_block, words),
         inputs: summary.inputs.clone(),
         terrain_source: [summary.sources[0].clone(), planned("terrain ")]
             .into_iter()

@@ -3,22 +3,30 @@
 //! The first page answers: the map, what arrives at lines and barriers, and what must be known before the numbers are
 //! used. Then one chapter a question.
 
+mod style;
 mod tables;
-mod words;
 
 pub use tables::plain_headline;
 
 use super::barriers;
 use super::figure::{Drawing, Heading};
-use super::format::{self, escape};
+use super::format;
 use super::lines;
 use super::model::{About, Check, Report};
+use super::words::{Words, fill};
 use crate::simulation::Stop;
 use std::fmt::Write as _;
-use words::{GLOSSARY, METHOD, STYLE};
+use style::STYLE;
+
+/// Text for the page. Digits of one number stay in one line: a thin space breaks, a narrow no-break space does not.
+fn escape(text: &str) -> String {
+    format::escape(text).replace('\u{2009}', "\u{202f}")
+}
 
 /// What is drawn, in the order of the page.
 type Figures = [(Heading, Drawing)];
+/// Figures and the language of their captions.
+type Shown<'a> = (&'a Figures, &'a Words);
 
 /// A chapter: its anchor, what it asks, and its content.
 struct Chapter {
@@ -30,23 +38,20 @@ struct Chapter {
 /// The page with the figures inlined.
 pub fn page(report: &Report, figures: &Figures) -> String {
     let chapter = |anchor, title, body| Chapter { anchor, title, body };
+    let words = report.words();
     let chapters = [
-        chapter("where", "Where do they go?", where_to(report, figures)),
-        chapter("how", "How fast and how high?", how_fast(report, figures)),
-        chapter("lines", "What arrives at each line?", at_lines(report, figures)),
-        chapter(
-            "barriers",
-            "What each barrier meets, and what passes it",
-            at_barriers(report, figures),
-        ),
-        chapter("year", "What does a year bring?", in_a_year(report, figures)),
-        chapter("sure", "How sure is that?", how_sure(report, figures)),
-        chapter("out", "What was computed, what was left out and why", plan(report)),
-        chapter("inputs", "Method and inputs", method(report) + &inputs(report)),
-        chapter("words", "Definitions", glossary()),
+        chapter("where", words.ch_where, where_to(report, figures)),
+        chapter("how", words.ch_how, how_fast(report, figures)),
+        chapter("lines", words.ch_lines, at_lines(report, figures)),
+        chapter("barriers", words.ch_barriers, at_barriers(report, figures)),
+        chapter("year", words.ch_year, in_a_year(report, figures)),
+        chapter("sure", words.ch_sure, how_sure(report, figures)),
+        chapter("out", words.ch_out, plan(report)),
+        chapter("inputs", words.ch_inputs, method(report) + &inputs(report)),
+        chapter("words", words.ch_words, glossary(words)),
     ];
     let shown: Vec<&Chapter> = chapters.iter().filter(|one| !one.body.is_empty()).collect();
-    let mut page = head(&report.text.title);
+    let mut page = head(&report.text.title, words);
     page += &first_page(report, figures);
     page += &contents(&shown);
     for (number, one) in shown.iter().enumerate() {
@@ -64,12 +69,13 @@ pub fn page(report: &Report, figures: &Figures) -> String {
     page
 }
 
-pub(super) fn head(title: &str) -> String {
+pub(super) fn head(title: &str, words: &Words) -> String {
     let title = escape(title);
     format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+        "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}: rockfall report</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n"
+         <title>{title}: {}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n",
+        words.code, words.rockfall_report
     )
 }
 
@@ -118,19 +124,20 @@ fn first_page(report: &Report, figures: &Figures) -> String {
         words => format!("<p class=\"subtitle\">{}</p>\n", escape(words)),
     };
     let count = |n: usize| format::decimal(n as f64, 0);
+    let words = report.words();
+    let counted = |n: usize, one, many| format!("{} {}", count(n), format::counted(n, one, many));
     let facts = format!(
-        "{} {} · {} stored {} · seed {} · rockfall {}",
-        count(report.releases.len()),
-        format::counted(report.releases.len(), "release", "releases"),
-        count(report.paths.len()),
-        format::counted(report.paths.len(), "path", "paths"),
+        "{} · {} · {} {} · rockfall {}",
+        counted(report.releases.len(), words.release_one, words.release_many),
+        counted(report.paths.len(), words.stored_path_one, words.stored_path_many),
+        words.seed,
         text.seed,
         text.version
     );
     let view = if report.has_view {
-        " · <a href=\"view.html\">the slope in 3D</a> · <a href=\"view.glb\">view.glb</a>"
+        format!(" · <a href=\"view.html\">{}</a>", escape(words.slope_in_3d))
     } else {
-        ""
+        String::new()
     };
     format!(
         "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{}{view}</p>\n{}{}</header>\n{}{}<section id=\"answer\">\n{}{}</section>\n",
@@ -139,27 +146,28 @@ fn first_page(report: &Report, figures: &Figures) -> String {
         pairs(&text.title_block),
         question(report),
         warnings(report),
-        figure(figures, "plan.svg").replacen("<figure>", "<figure class=\"map\">", 1),
-        report.arrivals.iter().map(tables::table).collect::<String>(),
-        tables::headline(&report.headline),
+        figure((figures, words), "plan.svg").replacen("<figure>", "<figure class=\"map\">", 1),
+        report.arrivals.iter().map(|table| tables::table(table, words)).collect::<String>(),
+        tables::headline(&report.headline, words),
     )
 }
 
 /// What was asked, in one sentence, from what the scene names.
 fn question(report: &Report) -> String {
+    let words = report.words();
     let names = |is_barrier: bool| -> Vec<String> {
         let marks = report.marks.iter().filter(|mark| mark.barrier.is_some() == is_barrier);
-        marks.map(|mark| format!("“{}”", mark.name)).collect()
+        marks.map(|mark| words.quoted(&mark.name)).collect()
     };
     let (lines, barriers) = (names(false), names(true));
-    let mut words = "How far do rocks from the release zone come, how fast and how high".to_owned();
-    if !lines.is_empty() {
-        let _ = write!(words, ", what arrives at {}", lines.join(", "));
+    let mut asked = words.question.to_owned();
+    for (text, names) in [(words.question_lines, lines), (words.question_barriers, barriers)] {
+        if !names.is_empty() {
+            asked += &fill(text, &[("names", &names.join(", "))]);
+        }
     }
-    if !barriers.is_empty() {
-        let _ = write!(words, ", and what do {} meet and let pass", barriers.join(", "));
-    }
-    format!("<p class=\"question\">{}?</p>\n", escape(&words))
+    let mark = if words.code == "fr" { "\u{a0}?" } else { "?" };
+    format!("<p class=\"question\">{}{mark}</p>\n", escape(&asked))
 }
 
 fn warnings(report: &Report) -> String {
@@ -167,7 +175,8 @@ fn warnings(report: &Report) -> String {
         return String::new();
     }
     format!(
-        "<section class=\"warnings\">\n<h2>Read this first</h2>\n{}</section>\n",
+        "<section class=\"warnings\">\n<h2>{}</h2>\n{}</section>\n",
+        escape(report.words().read_first),
         list(&report.text.warnings)
     )
 }
@@ -181,27 +190,32 @@ fn contents(chapters: &[&Chapter]) -> String {
 }
 
 /// The figure of a file, numbered as it stands among all; nothing if it was not drawn.
-fn figure(figures: &Figures, file: &str) -> String {
-    let Some(at) = figures.iter().position(|(heading, _)| heading.file == file) else {
-        return String::new();
-    };
-    let (heading, drawing) = &figures[at];
+fn figure((figures, words): Shown<'_>, file: &str) -> String {
+    figures
+        .iter()
+        .position(|(heading, _)| heading.file == file)
+        .map_or(String::new(), |at| numbered(&figures[at], at + 1, words))
+}
+
+/// A figure with its number, title and caption.
+fn numbered((heading, drawing): &(Heading, Drawing), number: usize, words: &Words) -> String {
+    let head = fill(words.figure, &[("n", &number), ("title", &heading.title)]);
     format!(
-        "<figure>\n{}<figcaption><b>Figure {}. {}.</b> {}</figcaption>\n</figure>\n",
+        "<figure>\n{}<figcaption><b>{}</b> {}</figcaption>\n</figure>\n",
         drawing.svg,
-        at + 1,
-        escape(&heading.title),
+        escape(&head),
         escape(&drawing.caption)
     )
 }
 
-fn all(figures: &Figures, files: &[&str]) -> String {
+fn all(figures: Shown<'_>, files: &[&str]) -> String {
     files.iter().map(|file| figure(figures, file)).collect()
 }
 
 /// All tables about something.
 fn tables_about(report: &Report, about: About) -> String {
-    report.tables.iter().filter(|table| table.about == about).map(tables::table).collect()
+    let shown = report.tables.iter().filter(|table| table.about == about);
+    shown.map(|table| tables::table(table, report.words())).collect()
 }
 
 fn where_to(report: &Report, figures: &Figures) -> String {
@@ -213,11 +227,11 @@ fn where_to(report: &Report, figures: &Figures) -> String {
         "maps_values.svg",
         "measured.svg",
     ];
-    all(figures, &files) + &tables_about(report, About::Measured)
+    all((figures, report.words()), &files) + &tables_about(report, About::Measured)
 }
 
 fn how_fast(report: &Report, figures: &Figures) -> String {
-    all(figures, &["side.svg", "along.svg", "distributions.svg"])
+    all((figures, report.words()), &["side.svg", "along.svg", "distributions.svg"])
         + &tables_about(report, About::Rocks)
 }
 
@@ -226,46 +240,44 @@ fn sentence(words: Option<String>) -> String {
 }
 
 fn at_lines(report: &Report, figures: &Figures) -> String {
+    let words = report.words();
     let own = report.lines.iter().filter(|line| !line.is_barrier);
     let each = own.map(|line| {
-        figure(figures, &format!("line_{}.svg", line.number)) + &sentence(lines::nobody(line))
+        figure((figures, words), &format!("line_{}.svg", line.number))
+            + &sentence(lines::nobody(words, line))
     });
-    figure(figures, "retention.svg")
+    figure((figures, words), "retention.svg")
         + &each.collect::<String>()
         + &tables_about(report, About::Lines)
 }
 
 fn at_barriers(report: &Report, figures: &Figures) -> String {
+    let words = report.words();
     let each = report.barriers.iter().enumerate().map(|(number, barrier)| {
-        figure(figures, &format!("barrier_{}.svg", number + 1))
-            + &sentence(barriers::nobody(barrier))
+        figure((figures, words), &format!("barrier_{}.svg", number + 1))
+            + &sentence(barriers::nobody(words, barrier))
     });
     each.collect::<String>() + &tables_about(report, About::Barriers)
 }
 
 fn in_a_year(report: &Report, figures: &Figures) -> String {
     let numbers = 1..=report.annual.len();
-    let each = numbers.map(|number| figure(figures, &format!("annual_{number}.svg")));
+    let shown = (figures, report.words());
+    let each = numbers.map(|number| figure(shown, &format!("annual_{number}.svg")));
     each.collect::<String>() + &tables_about(report, About::Year)
 }
 
 fn how_sure(report: &Report, figures: &Figures) -> String {
-    let study = figure(figures, ERROR_STUDY);
-    let study = if study.is_empty() {
-        note(
-            "Sampling is what the intervals say. Errors of steps and mesh are not in them: `rockfall study error SCENE --out DIR/error`, with DIR the \
-             folder of these results, finds both and what they cost; `rockfall draw DIR` then shows its figure here.",
-        )
-    } else {
-        study
-    };
-    study + &checks(&report.checks) + &quality(report)
+    let words = report.words();
+    let study = figure((figures, words), ERROR_STUDY);
+    let study = if study.is_empty() { note(words.no_error_study) } else { study };
+    study + &checks(&report.checks, words) + &quality(report)
 }
 
 /// File of the figure that `rockfall study error` leaves.
 pub(super) const ERROR_STUDY: &str = "error.svg";
 
-fn checks(checks: &[Check]) -> String {
+fn checks(checks: &[Check], words: &Words) -> String {
     if checks.is_empty() {
         return String::new();
     }
@@ -273,40 +285,39 @@ fn checks(checks: &[Check]) -> String {
         format!(
             "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>\n",
             escape(&check.name),
-            if check.passes { "plausible" } else { "<b>look here</b>" },
+            if check.passes {
+                escape(words.plausible)
+            } else {
+                format!("<b>{}</b>", escape(words.look_here))
+            },
             escape(&check.found)
         )
     };
     let rows: String = checks.iter().map(row).collect();
-    format!("<h3>Plausibility</h3>\n<table class=\"checks\">\n{rows}</table>\n")
+    let head = escape(words.plausibility);
+    format!("<h3>{head}</h3>\n<table class=\"checks\">\n{rows}</table>\n")
 }
 
-pub(super) fn figure_section(figures: &[(Heading, Drawing)]) -> String {
-    let mut body = String::new();
-    for (number, (figure, drawing)) in figures.iter().enumerate() {
-        let _ = write!(
-            body,
-            "<figure>\n{}<figcaption><b>Figure {}. {}.</b> {}</figcaption>\n</figure>\n",
-            drawing.svg,
-            number + 1,
-            escape(&figure.title),
-            escape(&drawing.caption)
-        );
-    }
-    section("Figures", &body)
+pub(super) fn figure_section(figures: &Figures, words: &Words) -> String {
+    let each = figures.iter().enumerate().map(|(k, figure)| numbered(figure, k + 1, words));
+    section("Figures", &each.collect::<String>())
 }
 
 fn method(report: &Report) -> String {
     let scheme = escape(&report.text.scheme);
-    format!("<p>{} {scheme}</p>\n", METHOD.join(" "))
+    format!("<p>{} {scheme}</p>\n", report.words().method.join(" "))
 }
 
 fn inputs(report: &Report) -> String {
-    let text = &report.text;
-    let mut body = pairs(&text.inputs);
+    let (text, words) = (&report.text, report.words());
+    let mut body = recorded(words, pairs(&text.inputs));
     if !text.mesh_health.is_empty() {
         let lines: String = text.mesh_health.iter().map(|line| escape(line) + "\n").collect();
-        let _ = write!(body, "<h3>Health of the meshes</h3>\n<pre>{lines}</pre>\n");
+        let _ = write!(
+            body,
+            "<h3>{}</h3>\n<pre lang=\"en\">{lines}</pre>\n",
+            escape(words.mesh_health)
+        );
     }
     body
 }
@@ -317,7 +328,15 @@ fn plan(report: &Report) -> String {
         return String::new();
     }
     let lines: String = lines.iter().map(|line| escape(line) + "\n").collect();
-    format!("<pre>{lines}</pre>\n")
+    recorded(report.words(), format!("<pre>{lines}</pre>\n"))
+}
+
+/// What the program has recorded of a run, in English on every page.
+fn recorded(words: &Words, body: String) -> String {
+    if words.in_english.is_empty() || body.is_empty() {
+        return body;
+    }
+    format!("{}<div lang=\"en\">\n{body}</div>\n", note(words.in_english))
 }
 
 fn quality(report: &Report) -> String {
@@ -325,44 +344,50 @@ fn quality(report: &Report) -> String {
     let failed = report.releases.iter().filter(|f| matches!(f.stop, Stop::Failed(_))).count();
     let left = report.releases.iter().filter(|f| f.stop == Stop::LeftTerrain).count();
     let count = |n: usize| format::decimal(n as f64, 0);
-    let remainder = text.energy_remainder.map_or("not recorded".to_owned(), |share| {
-        format!("{} of the energy released, in the worst rock", format::significant(share, 2))
+    let words = report.words();
+    let remainder = text.energy_remainder.map_or(words.not_recorded.to_owned(), |share| {
+        fill(words.remainder, &[("share", &format::significant(share, 2))])
     });
+    let lost = fill(words.lost_rocks_are, &[("failed", &count(failed)), ("left", &count(left))]);
     let or_unknown =
-        |words: &str| if words.is_empty() { "not stated".to_owned() } else { words.to_owned() };
-    let row = |name: &str, value: String| (name.to_owned(), value);
+        |said: &str| if said.is_empty() { words.not_stated.to_owned() } else { said.to_owned() };
     let rows = [
-        row("Terrain", or_unknown(&text.terrain_source)),
-        row("Ground values", or_unknown(&text.parameter_source)),
-        row("Releases", count(report.releases.len())),
-        row("Lost rocks", format!("{} failed, {} left the terrain", count(failed), count(left))),
-        row("Energy not accounted for", remainder),
-        row("Seed", text.seed.to_string()),
-        row("Version", text.version.clone()),
+        (words.terrain, or_unknown(&text.terrain_source)),
+        (words.ground_values, or_unknown(&text.parameter_source)),
+        (words.releases, count(report.releases.len())),
+        (words.lost_rocks, lost),
+        (words.not_accounted, remainder),
+        (words.seed_row, text.seed.to_string()),
+        (words.version, text.version.clone()),
     ];
-    format!("<h3>Quality statement</h3>\n{}", pairs(&rows))
+    let rows = rows.map(|(name, value)| (name.to_owned(), value));
+    format!("<h3>{}</h3>\n{}", escape(words.quality), pairs(&rows))
 }
 
-fn glossary() -> String {
+fn glossary(words: &Words) -> String {
     let entry = |(term, meaning): &(&str, &str)| {
         format!("<dt>{}</dt><dd>{}</dd>\n", escape(term), escape(meaning))
     };
-    let entries: String = GLOSSARY.iter().map(entry).collect();
+    let entries: String = words.glossary.iter().map(entry).collect();
     format!("<dl>\n{entries}</dl>\n")
 }
 
 fn footer(report: &Report) -> String {
     let text = &report.text;
+    let words = report.words();
     let rate = text.rate_per_s.filter(|r| r.is_finite()).map_or(String::new(), |rate| {
-        format!(" · {} rocks per second, files included", format::significant(rate, 3))
+        format!(" · {}", fill(words.rate, &[("n", &format::significant(rate, 3))]))
     });
     let remainder = text.energy_remainder.map_or(String::new(), |share| {
-        format!(" · numerical remainder {}", format::significant(share, 2))
+        let share = format::significant(share, 2);
+        format!(" · {}", fill(words.numerical_remainder, &[("share", &share)]))
     });
     format!(
-        "<footer>rockfall {} · seed {} · scene <code>{}</code>{rate}{remainder}</footer>\n",
+        "<footer>rockfall {} · {} {} · {} <code>{}</code>{rate}{remainder}</footer>\n",
         escape(&text.version),
+        words.seed,
         text.seed,
+        words.scene,
         escape(&text.scene_hash)
     )
 }

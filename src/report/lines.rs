@@ -9,6 +9,7 @@ use super::histogram::{Histogram, percent_of};
 use super::model::{BandPoint, Line, kilo};
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::{Frame, Spot};
+use super::words::{Words, fill};
 use crate::hazard::INTENSITY_J;
 
 const TOP_PX: f64 = 26.0;
@@ -17,6 +18,8 @@ const CLOUD_PX: f64 = 196.0;
 const CURVE_PX: f64 = 160.0;
 /// Between a panel's axis title and the head of the next panel (px).
 const GAP_PX: f64 = 34.0;
+/// Room of the key above the heads of the lower panels (px).
+const KEY_PX: f64 = 18.0;
 const RIGHT_PX: f64 = WIDTH_PX - 20.0;
 /// From so many crossings on, marks shrink to dots.
 const MANY: usize = 400;
@@ -24,76 +27,82 @@ const MANY: usize = 400;
 const MARKED: [f64; 2] = [0.50, 0.95];
 
 /// What there is to say of a line that no rock crosses; none where one does.
-pub(super) fn nobody(line: &Line) -> Option<String> {
-    line.crossings.is_empty().then(|| {
-        format!(
-            "No rock of {} crosses {} “{}”: its reach probability is below {} (95\u{2009}% confidence).",
-            format::decimal(line.releases as f64, 0),
-            if line.is_barrier { "the line of barrier" } else { "the line" },
-            line.name,
-            format::percent(line.reach.high, usize::from(line.reach.high < 0.1)),
-        )
-    })
+pub(super) fn nobody(words: &Words, line: &Line) -> Option<String> {
+    let what = if line.is_barrier { words.the_line_of_barrier } else { words.the_line };
+    let below = format::percent(line.reach.high, usize::from(line.reach.high < 0.1));
+    let said = fill(
+        words.nobody_line,
+        &[
+            ("n", &format::decimal(line.releases as f64, 0)),
+            ("what", &what),
+            ("name", &words.quoted(&line.name)),
+            ("share", &below),
+        ],
+    );
+    (!line.is_met()).then_some(said)
 }
 
 /// Draws the line's panels: where, how high with how much energy, and the exceedance of both beside each other.
-pub(super) fn draw(line: &Line) -> Drawing {
+pub(super) fn draw(words: &Words, line: &Line) -> Drawing {
     let largest_j = line.crossings.iter().map(|at| at.total_j).fold(0.0, f64::max);
     let (unit, size) = kilo(largest_j);
     let alongs: Vec<f64> = line.crossings.iter().map(|at| at.along_m).collect();
     let bins = Histogram::of(&alongs);
-    let (along, cloud) = upper_panels(line, &bins, (unit, size));
-    let bottom = cloud.frame.bottom + FOOT_PX + GAP_PX + CURVE_PX + FOOT_PX;
-    let curves = lower_panels(line, cloud.frame.bottom + FOOT_PX + GAP_PX, (unit, size));
-    let title = format!("Evaluation line {}", line.name);
+    let (along, cloud) = upper_panels(words, line, &bins, (unit, size));
+    let key_px = if line.behind.is_some() { KEY_PX } else { 0.0 };
+    let top = cloud.frame.bottom + FOOT_PX + GAP_PX + key_px;
+    let bottom = top + CURVE_PX + FOOT_PX;
+    let curves = lower_panels((words, line), top, (unit, size));
+    let title = fill(words.line_title, &[("name", &line.name)]);
     let svg = paint(&format!("line-{}", line.number), (WIDTH_PX, bottom), &title, |canvas| {
-        head(canvas, &along, "Where rocks pass");
+        head(canvas, &along, words.where_pass);
         along.grid(canvas);
         bins.bars(canvas, &along, line.releases);
         along.axes(canvas);
-        head(canvas, &cloud, "Height and energy at the first crossing");
+        head(canvas, &cloud, words.first_crossing);
         draw_cloud(canvas, &cloud, line, size);
         let behind = |of: fn(&super::model::Behind) -> &Vec<BandPoint>| {
             line.behind.as_ref().map(of).map(Vec::as_slice)
         };
-        head(canvas, &curves[0], "Energy exceeded");
+        head(canvas, &curves[0], words.energy_exceeded);
         let pair = (&line.energy_exceedance[..], behind(|at| &at.energy_exceedance));
         draw_curve(canvas, &curves[0], pair, size);
         intensities(canvas, &curves[0], size);
-        head(canvas, &curves[1], "Height exceeded");
+        head(canvas, &curves[1], words.height_exceeded);
         let pair = (&line.height_exceedance[..], behind(|at| &at.height_exceedance));
         draw_curve(canvas, &curves[1], pair, 1.0);
         if line.behind.is_some() {
-            key(canvas, &curves[1]);
+            key(canvas, &curves[0], words);
         }
     });
-    Drawing { svg, caption: caption(line) }
+    Drawing { svg, caption: caption(words, line) }
 }
 
-fn caption(line: &Line) -> String {
+fn caption(words: &Words, line: &Line) -> String {
     let count = |n: usize| format::decimal(n as f64, 0);
-    let crossing = line.crossings.len();
+    let percent = |share: f64| format::percent(share, 2);
     let behind = line.behind.as_ref().map_or(String::new(), |behind| {
-        format!(
-            " Green, dashed: what is left behind {} (reach {}, {} to {}).",
-            behind.barriers.join(", "),
-            format::percent(behind.reach.value, 2),
-            format::percent(behind.reach.low, 2),
-            format::percent(behind.reach.high, 2)
+        fill(
+            words.line_behind,
+            &[
+                ("barriers", &behind.barriers.join(", ")),
+                ("reach", &percent(behind.reach.value)),
+                ("low", &percent(behind.reach.low)),
+                ("high", &percent(behind.reach.high)),
+            ],
         )
     });
-    format!(
-        "Line “{}”, {} m long: {} of {} releases {} it, {} of them more than once; all values at the first crossing, \
-         on the parabola or the step that crosses. Above: share of releases per length of line, from its first corner. \
-         Middle: vertical height of the lowest point and total energy, P50 full, P95 dashed. Below: share of all releases \
-         that cross with more (conditional on release), with 95 % band; the Swiss limits of intensity are marked.{behind}",
-        line.name,
-        format::significant(line.length_m, 4),
-        count(crossing),
-        count(line.releases),
-        format::counted(crossing, "crosses", "cross"),
-        count(line.crossing_again)
-    )
+    let caption = fill(
+        words.line_caption,
+        &[
+            ("name", &words.quoted(&line.name)),
+            ("length", &format::significant(line.length_m, 4)),
+            ("crossing", &count(line.crossings.len())),
+            ("releases", &count(line.releases)),
+            ("again", &count(line.crossing_again)),
+        ],
+    );
+    caption + &behind
 }
 
 fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
@@ -101,28 +110,33 @@ fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
     canvas.text(&Label::new(words, at).bold().sized(NORMAL));
 }
 
-fn upper_panels(line: &Line, bins: &Histogram, (unit, size): (&str, f64)) -> (Panel, Panel) {
+fn upper_panels(
+    words: &Words,
+    line: &Line,
+    bins: &Histogram,
+    (unit, size): (&str, f64),
+) -> (Panel, Panel) {
     let tallest = percent_of(bins.largest(), line.releases);
-    let shares = Axis::from_zero([1.05 * tallest], "Releases (%)");
+    let shares = Axis::from_zero([1.05 * tallest], words.releases_percent);
     let frame =
         |top: f64, height: f64| Frame { left: 0.0, top, right: RIGHT_PX, bottom: top + height };
     let mut along = Panel::new(
         frame(TOP_PX, ALONG_PX),
-        Axis::linear(0.0, line.length_m, "Along the line (m)"),
+        Axis::linear(0.0, line.length_m, words.line_axis),
         shares,
     );
     let energies = line.crossings.iter().map(|at| at.total_j / size);
     let heights = line.crossings.iter().map(|at| above(at.height_m));
     let mut cloud = Panel::new(
         frame(TOP_PX + ALONG_PX + FOOT_PX + GAP_PX, CLOUD_PX),
-        Axis::energies(energies, format!("Total energy ({unit})")),
-        Axis::from_zero(heights, "Height (m)"),
+        Axis::energies(energies, fill(words.energy_axis, &[("unit", &unit)])),
+        Axis::from_zero(heights, words.height_axis),
     );
     align([&mut along, &mut cloud]);
     (along, cloud)
 }
 
-fn lower_panels(line: &Line, top: f64, (unit, size): (&str, f64)) -> [Panel; 2] {
+fn lower_panels((words, line): (&Words, &Line), top: f64, (unit, size): (&str, f64)) -> [Panel; 2] {
     let least = 0.8 / line.releases.max(10) as f64;
     let panel = |k: usize, x: Axis| {
         let half = 0.5 * WIDTH_PX;
@@ -132,7 +146,7 @@ fn lower_panels(line: &Line, top: f64, (unit, size): (&str, f64)) -> [Panel; 2] 
             right: RIGHT_PX - (1 - k) as f64 * (half - 4.0),
             bottom: top + CURVE_PX,
         };
-        let y = Axis::log(least, line.reach.high.clamp(10.0 * least, 1.0), "Share of releases");
+        let y = Axis::log(least, line.reach.high.clamp(10.0 * least, 1.0), words.share_of_releases);
         let mut panel = Panel::new(frame, x, y);
         panel.frame.left += panel.room_left();
         panel
@@ -140,8 +154,8 @@ fn lower_panels(line: &Line, top: f64, (unit, size): (&str, f64)) -> [Panel; 2] 
     let energies = line.energy_exceedance.iter().map(|p| p.x / size);
     let heights = line.height_exceedance.iter().map(|p| p.x);
     [
-        panel(0, Axis::energies(energies, format!("Total energy ({unit})"))),
-        panel(1, Axis::from_zero(heights, "Height (m)")),
+        panel(0, Axis::energies(energies, fill(words.energy_axis, &[("unit", &unit)]))),
+        panel(1, Axis::from_zero(heights, words.height_axis)),
     ]
 }
 
@@ -230,21 +244,22 @@ fn intensities(canvas: &Canvas<'_>, panel: &Panel, size: f64) {
     }
 }
 
-fn key(canvas: &Canvas<'_>, panel: &Panel) {
-    let y = panel.frame.top - 9.0;
-    let mut right = panel.frame.right;
-    for (words, pen) in
-        [("with barriers", Pen::full(DARK_GREEN, 1.6).dashed()), ("without", Pen::full(BLUE, 1.6))]
-    {
-        canvas.text(&Label::new(words, (right, y)).right().coloured(GREY));
-        let end = right - text_width(words, SMALL) - 5.0;
-        canvas.line(&[(end - 18.0, y), (end, y)], pen);
-        right = end - 26.0;
+/// Both pens, in a line of their own above the heads: names are long in some languages.
+fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
+    let y = panel.frame.top - 10.0 - KEY_PX;
+    let mut x = panel.frame.left;
+    for (name, pen) in [
+        (words.without_barriers, Pen::full(BLUE, 1.6)),
+        (words.with_barriers, Pen::full(DARK_GREEN, 1.6).dashed()),
+    ] {
+        canvas.line(&[(x, y), (x + 20.0, y)], pen);
+        canvas.text(&Label::new(name, (x + 25.0, y)).coloured(GREY));
+        x += 25.0 + text_width(name, SMALL) + 20.0;
     }
 }
 
 /// Draws the retention curve over all lines: which share of the releases passes each of them.
-pub(super) fn retention(lines: &[Line]) -> Drawing {
+pub(super) fn retention(lines: &[Line], words: &Words) -> Drawing {
     let rows = lines.len() as f64;
     let row_px = 28.0;
     let longest = 0.36 * WIDTH_PX;
@@ -261,25 +276,22 @@ pub(super) fn retention(lines: &[Line]) -> Drawing {
     let most = Axis::from_zero(ends.map(|share| 100.0 * share), "").high.min(100.0);
     let panel = Panel::new(
         frame,
-        Axis::linear(0.0, most, "Releases that cross (%)"),
+        Axis::linear(0.0, most, words.retention_axis),
         Axis::linear(0.0, rows, ""),
     );
-    let svg = paint("retention", (WIDTH_PX, frame.bottom + FOOT_PX), "Retention", |canvas| {
+    let svg = paint("retention", (WIDTH_PX, frame.bottom + FOOT_PX), words.retention, |canvas| {
         panel.grid_upright(canvas);
         for (k, line) in lines.iter().enumerate() {
             let y = frame.top + row_px * (k as f64 + 0.5);
-            bar(canvas, &panel, (line, &names[k]), y);
+            bar(canvas, &panel, (line, &names[k], y), words);
         }
         canvas.outline(&frame, Pen::full(INK, 0.8));
         panel.x_axis(canvas);
     });
-    let caption = "Reach probability at each line, conditional on release, with Wilson's 95 % interval, from the highest line down. \
-                   Light: without barriers; green, where rocks meet a barrier before: what is left by it. What is missing between \
-                   two lines one behind the other has stayed there.";
-    Drawing { svg, caption: caption.to_owned() }
+    Drawing { svg, caption: words.retention_caption.to_owned() }
 }
 
-fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name): (&Line, &str), y: f64) {
+fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name, y): (&Line, &str, f64), words: &Words) {
     let frame = panel.frame;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let behind = line.behind.as_ref().map(|behind| behind.reach);
@@ -298,8 +310,9 @@ fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name): (&Line, &str), y: f64) 
         canvas.line(&[(at(reach.low), middle), (at(reach.high), middle)], Pen::full(INK, 1.2));
     }
     canvas.text(&Label::new(name, (frame.left - 6.0, y)).right());
-    let words = format::percent(line.reach.value, 1);
-    let left =
-        behind.map_or(String::new(), |reach| format!("left: {}", format::percent(reach.value, 1)));
-    canvas.text(&Label::new(words, (frame.right + 6.0, y)).followed_by(left));
+    let reach = format::percent(line.reach.value, 1);
+    let left = behind.map_or(String::new(), |reach| {
+        fill(words.left, &[("share", &format::percent(reach.value, 1))])
+    });
+    canvas.text(&Label::new(reach, (frame.right + 6.0, y)).followed_by(left));
 }

@@ -10,6 +10,7 @@ use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
 use super::site;
 use super::svg::path::{Frame, Spot};
+use super::words::fill;
 use crate::math;
 use plotters::style::RGBColor;
 
@@ -35,21 +36,20 @@ impl Layer {
     /// Shares of the releases in fixed classes.
     fn of_shares(title: &str, values: &[(u32, f64)]) -> Self {
         let class = |value: f64| SHARES.iter().position(|limit| value <= *limit);
-        let name =
-            |limit: f64| format!("≤\u{2009}{}", format::percent(limit, usize::from(limit < 0.01)));
+        let name = |limit: f64| format!("≤\u{2009}{}", format::plain(100.0 * limit));
         let classes = SHARES.iter().enumerate();
         Self {
-            title: title.to_owned(),
+            title: format!("{title} (%)"),
             cells: values.iter().map(|&(cell, v)| (cell, class(v).unwrap_or(4))).collect(),
             classes: classes.map(|(k, limit)| (name(*limit), shade(k))).collect(),
         }
     }
 
     /// Swiss classes.
-    fn of_intensity(values: &[(u32, f64)]) -> Self {
+    fn of_intensity(title: &str, values: &[(u32, f64)]) -> Self {
         let names = ["< 30\u{2009}kJ", "30–300\u{2009}kJ", "> 300\u{2009}kJ"];
         Self {
-            title: "Intensity: energy P95".to_owned(),
+            title: title.to_owned(),
             cells: values.iter().map(|&(cell, class)| (cell, class as usize - 1)).collect(),
             classes: names.iter().zip(INTENSITY).map(|(n, c)| ((*n).to_owned(), c)).collect(),
         }
@@ -108,39 +108,41 @@ fn shade(class: usize) -> RGBColor {
 
 /// Draws reach probability and intensity beside each other.
 pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
-    let layers =
-        [Layer::of_shares("Reach probability", &maps.reach), Layer::of_intensity(&maps.intensity)];
-    let svg =
-        draw_layers("maps", "Maps of reach probability and intensity", (report, maps), &layers);
+    let words = report.words();
+    let layers = [
+        Layer::of_shares(words.map_reach, &maps.reach),
+        Layer::of_intensity(words.map_intensity, &maps.intensity),
+    ];
+    let svg = draw_layers("maps", words.maps_alt, (report, maps), &layers);
     let share = |count: usize| {
         let all: usize = maps.intensity_cells.iter().sum();
         format::percent(count as f64 / all.max(1) as f64, 0)
     };
     let [weak, medium, strong] = maps.intensity_cells.map(share);
-    let caption = format!(
-        "Maps of {} m cells. Left: share of the releases that pass each cell (conditional on release). Right: Swiss \
-         classes of intensity by the 95th percentile of total energy of the rocks that pass: weak below 30 kJ ({weak} of the \
-         cells reached), medium 30 to 300 kJ ({medium}), strong above ({strong}). All layers lie in maps/ as ASCII grid and GeoTIFF.",
-        format::plain(maps.cell_m)
+    let caption = fill(
+        words.maps_caption,
+        &[
+            ("cell", &format::plain(maps.cell_m)),
+            ("weak", &weak),
+            ("medium", &medium),
+            ("strong", &strong),
+        ],
     );
     Drawing { svg, caption }
 }
 
 /// Draws energy, height, deposits and the probability of more than a weak intensity.
 pub(super) fn draw_values(report: &Report, maps: &CellMap) -> Drawing {
+    let words = report.words();
     let most_j = maps.energy_j.iter().map(|(_, v)| *v).fold(0.0, f64::max);
     let layers = [
-        Layer::of_values("Total energy P95", &maps.energy_j, energy_unit(most_j), &[1.0, 3.0]),
-        Layer::of_values("Bounce height P95", &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
-        Layer::of_counts("Rocks at rest in a cell", &maps.deposits),
-        Layer::of_shares("Probability of 30\u{2009}kJ or more", &maps.exceeds),
+        Layer::of_values(words.map_energy, &maps.energy_j, energy_unit(most_j), &[1.0, 3.0]),
+        Layer::of_values(words.map_height, &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
+        Layer::of_counts(words.map_deposits, &maps.deposits),
+        Layer::of_shares(words.map_exceeds, &maps.exceeds),
     ];
-    let svg =
-        draw_layers("maps-values", "Maps of energy, height and deposits", (report, maps), &layers);
-    let caption = "Above: 95th percentiles over the rocks that pass each cell, of each one's largest total energy and largest \
-                   height in it. Below left: where rocks came to rest. Below right: share of the releases that pass with a total \
-                   energy of 30 kJ or more, a medium or strong intensity (conditional on release).";
-    Drawing { svg, caption: caption.to_owned() }
+    let svg = draw_layers("maps-values", words.map_values_alt, (report, maps), &layers);
+    Drawing { svg, caption: words.map_values_caption.to_owned() }
 }
 
 fn draw_layers(
@@ -149,7 +151,7 @@ fn draw_layers(
     (report, maps): (&Report, &CellMap),
     layers: &[Layer],
 ) -> String {
-    let (panels, bottom) = panels(maps, layers);
+    let (panels, bottom) = panels(report, maps, layers);
     paint(name, (WIDTH_PX, bottom), title, |canvas| {
         for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
             let at = (panel.frame.left, panel.frame.top - 9.0);
@@ -171,17 +173,20 @@ fn draw_layers(
 }
 
 /// Equal frames over all cells reached, two beside each other, at equal scale; and the height of the sheet.
-fn panels(maps: &CellMap, layers: &[Layer]) -> (Vec<Panel>, f64) {
+fn panels(report: &Report, maps: &CellMap, layers: &[Layer]) -> (Vec<Panel>, f64) {
+    let words = report.words();
     let (mut x, mut y) = maps.extent();
     let half = 0.5 * WIDTH_PX;
     let square = Frame { left: 0.0, top: 0.0, right: 240.0, bottom: 240.0 };
     let axes = |x: (f64, f64), y: (f64, f64)| {
-        (Axis::linear(x.0, x.1, "Easting (m)"), Axis::linear(y.0, y.1, "Northing (m)"))
+        (Axis::linear(x.0, x.1, words.easting), Axis::linear(y.0, y.1, words.northing))
     };
     // seven digits of a northing need their room
     let (across, up) = axes(x, y);
     let room = Panel::new(square, across, up).room_left();
-    let widest = half - room - 8.0;
+    // half of the last label of an axis stands beside its frame
+    let beside = 0.5 * text_width(&format::decimal(x.1, 0), SMALL);
+    let widest = half - room - beside.max(8.0);
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     // a slender map is given some ground beside it
     let more = 0.5 * (widest / scale - (x.1 - x.0)).max(0.0);

@@ -9,6 +9,7 @@ use super::model::{Observed, Report};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
 use super::svg::path::{Frame, Spot};
+use super::words::{Words, fill};
 use crate::hazard::{Sample, Way};
 
 const TOP_PX: f64 = 26.0;
@@ -16,20 +17,24 @@ const CURVE_PX: f64 = 210.0;
 const GAP_PX: f64 = 34.0;
 const TALLEST_PX: f64 = 420.0;
 const LEFT_PX: f64 = 66.0;
+/// Pens of both distributions: told apart without colour.
+const COMPUTED: Pen = Pen::full(BLUE, 1.6);
+const MEASURED: Pen = Pen::full(VERMILLION, 1.8).dashed();
 
 /// Draws the two distributions above the map of ends.
 pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
-    let curves = curve_panel(observed);
-    let map = map_panel(observed, curves.frame.bottom + FOOT_PX + GAP_PX);
+    let words = report.words();
+    let curves = curve_panel(observed, words);
+    let map = map_panel(observed, words, curves.frame.bottom + FOOT_PX + GAP_PX);
     let size = (WIDTH_PX, map.frame.bottom + FOOT_PX);
-    let svg = paint("measured", size, "Measured and computed", |canvas| {
-        head(canvas, &curves, "Share that stops within a runout");
+    let svg = paint("measured", size, words.measured_title, |canvas| {
+        head(canvas, &curves, words.measured_curves);
         curves.grid(canvas);
-        steps(canvas, &curves, &observed.computed, Pen::full(BLUE, 1.6));
-        steps(canvas, &curves, &observed.measured, Pen::full(VERMILLION, 1.6));
+        steps(canvas, &curves, (&observed.computed, COMPUTED), words);
+        steps(canvas, &curves, (&observed.measured, MEASURED), words);
         curves.axes(canvas);
-        key(canvas, &curves);
-        head(canvas, &map, "Where the rocks lie");
+        key(canvas, &curves, words);
+        head(canvas, &map, words.measured_map);
         canvas.clip("map", &map.frame, || {
             if let Some(raster) = &report.ground {
                 let _ = ground::draw(canvas, &map, raster);
@@ -45,18 +50,18 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
     });
     let at = observed.agreement;
     let number = |value: f64| format::significant(value, 3);
-    let caption = format!(
-        "{} measured (vermillion) and {} computed (blue) ends. Mean runout {} m measured, {} m computed; largest difference \
-         of the distributions (KS) {}, limit at 5 % {}; scatter across the mean direction {} m measured, {} m computed. \
-         Black dots: releases.",
-        at.measured,
-        format::decimal(at.computed as f64, 0),
-        number(at.measured_mean_m),
-        number(at.computed_mean_m),
-        number(at.ks),
-        number(at.ks_limit),
-        number(at.measured_side_m),
-        number(at.computed_side_m)
+    let caption = fill(
+        words.measured_caption,
+        &[
+            ("measured", &at.measured),
+            ("computed", &format::decimal(at.computed as f64, 0)),
+            ("mean_measured", &number(at.measured_mean_m)),
+            ("mean_computed", &number(at.computed_mean_m)),
+            ("ks", &number(at.ks)),
+            ("limit", &number(at.ks_limit)),
+            ("side_measured", &number(at.measured_side_m)),
+            ("side_computed", &number(at.computed_side_m)),
+        ],
     );
     Drawing { svg, caption }
 }
@@ -66,38 +71,38 @@ fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
     canvas.text(&Label::new(words, at).bold().sized(NORMAL));
 }
 
-fn key(canvas: &Canvas<'_>, panel: &Panel) {
-    for (k, (words, colour)) in
-        [("measured", VERMILLION), ("computed", BLUE)].into_iter().enumerate()
+fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
+    for (k, (name, pen)) in
+        [(words.measured, MEASURED), (words.computed, COMPUTED)].into_iter().enumerate()
     {
         let y = panel.frame.top + 16.0 + 16.0 * k as f64;
         let x = panel.frame.left + 14.0;
-        canvas.line(&[(x, y), (x + 22.0, y)], Pen::full(colour, 2.0));
-        canvas.text(&Label::new(words, (x + 28.0, y)).coloured(GREY));
+        canvas.line(&[(x, y), (x + 22.0, y)], pen);
+        canvas.text(&Label::new(name, (x + 28.0, y)).coloured(GREY));
     }
 }
 
-fn curve_panel(observed: &Observed) -> Panel {
+fn curve_panel(observed: &Observed, words: &Words) -> Panel {
     let runouts = observed.measured.iter().chain(&observed.computed).map(Way::runout_m);
     let frame =
         Frame { left: LEFT_PX, top: TOP_PX, right: WIDTH_PX - 14.0, bottom: TOP_PX + CURVE_PX };
-    let x = Axis::from_zero(runouts, "Runout (m)");
-    Panel::new(frame, x, Axis::linear(0.0, 1.0, "Share of rocks"))
+    let x = Axis::from_zero(runouts, words.runout_axis);
+    Panel::new(frame, x, Axis::linear(0.0, 1.0, words.share_of_rocks))
 }
 
 /// The empirical distribution as the steps it consists of.
-fn steps(canvas: &Canvas<'_>, panel: &Panel, ways: &[Way], pen: Pen) {
+fn steps(canvas: &Canvas<'_>, panel: &Panel, (ways, pen): (&[Way], Pen), words: &Words) {
     let sample = Sample::of(ways.iter().map(Way::runout_m));
     let n = sample.values().len() as f64;
     let corners = |(k, x): (usize, &f64)| [(*x, k as f64 / n), (*x, (k + 1) as f64 / n)];
     let line: Vec<(f64, f64)> = sample.values().iter().enumerate().flat_map(corners).collect();
     panel.line(canvas, &line, pen);
     if line.is_empty() {
-        panel.nothing(canvas, "no rock");
+        panel.nothing(canvas, words.no_rock);
     }
 }
 
-fn map_panel(observed: &Observed, top: f64) -> Panel {
+fn map_panel(observed: &Observed, words: &Words, top: f64) -> Panel {
     let places = || {
         let all = observed.measured.iter().chain(&observed.computed);
         all.flat_map(|way| [way.start_m, way.end_m])
@@ -116,7 +121,7 @@ fn map_panel(observed: &Observed, top: f64) -> Panel {
     x = (x.0 - more, x.1 + more);
     let bottom = top + scale * (y.1 - y.0);
     let frame = Frame { left: LEFT_PX, top, right: LEFT_PX + widest, bottom };
-    Panel::new(frame, Axis::linear(x.0, x.1, "Easting (m)"), Axis::linear(y.0, y.1, "Northing (m)"))
+    Panel::new(frame, Axis::linear(x.0, x.1, words.easting), Axis::linear(y.0, y.1, words.northing))
 }
 
 fn ends(panel: &Panel, ways: &[Way]) -> Vec<Spot> {

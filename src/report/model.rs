@@ -4,17 +4,21 @@ mod places;
 
 pub use places::{
     AnnualView, BarrierView, Behind, CellMap, DesignView, Line, LinePoint, MapMark, Observed,
-    PlaceView,
+    PlaceView, RockView,
 };
 
 use super::raster::GroundRaster;
+use super::words::Words;
 use crate::output::Zone;
+use crate::scene::Language;
 use crate::simulation::{PathState, Stop};
 use std::collections::BTreeMap;
 
 /// Everything a report shows.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
+    /// In which language page and figures speak.
+    pub language: Language,
     /// Words and provenance.
     pub text: Text,
     /// One entry a release, in order; none is left out.
@@ -53,8 +57,15 @@ pub struct Report {
     pub observed: Option<Observed>,
     /// Maps, where the scene asks for them.
     pub maps: Option<CellMap>,
-    /// Whether `view.html` and `view.glb` stand beside the page.
+    /// Whether `view.html` stands beside the page.
     pub has_view: bool,
+}
+
+impl Report {
+    /// The words of its language.
+    pub(super) fn words(&self) -> &'static Words {
+        Words::of(self.language)
+    }
 }
 
 /// Words and provenance.
@@ -190,6 +201,14 @@ impl Estimate {
         Self { is: Is::Lacking(rocks), ..Self::plain(f64::NAN) }
     }
 
+    /// With what is smaller than a millimetre taken for 0 (m): how far a rolling rock is off the ground is rounding.
+    #[must_use]
+    pub(super) fn above_a_mm(self) -> Self {
+        let mm = |v: f64| if v.abs() < 1e-3 { 0.0 } else { v };
+        let Self { value, low, high, is } = self;
+        Self { value: mm(value), low: mm(low), high: mm(high), is }
+    }
+
     /// In a unit so many times as large.
     #[must_use]
     pub fn over(self, size: f64) -> Self {
@@ -317,16 +336,16 @@ impl Quantity {
     }
 
     /// Name as it stands on an axis.
-    pub fn name(self) -> &'static str {
+    pub(super) fn name(self, words: &Words) -> &'static str {
         match self {
-            Self::Runout => "Runout",
-            Self::ReachAngle => "Reach angle",
-            Self::Speed => "Maximum speed",
-            Self::Translational => "Maximum translational energy",
-            Self::Rotational => "Maximum rotational energy",
-            Self::Total => "Maximum total energy",
-            Self::Height => "Maximum bounce height",
-            Self::Impacts => "Impacts per rock",
+            Self::Runout => words.runout,
+            Self::ReachAngle => words.reach_angle,
+            Self::Speed => words.max_speed,
+            Self::Translational => words.max_translational,
+            Self::Rotational => words.max_rotational,
+            Self::Total => words.max_total,
+            Self::Height => words.max_height,
+            Self::Impacts => words.impacts,
         }
     }
 

@@ -118,6 +118,9 @@ impl Panel {
             let x = self.at(tick.value, self.y.low).0;
             let length = if tick.label.is_empty() { 0.6 * TICK_PX } else { TICK_PX };
             canvas.line(&[(x, bottom), (x, bottom + length)], FRAME_PEN);
+            // seven digits at the end of an axis stay on the paper
+            let half = 0.5 * text_width(&tick.label, SMALL) + 1.0;
+            let x = x.min(canvas.size_px().0 - half).max(half);
             let at = (x, bottom + TICK_PX + GAP_PX);
             write_if_any(canvas, &Label::new(tick.label, at).below().centred());
         }
@@ -166,7 +169,8 @@ impl Panel {
     ) {
         let edge = |x: f64, y: f64, else_y: f64| {
             let (x, y) = self.at(x, y);
-            let y = if y.is_finite() { y } else { else_y };
+            // 0 on a logarithmic axis lies infinitely far below: the edge of the frame, not a missing bound
+            let y = if y.is_nan() { else_y } else { y };
             let Frame { left, top, right, bottom } = self.frame;
             (x.clamp(left, right), y.clamp(top, bottom))
         };

@@ -12,6 +12,7 @@ use super::model::Report;
 use super::panel::{FOOT_PX, Panel};
 use super::site;
 use super::svg::path::{Frame, Spot, clipped, thinned};
+use super::words::fill;
 use crate::math;
 use crate::simulation::Stop;
 use std::collections::{BTreeMap, BTreeSet};
@@ -38,13 +39,14 @@ const MANY: usize = 400;
 
 /// Draws the map.
 pub(super) fn draw(report: &Report) -> Drawing {
+    let words = report.words();
     let panel = layout(report);
     let key = furniture::Key::of(report);
     let key_left = panel.frame.left.min(0.3 * WIDTH_PX);
     let height = panel.frame.bottom + FOOT_PX + key.height_px(WIDTH_PX - key_left) + 8.0;
     let fastest = fastest_m_s(report);
     let mut contours = None;
-    let svg = paint("plan", (WIDTH_PX, height), "Plan view", |canvas| {
+    let svg = paint("plan", (WIDTH_PX, height), words.plan_title, |canvas| {
         let names = site::places(canvas, &panel, report);
         canvas.clip("map", &panel.frame, || {
             if let Some(ground) = &report.ground {
@@ -60,32 +62,26 @@ pub(super) fn draw(report: &Report) -> Drawing {
             site::names(canvas, &names);
         });
         if report.releases.is_empty() && report.ground.is_none() {
-            panel.nothing(canvas, "no release, no ground");
+            panel.nothing(canvas, words.no_release_no_ground);
         }
         panel.axes(canvas);
-        furniture::draw(canvas, &panel, (fastest, !report.paths.is_empty()));
+        furniture::draw(canvas, &panel, (fastest, !report.paths.is_empty()), words);
         key.draw(canvas, (key_left, panel.frame.bottom + FOOT_PX + 4.0));
     });
-    let interval = contours
-        .map_or(String::new(), |c| format!(" Contour interval {} m.", format::plain(c.interval_m)));
-    let caption = format!(
-        "Plan view in map coordinates, at equal scale. Drawn are the paths of {} of {} releases; colour gives the speed of the \
-         centre.{}{interval}",
-        format::decimal(report.paths.len() as f64, 0),
-        format::decimal(report.releases.len() as f64, 0),
-        if at_rest(report).count() > MANY {
-            " Where many rocks came to rest, squares are the darker the more of them lie there."
-        } else {
-            ""
-        }
-    );
-    Drawing { svg, caption }
+    let interval = contours.map_or(String::new(), |c| {
+        fill(words.contour_interval, &[("m", &format::plain(c.interval_m))])
+    });
+    let count = |n: usize| format::decimal(n as f64, 0);
+    let found = [count(report.paths.len()), count(report.releases.len())];
+    let caption = fill(words.plan_caption, &[("paths", &found[0]), ("releases", &found[1])]);
+    let density = if at_rest(report).count() > MANY { words.plan_density } else { "" };
+    Drawing { svg, caption: caption + density + &interval }
 }
 
 /// The map frame: equal scale, as large as the page allows, showing all releases, ends and paths.
 fn layout(report: &Report) -> Panel {
     let (mut x, mut y) = extent(report);
-    let names = ("Easting (m)", "Northing (m)");
+    let names = (report.words().easting, report.words().northing);
     // the labels' width needs the ticks, the ticks need a frame: a square one is near enough
     let square = Frame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
     let panel = |frame: Frame, x: Range, y: Range| {

@@ -4,6 +4,7 @@ use super::format;
 use super::model::{Check, Is, Report};
 use super::raster::GroundRaster;
 use super::reach_angle;
+use super::words::fill;
 use crate::output::Results;
 use crate::simulation::Stop;
 use std::cmp::Reverse;
@@ -34,7 +35,7 @@ pub(super) fn checks(report: &Report, results: &Results) -> Vec<Check> {
         checks.extend(speed(report));
         checks.extend(report.ground.as_ref().and_then(|ground| hollows(report, ground)));
     }
-    checks.extend(mesh(results));
+    checks.extend(mesh(report, results));
     checks
 }
 
@@ -46,12 +47,10 @@ fn reach(report: &Report) -> Option<Check> {
     let (median, is) = reach_angle::median(report)?;
     // an upper bound above the bands proves nothing wrong
     let passes = reach_angle::is_observed(median) || (is == Is::AtMost && median > 40.0);
-    let found = format!(
-        "median {}{}°; medians of observed events lie at 32 to 35° on high talus slopes and at 20 to 40° where a low slope meets a meadow",
-        format::sign(is),
-        format::significant(median, 3)
-    );
-    Some(check("Reach angle", found, passes))
+    let words = report.words();
+    let median = format!("{}{}", format::sign(is), format::significant(median, 3));
+    let found = fill(words.check_reach_found, &[("median", &median)]);
+    Some(check(words.check_reach, found, passes))
 }
 
 fn speed(report: &Report) -> Option<Check> {
@@ -59,18 +58,19 @@ fn speed(report: &Report) -> Option<Check> {
     let fast = speeds.clone().filter(|speed| *speed > FAST_M_S).count();
     let fastest = speeds.reduce(f64::max)?;
     let all = report.releases.len();
-    let found = if fast == 0 {
-        format!("fastest {} m/s", format::significant(fastest, 3))
-    } else {
-        format!(
-            "fastest {} m/s; {} of {} {} above {FAST_M_S} m/s, which single blocks seldom pass",
-            format::significant(fastest, 3),
-            format::decimal(fast as f64, 0),
-            format::decimal(all as f64, 0),
-            format::counted(fast, "rock comes", "rocks come")
-        )
-    };
-    Some(check("Speed", found, fast as f64 <= FEW * all as f64))
+    let words = report.words();
+    let count = |n: usize| format::decimal(n as f64, 0);
+    let text = if fast == 0 { words.check_speed_found } else { words.check_fast_found };
+    let found = fill(
+        text,
+        &[
+            ("v", &format::significant(fastest, 3)),
+            ("n", &count(fast)),
+            ("of", &count(all)),
+            ("limit", &FAST_M_S),
+        ],
+    );
+    Some(check(words.check_speed, found, fast as f64 <= FEW * all as f64))
 }
 
 fn hollows(report: &Report, ground: &GroundRaster) -> Option<Check> {
@@ -88,20 +88,24 @@ fn hollows(report: &Report, ground: &GroundRaster) -> Option<Check> {
     let share = held as f64 / at_rest.len() as f64;
     let (half_m2, all_m2) = areas_m2(ground, &at_rest);
     let number = |value: f64| format::significant(value, 2);
-    let mut found = format!(
-        "{} of {} rocks at rest ({}) lie in hollows of the mesh without an outlet, deeper than {HOLLOW_M} m; half of all lie on {} of the {} m² that hold them all",
-        format::decimal(held as f64, 0),
-        format::decimal(at_rest.len() as f64, 0),
-        format::percent(share, 0),
-        number(half_m2),
-        number(all_m2)
+    let words = report.words();
+    let mut found = fill(
+        words.check_deposits_found,
+        &[
+            ("n", &format::decimal(held as f64, 0)),
+            ("of", &format::decimal(at_rest.len() as f64, 0)),
+            ("share", &format::percent(share, 0)),
+            ("depth", &HOLLOW_M),
+            ("half", &number(half_m2)),
+            ("all", &number(all_m2)),
+        ],
     );
     let is_crowded = at_rest.len() >= MANY && half_m2 < CROWDED * all_m2;
     let passes = share <= IN_HOLLOWS && !is_crowded;
     if !passes {
-        found += ": pits and creases of the terrain model, unless they are there on the slope; they shorten the runout";
+        found += words.check_pits;
     }
-    Some(check("Deposits", found, passes))
+    Some(check(words.check_deposits, found, passes))
 }
 
 /// Area of the fewest cells that hold half of the rocks, and of all cells that hold one (m²).
@@ -175,7 +179,7 @@ fn depths(ground: &GroundRaster) -> Depths {
 }
 
 /// The mesh against the rocks; both as they stand in the summary.
-fn mesh(results: &Results) -> Option<Check> {
+fn mesh(report: &Report, results: &Results) -> Option<Check> {
     let edges = results.summary.mesh_health.get("edge_quantiles_m")?;
     let median_m = edges.get(2)?.as_f64()?;
     let radii = results.rows().ok()?.filter_map(Result::ok).map(|row| row.radius_m);
@@ -183,18 +187,20 @@ fn mesh(results: &Results) -> Option<Check> {
     radii.sort_by(f64::total_cmp);
     let diameter_m = 2.0 * *radii.get(radii.len() / 2)?;
     let times = median_m / diameter_m;
-    let found = format!(
-        "median edge of the triangles {} m, {} times the diameter of the median rock ({} m){}",
-        format::significant(median_m, 2),
-        format::significant(times, 2),
-        format::significant(diameter_m, 2),
-        if times > COARSE {
-            ": steps, boulders and gullies that would stop or throw such rocks are not in it; roughness_deg stands for them, or a finer survey"
-        } else {
-            ""
-        }
+    let words = report.words();
+    let number = |value: f64| format::significant(value, 2);
+    let mut found = fill(
+        words.check_mesh_found,
+        &[
+            ("edge", &number(median_m)),
+            ("times", &number(times)),
+            ("diameter", &number(diameter_m)),
+        ],
     );
-    Some(check("Mesh", found, times <= COARSE))
+    if times > COARSE {
+        found += words.check_coarse;
+    }
+    Some(check(words.check_mesh, found, times <= COARSE))
 }
 
 #[cfg(test)]

@@ -9,10 +9,10 @@ use super::format;
 use super::model::{Is, Quantity, Report};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::Frame;
+use super::words::{Words, fill};
 
-/// Where medians of observed events lie (degrees): lowest, highest, kind of slope.
-pub(super) const OBSERVED: [(f64, f64, &str); 2] =
-    [(20.0, 40.0, "low slope above a meadow"), (32.0, 35.0, "high talus slope")];
+/// Where medians of observed events lie (degrees), lowest and highest: low slopes above a meadow, high talus slopes.
+const OBSERVED: [(f64, f64); 2] = [(20.0, 40.0), (32.0, 35.0)];
 const PLOT_PX: f64 = 150.0;
 const TOP_PX: f64 = 48.0;
 /// Opacity of each band.
@@ -27,44 +27,34 @@ pub(super) fn median(report: &Report) -> Option<(f64, Is)> {
 
 /// Whether a median lies where those of some observed events lie.
 pub(super) fn is_observed(degrees: f64) -> bool {
-    OBSERVED.iter().any(|(low, high, _)| (*low..=*high).contains(&degrees))
+    OBSERVED.iter().any(|(low, high)| (*low..=*high).contains(&degrees))
 }
 
 /// Draws the histogram over the bands.
 pub(super) fn draw(report: &Report) -> Drawing {
+    let words = report.words();
     let frame = Frame { left: 56.0, right: WIDTH_PX - 16.0, top: TOP_PX, bottom: TOP_PX + PLOT_PX };
     let mut angles = Distribution::of(report, Quantity::ReachAngle, frame);
     let x = &angles.panel.x;
     // both bands stay in sight
     angles.panel.x = Axis::linear(x.low.min(10.0), x.high.max(50.0), x.title.clone());
-    let svg = paint("reach", (WIDTH_PX, frame.bottom + FOOT_PX), "Reach angle", |canvas| {
+    let svg = paint("reach", (WIDTH_PX, frame.bottom + FOOT_PX), words.reach_angle, |canvas| {
         for (band, shade) in OBSERVED.iter().zip(SHADES) {
             shaded(canvas, &angles.panel, band, shade);
         }
         angles.draw(canvas, 36.0);
-        key(canvas, &angles.panel);
+        key(canvas, &angles.panel, words);
     });
-    let verdict = match median(report) {
-        Some((at, is)) if is_observed(at) => format!(
-            "The median of {}{}° lies where such medians are observed.",
-            format::sign(is),
-            format::significant(at, 3)
-        ),
-        Some((at, is)) => format!(
-            "The median of {}{}° lies outside both: look at friction, rolling friction, the stop rule and the terrain.",
-            format::sign(is),
-            format::significant(at, 3)
-        ),
-        None => String::new(),
-    };
-    let caption = format!(
-        "Reach angle (Fahrböschung), atan(drop / runout), from release to end. Shaded: where the medians of observed events \
-         lie. Rocks that left the terrain would have gone on: theirs is an upper bound. {verdict}"
-    );
-    Drawing { svg, caption }
+    let verdict = median(report).map_or(String::new(), |(at, is)| {
+        let text = if is_observed(at) { words.median_inside } else { words.median_outside };
+        let at = format!("{}{}", format::sign(is), format::significant(at, 3));
+        fill(text, &[("median", &at)])
+    });
+    let caption = fill(words.reach_caption, &[("verdict", &verdict)]);
+    Drawing { svg, caption: caption.trim_end().to_owned() }
 }
 
-fn shaded(canvas: &Canvas<'_>, panel: &Panel, &(low, high, _): &(f64, f64, &str), shade: f64) {
+fn shaded(canvas: &Canvas<'_>, panel: &Panel, &(low, high): &(f64, f64), shade: f64) {
     let (left, right) = (panel.at(low, 0.0).0, panel.at(high, 0.0).0);
     canvas.fill(&Frame { left, right, ..panel.frame }, ORANGE, shade);
     for x in [left, right] {
@@ -74,15 +64,16 @@ fn shaded(canvas: &Canvas<'_>, panel: &Panel, &(low, high, _): &(f64, f64, &str)
 }
 
 /// The bands by name, in a line of their own above the frame.
-fn key(canvas: &Canvas<'_>, panel: &Panel) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
     let y = panel.frame.top - 12.0;
     let mut x = panel.frame.left;
-    for ((low, high, name), shade) in OBSERVED.iter().zip(SHADES) {
+    let names = [words.low_slope, words.high_talus];
+    for (((low, high), name), shade) in OBSERVED.iter().zip(names).zip(SHADES) {
         let patch = Frame { left: x, right: x + 16.0, top: y - 5.0, bottom: y + 5.0 };
         canvas.fill(&patch, ORANGE, shade);
         canvas.outline(&patch, Pen::full(INK, 0.4));
-        let words = format!("{name}: {low} to {high}°");
-        x += 22.0 + text_width(&words, SMALL) + 22.0;
-        canvas.text(&Label::new(words, (patch.right + 5.0, y)));
+        let band = fill(words.band, &[("name", &name), ("low", low), ("high", high)]);
+        x += 22.0 + text_width(&band, SMALL) + 22.0;
+        canvas.text(&Label::new(band, (patch.right + 5.0, y)));
     }
 }

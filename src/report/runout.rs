@@ -9,6 +9,7 @@ use super::histogram::{Histogram, percent_of};
 use super::model::{Fall, Is, Quantile, Quantity, Report};
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::Frame;
+use super::words::{Words, fill};
 use crate::simulation::Stop;
 
 const TOP_PX: f64 = 12.0;
@@ -20,12 +21,13 @@ const MANY: usize = 100;
 
 /// Draws both panels over one x axis.
 pub(super) fn draw(report: &Report) -> Drawing {
+    let words = report.words();
     let runouts: Vec<f64> = report.releases.iter().map(|fall| fall.runout_m).collect();
     let bins = Histogram::of(&runouts);
     let (upper, lower) = panels(report, &bins, runouts.len());
     let quantiles = report.quantiles.get(&Quantity::Runout).map_or(&[][..], Vec::as_slice);
     let height = lower.frame.bottom + FOOT_PX;
-    let svg = paint("runout", (WIDTH_PX, height), "Runout", |canvas| {
+    let svg = paint("runout", (WIDTH_PX, height), words.runout, |canvas| {
         upper.grid(canvas);
         lower.grid(canvas);
         exceedance(canvas, &upper, report);
@@ -41,7 +43,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
         upper.axes_above_another(canvas);
         lower.axes(canvas);
         if runouts.is_empty() {
-            lower.nothing(canvas, "no release");
+            lower.nothing(canvas, words.no_release);
         }
     });
     Drawing { svg, caption: caption(report, &bins) }
@@ -69,7 +71,8 @@ fn open_end(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     }
     canvas.line(&[(x, y - 7.0), (x, y + 7.0)], Pen::full(BLUE, 1.6));
     canvas.line(&[(x, y), (x + 14.0, y)], Pen::full(BLUE, 1.2).dotted());
-    let words = format!("{} left or still moving: beyond, only ≥", format::decimal(open as f64, 0));
+    let n = format::decimal(open as f64, 0);
+    let words = fill(report.words().open_end, &[("n", &n)]);
     let candidates = [14.0, -14.0, 28.0, -28.0, 42.0, 56.0].into_iter().flat_map(|dy| {
         let at = |dx: f64| Label::new(words.clone(), (x + dx, y + dy)).coloured(BLUE);
         [at(6.0), at(-6.0).right(), at(0.0).centred()]
@@ -88,29 +91,23 @@ fn open_end(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
 }
 
 fn caption(report: &Report, bins: &Histogram) -> String {
-    let count = report.releases.len();
-    let open = match open_rocks(report) {
-        0 => String::new(),
-        n => format!(
-            " {} of them left the terrain or were still moving: their runout is at least what is counted here, percentiles that \
-             they decide are lower bounds (≥), and the curve ends where they do.",
-            format::decimal(n as f64, 0)
-        ),
+    let words = report.words();
+    let count = |n: usize| format::decimal(n as f64, 0);
+    let said = |n: usize, text: &str| {
+        if n == 0 { String::new() } else { fill(text, &[("n", &count(n))]) }
     };
-    let left_out = match bins.left_out {
-        0 => String::new(),
-        n => format!(" {n} runouts are not finite and in no bin."),
-    };
-    format!(
-        "Horizontal distance from release to end. Above: share of the {} releases that run out farther, with its 95 % band; \
-         bars give the 95 % interval of the marked percentiles. Below: share of releases per {} m.{open}{left_out}",
-        format::decimal(count as f64, 0),
-        format::plain(bins.width)
-    )
+    let caption = fill(
+        words.runout_caption,
+        &[("n", &count(report.releases.len())), ("width", &format::plain(bins.width))],
+    );
+    caption
+        + &said(open_rocks(report), words.runout_open)
+        + &said(bins.left_out, words.runout_left_out)
 }
 
 fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
-    let mut x = bins.axis("Runout (m)");
+    let words = report.words();
+    let mut x = bins.axis(words.runout_axis);
     // bins far from 0 still show how far that is
     if x.low > 0.0 && x.low < 0.5 * x.high {
         x.low = 0.0;
@@ -120,12 +117,12 @@ fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
         let marked = report.quantiles.get(&Quantity::Runout).into_iter().flatten();
         let marked = marked.map(|quantile| 0.999 * (1.0 - quantile.probability));
         let least = least.chain(marked).fold(0.1, f64::min).max(1e-4);
-        Axis::log(least, 1.0, "Share running farther")
+        Axis::log(least, 1.0, words.share_farther)
     } else {
-        Axis::linear(0.0, 1.0, "Share running farther")
+        Axis::linear(0.0, 1.0, words.share_farther)
     };
     let tallest = percent_of(bins.largest(), count);
-    let shares = Axis::from_zero([1.05 * tallest], "Releases (%)");
+    let shares = Axis::from_zero([1.05 * tallest], words.releases_percent);
     let (top, bottom) = (TOP_PX, TOP_PX + UPPER_PX);
     let right = WIDTH_PX - 16.0;
     let mut upper = Panel::new(Frame { left: 0.0, top, right, bottom }, x.clone(), y);
@@ -148,7 +145,7 @@ fn exceedance(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
         .collect();
     panel.line(canvas, &shown, Pen::full(BLUE, 1.6));
     if curve.is_empty() {
-        panel.nothing(canvas, "no curve");
+        panel.nothing(canvas, report.words().no_curve);
     }
 }
 
@@ -199,7 +196,7 @@ fn values(canvas: &Canvas<'_>, panel: &Panel, report: &Report, quantiles: &[Quan
     let line_px = SMALL + 5.0;
     let lines = |left: f64, top: f64| -> Vec<Label> {
         let line = |(i, quantile): (usize, &Quantile)| {
-            let (head, tail) = in_words(quantile);
+            let (head, tail) = in_words(quantile, report.words());
             Label::new(head, (left, top + line_px * i as f64)).bold().followed_by(tail)
         };
         quantiles.iter().enumerate().map(line).collect()
@@ -227,10 +224,10 @@ fn values(canvas: &Canvas<'_>, panel: &Panel, report: &Report, quantiles: &[Quan
 }
 
 /// Name and value, and the interval.
-fn in_words(quantile: &Quantile) -> (String, String) {
+fn in_words(quantile: &Quantile, words: &Words) -> (String, String) {
     let at = quantile.at;
     let number = |value: f64| format::significant(value, 4);
-    let tail = match format::interval(&number(at.low), &number(at.high)) {
+    let tail = match words.interval(&number(at.low), &number(at.high)) {
         none if none == format::NO_NUMBER => String::new(),
         interval => interval,
     };

@@ -10,6 +10,7 @@ use super::format;
 use super::model::{Fall, MapMark, Path, Report};
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::{Frame, Spot};
+use super::words::{Words, fill};
 use crate::math;
 use along::{Envelope, FallLine};
 use plotters::style::RGBColor;
@@ -32,14 +33,14 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let line = FallLine::of(report);
     let view = View::of(report, &line);
     let height = view.speed.frame.bottom + FOOT_PX;
-    let svg = paint("side", (WIDTH_PX, height), "Side view", |canvas| {
+    let svg = paint("side", (WIDTH_PX, height), report.words().side_title, |canvas| {
         view.profile(canvas, report, &line);
         let shown = [
             (&view.height, &view.heights, largest(report, |fall| fall.max_height_m)),
             (&view.speed, &view.speeds, largest(report, |fall| fall.max_speed_m_s)),
         ];
         for (panel, envelope, largest) in shown {
-            draw_envelope(canvas, panel, envelope, largest);
+            draw_envelope(canvas, panel, (envelope, largest), report.words());
         }
         view.height.axes_above_another(canvas);
         view.speed.axes(canvas);
@@ -54,17 +55,17 @@ fn largest(report: &Report, of: fn(&Fall) -> f64) -> Option<f64> {
 }
 
 fn caption(report: &Report, line: &FallLine, view: &View) -> String {
+    let words = report.words();
     let count = |n: usize| format::decimal(n as f64, 0);
-    format!(
-        "Side view of the stored paths of {} of {} releases, projected on the mean fall line, which runs {} from the mean release \
-         ({}); heights and distances at the same scale. Brown: median of the ground under the paths themselves; shaded: its \
-         lowest to highest. Lower panels: each stored path's largest value within steps of {} m, P95 and maximum over the paths; \
-         bounce height is measured from the ground right below each rock. Dashed: the largest of all releases.",
-        count(report.paths.len()),
-        count(report.releases.len()),
-        line.compass(),
-        line.bearing_words(),
-        format::plain(view.heights.step_m),
+    fill(
+        words.side_caption,
+        &[
+            ("paths", &count(report.paths.len())),
+            ("releases", &count(report.releases.len())),
+            ("compass", &line.compass(words)),
+            ("bearing", &line.bearing_words(words)),
+            ("step", &format::plain(view.heights.step_m)),
+        ],
     )
 }
 
@@ -79,15 +80,16 @@ struct View {
 
 impl View {
     fn of(report: &Report, line: &FallLine) -> Self {
+        let words = report.words();
         let (along, z) = line.extent(report);
         let heights = Envelope::of(report, line, along, |p| {
             if p.clearance_m < 0.0 { 0.0 } else { p.clearance_m }
         });
         let speeds = Envelope::of(report, line, along, |p| p.speed_m_s);
-        let title = "Distance along the mean fall line (m)";
-        let x = Axis::linear(along.0, along.1, title);
-        let mut ground = stacked(TOP_PX, PROFILE_PX.0, &x, Axis::linear(z.0, z.1, "Height (m)"));
-        let titles = ["Bounce height (m)", "Speed (m/s)"];
+        let x = Axis::linear(along.0, along.1, words.along_fall_line);
+        let mut ground =
+            stacked(TOP_PX, PROFILE_PX.0, &x, Axis::linear(z.0, z.1, words.elevation_axis));
+        let titles = [words.bounce_axis, words.speed_axis];
         let most =
             [largest(report, |fall| fall.max_height_m), largest(report, |fall| fall.max_speed_m_s)];
         let axis = |i: usize, envelope: &Envelope| {
@@ -129,7 +131,7 @@ impl View {
         let median: Vec<(f64, f64)> = below.iter().map(|&[s, _, z, _]| (s, z)).collect();
         panel.line(canvas, &median, Pen::full(GROUND_LINE, 1.5));
         if report.paths.is_empty() {
-            panel.nothing(canvas, "no path kept");
+            panel.nothing(canvas, report.words().no_path);
         }
         panel.axes_above_another(canvas);
     }
@@ -196,7 +198,12 @@ fn place_below(above: &Panel, panel: &mut Panel) {
 }
 
 /// The maximum as a light area of steps, P95 as a heavy line, named above the frame.
-fn draw_envelope(canvas: &Canvas<'_>, panel: &Panel, envelope: &Envelope, largest: Option<f64>) {
+fn draw_envelope(
+    canvas: &Canvas<'_>,
+    panel: &Panel,
+    (envelope, largest): (&Envelope, Option<f64>),
+    words: &Words,
+) {
     panel.grid(canvas);
     let steps = |values: &[f64]| -> Vec<(f64, f64)> {
         let ends = |i: usize| [i, i + 1].map(|k| envelope.from_m + k as f64 * envelope.step_m);
@@ -213,9 +220,9 @@ fn draw_envelope(canvas: &Canvas<'_>, panel: &Panel, envelope: &Envelope, larges
     if let Some(largest) = largest {
         panel.line(canvas, &[(panel.x.low, largest), (panel.x.high, largest)], ALL);
     }
-    key(canvas, panel);
+    key(canvas, panel, words);
     if envelope.most.iter().all(|v| v.is_nan()) {
-        panel.nothing(canvas, "no path kept");
+        panel.nothing(canvas, words.no_path);
     }
 }
 
@@ -224,12 +231,14 @@ fn runs_of_numbers(line: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
     line.split(|(_, y)| y.is_nan()).filter(|run| !run.is_empty()).map(<[_]>::to_vec).collect()
 }
 
-fn key(canvas: &Canvas<'_>, panel: &Panel) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
     let y = panel.frame.top - 9.0;
     let mut right = panel.frame.right;
-    for (name, pen) in
-        [("largest of all", ALL), ("maximum", Pen::full(SKY, 1.6)), ("P95", Pen::full(BLUE, 1.8))]
-    {
+    for (name, pen) in [
+        (words.largest_of_all, ALL),
+        (words.maximum, Pen::full(SKY, 1.6)),
+        ("P95", Pen::full(BLUE, 1.8)),
+    ] {
         canvas.text(&Label::new(name, (right, y)).right().coloured(GREY));
         let end = right - text_width(name, SMALL) - 5.0;
         canvas.line(&[(end - 16.0, y), (end, y)], pen);

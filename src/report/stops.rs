@@ -1,62 +1,63 @@
 //! Why the rocks ended, as counts and shares.
 
 use super::axis::Axis;
-use super::canvas::{Canvas, Label, Pen, paint};
+use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{INK, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{Report, StopShare};
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::Frame;
+use super::words::Words;
 use crate::math;
 use crate::simulation::Stop;
 
 const LINE_PX: f64 = 30.0;
 const BAR_PX: f64 = 15.0;
-const LEFT_PX: f64 = 110.0;
 /// Room right of the bars for count, share and interval (px).
 const RIGHT_PX: f64 = 250.0;
 const TOP_PX: f64 = 8.0;
 
 /// Draws the bars.
 pub(super) fn draw(report: &Report) -> Drawing {
+    let words = report.words();
     let lines = report.stops.len().max(1) as f64;
     let bottom = TOP_PX + lines * LINE_PX;
-    let frame = Frame { left: LEFT_PX, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom };
+    let names = report.stops.iter().map(|share| text_width(name(&share.stop, words), SMALL));
+    let left = names.fold(94.0, f64::max) + 16.0;
+    let frame = Frame { left, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom };
     let ends = report.stops.iter().flat_map(|share| [share.share.value, share.share.high]);
     // the axis ends where the longest bar and its interval do
     let most = Axis::from_zero(ends.map(|share| 100.0 * share), "").high.min(100.0);
-    let x = Axis::linear(0.0, most, "Share of releases (%)");
+    let x = Axis::linear(0.0, most, words.share_of_releases_percent);
     let panel = Panel::new(frame, x, Axis::linear(0.0, lines, ""));
-    let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), "Stop reasons", |canvas| {
+    let svg = paint("stops", (WIDTH_PX, bottom + FOOT_PX), words.stops_alt, |canvas| {
         panel.grid_upright(canvas);
         for (line, share) in report.stops.iter().enumerate() {
-            bar(canvas, &panel, line, share);
+            bar(canvas, &panel, (line, share), words);
         }
         if report.stops.is_empty() {
-            panel.nothing(canvas, "no release");
+            panel.nothing(canvas, words.no_release);
         }
         panel.x_axis(canvas);
         canvas.outline(&frame, Pen::full(INK, 0.8));
     });
-    let caption = "Stop reasons of all releases: number, share and 95 % interval of the share (Wilson). \
-                   Failed rocks are counted, never restarted and never dropped.";
-    Drawing { svg, caption: caption.to_owned() }
+    Drawing { svg, caption: words.stops_caption.to_owned() }
 }
 
 /// Name of a stop reason in a table or on an axis.
-pub(super) fn name(stop: &Stop) -> &'static str {
+fn name(stop: &Stop, words: &Words) -> &'static str {
     match stop {
-        Stop::AtRest => "at rest",
-        Stop::LeftTerrain => "left the terrain",
-        Stop::TimeUp => "time up",
-        Stop::OverBudget => "over budget",
-        Stop::NotReleased(_) => "not released",
-        Stop::Failed(_) => "failed",
+        Stop::AtRest => words.at_rest,
+        Stop::LeftTerrain => words.left_terrain,
+        Stop::TimeUp => words.time_up,
+        Stop::OverBudget => words.over_budget,
+        Stop::NotReleased(_) => words.not_released,
+        Stop::Failed(_) => words.failed,
     }
 }
 
-fn bar(canvas: &Canvas<'_>, panel: &Panel, line: usize, share: &StopShare) {
+fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, share): (usize, &StopShare), words: &Words) {
     let y = panel.frame.top + (line as f64 + 0.5) * LINE_PX;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let percent = share.share;
@@ -73,14 +74,14 @@ fn bar(canvas: &Canvas<'_>, panel: &Panel, line: usize, share: &StopShare) {
             canvas.line(&[(x, y - 3.5), (x, y + 3.5)], pen);
         }
     }
-    canvas.text(&Label::new(name(&share.stop), (panel.frame.left - 8.0, y)).right());
+    canvas.text(&Label::new(name(&share.stop, words), (panel.frame.left - 8.0, y)).right());
     let count = format::decimal(share.count as f64, 0);
     let decimals = decimals_for(percent.high - percent.low);
-    let words = format!("{count} ({})", format::percent(percent.value, decimals));
+    let head = format!("{count} ({})", format::percent(percent.value, decimals));
     let x = panel.frame.right + 10.0;
     let bound = |share: f64| format::percent(share, decimals);
-    let interval = format::interval(&bound(percent.low), &bound(percent.high));
-    canvas.text(&Label::new(words, (x, y)).followed_by(interval));
+    let interval = words.interval(&bound(percent.low), &bound(percent.high));
+    canvas.text(&Label::new(head, (x, y)).followed_by(interval));
 }
 
 /// Decimals of a percentage that an interval of some width (share) leaves meaningful.

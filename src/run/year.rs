@@ -1,6 +1,5 @@
 //! What a plan asks of the year, as the results need it.
 
-use crate::error::{Error, Result};
 use crate::hazard::{Asked, Matrix, Object, Vehicles};
 use crate::plan::{self, Plan};
 use crate::scene::{MatrixTable, ObjectTable};
@@ -45,17 +44,6 @@ fn asked_of_sources(plan: &Plan) -> Asked {
         objects: Vec::new(),
         matrix: year.matrix.as_ref().map(matrix),
         most_j: year.most_j.clone(),
+        largest_m: year.largest_m.clone(),
     }
-}
-
-/// Refuses to aim at an interval that does not know of weights.
-pub(super) fn allows(plan: &Plan, targets: bool) -> Result<()> {
-    let plan::Part::Kept(year) = &plan.year else { return Ok(()) };
-    if !targets || year.frequency.weights(plan.count).are_equal() {
-        return Ok(());
-    }
-    Err(Error::Request(
-        "--until: found sizes that are sampled by importance ([frequency] with volumes), and the aim takes all rocks alike; write --releases N instead"
-            .to_owned(),
-    ))
 }

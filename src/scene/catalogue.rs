@@ -89,13 +89,17 @@ impl KnownGround {
 pub fn catalogue() -> String {
     let mut text = String::from(
         "Grounds for `like = \"NAME\"` under [grounds.…]. Own values beside it override; springs and friction angle are\n\
-         always the scene's own. The tangential restitution of the sources has no place in this law, friction replaces it.\n",
+         always the scene's own. The tangential restitution of the sources is another law's and has no place in this one, where\n\
+         friction takes what slips and tangential_ratio says what an impact that sticks gives back.\n",
     );
     for ground in &CATALOGUE {
         let KnownGround { name, what, source, .. } = ground;
         let values = ground.values();
         // writing to a string cannot fail
-        let _ = write!(text, "\n{name}\n    {what}\n    {values}\n    source: {source}\n");
+        let _ = write!(
+            text,
+            "\n{name}\n    {what}\n    {values}\n    tangential ratio: none known\n    source: {source}\n"
+        );
     }
     text
 }

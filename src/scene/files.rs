@@ -139,7 +139,11 @@ impl Scene {
             inputs.push(InputFile { path: path.to_owned(), bytes: length, assumed: None });
             Ok(())
         };
-        self.each_mesh(|mesh| take(mesh.path()).map_err(|why| unreadable(mesh, &why)))?;
+        self.each_mesh(|mesh| {
+            // trees may be drawn in a Shapefile, which is three files
+            let files = gis::files(mesh.path());
+            files.iter().try_for_each(|file| take(file)).map_err(|why| unreadable(mesh, &why))
+        })?;
         for ((table, key), path) in self.tables() {
             take(path).map_err(|why| {
                 let remedy = "write the path of a CSV file as seen from the scene file";

@@ -1,9 +1,12 @@
 //! `[frequency]`: how often rocks are released, of what size, and what is asked of the year.
 
-use super::check::{Allowed, Checked, Complaint, number};
+use super::check::{Allowed, Checked, Complaint, number, optional};
+use super::matrix::MatrixEntry;
 use super::places::{Area, Point, Polyline};
-use crate::frequency::{Class, Frequency, Law, Source, radius_of_m3};
-use crate::random::{Distribution, Entries};
+use super::zone_sources::CommonSizes;
+use super::zones::Zones;
+use crate::frequency::{Class, Frequency, Law, Source};
+use crate::random::Entries;
 use serde::{Deserialize, Deserializer};
 
 /// How often rocks are released: one law, or one for each of several sources.
@@ -14,9 +17,9 @@ pub struct FrequencyTable {
     pub per_year: Option<f64>,
     /// Power law: events a year of 1 m³ or more (1/year), positive.
     pub per_year_at_1m3: Option<f64>,
-    /// Power law: exponent `b` of `N(≥ V) = a V^−b` (–), positive.
+    /// Power law: exponent `b` of `N(≥ V) = a V^−b` (–), positive. Without law, that of all zones of release that have none.
     pub exponent: Option<f64>,
-    /// Power law: smallest and largest volume (m³), positive and rising.
+    /// Power law: smallest and largest volume (m³), positive and rising. Without law, those of all zones that have none.
     #[serde(default, deserialize_with = "pair")]
     pub volume_m3: Option<[f64; 2]>,
     /// Instead: events a year by class of volume.
@@ -29,7 +32,7 @@ pub struct FrequencyTable {
     /// Return periods whose energy is asked for (years), positive.
     pub return_periods_years: Option<Vec<f64>>,
     /// Classes of hazard by energy and return period.
-    pub matrix: Option<MatrixTable>,
+    pub matrix: Option<MatrixEntry>,
 }
 
 /// `[[frequency.sources]]`: a place that releases rocks.
@@ -68,22 +71,6 @@ pub struct ClassTable {
     pub per_year: f64,
 }
 
-/// `[frequency.matrix]`: levels of hazard by the energy of each return period; the table and its source are the scene's.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table [frequency.matrix]")]
-pub struct MatrixTable {
-    /// Name that stands beside the map.
-    pub name: String,
-    /// Where the table was read; stands beside the map.
-    pub source: String,
-    /// Limits between the classes of energy (J), rising.
-    pub energies_j: Vec<f64>,
-    /// Return periods (years), rising.
-    pub return_periods_years: Vec<f64>,
-    /// A row for each return period, in it a level for each class of energy, from weak to strong.
-    pub levels: Vec<Vec<u8>>,
-}
-
 /// The keys of a law, wherever they stand.
 struct LawKeys<'a> {
     per_year: Option<f64>,
@@ -98,19 +85,19 @@ const RETURN_PERIODS_YEARS: [f64; 4] = [30.0, 100.0, 300.0, 1000.0];
 /// Energies unless the scene names others (J): the limits of the classes of the intensity map.
 const ENERGIES_J: [f64; 2] = [30e3, 300e3];
 /// Largest exponent (–): measured ones are below 2, and far steeper laws have one size only.
-const STEEPEST: f64 = 20.0;
+pub(super) const STEEPEST: f64 = 20.0;
+/// What rates must be.
+pub(super) const COUNTABLE: &str = "write rates, exponent and volumes that make 1e-120 to 1e12 events a year in every class of size";
 const LAW: &str = "write per_year = … (sizes as [rocks] radius_m has them), or per_year_at_1m3, exponent and volume_m3, or classes";
 
 impl FrequencyTable {
-    /// The sources, their laws and what is asked; none where a key is wrong, which the check has said.
-    pub(super) fn compile(&self) -> Option<Frequency> {
-        let own = self.keys().law().ok()?.map(|law| Source { name: "release".to_owned(), law });
-        let named = |table: &SourceTable| {
-            Some(Source { name: table.name.clone(), law: table.keys().law().ok()?? })
-        };
-        let sources: Option<Vec<Source>> = match own {
-            Some(source) => Some(vec![source]),
-            None => self.sources.iter().map(named).collect(),
+    /// The sources, their laws and what is asked; none where a key is wrong, which the check has said, and where zones are
+    /// sources that were not read yet.
+    pub(super) fn compile(&self, zones: Option<&Zones>) -> Option<Frequency> {
+        let sources = if self.is_by_zone() {
+            zones?.sources(self.common_sizes()).ok()
+        } else {
+            self.written_sources()
         };
         Some(Frequency::new(
             sources?,
@@ -119,14 +106,66 @@ impl FrequencyTable {
         ))
     }
 
-    pub(super) fn check(&self) -> Checked {
+    /// Its own law, or its sources.
+    fn written_sources(&self) -> Option<Vec<Source>> {
+        let own = self.keys().law().ok()?.map(|law| Source { name: "release".to_owned(), law });
+        let named = |table: &SourceTable| {
+            Some(Source { name: table.name.clone(), law: table.keys().law().ok()?? })
+        };
+        match own {
+            Some(source) => Some(vec![source]),
+            None => self.sources.iter().map(named).collect(),
+        }
+    }
+
+    /// Whether it has neither a law nor sources: then each zone of release is one.
+    pub(super) fn is_by_zone(&self) -> bool {
+        let has_law = self.per_year.is_some() || self.per_year_at_1m3.is_some();
+        !has_law && self.classes.is_none() && self.sources.is_empty()
+    }
+
+    /// The key of its law.
+    pub(super) fn law_key(&self) -> &'static str {
+        match (self.per_year, self.per_year_at_1m3) {
+            (Some(_), _) => "per_year",
+            (_, Some(_)) => "per_year_at_1m3",
+            _ => "classes",
+        }
+    }
+
+    /// Sizes of all zones that do not say them themselves.
+    pub(super) fn common_sizes(&self) -> CommonSizes {
+        CommonSizes { exponent: self.exponent, volume_m3: self.volume_m3 }
+    }
+
+    /// `has_zones`: places of release are drawn in a file, whose properties may hold what is missing here.
+    pub(super) fn check(&self, has_zones: bool) -> Checked {
+        if has_zones && self.is_by_zone() {
+            optional("exponent", self.exponent, Allowed::Positive, "")?;
+            if let Some(volume_m3) = self.volume_m3 {
+                volumes("volume_m3", volume_m3, false)?;
+            }
+        } else {
+            self.check_sources()?;
+        }
+        positive_list("energies_j", self.energies_j.as_deref())?;
+        positive_list("return_periods_years", self.return_periods_years.as_deref())?;
+        self.matrix.as_ref().map_or(Ok(()), |one| one.check().map_err(|w| w.inside("matrix")))
+    }
+
+    fn check_sources(&self) -> Checked {
         let own = self.keys().law()?;
         if own.is_some() != self.sources.is_empty() {
             return Err(if own.is_some() {
                 let remedy = "remove it, or the law in [frequency]: each source has its own";
                 Complaint::about("sources", remedy).finding("found both a law and sources")
             } else {
-                Complaint::missing("per_year", format!("{LAW}, or [[frequency.sources]]"))
+                Complaint::missing(
+                    "per_year",
+                    format!(
+                        "{LAW}, or [[frequency.sources]], or [release] zones with a frequency each"
+                    ),
+                )
             });
         }
         let mut draws = Vec::new();
@@ -141,9 +180,7 @@ impl FrequencyTable {
                 "found a source with volumes of its own beside one that takes [rocks] radius_m";
             return Err(about.finding(found).in_entry(index).inside("sources"));
         }
-        positive_list("energies_j", self.energies_j.as_deref())?;
-        positive_list("return_periods_years", self.return_periods_years.as_deref())?;
-        self.matrix.as_ref().map_or(Ok(()), |one| one.check().map_err(|w| w.inside("matrix")))
+        Ok(())
     }
 
     fn keys(&self) -> LawKeys<'_> {
@@ -190,6 +227,19 @@ impl SourceTable {
 impl LawKeys<'_> {
     /// The law; none where no key of one is written.
     fn law(&self) -> Result<Option<Law>, Complaint> {
+        let law = self.written()?;
+        let key = match &law {
+            Some(law) if law.is_countable() => return Ok(Some(law.clone())),
+            None => return Ok(None),
+            Some(Law::Events { .. }) => "per_year",
+            Some(Law::PowerLaw { .. }) => "per_year_at_1m3",
+            Some(Law::Classes(_)) => "classes",
+        };
+        Err(Complaint::about(key, COUNTABLE))
+    }
+
+    /// The same, whatever its rates are.
+    fn written(&self) -> Result<Option<Law>, Complaint> {
         let power = [
             ("per_year_at_1m3", self.per_year_at_1m3.is_some()),
             ("exponent", self.exponent.is_some()),
@@ -245,11 +295,16 @@ fn classes_law(classes: &[ClassTable]) -> Result<Law, Complaint> {
 }
 
 /// Volumes of blocks (m³) that a run can follow, from a pebble to a hillside.
-const VOLUMES_M3: [f64; 2] = [1e-6, 1e6];
+pub(super) const VOLUMES_M3: [f64; 2] = [1e-6, 1e6];
 
-fn volumes(key: &str, [least, largest]: [f64; 2], may_be_equal: bool) -> Checked {
+/// Whether two volumes (m³) rise and can be followed.
+pub(super) fn are_volumes([least, largest]: [f64; 2], may_be_equal: bool) -> bool {
     let rise = least < largest || may_be_equal && least <= largest;
-    if rise && least >= VOLUMES_M3[0] && largest <= VOLUMES_M3[1] {
+    rise && least >= VOLUMES_M3[0] && largest <= VOLUMES_M3[1]
+}
+
+fn volumes(key: &str, range: [f64; 2], may_be_equal: bool) -> Checked {
+    if are_volumes(range, may_be_equal) {
         return Ok(());
     }
     let [low, high] = VOLUMES_M3;
@@ -257,48 +312,8 @@ fn volumes(key: &str, [least, largest]: [f64; 2], may_be_equal: bool) -> Checked
     Err(Complaint::about(key, remedy))
 }
 
-fn positive_list(key: &str, list: Option<&[f64]>) -> Checked {
+pub(super) fn positive_list(key: &str, list: Option<&[f64]>) -> Checked {
     list.unwrap_or_default().iter().try_for_each(|value| number(key, *value, Allowed::Positive, ""))
-}
-
-impl MatrixTable {
-    fn check(&self) -> Checked {
-        for (key, words) in [("name", &self.name), ("source", &self.source)] {
-            if words.trim().is_empty() {
-                let remedy = "write it: a table of levels stands with its name and its source";
-                return Err(Complaint::about(key, remedy));
-            }
-        }
-        for (key, list) in
-            [("energies_j", &self.energies_j), ("return_periods_years", &self.return_periods_years)]
-        {
-            positive_list(key, Some(list))?;
-            if list.is_empty() || list.windows(2).any(|pair| pair[0] >= pair[1]) {
-                return Err(Complaint::about(key, "write at least one number, rising"));
-            }
-        }
-        let (rows, columns) = (self.return_periods_years.len(), self.energies_j.len() + 1);
-        if self.levels.len() != rows || self.levels.iter().any(|row| row.len() != columns) {
-            let remedy = format!(
-                "write {rows} rows, one a return period, of {columns} levels, one a class of energy"
-            );
-            return Err(Complaint::about("levels", remedy));
-        }
-        Ok(())
-    }
-}
-
-/// Radii to reckon with (m) where the sources have volumes of their own: ends and middle of every stratum, as often as
-/// it comes.
-pub(super) fn radii_m(frequency: &Frequency) -> Option<Distribution> {
-    let shares = [0.0, 0.5, 1.0];
-    let radii = frequency.strata().iter().flat_map(|stratum| {
-        let volumes = shares.map(|p| Some((stratum.quantile_m3(p)?, stratum.per_year)));
-        volumes.into_iter().flatten()
-    });
-    let (radii, weights): (Vec<f64>, Vec<f64>) =
-        radii.map(|(volume, weight)| (radius_of_m3(volume), weight)).unzip();
-    Distribution::values(radii, Some(weights)).ok()
 }
 
 fn pair<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 2]>, D::Error> {
@@ -317,22 +332,4 @@ fn one_or_two<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> 
         OneOrTwo::One(volume) => [volume; 2],
         OneOrTwo::Two(pair) => pair,
     })
-}
-
-/// Checks `radius_m` against the laws: volumes of their own, or none.
-pub(super) fn check_radius(
-    radius_m: Option<&Distribution>,
-    frequency: Option<&Frequency>,
-) -> Checked {
-    let drawn = frequency.is_some_and(Frequency::draws_volumes);
-    match (radius_m, drawn) {
-        (Some(_), true) => Err(Complaint::about(
-            "radius_m",
-            "remove it: the volumes of [frequency] say how large rocks are; or write per_year = … there",
-        )),
-        (None, false) => {
-            Err(Complaint::missing("radius_m", "write radius_m = …; it has no default"))
-        }
-        _ => Ok(()),
-    }
 }

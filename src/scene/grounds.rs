@@ -14,8 +14,10 @@ pub struct GroundTable {
     pub like: Option<String>,
     /// Normal contact spring `p_N` (N/m), positive.
     pub normal_stiffness_n_m: Distribution,
-    /// Shear contact spring `p_s` (N/m), positive.
-    pub shear_stiffness_n_m: Distribution,
+    /// Shear contact spring `p_s` (N/m), positive; this or `tangential_ratio`.
+    pub shear_stiffness_n_m: Option<Distribution>,
+    /// Shear over normal contact spring `p_s/p_N` (–): how much of its slip an impact that sticks gives back.
+    pub tangential_ratio: Option<Distribution>,
     /// Friction angle (degrees), 0..90.
     pub friction_angle_deg: Distribution,
     /// Normal restitution (–), 0..1; may be absent with scheme `dda` only.
@@ -46,14 +48,16 @@ impl GroundTable {
 
     pub(super) fn check(&self, scheme: Scheme) -> Checked {
         stiffness("normal_stiffness_n_m", &self.normal_stiffness_n_m)?;
-        stiffness("shear_stiffness_n_m", &self.shear_stiffness_n_m)?;
+        self.check_shear()?;
         let angle = &self.friction_angle_deg;
         drawn("friction_angle_deg", angle, Allowed::Slope, "scree is near 35")?;
-        if self.restitution.is_none() && scheme != Scheme::Dda {
+        if self.restitution.is_none() && !scheme.has_fixed_step() {
             let remedy = "write restitution = 0..1; only scheme \"dda\" can do without";
             return Err(Complaint::missing("restitution", remedy));
         }
         let may_be_absent = [
+            ("shear_stiffness_n_m", &self.shear_stiffness_n_m, Allowed::Positive),
+            ("tangential_ratio", &self.tangential_ratio, TANGENTIAL),
             ("restitution", &self.restitution, Allowed::Share),
             ("rolling_friction", &self.rolling_friction, Allowed::NotNegative),
             ("roughness_deg", &self.roughness_deg, Allowed::Slope),
@@ -67,7 +71,34 @@ impl GroundTable {
         }
         Ok(())
     }
+
+    fn check_shear(&self) -> Checked {
+        match (&self.shear_stiffness_n_m, &self.tangential_ratio) {
+            (Some(_), Some(_)) => {
+                let remedy = "write it or shear_stiffness_n_m: each gives the other";
+                Err(Complaint::about("tangential_ratio", remedy).finding("found both"))
+            }
+            (None, None) => {
+                let remedy = "write it, or tangential_ratio: shear over normal spring; neither has a default";
+                Err(Complaint::missing("shear_stiffness_n_m", remedy))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Shear contact spring `p_s` (N/m) beside a normal one (N/m), from what `take` makes of the value that is written.
+    pub fn shear_n_m(&self, normal_n_m: f64, take: impl FnOnce(&Distribution) -> f64) -> f64 {
+        match (&self.tangential_ratio, &self.shear_stiffness_n_m) {
+            (Some(ratio), _) => normal_n_m * take(ratio),
+            // a scene that was read has one of the two
+            (None, own) => own.as_ref().map_or(f64::NAN, take),
+        }
+    }
 }
+
+/// Shear over normal spring (–): below, an impact takes next to nothing of its slip; two elastic bodies have less than 1
+/// (Mindlin 1949: 0.67 to 1).
+pub(super) const TANGENTIAL: Allowed = Allowed::Between(1e-3, 10.0);
 
 fn stiffness(key: &str, value: &Distribution) -> Checked {
     drawn(key, value, Allowed::Positive, "rock is near 1e9")

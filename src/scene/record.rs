@@ -2,7 +2,7 @@
 
 use super::check::{Allowed, Checked, Complaint, number, optional};
 use super::places::Polyline;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// What is kept of every journey; optional as a whole.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
@@ -41,6 +41,28 @@ pub struct ReportTable {
     pub terrain_source: Option<String>,
     /// Where ground values come from: back-analysis, literature.
     pub ground_source: Option<String>,
+    /// In which language page and figures speak; English without.
+    pub language: Option<Language>,
+}
+
+/// A language of the report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Language {
+    /// English.
+    #[default]
+    En,
+    /// German.
+    De,
+    /// French.
+    Fr,
+    /// Italian.
+    It,
+}
+
+impl Language {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::En, Self::De, Self::Fr, Self::It];
 }
 
 /// Rasters in plan view.

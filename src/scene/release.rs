@@ -2,6 +2,7 @@
 
 use super::blocks::Block;
 use super::check::{Allowed, Checked, Complaint, drawn};
+use super::frequency::SourceTable;
 use super::places::{Area, Corner, Point, Polyline};
 use super::shapes::Orientation;
 use super::zones::Zones;
@@ -87,30 +88,23 @@ impl ReleaseTable {
         self.check_height()
     }
 
-    /// Boxes around the places of release (m): west, south, east, north. One for each of a few places, else one for all.
-    pub(super) fn boxes_m(&self) -> Vec<[f64; 4]> {
-        let single = |corners: &[Corner]| box_of(corners).into_iter().collect::<Vec<_>>();
-        let boxes: Vec<[f64; 4]> =
-            match (&self.points_m, &self.line_m, &self.polygon_m, &self.zone_list) {
-                _ if !self.blocks.is_empty() => {
-                    self.blocks.iter().filter_map(|block| box_of(&[block.at_m])).collect()
-                }
-                (Some(points), ..) => {
-                    points.iter().filter_map(|point| box_of(&[point.at_m])).collect()
-                }
-                (_, Some(line), ..) => single(line.corners_m()),
-                (_, _, Some(area), _) => single(area.corners_m()),
-                (.., Some(zones)) => {
-                    zones.list().iter().filter_map(|zone| box_of(&zone.corners_m())).collect()
-                }
-                _ => Vec::new(),
-            };
+    /// Boxes around the places of release and those of `sources` (m): west, south, east, north. One for each of a few
+    /// places, else one for all.
+    pub(super) fn boxes_m(&self, sources: &[SourceTable]) -> Vec<[f64; 4]> {
+        let mut boxes =
+            boxes_of(self.points_m.as_deref(), self.line_m.as_ref(), self.polygon_m.as_ref());
+        boxes.extend(self.blocks.iter().filter_map(|block| box_of(&[block.at_m])));
+        let zones = self.zone_list.iter().flat_map(Zones::list);
+        boxes.extend(zones.filter_map(|zone| box_of(&zone.corners_m())));
+        boxes.extend(sources.iter().flat_map(|one| {
+            boxes_of(one.points_m.as_deref(), one.line_m.as_ref(), one.polygon_m.as_ref())
+        }));
         if boxes.len() <= MOST_BOXES {
             return boxes;
         }
         let corners: Vec<Corner> =
             boxes.iter().flat_map(|b| [[b[0], b[1]], [b[2], b[3]]]).collect();
-        single(&corners)
+        box_of(&corners).into_iter().collect()
     }
 
     /// `height_m` and a third coordinate exclude each other, and one of them is needed.
@@ -135,6 +129,18 @@ impl ReleaseTable {
             )),
         }
     }
+}
+
+/// Boxes around each point, a line or an area.
+fn boxes_of(
+    points_m: Option<&[Point]>,
+    line_m: Option<&Polyline>,
+    polygon_m: Option<&Area>,
+) -> Vec<[f64; 4]> {
+    let points = points_m.unwrap_or_default().iter().filter_map(|point| box_of(&[point.at_m]));
+    let line = line_m.into_iter().filter_map(|line| box_of(line.corners_m()));
+    let area = polygon_m.into_iter().filter_map(|area| box_of(area.corners_m()));
+    points.chain(line).chain(area).collect()
 }
 
 /// The box of some corners; none without any.

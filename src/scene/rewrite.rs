@@ -7,6 +7,9 @@ use crate::file;
 use std::ops::Range;
 use std::path::Path;
 
+/// A key of a ground that another gives as well: a scene has one of them.
+const OTHERWISE: (&str, &str) = ("tangential_ratio", "shear_stiffness_n_m");
+
 /// The text of a scene file with other values: ground, key and what to write. Paths are written in full, so that the text
 /// may stand in another folder.
 ///
@@ -18,12 +21,18 @@ pub fn rewritten(scene: &Path, values: &[(String, &str, String)]) -> Result<Stri
     let mut changes: Vec<(Range<usize>, String)> = Vec::new();
     for (ground, key, value) in values {
         let table = [Step::Key("grounds".to_owned()), Step::Key(ground.clone())];
-        let trail = [&table[..], &[Step::Key((*key).to_owned())]].concat();
-        let change = match (lookup.value_at(&trail), lookup.value_at(&table)) {
-            (Some(range), _) => (range, value.clone()),
+        let value_at =
+            |key: &str| lookup.value_at(&[&table[..], &[Step::Key(key.to_owned())]].concat());
+        let other = value_at(OTHERWISE.1).filter(|_| *key == OTHERWISE.0);
+        let change = match (value_at(key), other, lookup.value_at(&table)) {
+            (Some(range), ..) => (range, value.clone()),
+            (None, Some(other), _) => {
+                let start = text[..other.start].rfind(OTHERWISE.1).unwrap_or(other.start);
+                (start..other.end, format!("{key} = {value}"))
+            }
             // of a table with a header the header alone
-            (None, Some(header)) => (header.end..header.end, format!("\n{key} = {value}")),
-            (None, None) => {
+            (None, None, Some(header)) => (header.end..header.end, format!("\n{key} = {value}")),
+            (None, None, None) => {
                 let found = format!("found no [grounds.{ground}]");
                 return Err(Error::input(scene, "[grounds]", found, "write the scene as it was"));
             }

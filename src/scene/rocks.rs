@@ -1,9 +1,8 @@
 //! `[rocks]` and `[rocks.contact]`.
 
-use super::check::{Allowed, Checked, drawn, number, optional};
-use super::frequency;
+use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
 use super::shapes::ShapeTable;
-use crate::frequency::Frequency;
+use crate::frequency::{Frequency, radius_of_m3};
 use crate::random::Distribution;
 use serde::Deserialize;
 
@@ -41,11 +40,10 @@ pub struct RockContact {
 }
 
 impl Rocks {
-    pub(super) fn check(&self, frequency: Option<&Frequency>) -> Checked {
+    pub(super) fn check(&self) -> Checked {
         number("density_kg_m3", self.density_kg_m3, Allowed::Positive, "rock is near 2700")?;
         let density = Allowed::Between(1.0, 1e5);
         number("density_kg_m3", self.density_kg_m3, density, "rock is near 2700")?;
-        frequency::check_radius(self.radius_m.as_ref(), frequency)?;
         if let Some(radius_m) = &self.radius_m {
             drawn("radius_m", radius_m, Allowed::Positive, "")?;
             drawn("radius_m", radius_m, Allowed::Between(1e-3, 1e3), "")?;
@@ -58,10 +56,25 @@ impl Rocks {
 }
 
 impl Rocks {
+    /// Checks `radius_m` against the laws: volumes of their own, or none.
+    pub(super) fn check_radius(&self, frequency: Option<&Frequency>) -> Checked {
+        let drawn = frequency.is_some_and(Frequency::draws_volumes);
+        match (&self.radius_m, drawn) {
+            (Some(_), true) => Err(Complaint::about(
+                "radius_m",
+                "remove it: the volumes of [frequency] say how large rocks are; or write per_year = … there",
+            )),
+            (None, false) => {
+                Err(Complaint::missing("radius_m", "write radius_m = …; it has no default"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Takes the sizes of sources that have volumes of their own, as a list to reckon with.
     pub(super) fn take_sizes(&mut self, frequency: Option<&Frequency>) {
         if let Some(frequency) = frequency.filter(|one| one.draws_volumes()) {
-            self.radius_m = frequency::radii_m(frequency);
+            self.radius_m = radii_m(frequency);
         }
     }
 
@@ -92,4 +105,17 @@ impl RockContact {
         }
         optional("restitution", self.restitution, Allowed::Share, "")
     }
+}
+
+/// Radii to reckon with (m) where the sources have volumes of their own: ends and middle of every stratum, as often as
+/// it comes.
+fn radii_m(frequency: &Frequency) -> Option<Distribution> {
+    let shares = [0.0, 0.5, 1.0];
+    let radii = frequency.strata().iter().flat_map(|stratum| {
+        let volumes = shares.map(|p| Some((stratum.quantile_m3(p)?, stratum.per_year)));
+        volumes.into_iter().flatten()
+    });
+    let (radii, weights): (Vec<f64>, Vec<f64>) =
+        radii.map(|(volume, weight)| (radius_of_m3(volume), weight)).unzip();
+    Distribution::values(radii, Some(weights)).ok()
 }

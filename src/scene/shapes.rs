@@ -4,7 +4,6 @@ use super::Scene;
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
 use crate::body::{SHARPEST, ShapeKind, most_corners};
 use crate::random::Distribution;
-use crate::solver::Scheme;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -165,7 +164,7 @@ impl Scene {
         if !self.has_blocks() {
             return Ok(());
         }
-        if self.solver.scheme() != Scheme::Rigid {
+        if self.solver.scheme().has_springs() {
             let remedy = "write scheme = \"rigid\": blocks of [[rocks.shapes]] are computed in the rigid limit only, as yet";
             let about = match self.solver.scheme {
                 Some(_) => Complaint::about("scheme", remedy),

@@ -29,8 +29,14 @@ pub struct Zone {
     pub weight: Option<f64>,
     /// Property `volume_m3`: volume that it releases (m³), positive.
     pub volume_m3: Option<f64>,
-    /// Property `frequency_per_year`: rocks a year (1/a), positive.
+    /// Property `frequency_per_year`: rocks a year of all sizes (1/a), positive.
     pub frequency_per_year: Option<f64>,
+    /// Property `per_year_at_1m3`: rocks a year of 1 m³ or more (1/a), positive.
+    pub per_year_at_1m3: Option<f64>,
+    /// Property `exponent` of its power law (–), positive.
+    pub exponent: Option<f64>,
+    /// Properties `volume_min_m3` and `volume_max_m3`: smallest and largest volume (m³), positive.
+    pub volumes_m3: [Option<f64>; 2],
 }
 
 /// All zones of a scene.
@@ -160,6 +166,12 @@ fn zone(feature: &Feature, file: &Path) -> Result<Zone> {
         weight: feature.positive("weight", file)?,
         volume_m3: feature.positive("volume_m3", file)?,
         frequency_per_year: feature.positive("frequency_per_year", file)?,
+        per_year_at_1m3: feature.positive("per_year_at_1m3", file)?,
+        exponent: feature.positive("exponent", file)?,
+        volumes_m3: [
+            feature.positive("volume_min_m3", file)?,
+            feature.positive("volume_max_m3", file)?,
+        ],
     };
     if zone.size() > 0.0 {
         return Ok(zone);

@@ -2,6 +2,7 @@
 
 use super::driver::RunSettings;
 use super::form::{Form, Turned};
+use super::impacts::Struck;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::{ShapeOf, Stop, Trajectory};
@@ -104,7 +105,6 @@ impl Roll<'_> {
         ledger.rise_j = ledger.rise_j.max(rise_j);
         let lost_j = self.recorder.lost_j() - lost_before_j;
         self.recorder.ledger.remainder_j -= rise_j + lost_j;
-        self.recorder.end_impact();
         stop
     }
 
@@ -157,8 +157,15 @@ impl Roll<'_> {
             .copied()
             .collect();
         for touch in &struck {
-            let point = self.moving.pose.centre + touch.lever;
-            self.recorder.begin_impact(point, touch.feature.kind, touch.triangle, now_s);
+            let velocity = self.moving.at(block, &touch.lever);
+            let struck = Struck {
+                point_m: self.moving.pose.centre + touch.lever,
+                normal: touch.normal,
+                feature: touch.feature.kind,
+                sheet: self.recorder.sheet_of(touch.triangle),
+                approach_m_s: -touch.normal.dot(&velocity),
+            };
+            self.recorder.begin_impact(&struck, now_s, 0.0);
         }
         let Some(loss) = self.footing.strike(&self.world, block, &mut self.moving) else {
             return false;
@@ -168,7 +175,7 @@ impl Roll<'_> {
         self.recorder.now.spin_rad_s = self.moving.spin(block);
         self.recorder.turned = Some(turned(block, &self.moving));
         self.recorder.note_speed();
-        self.recorder.end_impact();
+        self.recorder.end_impacts(|_| false, || 0.0);
         !self.footing.holds(&self.world, (block, &self.moving), true)
     }
 

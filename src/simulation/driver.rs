@@ -13,11 +13,11 @@ use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan, Recorders, RestRule};
 use crate::random::{Purpose, RandomStream, stream};
 use crate::release::{Drawn, Release};
-use crate::rock::{Motion, Vec3};
+use crate::rock::Motion;
 use crate::solver::block::Footing;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
 use crate::solver::law::Body;
-use crate::solver::{self, Scheme, Settings, Stepper};
+use crate::solver::{self, Settings, Stepper};
 use crate::stopwatch::{Piece, Stopwatches};
 use crate::terrain::Terrain;
 use std::f64::consts::PI;
@@ -270,18 +270,18 @@ impl Fall<'_> {
         self.recorder.ledger.rise_j =
             self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
         self.leave_facet();
-        self.recorder.end_impact();
+        self.recorder.end_impacts(|_| false, || 0.0);
         stop
     }
 
     /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
-    fn is_rigid(&self) -> bool {
-        self.settings.step.scheme == Scheme::Rigid
+    pub(super) fn is_rigid(&self) -> bool {
+        !self.settings.step.scheme.has_springs()
     }
 
     /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
     fn held(&mut self) -> Loss {
-        let left = self.state.is_free() && self.settings.step.scheme != Scheme::Dda;
+        let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
         if left || self.is_rigid() { Loss::default() } else { self.state.springs_j(&self.world) }
     }
 
@@ -290,7 +290,8 @@ impl Fall<'_> {
         loop {
             let left = self.settings.longest_s - self.recorder.now.time_s;
             self.strike();
-            let done = match solver::advance(stepper, &self.world, self.state, left) {
+            let most = left.min(self.longest_before_yield_s());
+            let done = match solver::advance(stepper, &self.world, self.state, most) {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
@@ -311,8 +312,11 @@ impl Fall<'_> {
             let slides = self.state.histories.iter().any(|history| history.slides);
             let begun = self.state.stopwatches.now();
             self.recorder.step(to, slides);
-            self.leave_facet_in_time();
-            self.recorder.end_impact_in_time();
+            // a blow of the rigid limit is announced first and falls with the next step
+            if !(self.is_rigid() && self.state.is_struck) {
+                self.leave_facet_in_time();
+                self.end_impacts();
+            }
             self.state.stopwatches.stop(Piece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.over_budget());
@@ -329,38 +333,8 @@ impl Fall<'_> {
         }
     }
 
-    /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
-    fn announce(&mut self) {
-        if self.state.struck.is_empty()
-            && self.state.histories.iter().all(|history| history.announced)
-        {
-            return;
-        }
-        let radius = self.world.body.radius;
-        let until_s = self.recorder.now.time_s + self.impact_time();
-        let mut fastest: Option<(f64, Vec3, u32)> = None;
-        let ContactState { histories, struck, c, .. } = &mut *self.state;
-        for history in
-            histories.iter_mut().chain(struck.iter_mut()).filter(|history| !history.announced)
-        {
-            history.announced = true;
-            if history.captured {
-                continue;
-            }
-            let point = *c - history.n * radius;
-            self.recorder.begin_impact(point, history.feature.kind, history.triangle, until_s);
-            let speed = -history.n.dot(&self.recorder.now.velocity_m_s);
-            if speed > fastest.map_or(0.0, |(known, ..)| known) {
-                fastest = Some((speed, history.n, history.triangle));
-            }
-        }
-        if let Some((_, normal, triangle)) = fastest {
-            self.meet_facet(normal, triangle, until_s);
-        }
-    }
-
     /// The longest an impact is taken to last (s): in the rigid limit no time at all.
-    fn impact_time(&self) -> f64 {
+    pub(super) fn impact_time(&self) -> f64 {
         if self.is_rigid() {
             return 0.0;
         }
@@ -377,7 +351,6 @@ impl Fall<'_> {
     }
 
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
-        self.recorder.end_impact();
         self.recorder.end_path();
         self.recorder.effort.sweeps += self.state.sweeps;
         self.recorder.effort.triangles += self.state.near.tested;

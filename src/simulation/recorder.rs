@@ -3,14 +3,13 @@
 use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
 use super::form::{Form, Instant, Turned};
-use super::{
-    Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState, Stop, Trajectory,
-};
+use super::impacts::{Impacts, ImpactsMark, Struck};
+use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
 use crate::flight::Parabola;
 use crate::flight::top::Top;
 use crate::plan::Recorders;
 use crate::release::Release;
-use crate::rock::{Motion, Vec3};
+use crate::rock::Motion;
 use crate::solver::contact_state::Loss;
 use crate::terrain::Terrain;
 
@@ -34,14 +33,12 @@ pub(super) struct Recorder<'a> {
     pub(super) turned: Option<Turned>,
     pub(super) extremes: Extremes,
     pub(super) path: Vec<PathPoint>,
-    pub(super) impacts: Vec<Impact>,
+    pub(super) impacts: Impacts,
     pub(super) crossings: Crossings<'a>,
     pub(super) passages: CellPassages<'a>,
-    pub(super) impact_count: u32,
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
     pub(super) effort: Effort,
-    open_impact: Option<(Impact, f64)>,
     next_point_s: f64,
 }
 
@@ -57,12 +54,11 @@ pub(super) struct Mark {
     turned: Option<Turned>,
     extremes: Extremes,
     path: usize,
-    impacts: usize,
+    impacts: ImpactsMark,
     crossings: Vec<Crossing>,
     passages: (usize, Option<CellPassage>),
-    counts: (u32, u32),
+    tree_impact_count: u32,
     ledger: Ledger,
-    open_impact: Option<(Impact, f64)>,
     next_point_s: f64,
 }
 
@@ -81,14 +77,12 @@ impl<'a> Recorder<'a> {
             turned,
             extremes: Extremes::default(),
             path: Vec::new(),
-            impacts: Vec::new(),
+            impacts: Impacts::kept_if(keep.impacts),
             crossings: Crossings::of(recorders.lines),
             passages: CellPassages::of(recorders.cells),
-            impact_count: 0,
             tree_impact_count: 0,
             ledger: Ledger::default(),
             effort: Effort::default(),
-            open_impact: None,
             next_point_s: if keep.path_step_s.is_some() { 0.0 } else { f64::INFINITY },
         };
         recorder.note_speed();
@@ -103,12 +97,11 @@ impl<'a> Recorder<'a> {
             turned: self.turned,
             extremes: self.extremes,
             path: self.path.len(),
-            impacts: self.impacts.len(),
+            impacts: self.impacts.mark(),
             crossings: self.crossings.found().to_vec(),
             passages: self.passages.mark(),
-            counts: (self.impact_count, self.tree_impact_count),
+            tree_impact_count: self.tree_impact_count,
             ledger: self.ledger,
-            open_impact: self.open_impact,
             next_point_s: self.next_point_s,
         }
     }
@@ -118,11 +111,10 @@ impl<'a> Recorder<'a> {
         (self.now, self.extremes, self.ledger) = (mark.now, mark.extremes, mark.ledger);
         self.turned = mark.turned;
         self.path.truncate(mark.path);
-        self.impacts.truncate(mark.impacts);
+        self.impacts.go_back(&mark.impacts);
         self.crossings.go_back(&mark.crossings);
         self.passages.go_back(mark.passages);
-        (self.impact_count, self.tree_impact_count) = mark.counts;
-        (self.open_impact, self.next_point_s) = (mark.open_impact, mark.next_point_s);
+        (self.tree_impact_count, self.next_point_s) = (mark.tree_impact_count, mark.next_point_s);
     }
 
     /// Notes the present speed and energies.
@@ -134,6 +126,11 @@ impl<'a> Recorder<'a> {
         most.translational_j = most.translational_j.max(one);
         most.rotational_j = most.rotational_j.max(two);
         most.total_j = most.total_j.max(one + two);
+    }
+
+    /// The sheet that a triangle belongs to.
+    pub(super) fn sheet_of(&self, triangle: u32) -> u16 {
+        self.terrain.sheet_of[triangle as usize]
     }
 
     fn instant(&self) -> Instant {
@@ -227,9 +224,9 @@ impl<'a> Recorder<'a> {
             end: self.now,
             stop,
             extremes: self.extremes,
-            impact_count: self.impact_count,
+            impact_count: self.impacts.count,
             tree_impact_count: self.tree_impact_count,
-            impacts: self.impacts,
+            impacts: self.impacts.rows,
             path: self.path,
             crossings: self.crossings.into_found(),
             passages: self.passages.into_found(),
@@ -250,45 +247,30 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Begins an impact at the present motion; it ends at `until_s` at the latest.
-    pub(super) fn begin_impact(
+    /// Begins an impact on a triangle's patch at the present motion, to end at `until_s` (s) at the latest; `held_j` is what
+    /// the springs of other contacts hold. Returns its number.
+    pub(super) fn begin_impact(&mut self, struck: &Struck, until_s: f64, held_j: f64) -> u32 {
+        let times_s = (self.now.time_s, until_s);
+        let lost_j = self.lost_to_mesh_j() - held_j;
+        let speed_m_s = self.now.velocity_m_s.norm();
+        let (number, is_new) = self.impacts.begin(struck, times_s, speed_m_s, lost_j);
+        let is_tree = self.terrain.sheets[struck.sheet as usize].is_tree;
+        self.tree_impact_count += u32::from(is_new && is_tree);
+        number
+    }
+
+    /// Ends the impacts whose time is over or whose patch no longer `holds` the rock; `held_j` as above.
+    pub(super) fn end_impacts(
         &mut self,
-        point_m: Vec3,
-        feature: FeatureKind,
-        triangle: u32,
-        until_s: f64,
+        holds: impl Fn(u32) -> bool,
+        held_j: impl FnOnce() -> f64,
     ) {
-        self.end_impact();
-        self.impact_count += 1;
-        self.tree_impact_count += u32::from(self.terrain.is_tree(triangle));
-        let speed = self.now.velocity_m_s.norm();
-        let impact = Impact {
-            time_s: self.now.time_s,
-            point_m,
-            feature,
-            sheet: self.terrain.sheet_of[triangle as usize],
-            speed_in_m_s: speed,
-            speed_out_m_s: speed,
-            energy_lost_j: -self.lost_j(),
-        };
-        self.open_impact = Some((impact, until_s));
-    }
-
-    /// Ends the impact in hand, if any.
-    pub(super) fn end_impact(&mut self) {
-        if let Some((mut impact, _)) = self.open_impact.take() {
-            impact.speed_out_m_s = self.now.velocity_m_s.norm();
-            impact.energy_lost_j += self.lost_j();
-            if self.keep.impacts {
-                self.impacts.push(impact);
-            }
+        if !self.impacts.is_any() {
+            return;
         }
-    }
-
-    /// Ends the impact in hand if its time is over.
-    pub(super) fn end_impact_in_time(&mut self) {
-        if self.open_impact.as_ref().is_some_and(|(_, until_s)| self.now.time_s >= *until_s) {
-            self.end_impact();
+        self.impacts.end(self.now.time_s, self.now.velocity_m_s.norm(), holds);
+        if !self.impacts.is_any() {
+            self.impacts.book(self.lost_to_mesh_j() - held_j());
         }
     }
 
@@ -302,9 +284,13 @@ impl<'a> Recorder<'a> {
 
     /// All losses so far (J).
     pub(super) fn lost_j(&self) -> f64 {
+        self.lost_to_mesh_j() + self.ledger.others_j + self.ledger.passed_on_j
+    }
+
+    /// Those in contacts with the mesh (J).
+    fn lost_to_mesh_j(&self) -> f64 {
         let ledger = &self.ledger;
-        let slope_j = ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j;
-        slope_j + ledger.others_j + ledger.passed_on_j
+        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
     }
 }
 

@@ -83,6 +83,8 @@ impl Fall<'_> {
     pub(super) fn leave_facet(&mut self) {
         if let Some(tilt) = self.roughness.tilt.take() {
             self.turn_rock(&tilt.turn);
+            // a rebound into the mean surface is the next impact
+            self.recorder.impacts.forget_last();
             let now = &mut self.recorder.now;
             (now.velocity_m_s, now.spin_rad_s) = (self.state.v, self.state.w);
         }

@@ -1,19 +1,22 @@
 //! Stems that give way.
 //!
-//! What a rock puts into its contact with a stem, springs included, counts against what the stem can take: for the
-//! schemes with springs the work of the contact, for the rigid limit what a blow would bring to rest along the normal,
-//! `m v_n²/2`. When that is more than is left of the stem, the rock has lost just what was left, the stem is gone and
-//! the rock goes on. What a stem took in earlier contacts with the same rock is not given back. A stem gives way to one
+//! What a rock puts into its contact with a stem, springs and friction included, counts against what the stem can take. When
+//! that is what was left of the stem, the stem is gone and the rock goes on: the schemes with springs cut their step there,
+//! in the rigid limit the impulse ends there. What a stem took in earlier contacts with the same rock is not given back. A stem gives way to one
 //! rock alone: the next finds it whole.
 
 use super::driver::Fall;
-use crate::contact::history::ContactHistories;
+use crate::contact::history::{ContactHistories, ContactHistory};
 use crate::random::{Purpose, RandomStream, beside};
 use crate::rock::Vec3;
+use crate::solver::Stepper;
 use crate::solver::contact_state::TOUCH;
-use crate::solver::{Scheme, Stepper};
+use crate::solver::yielding::yielding_impact;
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
+
+/// A stem with no more than this left of what it can take (–) gives way: the steps come ever nearer to the end of it.
+const AT_LIMIT: f64 = 1e-6;
 
 /// What one rock has done to the stems; its memory is taken once for all rocks of a thread.
 #[derive(Debug, Default)]
@@ -78,26 +81,47 @@ impl<'a> Fall<'a> {
         let pressed = self.load.pressed;
         self.state.may_yield =
             pressed.is_some_and(|stem| self.load.left_j(stems, stem) <= 1.1 * motion_j);
-        if self.settings.step.scheme != Scheme::Rigid {
+        if self.settings.step.scheme.has_springs() {
             return;
         }
-        let (c, m) = (self.state.c, self.world.body.mass);
+        let c = self.state.c;
         self.state.look(&self.world, &c, self.world.body.radius * (1.0 + TOUCH));
         let touches = self.state.touches;
         for touch in touches.iter() {
             let Some(stem) = stems.of_triangle(touch.triangle) else { continue };
-            let speed = -touch.normal.dot(&self.state.v);
             let left_j = self.load.left_j(stems, stem);
-            if self.state.near.gone.contains(&stem)
-                || speed <= 0.0
-                || 0.5 * m * speed * speed <= left_j
-            {
+            if self.state.near.gone.contains(&stem) {
                 continue;
             }
-            let kept = (speed * speed - 2.0 * left_j / m).sqrt();
-            self.state.v += touch.normal * (speed - kept);
+            let law = self.world.law(touch.triangle);
+            let motion = (&self.state.v, &self.state.w);
+            let Some((v, w)) =
+                yielding_impact(&self.world.body, (law, &touch.normal), motion, left_j)
+            else {
+                continue;
+            };
+            let of_stem =
+                |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
+            if !self.state.histories.iter().any(of_stem) {
+                self.begin_impact(&ContactHistory::new(touch, false), 0.0);
+            }
+            (self.state.v, self.state.w) = (v, w);
             self.recorder.ledger.trees_j += left_j;
             self.fell(stems, stem);
+        }
+    }
+
+    /// The longest step (s) in which the stem pressed hardest does not take more than is left of it.
+    pub(super) fn longest_before_yield_s(&self) -> f64 {
+        let Some(stems) = self.settings.terrain.stems.as_ref() else { return f64::INFINITY };
+        match self.load.pressed {
+            Some(stem) if self.state.may_yield && self.settings.step.scheme.has_springs() => {
+                let left_j = self.load.left_j(stems, stem);
+                let of_stem =
+                    |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
+                self.state.time_to_take_s(&self.world, left_j, of_stem)
+            }
+            _ => f64::INFINITY,
         }
     }
 
@@ -109,8 +133,8 @@ impl<'a> Fall<'a> {
         self.load.look(terrain, stems, &self.state.histories);
         let Some(stem) = self.load.pressed else { return };
         self.load.take(stem, trees_j);
-        let over_j = -self.load.left_j(stems, stem);
-        if over_j <= 0.0 {
+        let left_j = self.load.left_j(stems, stem);
+        if left_j > AT_LIMIT * self.load.limits_j[stems.ground_of(stem)] {
             return;
         }
         let normal_force: Vec3 = self
@@ -120,18 +144,18 @@ impl<'a> Fall<'a> {
             .filter(|history| stems.of_triangle(history.triangle) == Some(stem))
             .map(|history| history.n * history.normal_force.max(f64::MIN_POSITIVE))
             .sum();
-        self.give_back(over_j, &normal_force);
+        self.give_back(-left_j, &normal_force);
         self.fell(stems, stem);
         *stepper = Stepper::new(self.settings.step, &self.world, self.state);
     }
 
-    /// Gives back what the last step took beyond the limit (J), along the push of the stem.
+    /// Gives back what the last step took beyond the limit (J), negative for what it left, along the push of the stem.
     fn give_back(&mut self, joule: f64, normal_force: &Vec3) {
         let v = self.state.v;
         let along =
             normal_force.try_normalize(0.0).or_else(|| v.try_normalize(0.0)).unwrap_or(Vec3::z());
         let speed = along.dot(&v);
-        let after = (speed * speed + 2.0 * joule / self.world.body.mass).sqrt();
+        let after = (speed * speed + 2.0 * joule / self.world.body.mass).max(0.0).sqrt();
         // a rock that is still on its way in, as nearly always, goes against the push
         let after = if speed > 0.0 { after } else { -after };
         self.state.v += along * (after - speed);

@@ -120,7 +120,7 @@ impl Moving {
     }
 
     /// Velocity of a point of the block (m/s).
-    fn at(&self, block: &Block, lever: &Vec3) -> Vec3 {
+    pub(crate) fn at(&self, block: &Block, lever: &Vec3) -> Vec3 {
         Mass::at(lever, (&self.v, &self.spin(block)))
     }
 }

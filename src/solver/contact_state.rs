@@ -322,36 +322,6 @@ impl ContactState {
         let room = if is_plane { self.near.room_m(&self.c).max(way) } else { way };
         longest_step(&world.body, self.v.norm(), room)
     }
-
-    /// Energy in the springs of the contacts (J), by the kind it was counted under:
-    /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
-    pub fn springs_j(&mut self, world: &ContactEnvironment) -> Loss {
-        let c = self.c;
-        self.look(world, &c, world.body.radius);
-        self.stored_j(world)
-    }
-
-    /// The same for the touches of the last look.
-    pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
-        let mut stored = Loss::default();
-        for touch in self.touches.iter() {
-            let penetration = (world.body.radius - touch.distance_m).max(0.0);
-            let pressed =
-                0.5 * world.law(touch.triangle).p_n * touch.gain2 * penetration * penetration;
-            stored
-                .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
-        }
-        for history in self.histories.iter() {
-            let law = world.law(history.triangle);
-            let damping = 0.5 * law.p_s * history.shear.norm_squared();
-            let rolling = 0.5 * law.k_r * history.roll.norm_squared();
-            stored.add(
-                &Loss { damping, rolling, ..Loss::default() }.on(world, history.triangle),
-                1.0,
-            );
-        }
-        stored
-    }
 }
 
 /// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.

@@ -74,7 +74,7 @@ pub(crate) struct Answers {
 impl Answers {
     #[inline]
     pub(crate) fn of(body: &Body, law: &Law, h: f64) -> Self {
-        let (kap, kar) = (law.p_s * h + law.c_s, law.k_r * h + law.c_r);
+        let (kap, kar) = (law.shear_over(h), law.rolling_over(h));
         let (turn_q, turn_m) = (kap * h / body.inertia, kar * h / body.inertia);
         // The contact point's mass along the surface is 2/7 m.
         Self::new((kap, kar), 3.5 * kap * h / body.mass, turn_m, (turn_q, body.radius))

@@ -14,6 +14,7 @@ pub mod partition;
 mod newton_step;
 mod dda_contact;
 mod body;
+mod ordering;
 mod rigid;
 mod stage;
 mod sweeps;

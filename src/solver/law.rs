@@ -72,6 +72,33 @@ pub struct StageContact {
     pub(crate) mode: Mode,
 }
 
+impl Law {
+    /// Energy in springs (J) at a penetration (m) and the squares of their stretches (m², rad²):
+    /// `(p_N pen² + p_s ξ² + k_r θ²)/2`.
+    #[inline]
+    pub(crate) fn stored_j(&self, penetration: f64, shear2: f64, roll2: f64) -> f64 {
+        0.5 * (self.p_n * penetration * penetration + self.p_s * shear2 + self.k_r * roll2)
+    }
+
+    /// What a slip speed adds to a sticking shear force over a stage of length `h` (N s/m): `p_s h + c_s`.
+    #[inline]
+    pub(crate) fn shear_over(&self, h: f64) -> f64 {
+        self.p_s * h + self.c_s
+    }
+
+    /// What a spin adds to a sticking rolling moment over a stage of length `h` (N m s): `k_r h + c_r`.
+    #[inline]
+    pub(crate) fn rolling_over(&self, h: f64) -> f64 {
+        self.k_r * h + self.c_r
+    }
+
+    /// Stretch of the shear spring after a stage of length `h` from `shear` under `force`: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`.
+    #[inline]
+    pub(crate) fn shear_after(&self, force: &Vec3, shear: &Vec3, h: f64) -> Vec3 {
+        (force * h + shear * self.c_s) / self.shear_over(h)
+    }
+}
+
 const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
 /// Shortens `x` to at most `cap`.
@@ -206,8 +233,8 @@ impl StageContact {
     /// What shear and rolling springs would hold at velocity `v` and spin `w` if they did not slide.
     pub(crate) fn trials(&self, body: &Body, v: &Vec3, w: &Vec3, h: f64) -> (Vec3, Vec3) {
         let law = &self.law;
-        let stick = self.shear * law.p_s + body.slip(&self.n, v, w) * (law.p_s * h + law.c_s);
-        (stick, self.roll * law.k_r + w * (law.k_r * h + law.c_r))
+        let stick = self.shear * law.p_s + body.slip(&self.n, v, w) * law.shear_over(h);
+        (stick, self.roll * law.k_r + w * (law.rolling_over(h)))
     }
 
     /// Change of velocity and spin by this contact's forces over `h`.
@@ -249,7 +276,7 @@ impl StageContact {
     #[inline]
     pub fn stretches(&self, h: f64) -> (Vec3, Vec3) {
         let law = &self.law;
-        let shear = (self.shear_force * h + self.shear * law.c_s) / (h * law.p_s + law.c_s);
+        let shear = law.shear_after(&self.shear_force, &self.shear, h);
         let hr = h * law.k_r + law.c_r;
         let roll = if hr > 0.0 {
             (self.rolling_moment * h + self.roll * law.c_r) / hr

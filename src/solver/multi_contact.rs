@@ -196,14 +196,11 @@ fn add(
     let normal_force = normal.at(n.dot(v));
     // The sweeps know the mode. What the law gives at `now` does not: a newton of another contact that has changed
     // since moves a stiff spring far beyond its cap.
-    let shear = Slider::left(
-        law.friction,
-        law.p_s * h + law.c_s,
-        (&contact.shear_force, contact.normal_force),
-    );
+    let shear =
+        Slider::left(law.friction, law.shear_over(h), (&contact.shear_force, contact.normal_force));
     let roll = Slider::left(
         law.rolling_m,
-        law.k_r * h + law.c_r,
+        law.rolling_over(h),
         (&contact.rolling_moment, contact.normal_force),
     );
     let (shear, roll) = (shear.at(stick, normal_force), roll.at(wound, normal_force));

@@ -282,9 +282,7 @@ pub(crate) fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
     let stored = closed.map(|contact| {
         let (penetration, law) = (contact.pen_at(&end.v, hh).max(0.0), &contact.law);
         let (shear, roll) = contact.stretches(hh);
-        0.5 * (law.p_n * penetration * penetration
-            + law.p_s * shear.norm_squared()
-            + law.k_r * roll.norm_squared())
+        law.stored_j(penetration, shear.norm_squared(), roll.norm_squared())
     });
     stored.sum()
 }

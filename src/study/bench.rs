@@ -129,5 +129,5 @@ pub fn settings(scheme: Scheme, fineness: f64, capture_speed_m_s: Option<f64>) -
 
 /// Whether a scheme is refined by its tolerance (m/s), not by its step (s).
 pub fn goes_by_tolerance(scheme: Scheme) -> bool {
-    matches!(scheme, Scheme::Adaptive | Scheme::Reference)
+    scheme.controls_error()
 }

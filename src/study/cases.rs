@@ -1,7 +1,7 @@
 //! The exact cases: one row each, with the scene, the exact solution and where it comes from.
 
 mod closed;
-mod meshes;
+pub(super) mod meshes;
 mod pivot;
 mod starts;
 
@@ -13,11 +13,11 @@ use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::make;
 use crate::terrain::stl::Facet;
-use meshes::{angle, plane, roof, tilted};
+use meshes::{angle, bumpy, fold, plane, roof, tilted};
 use pivot::Lift;
 pub(super) use starts::rolling_off_an_edge;
 use starts::{
-    TIPPED_RAD, along, in_groove, lying, place, rigid_bounce_m, slippery, tipped, tipping,
+    TIPPED_RAD, along, elastic, in_groove, lying, place, rigid_bounce_m, slippery, tipped, tipping,
 };
 
 /// One number of a case: what it should be and how large an error is large.
@@ -152,7 +152,7 @@ pub fn has_springs(scheme: Scheme) -> bool {
 }
 
 /// All exact cases. To add one: a row.
-pub const CASES: [Case; 10] = [
+pub const CASES: [Case; 12] = [
     Case {
         name: "roll",
         title: "A sphere rolls down 20° from rest, 1 s",
@@ -242,6 +242,49 @@ pub const CASES: [Case; 10] = [
                 place(0.202_693_999, 0.067_115_667, 0.804_023_327)
             } else {
                 place(0.199_939_258_73, 0.066_656_543_12, 0.808_860_491_89)
+            }
+        }),
+    },
+    Case {
+        name: "fold",
+        title: "A sphere strikes a blunt valley of 0.02 rad beside its bottom and presses on both sides, e = 1, 0.05 s",
+        source: "springs: Runge-Kutta steps of the energy summed over faces and edge, in the plane (10 digits); rigid: parabolas",
+        kind: Kind::Impact,
+        capture_speed_m_s: 0.0,
+        facets: || fold(0.02, 4.0),
+        setup: |_| Setup {
+            centre_m: Vec3::new(-0.022, 0.1, 0.6),
+            velocity_m_s: Vec3::new(2.0, 0.0, -10.0),
+            longest_s: 0.05,
+            ..elastic()
+        },
+        exact: Some(|_, has_springs| {
+            if has_springs {
+                place(0.075_482_999_395_36, 0.1, 0.860_764_330_887_67)
+            } else {
+                place(0.086_072_144_850_73, 0.1, 0.894_937_577_744)
+            }
+        }),
+    },
+    Case {
+        name: "rough",
+        title: "A sphere of 1 m lands on cells of 0.2 m that are 5 mm uneven, e = 1, 0.1 s",
+        source: "springs: Runge-Kutta steps of the energy summed over all triangles, edges and corners (9 digits); rigid: parabolas between touches found by bisection",
+        kind: Kind::Impact,
+        capture_speed_m_s: 0.0,
+        facets: || bumpy(12, 0.2, 0.01),
+        setup: |_| Setup {
+            rock: crate::rock::Rock { radius_m: 1.0, ..SETUP.rock },
+            centre_m: Vec3::new(0.03, -0.05, 1.1),
+            velocity_m_s: Vec3::new(2.0, 1.0, -10.0),
+            longest_s: 0.1,
+            ..elastic()
+        },
+        exact: Some(|_, has_springs| {
+            if has_springs {
+                place(0.227_171_593_9, 0.051_799_894_8, 1.780_613_200_5)
+            } else {
+                place(0.227_011_278_831_01, 0.051_903_413_471_17, 1.878_648_278_489_99)
             }
         }),
     },

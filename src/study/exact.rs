@@ -182,6 +182,11 @@ impl Curve {
 }
 
 impl CaseStudy {
+    /// Whether any scheme has an error above rounding: else there is nothing to draw.
+    pub fn says_something(&self) -> bool {
+        !self.curves.iter().all(Curve::is_exact)
+    }
+
     /// The curve of a scheme.
     pub fn curve(&self, scheme: Scheme) -> Option<&Curve> {
         self.curves.iter().find(|curve| curve.rungs.scheme == scheme)

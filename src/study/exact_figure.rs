@@ -3,7 +3,7 @@
 use super::exact::{CaseStudy, Curve};
 use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
-use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION};
+use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
@@ -20,22 +20,12 @@ const FLOOR: f64 = 1e-12;
 
 /// The colour of a scheme in every figure of the studies.
 pub fn colour(scheme: Scheme) -> RGBColor {
-    match scheme {
-        Scheme::Dda => VERMILLION,
-        Scheme::Adaptive => BLUE,
-        Scheme::Reference => GREEN,
-        Scheme::Rigid => ORANGE,
-    }
+    scheme.of([VERMILLION, BLUE, GREEN, ORANGE])
 }
 
 /// The form of a scheme's marks.
-fn shape(scheme: Scheme) -> usize {
-    match scheme {
-        Scheme::Adaptive => 0,
-        Scheme::Dda => 1,
-        Scheme::Reference => 2,
-        Scheme::Rigid => 3,
-    }
+pub fn shape(scheme: Scheme) -> usize {
+    scheme.of([1, 0, 2, 3])
 }
 
 /// Draws one case.
@@ -95,7 +85,7 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, study: &CaseStudy) {
     }
     for line in savings_in_words(study) {
         debug_assert!(text_width(&line, SMALL) < KEY_PX);
-        canvas.text(&Label::new(line, (left, y)).coloured(PURPLE));
+        canvas.text(&Label::new(line, (left, y)).coloured(GREY));
         y += SMALL + 4.0;
     }
 }

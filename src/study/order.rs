@@ -18,7 +18,6 @@ use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::law::Body;
 use crate::solver::step_control::Control;
-use crate::solver::tableau::{ESDIRK4, TR_BDF2};
 use crate::solver::{Scheme, Stepper, advance};
 use std::fmt::Write as _;
 
@@ -42,21 +41,16 @@ pub struct Ladder {
     pub errors: Vec<(u32, f64)>,
 }
 
-/// Every scheme with its order in theory where nothing switches. The rigid scheme takes geometry and velocities in the
-/// middle of the step there; it is first order over a step in which sliding turns into rolling or a rock lifts off.
-const SCHEMES: [(Scheme, f64); 4] =
-    [(Scheme::Dda, 1.0), (Scheme::Adaptive, 2.0), (Scheme::Reference, 4.0), (Scheme::Rigid, 2.0)];
-
 /// Runs every scheme at every number of steps.
 pub fn study() -> Vec<Ladder> {
-    SCHEMES.map(|(scheme, theory)| ladder(scheme, theory)).into()
+    Scheme::ALL.map(ladder).into()
 }
 
-fn ladder(scheme: Scheme, theory: f64) -> Ladder {
+fn ladder(scheme: Scheme) -> Ladder {
     let (case, exact) = rolling_off_an_edge(has_springs(scheme), LASTS_S);
     let setup = (case.setup)(has_springs(scheme));
     let error = |steps: u32| (steps, (end(scheme, &case, &setup, steps) - exact).norm());
-    Ladder { scheme, theory, errors: STEPS.map(error).into() }
+    Ladder { scheme, theory: scheme.order(), errors: STEPS.map(error).into() }
 }
 
 /// Where the rock is after [`LASTS_S`] in so many equal steps; NaN where a step fails.
@@ -89,12 +83,8 @@ fn stepper(
     grip: &mut ContactState,
     dt: f64,
 ) -> Stepper {
-    let tableau = match scheme {
-        Scheme::Adaptive => &TR_BDF2,
-        Scheme::Reference => &ESDIRK4,
-        Scheme::Dda | Scheme::Rigid => {
-            return Stepper::new(&settings(scheme, dt, None), world, grip);
-        }
+    let Some(tableau) = scheme.tableau() else {
+        return Stepper::new(&settings(scheme, dt, None), world, grip);
     };
     Stepper::Controlled(
         Control { tableau, tolerance: f64::INFINITY, impact: f64::INFINITY, plane_impacts: false },
@@ -189,9 +179,10 @@ pub(super) fn draw(ladders: &[Ladder]) -> String {
             let points: Vec<(f64, f64)> = points.map(|&(n, error)| (f64::from(n), error)).collect();
             panel.line(canvas, &points, Pen::full(ink, 1.4));
             for &(x, y) in &points {
-                canvas.disc(panel.at(x, y), 2.6, ink);
+                canvas.mark(super::exact_figure::shape(ladder.scheme), panel.at(x, y), 2.6, ink);
             }
             canvas.line(&[(left, y), (left + 18.0, y)], Pen::full(ink, 1.4));
+            canvas.mark(super::exact_figure::shape(ladder.scheme), (left + 9.0, y), 2.6, ink);
             canvas.text(&Label::new(ladder.scheme.name(), (left + 24.0, y)).bold());
             let words = format!(
                 "order {} (theory {})",

@@ -7,6 +7,7 @@
 use super::bench::goes_by_tolerance;
 use super::bootstrap::{Interval, Ladder, Paired};
 use super::processor_time::Busy;
+use super::weighing::{FEWEST, Weigh};
 use crate::ensemble::Ensemble;
 use crate::error::Result;
 use crate::hazard::{Percentile, Row};
@@ -23,8 +24,6 @@ pub use super::statistic::{Of, QUANTITIES, StudyQuantity};
 
 /// Percentiles of the study (per cent).
 pub const PERCENTS: [u8; 3] = [50, 95, 99];
-/// Fewest releases of which a sampling error is given.
-const FEWEST: usize = 100;
 /// Turns that every setting takes.
 const BLOCKS: usize = 20;
 /// How much longer the edges of the coarser meshes are than the scene's own (–).
@@ -102,6 +101,8 @@ pub struct SceneStudy {
     pub subjects: Vec<StudyQuantity>,
     /// Each of [`PERCENTS`] for each subject.
     pub statistics: Vec<Statistic>,
+    /// So many releases of equal weight would know as much (–); none where all weigh the same.
+    pub effective_releases: Option<f64>,
 }
 
 /// A setting that gives a statistic with a wanted error.
@@ -166,20 +167,23 @@ pub fn study(
     } else {
         Vec::new()
     };
+    let weighing = Weigh::of(&plan);
+    let rocks = weighing.rocks(plan.count);
     let mut statistics = Vec::new();
     for subject in 0..subjects.len() {
         let all: Vec<Vec<f64>> = rungs.iter().map(|rung| rung.values[subject].clone()).collect();
-        let paired = Paired::new(&all);
+        let paired = Paired::weighing(&all, &rocks);
         let on_mesh: Vec<_> = meshes.iter().map(|mesh| mesh.rung.values[subject].clone()).collect();
         let times: Vec<f64> = meshes.iter().map(|mesh| mesh.times).collect();
         // The coarsest mesh may be too coarse to follow any law: the error is told by the two finest.
         let finest = meshes.len().saturating_sub(2);
-        let (on_meshes, on_finest) = (Paired::new(&on_mesh), Paired::new(&on_mesh[finest..]));
+        let on = |meshes: &[Vec<f64>]| Paired::weighing(meshes, &rocks);
+        let (on_meshes, on_finest) = (on(&on_mesh), on(&on_mesh[finest..]));
         for percent in PERCENTS {
             let p = f64::from(percent) / 100.0;
-            let Some(found) = percentile(&all[own], p) else { continue };
+            let Some(found) = weighing.percentile(&all[own], p) else { continue };
             let ladder = paired.ladder(p, relatives, order, plan.seed);
-            let sampling = sampling(&all[own], p);
+            let sampling = weighing.sampling(&all[own], p);
             let meshes = with_meshes.then(|| Ladder {
                 own_error: on_finest.ladder(p, &times[finest..], MESH_ORDER, plan.seed).own_error,
                 ..on_meshes.ladder(p, &times, MESH_ORDER, plan.seed)
@@ -196,6 +200,7 @@ pub fn study(
         meshes,
         subjects,
         statistics,
+        effective_releases: weighing.effective(plan.count),
     })
 }
 
@@ -291,21 +296,6 @@ impl Rung {
             values.push(if failed { f64::NAN } else { subject.value(row, fall) });
         }
     }
-}
-
-fn percentile(values: &[f64], p: f64) -> Option<Percentile> {
-    crate::hazard::Sample::of(values.iter().copied()).percentile(p)
-}
-
-/// Half widths of the 95 % interval for the first 100, 200, 500, 1000 … releases.
-fn sampling(values: &[f64], p: f64) -> Vec<(usize, f64)> {
-    let numbers = (2..).flat_map(|power| [1, 2, 5].map(|step| step * 10usize.pow(power)));
-    let inner = numbers.take_while(|&n| n < values.len()).filter(|&n| n >= FEWEST);
-    let half = |n: usize| {
-        let found = percentile(&values[..n], p)?;
-        Some((n, 0.5 * (found.high_95? - found.low_95?)))
-    };
-    inner.chain([values.len()]).filter_map(half).collect()
 }
 
 impl Statistic {

@@ -29,6 +29,15 @@ pub(super) fn page(study: &SceneStudy, wish: Option<Wish>) -> String {
         study.rungs.len(),
         study.threads
     );
+    if let Some(effective) = study.effective_releases {
+        let _ = writeln!(
+            page,
+            "Sizes are sampled by importance: every rock counts for its part of the frequency of its source, and {} of equal weight would \
+             know as much. Percentiles hold for the sources as they are. Rocks are drawn again class by class of size and source, and the interval of \
+             a percentile is Woodruff's.\n",
+            format::decimal(effective, 0)
+        );
+    }
     sentences(&mut page, study, wish);
     page += "\n![Error over run time](error.svg)\n\n";
     settings_table(&mut page, study);

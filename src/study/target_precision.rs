@@ -35,13 +35,13 @@ pub struct TargetPrecision {
 }
 
 impl TargetPrecision {
-    /// The percentile of so many values.
-    pub fn percentile(&self, values: &[f64]) -> Option<Percentile> {
-        Sample::of(values.iter().copied()).percentile(f64::from(self.percent) / 100.0)
+    /// The percentile of a sample.
+    fn percentile(&self, sample: &Sample) -> Option<Percentile> {
+        sample.percentile(f64::from(self.percent) / 100.0)
     }
 
     /// Width of the interval; `None` with too few rocks.
-    pub fn width_of(found: &Percentile) -> Option<f64> {
+    fn width_of(found: &Percentile) -> Option<f64> {
         Some(found.high_95? - found.low_95?)
     }
 
@@ -66,21 +66,21 @@ impl TargetPrecision {
         })
     }
 
-    /// How many releases the width of the interval of `values`, found with `done`, lets expect; 0 when it is narrow enough or
+    /// How many releases the width of the interval of a sample, found with `done`, lets expect; 0 when it is narrow enough or
     /// not yet known.
-    pub fn needs(&self, values: &[f64], done: usize) -> f64 {
-        let found = self.percentile(values);
+    pub fn needs(&self, sample: &Sample, done: usize) -> f64 {
+        let found = self.percentile(sample);
         let width = found.as_ref().and_then(Self::width_of).filter(|width| *width >= self.width);
         width.map_or(0.0, |width| done as f64 * (width / self.width) * (width / self.width))
     }
 
-    /// How many releases to go on to after `done` that gave `values`; `None` when the interval is narrow enough.
+    /// How many releases to go on to after `done` that gave a sample; `None` when the interval is narrow enough.
     ///
     /// The width falls with the root of the number; a tenth more spares a last small round. At least a quarter more and
     /// at most four times as many, because the width itself is known by chance only. A function of the values alone: the
     /// same run asks for the same releases on any machine.
-    pub fn next(&self, values: &[f64], done: usize) -> Option<usize> {
-        let found = self.percentile(values);
+    pub fn next(&self, sample: &Sample, done: usize) -> Option<usize> {
+        let found = self.percentile(sample);
         let needs = found.as_ref().map_or(0, |percentile| percentile.needs);
         let Some(width) = found.as_ref().and_then(Self::width_of) else {
             return Some((4 * done).max(2 * needs));
@@ -173,9 +173,10 @@ mod tests {
     fn releases_grow_until_the_interval_is_narrow() {
         let target: TargetPrecision = "runout.p50 < 0.02 m".parse().unwrap();
         let values: Vec<f64> = (0..100_000).map(|k| (f64::from(k) * 0.618_034).fract()).collect();
+        let first = |count: usize| Sample::of(values[..count].iter().copied());
         let mut done = 100;
         let mut asked = vec![done];
-        while let Some(next) = target.next(&values[..done], done) {
+        while let Some(next) = target.next(&first(done), done) {
             assert!(next > done);
             done = next;
             asked.push(done);
@@ -184,6 +185,6 @@ mod tests {
         assert!((9_000..16_000).contains(&done), "{asked:?}");
         // Too few for any interval at all.
         let far: TargetPrecision = "runout.p99 < 1 m".parse().unwrap();
-        assert!(far.next(&values[..10], 10).unwrap() >= 2 * 299);
+        assert!(far.next(&first(10), 10).unwrap() >= 2 * 299);
     }
 }

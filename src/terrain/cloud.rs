@@ -192,20 +192,21 @@ impl Cloud {
         }))
     }
 
+    /// The points in a box; all without one.
+    #[must_use]
+    pub(super) fn cropped(mut self, box_m: Option<BoxM>) -> Self {
+        if let Some(box_m) = box_m {
+            self.points_m.retain(|point| distance(box_m, [point.x, point.y]) <= 0.0);
+        }
+        self
+    }
+
     /// Triangles between its points around `map_origin_m`.
-    pub(super) fn into_soup(
-        mut self,
-        file: &Path,
-        box_m: Option<BoxM>,
-        map_origin_m: Vec3,
-    ) -> Result<Soup> {
+    pub(super) fn into_soup(self, file: &Path, map_origin_m: Vec3) -> Result<Soup> {
         let mut soup = Soup::of_format(Format::Cloud);
         soup.epsg = self.epsg;
         let [all, ground] = self.counts;
         soup.notes.push(format!("{all} points, {ground} of them ground"));
-        if let Some(box_m) = box_m {
-            self.points_m.retain(|point| distance(box_m, [point.x, point.y]) <= 0.0);
-        }
         let kept = self.points_m.len();
         soup.notes.push(format!("thinned to {kept}, the lowest of each cell of {} m", self.cell_m));
         let (facets, longest_m) = delaunay(&self.points_m, map_origin_m);
@@ -235,16 +236,67 @@ fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Vec<Facet>, f64) {
     };
     let mut triangles: Vec<[usize; 3]> = mesh
         .inner_faces()
-        .map(|face| {
-            let mut corners = face.vertices().map(|vertex| vertex.data().number);
-            let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
-            corners.rotate_left(first);
-            corners
-        })
+        .map(|face| lowest_first(face.vertices().map(|vertex| vertex.data().number)))
         .collect();
+    triangles.sort_unstable();
+    settle_ties(&mut triangles, &local);
     triangles.sort_unstable();
     let facets: Vec<Facet> = triangles.iter().map(|corners| corners.map(|k| local[k])).collect();
     let edges = facets.iter().flat_map(|[a, b, c]| [b - a, c - b, a - c]);
     let longest_m = edges.map(|edge| edge.xy().norm()).fold(0.0, f64::max);
     (facets, longest_m)
+}
+
+/// The same triangle from its lowest number.
+fn lowest_first(mut corners: [usize; 3]) -> [usize; 3] {
+    let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
+    corners.rotate_left(first);
+    corners
+}
+
+/// Determinant of four points on one circle, over the fourth power of the longest side (–): rounding of coordinates.
+const ON_CIRCLE: f64 = 1e-6;
+
+/// Where four points lie on one circle, as in a lattice, either diagonal between them is Delaunay's: the one whose ends
+/// differ less in height is taken, as in the cells of grids.
+fn settle_ties(triangles: &mut [[usize; 3]], local: &[Vec3]) {
+    let mut sides: Vec<([usize; 2], usize)> = Vec::with_capacity(3 * triangles.len());
+    for (t, &[a, b, c]) in triangles.iter().enumerate() {
+        sides.extend([[a, b], [b, c], [c, a]].map(|[a, b]| ([a.min(b), a.max(b)], t)));
+    }
+    sides.sort_unstable();
+    for pair in sides.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+        let ([low, high], [one, other]) = (pair[0].0, [pair[0].1, pair[1].1]);
+        // an edge that an earlier tie has moved to another triangle is none of these two's
+        let third = |t: usize, from: usize, to: usize| {
+            let corners = triangles[t];
+            (0..3).find_map(|k| {
+                let is_side = corners[k] == from && corners[(k + 1) % 3] == to;
+                is_side.then_some(corners[(k + 2) % 3])
+            })
+        };
+        let (from, to) = if third(one, low, high).is_some() { (low, high) } else { (high, low) };
+        let (Some(left), Some(right)) = (third(one, from, to), third(other, to, from)) else {
+            continue;
+        };
+        let quad = [from, right, to, left].map(|v| local[v]);
+        if lie_on_circle(quad) && is_better([quad[1], quad[3]], [quad[0], quad[2]]) {
+            triangles[one] = lowest_first([from, right, left]);
+            triangles[other] = lowest_first([right, to, left]);
+        }
+    }
+}
+
+fn lie_on_circle(quad: [Vec3; 4]) -> bool {
+    let longest2 =
+        (0..4).map(|k| (quad[(k + 1) % 4] - quad[k]).xy().norm_squared()).fold(0.0, f64::max);
+    let [a, b, c, d] = quad.map(|p| robust::Coord { x: p.x, y: p.y });
+    robust::incircle(a, b, c, d).abs() <= ON_CIRCLE * longest2 * longest2
+}
+
+/// Whether the first diagonal folds the surface less than the second; of equal ones, the one that runs north-east.
+fn is_better([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> bool {
+    let (own, other) = ((a.z - b.z).abs(), (c.z - d.z).abs());
+    let runs_north_east = |u: Vec3, v: Vec3| (u.x - v.x) * (u.y - v.y) > 0.0;
+    own < other || (own <= other && runs_north_east(a, b) && !runs_north_east(c, d))
 }

@@ -1,6 +1,6 @@
 //! The edges of a triangle mesh and the triangles that share them.
 
-use rayon::slice::ParallelSliceMut;
+use rayon::iter::{IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 /// Every edge of a mesh once, with the triangles on it.
 ///
@@ -17,39 +17,48 @@ pub struct Edges {
     triangles: Vec<u32>,
 }
 
+/// A side of a triangle in the bucket of its lower vertex: the upper vertex, and its place `3 t + k`.
+type Side = (u32, u32);
+
 impl Edges {
     /// Lists the edges of `triangles` (vertex indices, all three different).
     pub fn of(triangles: &[[u32; 3]]) -> Self {
-        // One row per side of a triangle: its ends (packed, lower first) and its place 3 t + k.
-        let mut sides: Vec<(u64, u32)> = Vec::with_capacity(3 * triangles.len());
-        for (t, corners) in triangles.iter().enumerate() {
-            for k in 0..3 {
-                let (a, b) = (corners[k], corners[(k + 1) % 3]);
-                let ends = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
-                sides.push((ends, (3 * t + k) as u32));
-            }
-        }
-        sides.par_sort_unstable(); // no two rows are equal: one order only, on any number of threads
-        Self::gather(&sides, triangles.len())
-    }
-
-    /// Numbers the runs of equal ends.
-    fn gather(sides: &[(u64, u32)], triangles: usize) -> Self {
-        let mut edges = Self { of_triangle: vec![[0; 3]; triangles], ..Self::default() };
+        let (buckets, sides) = sides_by_lower_vertex(triangles);
+        let mut edges = Self { of_triangle: vec![[0; 3]; triangles.len()], ..Self::default() };
         edges.triangles.reserve_exact(sides.len());
-        let mut last = None;
-        for &(ends, side) in sides {
-            if last != Some(ends) {
-                edges.starts.push(edges.triangles.len() as u32);
-                edges.ends.push([(ends >> 32) as u32, ends as u32]);
-                last = Some(ends);
+        for (lower, bucket) in (0..).zip(buckets.windows(2)) {
+            let mut last = None;
+            for &(upper, side) in &sides[bucket[0] as usize..bucket[1] as usize] {
+                if last != Some(upper) {
+                    edges.starts.push(edges.triangles.len() as u32);
+                    edges.ends.push([lower, upper]);
+                    last = Some(upper);
+                }
+                let (triangle, k) = (side / 3, side as usize % 3);
+                edges.of_triangle[triangle as usize][k] = edges.ends.len() as u32 - 1;
+                edges.triangles.push(triangle);
             }
-            let (triangle, k) = (side / 3, side as usize % 3);
-            edges.of_triangle[triangle as usize][k] = edges.ends.len() as u32 - 1;
-            edges.triangles.push(triangle);
         }
         edges.starts.push(edges.triangles.len() as u32);
         edges
+    }
+
+    /// The same edges when triangle `k` is the one that was `order[k]`: what [`Edges::of`] would list, without sorting
+    /// again.
+    #[must_use]
+    pub fn reordered(mut self, order: &[u32]) -> Self {
+        let mut place = vec![0u32; order.len()];
+        for (now, &before) in (0..).zip(order) {
+            place[before as usize] = now;
+        }
+        self.triangles.par_iter_mut().for_each(|triangle| *triangle = place[*triangle as usize]);
+        drop(place);
+        for on_edge in self.starts.windows(2) {
+            self.triangles[on_edge[0] as usize..on_edge[1] as usize].sort_unstable();
+        }
+        self.of_triangle =
+            order.par_iter().map(|&before| self.of_triangle[before as usize]).collect();
+        self
     }
 
     /// Number of edges.
@@ -85,4 +94,29 @@ impl Edges {
     pub fn borders(&self) -> Vec<u32> {
         (0..self.len() as u32).filter(|&edge| self.triangles_on(edge).len() == 1).collect()
     }
+}
+
+/// The sides of all triangles sorted by lower vertex, upper vertex and place, and where the bucket of each vertex begins.
+fn sides_by_lower_vertex(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<Side>) {
+    let ends = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a)].map(|(a, b)| (a.min(b), a.max(b)));
+    let vertices = triangles.iter().flatten().max().map_or(0, |&highest| highest as usize + 1);
+    let mut starts = vec![0u32; vertices + 1];
+    for (lower, _) in triangles.iter().copied().flat_map(ends) {
+        starts[lower as usize + 1] += 1;
+    }
+    for vertex in 0..vertices {
+        starts[vertex + 1] += starts[vertex];
+    }
+    let mut free = starts.clone();
+    let mut sides: Vec<Side> = vec![(0, 0); 3 * triangles.len()];
+    for (side, (lower, upper)) in (0..).zip(triangles.iter().copied().flat_map(ends)) {
+        let place = &mut free[lower as usize];
+        sides[*place as usize] = (upper, side);
+        *place += 1;
+    }
+    // buckets are short: a vertex has about three edges to later ones
+    for bucket in starts.windows(2) {
+        sides[bucket[0] as usize..bucket[1] as usize].sort_unstable();
+    }
+    (starts, sides)
 }

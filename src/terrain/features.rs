@@ -110,9 +110,14 @@ pub struct Features {
 impl Features {
     /// Finds the touchable features.
     pub fn of(vertices_m: &[Vec3], triangles: &[[u32; 3]]) -> Self {
-        let faces =
-            triangles.iter().map(|t| Face::new(t.map(|v| vertices_m[v as usize]))).collect();
-        let mut features = Self { faces, edges: Edges::of(triangles), ..Self::default() };
+        Self::of_edges(Edges::of(triangles), vertices_m, triangles)
+    }
+
+    /// The same where the edges are known.
+    pub(super) fn of_edges(edges: Edges, vertices_m: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        let face = |corners: &[u32; 3]| Face::new(corners.map(|v| vertices_m[v as usize]));
+        let faces = triangles.par_iter().map(face).collect();
+        let mut features = Self { faces, edges, ..Self::default() };
         features.link(vertices_m.len(), triangles);
         features.own(vertices_m, triangles);
         features

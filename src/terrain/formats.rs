@@ -13,10 +13,10 @@ pub use ply::parse as parse_ply;
 use super::cloud;
 use super::geotiff;
 use super::grid::{self, Grid};
+use super::make;
 use super::stl::{self, Facet, Format, Soup};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
-use std::io::Read;
 use std::path::Path;
 
 /// What is asked of a file beside its triangles.
@@ -54,10 +54,32 @@ pub(super) enum Loaded {
     /// Triangles, in coordinates of the file.
     Mesh(Soup),
     /// Heights, in map coordinates.
-    Grid { grid: Grid, format: Format, epsg: Option<u32> },
+    Grid(Heights),
+    /// Was one of the others, of which no rock reaches anything.
+    Unreached(Format),
+    /// Trees, in map coordinates.
+    Trees(make::List),
     /// Ground points, in map coordinates.
     #[cfg(feature = "cloud")]
     Cloud(cloud::Cloud),
+}
+
+/// An elevation model.
+#[derive(Debug)]
+pub(super) struct Heights {
+    grid: Grid,
+    format: Format,
+    epsg: Option<u32>,
+    /// What was done with it, in words.
+    notes: Vec<String>,
+    /// How many other grids its surface goes on in.
+    joined: usize,
+}
+
+impl Heights {
+    fn of(grid: Grid, format: Format, epsg: Option<u32>) -> Loaded {
+        Loaded::Grid(Self { grid, format, epsg, notes: Vec::new(), joined: 0 })
+    }
 }
 
 /// How a file begins, and what it is.
@@ -81,7 +103,7 @@ const ELSEWHERE: [(&[u8], &str, &str); 5] = [
 
 /// Reads a file of any format.
 pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
-    let head = head(path)?;
+    let head = crate::file::head(path)?;
     let format = format_of(&head);
     let whole = || crate::file::read(path, crate::file::LONGEST_MESH);
     match format {
@@ -92,20 +114,23 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
                 None
             };
             let geotiff::Raster { grid, epsg } = geotiff::read(path, window, options.epsg)?;
-            Ok(Loaded::Grid { grid, format: Format::GeoTiff, epsg })
+            Ok(Heights::of(grid, Format::GeoTiff, epsg))
         }
-        Some(Format::AsciiGrid) => {
-            Ok(Loaded::Grid { grid: Grid::read(path)?, format: Format::AsciiGrid, epsg: None })
-        }
+        Some(Format::AsciiGrid) => Ok(Heights::of(Grid::read(path)?, Format::AsciiGrid, None)),
         Some(Format::Ply) => ply::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Obj) => obj::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Cloud) => read_cloud(path, options),
-        Some(Format::Ascii | Format::Binary) | None => {
+        Some(Format::Ascii | Format::Binary | Format::Trees) | None => {
             if let Some((_, kind, command)) =
                 ELSEWHERE.iter().find(|(mark, ..)| head.starts_with(mark))
             {
                 let remedy = format!("write it as GeoTIFF: {command} {} out.tif", path.display());
                 return Err(Error::input(path, "start", format!("found {kind}"), remedy));
+            }
+            if make::begins_like_list(&head) {
+                let remedy =
+                    "write it under [[trees]] file, or as zones, lines, barriers or ground_zones";
+                return Err(wrong(path, "start", "found a drawing or a list of trees", remedy));
             }
             stl::read(path).map(Loaded::Mesh)
         }
@@ -117,8 +142,8 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
 /// # Errors
 /// A file that cannot be read, or is none of them.
 pub fn read_grid(path: &Path) -> Result<Grid> {
-    if let Loaded::Grid { grid, .. } = read(path, &Options::default())? {
-        return Ok(grid);
+    if let Loaded::Grid(heights) = read(path, &Options::default())? {
+        return Ok(heights.grid);
     }
     Err(wrong(path, "start", "found no grid", "write a GeoTIFF or an ESRI ASCII grid"))
 }
@@ -132,13 +157,6 @@ fn read_cloud(path: &Path, options: &Options) -> Result<Loaded> {
 fn read_cloud(path: &Path, _: &Options) -> Result<Loaded> {
     let remedy = "build rockfall with `--features cloud`, or make an elevation model of it: pdal translate IN.laz OUT.tif -w gdal --writers.gdal.resolution=1 --writers.gdal.output_type=min";
     Err(Error::input(path, "start", "found a LAS or LAZ point cloud", remedy))
-}
-
-fn head(path: &Path) -> Result<Vec<u8>> {
-    let mut head = Vec::new();
-    let file = crate::file::open(path, crate::file::LONGEST_MESH)?;
-    file.take(4096).read_to_end(&mut head).map_err(Error::file("read", path))?;
-    Ok(head)
 }
 
 fn format_of(head: &[u8]) -> Option<Format> {

@@ -67,13 +67,24 @@ impl Grid {
     /// The origin is subtracted from the corner before a cell's place is added: no digit of the grid is lost to the size
     /// of map coordinates.
     pub fn facets(&self, map_origin_m: Vec3) -> Vec<Facet> {
-        let corner_m = [self.corner_m[0] - map_origin_m.x, self.corner_m[1] - map_origin_m.y];
         triangulate(self.columns, self.rows, |column, row_from_south| {
             let z = self.value(column, self.rows - 1 - row_from_south)?;
-            let [x, y] = [(corner_m[0], column), (corner_m[1], row_from_south)]
-                .map(|(corner, cells)| corner + (cells as f64 + 0.5) * self.cell_m);
-            Some(Vec3::new(x, y, z - map_origin_m.z))
+            Some(self.centre_around(column, row_from_south, map_origin_m, z))
         })
+    }
+
+    /// A cell's centre at the height `z_m` of the map, around `map_origin_m`.
+    fn centre_around(
+        &self,
+        column: usize,
+        row_from_south: usize,
+        map_origin_m: Vec3,
+        z_m: f64,
+    ) -> Vec3 {
+        let corner_m = [self.corner_m[0] - map_origin_m.x, self.corner_m[1] - map_origin_m.y];
+        let [x, y] = [(corner_m[0], column), (corner_m[1], row_from_south)]
+            .map(|(corner, cells)| corner + (cells as f64 + 0.5) * self.cell_m);
+        Vec3::new(x, y, z_m - map_origin_m.z)
     }
 
     /// Whether it can be a slope: cells and heights of this world, and at least one triangle.
@@ -303,21 +314,33 @@ pub fn triangulate(
     rows: usize,
     point: impl Fn(usize, usize) -> Option<Vec3>,
 ) -> Vec<Facet> {
+    cut_cells(columns, rows, |cell| around(cell).map(|[column, row]| point(column, row)))
+}
+
+/// Facets of the cells of a lattice of points; `corners` gives those of a cell: south-west, south-east, north-east,
+/// north-west.
+fn cut_cells(
+    columns: usize,
+    rows: usize,
+    corners: impl Fn((usize, usize)) -> [Option<Vec3>; 4],
+) -> Vec<Facet> {
     let cells = || {
         let of_row =
             move |row: usize| (0..columns.saturating_sub(1)).map(move |column| (column, row));
         (0..rows.saturating_sub(1)).flat_map(of_row)
     };
-    let around = |(column, row): (usize, usize)| {
-        [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| point(column + i, row + j))
-    };
     // Counted first: millions of facets are not moved about while the list grows.
     let count = |corners: [Option<Vec3>; 4]| corners.iter().flatten().count().saturating_sub(2);
-    let mut facets = Vec::with_capacity(cells().map(|cell| count(around(cell))).sum());
+    let mut facets = Vec::with_capacity(cells().map(|cell| count(corners(cell))).sum());
     for cell in cells() {
-        facets.extend(cut(around(cell)).into_iter().flatten());
+        facets.extend(cut(corners(cell)).into_iter().flatten());
     }
     facets
+}
+
+/// The corners of a cell: column and row of the points, in the order of [`cut_cells`].
+fn around((column, row): (usize, usize)) -> [[usize; 2]; 4] {
+    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[i, j]| [column + i, row + j])
 }
 
 /// Cuts a cell with corners south-west, south-east, north-east, north-west.
@@ -338,7 +361,10 @@ fn cut(around: [Option<Vec3>; 4]) -> [Option<Facet>; 2] {
     }
 }
 
+mod mosaic;
 mod window;
+
+pub(super) use mosaic::Standing;
 
 #[cfg(feature = "cloud")]
 pub(super) use window::distance;

@@ -6,6 +6,7 @@ mod table;
 mod tests;
 
 use crate::error::{Error, Result};
+use crate::rock::Vec3;
 use crate::terrain::stl::{Format, Spacing};
 use crate::terrain::weld::{Piece, Tally, Welded};
 use std::path::Path;
@@ -31,6 +32,13 @@ pub struct FileHealth {
     pub epsg: Option<u32>,
     /// What the file holds and what was done with it, in words.
     pub notes: Vec<String>,
+}
+
+impl FileHealth {
+    /// Examines files; `map_origin_m` is the map position of their (0, 0, 0).
+    pub(super) fn of_all(pieces: &[Piece], map_origin_m: Vec3) -> Vec<Self> {
+        pieces.iter().map(|piece| measure::file(piece, map_origin_m)).collect()
+    }
 }
 
 /// The state of a welded terrain. All places are map coordinates (m).
@@ -81,10 +89,15 @@ pub struct Health {
 impl Health {
     /// Examines a welded terrain; `pieces` are what it was welded from.
     pub fn of(welded: &Welded, pieces: &[Piece]) -> Self {
+        Self::with_files(welded, FileHealth::of_all(pieces, welded.map_origin_m))
+    }
+
+    /// Examines a welded terrain; `files` is what there is to say of what it was welded from.
+    pub(super) fn with_files(welded: &Welded, files: Vec<FileHealth>) -> Self {
         let edges = &welded.edges;
         let [low_m, high_m] = measure::box_m(welded);
         Self {
-            files: pieces.iter().map(|piece| measure::file(piece, welded.map_origin_m)).collect(),
+            files,
             origin_m: welded.origin_m.into(),
             tolerance_m: welded.tolerance_m,
             triangles: welded.triangles.len(),

@@ -4,10 +4,9 @@
 //! then packed: four child boxes a node in `f32`, rounded outwards, and up to three triangles a leaf. Triangles
 //! are renumbered in tree order, so that neighbours in space are neighbours in memory.
 
+mod build;
+
 use crate::rock::Vec3;
-use parry3d_f64::bounding_volume::Aabb;
-use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use wide::f32x4;
 
 /// Most triangles in one leaf: four boxes at once are cheaper than the triangles that smaller ones leave out.
@@ -98,60 +97,7 @@ const DEPTH: usize = 56;
 /// Children that wait during a traversal, at most.
 pub const WAITING: usize = (WIDE - 1) * DEPTH + 1;
 
-struct Loose {
-    lo: Vec3,
-    hi: Vec3,
-    leaf: Option<u32>,
-    children: [u32; 2],
-    count: u32,
-}
-
 impl Index {
-    /// Builds the index over triangles given by their corners, and the order in which it wants them.
-    ///
-    /// `order[k]` is the number that triangle `k` of the index had in the input.
-    ///
-    /// # Panics
-    /// If the tree were deeper than a traversal can walk, which no mesh makes it.
-    pub fn build(corners: impl Iterator<Item = [Vec3; 3]>) -> (Self, Vec<u32>) {
-        let boxes: Vec<Aabb> = corners.map(|[a, b, c]| box_of(a, b, c)).collect();
-        if boxes.is_empty() {
-            return (Self::default(), Vec::new());
-        }
-        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
-        drop(boxes);
-        let mut loose = unroll(&tree);
-        drop(tree);
-        count_leaves(&mut loose);
-        let root = &loose[0];
-        let mut index = Self { nodes: Vec::new(), lo: root.lo, hi: root.hi };
-        let mut order = Vec::with_capacity(root.count as usize);
-        let depth = index.pack(&loose, 0, &mut order);
-        assert!(depth <= DEPTH, "the index of the mesh has {depth} levels");
-        (index, order)
-    }
-
-    /// Packs what is below a node, in the order of the tree; returns how deep it is.
-    fn pack(&mut self, loose: &[Loose], top: u32, order: &mut Vec<u32>) -> usize {
-        let place = self.nodes.len();
-        self.nodes.push(Node::EMPTY);
-        let mut depth = 0;
-        for (side, child) in widest(loose, top).enumerate() {
-            let from = &loose[child as usize];
-            let word = if from.count <= LEAF {
-                let start = order.len() as u32;
-                gather(loose, child, order);
-                LEAF_BIT | ((from.count - 1) << COUNT_SHIFT) | start
-            } else {
-                let next = self.nodes.len() as u32;
-                depth = depth.max(self.pack(loose, child, order));
-                next
-            };
-            self.nodes[place].put(side, word, (&from.lo, &from.hi));
-        }
-        depth + 1
-    }
-
     /// The nodes; the first is the root. Empty when there is no triangle.
     #[inline]
     pub fn nodes(&self) -> &[Node] {
@@ -202,85 +148,6 @@ impl Index {
                 meets &= meets - 1;
             }
         }
-    }
-}
-
-/// The children that a packed node takes below a node of the tree, from left to right: of what it has, the largest box is
-/// opened as long as there is room.
-fn widest(loose: &[Loose], top: u32) -> impl Iterator<Item = u32> {
-    let area = |node: u32| {
-        let size = loose[node as usize].hi - loose[node as usize].lo;
-        size.x * size.y + size.y * size.z + size.z * size.x
-    };
-    let mut taken = [top; WIDE];
-    let mut count = 1;
-    while count < WIDE {
-        let open = (0..count).filter(|&k| loose[taken[k] as usize].count > LEAF);
-        let Some(largest) = open.max_by(|&a, &b| area(taken[a]).total_cmp(&area(taken[b]))) else {
-            break;
-        };
-        let children = loose[taken[largest] as usize].children;
-        taken.copy_within(largest + 1..count, largest + 2);
-        (taken[largest], taken[largest + 1]) = (children[0], children[1]);
-        count += 1;
-    }
-    taken.into_iter().take(count)
-}
-
-fn box_of(a: Vec3, b: Vec3, c: Vec3) -> Aabb {
-    let (lo, hi) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-    Aabb::new(Vector::from(lo), Vector::from(hi))
-}
-
-/// The tree's nodes in an order in which parents come before children.
-///
-/// `traverse` visits both children of a node before it goes down, the left one first.
-fn unroll(tree: &Bvh) -> Vec<Loose> {
-    let whole = tree.root_aabb();
-    let mut nodes = vec![Loose {
-        lo: whole.mins.into(),
-        hi: whole.maxs.into(),
-        leaf: None,
-        children: [0; 2],
-        count: 0,
-    }];
-    tree.traverse(|node| {
-        nodes.push(Loose {
-            lo: node.mins().into(),
-            hi: node.maxs().into(),
-            leaf: node.leaf_data(),
-            children: [0; 2],
-            count: 0,
-        });
-        TraversalAction::Continue
-    });
-    if nodes.len() == 2 {
-        nodes.remove(0);
-        return nodes;
-    }
-    let mut waiting = vec![0];
-    let mut next = 1;
-    while let Some(parent) = waiting.pop() {
-        nodes[parent].children = [next as u32, next as u32 + 1];
-        waiting.extend([next + 1, next].into_iter().filter(|&k| nodes[k].leaf.is_none()));
-        next += 2;
-    }
-    nodes
-}
-
-fn count_leaves(nodes: &mut [Loose]) {
-    for k in (0..nodes.len()).rev() {
-        nodes[k].count = match nodes[k].leaf {
-            Some(_) => 1,
-            None => nodes[k].children.iter().map(|&child| nodes[child as usize].count).sum(),
-        };
-    }
-}
-
-fn gather(nodes: &[Loose], top: u32, order: &mut Vec<u32>) {
-    match nodes[top as usize].leaf {
-        Some(triangle) => order.push(triangle),
-        None => nodes[top as usize].children.iter().for_each(|&child| gather(nodes, child, order)),
     }
 }
 

@@ -1,14 +1,16 @@
 //! From terrain files to the terrain: read, crop, lay zones of ground on it, weld, examine, index.
 
-use super::formats::surface::starts;
+use super::formats::surface::{self, starts};
 use super::formats::{self, Loaded, Options};
-use super::health::Health;
-use super::patches::{Layer, Patches};
-use super::stl::{self, Soup};
-use super::weld::{Piece, Up, weld};
+use super::health::{FileHealth, Health};
+use super::make::{self, List};
+use super::patches::{Layer, Patched, Patches};
+use super::stl::{self, Format, Soup};
+use super::weld::{self, Piece, Up, weld};
 use super::{Sheet, Terrain};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
+use std::path::Path;
 
 /// One file and how it enters the terrain.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,24 +34,28 @@ impl Source {
     fn load(&self) -> Result<Loaded> {
         let path = &self.sheet.path;
         let Some(options) = &self.options else { return stl::read(path).map(Loaded::Mesh) };
-        let loaded = formats::read(path, options)?;
+        let is_list = self.sheet.is_tree && make::begins_like_list(&crate::file::head(path)?);
+        let loaded = if is_list {
+            Loaded::Trees(make::read_list(path)?)
+        } else {
+            formats::read(path, options)?
+        };
+        let wrong =
+            |key: &str, found: &str, remedy: &str| Err(Error::input(path, key, found, remedy));
+        let what = if is_list { "a list of trees" } else { "an elevation model" };
         let is_mesh = matches!(loaded, Loaded::Mesh(_));
-        if is_mesh && (options.crop.is_some() || options.resample_m.is_some()) {
-            let remedy = "remove crop and resample_m: a mesh is taken as it is";
-            return Err(Error::input(path, "crop, resample_m", "found them beside a mesh", remedy));
+        if (is_mesh || is_list) && (options.crop.is_some() || options.resample_m.is_some()) {
+            let found = format!("found them beside {}", if is_mesh { "a mesh" } else { what });
+            let remedy = "remove crop and resample_m: a mesh is taken as it is, and so are stems";
+            return wrong("crop, resample_m", &found, remedy);
         }
-        if !is_mesh && self.sheet.is_tree {
-            let remedy = "write a mesh of stems under [[trees]]; `rockfall mesh stems` makes one of a list of trees";
-            return Err(Error::input(path, "[[trees]]", "found an elevation model", remedy));
+        if !is_mesh && !is_list && self.sheet.is_tree {
+            let remedy = "write a mesh of stems under [[trees]], or a list of trees with x, y, dbh_m, height_m";
+            return wrong("[[trees]]", "found an elevation model", remedy);
         }
         if !is_mesh && (self.up != Up::Z || (self.scale - 1.0).abs() > 0.0) {
-            let remedy = "remove up and scale: elevation models are in metres, z up";
-            return Err(Error::input(
-                path,
-                "up, scale",
-                "found them beside an elevation model",
-                remedy,
-            ));
+            let remedy = format!("remove up and scale: {what} is in metres, z up");
+            return wrong("up, scale", &format!("found them beside {what}"), &remedy);
         }
         Ok(loaded)
     }
@@ -82,53 +88,120 @@ impl Terrain {
         tolerance_m: Option<f64>,
         patches: &Patches,
     ) -> Result<(Self, Health)> {
-        let mut soups = read_soups(sources, map_origin_m)?;
+        let (mut soups, lists) = read_soups(sources, map_origin_m)?;
         let epsg = one_system(sources, &soups)?;
-        let mut sheets: Vec<Sheet> = sources.iter().map(|source| source.sheet.clone()).collect();
-        let mut layer = (!patches.is_empty()).then(|| Layer::new(patches));
-        let mut sheet_of_facet: Vec<Vec<u16>> = vec![Vec::new(); sources.len()];
-        if let Some(layer) = &mut layer {
-            for (number, source) in sources.iter().enumerate().filter(|(_, s)| !s.sheet.is_tree) {
-                let placed = |point: Vec3| source.placed(point) + map_origin_m;
-                let grounds = layer.lay(&mut soups[number], source.sheet.ground, &placed)?;
-                sheet_of_facet[number] = sheets_of(&mut sheets, number, &grounds)?;
-            }
-        }
-        let pieces: Vec<Piece> = (0..)
-            .zip(sources.iter().zip(&soups))
-            .map(|(sheet, (source, soup))| Piece {
-                file: &source.sheet.path,
-                soup,
-                up: source.up,
-                scale: source.scale,
-                sheet,
-            })
-            .collect();
-        let mut welded = weld(&pieces, map_origin_m, tolerance_m)?;
-        let health = Health::of(&welded, &pieces);
+        stand(&lists, sources, &mut soups, map_origin_m)?;
+        let Laid { sheets, sheet_of_facet, patched } =
+            lay(patches, sources, &mut soups, map_origin_m)?;
+        let pieces: Vec<Piece> = pieces(sources, &soups).collect();
+        let files = FileHealth::of_all(&pieces, map_origin_m);
+        let joined = weld::join(&pieces, map_origin_m, tolerance_m)?;
+        drop(pieces);
+        drop(soups);
+        let mut welded = joined.finish();
+        let health = Health::with_files(&welded, files);
         health.check()?;
         for (sheet, &facet) in welded.sheet_of.iter_mut().zip(&welded.facet_of) {
             if let Some(&other) = sheet_of_facet[usize::from(*sheet)].get(facet as usize) {
                 *sheet = other;
             }
         }
-        drop(soups);
-        let terrain =
-            Self { epsg, patched: layer.map(|layer| layer.done), ..Self::new(welded, sheets) };
-        Ok((terrain, health))
+        Ok((Self { epsg, patched, ..Self::new(welded, sheets) }, health))
     }
 }
 
-/// All files as triangles. What one file may be cropped to depends on the heights of all.
-fn read_soups(sources: &[Source], map_origin_m: Vec3) -> Result<Vec<Soup>> {
+/// Zones of ground on the files.
+struct Laid {
+    /// The files' own sheets, and one more for each other ground on a file.
+    sheets: Vec<Sheet>,
+    /// Of every facet, by file; empty where no zones are.
+    sheet_of_facet: Vec<Vec<u16>>,
+    patched: Option<Patched>,
+}
+
+fn lay(
+    patches: &Patches,
+    sources: &[Source],
+    soups: &mut [Soup],
+    map_origin_m: Vec3,
+) -> Result<Laid> {
+    let mut sheets: Vec<Sheet> = sources.iter().map(|source| source.sheet.clone()).collect();
+    let mut sheet_of_facet: Vec<Vec<u16>> = vec![Vec::new(); sources.len()];
+    if patches.is_empty() {
+        return Ok(Laid { sheets, sheet_of_facet, patched: None });
+    }
+    let mut layer = Layer::new(patches);
+    for (number, source) in sources.iter().enumerate().filter(|(_, s)| !s.sheet.is_tree) {
+        let placed = |point: Vec3| source.placed(point) + map_origin_m;
+        let grounds = layer.lay(&mut soups[number], source.sheet.ground, &placed)?;
+        sheet_of_facet[number] = sheets_of(&mut sheets, number, &grounds)?;
+    }
+    Ok(Laid { sheets, sheet_of_facet, patched: Some(layer.done) })
+}
+
+/// The files as they enter the mesh.
+fn pieces<'a>(sources: &'a [Source], soups: &'a [Soup]) -> impl Iterator<Item = Piece<'a>> {
+    (0..).zip(sources.iter().zip(soups)).map(|(sheet, (source, soup))| Piece {
+        file: &source.sheet.path,
+        soup,
+        up: source.up,
+        scale: source.scale,
+        sheet,
+    })
+}
+
+/// Lists of trees, with the number of their source.
+type Lists = Vec<(usize, List)>;
+
+/// Turns lists of trees into stems that stand on the slope.
+fn stand(lists: &Lists, sources: &[Source], soups: &mut [Soup], map_origin_m: Vec3) -> Result<()> {
+    if lists.is_empty() {
+        return Ok(());
+    }
+    let sheets = sources.iter().map(|source| source.sheet.clone()).collect();
+    let is_ground = |piece: &Piece| !sources[usize::from(piece.sheet)].sheet.is_tree;
+    let ground: Vec<Piece> = pieces(sources, soups).filter(is_ground).collect();
+    let slope = Terrain::new(weld(&ground, map_origin_m, None)?, sheets);
+    drop(ground);
+    for (number, list) in lists {
+        let mut facets = make::plant(&sources[*number].sheet.path, list, &slope)?;
+        facets.iter_mut().flatten().for_each(|corner| *corner -= map_origin_m);
+        soups[*number].facets = facets;
+    }
+    Ok(())
+}
+
+/// All files as triangles, and lists of trees apart. What one file may be cropped to depends on the heights of all.
+fn read_soups(sources: &[Source], map_origin_m: Vec3) -> Result<(Vec<Soup>, Lists)> {
     let loaded: Vec<Loaded> = sources.iter().map(Source::load).collect::<Result<_>>()?;
     let none = Options::default();
     let asked = |source: &Source| source.options.clone().unwrap_or_else(|| none.clone());
     let starts: Vec<_> = sources.iter().map(|source| starts(&asked(source), &loaded)).collect();
-    let soup = |((source, loaded), starts): ((&Source, Loaded), &_)| {
-        loaded.into_soup(&source.sheet.path, &asked(source), starts, map_origin_m)
+    let used = |((source, loaded), starts): ((&Source, Loaded), &_)| {
+        loaded.used(&source.sheet.path, &asked(source), starts)
     };
-    sources.iter().zip(loaded).zip(&starts).map(soup).collect()
+    let mut used: Vec<Loaded> =
+        sources.iter().zip(loaded).zip(&starts).map(used).collect::<Result<_>>()?;
+    let files: Vec<&Path> = sources.iter().map(|source| source.sheet.path.as_path()).collect();
+    let is_unreached = |(loaded, source): &(&Loaded, &Source)| {
+        source.sheet.is_tree || matches!(loaded, Loaded::Unreached(_))
+    };
+    if let Some(first) =
+        files.first().filter(|_| used.iter().zip(sources).all(|s| is_unreached(&s)))
+    {
+        return Err(surface::unreached(first));
+    }
+    let list = |(number, loaded): (usize, &Loaded)| match loaded {
+        Loaded::Trees(list) => Some((number, list.clone())),
+        _ => None,
+    };
+    let lists = used.iter().enumerate().filter_map(list).collect();
+    let facets = surface::facets(&mut used, &files, map_origin_m)?;
+    let soup = |((loaded, file), facets): ((Loaded, &&Path), _)| {
+        loaded.into_soup(file, facets, map_origin_m)
+    };
+    let soups = used.into_iter().zip(&files).zip(facets).map(soup).collect::<Result<_>>()?;
+    Ok((soups, lists))
 }
 
 /// The EPSG code that the files name: of all the same one, and the scene's if that has one.
@@ -140,10 +213,12 @@ fn one_system(sources: &[Source], soups: &[Soup]) -> Result<Option<u32>> {
         let asked = source.options.as_ref().and_then(|options| options.epsg);
         let other = asked.map(|code| (code, "the scene".to_owned())).or_else(|| known.clone());
         if let Some((other, whose)) = other.filter(|(other, _)| *other != code) {
-            let remedy = format!(
-                "write epsg = {code} in the scene, or gdalwarp -t_srs EPSG:{other} {} out.tif",
-                path.display()
-            );
+            let name = path.display();
+            let command = match soup.format {
+                Format::Trees => format!("ogr2ogr -t_srs EPSG:{other} out.geojson {name}"),
+                _ => format!("gdalwarp -t_srs EPSG:{other} {name} out.tif"),
+            };
+            let remedy = format!("write epsg = {code} in the scene, or {command}");
             let found = format!("found EPSG:{code} where {whose} has EPSG:{other}");
             return Err(Error::input(path, "coordinate system", found, remedy));
         }

@@ -42,6 +42,8 @@ pub enum Format {
     Obj,
     /// LAS or LAZ point cloud.
     Cloud,
+    /// List or drawing of trees.
+    Trees,
 }
 
 impl Format {
@@ -55,6 +57,7 @@ impl Format {
             Self::Ply => "PLY",
             Self::Obj => "OBJ",
             Self::Cloud => "point cloud",
+            Self::Trees => "list of trees",
         }
     }
 }

@@ -118,6 +118,22 @@ pub struct Welded {
 /// # Errors
 /// A scale or tolerance that is not usable, coordinates larger than the Earth, or no triangle with an area.
 pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> Result<Welded> {
+    join(pieces, map_origin_m, tolerance_m).map(Joined::finish)
+}
+
+/// Triangles over common vertices, when the pieces are needed no more: they take most of the memory.
+#[derive(Debug)]
+pub(super) struct Joined(Welded);
+
+/// The first half of [`weld`].
+///
+/// # Errors
+/// As [`weld`].
+pub(super) fn join(
+    pieces: &[Piece],
+    map_origin_m: Vec3,
+    tolerance_m: Option<f64>,
+) -> Result<Joined> {
     let frame = Frame::around(pieces)?;
     let tolerance_m = tolerance_m.unwrap_or(TOLERANCE_OF_SIZE * frame.size_m);
     if !(tolerance_m >= 0.0 && tolerance_m.is_finite()) {
@@ -139,13 +155,21 @@ pub fn weld(pieces: &[Piece], map_origin_m: Vec3, tolerance_m: Option<f64>) -> R
         moved_corners: 0,
     };
     welded.take(pieces, &frame);
-    welded.drop_duplicates();
-    welded.drop_unused_vertices();
-    welded.edges = Edges::of(&welded.triangles);
     if welded.triangles.is_empty() {
         return Err(nothing_left(pieces, &welded));
     }
-    Ok(welded)
+    Ok(Joined(welded))
+}
+
+impl Joined {
+    /// The second half of [`weld`].
+    pub(super) fn finish(self) -> Welded {
+        let Self(mut welded) = self;
+        welded.drop_duplicates();
+        welded.drop_unused_vertices();
+        welded.edges = Edges::of(&welded.triangles);
+        welded
+    }
 }
 
 impl Piece<'_> {

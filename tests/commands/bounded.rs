@@ -6,13 +6,13 @@
 )]
 #![cfg(target_os = "linux")]
 
-use crate::program;
+use crate::{asked, program};
 
+use asked::{Asked, USUAL, closed_box, p, plate, quad, scene, stops, word};
 use program::rockfall;
-use rockfall::rock::Vec3;
 use rockfall::terrain::stl::{Facet, write_ascii};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -20,91 +20,6 @@ use std::time::{Duration, Instant};
 const PROMPT: Duration = Duration::from_secs(2);
 /// … and so much memory (kB).
 const FRUGAL_KB: u64 = 300_000;
-
-fn p(x: f64, y: f64, z: f64) -> Vec3 {
-    Vec3::new(x, y, z)
-}
-
-/// A four-sided face.
-fn quad([a, b, c, d]: [Vec3; 4]) -> [Facet; 2] {
-    [[a, b, c], [a, c, d]]
-}
-
-/// A level square of side `2 half` at height z.
-fn plate(half: f64, z: f64) -> Vec<Facet> {
-    quad([p(-half, -half, z), p(half, -half, z), p(half, half, z), p(-half, half, z)]).into()
-}
-
-/// A closed box of 2 m.
-fn closed_box() -> Vec<Facet> {
-    let side = |turn: fn(f64, f64, f64) -> Vec3| {
-        [0.0, 2.0].map(|w| {
-            quad([turn(0.0, 0.0, w), turn(2.0, 0.0, w), turn(2.0, 2.0, w), turn(0.0, 2.0, w)])
-        })
-    };
-    let sides = [side(p), side(|u, v, w| p(w, u, v)), side(|u, v, w| p(v, w, u))];
-    sides.as_flattened().as_flattened().to_vec()
-}
-
-/// What a scene of one rock on one mesh says beside the usual.
-struct Asked<'a> {
-    restitution: f64,
-    /// Lines of `[release]`.
-    place: &'a str,
-    velocity: [f64; 3],
-    /// Lines at the end.
-    more: &'a str,
-}
-
-const USUAL: Asked<'_> = Asked {
-    restitution: 0.4,
-    place: "count = 1\nheight_m = 1.0\npoints_m = [[0.0, 0.0]]",
-    velocity: [0.0; 3],
-    more: "",
-};
-
-fn scene(dir: &Path, mesh: &[Facet], asked: &Asked) -> PathBuf {
-    write_ascii(&dir.join("mesh.stl"), "mesh", mesh).unwrap();
-    let Asked { restitution, place, velocity, more } = asked;
-    let text = format!(
-        r#"title = "One rock"
-seed = 5
-[[terrain]]
-mesh = "mesh.stl"
-ground = "rock"
-[grounds.rock]
-normal_stiffness_n_m = 1e8
-shear_stiffness_n_m = 0.25e8
-friction_angle_deg = 30.0
-restitution = {restitution:?}
-[rocks]
-density_kg_m3 = 2700.0
-radius_m = 0.2
-[release]
-{place}
-velocity_m_s = {velocity:?}
-spin_rad_s = [0.0, 0.0, 0.0]
-{more}
-"#
-    );
-    let file = dir.join("scene.toml");
-    fs::write(&file, text).unwrap();
-    file
-}
-
-fn word(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-/// Runs a scene; the words under `stop`, row by row.
-fn stops(scene: &Path, more: &[&str]) -> Vec<String> {
-    let out = scene.with_file_name("out");
-    let args = ["run", word(scene), "--quiet", "--overwrite", "--out", word(&out)];
-    let done = rockfall(&[&args[..], more].concat());
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-    let rows = fs::read_to_string(out.join("releases.csv")).unwrap();
-    rows.lines().skip(1).map(|row| row.split(',').nth(1).unwrap().to_owned()).collect()
-}
 
 /// Rocks that never lose anything: between walls, and between two plates that leave them the width of an atom.
 #[test]
@@ -269,6 +184,31 @@ fn refused_in_little_memory(args: &[&str]) -> String {
     assert!(said.starts_with("error: ") && said.lines().count() == 1, "{args:?}: {said}");
     assert!(begun.elapsed() < PROMPT, "{args:?} took {:?}", begun.elapsed());
     said
+}
+
+/// Every scene and mesh that is kept to be refused: in less than the memory and the time of a refusal.
+#[test]
+fn refusals_are_prompt_and_frugal() {
+    let files = |folder: &str, ends: &str| {
+        let folder = fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap();
+        let files = folder.map(|entry| entry.unwrap().path());
+        files.filter(|file| word(file).ends_with(ends)).collect::<Vec<_>>()
+    };
+    let scenes = files("tests/bad", ".toml");
+    for scene in &scenes {
+        refused_in_little_memory(&["plan", word(scene)]);
+    }
+    let meshes = files("tests/bad_meshes", ".stl");
+    let mut refused = 0;
+    for mesh in &meshes {
+        // those that are only warned of have tests of their own
+        if !rockfall(&["mesh", "check", word(mesh)]).status.success() {
+            refused_in_little_memory(&["mesh", "check", word(mesh)]);
+            refused += 1;
+        }
+    }
+    println!("{} scenes and {refused} of {} meshes refused", scenes.len(), meshes.len());
+    assert!(scenes.len() > 200 && refused > 20);
 }
 
 /// Maps of a millimetre, paths of a microsecond, a billion rocks: asked for first, and nothing is written.

@@ -105,9 +105,13 @@ fn a_known_value_is_found_and_an_idle_one_is_named() {
     assert!(rolling.is_told && rolling.high_95 - rolling.low_95 < 0.25, "{said}");
     assert!(!restitution.is_told, "{said}");
     assert!(said.contains("meadow.restitution") && said.contains("hardly tell it"), "{said}");
-    let whole = found.whole.unwrap();
+    let whole = &found.whole;
     assert!(whole.all.ks < whole.all.ks_limit && found.before.all.ks > 1.3 * whole.all.ks);
     assert_eq!(found.ends.0, 80);
+    let parts: Vec<_> =
+        found.held_out.iter().map(|one| (one.fitted.measured, one.kept_apart.measured)).collect();
+    assert_eq!(parts, [(40, 40), (40, 40)], "two halves of twenty blocks thrown twice, twice");
+    assert!(said.contains("held-out ends") && said.contains("fit without part 2 of 2"), "{said}");
     assert!(found.measures.iter().any(|m| m.what.starts_with("share past") && m.scene == "fast"));
     // the scene that has the values, with everything else as it was
     for name in ["slow", "fast"] {
@@ -123,6 +127,83 @@ fn a_known_value_is_found_and_an_idle_one_is_named() {
     assert!(page.status.success());
     let page = fs::read_to_string(out.join("report.html")).unwrap_or_default();
     assert!(page.contains("What the measured ends tell"), "the report tells of the fit beside it");
+}
+
+/// Measured: ten throws from where rocks start slowly and thirty from where they are fast. Compared place by place, the
+/// true value fits; all ends in one heap beside releases that are even would not.
+#[test]
+fn ends_are_compared_from_their_own_places() {
+    let dir = tempfile::tempdir().unwrap();
+    let vary = "vary = [{ ground = \"meadow\", key = \"rolling_friction\", from = 0.4, to = 0.5, before = 0.45 }]";
+    let calibrate =
+        |ends: &str| format!("[calibrate]\ndeposits = {ends:?}\nheld_out = 0.25\n{vary}");
+    let scene = thrown(dir.path(), "places", [3.0, 5.0], "");
+    // the second place lies at the head of a step down which rocks gain speed
+    step(dir.path());
+    let ends = fs::read_to_string(measure(&scene, "31")).unwrap();
+    let (mut kept, mut slow) = (Vec::new(), 0);
+    for line in ends.lines() {
+        slow += usize::from(line.starts_with("-30,2,"));
+        if !line.starts_with("-30,2,") || slow <= 5 {
+            kept.push(line);
+        }
+    }
+    fs::write(dir.path().join("kept.csv"), kept.join("\n")).unwrap();
+    let fit = |ends: &str, name: &str| {
+        let scene = thrown(dir.path(), name, [3.0, 5.0], &calibrate(ends));
+        step(dir.path());
+        let out = dir.path().join(name);
+        let args = ["calibrate", word(&scene), "--releases", "200", "--out", word(&out)];
+        let done = rockfall(&args);
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        read_calibration(&out).unwrap().unwrap()
+    };
+    let own = fit("kept.csv", "own");
+    assert_eq!(own.held_out.len(), 4, "a quarter held out, in turn");
+    let rank = own.measures.iter().find(|one| one.what.starts_with("mean rank")).unwrap();
+    let [low, high] = [rank.low_95, rank.high_95];
+    assert!(low <= 0.0 && 0.0 <= high && (rank.measured - 0.5).abs() < 0.2, "{rank:?}");
+    // the same ends half a metre beside the places: nothing is in common, and all releases stand against them
+    let moved = kept.iter().map(|line| line.replace("-30,", "-30.5,")).collect::<Vec<_>>();
+    fs::write(dir.path().join("moved.csv"), moved.join("\n")).unwrap();
+    let heap = fit("moved.csv", "heap");
+    assert!(heap.measures.iter().all(|one| !one.what.starts_with("mean rank")));
+    let [own, heap] = [own, heap].map(|found| (found.before.all.computed, found.before.all.ks));
+    assert!(own.1 < heap.1 - 0.1, "own places: {own:?}, all together: {heap:?}");
+}
+
+/// The level with its part y > 1 set 10 m lower but for a ledge: rocks from the second place fall and run further.
+fn step(dir: &Path) {
+    let p = |x: f64, y: f64, z: f64| Vec3::new(x, y, z);
+    let quad = |a, b, c, d| [[a, b, c], [a, c, d]];
+    let facets = [
+        quad(p(-40.0, -40.0, 0.0), p(40.0, -40.0, 0.0), p(40.0, 1.0, 0.0), p(-40.0, 1.0, 0.0)),
+        quad(p(-40.0, 1.0, 0.0), p(-29.0, 1.0, 0.0), p(-29.0, 40.0, 0.0), p(-40.0, 40.0, 0.0)),
+        quad(p(-29.0, 1.0, 0.0), p(-20.0, 1.0, -6.0), p(-20.0, 40.0, -6.0), p(-29.0, 40.0, 0.0)),
+        quad(p(-20.0, 1.0, -6.0), p(40.0, 1.0, -6.0), p(40.0, 40.0, -6.0), p(-20.0, 40.0, -6.0)),
+    ];
+    write_ascii(&dir.join("plate.stl"), "step", facets.as_flattened()).unwrap();
+}
+
+/// A value of the tangential answer is fitted, and stands in the fitted scene in the place of the shear spring.
+#[test]
+fn the_tangential_ratio_is_fitted() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = thrown(dir.path(), "ratio", [3.0, 5.0], "");
+    let ends = measure(&scene, "7");
+    let vary = "vary = [{ ground = \"meadow\", key = \"tangential_ratio\", from = 0.05, to = 1.0, before = 0.25 }]";
+    let more = format!("[calibrate]\ndeposits = {ends:?}\nheld_out = 0.0\n{vary}");
+    let scene = thrown(dir.path(), "ratio", [3.0, 5.0], &more);
+    let out = dir.path().join("fit");
+    let done = rockfall(&["calibrate", word(&scene), "--releases", "20", "--out", word(&out)]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let found = read_calibration(&out).unwrap().unwrap();
+    assert!(found.held_out.is_empty() && found.names == ["meadow.tangential_ratio"]);
+    let fitted = out.join("ratio_fitted.toml");
+    let text = fs::read_to_string(&fitted).unwrap();
+    assert!(text.contains("\ntangential_ratio = ") && !text.contains("shear_stiffness"), "{text}");
+    let ratio = Scene::read(&fitted).unwrap().grounds["meadow"].tangential_ratio.clone().unwrap();
+    assert!((ratio.as_fixed().unwrap() - found.whole.values[0]).abs() < 1e-6);
 }
 
 /// A slope without what is varied is refused.

@@ -1,9 +1,7 @@
 //! Two runs compared: intervals keep what they promise, a run beside itself differs by nothing, pages hold what is in the table.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use crate::program;
-#[allow(dead_code, reason = "shared with the tests of the report")]
-use crate::svg;
+use crate::{boxes, program, svg};
 
 use program::rockfall;
 use rockfall::hazard::{Difference, Reading, Values};
@@ -215,7 +213,10 @@ fn what_differs_is_named_and_what_changes_is_shown() {
     assert!(drawn.len() >= 3);
     for path in drawn {
         let drawing = std::fs::read_to_string(&path).unwrap();
-        svg::check(&drawing, &path.display().to_string());
+        let place = path.display().to_string();
+        svg::check(&drawing, &place);
+        let faults = boxes::faults(&drawing, &place);
+        assert!(faults.is_empty(), "{}", faults.join("\n"));
         assert!(page.contains(&drawing));
     }
     let table = std::fs::read_to_string(out.join("differences.csv")).unwrap();

@@ -5,7 +5,7 @@ use crate::drawn;
 use crate::program;
 use crate::site;
 
-use drawn::{shapefile, weights, zones};
+use drawn::{column, rings, shapefile, zones};
 use program::{rockfall, same_results};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
@@ -123,11 +123,8 @@ fn a_shapefile_and_a_geojson_of_the_same_zones_give_the_same_bytes() {
         eprintln!("the Shapefile is GDAL's");
     } else {
         eprintln!("skipped GDAL's Shapefile: python3 has no pyogrio; the one written here is read");
-        let ring =
-            |x: f64, y: f64| [[x, y], [x, y + 6.0], [x + 8.0, y + 6.0], [x + 8.0, y], [x, y]];
-        let rings = [ring(2_600_010.5, 1_200_080.25), ring(2_600_040.25, 1_200_070.5)];
-        dir.put("zones.shp", shapefile(&rings));
-        dir.put("zones.dbf", weights(&["1.5", "3"]));
+        dir.put("zones.shp", shapefile(&rings()));
+        dir.put("zones.dbf", column("weight", &["1.5", "3"]));
     }
     let run = |file: &str| {
         dir.run(
@@ -270,44 +267,4 @@ fn what_does_not_fit_together_is_refused() {
         let said = dir.refusal(&text);
         assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}\n{said}");
     }
-}
-
-/// Stems from drawn points are those from the same list.
-#[test]
-fn stems_stand_where_points_are_drawn() {
-    let dir = Folder::new();
-    dir.slope();
-    let list = dir.put(
-        "trees.csv",
-        "x,y,dbh_m,height_m\n2600020.5,1200060.5,0.4,18\n2600031.25,1200050.0,0.6,22\n",
-    );
-    let point = |x: f64, y: f64, dbh: f64, height: f64| {
-        format!(
-            "{{\"type\":\"Feature\",\"properties\":{{\"dbh_m\":{dbh},\"height_m\":{height}}},\"geometry\":{{\"type\":\"Point\",\"coordinates\":[{x},{y}]}}}}"
-        )
-    };
-    let points =
-        [point(2_600_020.5, 1_200_060.5, 0.4, 18.0), point(2_600_031.25, 1_200_050.0, 0.6, 22.0)]
-            .join(",");
-    let drawn = dir.put(
-        "trees.geojson",
-        format!("{{\"type\":\"FeatureCollection\",\"features\":[{points}]}}"),
-    );
-    let stems = |list: &Path| {
-        let out = dir.path("stems.stl");
-        let slope = dir.path("dem.stl");
-        let words = [
-            "mesh",
-            "stems",
-            list.to_str().unwrap(),
-            slope.to_str().unwrap(),
-            out.to_str().unwrap(),
-            "--origin-m",
-            "2600000,1200000,0",
-        ];
-        let said = rockfall(&words);
-        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
-        fs::read(out).unwrap()
-    };
-    assert!(stems(&list) == stems(&drawn));
 }

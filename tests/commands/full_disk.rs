@@ -84,6 +84,30 @@ fn a_run_on_a_full_disk_is_resumed_to_the_same_bytes() {
     assert!(refused > 3, "the disks were not full");
 }
 
+/// What was merged so far cannot be gone on with: merge says what it can do.
+#[test]
+fn a_merge_on_a_full_disk_begins_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let [whole, one, two] = ["whole", "one", "two"].map(|name| dir.path().join(name));
+    assert!(run(&whole, &[]).status.success());
+    assert!(run(&one, &["--shard", "1/2"]).status.success());
+    assert!(run(&two, &["--shard", "2/2"]).status.success());
+    let merge = |out: &Path, more: &[&str]| {
+        let parts = ["merge", two.to_str().unwrap(), one.to_str().unwrap()];
+        rockfall(&[&parts[..], &["--out", out.to_str().unwrap()], more].concat())
+    };
+    for size in ["4k", "128k", "1m"] {
+        let Some(disk) = Disk::mount(dir.path().join(size), size) else { return };
+        let said = refusal(&merge(&disk.folder, &[]));
+        assert!(said.contains(": No space left on device"), "{said}");
+        assert!(said.contains("make room and merge again with --overwrite, or write"), "{said}");
+        assert!(!said.contains("--resume"), "{said}");
+        disk.turn("size=64m");
+        assert!(merge(&disk.folder, &["--overwrite"]).status.success());
+        same_results(&whole, &disk.folder);
+    }
+}
+
 #[test]
 fn a_disk_that_may_only_be_read_is_refused() {
     let dir = tempfile::tempdir().unwrap();

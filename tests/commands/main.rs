@@ -2,6 +2,8 @@
 //!
 //! One program for all of it: linking takes longer than most of these tests.
 
+#[path = "../asked/mod.rs"]
+mod asked;
 #[path = "../drawn/mod.rs"]
 mod drawn;
 #[path = "../made/mod.rs"]
@@ -15,20 +17,28 @@ mod tiff;
 #[path = "../statistics/report/svg.rs"]
 #[allow(dead_code, reason = "the figures of a report ask more of it")]
 mod svg;
+#[path = "../statistics/report/boxes.rs"]
+mod boxes;
 
 mod bad_input;
 mod belongs;
 mod blocks;
 mod bounded;
+mod bounded_worlds;
 mod calibrate;
+mod catalogue;
 mod compare;
 mod data_in;
 mod edges;
 mod full_disk;
 mod kill;
+mod language;
 mod rust_version;
 mod same_everywhere;
 mod shards;
+mod stem_lists;
+mod tiles;
 mod until;
 mod view;
 mod year;
+mod zone_sources;

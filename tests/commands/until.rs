@@ -16,8 +16,8 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Instant;
 
-/// Kills in the test. More by `ROCKFALL_KILLS=100 cargo test --test commands until::`.
-const KILLS: usize = 12;
+/// Kills in the test that always runs, and in the one that is asked for.
+const KILLS: [usize; 2] = [12, 100];
 /// Kills of one run before it is left to end.
 const KILLS_OF_ONE_RUN: usize = 4;
 /// Three rounds, with maps, lines, paths and impacts.
@@ -56,15 +56,28 @@ fn an_aim_ends_with_the_run_of_as_many_releases() {
     same_results(&plain, &extended);
 }
 
-/// SIGKILL at random moments of all rounds.
 #[test]
 fn a_killed_aim_is_resumed_to_the_same_bytes() {
-    let wanted = std::env::var("ROCKFALL_KILLS").map_or(KILLS, |kills| kills.parse().unwrap());
+    kill_and_resume(KILLS[0]);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test --test commands until:: -- --ignored --nocapture"]
+fn a_hundred_kills_are_resumed_to_the_same_bytes() {
+    kill_and_resume(KILLS[1]);
+}
+
+/// SIGKILL at random moments of all rounds; maps and all else are in the end those of a run of as many releases.
+fn kill_and_resume(wanted: usize) {
     let dir = tempfile::tempdir().unwrap();
     let reference = dir.path().join("reference");
     let begun = Instant::now();
     succeed(until(&reference, &[]));
     let whole = begun.elapsed();
+    let plain = dir.path().join("plain");
+    succeed(run(&plain, &["--releases", &releases(&reference).to_string()]));
+    same_results(&plain, &reference);
+    assert!(reference.join("maps").is_dir());
     let mut random = ChaCha8Rng::seed_from_u64(18);
     let (mut kills, mut runs) = (0, 0);
     while kills < wanted {

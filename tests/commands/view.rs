@@ -252,6 +252,8 @@ fn nothing_leaves_the_page_and_no_title_breaks_it() {
     // the report stays without a script, and leads here
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(!report.contains("<script") && report.contains("href=\"view.html\""));
+    // a model of megabytes is not shipped with a page: a link to it would lead nowhere
+    assert!(!report.contains("view.glb"));
 }
 
 /// Drawn again from the files alone, both files are the same bytes; without paths and maps there is a view too.

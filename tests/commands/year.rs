@@ -193,6 +193,35 @@ fn hits_are_where_paths_say() {
     assert!(hits > 50 && misses > 10, "{hits} hits, {misses} misses");
 }
 
+/// Norway's classes by hand: a cell is of level 3, 2 or 1 where rocks pass more often than once in 100, 1000, 5000 years. The table's
+/// numbers are those of the regulation.
+#[test]
+fn a_national_table_is_the_one_that_was_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let [known] = rockfall::scene::MATRICES;
+    assert_eq!(known.return_periods_years, [100.0, 1000.0, 5000.0]);
+    let scene = example("quick")
+        + "\n[frequency]\nper_year = 0.021\n[frequency.matrix]\ntable = \"tek17-7-3\"\n";
+    let out = run(dir.path(), "tek", &scene, &["--releases", "80"]);
+    let cells = |name: &str| -> Vec<f64> {
+        let text = fs::read_to_string(out.join("maps").join(name)).unwrap();
+        let body = text.lines().skip(6).flat_map(str::split_whitespace);
+        body.map(|number| number.parse().unwrap()).collect()
+    };
+    let (levels, rates) = (cells("hazard_level.asc"), cells("frequency_per_year.asc"));
+    let mut seen = [0; 4];
+    for (level, rate) in levels.iter().zip(&rates).filter(|(_, rate)| **rate > 0.0) {
+        let by_hand = [1.0 / 5000.0, 1.0 / 1000.0, 1.0 / 100.0];
+        let expected = by_hand.iter().filter(|limit| *rate >= **limit).count();
+        assert!((level - expected as f64).abs() < 1e-9, "{level} at {rate} a year");
+        seen[expected] += 1;
+    }
+    // one rock of 80 stands for 0.00026 a year: no cell is below the lowest limit
+    assert!(seen[0] == 0 && seen[1..].iter().all(|cells| *cells > 0), "{seen:?}");
+    let plan = summary(&out)["plan"].to_string();
+    assert!(plan.contains("Byggteknisk forskrift (TEK17) § 7-3"), "{plan}");
+}
+
 /// What the plan says of the year, and what it says when nothing is asked.
 #[test]
 fn the_plan_says_what_the_year_needs() {

@@ -26,6 +26,12 @@ pub fn zones(properties: [&str; 2]) -> String {
     )
 }
 
+/// The same zones, clockwise.
+pub fn rings() -> [[[f64; 2]; 5]; 2] {
+    let ring = |x: f64, y: f64| [[x, y], [x, y + 6.0], [x + 8.0, y + 6.0], [x + 8.0, y], [x, y]];
+    [ring(2_600_010.5, 1_200_080.25), ring(2_600_040.25, 1_200_070.5)]
+}
+
 /// Polygons of five corners, clockwise as the format wants them.
 pub fn shapefile(rings: &[[[f64; 2]; 5]]) -> Vec<u8> {
     let mut shp = 9994i32.to_be_bytes().to_vec();
@@ -42,13 +48,16 @@ pub fn shapefile(rings: &[[[f64; 2]; 5]]) -> Vec<u8> {
     shp
 }
 
-/// A table with the column `weight`.
-pub fn weights(values: &[&str]) -> Vec<u8> {
+/// A table with one column of numbers; its name is cut after ten letters, as the format does.
+pub fn column(name: &str, values: &[&str]) -> Vec<u8> {
     let mut dbf = vec![3, 24, 1, 1];
     dbf.extend((values.len() as u32).to_le_bytes());
     dbf.extend([65, 0, 9, 0]);
     dbf.resize(32, 0);
-    dbf.extend(b"weight\0\0\0\0\0N\0\0\0\0\x08");
+    let mut field: Vec<u8> = name.bytes().take(10).collect();
+    field.resize(11, 0);
+    dbf.extend(field);
+    dbf.extend(b"N\0\0\0\0\x08");
     dbf.resize(64, 0);
     dbf.push(b'\r');
     dbf.extend(values.iter().flat_map(|value| format!(" {value:>8}").into_bytes()));

@@ -64,6 +64,7 @@ pub fn info(releases: usize) -> RunInfo {
         inputs: vec![("Rock density".to_owned(), "2700 kg/m³".to_owned())],
         title_block: vec![],
         sources: [String::new(), String::new()],
+        language: rockfall::scene::Language::En,
         warnings: vec![],
         mesh_health: serde_json::json!({ "triangles": 2 }),
     }

@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod contact;
 mod dda;
 mod dda_energy;
 mod exact_edge;
@@ -24,5 +25,6 @@ mod rigid_heap;
 mod roughness;
 mod schemes_agree;
 mod stems;
+mod tangential;
 mod traps;
 mod world_ledger;

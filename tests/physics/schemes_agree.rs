@@ -3,24 +3,63 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot read its scene has failed")]
 
 use rockfall::plan::Plan;
+use rockfall::random::Distribution;
 use rockfall::scene::Scene;
 use rockfall::simulation::{Scratch, Trajectory, simulate_release};
 use rockfall::solver::Scheme;
 use std::path::Path;
 
-const ROCKS: usize = 600;
+const ROCKS: usize = 2000;
 
 fn falls(scheme: Scheme, roughness_deg: f64) -> Vec<Trajectory> {
+    falls_of(ROCKS, roughness_deg, |scene| scene.solver.scheme = Some(scheme))
+}
+
+/// Rocks of the quick example on ground of one roughness, with what else is `set`.
+fn falls_of(rocks: usize, roughness_deg: f64, set: impl Fn(&mut Scene)) -> Vec<Trajectory> {
     let mut scene = Scene::read(Path::new("examples/quick.toml")).unwrap();
-    scene.release.count = ROCKS;
+    scene.release.count = rocks;
     scene.record.paths = Some(0);
-    scene.solver.scheme = Some(scheme);
     let rock = scene.grounds.get_mut("rock").unwrap();
-    rock.roughness_deg = Some(rockfall::random::Distribution::fixed(roughness_deg).unwrap());
+    rock.roughness_deg = Some(Distribution::fixed(roughness_deg).unwrap());
+    set(&mut scene);
     let (terrain, _) = scene.read_terrain().unwrap();
     let plan = Plan::compile(&scene, terrain).unwrap();
     let mut scratch = Scratch::default();
-    (0..ROCKS).map(|index| simulate_release(&plan, index, None, &mut scratch).unwrap()).collect()
+    (0..rocks).map(|index| simulate_release(&plan, index, None, &mut scratch).unwrap()).collect()
+}
+
+/// Roughness belongs to the place: at one capture speed the mean runout over facets of up to 15° does not depend on how stiff
+/// the springs are, nor on the tolerance. The rocks slide and roll (friction 32°, rolling friction 0.35).
+#[test]
+fn roughness_does_not_depend_on_stiffness_or_tolerance() {
+    const ROCKS: usize = 500;
+    let runout = |stiffness_n_m: f64, tolerance_m_s: f64| {
+        let falls = falls_of(ROCKS, 15.0, |scene| {
+            scene.solver.tolerance_m_s = Some(tolerance_m_s);
+            scene.solver.capture_speed_m_s = Some(0.2);
+            let rock = scene.grounds.get_mut("rock").unwrap();
+            rock.normal_stiffness_n_m = Distribution::fixed(stiffness_n_m).unwrap();
+            rock.shear_stiffness_n_m = Some(Distribution::fixed(0.25 * stiffness_n_m).unwrap());
+        });
+        let mean = falls.iter().map(Trajectory::runout_m).sum::<f64>() / ROCKS as f64;
+        let square = falls.iter().map(|rock| (rock.runout_m() - mean).powi(2)).sum::<f64>();
+        (mean, (square / (ROCKS * ROCKS) as f64).sqrt())
+    };
+    let (mean, error) = runout(1e8, 0.05);
+    for (stiffness_n_m, tolerance_m_s) in
+        [(1e7, 0.05), (1e9, 0.05), (1e10, 0.05), (1e8, 0.1), (1e8, 1e-2), (1e8, 1e-3), (1e8, 1e-4)]
+    {
+        let (other, beside) = runout(stiffness_n_m, tolerance_m_s);
+        println!(
+            "{stiffness_n_m:e} N/m, {tolerance_m_s} m/s: {other:.3} for {mean:.3} ± {error:.3}"
+        );
+        let allowed = 3.0 * (error * error + beside * beside).sqrt();
+        assert!(
+            (other - mean).abs() < allowed,
+            "{stiffness_n_m:e} {tolerance_m_s}: {other}, {mean}"
+        );
+    }
 }
 
 /// Largest distance of two empirical distributions of equally many values.
@@ -29,6 +68,14 @@ fn kolmogorov_smirnov(mut a: Vec<f64>, mut b: Vec<f64>) -> f64 {
     b.sort_by(f64::total_cmp);
     let share = |of: &[f64], x: f64| of.partition_point(|y| *y <= x) as f64 / of.len() as f64;
     a.iter().chain(&b).map(|&x| (share(&a, x) - share(&b, x)).abs()).fold(0.0, f64::max)
+}
+
+/// Mean and standard deviation of a count.
+fn mean(rocks: &[Trajectory], count: fn(&Trajectory) -> u32) -> (f64, f64) {
+    let n = rocks.len() as f64;
+    let mean = rocks.iter().map(|rock| f64::from(count(rock))).sum::<f64>() / n;
+    let square = rocks.iter().map(|rock| (f64::from(count(rock)) - mean).powi(2)).sum::<f64>();
+    (mean, (square / n).sqrt())
 }
 
 #[test]
@@ -50,6 +97,15 @@ fn runout_speed_and_energy_do_not_depend_on_the_scheme() {
             ];
             println!("{roughness_deg}°: {name:?} and {beside:?} are {found:.4?} apart");
             assert!(found.iter().all(|d| *d < limit), "{name:?} {beside:?} {found:?}");
+            // blows within an episode are counted by every scheme
+            let counts: [fn(&Trajectory) -> u32; 2] =
+                [|rock| rock.impact_count, |rock| rock.tree_impact_count];
+            for count in counts {
+                let ((one, sd), (other, sd_beside)) = (mean(a, count), mean(b, count));
+                let error = ((sd * sd + sd_beside * sd_beside) / ROCKS as f64).sqrt();
+                println!("{name:?} {one:.3} impacts a rock, {beside:?} {other:.3} ± {error:.3}");
+                assert!((one - other).abs() < 4.0 * error, "{name:?} {one}, {beside:?} {other}");
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The exact cases over every scheme, and the studies as commands.
 #![allow(clippy::unwrap_used, reason = "a test without its files has failed")]
 
+use crate::report::boxes;
 use rockfall::simulation::Scratch;
 use rockfall::solver::Scheme;
 use rockfall::study::cases::CASES;
@@ -152,5 +153,9 @@ fn errors_of_a_scene_are_told_apart() {
     // three quantities, three percentiles (two with too few rocks), five tolerances, three meshes
     assert_eq!((rows("error.csv") % 5, rows("mesh.csv") % 3), (0, 0));
     assert_eq!(rows("error.csv") / 5, rows("mesh.csv") / 3);
-    assert!(fs::read_to_string(dir.path().join("error.svg")).unwrap().contains("mesh"));
+    let drawn = fs::read_to_string(dir.path().join("error.svg")).unwrap();
+    // every axis says that it is an error, every text has its own room
+    assert!(drawn.contains("mesh") && drawn.matches(">Error of P95 ").count() == 3);
+    let faults = boxes::faults(&drawn, "error.svg");
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }

@@ -2,6 +2,7 @@
 """Puts the records in reports/trust together to reports/trust/README.md. A record that is not there is said to be missing.
 
     tests/trust/kills.sh 500; tests/trust/slurm.sh target/release/rockfall; tests/trust/fuzz.sh 600
+    tests/trust/attack.py target/release/rockfall
     tests/trust/load.py target/release/rockfall CASE...; tests/trust/report.py
 """
 
@@ -58,10 +59,17 @@ Written by `tests/trust/report.py` from the records beside it; how to make them 
 
 {bad_inputs()}
 
-Bytes that nobody thought of, fed to the readers of meshes, scenes and grids (`tests/trust/fuzz.sh`, libFuzzer with address sanitizer):
+Bytes that nobody thought of, fed to the readers of meshes, scenes, grids, GeoTIFF, Shapefile and GeoJSON, PLY and OBJ, LAS and LAZ (`tests/trust/fuzz.sh`, libFuzzer with overflow checks; the program has no `unsafe` of its own):
 
 ```
 {record("fuzz.txt")}
+```
+
+Scenes, worlds, meshes, grids, options and files in each other's place, made wrong by chance (`tests/trust/attack.py`); each must end with
+one line that says what to write, in 2 s and 300 MB, or with a result:
+
+```
+{record("attack.txt")}
 ```
 
 ## Interruption
@@ -71,6 +79,22 @@ with those of a run left alone (`tests/trust/kills.sh`):
 
 ```
 {record("kills.txt")}
+```
+
+The same under `--until`, with maps, in all of its rounds; the bytes are those of a run of as many releases
+(`cargo test --test commands until:: -- --ignored --nocapture`):
+
+```
+{record("until.txt")}
+```
+
+## Unlike processors
+
+Rocks alone and worlds of rocks, natively, with the C library's variants for FMA switched off, and emulated on a processor that has neither
+AVX nor FMA (`ROCKFALL_QEMU=… cargo test --test same_bits -- --nocapture`):
+
+```
+{record("processors.txt")}
 ```
 
 ## Shards

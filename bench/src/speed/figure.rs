@@ -8,7 +8,7 @@ use rockfall::report::figure::WIDTH_PX;
 use rockfall::report::format::significant;
 use rockfall::report::panel::{FOOT_PX, Panel};
 use rockfall::report::svg::path::Frame;
-use rockfall::study::exact_figure::colour;
+use rockfall::study::exact_figure::{colour, shape};
 
 const PLOT_PX: f64 = 300.0;
 const TOP_PX: f64 = 26.0;
@@ -42,7 +42,7 @@ pub(crate) fn draw(study: &SpeedStudy) -> String {
                 .collect();
             panel.line(canvas, &values, Pen::full(ink, 1.4));
             for &(x, y) in &values {
-                canvas.disc(panel.at(x, y), 2.8, ink);
+                canvas.mark(shape(scheme), panel.at(x, y), 2.6, ink);
             }
         }
         key(canvas, &panel, study);

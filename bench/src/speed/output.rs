@@ -87,6 +87,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         inputs: Vec::new(),
         title_block: Vec::new(),
         sources: Default::default(),
+        language: Default::default(),
         mesh_health: serde_json::Value::Null,
     }
 }

@@ -134,15 +134,14 @@ impl Neighbours {
         touches.drop_nearer(self.radius);
         let mut patches = std::mem::take(&mut self.patches);
         patches.find(terrain, &self.sheets, (centre, self.radius), |touch: ContactPoint| {
-            let ground_contact = centre - touch.normal * touch.distance_m;
+            let nearest = centre - touch.normal * touch.distance_m;
             let features = &terrain.features;
             let at_border = match touch.feature.kind {
                 FeatureKind::Face => false,
                 FeatureKind::Edge => features.edges.triangles_on(touch.feature.id).len() == 1,
                 FeatureKind::Vertex => features.is_border_vertex(touch.feature.id),
             };
-            let covered =
-                at_border && self.is_covered(terrain, &ground_contact, centre, touch.distance_m);
+            let covered = at_border && self.is_covered(terrain, &nearest, centre, touch.distance_m);
             if !covered {
                 self.merge(touch, centre, touches);
             }

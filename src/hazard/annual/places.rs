@@ -1,10 +1,11 @@
 //! Passages a year at lines and objects, with the barriers of the scene and without them.
 
-use super::super::barriers::{Arrival, Barrier};
+use super::super::barriers::Barrier;
 use super::super::classes::class_of;
 use super::super::lines::{CrossingRow, LineInfo};
 use super::super::proportion::Proportion;
 use super::Asked;
+use super::barriers::{AnnualBarrier, Met};
 use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
 use super::rate::{Limits, Rate, Running, Sums, proportion};
 use super::risk::{Object, Risk};
@@ -25,6 +26,9 @@ pub struct Annual {
     pub strata: usize,
     /// Lines and objects, in the order of the scene.
     pub places: Vec<AnnualPlace>,
+    /// Barriers, in the order of the scene.
+    #[serde(default)]
+    pub barriers: Vec<AnnualBarrier>,
 }
 
 /// One line or object.
@@ -77,19 +81,21 @@ pub struct Saved {
     pub passages: Rate,
     /// The same with at least an energy.
     pub above: Vec<Above>,
+    /// Risks of an object that it takes away.
+    #[serde(default)]
+    pub risks: Vec<Risk>,
 }
 
 /// Sums over rocks, stratum by stratum.
-type Strata = BTreeMap<u16, Sums>;
+pub(super) type Strata = BTreeMap<u16, Sums>;
 
 /// Passages of one place that have something in common.
 #[derive(Default)]
 struct Tally {
     /// All, and above each energy asked for.
     above: Vec<Strata>,
-    /// Metres of road blocked, and the most of one rock.
+    /// Metres of road blocked.
     blocked: Strata,
-    longest_m: f64,
     classes: BTreeMap<(u16, u16), Sums>,
 }
 
@@ -112,7 +118,6 @@ impl Tally {
             }
         }
         self.blocked.entry(stratum).or_default().join(&Sums::one(blocked_m, score));
-        self.longest_m = self.longest_m.max(blocked_m);
         self.classes.entry((class_of(total_j), stratum)).or_default().join(&one);
     }
 
@@ -133,16 +138,22 @@ impl Tally {
         let curve = curve(falling, &mut Running::new(&all.weights), &all.ceilings);
         let energy = |years: &f64| return_energy(&curve, &all.ceilings, *years, all.has_exponent);
         let returns = all.frequency.return_periods_years().iter().map(energy).collect();
-        let limits = Limits::above(&all.weights, &all.asked.most_j, 0.0);
-        let blocked =
-            all.rate(Some(&self.blocked), &limits.times(self.longest_m.max(f64::MIN_POSITIVE)));
-        let risks = object.map_or_else(Vec::new, |object| object.risks(&passages, &blocked));
+        let risks = self.risks(object, all);
         AnnualFigures { passages, above: self.above(all), returns, risks, curve }
+    }
+
+    /// Risks of an object by the rocks that hit it.
+    fn risks(&self, object: Option<&Object>, all: &All<'_>) -> Vec<Risk> {
+        let Some(object) = object else { return Vec::new() };
+        // no rock of a stratum blocks more than its largest, seen or not
+        let longest_m = |stratum: usize| object.blocked_m(2.0 * all.asked.largest_m(stratum));
+        let limits = Limits::weighing(&all.weights, longest_m);
+        object.risks(&self.rate(0, all), &all.rate(Some(&self.blocked), &limits))
     }
 }
 
 /// What all places share.
-struct All<'a> {
+pub(super) struct All<'a> {
     asked: &'a Asked,
     frequency: &'a Frequency,
     weights: Weights,
@@ -152,6 +163,18 @@ struct All<'a> {
 }
 
 impl All<'_> {
+    /// One rock, and how its frequency changes with the exponent.
+    pub(super) fn one(&self, row: &CrossingRow) -> (u16, Sums) {
+        let stratum = self.frequency.stratum(row.index);
+        let score = stratum.score(volume_m3(row.radius_m)).unwrap_or(0.0);
+        (self.frequency.stratum_of(row.index) as u16, Sums::one(1.0, score))
+    }
+
+    /// How often a year rocks do something that every rock might do.
+    pub(super) fn rate_of_any(&self, strata: &Strata) -> Rate {
+        self.rate(Some(strata), &Limits::above(&self.weights, &[], 0.0))
+    }
+
     fn rate(&self, strata: Option<&Strata>, limits: &Limits) -> Rate {
         let mut running = Running::new(&self.weights);
         for (stratum, sums) in strata.into_iter().flatten() {
@@ -188,31 +211,36 @@ pub fn annual<E>(
     let place = |line| Place::of(line, &asked.objects, barriers.len());
     let shown = lines.iter().filter(|line| !line.of_barrier);
     let mut places: Vec<Place<'_>> = shown.map(place).collect();
+    let mut nets: Vec<Met> = barriers.iter().map(|_| Met::default()).collect();
     let mut rock: Vec<CrossingRow> = Vec::new();
     for row in rows {
         let row = row?;
         if rock.first().is_some_and(|first| first.index != row.index) {
-            send(&mut places, &mut rock, &all);
+            send((&mut places, &mut nets), &mut rock, &all);
         }
         rock.push(row);
     }
-    send(&mut places, &mut rock, &all);
+    send((&mut places, &mut nets), &mut rock, &all);
     Ok(Some(Annual {
         events_per_year: frequency.per_year(),
         rocks: releases,
         effective_rocks: all.weights.effective_rocks(),
         strata: frequency.strata().len(),
         places: places.iter().map(|place| place.said(&all)).collect(),
+        barriers: barriers.iter().zip(&nets).map(|(one, met)| met.said(one, &all)).collect(),
     }))
 }
 
 /// Notes all passages of one rock, and which of them a barrier prevents.
-fn send(places: &mut [Place<'_>], rock: &mut Vec<CrossingRow>, all: &All<'_>) {
+fn send(
+    (places, nets): (&mut [Place<'_>], &mut [Met]),
+    rock: &mut Vec<CrossingRow>,
+    all: &All<'_>,
+) {
     rock.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
     let stop = rock.iter().find_map(|row| {
         let which = all.barriers.iter().position(|barrier| barrier.name == row.line)?;
-        let barrier = &all.barriers[which];
-        let stops = Arrival::of(row).is_stopped(barrier.height_m, barrier.capacity_j);
+        let stops = nets[which].add(&all.barriers[which], row, all);
         stops.then_some((row.time_s, which))
     });
     for row in rock.iter() {
@@ -256,6 +284,7 @@ impl<'a> Place<'a> {
             barrier: barrier.name.clone(),
             passages: tally.rate(0, all),
             above: tally.above(all),
+            risks: tally.risks(self.object, all),
         };
         let judged = !all.barriers.is_empty();
         AnnualPlace {

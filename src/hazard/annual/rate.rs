@@ -113,9 +113,13 @@ impl Limits {
         }
     }
 
-    /// The same where a rock counts for so much at most.
-    pub(in crate::hazard) fn times(self, most: f64) -> Self {
-        Self { most: most * self.most, heaviest: most * self.heaviest }
+    /// Of what every rock can do, where one of a stratum counts for so much at most.
+    pub(in crate::hazard) fn weighing(weights: &Weights, most: impl Fn(usize) -> f64) -> Self {
+        let strata = || 0..weights.strata();
+        Self {
+            most: strata().map(|stratum| most(stratum) * weights.per_year(stratum)).sum(),
+            heaviest: strata().map(|at| most(at) * weights.of_stratum(at)).fold(0.0, f64::max),
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Where ends lie and how they spread, measured beside computed.
 
-use super::{Way, mean_direction};
-use crate::hazard::Sample;
+use super::{Way, Weighted, mean_direction, runouts};
 use crate::math;
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// Ends of one set of rocks along and across a direction.
@@ -14,39 +14,64 @@ pub struct Spread {
 
 impl Spread {
     /// Figures of measured and computed ways: what, of the measured, of the computed.
-    pub fn figures(measured: &[Way], computed: &[Way]) -> Vec<(&'static str, f64, f64)> {
+    pub fn figures(measured: &[Way], computed: &[Weighted]) -> Vec<(&'static str, f64, f64)> {
         let along = mean_direction(measured);
-        let [one, two] = [measured, computed].map(|ways| Self::of(ways, along));
-        let runouts = |ways: &[Way]| Sample::of(ways.iter().map(Way::runout_m));
-        let [near, far] = [measured, computed].map(runouts);
-        let mean = |sample: &Sample| sample.mean().map_or(f64::NAN, |mean| mean.value);
+        let measured: Vec<Weighted> = measured.iter().map(|way| (*way, 1.0)).collect();
+        let [one, two] = [&measured, computed].map(|ways| Self::of(ways, along));
+        let [near, far] = [&measured, computed].map(runouts);
+        let total = |runouts: &[(f64, f64)]| runouts.iter().map(|(_, weight)| weight).sum::<f64>();
+        let mean = |runouts: &[(f64, f64)]| {
+            runouts.iter().map(|(runout, weight)| runout * weight).sum::<f64>() / total(runouts)
+        };
         let offset_m = math::hypot(two.mean_m[0] - one.mean_m[0], two.mean_m[1] - one.mean_m[1]);
-        let farthest_m = near.values().last().copied().unwrap_or(f64::NAN);
-        let beyond = far.values().iter().filter(|runout| **runout > farthest_m).count();
-        let share = beyond as f64 / far.values().len().max(1) as f64;
+        let farthest_m = near.last().map_or(f64::NAN, |(runout, _)| *runout);
+        let beyond = &far[far.partition_point(|(runout, _)| *runout <= farthest_m)..];
         vec![
             ("mean runout (m)", mean(&near), mean(&far)),
             ("offset of the centroid (m)", 0.0, offset_m),
             ("standard deviation along (m)", one.sd_m[0], two.sd_m[0]),
             ("standard deviation across (m)", one.sd_m[1], two.sd_m[1]),
-            ("share past the farthest measured (–)", 0.0, share),
+            ("share past the farthest measured (–)", 0.0, total(beyond) / total(&far)),
         ]
     }
 
-    fn of(ways: &[Way], [x, y]: [f64; 2]) -> Self {
-        let turned = |way: &Way| {
+    /// Where weighted ends lie along and across a direction.
+    pub(super) fn of(ways: &[Weighted], [x, y]: [f64; 2]) -> Self {
+        let turned = |(way, weight): &Weighted| {
             let [dx, dy] = way.vector_m();
-            [x * dx + y * dy, x * dy - y * dx]
+            ([x * dx + y * dy, x * dy - y * dx], *weight)
         };
-        let all: Vec<[f64; 2]> = ways.iter().map(turned).collect();
-        let n = all.len() as f64;
-        let mean_m = [0, 1].map(|axis| all.iter().map(|at| at[axis]).sum::<f64>() / n);
-        let sd_m = [0, 1].map(|axis| {
-            let off2 = all.iter().map(|at| (at[axis] - mean_m[axis]).powi(2)).sum::<f64>();
-            (off2 / (n - 1.0)).sqrt()
-        });
+        let is_there = |(at, weight): &([f64; 2], f64)| {
+            *weight > 0.0 && at.iter().all(|along| along.is_finite())
+        };
+        let all: Vec<([f64; 2], f64)> = ways.iter().map(turned).filter(is_there).collect();
+        let sum = |of: &dyn Fn(&[f64; 2]) -> f64| -> f64 {
+            all.iter().map(|(at, weight)| weight * of(at)).sum()
+        };
+        let whole = sum(&|_| 1.0);
+        let mean_m = [0, 1].map(|axis| sum(&|at| at[axis]) / whole);
+        // of n ends that weigh alike the variance of the sample, over n − 1
+        let free = whole * (1.0 - 1.0 / all.len() as f64);
+        let sd_m = [0, 1].map(|axis| (sum(&|at| (at[axis] - mean_m[axis]).powi(2)) / free).sqrt());
         Self { mean_m, sd_m }
     }
+
+    /// Standard deviation across the direction (m).
+    pub(super) fn across_m(&self) -> f64 {
+        self.sd_m[1]
+    }
+}
+
+/// Share of computed runouts below a measured one (–), those equal to it by half; none of none.
+pub fn rank(measured: &Way, computed: &[Way]) -> Option<f64> {
+    let own_m = measured.runout_m();
+    let below = |way: &Way| match way.runout_m().total_cmp(&own_m) {
+        Ordering::Less => 1.0,
+        Ordering::Equal => 0.5,
+        Ordering::Greater => 0.0,
+    };
+    let sum: f64 = computed.iter().map(below).sum();
+    (!computed.is_empty()).then(|| sum / computed.len() as f64)
 }
 
 /// Independent values that values in groups are worth: `n / (1 + (m̄ − 1) ρ)` with the intraclass correlation ρ of a
@@ -97,12 +122,17 @@ mod tests {
     #[test]
     fn figures_are_those_found_by_hand() {
         let way = |x: f64, y: f64| Way { start_m: [1.0, 1.0], end_m: [1.0 + x, 1.0 + y] };
-        let figures =
-            Spread::figures(&[way(0.0, 10.0), way(0.0, 20.0)], &[way(3.0, 14.0), way(3.0, 24.0)]);
+        let figures = Spread::figures(
+            &[way(0.0, 10.0), way(0.0, 20.0)],
+            &[(way(3.0, 14.0), 1.0), (way(3.0, 24.0), 1.0)],
+        );
         let value = |what: &str| figures.iter().find(|f| f.0.starts_with(what)).unwrap();
         assert!((value("offset").2 - 5.0).abs() < 1e-12);
         assert!((value("standard deviation along").1 - 50.0_f64.sqrt()).abs() < 1e-12);
         assert!(value("standard deviation across").2.abs() < 1e-12);
         assert!((value("share past").2 - 0.5).abs() < 1e-12);
+        let computed = [way(0.0, 5.0), way(0.0, 10.0), way(0.0, 15.0), way(0.0, 30.0)];
+        assert_eq!(rank(&way(0.0, 10.0), &computed), Some(0.375));
+        assert_eq!(rank(&way(0.0, 10.0), &[]), None);
     }
 }

@@ -84,7 +84,8 @@ fn changes(groups: &[Group]) -> Drawing {
                 let is_clear = values[1] > 0.0 || values[2] < 0.0;
                 let colour = if is_clear { VERMILLION } else { INK };
                 canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
-                canvas.disc((at, y), 3.2, colour);
+                // told apart without colour: a diamond where the interval leaves out zero
+                canvas.mark(if is_clear { 2 } else { 0 }, (at, y), 3.0, colour);
                 canvas.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
             }
             canvas.outline(&frame, Pen::full(INK, 0.8));
@@ -95,7 +96,7 @@ fn changes(groups: &[Group]) -> Drawing {
         });
     let beyond = rows.iter().flat_map(|(_, values)| values).any(|x| x.abs() > MOST_CHANGE);
     let caption = format!(
-        "Change of each statistic over its value in A, with its 95 % interval; vermillion where the interval leaves out zero. \
+        "Change of each statistic over its value in A, with its 95 % interval; a vermillion diamond where the interval leaves out zero. \
          One in twenty intervals misses by chance.{}",
         if beyond { " What lies beyond the frame is drawn at its edge." } else { "" }
     );

@@ -5,6 +5,8 @@ use super::table::{Group, Line, in_words};
 use crate::report::figure::{Drawing, Heading};
 use crate::report::format::{self, escape};
 use crate::report::html::{figure_section, head, list, section};
+use crate::report::words::Words;
+use crate::scene::Language;
 use std::fmt::Write as _;
 
 /// How the intervals came about.
@@ -16,7 +18,8 @@ const METHOD: &str = "Percentiles differ by their order statistics: the spread o
 
 /// The page with the figures inlined.
 pub(super) fn page(comparison: &Comparison, figures: &[(Heading, Drawing)]) -> String {
-    let mut page = head("Two runs compared");
+    let words = Words::of(Language::En);
+    let mut page = head("Two runs compared", words);
     page.push_str(&heading(comparison));
     if !comparison.notes.is_empty() {
         let _ = writeln!(
@@ -26,7 +29,7 @@ pub(super) fn page(comparison: &Comparison, figures: &[(Heading, Drawing)]) -> S
         );
     }
     page.push_str(&section("Inputs that differ", &inputs(comparison)));
-    page.push_str(&figure_section(figures));
+    page.push_str(&figure_section(figures, words));
     for group in comparison.groups.iter().filter(|group| !group.rows.is_empty()) {
         page.push_str(&section(&group.name, &table(group)));
     }

@@ -4,6 +4,8 @@ use super::populations::{Measure, Population};
 use crate::hazard::{Difference, Reading, Values};
 use crate::math;
 use crate::report::format;
+use crate::report::words::Words;
+use crate::scene::Language;
 use std::fmt::Write as _;
 
 /// Percentiles that are compared (per cent).
@@ -152,7 +154,7 @@ pub(super) fn in_words(difference: &Difference) -> [String; 4] {
         if v > 0.0 && !is_zero { format!("+{text}") } else { text }
     };
     let interval = interval.map_or("too few rocks for an interval".to_owned(), |(low, high)| {
-        format::interval(&signed(low), &signed(high))
+        Words::of(Language::En).interval(&signed(low), &signed(high))
     });
     [number(a), number(b), signed(value), interval]
 }

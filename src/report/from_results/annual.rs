@@ -2,9 +2,11 @@
 
 use super::super::format;
 use super::super::model::{About, AnnualView, BandPoint, Estimate, Table};
+use super::super::words::{Words, fill};
 use super::estimate;
 use crate::hazard::{
-    Annual, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk,
+    Annual, AnnualBarrier, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk,
+    RiskKind,
 };
 use crate::output::Results;
 
@@ -33,69 +35,95 @@ fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
     figures.curve.iter().rev().map(point).collect()
 }
 
-/// Three tables a place: how often, with what energy, at what risk.
-pub(super) fn tables(results: &Results) -> Vec<Table> {
+/// Three tables a place: how often, with what energy, at what risk; and one a barrier.
+pub(super) fn tables(results: &Results, words: &Words) -> Vec<Table> {
     let Some(annual) = &results.summary.annual else { return Vec::new() };
-    let each =
-        |place: &AnnualPlace| [Some(passages(annual, place)), Some(returns(place)), risks(place)];
-    annual.places.iter().flat_map(each).flatten().collect()
+    let each = |place: &AnnualPlace| {
+        [Some(passages(annual, place, words)), Some(returns(place, words)), risks(place, words)]
+    };
+    let places = annual.places.iter().flat_map(each).flatten();
+    places.chain(annual.barriers.iter().map(|one| barrier(annual, one, words))).collect()
 }
 
-/// Name of a place with what it is.
-fn named(place: &AnnualPlace) -> String {
-    let what = if place.is_object { "object" } else { "line" };
-    format!("{what} “{}”", place.name)
+/// Columns of how often something happens.
+fn how_often(words: &Words) -> Vec<String> {
+    let by = |text: &str| fill(text, &[("unit", &"1/a")]);
+    vec![
+        words.col_year.to_owned(),
+        words.col_period.to_owned(),
+        words.col_probability.to_owned(),
+        words.col_conditional.to_owned(),
+        by(words.col_by_rate),
+        by(words.col_by_exponent),
+    ]
 }
 
-/// All figures of a place: without barriers first.
-fn both(place: &AnnualPlace) -> impl Iterator<Item = (&'static str, &AnnualFigures)> {
-    let without = if place.with_barriers.is_some() { ", without barriers" } else { "" };
-    let with = place.with_barriers.iter().map(|figures| (", with barriers", figures));
-    [(without, &place.without_barriers)].into_iter().chain(with)
-}
-
-fn passages(annual: &Annual, place: &AnnualPlace) -> Table {
-    let all = if place.is_object { "Hits" } else { "Passages" };
-    let mut rows = Vec::new();
-    let mut say = |name: String, rate: &Rate| rows.push((name, cells(rate, annual)));
-    for (which, figures) in both(place) {
-        say(format!("{all}{which}"), &figures.passages);
-        for above in &figures.above {
-            say(format!("… with {} kJ or more{which}", kj(above.energy_j)), &above.rate);
-        }
-    }
-    for saved in &place.saved {
-        say(format!("Kept away by “{}”", saved.barrier), &saved.passages);
-        for above in &saved.above {
-            say(format!("… with {} kJ or more", kj(above.energy_j)), &above.rate);
-        }
-    }
-    let columns = [
-        "a year (1/a)",
-        "return period (a)",
-        "probability in a year (%)",
-        "conditional on release (%)",
-        "change with ln(rate) (1/a)",
-        "change with exponent (1/a)",
+fn barrier(annual: &Annual, one: &AnnualBarrier, words: &Words) -> Table {
+    let AnnualBarrier { name, arriving, stopped, over, through } = one;
+    let rows = [
+        (words.rocks_arrive, arriving),
+        (words.are_stopped, stopped),
+        (words.go_over, over),
+        (words.break_through, through),
     ];
     Table {
         about: About::Year,
-        title: format!("How often a year: {}", named(place)),
-        note: format!(
-            "Numbers a year unless the column says otherwise: {} events a year at the sources times the share of their rocks that come. \
-             {} rocks, which know what {} of equal weight would. 95 % intervals; where none was seen, a one-sided bound. Change with \
-             ln(rate): 10 % more events make it 10 % of that more. Probability in a year: 1 − e^−λ.",
-            format::significant(annual.events_per_year, 4),
-            format::decimal(annual.rocks as f64, 0),
-            format::decimal(annual.effective_rocks, 0)
-        ),
-        columns: columns.map(str::to_owned).into(),
-        rows,
+        title: fill(words.barrier_year_title, &[("name", &words.quoted(name))]),
+        note: words.barrier_year_note.to_owned(),
+        columns: how_often(words),
+        rows: rows.map(|(what, rate)| (what.to_owned(), cells(rate, annual))).into(),
     }
 }
 
-fn kj(joule: f64) -> String {
-    format::plain(joule / 1e3)
+/// A title with the name of a place and what it is.
+fn named(text: &str, place: &AnnualPlace, words: &Words) -> String {
+    let what = if place.is_object { words.object } else { words.line };
+    let name = fill(what, &[("name", &words.quoted(&place.name))]);
+    fill(text, &[("name", &name)])
+}
+
+/// All figures of a place: without barriers first.
+fn both<'a>(
+    place: &'a AnnualPlace,
+    words: &Words,
+) -> impl Iterator<Item = (&'static str, &'a AnnualFigures)> + use<'a> {
+    let without = if place.with_barriers.is_some() { words.and_without } else { "" };
+    let and_with = words.and_with;
+    let with = place.with_barriers.iter().map(move |figures| (and_with, figures));
+    [(without, &place.without_barriers)].into_iter().chain(with)
+}
+
+fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> Table {
+    let all = if place.is_object { words.hits } else { words.passages };
+    let or_more = |joule: f64| fill(words.or_more, &[("energy", &format::plain(joule / 1e3))]);
+    let mut rows = Vec::new();
+    let mut say = |name: String, rate: &Rate| rows.push((name, cells(rate, annual)));
+    for (which, figures) in both(place, words) {
+        say(format!("{all}{which}"), &figures.passages);
+        for above in &figures.above {
+            say(or_more(above.energy_j) + which, &above.rate);
+        }
+    }
+    for saved in &place.saved {
+        say(fill(words.kept_away, &[("name", &words.quoted(&saved.barrier))]), &saved.passages);
+        for above in &saved.above {
+            say(or_more(above.energy_j), &above.rate);
+        }
+    }
+    Table {
+        about: About::Year,
+        title: named(words.often_title, place, words),
+        note: fill(
+            words.often_note,
+            &[
+                ("events", &format::significant(annual.events_per_year, 4)),
+                ("rocks", &format::decimal(annual.rocks as f64, 0)),
+                ("effective", &format::decimal(annual.effective_rocks, 0)),
+            ],
+        ),
+        columns: how_often(words),
+        rows,
+    }
 }
 
 fn of(rate: &Rate, map: impl Fn(f64) -> f64) -> Estimate {
@@ -115,7 +143,7 @@ fn cells(rate: &Rate, annual: &Annual) -> Vec<Option<Estimate>> {
     ]
 }
 
-fn returns(place: &AnnualPlace) -> Table {
+fn returns(place: &AnnualPlace, words: &Words) -> Table {
     let row = |(which, one): (&str, &ReturnEnergy)| {
         let kilo = |joule: f64| joule / 1e3;
         let energy = match one.energy_j {
@@ -124,42 +152,54 @@ fn returns(place: &AnnualPlace) -> Table {
             None => estimate(f64::NAN, None, one.high_95.filter(|high| *high > 0.0).map(kilo)),
         };
         let slope = |slope: Option<f64>| slope.map(|joule| estimate(kilo(joule), None, None));
-        let name = format!("{} years{which}", format::plain(one.years));
+        let name = fill(words.years, &[("n", &format::plain(one.years))]) + which;
         (name, vec![Some(energy), slope(one.by_log_rate), slope(one.by_exponent)])
     };
-    let all =
-        both(place).flat_map(|(which, figures)| figures.returns.iter().map(move |r| (which, r)));
-    let columns = ["total energy (kJ)", "change with ln(rate) (kJ)", "change with exponent (kJ)"];
+    let all = both(place, words)
+        .flat_map(|(which, figures)| figures.returns.iter().map(move |r| (which, r)));
+    let by = |text: &str| fill(text, &[("unit", &"kJ")]);
+    let columns = [words.energy_axis, words.col_by_rate, words.col_by_exponent].map(by);
     Table {
         about: About::Year,
-        title: format!("Energy of return periods: {}", named(place)),
-        note: "Passed with at least that energy once in so many years on average; no number where rocks come more seldom. The 95 % \
-               interval is that of the frequency, read along the energy; where too few rocks bound it, it is open."
-            .to_owned(),
-        columns: columns.map(str::to_owned).into(),
+        title: named(words.returns_title, place, words),
+        note: words.returns_note.to_owned(),
+        columns: columns.into(),
         rows: all.map(row).collect(),
     }
 }
 
-fn risks(place: &AnnualPlace) -> Option<Table> {
-    let row = |(which, risk): (&str, &Risk)| {
+fn risks(place: &AnnualPlace, words: &Words) -> Option<Table> {
+    let row = |which: &str, risk: &Risk| {
         let Risk { kind, rate } = risk;
         let slope = |slope: f64| estimate(slope, None, None);
         let cells =
             vec![Some(of(rate, |x| x)), Some(slope(rate.by_log_rate)), rate.by_exponent.map(slope)];
-        (format!("{}{which}", kind.name()), cells)
+        (format!("{}{which}", risk_name(*kind, words)), cells)
     };
-    let all =
-        both(place).flat_map(|(which, figures)| figures.risks.iter().map(move |r| (which, r)));
-    let rows: Vec<_> = all.map(row).collect();
-    let columns = ["a year (1/a)", "change with ln(rate) (1/a)", "change with exponent (1/a)"];
+    let mut rows = Vec::new();
+    for (which, figures) in both(place, words) {
+        rows.extend(figures.risks.iter().map(|risk| row(which, risk)));
+    }
+    for saved in &place.saved {
+        let which = fill(words.risk_kept_away, &[("name", &words.quoted(&saved.barrier))]);
+        rows.extend(saved.risks.iter().map(|risk| row(&which, risk)));
+    }
+    let by = |text: &str| fill(text, &[("unit", &"1/a")]);
+    let columns = [words.col_year, words.col_by_rate, words.col_by_exponent].map(by);
     (!rows.is_empty()).then(|| Table {
         about: About::Year,
-        title: format!("Risk a year: {}", named(place)),
-        note: "Hits a year × presence × vulnerability. The interval is that of the hits: presence and vulnerability are taken as \
-               written in the scene. What is tolerable is not said here."
-            .to_owned(),
-        columns: columns.map(str::to_owned).into(),
+        title: named(words.risk_title, place, words),
+        note: words.risk_note.to_owned(),
+        columns: columns.into(),
         rows,
     })
+}
+
+fn risk_name(kind: RiskKind, words: &Words) -> &'static str {
+    match kind {
+        RiskKind::PersonHit => words.person_hit,
+        RiskKind::VehiclesHit => words.vehicles_hit,
+        RiskKind::Individual => words.individual_risk,
+        RiskKind::Deaths => words.deaths,
+    }
 }

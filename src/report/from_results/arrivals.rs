@@ -2,6 +2,7 @@
 
 use super::super::format;
 use super::super::model::{About, Estimate, Quantity, Table};
+use super::super::words::{Words, fill};
 use super::lines::{of_share, shown};
 use super::{of_percentile, percentile_of};
 use crate::hazard::{BarrierSummary, LineQuantity, Residual, Statistic};
@@ -11,8 +12,8 @@ use crate::output::Results;
 const P: f64 = 0.95;
 
 /// One table over the lines in this order, one over the barriers; each where there are some.
-pub(super) fn tables(results: &Results, order: &[String]) -> Vec<Table> {
-    [lines(results, order), barriers(results)].into_iter().flatten().collect()
+pub(super) fn tables(results: &Results, words: &Words, order: &[String]) -> Vec<Table> {
+    [lines(results, words, order), barriers(results, words)].into_iter().flatten().collect()
 }
 
 fn of(statistic: &Statistic) -> Option<Estimate> {
@@ -28,7 +29,7 @@ fn percent(share: Estimate) -> Estimate {
     share.over(0.01)
 }
 
-fn lines(results: &Results, order: &[String]) -> Option<Table> {
+fn lines(results: &Results, words: &Words, order: &[String]) -> Option<Table> {
     let releases = results.hazard.rocks();
     let is_barrier =
         |name: &str| results.summary.barriers.iter().any(|one| one.barrier.name == name);
@@ -43,51 +44,48 @@ fn lines(results: &Results, order: &[String]) -> Option<Table> {
         let residual = results.summary.residual.iter().find(|at| at.line == line.info.name);
         let residual = residual.filter(|at| !at.behind.is_empty());
         let name = match residual {
-            Some(_) => format!("{}, without barriers", line.info.name),
+            Some(_) => fill(words.line_without, &[("name", &line.info.name)]),
             None => line.info.name.clone(),
         };
         let cells = vec![
             Some(percent(reach)),
             p95(line, LineQuantity::Speed),
             p95(line, LineQuantity::Total).map(|at| at.over(size)),
-            p95(line, LineQuantity::Height),
-            p95(line, LineQuantity::HeightNormal),
+            p95(line, LineQuantity::Height).map(Estimate::above_a_mm),
+            p95(line, LineQuantity::HeightNormal).map(Estimate::above_a_mm),
         ];
         rows.push((name, cells));
-        rows.extend(residual.map(|at| behind(at, size)));
+        rows.extend(residual.map(|at| behind(at, words, size)));
     }
     let columns = [
-        "reach (% of releases)".to_owned(),
-        "speed P95 (m/s)".to_owned(),
-        format!("total energy P95 ({unit})"),
-        "height P95, vertical (m)".to_owned(),
-        "height P95, normal (m)".to_owned(),
+        words.col_reach.to_owned(),
+        words.col_speed.to_owned(),
+        fill(words.col_energy, &[("unit", &unit)]),
+        words.col_height_vertical.to_owned(),
+        words.col_height_normal.to_owned(),
     ];
     (!rows.is_empty()).then(|| Table {
         about: About::Lines,
-        title: "What arrives at each line".to_owned(),
-        note: "Small figures: 95 % intervals of chance in the sample. P95 needs 59 rocks that cross; where fewer do, the number \
-               missing stands in its place. With barriers: without the rocks that a barrier stops before the line; what gets \
-               through one keeps its energy."
-            .to_owned(),
+        title: words.arrives_title.to_owned(),
+        note: words.arrives_note.to_owned(),
         columns: columns.into(),
         rows,
     })
 }
 
-fn behind(at: &Residual, size: f64) -> (String, Vec<Option<Estimate>>) {
-    let name = format!("{}, with {}", at.line, at.behind.join(", "));
+fn behind(at: &Residual, words: &Words, size: f64) -> (String, Vec<Option<Estimate>>) {
+    let name = fill(words.line_with, &[("name", &at.line), ("barriers", &at.behind.join(", "))]);
     let cells = vec![
         Some(percent(of_share(&at.with.reach))),
         None,
         of(&at.with.energy_j).map(|at| at.over(size)),
-        of(&at.with.height_m),
+        of(&at.with.height_m).map(Estimate::above_a_mm),
         None,
     ];
     (name, cells)
 }
 
-fn barriers(results: &Results) -> Option<Table> {
+fn barriers(results: &Results, words: &Words) -> Option<Table> {
     let all = &results.summary.barriers;
     let design = |one: &BarrierSummary| one.design_values.as_ref().map(|design| design.energy_j);
     let energies = all.iter().flat_map(|one| {
@@ -121,19 +119,17 @@ fn barriers(results: &Results) -> Option<Table> {
         (name, cells)
     };
     let columns = [
-        "arriving (% of releases)".to_owned(),
-        "of these pass it (%)".to_owned(),
-        format!("total energy P95 ({unit})"),
-        "highest point P95 (m)".to_owned(),
-        format!("design energy ({unit})"),
-        "design height (m)".to_owned(),
+        words.col_arriving_of.to_owned(),
+        words.col_passing.to_owned(),
+        fill(words.col_energy, &[("unit", &unit)]),
+        words.col_top.to_owned(),
+        fill(words.col_design_energy, &[("unit", &unit)]),
+        words.col_design_height.to_owned(),
     ];
     (!all.is_empty()).then(|| Table {
         about: About::Barriers,
-        title: "What each barrier meets, and what its design needs".to_owned(),
-        note: "Rocks stopped by a barrier before are left out. Design values are the percentile of the rule with all its factors; \
-               their intervals are those of the percentile."
-            .to_owned(),
+        title: words.barriers_head_title.to_owned(),
+        note: words.barriers_head_note.to_owned(),
         columns: columns.into(),
         rows: all.iter().map(row).collect(),
     })

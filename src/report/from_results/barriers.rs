@@ -1,16 +1,21 @@
 //! What barriers stop and what their rule asks for, from the summary and the crossings.
 
 use super::super::format;
-use super::super::model::{About, BarrierView, DesignView, Estimate, PlaceView, Quantity, Table};
+use super::super::model::{
+    About, BarrierView, DesignView, Estimate, PlaceView, Quantity, RockView, Table,
+};
 use super::super::raster::GroundRaster;
-use super::{estimate, of_percentile};
+use super::super::words::{Words, fill};
+use super::{estimate, of_percentile, statistics};
 use crate::error::Result;
+use crate::frequency::Weights;
 use crate::hazard::{
     self, Arrival, AtPlace, BarrierSummary, Design, PERCENTS, Proportion, Rule, Statistic,
 };
 use crate::math;
 use crate::output::Results;
 use std::collections::BTreeMap;
+use std::fmt::Display;
 
 /// The rocks that arrive at each barrier, for its figure.
 pub(super) fn views(results: &Results, ground: Option<&GroundRaster>) -> Result<Vec<BarrierView>> {
@@ -20,6 +25,7 @@ pub(super) fn views(results: &Results, ground: Option<&GroundRaster>) -> Result<
     }
     let barriers: Vec<hazard::Barrier> = summaries.iter().map(|one| one.barrier.clone()).collect();
     let arrivals = hazard::arrivals(&barriers, results.crossings()?)?;
+    let weights = results.hazard.weights();
     let view = |(one, places): (&BarrierSummary, Vec<Vec<Arrival>>)| BarrierView {
         name: one.barrier.name.clone(),
         height_m: one.barrier.height_m,
@@ -28,7 +34,12 @@ pub(super) fn views(results: &Results, ground: Option<&GroundRaster>) -> Result<
         design_lacks: one.design_lacks,
         percentile: one.barrier.design.as_ref().map(|rule| rule.percentile),
         left_is_uphill: left_is_uphill(results, one, ground),
-        places: one.by_place.iter().zip(places).map(place_view).collect(),
+        places: one
+            .by_place
+            .iter()
+            .zip(places)
+            .map(|place| place_view(place, weights.as_ref()))
+            .collect(),
     };
     Ok(summaries.iter().zip(arrivals).map(view).collect())
 }
@@ -67,47 +78,57 @@ fn left_is_uphill(
     (left - right).is_finite().then_some(left > right)
 }
 
-fn place_view((place, rocks): (&AtPlace, Vec<Arrival>)) -> PlaceView {
+/// `weights`: none where all rocks weigh the same.
+fn place_view((place, rocks): (&AtPlace, Vec<Arrival>), weights: Option<&Weights>) -> PlaceView {
+    let rock = |rock: &Arrival| RockView {
+        top_m: rock.top_m,
+        total_j: rock.total_j,
+        weight: weights.map_or(1.0, |weights| weights.of_release(rock.release)),
+    };
     PlaceView {
         offset_m: place.offset_m,
         arriving: place.arriving.share,
-        rocks: rocks.iter().map(|rock| (rock.top_m, rock.total_j)).collect(),
+        stopped: place.at_own_height().and_then(percent),
+        rocks: rocks.iter().map(rock).collect(),
     }
 }
 
 /// One table over all barriers, and two of each: what arrives, and how it would do at other heights and places.
-pub(super) fn tables(results: &Results, ground: Option<&GroundRaster>) -> Vec<Table> {
+pub(super) fn tables(
+    results: &Results,
+    words: &Words,
+    ground: Option<&GroundRaster>,
+) -> Vec<Table> {
     let barriers = &results.summary.barriers;
     if barriers.is_empty() {
         return Vec::new();
     }
     let reached = barriers.iter().filter(|one| one.arriving.count > 0);
-    let each = reached
-        .flat_map(|one| [arriving(one), sensitivity(one, left_is_uphill(results, one, ground))]);
-    [counts(barriers)].into_iter().chain(each).collect()
+    let each = reached.flat_map(|one| {
+        let left_is_uphill = left_is_uphill(results, one, ground);
+        [arriving(one, words), sensitivity(one, words, left_is_uphill)]
+    });
+    [counts(barriers, words)].into_iter().chain(each).collect()
 }
 
-fn counts(barriers: &[BarrierSummary]) -> Table {
+fn counts(barriers: &[BarrierSummary], words: &Words) -> Table {
+    let design_energy = fill(words.col_design_energy, &[("unit", &"kJ")]);
     let columns = [
-        "height (m)",
-        "capacity (kJ)",
-        "arriving",
-        "arriving (%)",
-        "stopped (%)",
-        "over",
-        "through",
-        "design height (m)",
-        "design energy (kJ)",
+        words.col_height,
+        words.col_capacity,
+        words.col_arriving,
+        words.col_arriving_percent,
+        words.col_stopped,
+        words.col_over,
+        words.col_through,
+        words.col_design_height,
+        &design_energy,
     ];
-    let rules: Vec<String> = barriers.iter().filter_map(in_words).collect();
+    let rules: Vec<String> = barriers.iter().filter_map(|one| in_words(one, words)).collect();
     Table {
         about: About::Barriers,
-        title: "Barriers".to_owned(),
-        note: format!(
-            "A barrier stops a rock whose highest point is not above its edge and whose total energy it takes. What one stops \
-             does not arrive at those behind it. Shares with Wilson's 95 % interval. {}",
-            rules.join(" ")
-        ),
+        title: words.barriers_title.to_owned(),
+        note: fill(words.barriers_note, &[("rules", &rules.join(" "))]).trim_end().to_owned(),
         columns: columns.map(str::to_owned).into(),
         rows: barriers.iter().map(|one| (one.barrier.name.clone(), cells(one))).collect(),
     }
@@ -138,50 +159,46 @@ fn cells(one: &BarrierSummary) -> Vec<Option<Estimate>> {
 }
 
 /// The rule of a barrier with its factors one by one.
-fn in_words(one: &BarrierSummary) -> Option<String> {
+fn in_words(one: &BarrierSummary, words: &Words) -> Option<String> {
     let rule: &Rule = one.barrier.design.as_ref()?;
+    let name = words.quoted(&one.barrier.name);
     let Some(design) = one.design_values.as_ref() else {
-        return Some(format!(
-            "No design of “{}”: P{} needs {} more {}.",
-            one.barrier.name,
-            rule.percentile,
-            one.design_lacks,
-            format::counted(one.design_lacks, "rock that arrives", "rocks that arrive")
-        ));
+        let found: [(&str, &dyn Display); 3] =
+            [("name", &name), ("percentile", &rule.percentile), ("n", &one.design_lacks)];
+        return Some(fill(words.rule_lacks, &found));
     };
-    let factors = |what: &str, list: &BTreeMap<String, f64>| {
-        let each: Vec<String> = list
-            .iter()
-            .map(|(name, factor)| format!("{} {factor}", name.replace('_', " ")))
-            .collect();
-        if each.is_empty() {
-            format!("no factor on {what}")
-        } else {
-            format!("on {what}: {}", each.join(", "))
-        }
-    };
-    let standard = rule.standard.as_deref().map_or("a rule of its own", |name| name);
+    let standard = rule.standard.as_deref().unwrap_or(words.own_rule);
     let distance = rule.free_distance_m.map_or(String::new(), |free_m| {
-        format!(" At least {} m must stay free behind it.", format::significant(free_m, 3))
+        fill(words.free_distance, &[("m", &format::significant(free_m, 3))])
     });
-    Some(format!(
-        "Design of “{}” by {standard}: P{} of total energy {:.1} kJ and of the highest point {:.2} m; {}; {}; {}; free height {} m.{distance}",
-        one.barrier.name,
-        rule.percentile,
-        design.energy_percentile_j / 1e3,
-        design.height_percentile_m,
-        factors("speed (squared in the energy)", &rule.speed_factors),
-        factors("mass", &rule.mass_factors),
-        factors("height", &rule.height_factors),
-        rule.free_height_m
-    ))
+    let factors = |what, list| factors(what, list, words);
+    let said = fill(
+        words.rule,
+        &[
+            ("name", &name),
+            ("standard", &standard),
+            ("percentile", &rule.percentile),
+            ("energy", &format::decimal(design.energy_percentile_j / 1e3, 1)),
+            ("top", &format::decimal(design.height_percentile_m, 2)),
+            ("speed", &factors(words.factor_speed, &rule.speed_factors)),
+            ("mass", &factors(words.factor_mass, &rule.mass_factors)),
+            ("height", &factors(words.factor_height, &rule.height_factors)),
+            ("free", &rule.free_height_m),
+        ],
+    );
+    Some(said + &distance)
+}
+
+/// Partial factors on something, one by one.
+fn factors(what: &str, list: &BTreeMap<String, f64>, words: &Words) -> String {
+    let each: Vec<String> =
+        list.iter().map(|(name, factor)| format!("{} {factor}", name.replace('_', " "))).collect();
+    let text = if each.is_empty() { words.no_factor } else { words.factors };
+    fill(text, &[("what", &what), ("list", &each.join(", "))])
 }
 
 /// The population that is left for a barrier by those before it.
-fn arriving(one: &BarrierSummary) -> Table {
-    let percents = PERCENTS.map(|percent| format!("{percent}\u{2009}%"));
-    let columns =
-        ["mean".to_owned()].into_iter().chain(percents).chain(["maximum".to_owned()]).collect();
+fn arriving(one: &BarrierSummary, words: &Words) -> Table {
     let row = |name: &str, like: Quantity, of: &Statistic| {
         let most = of.max.map(|most| most.value);
         let (unit, size) = like.unit(most.unwrap_or(0.0));
@@ -196,35 +213,39 @@ fn arriving(one: &BarrierSummary) -> Table {
     let before = one.crossing - one.arriving.count;
     Table {
         about: About::Barriers,
-        title: format!("Rocks that arrive at barrier “{}”", one.barrier.name),
-        note: format!(
-            "{} {} its line; a barrier before has stopped {before}; {} {} left.",
-            one.crossing,
-            format::counted(one.crossing, "rock crosses", "rocks cross"),
-            one.arriving.count,
-            format::counted(one.arriving.count, "is", "are"),
+        title: named(words.arriving_title, one, words),
+        note: fill(
+            words.arriving_note,
+            &[("crossing", &one.crossing), ("before", &before), ("left", &one.arriving.count)],
         ),
-        columns,
+        columns: statistics(words),
         rows: vec![
-            row("Total energy", Quantity::Total, &one.energy_j),
-            row("Height of the highest point", Quantity::Height, &one.top_m),
+            row(words.total, Quantity::Total, &one.energy_j),
+            row(words.top, Quantity::Height, &one.top_m),
         ],
     }
 }
 
-fn sensitivity(one: &BarrierSummary, left_is_uphill: Option<bool>) -> Table {
+/// A title with the name of a barrier.
+fn named(text: &str, one: &BarrierSummary, words: &Words) -> String {
+    fill(text, &[("name", &words.quoted(&one.barrier.name))])
+}
+
+fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>) -> Table {
     let heights = one.by_place.first().into_iter().flat_map(|own| &own.by_height);
-    let stopped = heights
-        .map(|(height_m, _)| format!("stopped at {} m (%)", format::significant(*height_m, 3)));
-    let mut columns: Vec<String> = ["arriving (%)".to_owned()].into_iter().chain(stopped).collect();
+    let stopped =
+        heights.map(|(m, _)| fill(words.col_stopped_at, &[("m", &format::significant(*m, 3))]));
+    let mut columns: Vec<String> =
+        [words.col_arriving_percent.to_owned()].into_iter().chain(stopped).collect();
     let has_design = one.by_place.iter().any(|place| place.design_values.is_some());
     if has_design {
-        columns.extend(["design height (m)", "design energy (kJ)"].map(str::to_owned));
+        columns.push(words.col_design_height.to_owned());
+        columns.push(fill(words.col_design_energy, &[("unit", &"kJ")]));
     }
     let row = |place: &AtPlace| {
         let name = match place.offset_m {
-            0.0 => "at its place".to_owned(),
-            aside => side(aside, left_is_uphill),
+            0.0 => words.at_its_place.to_owned(),
+            aside => side(aside, words, left_is_uphill),
         };
         let mut cells = vec![percent(&place.arriving)];
         cells.extend(place.by_height.iter().map(|(_, share)| percent(share)));
@@ -237,27 +258,25 @@ fn sensitivity(one: &BarrierSummary, left_is_uphill: Option<bool>) -> Table {
     };
     Table {
         about: About::Barriers,
-        title: format!("Barrier “{}” at other heights and places", one.barrier.name),
-        note: "Share of the rocks arriving there that a barrier of that height and the same capacity would stop. The other \
-               barriers stay where they are. No design value stands where too few rocks arrive."
-            .to_owned(),
+        title: named(words.sensitivity_title, one, words),
+        note: words.sensitivity_note.to_owned(),
         columns,
         rows: one.by_place.iter().map(row).collect(),
     }
 }
 
 /// A distance beside a line in words (m, positive on its left): uphill or downhill where the ground says which.
-fn side(aside_m: f64, left_is_uphill: Option<bool>) -> String {
+fn side(aside_m: f64, words: &Words, left_is_uphill: Option<bool>) -> String {
     let towards = match (aside_m > 0.0, left_is_uphill) {
         (is_left, Some(uphill)) => {
             if is_left == uphill {
-                "uphill"
+                words.uphill
             } else {
-                "downhill"
+                words.downhill
             }
         }
-        (true, None) => "to the left",
-        (false, None) => "to the right",
+        (true, None) => words.to_the_left,
+        (false, None) => words.to_the_right,
     };
     format!("{}\u{2009}m {towards}", format::plain(aside_m.abs()))
 }

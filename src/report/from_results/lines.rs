@@ -5,6 +5,7 @@ use super::super::model::{
     About, BandPoint, Behind, Estimate, Line, LinePoint, MapMark, Quantile, Quantity, Table,
 };
 use super::super::raster::GroundRaster;
+use super::super::words::{Words, fill};
 use super::{estimate, percentile_of, statistics_table};
 use crate::error::Result;
 use crate::frequency::Weights;
@@ -14,14 +15,14 @@ use crate::hazard::{
 use crate::output::Results;
 
 /// Quantities of a line's table: name, and the quantity of a release with the same unit.
-const TABLED: [(LineQuantity, &str, Quantity); 7] = [
-    (LineQuantity::Speed, "Speed", Quantity::Speed),
-    (LineQuantity::Translational, "Translational energy", Quantity::Translational),
-    (LineQuantity::Rotational, "Rotational energy", Quantity::Rotational),
-    (LineQuantity::Total, "Total energy", Quantity::Total),
-    (LineQuantity::Height, "Height, vertical", Quantity::Height),
-    (LineQuantity::HeightNormal, "Height, normal to slope", Quantity::Height),
-    (LineQuantity::Descent, "Descent of the path", Quantity::ReachAngle),
+const TABLED: [(LineQuantity, fn(&Words) -> &'static str, Quantity); 7] = [
+    (LineQuantity::Speed, |words| words.speed, Quantity::Speed),
+    (LineQuantity::Translational, |words| words.translational, Quantity::Translational),
+    (LineQuantity::Rotational, |words| words.rotational, Quantity::Rotational),
+    (LineQuantity::Total, |words| words.total, Quantity::Total),
+    (LineQuantity::Height, |words| words.height_vertical, Quantity::Height),
+    (LineQuantity::HeightNormal, |words| words.height_normal, Quantity::Height),
+    (LineQuantity::Descent, |words| words.descent, Quantity::ReachAngle),
 ];
 /// Points of a curve of exceedance: more than there are pixels.
 const POINTS: usize = 400;
@@ -191,40 +192,32 @@ fn quantiles(sample: &Sample) -> Vec<Quantile> {
 }
 
 /// One table a line that rocks cross.
-pub(super) fn tables(results: &Results) -> Vec<Table> {
+pub(super) fn tables(results: &Results, words: &Words) -> Vec<Table> {
     let releases = results.hazard.rocks();
     let table = |(_, line): (usize, &hazard::Line)| {
         let reach = line.reach(releases);
-        if reach.count == 0 {
-            return None;
-        }
         let percent = |share: f64| format::percent(share, 2);
         let count = |n: usize| format::decimal(n as f64, 0);
-        let object = is_object(results, &line.info.name);
-        let [what, verb, verbs, one] = if object {
-            ["Object", "hits it", "hit it", "touch"]
+        let (title, note) = if is_object(results, &line.info.name) {
+            (words.object_table, words.object_note)
         } else {
-            ["Evaluation line", "crosses", "cross", "crossing"]
+            (words.line_table, words.line_note)
         };
-        let again = line.crossing_again();
-        let again = if object {
-            String::new()
-        } else {
-            let verb = format::counted(again, "crosses", "cross");
-            format!("; {} {verb} more than once", count(again))
-        };
-        let note = format!(
-            "Conditional on release: {} of {} releases {}, reach probability {} ({} to {}){again}. Values at the first {one}.",
-            count(reach.count),
-            count(releases),
-            format::counted(reach.count, verb, verbs),
-            percent(reach.share),
-            percent(reach.low_95),
-            percent(reach.high_95),
+        let note = fill(
+            note,
+            &[
+                ("count", &count(reach.count)),
+                ("releases", &count(releases)),
+                ("reach", &percent(reach.share)),
+                ("interval", &words.interval(&percent(reach.low_95), &percent(reach.high_95))),
+                ("again", &count(line.crossing_again())),
+            ],
         );
-        let rows = TABLED.map(|(quantity, name, like)| (name, like, line.sample(quantity), None));
-        let title = format!("{what} “{}”", line.info.name);
-        Some(Table { about: About::Lines, ..statistics_table(&title, note, &rows) })
+        let rows =
+            TABLED.map(|(quantity, name, like)| (name(words), like, line.sample(quantity), None));
+        let title = fill(title, &[("name", &words.quoted(&line.info.name))]);
+        let statistics = statistics_table(words, title, note, &rows);
+        (reach.count > 0).then_some(Table { about: About::Lines, ..statistics })
     };
     shown(results).filter_map(table).collect()
 }

@@ -1,6 +1,8 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
+use super::super::format;
 use super::super::model::{About, Estimate, Observed, Table};
+use super::super::words::{Words, fill};
 use super::estimate;
 use crate::calibrate::{Calibration, Measure, Told, Trial};
 use crate::error::Result;
@@ -8,15 +10,18 @@ use crate::hazard::{Agreement, Way};
 use crate::output::{Results, read_calibration};
 
 /// Columns of both tables.
-const COLUMNS: [&str; 7] = [
-    "mean runout measured (m)",
-    "computed (m)",
-    "KS distance",
-    "KS limit",
-    "area between (m)",
-    "side measured (m)",
-    "side computed (m)",
-];
+fn columns(words: &Words) -> Vec<String> {
+    let columns = [
+        words.col_mean_measured,
+        words.col_computed,
+        words.col_ks,
+        words.col_ks_limit,
+        words.col_area,
+        words.col_side_measured,
+        words.col_side_computed,
+    ];
+    columns.map(str::to_owned).into()
+}
 
 /// Measured and computed ways, if the scene names measured ones.
 pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
@@ -33,80 +38,83 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
 }
 
 /// How well this run and the calibration agree with what was measured.
-pub(super) fn tables(results: &Results) -> Result<Vec<Table>> {
+pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<Table>> {
     let mut tables = Vec::new();
     if let Some(observed) = observed(results)? {
         tables.push(Table {
             about: About::Measured,
-            title: "Agreement with measured ends".to_owned(),
-            note: format!(
-                "{} measured and {} computed rocks. KS: largest difference of the two distributions of runout; equal ones \
-                 exceed the limit in 5 % of all samples. Side scatter: standard deviation across the mean measured direction.",
-                observed.agreement.measured, observed.agreement.computed
+            title: words.agreement_title.to_owned(),
+            note: fill(
+                words.agreement_note,
+                &[
+                    ("measured", &observed.agreement.measured),
+                    ("computed", &observed.agreement.computed),
+                ],
             ),
-            columns: COLUMNS.map(str::to_owned).into(),
-            rows: vec![("This run".to_owned(), cells(&observed.agreement))],
+            columns: columns(words),
+            rows: vec![(words.this_run.to_owned(), cells(&observed.agreement))],
         });
     }
     if let Some(found) = read_calibration(&results.dir)? {
-        tables.push(calibration(&found));
-        if !found.told.is_empty() {
-            tables.extend([told(&found), spread(&found)]);
-        }
+        tables.push(calibration(&found, words));
+        tables.extend([told(&found, words), spread(&found, words)]);
     }
     Ok(tables)
 }
 
-fn calibration(found: &Calibration) -> Table {
+fn calibration(found: &Calibration, words: &Words) -> Table {
     let row = |who: &str, trial: &Trial, of: &Agreement| {
         let values = found.names.iter().zip(&trial.values);
         let values: Vec<String> =
             values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
         (format!("{who}: {}", values.join(", ")), cells(of))
     };
-    let (first, second) = (&found.first, &found.second);
+    let blocks = if found.by_block { words.blocks_held_out } else { "" };
+    let mut rows = vec![row(words.uncalibrated, &found.before, &found.before.all)];
+    for (part, trial) in found.held_out.iter().enumerate() {
+        let part = part + 1;
+        let named = |text: &str| fill(text, &[("part", &part)]);
+        rows.push(row(&named(words.fitted_without), trial, &trial.fitted));
+        rows.push(row(&named(words.held_out), trial, &trial.kept_apart));
+    }
+    rows.push(row(words.fitted_all, &found.whole, &found.whole.all));
     Table {
         about: About::Measured,
-        title: "Calibration and what it is worth".to_owned(),
-        note: format!(
-            "{} trials of {} releases on each half of the measured rocks; a value counts only on the half that it was not fitted to.",
-            found.trials, found.releases
+        title: words.calibration_title.to_owned(),
+        note: fill(
+            words.calibration_note,
+            &[("trials", &found.trials), ("releases", &found.releases), ("blocks", &blocks)],
         ),
-        columns: COLUMNS.map(str::to_owned).into(),
-        rows: vec![
-            row("Uncalibrated, all rocks", &found.before, &found.before.all),
-            row("Fitted on the first half, seen on it", first, &first.fitted),
-            row("The same on the held-out half", first, &first.kept_apart),
-            row("Fitted on the second half, seen on it", second, &second.fitted),
-            row("The same on the held-out half", second, &second.kept_apart),
-        ]
-        .into_iter()
-        .chain(found.whole.as_ref().map(|whole| row("Fitted on all", whole, &whole.all)))
-        .collect(),
+        columns: columns(words),
+        rows,
     }
 }
 
 /// How far the measured ends tell each value.
-fn told(found: &Calibration) -> Table {
+fn told(found: &Calibration, words: &Words) -> Table {
     let row = |told: &Told| {
-        let doubt = if told.is_told { "" } else { " (hardly told: other values fit as well)" };
         let value = estimate(told.value, Some(told.low_95), Some(told.high_95));
-        (format!("{}{doubt}", told.name), vec![Some(value)])
+        let name = if told.is_told {
+            told.name.clone()
+        } else {
+            fill(words.hardly_told, &[("name", &told.name)])
+        };
+        (name, vec![Some(value)])
     };
     Table {
         about: About::Measured,
-        title: "What the measured ends tell".to_owned(),
-        note: format!(
-            "Values fitted on all {} measured ends, with 95 % intervals from ends drawn again; throws of one block are alike, so that they are worth {:.0} independent ones.",
-            found.ends.0, found.ends.1
+        title: words.told_title.to_owned(),
+        note: fill(
+            words.told_note,
+            &[("ends", &found.ends.0), ("worth", &format::decimal(found.ends.1, 0))],
         ),
-        columns: vec!["fitted".to_owned()],
+        columns: vec![words.fitted.to_owned()],
         rows: found.told.iter().map(row).collect(),
     }
 }
 
 /// Where the ends of the fit lie and how they spread.
-fn spread(found: &Calibration) -> Table {
+fn spread(found: &Calibration, words: &Words) -> Table {
     let row = |measure: &Measure| {
         let difference = estimate(
             measure.computed - measure.measured,
@@ -119,10 +127,9 @@ fn spread(found: &Calibration) -> Table {
     };
     Table {
         about: About::Measured,
-        title: "Ends of the fit".to_owned(),
-        note: "Computed less measured with its 95 % interval, from measured ends drawn again."
-            .to_owned(),
-        columns: ["measured", "computed", "difference"].map(str::to_owned).into(),
+        title: words.ends_title.to_owned(),
+        note: words.ends_note.to_owned(),
+        columns: [words.measured, words.computed, words.difference].map(str::to_owned).into(),
         rows: found.measures.iter().map(row).collect(),
     }
 }

@@ -1,19 +1,20 @@
 //! Tables of estimates: numbers with as many digits as their intervals leave meaningful.
 
-use super::note;
+use super::{escape, note};
 use crate::math;
-use crate::report::format::{self, escape};
+use crate::report::format;
 use crate::report::model::{Estimate, Is, Row, Table, energy_unit};
+use crate::report::words::{Words, fill};
 use std::fmt::Write as _;
 
 /// The headline statistics of all rocks.
-pub(super) fn headline(rows: &[Row]) -> String {
+pub(super) fn headline(rows: &[Row], words: &Words) -> String {
     if rows.is_empty() {
         return String::new();
     }
     let row = |row: &Row| {
         let (estimate, unit) = in_short_unit(row);
-        let (value, interval) = in_words(&estimate);
+        let (value, interval) = in_words(&estimate, words);
         format!(
             "<tr><th scope=\"row\">{}</th><td class=\"number\">{value}</td><td class=\"number\">{interval}</td><td>{}</td></tr>\n",
             escape(&row.name),
@@ -22,29 +23,31 @@ pub(super) fn headline(rows: &[Row]) -> String {
     };
     let rows: String = rows.iter().map(row).collect();
     format!(
-        "<table>\n<thead><tr><th>All rocks</th><th class=\"number\">Value</th><th class=\"number\">95\u{2009}% interval</th><th>Unit</th></tr></thead>\n\
+        "<table>\n<thead><tr><th>{}</th><th class=\"number\">{}</th><th class=\"number\">{}</th><th>{}</th></tr></thead>\n\
          <tbody>\n{rows}</tbody>\n</table>\n{}",
-        note(
-            "Intervals say how far chance in the sample moves a number. They do not say how well ground values and terrain are known."
-        )
+        escape(words.all_rocks),
+        escape(words.value),
+        escape(words.interval_head),
+        escape(words.unit),
+        note(words.headline_note)
     )
 }
 
 /// Each headline statistic with its interval, in columns for a terminal.
-pub fn plain_headline(rows: &[Row]) -> Vec<String> {
-    let words = |row: &Row| {
+pub fn plain_headline(rows: &[Row], words: &Words) -> Vec<String> {
+    let said = |row: &Row| {
         let (estimate, unit) = in_short_unit(row);
-        let (value, interval) = in_words(&estimate);
+        let (value, interval) = in_words(&estimate, words);
         let interval = match (estimate.is, interval) {
             (Is::Lacking(_), lacking) => lacking,
-            (_, none) if none == format::NO_NUMBER => "too few rocks for an interval".to_owned(),
-            (_, interval) => format!("95 % interval {interval}"),
+            (_, none) if none == format::NO_NUMBER => words.no_interval.to_owned(),
+            (_, interval) => fill(words.interval_95, &[("interval", &interval)]),
         };
         (format!("{value} {unit}"), interval)
     };
     let wide = |text: &str| text.chars().count();
     let name_width = rows.iter().map(|row| wide(&row.name)).max().unwrap_or(0);
-    let values: Vec<_> = rows.iter().map(words).collect();
+    let values: Vec<_> = rows.iter().map(said).collect();
     let value_width = values.iter().map(|(value, _)| wide(value)).max().unwrap_or(0);
     let line = |(row, (value, interval)): (&Row, &(String, String))| {
         format!("{:<name_width$}  {value:>value_width$}  {interval}", row.name)
@@ -63,17 +66,17 @@ fn in_short_unit(row: &Row) -> (Estimate, &str) {
 
 /// Value and interval with as many digits as the interval leaves meaningful; a bound carries its sign, and what too few
 /// rocks cannot give says how many are missing.
-fn in_words(estimate: &Estimate) -> (String, String) {
+fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
     if let Is::Lacking(rocks) = estimate.is {
-        let words = format::counted(rocks, "more rock needed", "more rocks needed");
-        return (format::NO_NUMBER.to_owned(), format!("{rocks} {words}"));
+        let text = format::counted(rocks, words.more_rock_one, words.more_rock_many);
+        return (format::NO_NUMBER.to_owned(), fill(text, &[("n", &rocks)]));
     }
     let sign = format::sign(estimate.is);
     let width = estimate.high - estimate.low;
     if width.is_nan() && estimate.value.fract() == 0.0 && estimate.value.abs() < 1e7 {
         // a count, or a number as it was written
         let value = format!("{sign}{}", format::decimal(estimate.value, 0));
-        return (value, one_sided(estimate, |v| format::significant(v, 4)));
+        return (value, one_sided(estimate, words, |v| format::significant(v, 4)));
     }
     let digits = if width.is_finite() && width > 0.0 && estimate.value != 0.0 {
         // the last digit is at most a fifth of the interval
@@ -83,7 +86,7 @@ fn in_words(estimate: &Estimate) -> (String, String) {
         4
     };
     let bound = like(estimate.value, digits);
-    (format!("{sign}{}", bound(estimate.value)), one_sided(estimate, bound))
+    (format!("{sign}{}", bound(estimate.value)), one_sided(estimate, words, bound))
 }
 
 /// Writes numbers to the last place that a value of so many digits has: its interval ends where it ends.
@@ -102,12 +105,12 @@ fn like(value: f64, digits: usize) -> impl Fn(f64) -> String {
     }
 }
 
-fn one_sided(estimate: &Estimate, bound: impl Fn(f64) -> String) -> String {
-    format::interval(&bound(estimate.low), &bound(estimate.high))
+fn one_sided(estimate: &Estimate, words: &Words, bound: impl Fn(f64) -> String) -> String {
+    words.interval(&bound(estimate.low), &bound(estimate.high))
 }
 
 /// A table with its heading and note.
-pub(super) fn table(table: &Table) -> String {
+pub(super) fn table(table: &Table, words: &Words) -> String {
     let mut heads = String::new();
     for column in &table.columns {
         let _ = write!(heads, "<th class=\"number\">{}</th>", escape(column));
@@ -116,7 +119,7 @@ pub(super) fn table(table: &Table) -> String {
     for (name, cells) in &table.rows {
         let _ = write!(rows, "<tr><th scope=\"row\">{}</th>", escape(name));
         for cell in cells {
-            rows.push_str(&table_cell(cell.as_ref()));
+            rows.push_str(&table_cell(cell.as_ref(), words));
         }
         rows.push_str("</tr>\n");
     }
@@ -127,11 +130,11 @@ pub(super) fn table(table: &Table) -> String {
     )
 }
 
-fn table_cell(estimate: Option<&Estimate>) -> String {
+fn table_cell(estimate: Option<&Estimate>, words: &Words) -> String {
     let Some(estimate) = estimate else {
         return format!("<td class=\"number\">{}</td>", format::NO_NUMBER);
     };
-    let (value, interval) = in_words(estimate);
+    let (value, interval) = in_words(estimate, words);
     let below = if interval == format::NO_NUMBER {
         String::new()
     } else {

@@ -24,6 +24,13 @@ pub struct BarrierView {
     pub places: Vec<PlaceView>,
 }
 
+impl BarrierView {
+    /// Whether a rock arrives at it, here or at another place.
+    pub(in crate::report) fn is_met(&self) -> bool {
+        self.places.iter().any(|place| !place.rocks.is_empty())
+    }
+}
+
 /// What a rule asks of a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesignView {
@@ -40,8 +47,30 @@ pub struct PlaceView {
     pub offset_m: f64,
     /// Share of all releases that arrive (–).
     pub arriving: f64,
-    /// Height of the highest point (m) and total energy (J) of each.
-    pub rocks: Vec<(f64, f64)>,
+    /// Share of them that a barrier of its own height stops (%), by what each stands for; none where none arrives.
+    pub stopped: Option<Estimate>,
+    /// Each of them.
+    pub rocks: Vec<RockView>,
+}
+
+/// A rock that arrives at a barrier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RockView {
+    /// Height of its highest point (m).
+    pub top_m: f64,
+    /// Total energy (J).
+    pub total_j: f64,
+    /// What it stands for over the others (–); 1 where all weigh the same.
+    pub weight: f64,
+}
+
+impl BarrierView {
+    /// Whether the rocks that arrive weigh differently.
+    pub fn is_weighted(&self) -> bool {
+        let mut weights = self.places.iter().flat_map(|place| &place.rocks).map(|rock| rock.weight);
+        let first = weights.next();
+        weights.any(|weight| Some(weight) != first)
+    }
 }
 
 /// How often a year which energy is passed at a line or object.
@@ -97,6 +126,13 @@ pub struct Line {
     pub height_exceedance: Vec<BandPoint>,
     /// What is left by the barriers before it; none where rocks meet no barrier before.
     pub behind: Option<Behind>,
+}
+
+impl Line {
+    /// Whether a rock crosses it.
+    pub(in crate::report) fn is_met(&self) -> bool {
+        !self.crossings.is_empty()
+    }
 }
 
 /// What passes a line when the barriers before it have stopped what they can.

@@ -10,28 +10,34 @@ use crate::report::model::Report;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::site;
 use crate::report::svg::path::Frame;
+use crate::report::words::{Words, fill};
 
 const LINE_PX: f64 = 17.0;
 const PEN: Pen = Pen::full(INK, 0.8);
 
 /// North arrow, colour bar up to `fastest` (m/s) if there are paths, and scale bar.
-pub(super) fn draw(canvas: &Canvas<'_>, panel: &Panel, (fastest, has_paths): (f64, bool)) {
+pub(super) fn draw(
+    canvas: &Canvas<'_>,
+    panel: &Panel,
+    (fastest, has_paths): (f64, bool),
+    words: &Words,
+) {
     let left = panel.frame.right + 18.0;
-    north_arrow(canvas, (left + 6.0, panel.frame.top));
+    north_arrow(canvas, (left + 6.0, panel.frame.top), words.north);
     if has_paths {
-        colour_bar(canvas, panel, left, fastest);
+        colour_bar(canvas, panel, (left, fastest), words.speed_axis);
     }
     scale_bar(canvas, panel);
 }
 
-fn north_arrow(canvas: &Canvas<'_>, (x, top): (f64, f64)) {
-    canvas.text(&Label::new("N", (x, top)).below().centred().bold().sized(NORMAL));
+fn north_arrow(canvas: &Canvas<'_>, (x, top): (f64, f64), north: &str) {
+    canvas.text(&Label::new(north, (x, top)).below().centred().bold().sized(NORMAL));
     let (tip, foot) = (top + 13.0, top + 36.0);
     canvas.polygon(&[(x, tip), (x, foot - 5.0), (x - 6.0, foot)], INK, 1.0);
     canvas.line(&[(x, tip), (x + 6.0, foot), (x, foot - 5.0), (x, tip)], PEN);
 }
 
-fn colour_bar(canvas: &Canvas<'_>, panel: &Panel, left: f64, fastest: f64) {
+fn colour_bar(canvas: &Canvas<'_>, panel: &Panel, (left, fastest): (f64, f64), title: &str) {
     let top = panel.frame.top + 58.0;
     let bottom = panel.frame.bottom.min(top + 260.0);
     let bar = Frame { left, top, right: left + 12.0, bottom };
@@ -47,7 +53,7 @@ fn colour_bar(canvas: &Canvas<'_>, panel: &Panel, left: f64, fastest: f64) {
     }
     let x = (bar.right + 7.0 + widest + 5.0).min(panel.frame.right + RIGHT_PX - NORMAL);
     let middle = (x, 0.5 * (top + bottom));
-    canvas.text(&Label::new("Speed (m/s)", middle).below().centred().upwards().sized(NORMAL));
+    canvas.text(&Label::new(title, middle).below().centred().upwards().sized(NORMAL));
 }
 
 /// A bar of round length near the lower right corner of the map.
@@ -88,16 +94,20 @@ enum Symbol {
 impl Key {
     /// Names only what the map shows.
     pub(super) fn of(report: &Report) -> Self {
+        let words = report.words();
         let mut entries = Vec::new();
         if !report.releases.is_empty() {
             let count = format::decimal(report.releases.len() as f64, 0);
-            entries.push((Symbol::Zone(report.zone.clone()), format!("release ({count})")));
+            entries.push((
+                Symbol::Zone(report.zone.clone()),
+                fill(words.key_release, &[("n", &count)]),
+            ));
         }
         let names = [
-            (Mark::AtRest, "at rest"),
-            (Mark::LeftTerrain, "left the terrain"),
-            (Mark::TimeUp, "time up"),
-            (Mark::Failed, "failed"),
+            (Mark::AtRest, words.at_rest),
+            (Mark::LeftTerrain, words.left_terrain),
+            (Mark::TimeUp, words.time_up),
+            (Mark::Failed, words.failed),
         ];
         for (mark, name) in names {
             let count = report.releases.iter().filter(|f| Mark::of(&f.stop) == mark).count();
@@ -108,14 +118,14 @@ impl Key {
             }
         }
         for (symbol, name, is_barrier) in
-            [(Symbol::Line, "evaluation line", false), (Symbol::Barrier, "barrier", true)]
+            [(Symbol::Line, words.key_line, false), (Symbol::Barrier, words.key_barrier, true)]
         {
             if report.marks.iter().any(|mark| mark.barrier.is_some() == is_barrier) {
                 entries.push((symbol, name.to_owned()));
             }
         }
         if report.ground.as_ref().is_some_and(|g| g.trees.contains(&true)) {
-            entries.push((Symbol::Tree, "tree".to_owned()));
+            entries.push((Symbol::Tree, words.key_tree.to_owned()));
         }
         Self { entries }
     }

@@ -4,13 +4,12 @@ use crate::math;
 use crate::report::axis::nice_step;
 use crate::report::model::{Point, Report};
 use crate::report::raster::GroundRaster;
+use crate::report::words::{Words, fill};
 
 /// Steps aimed at along the line.
 const STEPS: f64 = 50.0;
 /// Places at which the ground below the paths is taken.
 const PLACES: f64 = 160.0;
-const POINTS_OF_COMPASS: [&str; 8] =
-    ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
 
 /// The line from the mean release to the mean end, in plan view.
 #[derive(Debug, Clone, Copy)]
@@ -58,16 +57,17 @@ impl FallLine {
     }
 
     /// Nearest point of the compass.
-    pub(super) fn compass(&self) -> &'static str {
-        POINTS_OF_COMPASS[(self.bearing_deg() / 45.0).round() as usize % 8]
+    pub(super) fn compass(&self, words: &Words) -> &'static str {
+        words.compass[(self.bearing_deg() / 45.0).round() as usize % 8]
     }
 
     /// The bearing, or why there is none.
-    pub(super) fn bearing_words(&self) -> String {
+    pub(super) fn bearing_words(&self, words: &Words) -> String {
         if self.is_given {
-            format!("bearing {:03.0}°", self.bearing_deg().round() % 360.0)
+            let degrees = format!("{:03.0}", self.bearing_deg().round() % 360.0);
+            fill(words.bearing, &[("degrees", &degrees)])
         } else {
-            "the rocks on the mean do not move: taken eastwards".to_owned()
+            words.no_bearing.to_owned()
         }
     }
 

@@ -11,7 +11,6 @@ use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
 use crate::simulation::Trajectory;
 use crate::simulation::driver::RunSettings;
-use crate::solver::Scheme;
 use crate::solver::island::TRAVEL;
 use crate::solver::island::broad_phase::{Ball, overlapping};
 use rayon::prelude::*;
@@ -69,7 +68,7 @@ impl<'a> BodyWorld<'a> {
     }
 
     pub(super) fn is_rigid(&self) -> bool {
-        self.settings.step.scheme == Scheme::Rigid
+        !self.settings.step.scheme.has_springs()
     }
 
     pub(super) fn law(&self, a: u32, b: u32) -> Law {
@@ -105,13 +104,13 @@ impl<'a> BodyWorld<'a> {
     /// the time (s) and the counts so far; where the world goes back, so does the time.
     pub(super) fn run(&mut self, stop: &AtomicBool, mut see: impl FnMut(f64, &WorldStats)) -> bool {
         while self.is_under_way() {
-            let rolling_moment = self.moment();
+            let snapshot = self.snapshot();
             for tried in 0..=RETURNS {
                 let Some(missed) = self.windows(stop, &mut see) else { return false };
                 if !missed || tried == RETURNS {
                     break;
                 }
-                self.go_back(&rolling_moment);
+                self.go_back(&snapshot);
                 self.statistics.returns += 1;
             }
             self.bodies.iter_mut().flatten().for_each(|body| body.foreseen_m_s = 0.0);

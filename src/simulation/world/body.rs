@@ -5,10 +5,10 @@ use crate::flight::{FlightEnd, Parabola, time_of_impact};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::simulation::driver::{IMPACT_TIMES, RunSettings};
+use crate::simulation::impacts::Struck;
 use crate::simulation::rest::RestCriterion;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::Scheme;
-use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
 use crate::solver::island::{Given, Hit, IslandBody};
 use crate::solver::step_control::ONSET;
 use std::f64::consts::PI;
@@ -78,6 +78,15 @@ impl WorldBody<'_> {
                 FlightEnd::Leaves(t) => (now_s + t, Some(Stop::LeftTerrain)),
                 FlightEnd::Flies => (f64::INFINITY, None),
             });
+        self.spend(settings);
+    }
+
+    /// Takes it out of the world when it has had all the work it may have: others may have less to do.
+    pub(super) fn spend(&mut self, settings: &RunSettings) {
+        if self.recorder.effort.work() > settings.step.scheme.most_work() {
+            self.lands = None;
+            self.leave(Stop::OverBudget);
+        }
     }
 
     /// Goes along the parabola; nothing for a rock in contact.
@@ -121,7 +130,7 @@ impl WorldBody<'_> {
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         state.begin(&world, c, v, w);
         // A rock that is pressed in from the start has the energy of its springs, too.
-        if settings.step.scheme != Scheme::Rigid {
+        if settings.step.scheme.has_springs() {
             let held = state.stored_j(&world);
             self.recorder.pay(&held, 1.0);
             self.began_j.0 += held.sum();
@@ -198,7 +207,14 @@ impl WorldBody<'_> {
     /// Notes an impact on the mesh in the step that ends at `time_s` (s).
     pub(super) fn hit(&mut self, hit: &Hit, time_s: f64) {
         if self.state == State::Moving {
-            self.recorder.begin_impact(hit.point_m, hit.feature, hit.triangle, time_s);
+            let struck = Struck {
+                point_m: hit.point_m,
+                normal: hit.normal,
+                feature: hit.feature,
+                sheet: self.recorder.sheet_of(hit.triangle),
+                approach_m_s: hit.approach_m_s,
+            };
+            self.recorder.begin_impact(&struck, time_s, 0.0);
         }
     }
 
@@ -226,7 +242,7 @@ impl WorldBody<'_> {
         self.recorder.ledger.passed_on_j += given.passed_on;
         let change = self.total_j(settings) - before_j + loss.sum() + given.sum();
         self.recorder.ledger.remainder_j -= change;
-        self.recorder.end_impact_in_time();
+        self.end_impacts(settings);
         if was_flying {
             self.lands = None;
             self.calm = RestCriterion::from(self.recorder.now.position_m);
@@ -240,14 +256,14 @@ impl WorldBody<'_> {
 
     /// Largest rise of energy over the contact episode that ends now.
     pub(super) fn end_episode(&mut self, settings: &RunSettings) {
-        self.recorder.end_impact();
         let given_j = self.given_j() - self.began_j.1;
         let IslandBody { state, body, laws, .. } = &mut *self.member;
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         // The rigid limit has no springs, whatever the depth that rounding leaves.
-        let is_rigid = settings.step.scheme == Scheme::Rigid;
+        let is_rigid = !settings.step.scheme.has_springs();
         let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
         self.recorder.pay(&stored, -1.0);
+        self.recorder.end_impacts(|_| false, || 0.0);
         let rise_j = self.total_j(settings) - self.began_j.0 + given_j + stored.sum();
         self.recorder.ledger.rise_j = self.recorder.ledger.rise_j.max(rise_j);
     }
@@ -256,15 +272,36 @@ impl WorldBody<'_> {
     pub(super) fn announce(&mut self, settings: &RunSettings) {
         let IslandBody { state, body, laws, .. } = &mut *self.member;
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        let known = state.histories.iter().filter(|history| history.announced);
+        let held_j = ContactState::held_j(&world, known);
         for history in state.histories.iter_mut().filter(|history| !history.announced) {
             history.announced = true;
-            if !history.captured {
-                let until_s = self.recorder.now.time_s
-                    + IMPACT_TIMES * PI / world.law(history.triangle).omega;
-                let point = state.c - history.n * body.radius;
-                self.recorder.begin_impact(point, history.feature.kind, history.triangle, until_s);
+            let law = world.law(history.triangle);
+            let speed = -history.n.dot(&self.recorder.now.velocity_m_s);
+            if !history.captured && speed >= law.capture_m_s {
+                let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / law.omega;
+                let struck = Struck {
+                    point_m: state.c - history.n * body.radius,
+                    normal: history.n,
+                    feature: history.feature.kind,
+                    sheet: self.recorder.sheet_of(history.triangle),
+                    approach_m_s: speed,
+                };
+                history.impact = self.recorder.begin_impact(&struck, until_s, held_j);
             }
         }
+    }
+
+    /// Ends the impacts whose patch has let go or whose time is up.
+    fn end_impacts(&mut self, settings: &RunSettings) {
+        let IslandBody { state, body, laws, .. } = &*self.member;
+        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        // the rigid limit keeps no memory of what has hit and left again within a step
+        let is_rigid = !settings.step.scheme.has_springs();
+        self.recorder.end_impacts(
+            |number| is_rigid || state.histories.iter().any(|history| history.impact == number),
+            || ContactState::held_j(&world, state.histories.iter()),
+        );
     }
 
     pub(super) fn leave(&mut self, stop: Stop) {
@@ -292,7 +329,6 @@ impl WorldBody<'_> {
         if !self.member.flying {
             self.end_episode(settings);
         }
-        self.recorder.end_impact();
         self.recorder.end_path();
         // Friction that turns round within a step may seem to work: that is an error of the steps.
         let ledger = &mut self.recorder.ledger;

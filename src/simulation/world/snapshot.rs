@@ -58,7 +58,7 @@ impl WorldBody<'_> {
 
 impl BodyWorld<'_> {
     /// Keeps the present.
-    pub(super) fn moment(&self) -> Snapshot {
+    pub(super) fn snapshot(&self) -> Snapshot {
         // What is gone does not come back.
         let kept = |body: &WorldBody| (!matches!(body.state, State::Gone(_))).then(|| body.keep());
         Snapshot {
@@ -69,13 +69,13 @@ impl BodyWorld<'_> {
     }
 
     /// Goes back to a moment that was kept.
-    pub(super) fn go_back(&mut self, rolling_moment: &Snapshot) {
-        for (body, kept) in self.bodies.iter_mut().zip(&rolling_moment.bodies) {
+    pub(super) fn go_back(&mut self, snapshot: &Snapshot) {
+        for (body, kept) in self.bodies.iter_mut().zip(&snapshot.bodies) {
             if let (Some(body), Some(kept)) = (body, kept) {
                 body.go_back(kept);
             }
         }
-        self.pair_histories.clone_from(&rolling_moment.pair_histories);
-        self.now_s = rolling_moment.now_s;
+        self.pair_histories.clone_from(&snapshot.pair_histories);
+        self.now_s = snapshot.now_s;
     }
 }

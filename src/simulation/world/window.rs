@@ -6,12 +6,11 @@ use super::{State, WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, meeting_s};
 use crate::simulation::Stop;
 use crate::simulation::driver::RunSettings;
-use crate::solver::Scheme;
 use crate::solver::contact_state::Loss;
 use crate::solver::island::partition::Partition;
 use crate::solver::island::{Done, Given, Island};
 use crate::solver::step_control::{Control, ONSET, StepError};
-use crate::solver::tableau::{ESDIRK4, TR_BDF2};
+use crate::solver::tableau::TR_BDF2;
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
 const ROUNDING: f64 = 1e-11;
@@ -163,11 +162,7 @@ impl<'a> IslandWindow<'a> {
     /// Steps the island until a flying rock is due, all fly, or the window is over; whether it goes on.
     fn steps(&mut self, until_s: f64) -> bool {
         let control = Control {
-            tableau: if self.settings.step.scheme == Scheme::Reference {
-                &ESDIRK4
-            } else {
-                &TR_BDF2
-            },
+            tableau: self.settings.step.scheme.tableau().unwrap_or(&TR_BDF2),
             tolerance: self.settings.step.tolerance_m_s,
             impact: f64::INFINITY,
             plane_impacts: false,
@@ -179,10 +174,13 @@ impl<'a> IslandWindow<'a> {
         while self.now_s < until_s {
             let room = until_s - self.now_s;
             let spent = (island.sweeps, island.jumps);
-            let tried = match self.settings.step.scheme {
-                Scheme::Dda => island.advance_fixed(self.settings.step, room),
-                Scheme::Rigid => island.advance_rigid(self.settings.step.step_s, room),
-                _ => island.advance(&control, room),
+            let step = self.settings.step;
+            let tried = if step.scheme.controls_error() {
+                island.advance(&control, room)
+            } else if step.scheme.has_springs() {
+                island.advance_fixed(step, room)
+            } else {
+                island.advance_rigid(step.step_s, room)
             };
             let done = match tried {
                 Ok(done) => done,
@@ -278,6 +276,7 @@ impl<'a> IslandWindow<'a> {
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given[k]);
             go(body, self.settings, self.now_s, given, slides[k]);
+            body.spend(self.settings);
             std::mem::swap(&mut body.member, &mut island.members[k]);
         }
         island.members.iter().all(|member| member.flying)

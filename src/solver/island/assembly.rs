@@ -165,9 +165,8 @@ impl<'a> Island<'a> {
             } else {
                 (reach - distance).max(0.0)
             };
-            before += 0.5
-                * (pair_history.law.p_n * penetration * penetration
-                    + pair_history.law.p_s * pair_history.shear.norm_squared());
+            before +=
+                pair_history.law.stored_j(penetration, pair_history.shear.norm_squared(), 0.0);
         }
         for pair in &self.pairs {
             let ends = pair.ends.map(|k| (self.members[k].end.v, self.members[k].end.w));
@@ -177,9 +176,7 @@ impl<'a> Island<'a> {
             }
             if penetration > 0.0 || pair.normal_force > 0.0 || pair.bond.is_some() {
                 let shear = pair.stretch(hh);
-                after += 0.5
-                    * (pair.law.p_n * penetration * penetration
-                        + pair.law.p_s * shear.norm_squared());
+                after += pair.law.stored_j(penetration, shear.norm_squared(), 0.0);
             }
             let least = pair.levers[0].min(pair.levers[1]);
             unknown += step_control::PLACE_ROUNDING * least * pair.normal_force.abs();

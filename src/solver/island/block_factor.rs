@@ -1,219 +1,284 @@
-//! Sparse Cholesky of a symmetric system of 6×6 blocks.
+//! The system of an island in blocks of 6×6, factorised: `A = L U` with the blocks of `U` on the diagonal the identity.
 //!
-//! Rocks are ordered, not unknowns (approximate minimum degree on the graph of rocks: a third of the time of the scalar
-//! ordering at the same fill), and the supernodal form is forced: faer would choose the simplicial one for flat
-//! deposits, which takes twice as long. One thread: islands are what is computed at once.
+//! Our own, where a library would be quicker: those choose their kernels, and with them the order of their sums, by the
+//! processor and the sizes of its caches, and a world must have the same bytes on every machine. One thread: islands are
+//! what is computed at once.
 
-use crate::contact::submatrix::Mat6;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::perm::PermRef;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
-use faer::sparse::linalg::{SupernodalThreshold, amd};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par, Side};
+use super::ordering::Ordering;
+use crate::contact::submatrix::{Mat6, Vec6};
+use nalgebra::{Cholesky, Const, LU};
 
 /// A block below the diagonal: row and column among the rocks, row > column.
 pub(super) type Below = (usize, usize, Mat6);
 
-/// A factor whose symbolic part is kept as long as the same rocks are joined.
+/// A system: one block a rock on the diagonal, and those that join rocks.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Blocks<'a> {
+    pub(super) diagonal: &'a [Mat6],
+    pub(super) below: &'a [Below],
+    /// The block opposite to each of those below; `None` for a symmetric, positive definite system.
+    pub(super) above: Option<&'a [Mat6]>,
+}
+
+/// A factor whose pattern is kept as long as the same rocks are joined.
 #[derive(Debug, Default)]
 pub(super) struct Factor {
-    rocks: usize,
     /// Where the blocks below the diagonal stand.
     joined: Vec<(usize, usize)>,
-    columns: Vec<usize>,
-    rows: Vec<usize>,
-    values: Vec<f64>,
-    symbolic: Option<SymbolicCholesky<usize>>,
-    lower: Vec<f64>,
-    memory: Memory,
-    /// How often the symbolic part was made anew.
+    ordering: Ordering,
+    /// Blocks of the factor for each block below the diagonal, and whether rows and columns change places.
+    homes: Vec<(usize, bool)>,
+    /// `L`, in the order of the pattern.
+    lower: Vec<Mat6>,
+    /// `Uᵀ`, likewise.
+    upper: Vec<Mat6>,
+    pivots: Vec<Pivot>,
+    walk: Walk,
+    /// How often the pattern was made anew.
     pub(super) analysed: u64,
 }
 
-/// The work space of factor and solve.
-#[derive(Default)]
-struct Memory(Option<MemBuffer>);
+/// A factorised block of the diagonal.
+#[derive(Debug)]
+enum Pivot {
+    Symmetric(Cholesky<f64, Const<6>>),
+    General(LU<f64, Const<6>, Const<6>>),
+}
 
-impl std::fmt::Debug for Memory {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("work space")
-    }
+/// Which columns take part in the next ones: each waits at the first of its rows that is still to come.
+#[derive(Debug, Default)]
+struct Walk {
+    /// The columns that wait at each row: the first, and after each the next.
+    first: Vec<Option<usize>>,
+    after: Vec<Option<usize>>,
+    /// Where in its rows each column waits.
+    at: Vec<usize>,
+    /// Where each row stands in the column in hand.
+    slot: Vec<usize>,
 }
 
 impl Factor {
-    /// Solves the system of `diagonal` and `below` (in ascending order of column and row) for `load` in place; `None` if
-    /// it is not positive definite.
-    pub(super) fn solve(
-        &mut self,
-        diagonal: &[Mat6],
-        below: &[Below],
-        load: &mut [f64],
-    ) -> Option<()> {
-        let same = self.rocks == diagonal.len()
-            && self.joined.len() == below.len()
-            && self.joined.iter().zip(below).all(|(at, block)| *at == (block.0, block.1));
+    /// Solves a system for `load` in place, six numbers a rock; `None` where a pivot is singular, or not positive
+    /// definite in a symmetric system.
+    pub(super) fn solve(&mut self, blocks: Blocks, load: &mut [f64]) -> Option<()> {
+        let known = self.joined.iter();
+        let same = self.ordering.place.len() == blocks.diagonal.len()
+            && self.joined.len() == blocks.below.len()
+            && known.zip(blocks.below).all(|(at, block)| *at == (block.0, block.1));
         if !same {
-            self.analyse(diagonal.len(), below)?;
+            self.analyse(blocks);
         }
-        self.fill(diagonal, below);
-        let size = 6 * self.rocks;
-        let symbolic = self.symbolic.as_ref()?;
-        let pattern =
-            SymbolicSparseColMatRef::new_checked(size, size, &self.columns, None, &self.rows);
-        let stack = MemStack::new(self.memory.0.as_mut()?);
-        symbolic
-            .factorize_numeric_llt(
-                &mut self.lower,
-                SparseColMatRef::new(pattern, &self.values),
-                Side::Lower,
-                LltRegularization::default(),
-                Par::Seq,
-                stack,
-                faer::Spec::default(),
-            )
-            .ok()?;
-        let right = MatMut::from_column_major_slice_mut(load, size, 1);
-        LltRef::new(symbolic, &self.lower).solve_in_place_with_conj(
-            Conj::No,
-            right,
-            Par::Seq,
-            MemStack::new(self.memory.0.as_mut()?),
-        );
-        Some(())
+        self.fill(blocks);
+        self.factorise(blocks)?;
+        self.substitute(load)
     }
 
-    /// Pattern, ordering and shape of the factor.
-    fn analyse(&mut self, rocks: usize, below: &[Below]) -> Option<()> {
+    fn analyse(&mut self, blocks: Blocks) {
         self.analysed += 1;
-        self.rocks = rocks;
-        self.joined = below.iter().map(|block| (block.0, block.1)).collect();
-        (self.columns, self.rows) = scalar_pattern(rocks, &self.joined);
-        self.values.clear();
-        self.values.resize(self.rows.len(), 0.0);
-        let (forward, inverse) = order(rocks, &self.joined)?;
-        let size = 6 * rocks;
-        let pattern =
-            SymbolicSparseColMatRef::new_checked(size, size, &self.columns, None, &self.rows);
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
+        self.joined = blocks.below.iter().map(|block| (block.0, block.1)).collect();
+        self.ordering = Ordering::of(blocks.diagonal.len(), &self.joined);
+        let Ordering { place, starts, rows } = &self.ordering;
+        let home = |&(row, column): &(usize, usize)| {
+            let turned = place[row] < place[column];
+            let (row, column) = (place[row].max(place[column]), place[row].min(place[column]));
+            let rows = &rows[starts[column]..starts[column + 1]];
+            (starts[column] + rows.partition_point(|&one| one < row), turned)
         };
-        let ordering = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size));
-        let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, ordering, params).ok()?;
-        let factor = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, faer::Spec::default());
-        let solve = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        self.memory = Memory(Some(MemBuffer::new(factor.or(solve))));
-        self.lower.clear();
-        self.lower.resize(symbolic.len_val(), 0.0);
-        self.symbolic = Some(symbolic);
+        self.homes = self.joined.iter().map(home).collect();
+    }
+
+    fn fill(&mut self, blocks: Blocks) {
+        let size = self.ordering.rows.len();
+        for half in [&mut self.lower, &mut self.upper] {
+            half.clear();
+            half.resize(size, Mat6::zeros());
+        }
+        for (k, ((_, _, below), &(home, turned))) in
+            blocks.below.iter().zip(&self.homes).enumerate()
+        {
+            let above = blocks.above.map_or_else(|| below.transpose(), |above| above[k]);
+            let (lower, upper) = if turned { (above, *below) } else { (*below, above) };
+            self.lower[home] += lower;
+            self.upper[home] += upper.transpose();
+        }
+    }
+
+    /// Column by column, each after those that reach it.
+    fn factorise(&mut self, blocks: Blocks) -> Option<()> {
+        let Self { ordering: Ordering { place, starts, rows }, lower, upper, walk, .. } = self;
+        let symmetric = blocks.above.is_none();
+        let mut diagonal = vec![Mat6::zeros(); place.len()];
+        place.iter().zip(blocks.diagonal).for_each(|(&at, block)| diagonal[at] = *block);
+        walk.begin(place.len());
+        self.pivots.clear();
+        for (k, pivot) in diagonal.iter_mut().enumerate() {
+            let (begin, end) = (starts[k], starts[k + 1]);
+            rows[begin..end].iter().enumerate().for_each(|(slot, &row)| walk.slot[row] = slot);
+            let (known_l, own_l) = lower.split_at_mut(begin);
+            let (known_u, own_u) = upper.split_at_mut(begin);
+            let mut waiting = walk.first[k];
+            while let Some(j) = waiting {
+                waiting = walk.after[j];
+                let at = walk.at[j];
+                let (l, u) = (known_l[at], known_u[at]);
+                take(pivot, &known_l[at], &u);
+                for r in at + 1..starts[j + 1] {
+                    let slot = walk.slot[rows[r]];
+                    take(&mut own_l[slot], &known_l[r], &u);
+                    if !symmetric {
+                        take(&mut own_u[slot], &known_u[r], &l);
+                    }
+                }
+                walk.wait(j, at + 1, &rows[..starts[j + 1]]);
+            }
+            let pivot = Pivot::of(pivot, symmetric)?;
+            for (l, u) in own_l[..end - begin].iter().zip(&mut own_u[..end - begin]) {
+                let mut row = if symmetric { l.transpose() } else { u.transpose() };
+                pivot.solve(&mut row)?;
+                *u = row.transpose();
+            }
+            self.pivots.push(pivot);
+            walk.wait(k, begin, &rows[..end]);
+        }
         Some(())
     }
 
-    /// Values in the order of the pattern.
-    fn fill(&mut self, diagonal: &[Mat6], below: &[Below]) {
-        let mut next = self.values.iter_mut();
-        let mut put = |value: f64| {
-            if let Some(place) = next.next() {
-                *place = value;
+    /// `L y = b`, then `U x = y`.
+    fn substitute(&self, load: &mut [f64]) -> Option<()> {
+        let Ordering { place, starts, rows } = &self.ordering;
+        let mut x = vec![Vec6::zeros(); place.len()];
+        for (&at, six) in place.iter().zip(load.chunks_exact(6)) {
+            x[at] = Vec6::from_column_slice(six);
+        }
+        for (k, pivot) in self.pivots.iter().enumerate() {
+            pivot.solve(&mut x[k])?;
+            let own = x[k];
+            for r in starts[k]..starts[k + 1] {
+                x[rows[r]] -= self.lower[r] * own;
             }
-        };
-        let mut rest = below;
-        for (k, own) in diagonal.iter().enumerate() {
-            let count = rest.iter().take_while(|block| block.1 == k).count();
-            for j in 0..6 {
-                (j..6).for_each(|i| put(own[(i, j)]));
-                for (.., block) in &rest[..count] {
-                    (0..6).for_each(|i| put(block[(i, j)]));
-                }
+        }
+        for k in (0..x.len()).rev() {
+            let mut own = x[k];
+            for r in starts[k]..starts[k + 1] {
+                own -= self.upper[r].tr_mul(&x[rows[r]]);
             }
-            rest = &rest[count..];
+            x[k] = own;
+        }
+        for (&at, six) in place.iter().zip(load.chunks_exact_mut(6)) {
+            six.copy_from_slice(x[at].as_slice());
+        }
+        Some(())
+    }
+}
+
+/// `c − a bᵀ` in place.
+#[inline]
+fn take(c: &mut Mat6, a: &Mat6, b: &Mat6) {
+    for j in 0..6 {
+        let mut column = c.column(j).into_owned();
+        for k in 0..6 {
+            let factor = b[(j, k)];
+            for i in 0..6 {
+                column[i] -= a[(i, k)] * factor;
+            }
+        }
+        c.set_column(j, &column);
+    }
+}
+
+impl Pivot {
+    fn of(block: &Mat6, symmetric: bool) -> Option<Self> {
+        if symmetric {
+            return Cholesky::new(*block).map(Self::Symmetric);
+        }
+        let factor = LU::new(*block);
+        factor.is_invertible().then_some(Self::General(factor))
+    }
+
+    fn solve<const C: usize>(&self, right: &mut nalgebra::SMatrix<f64, 6, C>) -> Option<()> {
+        match self {
+            Self::Symmetric(factor) => factor.solve_mut(right),
+            Self::General(factor) => return factor.solve_mut(right).then_some(()),
+        }
+        Some(())
+    }
+}
+
+impl Walk {
+    fn begin(&mut self, rocks: usize) {
+        for list in [&mut self.first, &mut self.after] {
+            list.clear();
+            list.resize(rocks, None);
+        }
+        for list in [&mut self.at, &mut self.slot] {
+            list.clear();
+            list.resize(rocks, 0);
         }
     }
-}
 
-/// Column starts and rows of the lower half, unknown by unknown.
-fn scalar_pattern(rocks: usize, joined: &[(usize, usize)]) -> (Vec<usize>, Vec<usize>) {
-    let (mut columns, mut rows) = (vec![0], Vec::with_capacity(21 * rocks + 36 * joined.len()));
-    let mut rest = joined;
-    for k in 0..rocks {
-        let count = rest.iter().take_while(|(_, column)| *column == k).count();
-        for j in 0..6 {
-            rows.extend(6 * k + j..6 * k + 6);
-            for (row, _) in &rest[..count] {
-                rows.extend(6 * row..6 * row + 6);
-            }
-            columns.push(rows.len());
-        }
-        rest = &rest[count..];
+    /// Lets column `j` wait at the row that stands `at` among `rows`, which end with its own; nothing after the last.
+    fn wait(&mut self, j: usize, at: usize, rows: &[usize]) {
+        let Some(&row) = rows.get(at) else { return };
+        self.at[j] = at;
+        self.after[j] = self.first[row].replace(j);
     }
-    (columns, rows)
 }
-
-/// A permutation of the unknowns that keeps each rock's six together, and its inverse.
-fn order(rocks: usize, joined: &[(usize, usize)]) -> Option<(Vec<usize>, Vec<usize>)> {
-    let (mut columns, mut rows) = (vec![0], Vec::with_capacity(rocks + joined.len()));
-    let mut rest = joined;
-    for k in 0..rocks {
-        let count = rest.iter().take_while(|(_, column)| *column == k).count();
-        rows.push(k);
-        rows.extend(rest[..count].iter().map(|(row, _)| *row));
-        columns.push(rows.len());
-        rest = &rest[count..];
-    }
-    let graph = SymbolicSparseColMatRef::new_checked(rocks, rocks, &columns, None, &rows);
-    let (mut forward, mut inverse) = (vec![0; rocks], vec![0; rocks]);
-    let need = amd::order_maybe_unsorted_scratch::<usize>(rocks, rows.len());
-    let mut memory = MemBuffer::new(need);
-    let stack = MemStack::new(&mut memory);
-    amd::order_maybe_unsorted(&mut forward, &mut inverse, graph, amd::Control::default(), stack)
-        .ok()?;
-    let six =
-        |order: &[usize]| -> Vec<usize> { order.iter().flat_map(|k| 6 * k..6 * k + 6).collect() };
-    Some((six(&forward), six(&inverse)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use nalgebra::{DMatrix, DVector};
 
-    /// A chain and a ring of blocks, factorised sparse and dense; the second solve reuses the symbolic part.
+    fn value(k: usize) -> f64 {
+        ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5
+    }
+
+    /// Blocks on the diagonal, below and above it, of a grid of `side²` rocks.
+    fn system(side: usize, round: usize) -> (Vec<Mat6>, Vec<Below>, Vec<Mat6>) {
+        let rocks = side * side;
+        let diagonal = (0..rocks).map(|k| Mat6::identity() * (20 + k % 5 + round) as f64).collect();
+        let mut below = Vec::new();
+        let block = |seed: usize| Mat6::from_fn(|i, j| value(97 * seed + 6 * i + j + round));
+        for k in 0..rocks {
+            if (k + 1) % side != 0 {
+                below.push((k + 1, k, block(below.len())));
+            }
+            if k + side < rocks {
+                below.push((k + side, k, block(below.len())));
+            }
+        }
+        let above = (0..below.len()).map(|k| block(k + 1000)).collect();
+        (diagonal, below, above)
+    }
+
+    /// By how much a solution fails the dense system, relative to its right side.
+    fn off(blocks: Blocks, right: &DVector<f64>, solution: Vec<f64>) -> f64 {
+        let size = right.len();
+        let mut dense = DMatrix::zeros(size, size);
+        for (k, block) in blocks.diagonal.iter().enumerate() {
+            dense.view_mut((6 * k, 6 * k), (6, 6)).copy_from(block);
+        }
+        for (k, (row, column, below)) in blocks.below.iter().enumerate() {
+            let above = blocks.above.map_or_else(|| below.transpose(), |above| above[k]);
+            dense.view_mut((6 * row, 6 * column), (6, 6)).copy_from(below);
+            dense.view_mut((6 * column, 6 * row), (6, 6)).copy_from(&above);
+        }
+        (&dense * DVector::from_vec(solution) - right).norm() / right.norm()
+    }
+
+    /// Symmetric and not; the second solve keeps the pattern.
     #[test]
     fn the_sparse_solution_is_the_dense_one() {
-        let value = |k: usize| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5;
-        for joined in [vec![(1, 0), (2, 1), (3, 2)], vec![(1, 0), (3, 0), (2, 1), (3, 2)]] {
+        for (side, symmetric) in [(2, true), (2, false), (6, true), (6, false)] {
             let mut factor = Factor::default();
-            for round in 0..2u32 {
-                let diagonal: Vec<Mat6> = (0..4)
-                    .map(|k| Mat6::identity() * (20.0 + f64::from(k) + f64::from(round)))
-                    .collect();
-                let below: Vec<Below> = joined
-                    .iter()
-                    .enumerate()
-                    .map(|(n, &(row, column))| {
-                        let block =
-                            Mat6::from_fn(|i, j| value(97 * n + 6 * i + j + round as usize));
-                        (row, column, block)
-                    })
-                    .collect();
-                let mut dense = DMatrix::zeros(24, 24);
-                for (k, block) in diagonal.iter().enumerate() {
-                    dense.view_mut((6 * k, 6 * k), (6, 6)).copy_from(block);
-                }
-                for (row, column, block) in &below {
-                    dense.view_mut((6 * row, 6 * column), (6, 6)).copy_from(block);
-                    dense.view_mut((6 * column, 6 * row), (6, 6)).copy_from(&block.transpose());
-                }
-                let right = DVector::from_fn(24, |k, _| value(k));
+            for round in 0..2 {
+                let (diagonal, below, above) = system(side, round);
+                let above = (!symmetric).then_some(&above[..]);
+                let blocks = Blocks { diagonal: &diagonal, below: &below, above };
+                let right = DVector::from_fn(6 * side * side, |k, _| value(k));
                 let mut load: Vec<f64> = right.iter().copied().collect();
-                factor.solve(&diagonal, &below, &mut load).unwrap();
-                let off = (&dense * DVector::from_vec(load) - &right).norm();
-                assert!(off < 1e-13 * right.norm(), "{off:e}");
+                factor.solve(blocks, &mut load).unwrap();
+                let off = off(blocks, &right, load);
+                assert!(off < 1e-14, "{side} {symmetric}: {off:e}");
             }
             assert_eq!(factor.analysed, 1);
         }
@@ -222,6 +287,10 @@ mod tests {
     #[test]
     fn what_is_not_positive_definite_has_no_solution() {
         let mut load = vec![1.0; 6];
-        assert_eq!(Factor::default().solve(&[-Mat6::identity()], &[], &mut load), None);
+        let (negative, nothing) = ([-Mat6::identity()], [Mat6::zeros()]);
+        let symmetric = Blocks { diagonal: &negative, below: &[], above: None };
+        assert_eq!(Factor::default().solve(symmetric, &mut load), None);
+        let general = Blocks { diagonal: &nothing, below: &[], above: Some(&[]) };
+        assert_eq!(Factor::default().solve(general, &mut load), None);
     }
 }

@@ -1,9 +1,9 @@
 //! The paper's global system, Eq. (4), of an island in a fixed step: `(2M/Δt² + K) E = F − K D₀` in blocks of 6×6.
 //!
-//! Rocks that no other touches have a block of their own; the rest is factorised together by sparse Cholesky, whose
-//! symbolic part is kept as long as the same rocks touch.
+//! Rocks that no other touches have a block of their own; the rest is factorised together, and the
+//! pattern is kept as long as the same rocks touch.
 
-use super::block_factor::{Below, Factor};
+use super::block_factor::{Below, Blocks, Factor};
 use super::body::BodySlot;
 use super::dda_contact::DdaPairContact;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
@@ -84,7 +84,8 @@ impl Global {
                 .iter()
                 .map(|link| (place[link.ends[1]], place[link.ends[0]], link.stiffness(1, 0))),
         );
-        self.factor.solve(&self.diagonal, &self.below, &mut self.load)?;
+        let blocks = Blocks { diagonal: &self.diagonal, below: &self.below, above: None };
+        self.factor.solve(blocks, &mut self.load)?;
         for (k, x) in (0..members.len()).filter(linked).zip(self.load.chunks_exact(6)) {
             members[k].ways[1] = Vec6::from_column_slice(x);
         }

@@ -1,21 +1,19 @@
 //! Newton jumps for a whole island: the stage linearised in the modes that the sweeps have found.
 //!
 //! The paper's global system of 6×6 blocks, Eq. (4), with the change of friction with the normal force, which makes it
-//! unsymmetric; solved by sparse LU.
+//! unsymmetric.
 
+use super::block_factor::{Below, Blocks, Factor};
 use super::body::{BodySlot, IslandBody};
 use super::pair_contact::{Motion, PairContact};
-
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::rock::Vec3;
 use crate::solver::law::StageContact;
 use crate::solver::multi_contact::{Answer, Normal, Slider};
-use faer::prelude::Solve;
-use faer::sparse::{SparseColMat, Triplet};
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-/// Most unknowns for which a dense matrix is cheaper: a sparse one costs as much before the first number is touched.
-const DENSE: usize = 48;
+/// Most rocks for which a dense matrix is as cheap; it looks for its pivots everywhere.
+const DENSE: usize = 8;
 
 /// One contact, linear around the present motion.
 struct Linear {
@@ -29,9 +27,11 @@ struct Linear {
     ends: [Option<(usize, f64, f64)>; 2],
 }
 
-/// Six rows for each body of the island, triplets of the matrix.
+/// Six rows for each body of the island.
 struct System {
-    triplets: Vec<Triplet<usize, usize, f64>>,
+    diagonal: Vec<Mat6>,
+    /// Blocks that join two rocks: the one below the diagonal, and the one opposite.
+    joined: Vec<(Below, Mat6)>,
     load: Vec<f64>,
 }
 
@@ -51,8 +51,8 @@ pub(super) fn jump(
             part.then(|| rocks - 1)
         })
         .collect();
-    let size = 6 * rocks;
-    let mut system = System { triplets: Vec::with_capacity(72 * size), load: vec![0.0; size] };
+    let (diagonal, load) = (vec![Mat6::zeros(); rocks], vec![0.0; 6 * rocks]);
+    let mut system = System { diagonal, joined: Vec::with_capacity(pairs.len()), load };
     for (member, place) in members.iter().zip(&place) {
         let Some(k) = *place else { continue };
         system.add_inertia(k, member, h);
@@ -83,7 +83,7 @@ impl Linear {
         };
         let (normal_force, held) =
             if pair.bond.is_some() { (1.0, 1.0) } else { (normal.at(speed), pair.normal_force) };
-        let slider = Slider::left(cap, law.p_s * h + law.c_s, (&pair.shear_force, held));
+        let slider = Slider::left(cap, law.shear_over(h), (&pair.shear_force, held));
         let still = (Vec3::zeros(), Vec3::zeros());
         let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
         let own = pair.speed(sought);
@@ -105,8 +105,8 @@ impl System {
         let (m, i) = (member.body.mass / h, member.body.inertia / h);
         for axis in 0..3 {
             let (row, turn) = (6 * k + axis, 6 * k + 3 + axis);
-            self.triplets.push(Triplet::new(row, row, m));
-            self.triplets.push(Triplet::new(turn, turn, i));
+            self.diagonal[k][(axis, axis)] += m;
+            self.diagonal[k][(3 + axis, 3 + axis)] += i;
             self.load[row] += m * member.free.0[axis];
             self.load[turn] += i * member.free.1[axis];
         }
@@ -125,7 +125,7 @@ impl System {
         let normal_force = normal.at(speed);
         let shear = Slider::left(
             law.friction,
-            law.p_s * h + law.c_s,
+            law.shear_over(h),
             (&contact.shear_force, contact.normal_force),
         );
         let shear = shear.at(stick, normal_force);
@@ -141,7 +141,7 @@ impl System {
         if law.rolling_m > 0.0 {
             let roll = Slider::left(
                 law.rolling_m,
-                law.k_r * h + law.c_r,
+                law.rolling_over(h),
                 (&contact.rolling_moment, contact.normal_force),
             );
             let roll = roll.at(wound, normal_force);
@@ -161,7 +161,7 @@ impl System {
         let mut block = Mat6::zeros();
         block.fixed_view_mut::<3, 3>(3, 3).copy_from(&roll.jacobian);
         block.fixed_view_mut::<3, 3>(3, 0).copy_from(&-coupling);
-        self.add_block((k, k), &block);
+        self.diagonal[k] += block;
         for axis in 0..3 {
             self.load[6 * k + 3 + axis] -= constant[axis];
         }
@@ -173,55 +173,57 @@ impl System {
         let constant =
             shear.force - shear.jacobian * contact.slip + shear.along * (normal.b * contact.speed);
         let rows = contact.ends.map(|end| end.map(|(k, sign, lever)| (k, rows(n, sign, lever))));
-        for (k, (n_k, s_k)) in rows.iter().flatten() {
-            for (l, (n_l, s_l)) in rows.iter().flatten() {
-                let shear_force = shear.jacobian * s_l - (shear.along * normal.b) * n_l.transpose();
-                self.add_block(
-                    (*k, *l),
-                    &((n_k * normal.b) * n_l.transpose() + s_k.transpose() * shear_force),
-                );
-            }
-            let load = n_k * normal.a - s_k.transpose() * constant;
+        let block = |(n_k, s_k): &(Vec6, Mat3x6), (n_l, s_l): &(Vec6, Mat3x6)| {
+            let shear_force = shear.jacobian * s_l - (shear.along * normal.b) * n_l.transpose();
+            (n_k * normal.b) * n_l.transpose() + s_k.transpose() * shear_force
+        };
+        for (k, one) in rows.iter().flatten() {
+            self.diagonal[*k] += block(one, one);
+            let load = one.0 * normal.a - one.1.transpose() * constant;
             for row in 0..6 {
                 self.load[6 * k + row] += load[row];
             }
         }
-    }
-
-    fn add_block(&mut self, (k, l): (usize, usize), block: &Mat6) {
-        for column in 0..6 {
-            for row in 0..6 {
-                let value = block[(row, column)];
-                self.triplets.push(Triplet::new(6 * k + row, 6 * l + column, value));
-            }
+        if let [Some((k, one)), Some((l, two))] = &rows {
+            let (below, above) = (block(one, two), block(two, one));
+            self.joined.push(if k > l {
+                ((*k, *l, below), above)
+            } else {
+                ((*l, *k, above), below)
+            });
         }
     }
 
-    fn solve(self) -> Option<Vec<Motion>> {
-        let size = self.load.len();
-        let x = if size <= DENSE { self.solve_dense()? } else { self.solve_sparse()? };
+    fn solve(mut self) -> Option<Vec<Motion>> {
+        self.joined.sort_by_key(|((row, column, _), _)| (*column, *row));
+        let x =
+            if self.diagonal.len() <= DENSE { self.solve_dense()? } else { self.solve_sparse()? };
         let at = |k: usize| Vec3::new(x[k], x[k + 1], x[k + 2]);
         let finite = x.iter().all(|x| x.is_finite());
-        finite.then(|| (0..size / 6).map(|k| (at(6 * k), at(6 * k + 3))).collect())
+        finite.then(|| (0..x.len() / 6).map(|k| (at(6 * k), at(6 * k + 3))).collect())
     }
 
     fn solve_dense(self) -> Option<Vec<f64>> {
         let size = self.load.len();
         let mut matrix = DMatrix::zeros(size, size);
-        for one in &self.triplets {
-            matrix[(one.row, one.col)] += one.val;
+        let mut add = |row: usize, column: usize, block: &Mat6| {
+            let mut home = matrix.fixed_view_mut::<6, 6>(6 * row, 6 * column);
+            home += block;
+        };
+        self.diagonal.iter().enumerate().for_each(|(k, block)| add(k, k, block));
+        for ((row, column, below), above) in &self.joined {
+            add(*row, *column, below);
+            add(*column, *row, above);
         }
         let mut load = DVector::from_vec(self.load);
         matrix.lu().solve_mut(&mut load).then(|| load.data.into())
     }
 
     fn solve_sparse(self) -> Option<Vec<f64>> {
-        let size = self.load.len();
-        let matrix = SparseColMat::try_new_from_triplets(size, size, &self.triplets).ok()?;
-        let factor = matrix.sp_lu().ok()?;
-        let load = faer::Col::from_fn(size, |k| self.load[k]);
-        let x = factor.solve(&load);
-        Some((0..size).map(|k| x[k]).collect())
+        let (below, above): (Vec<Below>, Vec<Mat6>) = self.joined.into_iter().unzip();
+        let blocks = Blocks { diagonal: &self.diagonal, below: &below, above: Some(&above) };
+        let mut load = self.load;
+        Factor::default().solve(blocks, &mut load).map(|()| load)
     }
 }
 

@@ -99,7 +99,7 @@ impl PairContact {
 
     /// What the shear spring would hold if it did not slide (N).
     pub(super) fn trial(&self, ends: [&Motion; 2], h: f64) -> Vec3 {
-        self.shear * self.law.p_s + self.slip(ends) * (self.law.p_s * h + self.law.c_s)
+        self.shear * self.law.p_s + self.slip(ends) * self.law.shear_over(h)
     }
 
     /// Forces for motions without this contact's own effect, over a stage of length `h`.
@@ -112,7 +112,7 @@ impl PairContact {
                 return;
             }
         }
-        let free = self.trial(ends, h) / (1.0 + h * (self.law.p_s * h + self.law.c_s) * self.inv_t);
+        let free = self.trial(ends, h) / (1.0 + h * self.law.shear_over(h) * self.inv_t);
         if self.bond.is_some() {
             let stiff = self.law.p_n * h + self.c_n;
             self.normal_force =
@@ -141,19 +141,19 @@ impl PairContact {
     /// Force and moment on end `k` (N, N m).
     pub(super) fn load(&self, k: usize) -> Motion {
         let force = self.n * self.normal_force - self.shear_force;
-        let rolling_moment = self.n.cross(&self.shear_force) * self.levers[k];
-        (if k == 0 { force } else { -force }, rolling_moment)
+        let torque = self.n.cross(&self.shear_force) * self.levers[k];
+        (if k == 0 { force } else { -force }, torque)
     }
 
     /// Adds `times` the effect over `h` on end `k` to its motion.
     pub(super) fn act(&self, k: usize, body: &Body, times_h: f64, (v, w): &mut Motion) {
-        let (force, rolling_moment) = self.load(k);
+        let (force, torque) = self.load(k);
         *v += force * (times_h / body.mass);
-        *w += rolling_moment * (times_h / body.inertia);
+        *w += torque * (times_h / body.inertia);
     }
 
     /// Stretch of the shear spring at the stage's end: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`.
     pub(super) fn stretch(&self, h: f64) -> Vec3 {
-        (self.shear_force * h + self.shear * self.law.c_s) / (h * self.law.p_s + self.law.c_s)
+        self.law.shear_after(&self.shear_force, &self.shear, h)
     }
 }

@@ -78,7 +78,7 @@ pub(super) fn accelerations(
 #[inline]
 pub(super) fn stored_j(law: &Law, penetration: f64, at: &State) -> f64 {
     let (shear2, roll2) = (square(two(at, SHEAR)), square(three(at, ROLL)));
-    0.5 * (law.p_n * penetration * penetration + law.p_s * shear2 + law.k_r * roll2)
+    law.stored_j(penetration, shear2, roll2)
 }
 
 impl PlaneForces {

@@ -21,6 +21,13 @@ pub(super) fn slippery(setup: Setup) -> Setup {
     Setup { ground, ..setup }
 }
 
+/// On ground without friction that gives back all of an impact.
+pub(super) fn elastic() -> Setup {
+    let ground =
+        crate::ground::Ground { friction_angle_rad: 0.0, restitution: Some(1.0), ..SETUP.ground };
+    Setup { ground, ..SETUP }
+}
+
 /// Angle from the upright at which spheres begin to tip (rad).
 pub(super) const TIPPED_RAD: f64 = 0.1;
 

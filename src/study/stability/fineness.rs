@@ -25,7 +25,7 @@ pub(super) fn steps(way: &Way, notes: &mut Notes) {
         let way = &Way { fineness: 10f64.powi(power), ..*way };
         let unit = if goes_by_tolerance(way.scheme) { "m/s" } else { "s" };
         let setting = format!("{:e} {unit}", way.fineness);
-        let is_fixed = way.scheme == Scheme::Dda;
+        let is_fixed = way.scheme.has_fixed_step();
         // no dashpot: what is lost, the step itself loses
         let restitution = (!is_fixed).then_some(0.5);
         let setup = Setup {
@@ -68,7 +68,7 @@ pub(super) fn steps(way: &Way, notes: &mut Notes) {
 /// The fixed step as printed forgets its shear stretch: a rock that rolls down 20° slips at `T/(p_s Δt)`, `T = 2/7 m g sin
 /// 20°`, the faster the shorter the step. With memory it does not slip.
 pub(super) fn memory(way: &Way, notes: &mut Notes) {
-    if way.scheme != Scheme::Dda {
+    if !way.scheme.has_fixed_step() {
         return;
     }
     let angle = 20f64.to_radians();

@@ -6,7 +6,6 @@ use crate::math;
 use crate::random::{Purpose, stream, unit};
 use crate::rock::{Rock, Vec3};
 use crate::simulation::{Scratch, Stop};
-use crate::solver::Scheme;
 use crate::study::bench::{GROUND, ROCK, SETUP, Setup, settings, terrain};
 use crate::terrain::make;
 
@@ -19,7 +18,7 @@ pub(super) fn rest(way: &Way, notes: &mut Notes) {
     let pressed = if sprung(way) { SETUP.pressed_m(angle) } else { 0.0 };
     let height = SETUP.rock.radius_m - pressed;
     // a fixed step cannot leap over rest: 10 s of it are a million steps
-    let longest_s = if way.scheme == Scheme::Dda { 10.0 } else { 3600.0 };
+    let longest_s = if way.scheme.has_fixed_step() { 10.0 } else { 3600.0 };
     let setup = Setup {
         ground,
         centre_m: Vec3::new(0.0, height * math::sin(angle), height * math::cos(angle)),
@@ -67,7 +66,7 @@ pub(super) fn rest(way: &Way, notes: &mut Notes) {
 /// accounts for all of it.
 pub(super) fn random_releases(way: &Way, notes: &mut Notes) {
     let slope = terrain(make::natural_slope(61, 82).facets);
-    let rocks = if way.scheme == Scheme::Dda { 2 } else { 100 };
+    let rocks = if way.scheme.has_fixed_step() { 2 } else { 100 };
     let step = settings(way.scheme, way.fineness, None);
     let (mut lost, mut rise, mut remainder) = (0u32, 0.0f64, 0.0f64);
     let mut scratch = Scratch::default();

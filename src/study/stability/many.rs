@@ -71,7 +71,7 @@ const RIGID_OVERLAP: f64 = 2e-5;
 
 /// One on the other: the springs are pressed by `(m₁ + m₂) g/p_N` and `m₂ g/p_N`, whatever the ratio of the masses.
 pub(super) fn stack(way: &Way, notes: &mut Notes) {
-    let is_rigid = way.scheme == Scheme::Rigid;
+    let is_rigid = !way.scheme.has_springs();
     let floor = terrain(make::jittered_plane(40.0, 8, 0.0));
     let mass = |density_kg_m3| Rock { radius_m: RADIUS_M, density_kg_m3 }.mass_kg();
     for ratio in [1e-9, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9] {

@@ -91,7 +91,7 @@ fn cell(
     let omega = (stiffness / SETUP.rock.mass_kg()).sqrt();
     let ground =
         Ground { normal_stiffness_n_m: stiffness, shear_stiffness_n_m: 0.25 * stiffness, ..GROUND };
-    let fixed = if scheme == Scheme::Dda { 2.0 * fineness } else { 0.0 };
+    let fixed = if scheme.has_fixed_step() { 2.0 * fineness } else { 0.0 };
     let setup = Setup {
         ground,
         centre_m: Vec3::new(0.3, 0.2, SETUP.rock.radius_m),

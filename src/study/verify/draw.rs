@@ -26,9 +26,12 @@ pub(super) fn outline(terrain: &Terrain) -> Vec<Line> {
     lines
 }
 
+/// Name of an axis of the paper's steps.
+const STEPS: &str = "Step of 10 µs";
+
 /// Speed over steps.
 pub(super) fn speeds(title: &str, path: &[PathPoint]) -> Curves {
-    let mut curves = Curves::new(title, "step", "speed (m/s)");
+    let mut curves = Curves::new(title, STEPS, "Speed (m/s)");
     let at = |point: &PathPoint| (point.motion.time_s / STEP_S, point.motion.velocity_m_s.norm());
     curves.lines.push(path.iter().map(at).collect());
     curves
@@ -36,21 +39,22 @@ pub(super) fn speeds(title: &str, path: &[PathPoint]) -> Curves {
 
 /// Vertical displacement over steps.
 pub(super) fn heights(title: &str, path: &[PathPoint]) -> Curves {
-    let mut curves = Curves::new(title, "step", "vertical displacement (m)");
+    let mut curves = Curves::new(title, STEPS, "Vertical displacement (m)");
     let start = path.first().map_or(0.0, |point| point.motion.position_m.z);
     let at = |point: &PathPoint| (point.motion.time_s / STEP_S, point.motion.position_m.z - start);
     curves.lines.push(path.iter().map(at).collect());
     curves
 }
 
-/// Spheres at a step as seen along the edge; at step 0 the whole way of the centres.
+/// Spheres at a step as seen along the edge; at step 0 the whole way of the centres, and the spheres at its end.
 pub(super) fn side(title: &str, (falls, ground): (&[Trajectory], &[Line]), step: usize) -> Curves {
-    let mut curves = Curves::new(title, "across (m)", "height (m)");
+    let mut curves = Curves::new(title, "Across (m)", "Height (m)");
     curves.ground = ground.to_vec();
     for fall in falls {
         let places = fall.path.iter().map(|p| (p.motion.position_m.x, p.motion.position_m.z));
         if step == 0 {
-            curves.lines.push(places.collect());
+            curves.lines.push(places.clone().collect());
+            curves.discs.extend(places.last().map(|(x, z)| (x, z, fall.rock.radius_m)));
             continue;
         }
         let before = |point: &&PathPoint| point.motion.time_s <= step as f64 * STEP_S;

@@ -68,7 +68,7 @@ impl Example {
     /// # Errors
     /// A shipped scene that cannot be planned.
     pub(super) fn run(self, all: &mut Verification, scheme: Scheme) -> Result<()> {
-        let printed = scheme == Scheme::Dda;
+        let printed = scheme.has_fixed_step();
         let begun = all.rows.len();
         let done = match self {
             Self::AsymmetricEdge => {
@@ -128,8 +128,15 @@ fn asymmetric_edge(all: &mut Verification, (text, printed): (&str, bool)) -> Res
         // a tenth of the radius: what friction on the two flanks leaves a sphere at rest
         0.016,
     ));
-    all.draw("fig_09a", speeds("Example 1a: speed and step (Fig. 9a)", &falls[0].path));
-    all.draw("fig_07", side("Example 1a: way of the centre (Fig. 7)", (&falls, &ground), 0));
+    all.draw("fig_09a", speeds("Example 1a: how does a sphere beside an edge come to rest? Speed (the paper’s Fig. 9a)", &falls[0].path));
+    all.draw(
+        "fig_07",
+        side(
+            "Example 1a: which valley does the sphere end in? Way of the centre (Fig. 7)",
+            (&falls, &ground),
+            0,
+        ),
+    );
     Ok(())
 }
 
@@ -146,8 +153,21 @@ fn symmetric_edge(all: &mut Verification, text: &str) -> Result<()> {
         STEPS_SHARE * 109_881.0,
     ));
     all.rows.push(row("stays above the edge, off by (m)", 0.0, "symmetry", off, 1e-12));
-    all.draw("fig_09b", speeds("Example 1b: speed and step (Fig. 9b)", &falls[0].path));
-    all.draw("fig_08", side("Example 1b: way of the centre (Fig. 8)", (&falls, &ground), 0));
+    all.draw(
+        "fig_09b",
+        speeds(
+            "Example 1b: how does a sphere on an edge come to rest? Speed (Fig. 9b)",
+            &falls[0].path,
+        ),
+    );
+    all.draw(
+        "fig_08",
+        side(
+            "Example 1b: does the sphere stay on the edge? Way of the centre (Fig. 8)",
+            (&falls, &ground),
+            0,
+        ),
+    );
     Ok(())
 }
 
@@ -165,9 +185,25 @@ fn tetrahedron(all: &mut Verification, text: &str) -> Result<()> {
     let off = balanced[0].end.position_m.x;
     let still = row_balanced("without asymmetry stays, off by (m)", 0.0, "symmetry", off, 1e-6);
     all.rows.push(still);
-    all.draw("fig_11", speeds("Example 2: speed and step (Fig. 11)", path));
-    all.draw("fig_12", heights("Example 2: vertical displacement and step (Fig. 12)", path));
-    all.draw("fig_10", side("Example 2: way of the centre (Fig. 10)", (&falls, &ground), 0));
+    all.draw(
+        "fig_11",
+        speeds(
+            "Example 2: when does the sphere rest, and when does it fall? Speed (Fig. 11)",
+            path,
+        ),
+    );
+    all.draw(
+        "fig_12",
+        heights("Example 2: when does the sphere leave the apex? Its height (Fig. 12)", path),
+    );
+    all.draw(
+        "fig_10",
+        side(
+            "Example 2: which side does the sphere fall to? Way of the centre (Fig. 10)",
+            (&falls, &ground),
+            0,
+        ),
+    );
     Ok(())
 }
 
@@ -205,16 +241,23 @@ fn containers(all: &mut Verification, (text, printed): (&str, bool)) -> Result<(
         unsettled / steps,
         1e-2,
     ));
-    let names = if printed {
-        ["fig_14_a", "fig_14_b", "fig_14_end"]
+    // before the spheres touch anything both schemes draw the same
+    let figures: &[(&'static str, &str, usize)] = if printed {
+        &[
+            ("fig_14_a", "Example 3: 48 spheres at step 3 691 (Fig. 14a)", 3_691),
+            ("fig_14_b", "Example 3: 48 spheres at step 19 673 (Fig. 14b)", 19_673),
+            (
+                "fig_14_end",
+                "Example 3: where do the spheres come to rest? dda (Fig. 14)",
+                usize::MAX,
+            ),
+        ]
     } else {
-        ["fig_14_a_adaptive", "fig_14_b_adaptive", "fig_14_end_adaptive"]
+        let title = "Example 3: where do the spheres come to rest? adaptive (Fig. 14)";
+        &[("fig_14_end_adaptive", title, usize::MAX)]
     };
-    for (name, step) in names.into_iter().zip([3_691, 19_673, usize::MAX]) {
-        all.draw(
-            name,
-            side("Example 3: the spheres from the side (Fig. 14)", (&falls, &ground), step),
-        );
+    for &(name, title, step) in figures {
+        all.draw(name, side(title, (&falls, &ground), step));
     }
     Ok(())
 }
@@ -230,8 +273,11 @@ fn rockfall(all: &mut Verification, text: &str) -> Result<()> {
     let arrived = falls.iter().filter(arrived).count() as f64;
     let source = "the paper's Fig. 17; none is lost";
     all.rows.push(row("rocks at rest or past the foot", 10.0, source, arrived, 0.0));
-    let mut ways =
-        Curves::new("Example 4: trajectories (Fig. 17)", "down the slope (m)", "height (m)");
+    let mut ways = Curves::new(
+        "Example 4: how do ten rocks come down? Ways of the centres (Fig. 17)",
+        "Down the slope (m)",
+        "Height (m)",
+    );
     for fall in &falls {
         let way = fall.path.iter().map(|p| (p.motion.position_m.y, p.motion.position_m.z));
         ways.lines.push(way.collect());

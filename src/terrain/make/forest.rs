@@ -27,16 +27,36 @@ struct Written {
     height_m: f64,
 }
 
-/// Whether a list is drawn in a GIS and not written as text.
-fn is_drawn(path: &Path) -> bool {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    ending.is_some_and(|ending| ["geojson", "json", "shp", "gpkg"].contains(&ending.as_str()))
+/// A list of trees.
+#[derive(Debug, Clone, PartialEq)]
+pub struct List {
+    /// Each tree with its line in a text or its number in a drawing.
+    trees: Vec<(u64, Stem)>,
+    /// `line` or `feature`: what the numbers count.
+    counted: &'static str,
+    /// EPSG code of its coordinates, where the file names one.
+    pub epsg: Option<u32>,
+}
+
+impl List {
+    /// How many trees it holds.
+    pub fn count(&self) -> usize {
+        self.trees.len()
+    }
+}
+
+/// Whether a file that begins so can be a list of trees: a drawing, or a table with the column `dbh_m`.
+pub(in crate::terrain) fn begins_like_list(head: &[u8]) -> bool {
+    let line = head.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    let names = String::from_utf8_lossy(line);
+    gis::begins_like_drawing(head) || names.split(',').any(|name| name.trim() == "dbh_m")
 }
 
 /// Points with the properties `dbh_m` and `height_m`.
-fn read_drawn(path: &Path) -> Result<Vec<(u64, Stem)>> {
-    let mut stems = Vec::new();
-    for feature in gis::read(path)?.features {
+fn read_drawn(path: &Path) -> Result<List> {
+    let layer = gis::read(path)?;
+    let mut trees = Vec::new();
+    for feature in layer.features {
         let Shape::Points(points) = &feature.shape else {
             let found = format!("found {}", feature.shape.name());
             return Err(feature.wrong(path, found, "write points"));
@@ -48,9 +68,9 @@ fn read_drawn(path: &Path) -> Result<Vec<(u64, Stem)>> {
         };
         let (dbh_m, height_m) = (value("dbh_m")?, value("height_m")?);
         let stem = |&[x_m, y_m]: &[f64; 2]| Stem { x_m, y_m, dbh_m, height_m };
-        stems.extend(points.iter().map(|point| (feature.number as u64, stem(point))));
+        trees.extend(points.iter().map(|point| (feature.number as u64, stem(point))));
     }
-    Ok(stems)
+    Ok(List { trees, counted: "feature", epsg: layer.epsg })
 }
 
 /// Reads a list of trees: a CSV file with the columns `x, y, dbh_m, height_m` (m) in any order, it may have more; or a
@@ -58,14 +78,14 @@ fn read_drawn(path: &Path) -> Result<Vec<(u64, Stem)>> {
 ///
 /// # Errors
 /// A file that cannot be read, a row without these numbers, a diameter or height that is not above 0, no row at all.
-pub fn read_list(path: &Path) -> Result<Vec<(u64, Stem)>> {
-    if is_drawn(path) {
+pub fn read_list(path: &Path) -> Result<List> {
+    if gis::begins_like_drawing(&file::head(path)?) {
         return read_drawn(path);
     }
     let file = file::open(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers().cloned().unwrap_or_default();
-    let mut stems = Vec::new();
+    let mut trees = Vec::new();
     for row in reader.records() {
         let wrong =
             |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
@@ -90,12 +110,12 @@ pub fn read_list(path: &Path) -> Result<Vec<(u64, Stem)>> {
                 ));
             }
         }
-        stems.push((line, Stem { x_m, y_m, dbh_m, height_m }));
+        trees.push((line, Stem { x_m, y_m, dbh_m, height_m }));
     }
-    if stems.is_empty() {
+    if trees.is_empty() {
         return Err(Error::input(path, "rows", "found no tree", REMEDY));
     }
-    Ok(stems)
+    Ok(List { trees, counted: "line", epsg: None })
 }
 
 /// Eight-sided stems on a slope; everything in the map coordinates of `terrain`.
@@ -104,23 +124,23 @@ pub fn read_list(path: &Path) -> Result<Vec<(u64, Stem)>> {
 /// no gap opens on the lower side.
 ///
 /// # Errors
-/// A tree with no slope below its axis; `list` names the file.
-pub fn plant(list: &Path, trees: &[(u64, Stem)], terrain: &Terrain) -> Result<Vec<Facet>> {
+/// A tree with no slope below its axis; `file` is for the message.
+pub fn plant(file: &Path, list: &List, terrain: &Terrain) -> Result<Vec<Facet>> {
     let origin_m = terrain.origin_m;
     let ground_m =
         |x: f64, y: f64| Some(terrain.ground_below(x - origin_m.x, y - origin_m.y)? + origin_m.z);
     let mut facets = Vec::new();
-    for (line, tree) in trees {
+    for (number, tree) in &list.trees {
         let Some(axis_m) = ground_m(tree.x_m, tree.y_m) else {
             let (low, high) = terrain.index.bounds();
             let (low, high) = (low + origin_m, high + origin_m);
             let found = format!("found no slope at ({}, {})", tree.x_m, tree.y_m);
             let remedy = format!(
-                "write a place on the slope, its box is {}..{} east, {}..{} north; --origin-m takes map coordinates",
+                "write a place on the slope, its box is {}..{} east, {}..{} north, in map coordinates (`mesh stems` takes them with --origin-m)",
                 low.x, high.x, low.y, high.y
             );
-            let what = if is_drawn(list) { "feature" } else { "line" };
-            return Err(Error::input(list, format!("{what} {line}"), found, remedy));
+            let place = format!("{} {number}", list.counted);
+            return Err(Error::input(file, place, found, remedy));
         };
         let half_m = 0.5 * tree.dbh_m;
         let around = ring().into_iter();

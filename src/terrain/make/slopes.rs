@@ -16,7 +16,7 @@ pub struct Slope {
 }
 
 /// A lattice of `cells` (x, y) over `size_m`, draped over `height_m`; x and y from 0.
-fn drape(size_m: [f64; 2], cells: [usize; 2], height_m: fn(f64, f64) -> f64) -> Slope {
+pub(super) fn drape(size_m: [f64; 2], cells: [usize; 2], height_m: fn(f64, f64) -> f64) -> Slope {
     let facets = triangulate(cells[0] + 1, cells[1] + 1, |i, j| {
         let x = size_m[0] * i as f64 / cells[0] as f64;
         let y = size_m[1] * j as f64 / cells[1] as f64;
@@ -26,12 +26,12 @@ fn drape(size_m: [f64; 2], cells: [usize; 2], height_m: fn(f64, f64) -> f64) -> 
 }
 
 /// `max(s, 0)` with its corner rounded over about `round_m` (m).
-fn ramp(s_m: f64, round_m: f64) -> f64 {
+pub(super) fn ramp(s_m: f64, round_m: f64) -> f64 {
     0.5 * (s_m + (s_m * s_m + round_m * round_m).sqrt())
 }
 
 /// From 0 to 1 as `s` goes from 0 to 1, smooth.
-fn blend(s: f64) -> f64 {
+pub(super) fn blend(s: f64) -> f64 {
     fade(s.clamp(0.0, 1.0))
 }
 

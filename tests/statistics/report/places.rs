@@ -1,10 +1,11 @@
 //! Lines, barriers and maps as a site in map coordinates has them: long names, seven digits, crowds and nobody.
 
 use super::slope;
+use rockfall::hazard::{Agreement, Way};
 use rockfall::output::Zone;
 use rockfall::report::model::{
-    BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, Line, LinePoint, MapMark,
-    PlaceView, Quantile, Report,
+    AnnualView, BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, Line, LinePoint,
+    MapMark, Observed, PlaceView, Quantile, Report, RockView,
 };
 
 const EAST_M: f64 = 2_600_000.0;
@@ -16,7 +17,10 @@ pub(crate) fn net(rocks: usize) -> BarrierView {
     let place = |offset_m: f64, rocks: usize| PlaceView {
         offset_m,
         arriving: 0.5,
-        rocks: (0..rocks).map(|k| (top_m(k), 1e4 * k as f64)).collect(),
+        stopped: (rocks > 0).then_some(Estimate::new(40.0, 30.0, 55.0)),
+        rocks: (0..rocks)
+            .map(|k| RockView { top_m: top_m(k), total_j: 1e4 * k as f64, weight: 1.0 })
+            .collect(),
     };
     let design = DesignView {
         height_m: Estimate::new(4.2, 3.9, 5.0),
@@ -107,6 +111,35 @@ fn maps() -> CellMap {
     }
 }
 
+/// A curve over four decades of energy; behind barriers a tenth of it.
+fn year(name: &str, has_barriers: bool) -> AnnualView {
+    let curve = |size: f64| -> Vec<BandPoint> {
+        (0..60)
+            .map(|k| (1.16_f64.powi(k), size * 0.85_f64.powi(k)))
+            .map(|(x, y)| BandPoint { x: 1e3 * x, y: Estimate::new(y, 0.6 * y, 1.6 * y) })
+            .collect()
+    };
+    AnnualView {
+        name: name.to_owned(),
+        is_object: !has_barriers,
+        without: curve(0.03),
+        with: has_barriers.then(|| curve(0.003)),
+        return_periods_years: vec![30.0, 100.0, 300.0, 1000.0],
+    }
+}
+
+/// Measured ends beside computed ones.
+fn observed() -> Observed {
+    let way = |k: u32| Way {
+        start_m: [EAST_M + 70.0, NORTH_M + 190.0],
+        end_m: [EAST_M + 30.0 + f64::from(k * 7 % 80), NORTH_M + 10.0 + f64::from(k * 13 % 90)],
+    };
+    let (measured, computed): (Vec<Way>, Vec<Way>) =
+        ((0..40).map(way).collect(), (5..300).map(way).collect());
+    let agreement = Agreement::of(&measured, &computed).expect("neither is empty");
+    Observed { measured, computed, agreement }
+}
+
 /// A site with all of it.
 pub(crate) fn site() -> Report {
     let area = [[40.0, 185.0], [100.0, 185.0], [100.0, 195.0], [40.0, 195.0]];
@@ -120,6 +153,8 @@ pub(crate) fn site() -> Report {
         ],
         barriers: vec![net(60), net(0)],
         maps: Some(maps()),
+        annual: vec![year("valley road between the villages", true), year("house", false)],
+        observed: Some(observed()),
         ..slope::report(700, 60)
     }
 }

@@ -1,12 +1,11 @@
 //! An island of the rigid limit through one window: steps from its start to its end, whatever happens on the way.
 
 use super::{IslandWindow, WorldBody};
-use crate::solver::Scheme;
 
 impl IslandWindow<'_> {
     /// Whether the island is stepped as a whole in the rigid limit; a rock alone leaps and steps as it always does.
     pub(in crate::simulation::world) fn is_rigid_heap(&self) -> bool {
-        self.settings.step.scheme == Scheme::Rigid && self.bodies.len() > 1
+        !self.settings.step.scheme.has_springs() && self.bodies.len() > 1
     }
 
     /// Takes all of the island to the end of the window. Rocks that fly are taken along: a step costs them next to

@@ -33,6 +33,10 @@ pub(super) type Due = (u64, Reverse<usize>, [u32; 2]);
 pub struct Hit {
     /// The rock, as a place in the island.
     pub rock: usize,
+    /// Normal of the patch there.
+    pub normal: Vec3,
+    /// Speed of approach along it (m/s).
+    pub approach_m_s: f64,
     /// Point that is touched (m).
     pub point_m: Vec3,
     /// Where on the mesh.
@@ -219,7 +223,14 @@ impl RigidIsland {
             self.losses[k].add(&ground_contact.loss(&world, &mean), 1.0);
             let point_m = at - ground_contact.n * body.radius;
             let feature = touch.feature.kind;
-            self.hits.push(Hit { rock: k, point_m, feature, triangle: touch.triangle });
+            self.hits.push(Hit {
+                rock: k,
+                normal: touch.normal,
+                approach_m_s: -touch.normal.dot(&v),
+                point_m,
+                feature,
+                triangle: touch.triangle,
+            });
         }
         ball.is_struck(s);
     }

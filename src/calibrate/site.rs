@@ -1,0 +1,268 @@
+//! One scene of a calibration and what was measured on it.
+
+use super::{Ends, put_all};
+use crate::ensemble::Ensemble;
+use crate::error::{Error, Result};
+use crate::hazard::{Agreement, Row, Way, Weighted, distances, effective, rank, runouts};
+use crate::math;
+use crate::plan::Plan;
+use crate::random::{RandomStream, unit};
+use crate::scene::{Scene, VaryTable};
+use crate::simulation::{Scratch, simulate_release};
+use crate::terrain::Terrain;
+use std::path::Path;
+
+/// A measured end was released from a place of the scene if that is no farther away (m): positions are measured to a
+/// centimetre or two, and typed with two decimals.
+const SAME_PLACE_M: f64 = 0.1;
+
+/// Computed ways with their release numbers.
+pub(super) type Computed = Vec<(usize, Way)>;
+
+/// One scene and what was measured on it.
+pub(super) struct Site {
+    scene: Scene,
+    measured: Vec<Way>,
+    /// The block that each measured end belongs to; empty if the file does not tell.
+    blocks: Vec<String>,
+    /// The part that each measured end is held out with.
+    part: Vec<usize>,
+    terrain: Option<Terrain>,
+    /// Where measured rocks were released; none unless the scene releases from all of these places.
+    own: Option<OwnPlaces>,
+}
+
+/// Places of release that measured ends and releases have in common.
+struct OwnPlaces {
+    /// Place of each measured end.
+    of_end: Vec<usize>,
+    /// Place of each release, in turn; none where nothing was measured.
+    of_release: Vec<Option<usize>>,
+}
+
+impl Site {
+    pub(super) fn of(scene: &Scene, releases: usize, parts: usize) -> Result<Self> {
+        let (measured, blocks, part) = match scene.calibrate.as_ref().map(|table| &table.deposits) {
+            Some(deposits) => {
+                let (measured, blocks) = (Way::read(deposits)?, Way::read_blocks(deposits)?);
+                let part =
+                    parts_of(measured.len(), &blocks, parts).ok_or_else(|| few(deposits, parts))?;
+                (measured, blocks, part)
+            }
+            None => (Vec::new(), Vec::new(), Vec::new()),
+        };
+        let (terrain, _) = scene.read_terrain()?;
+        let asked = &scene.release;
+        let places: Vec<[f64; 2]> = match &asked.points_m {
+            Some(points) => points.iter().map(|point| point.at_m).collect(),
+            None => asked.blocks.iter().map(|block| block.at_m).collect(),
+        };
+        let own = OwnPlaces::of(&measured, &places);
+        let mut scene = bare(scene, releases);
+        if own.is_some() {
+            // every place as often as any other
+            scene.release.count = releases.next_multiple_of(places.len());
+        }
+        Ok(Self { scene, measured, blocks, part, terrain: Some(terrain), own })
+    }
+
+    pub(super) fn title(&self) -> String {
+        self.scene.title.clone()
+    }
+
+    pub(super) fn file(&self) -> &Path {
+        &self.scene.file
+    }
+
+    /// Whether it is known which throws are of one block.
+    pub(super) fn knows_blocks(&self) -> bool {
+        !self.blocks.is_empty()
+    }
+
+    pub(super) fn measured(&self) -> &[Way] {
+        &self.measured
+    }
+
+    /// Computes all releases with these values.
+    pub(super) fn compute(
+        &mut self,
+        (vary, values): (&[VaryTable], &[f64]),
+        ensemble: &Ensemble,
+    ) -> Result<Computed> {
+        put_all(&mut self.scene, vary, values)?;
+        let terrain = match self.terrain.take() {
+            Some(terrain) => terrain,
+            None => self.scene.read_terrain()?.0,
+        };
+        let plan = Plan::compile(&self.scene, terrain)?;
+        let origin_m = plan.terrain.origin_m;
+        let mut computed = Computed::new();
+        let one =
+            |index: usize, scratch: &mut Scratch| simulate_release(&plan, index, None, scratch);
+        for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {
+            let way = |fall| Way::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
+            computed.extend(falls?.iter().filter_map(way));
+        }
+        self.terrain = Some(plan.terrain);
+        Ok(computed)
+    }
+
+    /// Compares some of the ends; none where there is none of them.
+    pub(super) fn compare(&self, computed: &Computed, of: Ends) -> Option<Agreement> {
+        let wanted = |row: &usize| match of {
+            Ends::Without(part) => self.part[*row] != part,
+            Ends::Only(part) => self.part[*row] == part,
+            Ends::All => true,
+        };
+        let rows: Vec<usize> = (0..self.measured.len()).filter(wanted).collect();
+        Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))
+    }
+
+    /// Measured ends of some rows.
+    pub(super) fn ends(&self, rows: &[usize]) -> Vec<Way> {
+        rows.iter().map(|&row| self.measured[row]).collect()
+    }
+
+    /// Computed ways with what they weigh beside some measured ends: those from the place of one weigh as much as it, all
+    /// together, and those from other places nothing. Without common places they all weigh the same.
+    pub(super) fn weighted(&self, computed: &Computed, rows: &[usize]) -> Vec<Weighted> {
+        let Some(own) = &self.own else {
+            return computed.iter().map(|(_, way)| (*way, 1.0)).collect();
+        };
+        let mut counts = vec![[0.0, 0.0]; self.measured.len()];
+        rows.iter().for_each(|&row| counts[own.of_end[row]][0] += 1.0);
+        let places = || computed.iter().map(|(index, _)| own.of_release(*index));
+        places().flatten().for_each(|place| counts[place][1] += 1.0);
+        let weight =
+            |place: Option<usize>| place.map_or(0.0, |place| counts[place][0] / counts[place][1]);
+        computed.iter().zip(places()).map(|((_, way), place)| (*way, weight(place))).collect()
+    }
+
+    /// Distance of the distributions of runout of some measured ends and of computed ones (–): that of Kolmogorov and
+    /// Smirnov, times the number of ends.
+    pub(super) fn distance(&self, computed: &Computed, rows: &[usize]) -> f64 {
+        let measured: Vec<Weighted> = rows.iter().map(|&row| (self.measured[row], 1.0)).collect();
+        let computed = self.weighted(computed, rows);
+        rows.len() as f64 * distances(&runouts(&measured), &runouts(&computed)).0
+    }
+
+    /// Where some measured ends lie among the computed ones of their own places: mean rank, which is 0.5 where they are
+    /// alike, and the largest distance of the ranks from even ones (–). None without common places.
+    pub(super) fn ranks(&self, computed: &Computed, rows: &[usize]) -> Option<[f64; 2]> {
+        let own = self.own.as_ref()?;
+        let mut of_place = vec![Vec::new(); self.measured.len()];
+        for (index, way) in computed {
+            own.of_release(*index).into_iter().for_each(|place| of_place[place].push(*way));
+        }
+        let rank = |&row: &usize| rank(&self.measured[row], &of_place[own.of_end[row]]);
+        let mut ranks: Vec<f64> = rows.iter().filter_map(rank).collect();
+        ranks.sort_by(f64::total_cmp);
+        let n = ranks.len() as f64;
+        let mean = ranks.iter().sum::<f64>() / n;
+        let off = ranks.iter().enumerate().map(|(k, rank)| {
+            let (below, upto) = (k as f64 / n, (k as f64 + 1.0) / n);
+            (rank - below).abs().max((rank - upto).abs())
+        });
+        let off = off.fold(0.0, f64::max);
+        (n > 0.0).then_some([mean, off])
+    }
+
+    /// Independent ends that the measured ones are worth.
+    pub(super) fn effective(&self) -> f64 {
+        let runouts: Vec<f64> = self.measured.iter().map(Way::runout_m).collect();
+        effective(&runouts, &self.blocks)
+    }
+
+    /// As many measured ends as they are worth, drawn from them with replacement: their rows.
+    pub(super) fn redraw(&self, random: &mut RandomStream) -> Vec<usize> {
+        let count = (self.effective().round() as usize).max(2);
+        let rows = self.measured.len();
+        (0..count).map(|_| ((unit(random) * rows as f64) as usize).min(rows - 1)).collect()
+    }
+}
+
+impl OwnPlaces {
+    /// None unless every measured end was released from one of the places.
+    fn of(measured: &[Way], places: &[[f64; 2]]) -> Option<Self> {
+        let is_near = |one: &[f64; 2], other: &[f64; 2]| {
+            math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M
+        };
+        let place = |at: &[f64; 2]| measured.iter().position(|way| is_near(&way.start_m, at));
+        let of_release: Vec<Option<usize>> = places.iter().map(place).collect();
+        let of_end: Vec<usize> = measured.iter().filter_map(|way| place(&way.start_m)).collect();
+        let is_released = |place: &usize| of_release.contains(&Some(*place));
+        let common = !of_end.is_empty() && of_end.iter().all(is_released);
+        common.then_some(Self { of_end, of_release })
+    }
+
+    fn of_release(&self, index: usize) -> Option<usize> {
+        self.of_release[index % self.of_release.len()]
+    }
+}
+
+/// The part that each measured end is held out with: throws of one block together, each block where there are fewest so
+/// far. None where there are fewer blocks than parts.
+fn parts_of(ends: usize, blocks: &[String], parts: usize) -> Option<Vec<usize>> {
+    let mut known: Vec<(&str, Vec<usize>)> = Vec::new();
+    for row in 0..ends {
+        let block = blocks.get(row).map(String::as_str);
+        let found = known.iter_mut().find(|(name, _)| block == Some(name));
+        match found {
+            Some((_, rows)) => rows.push(row),
+            None => known.push((block.unwrap_or_default(), vec![row])),
+        }
+    }
+    let mut sizes = vec![0; parts];
+    let mut part = vec![0; ends];
+    for (_, rows) in &known {
+        let least = (0..parts).min_by_key(|&part| sizes[part])?;
+        sizes[least] += rows.len();
+        rows.iter().for_each(|&row| part[row] = least);
+    }
+    sizes.iter().all(|size| *size > 0).then_some(part)
+}
+
+fn few(deposits: &Path, parts: usize) -> Error {
+    let found = format!("found fewer blocks than the {parts} parts that held_out asks for");
+    let remedy = "write ends of more blocks, or held_out = 0.0, which holds none out";
+    Error::input(deposits, "rows", found, remedy)
+}
+
+/// The scene without anything that a trial has no use for.
+fn bare(scene: &Scene, releases: usize) -> Scene {
+    let mut bare = scene.clone();
+    bare.release.count = releases;
+    (bare.record.paths, bare.record.impacts) = (Some(0), Some(false));
+    (bare.lines, bare.barriers, bare.maps) = (Vec::new(), Vec::new(), None);
+    bare
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seven throws of three blocks in two parts: no block in both, and the parts as even as they can be.
+    #[test]
+    fn throws_of_one_block_are_held_out_together() {
+        let blocks = ["a", "b", "a", "c", "a", "b", "c"].map(str::to_owned);
+        assert_eq!(parts_of(7, &blocks, 2), Some(vec![0, 1, 0, 1, 0, 1, 1]));
+        assert_eq!(parts_of(7, &blocks, 4), None);
+        assert_eq!(parts_of(5, &[], 2), Some(vec![0, 1, 0, 1, 0]));
+    }
+
+    /// Three ends from one place and one from another, which the scene releases from evenly, and from a third.
+    #[test]
+    fn ends_are_compared_from_their_own_places() {
+        let way = |x: f64, y: f64| Way { start_m: [x, 0.0], end_m: [x, y] };
+        let measured = [way(0.0, 1.0), way(5.0, 2.0), way(0.05, 3.0), way(0.0, 4.0)];
+        let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]];
+        let own = OwnPlaces::of(&measured, &places).unwrap();
+        assert_eq!(own.of_end, [0, 1, 0, 0]);
+        assert_eq!(
+            (0..4).map(|k| own.of_release(k)).collect::<Vec<_>>(),
+            [Some(0), Some(1), None, Some(0)]
+        );
+        assert!(OwnPlaces::of(&measured, &places[..1]).is_none());
+        assert!(OwnPlaces::of(&measured, &[]).is_none());
+    }
+}

@@ -1,0 +1,61 @@
+//! How often a year rocks arrive at a barrier, and what it does with them.
+
+use super::super::barriers::{Arrival, Barrier};
+use super::super::lines::CrossingRow;
+use super::places::{All, Strata};
+use super::rate::Rate;
+use serde::{Deserialize, Serialize};
+
+/// One barrier: of the rocks that arrive each is stopped, or reaches above its edge, or has too much energy.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AnnualBarrier {
+    /// Its name.
+    pub name: String,
+    /// Rocks that arrive; those that a barrier before has stopped do not.
+    pub arriving: Rate,
+    /// Rocks that it stops.
+    pub stopped: Rate,
+    /// Rocks that reach above its upper edge.
+    pub over: Rate,
+    /// Rocks below its edge with more energy than it takes.
+    pub through: Rate,
+}
+
+/// Rocks that meet a barrier, stratum by stratum.
+#[derive(Default)]
+pub(super) struct Met {
+    arriving: Strata,
+    stopped: Strata,
+    over: Strata,
+    through: Strata,
+}
+
+impl Met {
+    /// Notes a rock that arrives; whether it is stopped.
+    pub(super) fn add(&mut self, barrier: &Barrier, row: &CrossingRow, all: &All<'_>) -> bool {
+        let arrival = Arrival::of(row);
+        let is_stopped = arrival.is_stopped(barrier.height_m, barrier.capacity_j);
+        let fate = if is_stopped {
+            &mut self.stopped
+        } else if arrival.top_m > barrier.height_m {
+            &mut self.over
+        } else {
+            &mut self.through
+        };
+        let (stratum, one) = all.one(row);
+        for strata in [fate, &mut self.arriving] {
+            strata.entry(stratum).or_default().join(&one);
+        }
+        is_stopped
+    }
+
+    pub(super) fn said(&self, barrier: &Barrier, all: &All<'_>) -> AnnualBarrier {
+        AnnualBarrier {
+            name: barrier.name.clone(),
+            arriving: all.rate_of_any(&self.arriving),
+            stopped: all.rate_of_any(&self.stopped),
+            over: all.rate_of_any(&self.over),
+            through: all.rate_of_any(&self.through),
+        }
+    }
+}

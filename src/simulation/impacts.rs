@@ -1,0 +1,255 @@
+//! The impacts of one rock: one row for every patch that it strikes.
+//!
+//! A rock may strike several patches at once, or one while it is still pressed into another. Each has its own approach, its own
+//! end and its own speed after it. What is lost while several are in hand is shared by the squares of their approach speeds,
+//! for the energy that each would bring to rest. A patch that opens for an instant and closes again is still the same impact.
+
+use super::driver::Fall;
+use super::{FeatureKind, Impact};
+use crate::contact::MOST;
+use crate::contact::history::{ContactHistory, SAME_GRIP};
+use crate::rock::Vec3;
+use crate::solver::contact_state::ContactState;
+
+/// A patch struck again so soon after it has let go (s) is the same impact: its springs opened for an instant, or the rock went
+/// on over the side of a triangle.
+const SAME_IMPACT_S: f64 = 1e-3;
+
+/// A patch that is struck.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Struck {
+    /// Where (m).
+    pub(super) point_m: Vec3,
+    /// Normal of the patch there.
+    pub(super) normal: Vec3,
+    /// What of the mesh it is.
+    pub(super) feature: FeatureKind,
+    /// Index into `Terrain::sheets`.
+    pub(super) sheet: u16,
+    /// Speed of approach along the normal (m/s).
+    pub(super) approach_m_s: f64,
+}
+
+/// An impact in hand, or one that is just over.
+#[derive(Debug, Clone, Copy)]
+struct InHand {
+    /// Which of the rock's impacts it is, from 1.
+    number: u32,
+    sheet: u16,
+    normal: Vec3,
+    /// Its share of what is lost while it lasts (m²/s²).
+    weight: f64,
+    /// When it is over at the latest (s), and when its patch let go.
+    until_s: f64,
+    over_s: Option<f64>,
+}
+
+/// The impacts of one rock.
+#[derive(Debug, Default)]
+pub(super) struct Impacts {
+    /// The rows, if they are kept.
+    pub(super) rows: Vec<Impact>,
+    /// How many there were.
+    pub(super) count: u32,
+    keeps_rows: bool,
+    hand: Hand,
+}
+
+/// Those in hand, without allocation.
+#[derive(Debug, Clone, Copy, Default)]
+struct Hand {
+    list: [Option<InHand>; MOST],
+    /// What had gone into contacts with the mesh when the first of them began (J).
+    began_j: f64,
+}
+
+impl Hand {
+    /// A place for one more: a free one, else that of the one which began first, of those that are over if there are any.
+    fn place(&mut self) -> &mut Option<InHand> {
+        let age = |place: &Option<InHand>| {
+            place.as_ref().map(|impact| (impact.over_s.is_none(), impact.number))
+        };
+        let first = (0..MOST).min_by_key(|&k| age(&self.list[k])).unwrap_or(0);
+        &mut self.list[first]
+    }
+}
+
+/// The impacts at a moment, to go back to.
+#[derive(Debug)]
+pub(super) struct ImpactsMark {
+    rows: usize,
+    count: u32,
+    hand: Hand,
+}
+
+impl Impacts {
+    pub(super) fn kept_if(keeps_rows: bool) -> Self {
+        Self { keeps_rows, ..Self::default() }
+    }
+
+    pub(super) fn mark(&self) -> ImpactsMark {
+        ImpactsMark { rows: self.rows.len(), count: self.count, hand: self.hand }
+    }
+
+    pub(super) fn go_back(&mut self, mark: &ImpactsMark) {
+        self.rows.truncate(mark.rows);
+        (self.count, self.hand) = (mark.count, mark.hand);
+    }
+
+    /// Whether any is in hand.
+    #[inline]
+    pub(super) fn is_any(&self) -> bool {
+        self.lasting().next().is_some()
+    }
+
+    fn lasting(&self) -> impl Iterator<Item = &InHand> {
+        self.hand.list.iter().flatten().filter(|impact| impact.over_s.is_none())
+    }
+
+    /// Begins one at `now_s` (s) and `speed_m_s`, to end at `until_s` at the latest, or goes on with that of the same patch;
+    /// `lost_j` is what has gone into contacts with the mesh so far. Returns its number, and whether it is a new one.
+    pub(super) fn begin(
+        &mut self,
+        struck: &Struck,
+        (now_s, until_s): (f64, f64),
+        speed_m_s: f64,
+        lost_j: f64,
+    ) -> (u32, bool) {
+        if !self.is_any() {
+            self.hand.began_j = lost_j;
+        }
+        let weight = struck.approach_m_s.powi(2).max(f64::MIN_POSITIVE);
+        let is_same = |impact: &&mut InHand| {
+            impact.over_s.is_some_and(|over_s| now_s - over_s <= SAME_IMPACT_S)
+                && impact.sheet == struck.sheet
+                && impact.normal.dot(&struck.normal) > SAME_GRIP
+        };
+        if let Some(impact) = self.hand.list.iter_mut().flatten().find(is_same) {
+            let number = impact.number;
+            *impact = InHand { normal: struck.normal, weight, until_s, over_s: None, ..*impact };
+            return (number, false);
+        }
+        self.count += 1;
+        let number = self.count;
+        let sheet = struck.sheet;
+        let impact = InHand { number, sheet, normal: struck.normal, weight, until_s, over_s: None };
+        *self.hand.place() = Some(impact);
+        if self.keeps_rows {
+            self.rows.push(Impact {
+                time_s: now_s,
+                point_m: struck.point_m,
+                feature: struck.feature,
+                sheet,
+                speed_in_m_s: speed_m_s,
+                speed_out_m_s: speed_m_s,
+                energy_lost_j: 0.0,
+            });
+        }
+        (number, true)
+    }
+
+    /// Ends, at `now_s` (s) and `speed_m_s`, those whose time is over and those whose patch no longer `holds` the rock.
+    pub(super) fn end(&mut self, now_s: f64, speed_m_s: f64, holds: impl Fn(u32) -> bool) {
+        for impact in self.hand.list.iter_mut().flatten() {
+            if impact.over_s.is_none() && (now_s >= impact.until_s || !holds(impact.number)) {
+                impact.over_s = Some(now_s);
+                if self.keeps_rows {
+                    self.rows[impact.number as usize - 1].speed_out_m_s = speed_m_s;
+                }
+            }
+        }
+    }
+
+    /// Once none is in hand any more, books what they took: `lost_j` has gone into contacts with the mesh so far, springs that
+    /// are still pressed not counted.
+    pub(super) fn book(&mut self, lost_j: f64) {
+        if !self.keeps_rows || self.is_any() {
+            return;
+        }
+        let whole: f64 = self.hand.list.iter().flatten().map(|impact| impact.weight).sum();
+        if whole <= 0.0 {
+            return;
+        }
+        // never less than nothing: a step may gain what it rounds
+        let taken_j = (lost_j - self.hand.began_j).max(0.0);
+        for impact in self.hand.list.iter_mut().flatten() {
+            self.rows[impact.number as usize - 1].energy_lost_j += taken_j * impact.weight / whole;
+            impact.weight = 0.0;
+        }
+    }
+
+    /// What strikes from now on is another impact, wherever it strikes.
+    pub(super) fn forget_last(&mut self) {
+        for place in &mut self.hand.list {
+            place.take_if(|impact| impact.over_s.is_some());
+        }
+    }
+}
+
+impl Fall<'_> {
+    /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
+    pub(super) fn announce(&mut self) {
+        let is_known = |history: &ContactHistory| history.announced;
+        if self.state.struck.is_empty() && self.state.histories.iter().all(is_known) {
+            return;
+        }
+        let known = self.state.histories.iter().filter(|history| history.announced);
+        let held_j = ContactState::held_j(&self.world, known);
+        let mut fastest: Option<(f64, Vec3, u32)> = None;
+        let mut see = |history: &mut ContactHistory, fall: &mut Self| {
+            history.announced = true;
+            if history.captured {
+                return;
+            }
+            history.impact = fall.begin_impact(history, held_j);
+            let speed = -history.n.dot(&fall.recorder.now.velocity_m_s);
+            if speed > fastest.map_or(0.0, |(known, ..)| known) {
+                fastest = Some((speed, history.n, history.triangle));
+            }
+        };
+        for k in 0..self.state.histories.len() {
+            let mut history = self.state.histories[k];
+            if !history.announced {
+                see(&mut history, self);
+                self.state.histories[k] = history;
+            }
+        }
+        for k in 0..self.state.struck.len() {
+            let mut history = self.state.struck[k];
+            if !history.announced {
+                see(&mut history, self);
+                self.state.struck[k] = history;
+            }
+        }
+        if let Some((_, normal, triangle)) = fastest {
+            let until_s = self.recorder.now.time_s + self.impact_time();
+            self.meet_facet(normal, triangle, until_s);
+        }
+    }
+
+    /// Begins the impact of a contact, unless it came too slowly for one (0); `held_j` is what other springs hold.
+    pub(super) fn begin_impact(&mut self, history: &ContactHistory, held_j: f64) -> u32 {
+        let approach_m_s = -history.n.dot(&self.recorder.now.velocity_m_s);
+        if approach_m_s < self.world.law(history.triangle).capture_m_s {
+            return 0;
+        }
+        let struck = Struck {
+            point_m: self.state.c - history.n * self.world.body.radius,
+            normal: history.n,
+            feature: history.feature.kind,
+            sheet: self.recorder.sheet_of(history.triangle),
+            approach_m_s,
+        };
+        let until_s = self.recorder.now.time_s + self.impact_time();
+        self.recorder.begin_impact(&struck, until_s, held_j)
+    }
+
+    /// Ends the impacts whose patch has let go or whose time is up.
+    pub(super) fn end_impacts(&mut self) {
+        let (world, histories) = (&self.world, &self.state.histories);
+        self.recorder.end_impacts(
+            |number| histories.iter().any(|history| history.impact == number),
+            || ContactState::held_j(world, histories.iter()),
+        );
+    }
+}

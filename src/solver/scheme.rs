@@ -1,0 +1,85 @@
+//! The schemes: what tells them apart, asked here and nowhere else.
+
+use super::tableau::{ESDIRK4, TR_BDF2, Tableau};
+
+/// How a step is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scheme {
+    /// The paper's displacement-based step at a fixed time step.
+    Dda,
+    /// TR-BDF2 with error control; the default.
+    Adaptive,
+    /// The same law with the fourth-order tableau and a tight tolerance.
+    Reference,
+    /// Rigid limit: impact map and velocity stepping.
+    Rigid,
+}
+
+impl Scheme {
+    /// Its name in scene files and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dda => "dda",
+            Self::Adaptive => "adaptive",
+            Self::Reference => "reference",
+            Self::Rigid => "rigid",
+        }
+    }
+
+    /// Budget of work of one rock: steps, accepted or not, and flights. A minute of fall takes a few thousand, with the
+    /// paper's fixed step of 1e-5 s six million.
+    pub const fn most_work(self) -> u64 {
+        match self {
+            Self::Dda => 20_000_000,
+            Self::Adaptive | Self::Reference | Self::Rigid => 5_000_000,
+        }
+    }
+
+    /// Whether contacts have springs; the rigid limit has none.
+    pub const fn has_springs(self) -> bool {
+        !matches!(self, Self::Rigid)
+    }
+
+    /// Whether it takes the steps it is given, however large their error.
+    pub const fn has_fixed_step(self) -> bool {
+        matches!(self, Self::Dda)
+    }
+
+    /// Whether it keeps the local error of every step to a tolerance.
+    pub const fn controls_error(self) -> bool {
+        matches!(self, Self::Adaptive | Self::Reference)
+    }
+
+    /// Order of its error in the step where nothing switches (–). The rigid limit takes geometry and velocities in the
+    /// middle of the step there; it is first order over a step in which sliding turns into rolling or a rock lifts off.
+    pub const fn order(self) -> f64 {
+        match self {
+            Self::Dda => 1.0,
+            Self::Adaptive | Self::Rigid => 2.0,
+            Self::Reference => 4.0,
+        }
+    }
+
+    /// The tableau of its stages, if it has stages.
+    pub const fn tableau(self) -> Option<&'static Tableau> {
+        match self {
+            Self::Adaptive => Some(&TR_BDF2),
+            Self::Reference => Some(&ESDIRK4),
+            Self::Dda | Self::Rigid => None,
+        }
+    }
+
+    /// All of them, the paper's first.
+    pub const ALL: [Self; 4] = [Self::Dda, Self::Adaptive, Self::Reference, Self::Rigid];
+
+    /// What belongs to it in a table of `dda`, `adaptive`, `reference` and `rigid`.
+    pub fn of<T: Copy>(self, [dda, adaptive, reference, rigid]: [T; 4]) -> T {
+        match self {
+            Self::Dda => dda,
+            Self::Adaptive => adaptive,
+            Self::Reference => reference,
+            Self::Rigid => rigid,
+        }
+    }
+}

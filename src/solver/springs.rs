@@ -1,0 +1,72 @@
+//! What the springs of a rock's contacts hold, and how soon they will have taken more than what they press on can bear.
+
+use super::contact_state::{ContactEnvironment, ContactState, Loss};
+use crate::contact::history::ContactHistory;
+use crate::rock::Vec3;
+
+impl ContactState {
+    /// Energy in the springs of the contacts (J), by the kind it was counted under:
+    /// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2`.
+    pub fn springs_j(&mut self, world: &ContactEnvironment) -> Loss {
+        let c = self.c;
+        self.look(world, &c, world.body.radius);
+        self.stored_j(world)
+    }
+
+    /// About how much the springs of contacts that last hold (J), as their memories tell: `F²/(2 p_N)` and the stretches.
+    pub fn held_j<'h>(
+        world: &ContactEnvironment,
+        histories: impl Iterator<Item = &'h ContactHistory>,
+    ) -> f64 {
+        let held = histories.map(|history| {
+            let law = world.law(history.triangle);
+            let penetration = history.normal_force / law.p_n;
+            law.stored_j(penetration, history.shear.norm_squared(), history.roll.norm_squared())
+        });
+        held.sum()
+    }
+
+    /// The same for the touches of the last look.
+    pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
+        let mut stored = Loss::default();
+        for touch in self.touches.iter() {
+            let penetration = (world.body.radius - touch.distance_m).max(0.0);
+            let pressed = touch.gain2 * world.law(touch.triangle).stored_j(penetration, 0.0, 0.0);
+            stored
+                .add(&Loss { damping: pressed, ..Loss::default() }.on(world, touch.triangle), 1.0);
+        }
+        for history in self.histories.iter() {
+            let law = world.law(history.triangle);
+            let damping = law.stored_j(0.0, history.shear.norm_squared(), 0.0);
+            let rolling = law.stored_j(0.0, 0.0, history.roll.norm_squared());
+            stored.add(
+                &Loss { damping, rolling, ..Loss::default() }.on(world, history.triangle),
+                1.0,
+            );
+        }
+        stored
+    }
+
+    /// A time (s) within which the contacts of `on` take no more than `work_j`: their forces do not grow faster than springs
+    /// without loss, and nothing brakes the rock. The nearer to the end, the nearer it is to the true time.
+    pub(crate) fn time_to_take_s(
+        &self,
+        world: &ContactEnvironment,
+        work_j: f64,
+        on: impl Fn(&ContactHistory) -> bool,
+    ) -> f64 {
+        // W(h) ≤ Σ (v_n + μ |u|) (F h + p_N v_n h²/2)
+        let (mut now_w, mut grows_w_s) = (0.0, 0.0);
+        for history in self.histories.iter().filter(|history| on(history)) {
+            let law = world.law(history.triangle);
+            let speed = -history.n.dot(&self.v);
+            let (inwards, slip): (f64, Vec3) =
+                (speed.max(0.0), world.body.slip(&history.n, &self.v, &self.w));
+            let force = history.normal_force.max(law.c_n * inwards);
+            let way = inwards + law.friction * slip.norm();
+            now_w += force * way;
+            grows_w_s += 0.5 * law.p_n * inwards * way;
+        }
+        2.0 * work_j / (now_w + (now_w * now_w + 4.0 * grows_w_s * work_j).sqrt())
+    }
+}

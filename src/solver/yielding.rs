@@ -1,0 +1,80 @@
+//! An impact on something that gives way, in the limit of stiff springs: the law of one contact at one place, followed in the
+//! impact's own time until what is struck has taken all it can.
+
+use super::law::{Action, Body, Place};
+use crate::ground::Law;
+use crate::rock::Vec3;
+
+/// Step (rad of the contact's oscillation).
+const STEP: f64 = 5e-3;
+/// A rock comes to rest along the normal within this (rad), however heavily damped.
+const LASTS: f64 = 20.0;
+/// Halvings of the step in which it gives way: all the digits there are.
+const BISECTIONS: u32 = 60;
+
+/// A rock pressed into one contact.
+#[derive(Clone, Copy)]
+struct Pressing {
+    at: Place,
+    v: Vec3,
+    w: Vec3,
+}
+
+impl Pressing {
+    /// After `h` (s), by a step through the middle.
+    fn after(&self, body: &Body, law: &Law, h: f64) -> Self {
+        let middle = self.moved(body, law, self, 0.5 * h);
+        self.moved(body, law, &middle, h)
+    }
+
+    /// Gone on for `h` (s) at the rates of `there`.
+    fn moved(&self, body: &Body, law: &Law, there: &Self, h: f64) -> Self {
+        let n = &there.at.n;
+        let acts = Action::of(body, law, (law.p_n, law.c_n), &there.at, (&there.v, &there.w));
+        let turning = n.cross(&acts.shear_force) * body.radius - acts.rolling_moment;
+        Self {
+            at: Place {
+                n: *n,
+                penetration: self.at.penetration - n.dot(&there.v) * h,
+                shear: self.at.shear + acts.rates[0] * h,
+                roll: self.at.roll + acts.rates[1] * h,
+            },
+            v: self.v + (n * acts.normal[0] - acts.shear_force) * (h / body.mass),
+            w: self.w + turning * (h / body.inertia),
+        }
+    }
+
+    fn motion_j(&self, body: &Body) -> f64 {
+        0.5 * (body.mass * self.v.norm_squared() + body.inertia * self.w.norm_squared())
+    }
+}
+
+/// Velocity and spin with which a rock leaves something with normal `n` that gives way once it has taken `limit_j`, springs and
+/// friction included. `None` if it stands until the rock comes to rest along the normal.
+pub(crate) fn yielding_impact(
+    body: &Body,
+    (law, n): (&Law, &Vec3),
+    (v, w): (&Vec3, &Vec3),
+    limit_j: f64,
+) -> Option<(Vec3, Vec3)> {
+    let at = Place { n: *n, penetration: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros() };
+    let mut rock = Pressing { at, v: *v, w: *w };
+    let left_j = rock.motion_j(body) - limit_j;
+    let step = STEP / law.omega;
+    let mut gone = 0.0;
+    while n.dot(&rock.v) < 0.0 && gone < LASTS {
+        let next = rock.after(body, law, step);
+        if next.motion_j(body) <= left_j {
+            let (mut low, mut high) = (0.0, step);
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (low + high);
+                let is_over = rock.after(body, law, middle).motion_j(body) <= left_j;
+                *(if is_over { &mut high } else { &mut low }) = middle;
+            }
+            let end = rock.after(body, law, high);
+            return Some((end.v, end.w));
+        }
+        (rock, gone) = (next, gone + STEP);
+    }
+    None
+}

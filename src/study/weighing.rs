@@ -1,0 +1,68 @@
+//! What the rocks of a study stand for, where sizes are sampled by importance.
+
+use crate::frequency::{Frequency, Weights};
+use crate::hazard::{Percentile, Sample};
+use crate::plan::{Part, Plan};
+
+/// Fewest releases of which a sampling error is given.
+pub(super) const FEWEST: usize = 100;
+
+/// What rocks of a study stand for: stratum and weight of each, in the order of releases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weighing(pub Vec<(u32, f64)>);
+
+impl Weighing {
+    /// So many rocks that all weigh the same.
+    pub fn equal(rocks: usize) -> Self {
+        Self(vec![(0, 1.0); rocks])
+    }
+
+    /// Rocks that stand for parts of a frequency.
+    pub fn by(weights: &Weights) -> Self {
+        let rock = |release| (weights.stratum_of(release) as u32, weights.of_release(release));
+        Self((0..weights.all_rocks()).map(rock).collect())
+    }
+}
+
+/// What rocks stand for; none where all weigh the same.
+pub(super) struct Weigh(Option<Frequency>);
+
+impl Weigh {
+    pub(super) fn of(plan: &Plan) -> Self {
+        let Part::Kept(year) = &plan.year else { return Self(None) };
+        let weighs = !year.frequency.weights(plan.count).are_equal();
+        Self(weighs.then(|| year.frequency.clone()))
+    }
+
+    /// So many of equal weight would know as much as so many releases (–).
+    pub(super) fn effective(&self, count: usize) -> Option<f64> {
+        self.0.as_ref().map(|frequency| frequency.weights(count).effective_rocks())
+    }
+
+    /// Of so many releases.
+    pub(super) fn rocks(&self, count: usize) -> Weighing {
+        match &self.0 {
+            None => Weighing::equal(count),
+            Some(frequency) => Weighing::by(&frequency.weights(count)),
+        }
+    }
+
+    /// Of the values of the first so many releases.
+    pub(super) fn percentile(&self, values: &[f64], p: f64) -> Option<Percentile> {
+        let weights = self.0.as_ref().map(|frequency| frequency.weights(values.len()));
+        let weight = |release| weights.as_ref().map_or(1.0, |all| all.of_release(release));
+        let each = values.iter().enumerate().map(|(release, value)| (*value, weight(release)));
+        Sample::weighted(each).percentile(p)
+    }
+
+    /// Half widths of the 95 % interval for the first 100, 200, 500, 1000 … releases.
+    pub(super) fn sampling(&self, values: &[f64], p: f64) -> Vec<(usize, f64)> {
+        let numbers = (2..).flat_map(|power| [1, 2, 5].map(|step| step * 10usize.pow(power)));
+        let inner = numbers.take_while(|&n| n < values.len()).filter(|&n| n >= FEWEST);
+        let half = |n: usize| {
+            let found = self.percentile(&values[..n], p)?;
+            Some((n, 0.5 * (found.high_95? - found.low_95?)))
+        };
+        inner.chain([values.len()]).filter_map(half).collect()
+    }
+}

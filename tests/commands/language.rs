@@ -1,0 +1,104 @@
+//! `[report] language`: what a run writes for people is in the language of its scene, whole.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use crate::program::rockfall;
+use crate::{boxes, svg};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// English words that page and figures have in other words elsewhere. Names that the examples give, and what the program
+/// records in English, stand apart.
+const ENGLISH: [&str; 17] = [
+    "What arrives",
+    "Conditional on release",
+    "conditional on release",
+    "Statistics over",
+    "reach probability",
+    "at rest",
+    "left the terrain",
+    "Bounce height",
+    "Total energy",
+    "total energy",
+    "Read this first",
+    "Share of",
+    "Barriers",
+    "design height",
+    "How often a year",
+    "Passages",
+    "Agreement with",
+];
+
+/// Runs an example in a language and returns the folder of its results.
+fn run(dir: &Path, example: &str, language: &str) -> PathBuf {
+    let scene = fs::read_to_string(format!("examples/{example}.toml")).unwrap();
+    let terrain = fs::canonicalize("terrain").unwrap();
+    let table = format!("[report]\nlanguage = \"{language}\"\n");
+    let scene = if scene.contains("[report]\n") {
+        scene.replace("[report]\n", &table)
+    } else {
+        format!("{scene}\n{table}")
+    };
+    let path = dir.join(format!("{example}_{language}.toml"));
+    fs::write(&path, scene.replace("../terrain", terrain.to_str().unwrap())).unwrap();
+    let out = dir.join(format!("{example}_{language}"));
+    let (path, folder) = (path.to_str().unwrap(), out.to_str().unwrap());
+    let said = rockfall(&["run", path, "--releases", "80", "--out", folder, "--quiet"]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    out
+}
+
+/// What the page says, without its style and without what the program has recorded in English.
+fn spoken(page: &str) -> String {
+    let (head, rest) = page.split_once("<style>").unwrap();
+    let (_, body) = rest.split_once("</style>").unwrap();
+    let mut words = svg::strip_tags(head);
+    for (k, part) in body.split("lang=\"en\"").enumerate() {
+        let rest = if k == 0 {
+            part
+        } else {
+            part.split_once("</section>").map_or("", |(_, behind)| behind)
+        };
+        words += &svg::strip_tags(rest);
+    }
+    words
+}
+
+fn check(out: &Path, language: &str) {
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains(&format!("<html lang=\"{language}\">")));
+    let words = spoken(&page);
+    for odd in ENGLISH.into_iter().chain(["{", "}", "NaN"]) {
+        let at = words.find(odd).map(|at| words[at..].chars().take(60).collect::<String>());
+        assert_eq!(at, None, "{language}: {odd}");
+    }
+    for figure in fs::read_dir(out.join("figures")).unwrap() {
+        let path = figure.unwrap().path();
+        if path.extension().is_some_and(|kind| kind == "svg") {
+            let place = path.display().to_string();
+            let drawing = fs::read_to_string(&path).unwrap();
+            svg::check(&drawing, &place);
+            let faults = boxes::faults(&drawing, &place);
+            assert!(faults.is_empty(), "{}", faults.join("\n"));
+        }
+    }
+}
+
+/// Lines, a net with a design, four grounds and stems; three sources with what a year brings; measured ends.
+#[test]
+fn a_run_speaks_the_language_of_its_scene() {
+    let dir = tempfile::tempdir().unwrap();
+    for (example, languages) in [
+        ("valley", ["de", "fr", "it"]),
+        ("road", ["it", "de", "fr"]),
+        ("tschamut", ["fr", "it", "de"]),
+    ] {
+        for language in languages {
+            check(&run(dir.path(), example, language), language);
+        }
+    }
+    // drawn again from the files alone it is the same page: the summary knows the language
+    let out = dir.path().join("road_it");
+    let before = fs::read(out.join("report.html")).unwrap();
+    assert!(rockfall(&["draw", out.to_str().unwrap()]).status.success());
+    assert_eq!(fs::read(out.join("report.html")).unwrap(), before);
+}

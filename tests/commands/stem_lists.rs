@@ -1,0 +1,133 @@
+//! Stems from lists of trees, written or drawn: as a mesh of their own, and stood on the slope by the scene itself.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use crate::program::rockfall;
+use crate::site::{Folder, scene};
+use rockfall::scene::Scene;
+use rockfall::terrain::Terrain;
+use std::fs;
+use std::path::Path;
+
+/// East, north, diameter, height (m).
+const TREES: [[f64; 4]; 2] =
+    [[2_600_020.5, 1_200_060.5, 0.4, 18.0], [2_600_031.25, 1_200_050.0, 0.6, 22.0]];
+
+fn table() -> String {
+    let rows = TREES.map(|tree| tree.map(|number| number.to_string()).join(","));
+    format!("x,y,dbh_m,height_m\n{}\n", rows.join("\n"))
+}
+
+fn drawing(system: &str) -> String {
+    let points = TREES.map(|[x, y, dbh, height]| {
+        format!(
+            "{{\"type\":\"Feature\",\"properties\":{{\"dbh_m\":{dbh},\"height_m\":{height}}},\"geometry\":{{\"type\":\"Point\",\"coordinates\":[{x},{y}]}}}}"
+        )
+    });
+    format!("{{\"type\":\"FeatureCollection\",{system}\"features\":[{}]}}", points.join(","))
+}
+
+/// Stems from drawn points are those from the same list.
+#[test]
+fn stems_stand_where_points_are_drawn() {
+    let dir = Folder::new();
+    dir.slope();
+    let stems = |list: &Path| {
+        let (out, slope) = (dir.path("stems.stl"), dir.path("dem.stl"));
+        let words = [
+            "mesh",
+            "stems",
+            list.to_str().unwrap(),
+            slope.to_str().unwrap(),
+            out.to_str().unwrap(),
+            "--origin-m",
+            "2600000,1200000,0",
+        ];
+        let said = rockfall(&words);
+        assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+        fs::read(out).unwrap()
+    };
+    let (list, drawn) = (dir.put("trees.csv", table()), dir.put("trees.geojson", drawing("")));
+    assert!(stems(&list) == stems(&drawn));
+}
+
+fn with_trees(slope: &str, trees: &str) -> String {
+    scene(slope, &format!("|[[trees]]\nground = \"scree\"\n{trees}\n"))
+}
+
+/// The scene stands the trees of a list on the elevation model: the same stems as of a mesh of them, with all digits, and
+/// the same from every kind of list.
+#[test]
+fn a_scene_stands_trees_on_its_slope() {
+    let dir = Folder::new();
+    dir.slope();
+    dir.put("trees.csv", table());
+    dir.put("trees.geojson", drawing(""));
+    let terrain = |text: &str| -> Terrain {
+        Scene::read(&dir.put("scene.toml", text)).unwrap().read_terrain().unwrap().0
+    };
+    let slope = "file = \"dem.tif\"";
+    let listed = terrain(&with_trees(slope, "file = \"trees.csv\""));
+    let drawn = terrain(&with_trees(slope, "file = \"trees.geojson\""));
+    assert_eq!((&listed.vertices_m, &listed.triangles), (&drawn.vertices_m, &drawn.triangles));
+    let stems: Vec<u32> =
+        (0..listed.triangles.len() as u32).filter(|&t| listed.is_tree(t)).collect();
+    // eight sides of two triangles, two lids of six
+    assert_eq!(stems.len(), 28 * TREES.len());
+    for [x, y, dbh, height] in TREES {
+        let at = |t: &&u32| {
+            listed.corners_m(**t).map(|corner| corner + listed.origin_m).iter().all(|corner| {
+                let off = (corner.x - x).hypot(corner.y - y);
+                (off - 0.5 * dbh).abs() < 1e-6
+            })
+        };
+        let own: Vec<&u32> = stems.iter().filter(at).collect();
+        assert_eq!(own.len(), 28);
+        let tops = own.iter().flat_map(|t| listed.corners_m(**t)).map(|corner| corner.z);
+        let [local_x, local_y] = [x - listed.origin_m.x, y - listed.origin_m.y];
+        let ground = listed.ground_below(local_x, local_y).unwrap();
+        assert!((tops.fold(f64::MIN, f64::max) - ground - height).abs() < 1e-6);
+    }
+    let plan = dir.plan(&with_trees(slope, "file = \"trees.csv\""));
+    assert!(
+        plan.contains("list of trees") && plan.contains("2 stems, stood on the slope"),
+        "{plan}"
+    );
+    // a changed tree is another scene
+    let hash = || Scene::read(&dir.path("scene.toml")).unwrap().hash;
+    let before = hash();
+    dir.put("trees.geojson", drawing("").replace("0.6", "0.7"));
+    assert_ne!(hash(), before);
+}
+
+#[test]
+fn lists_that_do_not_fit_are_refused() {
+    let dir = Folder::new();
+    dir.slope();
+    dir.put("trees.csv", table());
+    dir.put("far.csv", table().replace("2600020.5", "2700020.5"));
+    dir.put("flat.csv", "x,y,dbh_m,height_m\n2600020.5,1200060.5,0,18\n");
+    let swiss =
+        "\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"urn:ogc:def:crs:EPSG::21781\"}},";
+    dir.put("other.geojson", drawing(swiss));
+    dir.put("sizeless.geojson", drawing("").replace("dbh_m", "dbh"));
+    let slope = "file = \"dem.tif\"";
+    for (text, parts) in [
+        (with_trees(slope, "file = \"far.csv\""), ["line 2", "found no slope at (2700020.5"]),
+        (with_trees(slope, "file = \"flat.csv\""), ["line 2", "found dbh_m = 0"]),
+        (
+            with_trees(slope, "file = \"other.geojson\""),
+            ["found EPSG:21781", "ogr2ogr -t_srs EPSG:2056"],
+        ),
+        (with_trees(slope, "file = \"sizeless.geojson\""), ["feature 1", "found no dbh_m"]),
+        (
+            with_trees(slope, "file = \"trees.csv\"\nresample_m = 4.0"),
+            ["crop, resample_m", "so are stems"],
+        ),
+        (with_trees(slope, "file = \"trees.csv\"\nscale = 2.0"), ["up, scale", "a list of trees"]),
+        (with_trees(slope, "file = \"dem.tif\""), ["[[trees]]", "a list of trees with"]),
+        (scene("file = \"trees.csv\"", ""), ["a drawing or a list of trees", "[[trees]] file"]),
+    ] {
+        let said = dir.refusal(&text);
+        assert!(parts.iter().all(|part| said.contains(part)), "{parts:?}\n{said}");
+    }
+}

@@ -1,0 +1,84 @@
+//! The tangential answer of a ground: its key, and what it makes of the slip of an impact that sticks.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use crate::common;
+
+use common::{Case, ROWS, terrain};
+use rockfall::ground::{Damping, Ground, tangential_restitution};
+use rockfall::release::Releases;
+use rockfall::rock::Vec3;
+use rockfall::scene::Scene;
+use std::path::Path;
+
+/// Every scheme with springs or their limit gives back the share of its slip that the formula says.
+#[test]
+fn an_impact_that_sticks_gives_back_what_the_plan_says() {
+    let p = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+    let plane = terrain(vec![[p(-50.0, -50.0), p(50.0, -50.0), p(0.0, 80.0)]]);
+    for row in ROWS.iter().filter(|row| row.case.ground.restitution.is_some()) {
+        for (ratio, e) in [(0.05, 0.5), (0.25, 0.5), (0.25, 0.9), (0.67, 0.3), (2.0, 0.8)] {
+            let ground = Ground {
+                normal_stiffness_n_m: 1e12,
+                shear_stiffness_n_m: ratio * 1e12,
+                // rough enough to hold whatever the spring asks for
+                friction_angle_rad: 89.9_f64.to_radians(),
+                restitution: Some(e),
+                ..row.case.ground
+            };
+            let case = Case { ground, capture_speed_m_s: Some(0.01), ..row.case };
+            let radius = case.rock.radius_m;
+            let (v, w) = ([0.3, 0.0, -4.0], [0.0, -0.4, 0.0]);
+            let run = case.run(&plane, [[0.0, 0.0, radius], v, w], 2e-4);
+            let slip = |v: f64, w: f64| v - radius * w;
+            let back = -slip(run.end.velocity_m_s.x, run.end.spin_rad_s.y) / slip(v[0], w[1]);
+            let said = tangential_restitution(ratio, &Damping::of(Some(e)));
+            let off = (back - said).abs();
+            assert!(off < 0.01, "{}, ratio {ratio}, e {e}: {back} for {said}", row.name);
+        }
+    }
+}
+
+const SCENE: &str = r#"title = "Ratio"
+seed = 1
+[[terrain]]
+mesh = "square.stl"
+ground = "rock"
+[grounds.rock]
+normal_stiffness_n_m = { uniform = [1e8, 2e9] }
+tangential_ratio = 0.4
+friction_angle_deg = 30.0
+restitution = 0.4
+[rocks]
+density_kg_m3 = 2700.0
+radius_m = 0.15
+[release]
+count = 10
+height_m = 0.5
+velocity_m_s = [0.0, 0.0, 0.0]
+spin_rad_s = [0.0, 0.0, 0.0]
+points_m = [[5.0, 5.0]]
+"#;
+
+/// The ratio holds rock by rock, whatever the normal spring that was drawn; and it is the shear spring by another name.
+#[test]
+fn the_ratio_gives_the_shear_spring() {
+    let read = |text: &str| Scene::parse(text, Path::new("tests/bad/scene.toml")).unwrap();
+    let plane = terrain(vec![[
+        Vec3::new(0.0, 0.0, 0.0),
+        Vec3::new(20.0, 0.0, 0.0),
+        Vec3::new(0.0, 20.0, 0.0),
+    ]]);
+    let grounds = |scene: &Scene| -> Vec<Ground> {
+        let releases = Releases::compile(scene, &plane).unwrap();
+        (0..10).map(|index| releases.release(&plane, index).unwrap().grounds[0]).collect()
+    };
+    let drawn = grounds(&read(SCENE));
+    assert!(drawn.iter().any(|one| one.normal_stiffness_n_m != drawn[0].normal_stiffness_n_m));
+    for one in &drawn {
+        let off = one.shear_stiffness_n_m / one.normal_stiffness_n_m - 0.4;
+        assert!(off.abs() < 1e-12, "{one:?}");
+    }
+    let fixed = SCENE.replace("{ uniform = [1e8, 2e9] }", "1e8");
+    let old = fixed.replace("tangential_ratio = 0.4", "shear_stiffness_n_m = 4e7");
+    assert_eq!(grounds(&read(&fixed)), grounds(&read(&old)));
+}
