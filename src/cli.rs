@@ -2,26 +2,28 @@
 
 mod calibrate;
 mod compare;
+mod init;
 mod mesh;
 mod signals;
 mod study;
 mod study_files;
+mod terminal;
 mod words;
 
 use clap::{Args, Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use rockfall::error::{Error, Result};
-use rockfall::output::{self, Mode};
+use rockfall::output::{self, Mode, Results};
 use rockfall::plan::Plan;
-use rockfall::report;
+use rockfall::report::{self, format::significant};
 use rockfall::run::{RunEnd, RunOptions, Selection, read_measured, run_observed};
 use rockfall::scene::Scene;
 use rockfall::study::target_precision::TargetPrecision;
 use rockfall::study::verify::Verification;
-use std::fmt::Display;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
+use terminal::{bar, complain, in_words, say};
 
 /// Exit status when a check failed.
 const CHECK_FAILED: u8 = 1;
@@ -40,6 +42,8 @@ struct Asked {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Write a commented first scene for a terrain: release line along its steepest cliffs, grounds to be filled in
+    Init(init::InitArgs),
     /// Check and plan a scene, run all releases in parallel, write results and report
     Run(RunArgs),
     /// Read a scene and its meshes, print mesh health and the plan; run nothing
@@ -82,6 +86,13 @@ enum Command {
     /// Check, convert and make meshes
     #[command(subcommand)]
     Mesh(mesh::MeshCommand),
+    /// Print what a shell needs to complete the program's words
+    Completions {
+        /// Which shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page of the program or of a command (roff): `rockfall man run | man -l -`
+    Man(init::ManArgs),
 }
 
 #[derive(Debug, Args)]
@@ -101,14 +112,14 @@ struct RunArgs {
     /// Worker threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = words::threads)]
     threads: Option<usize>,
-    /// One release alone, with its full path recorded
+    /// One release alone (numbers begin at 0), with its full path; its results go to a folder of its own below those of the scene
     #[arg(long, value_name = "I", conflicts_with = "resume")]
     only: Option<usize>,
     /// The K-th of N parts of the releases, K from 1 to N; `rockfall merge` puts them together
     #[arg(long, value_name = "K/N", value_parser = words::shard, conflicts_with = "only")]
     shard: Option<Selection>,
     /// Go on with more releases until a 95 % interval is narrower, as in "runout.p95 < 1.0 m"
-    #[arg(long, value_name = "AIM", conflicts_with_all = ["only", "shard"])]
+    #[arg(long, value_name = "PRECISION", conflicts_with_all = ["only", "shard"])]
     until: Option<TargetPrecision>,
     /// Go on with an interrupted run in the same folder
     #[arg(long, conflicts_with = "overwrite")]
@@ -128,6 +139,7 @@ struct RunArgs {
 pub(crate) fn main() -> ExitCode {
     signals::outlive_file_limits();
     let done = match Asked::parse().command {
+        Command::Init(args) => init::init(&args),
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),
         Command::Merge { shards, out, overwrite } => merge(&shards, &out, overwrite),
@@ -138,6 +150,8 @@ pub(crate) fn main() -> ExitCode {
         Command::Calibrate(args) => calibrate::calibrate(&args),
         Command::Study(command) => study::study(&command),
         Command::Mesh(command) => mesh::mesh(command),
+        Command::Completions { shell } => Ok(init::completions(shell)),
+        Command::Man(args) => init::man(&args),
     };
     done.unwrap_or_else(|error| {
         complain(format_args!("error: {error}"));
@@ -198,12 +212,23 @@ fn run(args: &RunArgs) -> Result<ExitCode> {
             bar.finish();
             if !args.quiet {
                 say(format!("\n{}\n", report::headline(&results.hazard).join("\n")));
-                let releases = results.hazard.rocks();
-                say(format!("{releases} releases, results in {}", options.out.display()));
+                say(last_words(&results));
             }
             Ok(ExitCode::SUCCESS)
         }
     }
+}
+
+/// The last lines of a run: the answer at each line and barrier, what it took, and where the report is.
+fn last_words(results: &Results) -> String {
+    let mut said = report::answers(results);
+    let (releases, took) = (results.hazard.rocks(), results.summary.run);
+    let time = in_words(Duration::from_secs_f64(took.seconds.max(0.0)));
+    let rate = significant(took.releases_per_second, 3);
+    said.push(format!("{releases} releases in {time} ({rate} a second)"));
+    said.push(format!("results in {}", results.dir.display()));
+    said.push(format!("report: {}", results.dir.join("report.html").display()));
+    said.join("\n")
 }
 
 impl RunArgs {
@@ -276,38 +301,5 @@ impl RunArgs {
         complain(format_args!("interrupted: {done} of {asked} releases are written"));
         complain(format_args!("go on with: rockfall {}", words.join(" ")));
         ExitCode::from(INTERRUPTED)
-    }
-}
-
-/// A bar over so many things.
-fn bar(asked: usize, what: &str) -> ProgressBar {
-    let bar = ProgressBar::new(asked as u64);
-    let looks = format!("{{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
-    match ProgressStyle::with_template(&looks) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
-}
-
-/// Says what is wrong; where even that cannot be written (a full disk, nobody there) the status must do.
-fn complain(text: impl Display) {
-    // what stands in a file must not steer the terminal, nor break the line
-    let shown = |c: char| {
-        if c.is_control() && c != '\n' { c.escape_default().to_string() } else { c.to_string() }
-    };
-    let text: String = text.to_string().chars().map(shown).collect();
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
-}
-
-/// Prints; a reader that has gone away (`rockfall plan … | head`) is no error.
-fn say(text: impl Display) -> ExitCode {
-    let text = text.to_string();
-    let mut out = std::io::stdout().lock();
-    match writeln!(out, "{}", text.trim_end()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            complain(format_args!("error: cannot print: {error}"));
-            ExitCode::from(WRONG_INPUT)
-        }
-        _ => ExitCode::SUCCESS,
     }
 }

@@ -152,7 +152,7 @@ pub fn read(path: &Path) -> Result<Layer> {
     Ok(layer)
 }
 
-/// Whether bytes begin like a drawing: GeoJSON, a Shapefile, or a GeoPackage, which is refused with words.
+/// Whether bytes begin like a drawing: GeoJSON, a Shapefile, or a `GeoPackage`, which is refused with words.
 pub(crate) fn begins_like_drawing(head: &[u8]) -> bool {
     let text = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
     shapefile::begins_like_shapefile(head)

@@ -94,7 +94,7 @@ pub use hazard::{
 pub use output::{ImpactRow, Mode, PathRow, Results, Summary};
 pub use plan::{EvaluationLine, MapGrid, Part, Plan};
 pub use random::Distribution;
-pub use report::{draw_again, headline};
+pub use report::{answers, draw_again, headline};
 pub use rock::{Motion, Rock, Vec3};
 pub use run::{RunEnd, RunOptions, Selection, run, run_observed};
 pub use scene::Scene;

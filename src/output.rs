@@ -40,6 +40,7 @@ use crate::frequency::Weights;
 use crate::hazard::{
     self, Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
 };
+use crate::plan::PlanEntry;
 use crate::rock::Vec3;
 use crate::scene::Language;
 use crate::simulation::{ShapeOf, Trajectory};
@@ -87,12 +88,12 @@ pub struct RunInfo {
     pub keeps_impacts: bool,
     /// Whether some rocks have shapes: the tables then say how they are turned.
     pub has_blocks: bool,
-    /// Whether [`merge`] is to put it together with others, were it the only one.
+    /// Whether `merge` is to put it together with others, were it the only one.
     pub is_shard: bool,
     /// Worker threads.
     pub threads: usize,
-    /// The lines of the plan: what is computed, what is left out and why.
-    pub plan: Vec<String>,
+    /// The plan: what is computed, what is left out and why.
+    pub plan: Vec<PlanEntry>,
     /// What went in, as name and value.
     pub inputs: Vec<(String, String)>,
     /// Rows of the title block.
@@ -270,7 +271,7 @@ impl Output {
     }
 
     /// Writes the summary and gives the results as they are on the disk. Of a part of a run the progress stays:
-    /// it holds what [`merge`] needs.
+    /// it holds what `merge` needs.
     ///
     /// # Errors
     ///

@@ -13,6 +13,7 @@ mod recorders;
 
 pub use annual::Year;
 pub use cost::Cost;
+pub use listing::PlanEntry;
 pub use recorders::{EvaluationLine, Footprint, MapGrid, Piece, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
 
@@ -138,7 +139,7 @@ pub struct Plan {
     pub lines: Part<Vec<EvaluationLine>>,
     /// Barriers; each has an evaluation line of its name.
     pub barriers: Part<Vec<BarrierTable>>,
-    /// Objects that rocks may hit; each has a curtain of its name.
+    /// Objects that rocks may hit; each has an evaluation line of its name.
     pub objects: Part<Vec<ObjectTable>>,
     /// Sources and their frequency.
     pub year: Part<Year>,

@@ -311,17 +311,18 @@ impl Releases {
         let buried = terrain.ground_under(centre.x, centre.y, centre.z).is_none()
             && terrain.ground_below(centre.x, centre.y).is_some();
         let caged = is_inside_tree(terrain, centre);
-        if depth_m <= 2.0 * pressed_m + TYPED_DEPTH * around_m && !buried && !caged {
+        let is_deep = depth_m > 2.0 * pressed_m + TYPED_DEPTH * around_m;
+        if !(is_deep || buried || caged) {
             return Ok(());
         }
         let [x, y, z]: [f64; 3] = (centre + terrain.origin_m).into();
         let who = format!("{} at ({x}, {y}, {z})", release_name(index));
         let found = if buried {
             "found its centre under the terrain".to_owned()
-        } else if caged {
-            "found its centre inside a tree".to_owned()
-        } else {
+        } else if is_deep {
             format!("found it {depth_m:.2e} m deep in the ground or a tree")
+        } else {
+            "found its centre inside a tree".to_owned()
         };
         let remedy = format!(
             "write a higher place, or another: a rock of radius {around_m} m needs its centre that far from every triangle"

@@ -6,11 +6,12 @@
 //! Results ─► view.html, view.glb (the slope in three dimensions)
 //! ```
 //!
-//! Nothing is computed here that a reader would quote: estimates and intervals come in as [`input`] has them; only the
+//! Nothing is computed here that a reader would quote: estimates and intervals come in as `model` has them; only the
 //! bins of histograms and the envelopes along the fall line are found for display.
 
 mod along_paths;
 mod annual;
+mod answers;
 pub mod axis;
 mod barriers;
 pub mod colour;
@@ -41,6 +42,8 @@ mod stops;
 pub mod svg;
 pub mod view;
 pub mod words;
+
+pub use answers::answers;
 
 use crate::error::{Error, Result};
 use crate::hazard::Hazard;

@@ -183,7 +183,7 @@ impl Round<'_> {
             has_blocks: plan.releases.has_blocks(),
             is_shard: matches!(options.selection, Selection::Shard { .. }),
             threads: ensemble.threads(),
-            plan: plan.lines_for(releases),
+            plan: plan.entries_for(releases),
             inputs: plan.inputs.clone(),
             title_block: plan.title_block.clone(),
             language: plan.language,

@@ -25,6 +25,7 @@ mod release;
 mod rewrite;
 mod rocks;
 mod shapes;
+mod sketch;
 mod solver;
 mod source;
 mod wording;
@@ -49,6 +50,7 @@ pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
 pub use shapes::{CORNERS, Orientation, RandomWord, ShapeTable};
+pub use sketch::sketch;
 pub use solver::SolverTable;
 pub use zones::{Zone, ZonePlace, Zones};
 
@@ -151,8 +153,7 @@ fn standard_gravity_m_s2() -> f64 {
 }
 
 impl Scene {
-    /// Reads and checks a scene file, the drawings that it names, and takes the fingerprint of all files.
-    ///
+    /// Reads and checks a scene file and the drawings that it names, and takes the fingerprint of all files.
     /// # Errors
     /// Whatever is wrong with the scene, with file, table, key and line; a file or drawing that cannot be used.
     pub fn read(file: &Path) -> Result<Self> {

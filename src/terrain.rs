@@ -1,6 +1,7 @@
 //! The fixed world: welded triangles of slope and trees, what a sphere can touch of them, and the spatial index.
 
 pub mod brims;
+pub mod cliffs;
 #[cfg(feature = "cloud")]
 pub mod cloud;
 pub mod coarser;
@@ -181,6 +182,7 @@ impl Terrain {
 }
 
 /// A list in another order.
+#[expect(clippy::needless_pass_by_value, reason = "the old list goes at once: it is large")]
 fn in_order<T: Copy>(order: &[u32], list: Vec<T>) -> Vec<T> {
     order.iter().map(|&k| list[k as usize]).collect()
 }

@@ -125,6 +125,17 @@ fn a_damaged_or_empty_cloud_is_refused() {
         let _ = parse(whole[..length].to_vec(), &Options::default());
     }
     assert!(parse(whole[..300].to_vec(), &Options::default()).is_err());
+    // a table of four billion chunks: the decoder would take 64 GB for it
+    let number = |at: usize, length: usize| {
+        let mut little = [0; 8];
+        little[..length].copy_from_slice(&whole[at..at + length]);
+        u64::from_le_bytes(little) as usize
+    };
+    let table = number(number(96, 4), 8);
+    let mut greedy = whole.clone();
+    greedy[table + 4..table + 8].fill(0xff);
+    let said = parse(greedy, &Options::default()).unwrap_err().to_string();
+    assert!(said.contains("more chunks of points than bytes"), "{said}");
 }
 
 /// A slope as STL and as points at the same corners: the same triangles, the same statistics.

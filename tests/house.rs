@@ -6,6 +6,12 @@ use std::path::{Path, PathBuf};
 
 /// Longest file (lines).
 const ROOM: usize = 400;
+/// Most arguments of a function, `self` left out.
+const MOST_ARGUMENTS: usize = 5;
+/// Floors whose functions may have more: a contact law is written in the symbols of its equations.
+const EQUATIONS: [&str; 1] = ["solver"];
+/// Most names that a user of the library meets at its root.
+const MOST_NAMES: usize = 60;
 
 fn sources(dir: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -84,4 +90,121 @@ fn rooms_are_small() {
         })
         .collect();
     assert!(crowded.is_empty(), "{}", crowded.join("\n"));
+}
+
+/// Names that a text re-exports: `pub use a::{B, c::D};` gives B and D.
+fn exported(text: &str) -> Vec<String> {
+    let mut names = Vec::new();
+    for place in text.split("\npub use ").skip(1) {
+        let (path, _) = place.split_once(';').unwrap();
+        let list = path.split_once('{').map_or(path, |(_, list)| list.trim_end_matches('}'));
+        let last = |part: &str| part.trim().rsplit("::").next().unwrap().to_owned();
+        names.extend(list.split(',').map(last).filter(|name| !name.is_empty()));
+    }
+    names
+}
+
+/// The public face is small, and everything behind it is hidden from the documentation.
+#[test]
+fn the_public_face_is_small() {
+    let lib = fs::read_to_string("src/lib.rs").unwrap();
+    let names = exported(&lib);
+    assert!(names.contains(&"Scene".to_owned()) && names.contains(&"run".to_owned()), "{names:?}");
+    assert!(names.len() <= MOST_NAMES, "{} names: {names:?}", names.len());
+    let lines: Vec<&str> = lib.lines().collect();
+    let open = lines.windows(2).filter(|two| two[1].starts_with("pub mod "));
+    let open: Vec<&str> = open.filter(|two| two[0] != "#[doc(hidden)]").map(|two| two[1]).collect();
+    assert!(open.is_empty(), "neither hidden nor re-exported by name: {open:?}");
+}
+
+/// A module is a file with a folder beside it, everywhere.
+#[test]
+fn modules_have_one_style() {
+    let old: Vec<PathBuf> =
+        sources(Path::new("src")).into_iter().filter(|file| file.ends_with("mod.rs")).collect();
+    assert!(old.is_empty(), "write x.rs beside x/ instead of x/mod.rs: {old:?}");
+}
+
+/// Commands of the developers' bench are none of the product's.
+#[test]
+fn the_bench_is_no_part_of_the_product() {
+    let measures = |file: &PathBuf| {
+        let text = fs::read_to_string(file).unwrap();
+        text.contains("/proc/cpuinfo") || text.contains("Command::new(")
+    };
+    let found: Vec<PathBuf> = sources(Path::new("src")).into_iter().filter(measures).collect();
+    assert!(found.is_empty(), "belongs into bench/: {found:?}");
+}
+
+/// What a reader meets first is read in one go.
+#[test]
+fn the_readme_is_short() {
+    let words = fs::read_to_string("README.md").unwrap().split_whitespace().count();
+    assert!(words <= 1200, "{words} words");
+}
+
+/// Parts of a list that commas separate outside all brackets.
+fn parts(list: &str) -> Vec<&str> {
+    let (mut depth, mut from, mut before, mut found) = (0, 0, ' ', Vec::new());
+    for (at, c) in list.char_indices() {
+        match c {
+            '(' | '[' | '{' | '<' => depth += 1,
+            ')' | ']' | '}' => depth -= 1,
+            // the arrow of a closure's type closes nothing
+            '>' if before != '-' => depth -= 1,
+            ',' if depth == 0 => found.push(&list[std::mem::replace(&mut from, at + 1)..at]),
+            _ => {}
+        }
+        before = c;
+    }
+    found.push(&list[from..]);
+    found.into_iter().map(str::trim).filter(|part| !part.is_empty()).collect()
+}
+
+/// Functions of a text with the number of their arguments; random cases of a property (`x in range`) are none.
+fn functions(text: &str) -> Vec<(String, usize)> {
+    let code: Vec<&str> =
+        text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    let code = code.join("\n");
+    let after_fn = code
+        .match_indices("fn ")
+        .filter(|(at, _)| *at == 0 || code[..*at].ends_with([' ', '\n', '(']));
+    let mut found = Vec::new();
+    for (at, word) in after_fn {
+        let rest = &code[at + word.len()..];
+        let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+        let Some(open) = rest.find('(').filter(|_| !name.is_empty()) else { continue };
+        let mut depth = 0;
+        let close = rest[open..].char_indices().find(|(_, c)| {
+            depth += i32::from(*c == '(') - i32::from(*c == ')');
+            depth == 0
+        });
+        let Some((length, _)) = close else { continue };
+        let is_argument = |part: &&str| {
+            let own = part.trim_start_matches("mut ");
+            !own.ends_with("self") && !own.contains("self:") && !part.contains(" in ")
+        };
+        let list = &rest[open + 1..open + length];
+        found.push((name, parts(list).iter().filter(|part| is_argument(part)).count()));
+    }
+    found
+}
+
+#[test]
+fn functions_have_few_arguments() {
+    let five = "fn a<T: Into<[f64; 2]>>(&mut self, a: (u8, u8), b: impl Fn(u8, u8) -> Vec<u8>, c: &[u8], d: u8, e: u8,) {";
+    assert_eq!(functions(five), [("a".to_owned(), 5)]);
+    let mut long = Vec::new();
+    let (mut seen, in_equations) =
+        (0, |file: &Path| floor_of(file).is_some_and(|floor| EQUATIONS.contains(&floor.as_str())));
+    for file in sources(Path::new("src")).into_iter().filter(|file| !in_equations(file)) {
+        for (name, count) in functions(&fs::read_to_string(&file).unwrap()) {
+            seen += 1;
+            if count > MOST_ARGUMENTS {
+                long.push(format!("{}: {name} has {count} arguments", file.display()));
+            }
+        }
+    }
+    assert!(seen > 1000, "{seen} functions");
+    assert!(long.is_empty(), "{}", long.join("\n"));
 }

@@ -159,7 +159,7 @@ Spheres of the paper's example 3 (radius 0.05 m, Table 1, restitution 0.5) fall 
 open boxes. Boxes and grid grow in plan with their number, depth and layers stay: the story of a sphere is the same in all
 worlds, and the same parts of it are compared. One thread; processor time, not the clock on the wall.
 `adaptive` runs at its default tolerance of 0.05 m/s, `dda` at the paper's step of 1e-5 s, `rigid` with steps of up to
-0.01 s, shorter where a sphere would go further than a fifth of its radius. Written by `rockfall study scaling`.
+0.01 s, shorter where a sphere would go further than a fifth of its radius. Written by `rockfall-bench scaling`.
 
 All spheres go through windows of 1 to 2 ms: those in flight leap, each island takes as many steps of its own as it needs.
 The time of a step of all spheres is, while they fall, that of a window; after that, their number times the processor time

@@ -130,7 +130,9 @@ impl Site {
             return computed.iter().map(|(_, way)| (*way, 1.0)).collect();
         };
         let mut counts = vec![[0.0, 0.0]; self.measured.len()];
-        rows.iter().for_each(|&row| counts[own.of_end[row]][0] += 1.0);
+        for &row in rows {
+            counts[own.of_end[row]][0] += 1.0;
+        }
         let places = || computed.iter().map(|(index, _)| own.of_release(*index));
         places().flatten().for_each(|place| counts[place][1] += 1.0);
         let weight =
@@ -217,7 +219,9 @@ fn parts_of(ends: usize, blocks: &[String], parts: usize) -> Option<Vec<usize>> 
     for (_, rows) in &known {
         let least = (0..parts).min_by_key(|&part| sizes[part])?;
         sizes[least] += rows.len();
-        rows.iter().for_each(|&row| part[row] = least);
+        for &row in rows {
+            part[row] = least;
+        }
     }
     sizes.iter().all(|size| *size > 0).then_some(part)
 }

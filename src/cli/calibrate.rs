@@ -1,7 +1,7 @@
 //! `rockfall calibrate`.
 
+use super::terminal::{bar, say};
 use super::words::{of_a_trial, threads};
-use super::{bar, say};
 use clap::Args;
 use rockfall::calibrate::{self, Ends, Trial};
 use rockfall::ensemble::Ensemble;

@@ -1,6 +1,6 @@
 //! `rockfall compare`.
 
-use super::say;
+use super::terminal::say;
 use clap::Args;
 use rockfall::error::Result;
 use rockfall::report::compare::Comparison;

@@ -1,6 +1,6 @@
 //! `rockfall mesh`: check, convert and make meshes.
 
-use super::say;
+use super::terminal::say;
 use super::words::up;
 use clap::Subcommand;
 use rockfall::error::{Error, Result};
@@ -53,6 +53,7 @@ pub(super) enum MeshCommand {
     /// Write one of the made slopes and shapes
     Make {
         /// Which one
+        #[arg(value_parser = clap::builder::PossibleValuesParser::new(make::KINDS))]
         kind: String,
         /// STL file to write
         out: PathBuf,
@@ -127,13 +128,10 @@ fn slope_source(path: &Path) -> Source {
 
 /// Writes one of the made slopes and shapes.
 fn make_mesh(kind: &str, out: &Path) -> Result<String> {
-    let shipped = make::shipped();
-    let name = |file: &'static str| file.trim_end_matches(".stl");
-    let Some((_, facets)) = shipped.iter().find(|(file, _)| name(file) == kind) else {
-        let known: Vec<&str> = shipped.iter().map(|(file, _)| name(file)).collect();
-        let known = known.join(", ");
-        return Err(Error::Request(format!("mesh make: found {kind}; write one of {known}")));
-    };
-    write_binary(out, facets)?;
+    let facets = make::made(kind).ok_or_else(|| {
+        let known = make::KINDS.join(", ");
+        Error::Request(format!("mesh make: found {kind}; write one of {known}"))
+    })?;
+    write_binary(out, &facets)?;
     Ok(format!("{} triangles written to {}", facets.len(), out.display()))
 }

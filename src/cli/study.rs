@@ -1,8 +1,9 @@
 //! `rockfall study`.
 
+use super::CHECK_FAILED;
 use super::study_files::{self as files, StudyOptions};
+use super::terminal::say;
 use super::words::at_least_1;
-use super::{CHECK_FAILED, say};
 use clap::{Args, Subcommand};
 use rockfall::error::Result;
 use rockfall::study::target_precision::TargetPrecision;
@@ -50,7 +51,7 @@ pub(super) struct ErrorArgs {
     #[arg(long, requires = "scene")]
     meshes: bool,
     /// Also find the cheapest setting for this 95 % interval of both errors together, as in "runout.p95 < 1.0 m"
-    #[arg(long, value_name = "AIM", requires = "scene")]
+    #[arg(long, value_name = "PRECISION", requires = "scene")]
     within: Option<TargetPrecision>,
 }
 

@@ -34,7 +34,7 @@ pub struct Asked {
     pub matrix: Option<Matrix>,
     /// Most energy that a rock of each stratum can ever have (J); may be empty, then nothing is known of it.
     pub most_j: Vec<f64>,
-    /// Radius of the largest rock of each stratum (m); of one without entry its law says it.
+    /// Radius of the largest rock of each stratum (m); of one without entry its law says it, if it has volumes.
     pub largest_m: Vec<f64>,
 }
 

@@ -11,7 +11,7 @@ const LOCK: &str = ".lock";
 
 /// The right to write into a folder, until it is dropped or the process ends, however it ends.
 ///
-/// Until `keep` is called nothing in the folder is worth keeping: dropped before, the claim removes what it and
+/// Until `keep` is called nothing in the folder is worth keeping: dropped before, the lock removes what it and
 /// `made` made, and nothing else.
 #[derive(Debug)]
 pub struct FolderLock {
@@ -61,7 +61,7 @@ impl FolderLock {
         Ok(lock)
     }
 
-    /// A file or folder that the claim answers for.
+    /// A file or folder that the lock answers for.
     pub(super) fn made(&mut self, path: PathBuf) {
         self.made.push(path);
     }

@@ -9,6 +9,7 @@ use crate::hazard::{
     Annual, Asked, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion,
     Quantity, Residual, Statistic, StopKind, Totals, Way,
 };
+use crate::plan::PlanEntry;
 use crate::scene::Language;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -114,6 +115,9 @@ pub struct Summary {
     pub bytes: BTreeMap<String, u64>,
     /// What was computed, what was left out and why.
     pub plan: Vec<String>,
+    /// The same, the part apart from what is said of it.
+    #[serde(default)]
+    pub plan_entries: Vec<PlanEntry>,
     /// What went in, as name and value.
     #[serde(default)]
     pub inputs: Vec<(String, String)>,
@@ -167,7 +171,8 @@ impl Summary {
             totals: hazard.totals.rounded(),
             origin_m: info.origin_m.into(),
             bytes: BTreeMap::new(),
-            plan: info.plan,
+            plan: info.plan.iter().map(ToString::to_string).collect(),
+            plan_entries: info.plan,
             inputs: info.inputs,
             title_block: info.title_block,
             sources: info.sources,

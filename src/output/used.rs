@@ -48,7 +48,7 @@ pub fn write_drawings(dir: &Path, plan: &Plan) -> Result<()> {
     for line in plan.recorders().lines {
         let corners = line.corners_m(plan.terrain.origin_m);
         let barrier = barriers.iter().find(|barrier| barrier.name == line.name);
-        // the scene's own digits where it has them: those of the curtain went through the origin
+        // the scene's own digits where it has them: those of the evaluation line went through the origin
         let written = barrier.map(|barrier| barrier.points_m.corners_m().to_vec());
         file.add(&line_string(&written.unwrap_or(corners)), &of_line(&line.name, barrier))?;
     }

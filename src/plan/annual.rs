@@ -143,7 +143,7 @@ pub(super) fn objects(scene: &Scene, warnings: &mut Vec<String>) -> Part<Vec<Obj
     Part::when(Some(objects).filter(|all| !all.is_empty()), "the scene has none")
 }
 
-/// The curtains of the objects.
+/// Evaluation lines of the objects.
 ///
 /// # Errors
 /// An object that comes nowhere near the terrain.

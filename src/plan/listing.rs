@@ -9,6 +9,7 @@ use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::features::Count;
 use crate::terrain::patches::Patched;
+use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::fmt;
 
@@ -18,11 +19,11 @@ const LABEL: usize = 19;
 impl Plan {
     /// The listing, line by line; `rockfall plan` prints it and every report ends with it.
     pub fn lines(&self) -> Vec<String> {
-        self.lines_for(self.count)
+        self.entries_for(self.count).iter().map(ToString::to_string).collect()
     }
 
     /// The listing for another number of releases than the scene's: a target precision asks for more.
-    pub fn lines_for(&self, releases: usize) -> Vec<String> {
+    pub fn entries_for(&self, releases: usize) -> Vec<PlanEntry> {
         let count = releases;
         // Every field by name and no `..`: a part that is not listed does not compile.
         let Self {
@@ -199,13 +200,28 @@ impl fmt::Display for Plan {
     }
 }
 
-/// Lines with a label in front.
+/// One line of the listing: a part of the plan and what is said of it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlanEntry {
+    /// The part.
+    pub name: String,
+    /// What is computed, or what is left out and why.
+    pub said: String,
+}
+
+impl fmt::Display for PlanEntry {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "{:<LABEL$}{}", self.name, self.said)
+    }
+}
+
+/// The listing as it grows.
 #[derive(Default)]
-struct List(Vec<String>);
+struct List(Vec<PlanEntry>);
 
 impl List {
     fn line(&mut self, label: &str, text: impl fmt::Display) {
-        self.0.push(format!("{label:<LABEL$}{text}"));
+        self.0.push(PlanEntry { name: label.to_owned(), said: text.to_string() });
     }
 
     fn lines(&mut self, label: &str, texts: impl Iterator<Item = String>) {

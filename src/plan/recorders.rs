@@ -32,7 +32,7 @@ pub enum Footprint {
     Area,
 }
 
-/// A straight piece of a curtain.
+/// A straight piece of an evaluation line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Its start (m, local).
@@ -64,7 +64,7 @@ impl Piece {
 }
 
 impl EvaluationLine {
-    /// The curtain over a line given in map coordinates.
+    /// The evaluation line over a line given in map coordinates.
     pub fn new(name: &str, line: &Polyline, origin_m: Vec3) -> Self {
         let local = |corner: &Corner| [corner[0] - origin_m.x, corner[1] - origin_m.y];
         let corners: Vec<Corner> = line.corners_m().iter().map(local).collect();
@@ -84,7 +84,7 @@ impl EvaluationLine {
         Self { name: name.to_owned(), pieces, footprint: None, low_m, high_m }
     }
 
-    /// The curtain over the footprint of an object.
+    /// The evaluation line over the footprint of an object.
     pub fn of_object(object: &ObjectTable, origin_m: Vec3) -> Self {
         let outline = object.polygon_m.as_ref().and_then(|area| {
             let corners = area.corners_m();

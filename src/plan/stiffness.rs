@@ -163,9 +163,8 @@ pub(super) fn check(
     terrain: &Terrain,
     warnings: &mut Vec<FastWarning>,
 ) -> Result<()> {
-    check_shear(scene)?;
     if !scene.solver.scheme().has_springs() {
-        return Ok(());
+        return check_shear(scene);
     }
     let largest = rock(scene, scene.rocks.radius_m().reckoned()[2]);
     let fastest_m_s = fastest_m_s(scene, terrain);
@@ -200,7 +199,7 @@ pub(super) fn check(
             warnings.push(FastWarning { above_m_s, text });
         }
     }
-    Ok(())
+    check_shear(scene)
 }
 
 /// Speed of a rock that falls freely from the highest start to the lowest vertex (m/s): no rock is faster.

@@ -3,6 +3,7 @@
 use crate::flight::{FlightEnd, Parabola, time_of_impact};
 use crate::math;
 use crate::rock::Vec3;
+use crate::solver::island::partition::Partition;
 use crate::terrain::Terrain;
 use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::Triangle;
@@ -25,7 +26,8 @@ pub(super) fn clear_of(terrain: &Terrain, centre: Vec3, radius_m: f64) -> Vec3 {
 /// A rock in steep ground is lifted by up to this many radii (–): enough for slopes up to 80°.
 const LIFT: f64 = 6.0;
 
-/// Whether a point is inside a tree, hollow or not: in every horizontal direction there is one.
+/// Whether a point is inside a tree, hollow or not: in every horizontal direction there is the same one, a connected part of
+/// the trees' triangles. Walls that do not join enclose nothing.
 pub(super) fn is_inside_tree(terrain: &Terrain, point: &Vec3) -> bool {
     if terrain.sheets.iter().all(|sheet| !sheet.is_tree) {
         return false;
@@ -35,16 +37,24 @@ pub(super) fn is_inside_tree(terrain: &Terrain, point: &Vec3) -> bool {
         let (sin, cos) = math::sin_cos(TAU * (k as f64 + 0.37) / DIRECTIONS as f64);
         Vec3::new(cos, sin, 0.0) * INSIDE_TREE_M
     });
-    let mut meets = [false; DIRECTIONS];
+    let mut near = Vec::new();
     terrain.index.near(point, INSIDE_TREE_M, |start, count| {
-        for triangle in (start..start + count).filter(|&t| terrain.is_tree(t)) {
-            let corners = terrain.corners_m(triangle).map(|corner| corner - point);
-            for (met, direction) in meets.iter_mut().zip(&directions) {
-                *met |= is_crossed(&corners, direction);
-            }
-        }
+        near.extend((start..start + count).filter(|&t| terrain.is_tree(t)));
     });
-    meets.iter().all(|met| *met)
+    let mut parts = Partition::alone(near.len());
+    let mut first_at = std::collections::BTreeMap::new();
+    for (k, &t) in near.iter().enumerate() {
+        for vertex in terrain.triangles[t as usize] {
+            parts.join(k as u32, *first_at.entry(vertex).or_insert(k as u32));
+        }
+    }
+    let is_met = |part: &[u32], direction: &Vec3| {
+        part.iter().any(|&k| {
+            let corners = terrain.corners_m(near[k as usize]).map(|corner| corner - point);
+            is_crossed(&corners, direction)
+        })
+    };
+    parts.lists().iter().any(|part| directions.iter().all(|direction| is_met(part, direction)))
 }
 
 /// No tree is thicker than twice this (m).

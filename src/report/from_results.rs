@@ -329,18 +329,17 @@ fn text_of(results: &Results, words: &Words) -> Text {
         let table = value.get("table").and_then(serde_json::Value::as_array);
         table.into_iter().flatten().filter_map(|line| line.as_str().map(str::to_owned)).collect()
     };
-    // The plan's lines are a name and what is said of it.
     let planned = |name: &str| {
-        let said = |line: &String| line.strip_prefix(name).map(|rest| rest.trim().to_owned());
-        summary.plan.iter().find_map(said).unwrap_or_default()
+        let entry = summary.plan_entries.iter().find(|entry| entry.name == name);
+        entry.map(|entry| entry.said.clone()).unwrap_or_default()
     };
     Text {
         title: summary.title.clone(),
-        subtitle: planned("file "),
-        scheme: fill(words.scheme_in_force, &[("scheme", &planned("scheme "))]),
+        subtitle: planned("file"),
+        scheme: fill(words.scheme_in_force, &[("scheme", &planned("scheme"))]),
         title_block: title_block(&summary.title_block, words),
         inputs: summary.inputs.clone(),
-        terrain_source: [summary.sources[0].clone(), planned("terrain ")]
+        terrain_source: [summary.sources[0].clone(), planned("terrain")]
             .into_iter()
             .filter(|words| !words.is_empty())
             .collect::<Vec<_>>()

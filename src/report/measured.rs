@@ -115,13 +115,19 @@ fn map_panel(observed: &Observed, words: &Words, top: f64) -> Panel {
         (low - 5.0, high + 5.0)
     };
     let (mut x, y) = (range(0), range(1));
-    let widest = WIDTH_PX - 14.0 - LEFT_PX;
+    let panel = |frame: Frame, x: (f64, f64)| {
+        let across = Axis::linear(x.0, x.1, words.easting);
+        Panel::new(frame, across, Axis::linear(y.0, y.1, words.northing))
+    };
+    // seven digits of a northing need their room
+    let square = Frame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
+    let left = panel(square, x).room_left().max(LEFT_PX);
+    let widest = WIDTH_PX - 14.0 - left;
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     let more = 0.5 * (widest / scale - (x.1 - x.0)).max(0.0);
     x = (x.0 - more, x.1 + more);
     let bottom = top + scale * (y.1 - y.0);
-    let frame = Frame { left: LEFT_PX, top, right: LEFT_PX + widest, bottom };
-    Panel::new(frame, Axis::linear(x.0, x.1, words.easting), Axis::linear(y.0, y.1, words.northing))
+    panel(Frame { left, top, right: left + widest, bottom }, x)
 }
 
 fn ends(panel: &Panel, ways: &[Way]) -> Vec<Spot> {

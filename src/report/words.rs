@@ -1,6 +1,6 @@
 //! Every word of page and figures, one file a language: a word that one of them lacks does not compile.
 //!
-//! A text may have places for what is found, written `{name}`; [`fill`] puts it in. Names of lines, scenes and sources are
+//! A text may have places for what is found, written `{name}`; `fill` puts it in. Names of lines, scenes and sources are
 //! the user's and stay as they are, and so is what the program itself has recorded of a run: plan, health of the meshes,
 //! inputs and its warnings.
 

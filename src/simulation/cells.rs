@@ -10,7 +10,7 @@ use crate::terrain::Terrain;
 /// One rock in one cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellPassage {
-    /// The cell's number in the lattice.
+    /// The cell's number in the grid of the maps.
     pub cell: u32,
     /// Largest sum of translational and rotational energy in the cell (J).
     pub total_j: f64,

@@ -269,8 +269,8 @@ impl Fall<'_> {
         self.recorder.pay(&held, 1.0);
         self.recorder.ledger.rise_j =
             self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
-        self.leave_facet();
         self.recorder.end_impacts(|_| false, || 0.0);
+        self.leave_facet();
         stop
     }
 
@@ -314,8 +314,8 @@ impl Fall<'_> {
             self.recorder.step(to, slides);
             // a blow of the rigid limit is announced first and falls with the next step
             if !(self.is_rigid() && self.state.is_struck) {
-                self.leave_facet_in_time();
                 self.end_impacts();
+                self.leave_facet_in_time();
             }
             self.state.stopwatches.stop(Piece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);

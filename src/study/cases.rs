@@ -1,7 +1,7 @@
 //! The exact cases: one row each, with the scene, the exact solution and where it comes from.
 
 mod closed;
-pub(super) mod meshes;
+mod meshes;
 mod pivot;
 mod starts;
 
@@ -129,7 +129,7 @@ impl Case {
                 "first order where sliding turns into rolling or the rock lifts off",
             ),
             (Scheme::Dda, _) => (
-                300.0 * self.growth() * step.step_s,
+                HALF_OMEGA_RAD_S * self.growth() * step.step_s,
                 "first order: half the contact oscillation per step",
             ),
         }
@@ -141,6 +141,8 @@ impl Case {
     }
 }
 
+/// Half of √(p_N/m) of the cases' sphere of half a metre on springs of 1 GN/m (rad/s).
+const HALF_OMEGA_RAD_S: f64 = 420.0;
 /// Tolerance (m/s) of what stands in for an exact solution.
 const FINEST_TOLERANCE_M_S: f64 = 1e-10;
 /// Step (s) of what stands in for an exact solution in the rigid limit.

@@ -23,21 +23,41 @@ use crate::error::{Error, Result};
 use crate::terrain::stl::{Facet, write_binary};
 use std::path::Path;
 
+/// Names of the made slopes and shapes, those of the files in `terrain/` without their ending.
+pub const KINDS: [&str; 10] = [
+    "paper_trees",
+    "paper_slope",
+    "quick_trees",
+    "quick_slope",
+    "valley_trees",
+    "valley_slope",
+    "paper_ridge",
+    "paper_roof",
+    "paper_tetrahedron",
+    "paper_containers",
+];
+
+/// The made slope or shape of one of the [`KINDS`].
+pub fn made(kind: &str) -> Option<Vec<Facet>> {
+    Some(match kind {
+        "paper_trees" => slopes::paper_trees(&paper_slope()),
+        "paper_slope" => paper_slope().facets,
+        "quick_trees" => slopes::quick_trees(&quick_slope()),
+        "quick_slope" => quick_slope().facets,
+        "valley_trees" => valley::valley_trees(&valley_slope()),
+        "valley_slope" => valley_slope().facets,
+        "paper_ridge" => shapes::paper_ridge(),
+        "paper_roof" => shapes::paper_roof(),
+        "paper_tetrahedron" => shapes::paper_tetrahedron(),
+        "paper_containers" => shapes::paper_containers(),
+        _ => return None,
+    })
+}
+
 /// The made files of `terrain/` by name.
-pub fn shipped() -> Vec<(&'static str, Vec<Facet>)> {
-    let (paper, quick, valley) = (paper_slope(), quick_slope(), valley_slope());
-    vec![
-        ("paper_trees.stl", slopes::paper_trees(&paper)),
-        ("paper_slope.stl", paper.facets),
-        ("quick_trees.stl", slopes::quick_trees(&quick)),
-        ("quick_slope.stl", quick.facets),
-        ("valley_trees.stl", valley::valley_trees(&valley)),
-        ("valley_slope.stl", valley.facets),
-        ("paper_ridge.stl", shapes::paper_ridge()),
-        ("paper_roof.stl", shapes::paper_roof()),
-        ("paper_tetrahedron.stl", shapes::paper_tetrahedron()),
-        ("paper_containers.stl", shapes::paper_containers()),
-    ]
+pub fn shipped() -> Vec<(String, Vec<Facet>)> {
+    let file = |kind| Some((format!("{kind}.stl"), made(kind)?));
+    KINDS.into_iter().filter_map(file).collect()
 }
 
 /// Writes the made files of `terrain/` into a directory.

@@ -1,6 +1,6 @@
 //! Scenes of one rock on a small mesh, and how its rocks end.
 
-#![allow(missing_docs, dead_code, unreachable_pub)]
+#![allow(missing_docs, dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use crate::program::rockfall;
 use rockfall::rock::Vec3;

@@ -24,7 +24,7 @@ const ENGLISH: [&str; 17] = [
     "Barriers",
     "design height",
     "How often a year",
-    "Passages",
+    "Passages over",
     "Agreement with",
 ];
 

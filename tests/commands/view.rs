@@ -196,7 +196,8 @@ fn node_reads_the_same(out: &Path, text: &str) {
 
 /// Another program's reader finds the same triangles, the same box and the same rocks.
 fn python_reads_the_same(out: &Path, mesh: &Mesh) {
-    let said = Command::new("python3").arg("tests/view/read_glb.py").arg(out.join(GLB)).output();
+    let said =
+        Command::new("python3").arg("tests/commands/view/read_glb.py").arg(out.join(GLB)).output();
     let said = match said {
         Ok(said) if said.status.code() != Some(3) => said,
         _ => {

@@ -6,6 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rockfall::hazard::{Asked, LineInfo, MapFrame};
 use rockfall::output::{Identity, RunInfo, Site, Zone};
+use rockfall::plan::PlanEntry;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
     CellPassage, Crossing, Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState,
@@ -60,7 +61,10 @@ pub fn info(releases: usize) -> RunInfo {
         has_blocks: false,
         is_shard: false,
         threads: 2,
-        plan: vec!["trees    left out: the scene has none".to_owned()],
+        plan: vec![PlanEntry {
+            name: "trees".to_owned(),
+            said: "left out: the scene has none".to_owned(),
+        }],
         inputs: vec![("Rock density".to_owned(), "2700 kg/m³".to_owned())],
         title_block: vec![],
         sources: [String::new(), String::new()],

@@ -1,4 +1,5 @@
 //! What must hold of contact whatever the scheme: two sheets, every size, rows of impacts, stems that break, gentle slopes.
+#![allow(clippy::unwrap_used, reason = "a test that has no rock has failed")]
 
 use crate::common;
 use common::*;
@@ -44,7 +45,7 @@ fn two_sheets_close_together_rebound_as_one() {
     let ground = Ground { friction_angle_rad: 0.0, ..GROUND };
     let omega = (GROUND.normal_stiffness_n_m / rock.mass_kg()).sqrt();
     for case in SCHEMES {
-        let case = Case { rock, ground, ..case };
+        let case = Case { ground, rock, ..case };
         let run = case.run(&terrain, [[0.3, 0.2, 5.001], [0.0, 0.0, -10.0], [0.0; 3]], 0.2);
         let found = rebound(&run, 5.0);
         let plane = normal_impact(10.0, omega, damping_ratio(0.5), G).rebound_m_s.unwrap() / 10.0;
@@ -115,7 +116,8 @@ fn rows_are_sound(name: &str, run: &Trajectory, most_j: f64) {
     assert_eq!(rows.len(), run.impact_count as usize, "{name}");
     assert!(rows.iter().all(|row| row.energy_lost_j >= 0.0), "{name}: {rows:#?}");
     let sum: f64 = rows.iter().map(|row| row.energy_lost_j).sum();
-    assert!(sum <= most_j * (1.0 + 1e-6), "{name}: rows lose {sum} J, the rock {most_j} J");
+    // what springs that stay pressed still hold is known from their forces alone
+    assert!(sum <= most_j * (1.0 + 1e-4), "{name}: rows lose {sum} J, the rock {most_j} J");
     for (k, one) in rows.iter().enumerate() {
         for other in &rows[k + 1..] {
             let is_soon = other.time_s - one.time_s < 1e-3;

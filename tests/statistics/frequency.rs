@@ -3,7 +3,7 @@
 
 use crate::yearly;
 
-use rockfall::frequency::{Class, Frequency, Law, Source};
+use rockfall::frequency::{Class, Frequency, Law, Source, radius_of_m3};
 use rockfall::hazard::{AnnualPlace, Barrier, CrossingRow, Object, RiskKind, Vehicles};
 use yearly::{REACH, asked, crossings, near, power_law, road, row, year};
 
@@ -143,6 +143,8 @@ fn what_a_barrier_saves_is_the_difference() {
 fn risks_are_those_found_by_hand() {
     let law = Law::Events { per_year: 0.06 };
     let mut asked = asked(vec![Source { name: "wall".to_owned(), law }]);
+    // the scene's rocks are all of 1 m³
+    asked.largest_m = vec![radius_of_m3(1.0)];
     let object = Object {
         name: "road".to_owned(),
         corners_m: vec![],

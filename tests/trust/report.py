@@ -99,7 +99,7 @@ AVX nor FMA (`ROCKFALL_QEMU=… cargo test --test same_bits -- --nocapture`):
 
 ## Shards
 
-The README's Slurm array, as it stands there, on a node begun for the purpose (`tests/trust/slurm.sh`):
+The Slurm array of docs/cluster.md, as it stands there, on a node begun for the purpose (`tests/trust/slurm.sh`):
 
 ```
 {record("slurm.txt")}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The README's job array on a Slurm of one node, begun here for the purpose: tasks requeued and killed in the middle,
+# The job array of docs/cluster.md on a Slurm of one node, begun here for the purpose: tasks requeued and killed in the middle,
 # merged by a dependent job, compared with the run at once. Needs root, slurmctld, slurmd and munged
 # (Debian: slurm-wlm, munge). Says in reports/trust/slurm.txt what happened.
 #   tests/trust/slurm.sh path/to/rockfall
@@ -66,12 +66,12 @@ CONF
     exit 1
 }
 
-# The scene, and the README's script as it stands there.
+# The scene, and the script of docs/cluster.md as it stands there.
 lay_out_study() {
     study="$work/study" && mkdir -p "$study/bin" "$study/terrain" "$study/scenes"
     cp "$root"/terrain/quick_*.stl "$study/terrain/"
     sed -e "s/^count = .*/count = $releases/" -e 's/"\.\.\/terrain/"terrain/' "$root/examples/quick.toml" > "$study/scene.toml"
-    awk '/^#!\/bin\/bash/ { on = 1 } on && /^```/ { exit } on' "$root/README.md" > "$study/array.sh"
+    awk '/^#!\/bin\/bash/ { on = 1 } on && /^```/ { exit } on' "$root/docs/cluster.md" > "$study/array.sh"
     grep -q SLURM_ARRAY_TASK_ID "$study/array.sh"
     ln -s "$rockfall" "$study/bin/rockfall"
     export PATH="$study/bin:$PATH"

@@ -5,6 +5,7 @@ use rockfall::error::{Error, Result};
 use rockfall::hazard::Asked;
 use rockfall::output::{Identity, Mode, Output, RunInfo, Site};
 use rockfall::report;
+use rockfall::scene::Language;
 use rockfall::simulation::Trajectory;
 use rockfall::study::processor_time::ProcessorTime;
 use rockfall::terrain::{Sheet, Terrain};
@@ -87,7 +88,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         inputs: Vec::new(),
         title_block: Vec::new(),
         sources: Default::default(),
-        language: Default::default(),
+        language: Language::default(),
         mesh_health: serde_json::Value::Null,
     }
 }

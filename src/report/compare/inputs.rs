@@ -36,11 +36,7 @@ fn said(run: &Summary) -> Vec<(String, String)> {
         row("Releases", id.releases.to_string()),
     ];
     rows.extend(run.inputs.iter().cloned());
-    for line in &run.plan {
-        let Some((name, value)) = line.split_once("  ") else { continue };
-        if !REPEATED.contains(&name) {
-            rows.push(row(&format!("Plan: {name}"), value.trim().to_owned()));
-        }
-    }
+    let entries = run.plan_entries.iter().filter(|entry| !REPEATED.contains(&entry.name.as_str()));
+    rows.extend(entries.map(|entry| row(&format!("Plan: {}", entry.name), entry.said.clone())));
     rows
 }

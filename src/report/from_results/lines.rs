@@ -14,8 +14,11 @@ use crate::hazard::{
 };
 use crate::output::Results;
 
+/// A row: what it is of, its name, and the quantity of a release with the same unit.
+type Tabled = (LineQuantity, fn(&Words) -> &'static str, Quantity);
+
 /// Quantities of a line's table: name, and the quantity of a release with the same unit.
-const TABLED: [(LineQuantity, fn(&Words) -> &'static str, Quantity); 7] = [
+const TABLED: [Tabled; 7] = [
     (LineQuantity::Speed, |words| words.speed, Quantity::Speed),
     (LineQuantity::Translational, |words| words.translational, Quantity::Translational),
     (LineQuantity::Rotational, |words| words.rotational, Quantity::Rotational),

@@ -1,6 +1,6 @@
 //! The system of an island in blocks of 6×6, factorised: `A = L U` with the blocks of `U` on the diagonal the identity.
 //!
-//! Our own, where a library would be quicker: those choose their kernels, and with them the order of their sums, by the
+//! Numbers are our own work, where a library would be quicker: those choose their kernels, and with them the order of their sums, by the
 //! processor and the sizes of its caches, and a world must have the same bytes on every machine. One thread: islands are
 //! what is computed at once.
 

@@ -1,11 +1,11 @@
 //! In which order the rocks of an island are eliminated, and which blocks their factor then has.
 //!
-//! Approximate minimum degree (Amestoy, Davis & Duff 1996) on the graph of rocks: each rock that is eliminated becomes an
-//! element, the clique of those that are left of its neighbours. What is joined to it then is its column of the factor.
-//! Integers only: the order is the same on every machine.
+//! Approximate minimum degree (Amestoy, Davis & Duff 1996) on the graph of rocks, by faer. Integers only: the order is the
+//! same on every machine.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::SymbolicSparseColMatRef;
+use faer::sparse::linalg::amd;
 
 /// Order of elimination and pattern of the factor; rows and columns count places in the order.
 #[derive(Debug, Default)]
@@ -18,127 +18,54 @@ pub(super) struct Ordering {
     pub(super) rows: Vec<usize>,
 }
 
-/// What is left of the graph: rocks and elements, each by the number of its rock.
-struct Graph {
-    /// Rocks that a rock is joined to otherwise than by an element.
-    joined: Vec<Vec<usize>>,
-    /// Elements that a rock belongs to.
-    elements: Vec<Vec<usize>>,
-    /// Rocks of an element when it was made.
-    cliques: Vec<Vec<usize>>,
-    is_eliminated: Vec<bool>,
-    /// Upper bound of the rocks that each is joined to.
-    degree: Vec<usize>,
-    /// Rocks of each element that are not in the newest one, where `counted` says that this was reckoned.
-    outside: Vec<usize>,
-    counted: Vec<usize>,
-    /// Where each rock was last found to be in the newest element.
-    marked: Vec<usize>,
-}
-
 impl Ordering {
     /// Orders `rocks` rocks of which these pairs are joined.
     pub(super) fn of(rocks: usize, pairs: &[(usize, usize)]) -> Self {
-        let mut graph = Graph::new(rocks, pairs);
-        let mut queue: BinaryHeap<Reverse<(usize, usize)>> =
-            (0..rocks).map(|k| Reverse((graph.degree[k], k))).collect();
-        let mut order = Vec::with_capacity(rocks);
-        while let Some(Reverse((degree, k))) = queue.pop() {
-            // entries of the queue grow old where a degree has changed since
-            if graph.is_eliminated[k] || graph.degree[k] != degree {
-                continue;
-            }
-            order.push(k);
-            for one in graph.eliminate(k, order.len()) {
-                queue.push(Reverse((graph.degree[one], one)));
-            }
+        let place = places(rocks, pairs);
+        // Columns of the matrix in the new order, then of its factor: what a column has left below its first row joins the
+        // column of that row.
+        let mut columns = vec![Vec::new(); rocks];
+        for (a, b) in pairs.iter().map(|&(a, b)| (place[a], place[b])) {
+            columns[a.min(b)].push(a.max(b));
         }
-        Self::from(&order, &graph.cliques)
-    }
-
-    fn from(order: &[usize], columns: &[Vec<usize>]) -> Self {
-        let mut place = vec![0; order.len()];
-        order.iter().enumerate().for_each(|(at, &k)| place[k] = at);
         let (mut starts, mut rows) = (vec![0], Vec::new());
-        for &k in order {
-            let begin = rows.len();
-            rows.extend(columns[k].iter().map(|&one| place[one]));
-            rows[begin..].sort_unstable();
+        for k in 0..rocks {
+            let mut column = std::mem::take(&mut columns[k]);
+            column.sort_unstable();
+            column.dedup();
+            if let Some((&first, rest)) = column.split_first() {
+                columns[first].extend_from_slice(rest);
+            }
+            rows.extend(column);
             starts.push(rows.len());
         }
         Self { place, starts, rows }
     }
 }
 
-impl Graph {
-    fn new(rocks: usize, pairs: &[(usize, usize)]) -> Self {
-        let mut joined = vec![Vec::new(); rocks];
-        for &(a, b) in pairs {
-            joined[a].push(b);
-            joined[b].push(a);
-        }
-        for list in &mut joined {
-            list.sort_unstable();
-            list.dedup();
-        }
-        Self {
-            degree: joined.iter().map(Vec::len).collect(),
-            joined,
-            elements: vec![Vec::new(); rocks],
-            cliques: vec![Vec::new(); rocks],
-            is_eliminated: vec![false; rocks],
-            outside: vec![0; rocks],
-            counted: vec![0; rocks],
-            marked: vec![0; rocks],
-        }
+/// The place of each rock in the order; as they come, if none can be found.
+fn places(rocks: usize, pairs: &[(usize, usize)]) -> Vec<usize> {
+    let mut lower = vec![Vec::new(); rocks];
+    for &(a, b) in pairs {
+        lower[a.min(b)].push(a.max(b));
     }
-
-    /// Makes an element of a rock, the `step`-th that is eliminated; returns the rocks whose degrees have changed.
-    fn eliminate(&mut self, k: usize, step: usize) -> Vec<usize> {
-        self.is_eliminated[k] = true;
-        self.marked[k] = step;
-        let mut clique = Vec::new();
-        let absorbed = std::mem::take(&mut self.elements[k]);
-        let own = std::mem::take(&mut self.joined[k]);
-        let of_elements = absorbed.iter().flat_map(|&element| &self.cliques[element]);
-        for &one in of_elements.chain(&own) {
-            if self.marked[one] != step && !self.is_eliminated[one] {
-                self.marked[one] = step;
-                clique.push(one);
-            }
-        }
-        let gone = |element: &usize| absorbed.contains(element);
-        for &one in &clique {
-            self.elements[one].retain(|element| !gone(element));
-            for &element in &self.elements[one] {
-                if self.counted[element] != step {
-                    self.counted[element] = step;
-                    self.outside[element] = self.live(element);
-                }
-                self.outside[element] -= 1;
-            }
-        }
-        for &one in &clique {
-            self.renew(one, (k, step), clique.len());
-        }
-        self.cliques[k].clone_from(&clique);
-        clique
+    let (mut starts, mut rows) = (vec![0], Vec::with_capacity(rocks + pairs.len()));
+    for (k, column) in lower.iter_mut().enumerate() {
+        column.sort_unstable();
+        column.dedup();
+        rows.push(k);
+        rows.extend_from_slice(column);
+        starts.push(rows.len());
     }
-
-    /// Rocks of an element that are left.
-    fn live(&self, element: usize) -> usize {
-        self.cliques[element].iter().filter(|&&one| !self.is_eliminated[one]).count()
-    }
-
-    /// The lists and the degree of a rock of the newest element.
-    fn renew(&mut self, one: usize, (k, step): (usize, usize), clique: usize) {
-        let Self { joined, elements, marked, outside, degree, .. } = self;
-        joined[one].retain(|&other| marked[other] != step);
-        // an element that lies within the newest says nothing more
-        elements[one].retain(|&element| outside[element] > 0);
-        let others: usize = elements[one].iter().map(|&element| outside[element]).sum();
-        degree[one] = joined[one].len() + others + clique - 1;
-        elements[one].push(k);
+    let graph = SymbolicSparseColMatRef::new_checked(rocks, rocks, &starts, None, &rows);
+    let (mut order, mut place) = (vec![0; rocks], vec![0; rocks]);
+    let need = amd::order_maybe_unsorted_scratch::<usize>(rocks, rows.len());
+    let mut memory = MemBuffer::new(need);
+    let stack = MemStack::new(&mut memory);
+    let control = amd::Control::default();
+    match amd::order_maybe_unsorted(&mut order, &mut place, graph, control, stack) {
+        Ok(_) => place,
+        Err(_) => (0..rocks).collect(),
     }
 }
 
@@ -162,7 +89,9 @@ mod tests {
             let rows: Vec<usize> = (k + 1..rocks).filter(|&row| joined[k][row]).collect();
             found.extend(rows.iter().map(|&row| (k, row)));
             for &a in &rows {
-                rows.iter().for_each(|&b| joined[a][b] = true);
+                for &b in &rows {
+                    joined[a][b] = true;
+                }
             }
         }
         found

@@ -54,7 +54,9 @@ pub(super) fn side(title: &str, (falls, ground): (&[Trajectory], &[Line]), step:
         let places = fall.path.iter().map(|p| (p.motion.position_m.x, p.motion.position_m.z));
         if step == 0 {
             curves.lines.push(places.clone().collect());
-            curves.discs.extend(places.last().map(|(x, z)| (x, z, fall.rock.radius_m)));
+            curves
+                .discs
+                .extend(places.clone().next_back().map(|(x, z)| (x, z, fall.rock.radius_m)));
             continue;
         }
         let before = |point: &&PathPoint| point.motion.time_s <= step as f64 * STEP_S;

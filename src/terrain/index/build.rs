@@ -16,7 +16,7 @@ struct Part<'a> {
     triangles: &'a mut [u32],
 }
 
-impl<'a> Part<'a> {
+impl Part<'_> {
     /// Cut across the middle of the side along which the centres lie widest apart; as many triangles in both, and the same
     /// ones whatever order they come in.
     fn halves(self, corners: &impl Fn(u32) -> [Vec3; 3]) -> [Self; 2] {
@@ -101,6 +101,7 @@ impl Index {
         let Packed { depth, lo, hi } = index.pack_part(whole, &corners, at_once);
         assert!(depth <= DEPTH, "the index of the mesh has {depth} levels");
         (index.lo, index.hi) = (lo, hi);
+        index.nodes.shrink_to_fit();
         (index, order)
     }
 

@@ -28,7 +28,7 @@ fn nothing_is_wrong(found: &Health) -> bool {
 fn the_shipped_files_are_what_the_generator_makes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("terrain");
     for (name, facets) in shipped() {
-        let file = std::fs::read(folder.join(name)).unwrap();
+        let file = std::fs::read(folder.join(&name)).unwrap();
         assert!(
             file == binary_bytes(&facets),
             "terrain/{name} differs from what make::write_shipped writes"

@@ -1,0 +1,111 @@
+//! The answer at each line and barrier, a sentence each: what a run says last.
+
+use super::format::{NO_NUMBER, counted, decimal, percent, significant};
+use super::model::energy_unit;
+use super::words::Words;
+use crate::hazard::{BarrierSummary, LineSummary, Percentile, Proportion, Statistic};
+use crate::output::Results;
+use crate::scene::Language;
+
+/// What arrives at every line and what every barrier has to take, in the order of the scene, in words.
+pub fn answers(results: &Results) -> Vec<String> {
+    let summary = &results.summary;
+    let barriers = &summary.barriers;
+    // what passes a barrier's line is the barrier's answer; its other places are no lines of the scene
+    let is_own = |line: &&LineSummary| {
+        !line.info.of_barrier && barriers.iter().all(|one| one.barrier.name != line.info.name)
+    };
+    let lines = summary.lines.iter().filter(is_own).map(line);
+    lines.chain(barriers.iter().map(barrier)).collect()
+}
+
+fn line(of: &LineSummary) -> String {
+    let name = &of.info.name;
+    if of.reach.count == 0 {
+        return format!("line \"{name}\": no rock crosses it {}", share_interval(&of.reach));
+    }
+    let p95 = |column: &str, said: fn(&Percentile) -> String| {
+        let found = of.statistics.get(column).and_then(known_p95);
+        found.map_or_else(|| "needs more rocks".to_owned(), said)
+    };
+    format!(
+        "line \"{name}\": {} of the rocks cross it {}; P95 of energy {}, of height {}",
+        share(&of.reach),
+        share_interval(&of.reach),
+        p95("total_j", energy),
+        p95("height_m", height),
+    )
+}
+
+fn barrier(of: &BarrierSummary) -> String {
+    let name = &of.barrier.name;
+    if of.arriving.count == 0 {
+        return format!("barrier \"{name}\": no rock arrives {}", share_interval(&of.arriving));
+    }
+    let design = match (&of.design_values, &of.barrier.design) {
+        (Some(design), _) => {
+            let (unit, size) = energy_unit(design.energy_j);
+            format!(
+                "; its rule asks for {} {unit} and {} m",
+                significant(design.energy_j / size, 3),
+                significant(design.height_m, 3)
+            )
+        }
+        (None, Some(_)) => {
+            let more = of.design_lacks;
+            let rocks = counted(more, "rock", "rocks");
+            format!("; its rule needs {} more {rocks}", decimal(more as f64, 0))
+        }
+        (None, None) => String::new(),
+    };
+    format!(
+        "barrier \"{name}\": {} of the rocks arrive {}, it stops {} of them {}{design}",
+        share(&of.arriving),
+        share_interval(&of.arriving),
+        share(&of.stopped),
+        share_interval(&of.stopped),
+    )
+}
+
+/// Two written bounds; the terminal speaks English, whatever the language of the page.
+fn interval(low: &str, high: &str) -> String {
+    Words::of(Language::En).interval(low, high)
+}
+
+/// The 95th percentile, where there are rocks enough to bound it.
+fn known_p95(statistic: &Statistic) -> Option<&Percentile> {
+    statistic.percentiles.get("p95").filter(|p95| statistic.rocks >= p95.needs)
+}
+
+fn energy(p95: &Percentile) -> String {
+    let (unit, size) = energy_unit(p95.value);
+    with_interval(p95, size, unit)
+}
+
+fn height(p95: &Percentile) -> String {
+    with_interval(p95, 1.0, "m")
+}
+
+fn with_interval(p95: &Percentile, size: f64, unit: &str) -> String {
+    let end = |end: Option<f64>| {
+        end.map_or_else(|| NO_NUMBER.to_owned(), |end| significant(end / size, 3))
+    };
+    let (low, high) = (end(p95.low_95), end(p95.high_95));
+    format!("{} {unit} ({})", significant(p95.value / size, 3), interval(&low, &high))
+}
+
+fn share(of: &Proportion) -> String {
+    percent(of.share, digits(of.share))
+}
+
+fn share_interval(of: &Proportion) -> String {
+    format!(
+        "({})",
+        interval(&percent(of.low_95, digits(of.low_95)), &percent(of.high_95, digits(of.high_95)))
+    )
+}
+
+/// One decimal below a tenth, where a full per cent would be coarse.
+fn digits(share: f64) -> usize {
+    usize::from(share < 0.1)
+}

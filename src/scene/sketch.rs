@@ -1,0 +1,118 @@
+//! A first scene for a terrain: what is known of it filled in, what only the user knows left to be written.
+
+use crate::error::{Error, Result};
+use crate::math;
+use crate::rock::Vec3;
+use crate::terrain::cliffs::{Cliff, main_cliff};
+use crate::terrain::formats::Options;
+use crate::terrain::read::Source;
+use crate::terrain::{Sheet, Terrain};
+use std::path::{Path, PathBuf};
+
+/// The text of a scene for the terrain in a file (a mesh or an elevation model), as it would stand in `scene_file`.
+///
+/// Releases lie on a line through the largest steep face. Ground values are not filled in: the scene says so when it is
+/// read, and which keys are missing.
+///
+/// # Errors
+/// A file that cannot be read as a terrain, or one without a slope.
+pub fn sketch(terrain_file: &Path, scene_file: &Path) -> Result<String> {
+    let is_stl = terrain_file.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
+    let sheet = Sheet { path: terrain_file.to_owned(), ground: 0, is_tree: false };
+    let options = (!is_stl).then(Options::default);
+    let source = Source { options, ..Source::stl(sheet) };
+    let (terrain, health) = Terrain::read(&[source], Vec3::zeros(), None)?;
+    let cliff = main_cliff(&terrain).ok_or_else(|| {
+        let remedy = "write a terrain with a slope, or a scene by hand (docs/scene.md)";
+        Error::input(terrain_file, "terrain", "found level ground", remedy)
+    })?;
+    let name = terrain_file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let path = seen_from(scene_file, terrain_file);
+    let key = if is_stl { "mesh" } else { "file" };
+    let triangles = health.triangles;
+    Ok(format!(
+        "{HEAD}title = {}\nseed = 2017\n{}\n[[terrain]]\n{key} = {}           # {triangles} triangles\nground = \"slope\"\n{GROUND}{}{REST}",
+        quoted(&name),
+        terrain.epsg.map_or_else(String::new, |code| format!("epsg = {code}\n")),
+        quoted(&path.to_string_lossy()),
+        release(&cliff),
+    ))
+}
+
+const HEAD: &str = "\
+# A first scene, written by `rockfall init`. Every key is explained in docs/scene.md.
+#   rockfall plan SCENE      what will be computed, what is left out and why
+#   rockfall run SCENE       all releases, results and report
+";
+
+const GROUND: &str = "
+# FILL IN: what the slope is made of. Physics has no default. `rockfall grounds` lists values from the literature with
+# their sources; `like` takes restitution and rolling friction from there. Any value may be a distribution, as in
+# { uniform = [0.3, 0.5] }.
+[grounds.slope]
+# like = \"rstone/debris\"
+# normal_stiffness_n_m = 1e8       # contact springs: 1e7 soft soil … 1e9 rock
+# shear_stiffness_n_m = 0.25e8
+# friction_angle_deg = 32.0
+# restitution = 0.35               # 0 … 1, normal to the ground
+# rolling_friction = 0.4           # stands for the shape of the rocks too
+# roughness_deg = 8.0              # random tilt of the facets that a rock meets
+
+# CHECK: your rocks.
+[rocks]
+density_kg_m3 = 2700.0
+radius_m = { lognormal = { median = 0.4, sigma = 0.3, min = 0.1, max = 1.2 } }
+
+";
+
+const REST: &str = "
+[record]
+paths = 200
+path_step_s = 0.05
+
+# Evaluation lines: how many rocks cross, how fast, how high, with which energy. Map coordinates.
+# [[lines]]
+# name = \"road\"
+# points_m = [[0.0, 0.0], [40.0, 0.0]]
+
+# A net or dam: what it stops and what its design asks for.
+# [[barriers]]
+# name = \"net\"
+# points_m = [[0.0, 0.0], [40.0, 0.0]]
+# height_m = 4.0
+# capacity_j = 1000e3
+
+# Maps of reach, energy and height.
+# [maps]
+# cell_m = 2.0
+";
+
+/// The table of releases: a line through the face, and what the face is.
+fn release(cliff: &Cliff) -> String {
+    let Cliff { line_m, area_m2, heights_m: [foot, top], cosine } = cliff;
+    let corners: Vec<String> = line_m.iter().map(|[x, y]| format!("[{x:.1}, {y:.1}]")).collect();
+    let slope_deg = math::acos(*cosine).to_degrees();
+    format!(
+        "# CHECK: the line runs through the largest steep face, {area_m2:.0} m² steeper than {slope_deg:.0}° between {foot:.0} and {top:.0} m.\n\
+         # Where rocks really come from, you know better.\n\
+         [release]\ncount = 1000\nheight_m = 0.5                     # gap below the rock at its start\n\
+         velocity_m_s = [0.0, 0.0, 0.0]\nspin_rad_s = [0.0, 0.0, 0.0]\nline_m = [{}]\n",
+        corners.join(", ")
+    )
+}
+
+/// A text as TOML writes it.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}
+
+/// The terrain's path as a scene in `scene_file` has to name it.
+fn seen_from(scene_file: &Path, terrain_file: &Path) -> PathBuf {
+    let folder = match scene_file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let both = folder.canonicalize().ok().zip(terrain_file.canonicalize().ok());
+    let Some((folder, terrain)) = both else { return terrain_file.to_owned() };
+    terrain.strip_prefix(&folder).map_or_else(|_| terrain.clone(), Path::to_owned)
+}

@@ -1,0 +1,136 @@
+//! The first steps with the program: a scene for a terrain, what a run says last, help, completions, manual.
+#![allow(clippy::unwrap_used, reason = "a test that cannot run the program has failed")]
+
+use crate::program;
+use program::rockfall;
+use std::fs;
+use std::path::Path;
+
+fn said(args: &[&str]) -> (Option<i32>, String, String) {
+    let output = rockfall(args);
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code(), text(&output.stdout), text(&output.stderr))
+}
+
+fn word(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// The ground of a sketched scene, filled in as its comments propose.
+fn filled_in(scene: &str) -> String {
+    scene
+        .lines()
+        .map(|line| {
+            let keys = ["normal_st", "shear_st", "friction_a", "restitution =", "rolling_f"];
+            let is_ground = keys.iter().any(|key| line.starts_with(&format!("# {key}")));
+            if is_ground { line[2..].to_owned() } else { line.to_owned() }
+        })
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// A sketched scene asks for its ground, and runs when that is filled in: from a mesh and from an elevation model.
+#[test]
+fn a_sketched_scene_asks_for_its_ground_and_then_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    for terrain in ["terrain/quick_slope.stl", "terrain/tyrol_dem.tif"] {
+        let file = dir.path().join("first.toml");
+        let (code, _, stderr) = said(&["init", terrain, word(&file), "--overwrite"]);
+        assert_eq!(code, Some(0), "{stderr}");
+        let (code, _, stderr) = said(&["init", terrain, word(&file)]);
+        assert!(code == Some(2) && stderr.contains("--overwrite"), "{stderr}");
+        let (code, _, stderr) = said(&["plan", word(&file)]);
+        assert_eq!(code, Some(2), "{stderr}");
+        assert!(stderr.contains("[grounds.slope]") && stderr.contains("first.toml"), "{stderr}");
+        let scene = fs::read_to_string(&file).unwrap();
+        assert!(scene.contains("line_m = [["), "{scene}");
+        fs::write(&file, filled_in(&scene)).unwrap();
+        let out = dir.path().join("out");
+        let (code, stdout, stderr) =
+            said(&["run", word(&file), "--releases", "30", "--overwrite", "--out", word(&out)]);
+        assert_eq!(code, Some(0), "{stderr}");
+        assert!(stdout.lines().last().unwrap().contains("report.html"), "{stdout}");
+    }
+}
+
+#[test]
+fn level_ground_cannot_be_sketched() {
+    let dir = tempfile::tempdir().unwrap();
+    let grid = dir.path().join("level.asc");
+    fs::write(
+        &grid,
+        "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 5\n1 1 1\n1 1 1\n1 1 1\n",
+    )
+    .unwrap();
+    let file = dir.path().join("level.toml");
+    let (code, _, stderr) = said(&["init", word(&grid), word(&file)]);
+    assert!(code == Some(2) && stderr.contains("level ground"), "{stderr}");
+    assert!(!file.exists());
+}
+
+/// The last lines of a run: an answer a line and a barrier, the time, the folder and the report; no colour for a file.
+#[test]
+fn a_run_ends_with_its_answers_and_its_report() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let scene = fs::read_to_string("examples/quick.toml").unwrap();
+    let net = "[[barriers]]\nname = \"net\"\npoints_m = [[0.0, 40.0], [40.0, 40.0]]\nheight_m = 3.0\ncapacity_j = 5e4\n";
+    let far = "[[lines]]\nname = \"far\"\npoints_m = [[0.0, 59.9], [0.1, 59.9]]\n";
+    let file = dir.path().join("scene.toml");
+    let home = format!("{}/terrain", env!("CARGO_MANIFEST_DIR"));
+    fs::write(&file, format!("{}\n{far}\n{net}", scene.replace("../terrain", &home))).unwrap();
+    let (code, stdout, stderr) =
+        said(&["run", word(&file), "--releases", "200", "--out", word(&out)]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let last: Vec<&str> = stdout.lines().rev().take(7).collect();
+    assert_eq!(last[0], format!("report: {}", out.join("report.html").display()));
+    assert_eq!(last[1], format!("results in {}", out.display()));
+    assert!(last[2].starts_with("200 releases in ") && last[2].ends_with(" a second)"), "{stdout}");
+    assert!(last[3].starts_with("barrier \"net\": ") && last[3].contains("it stops"), "{stdout}");
+    assert!(last[4].starts_with("line \"far\": no rock crosses it (0"), "{stdout}");
+    assert!(last[5].starts_with("line \"meadow\": "), "{stdout}");
+    assert!(
+        last[6].starts_with("line \"foot of the face\": ") && last[6].contains("P95 of energy")
+    );
+    assert!(!stdout.contains('\u{1b}'), "colour where no terminal reads: {stdout}");
+    // the share that is said is the one of the summary
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let share = summary["lines"][0]["reach"]["share"].as_f64().unwrap();
+    assert!(last[6].contains(&format!("{:.0}", 100.0 * share)), "{share} in {}", last[6]);
+}
+
+#[test]
+fn help_says_what_there_is() {
+    let (code, help, _) = said(&["--help"]);
+    assert_eq!(code, Some(0));
+    for command in ["init", "run", "plan", "study", "completions", "man"] {
+        assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
+    }
+    let (_, studies, _) = said(&["study", "--help"]);
+    assert!(!studies.contains("speed") && !studies.contains("scaling"), "{studies}");
+    let (_, make, _) = said(&["mesh", "make", "--help"]);
+    assert!(make.contains("quick_slope") && make.contains("paper_containers"), "{make}");
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("made.stl");
+    let (code, _, stderr) = said(&["mesh", "make", "quick_slop", word(&out)]);
+    assert!(code == Some(2) && stderr.contains("quick_slope"), "{stderr}");
+    let (code, ..) = said(&["mesh", "make", "quick_slope", word(&out)]);
+    assert_eq!(code, Some(0));
+    assert_eq!(fs::read(&out).unwrap(), fs::read("terrain/quick_slope.stl").unwrap());
+}
+
+#[test]
+fn shells_and_readers_of_manuals_get_theirs() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let (code, script, _) = said(&["completions", shell]);
+        assert_eq!(code, Some(0));
+        assert!(script.contains("rockfall") && script.contains("from-grid"), "{shell}: {script}");
+    }
+    let (code, page, _) = said(&["man"]);
+    assert!(code == Some(0) && page.contains(".TH rockfall 1"), "{page}");
+    let (code, page, _) = said(&["man", "mesh", "check"]);
+    assert!(code == Some(0) && page.contains("STL files"), "{page}");
+    let (code, _, stderr) = said(&["man", "runn"]);
+    assert!(code == Some(2) && stderr.contains("write one of"), "{stderr}");
+}
