@@ -1,5 +1,6 @@
 //! Where a sphere touches the mesh, what it remembers of it, and the paper's 6×6 submatrices.
 
+pub mod block;
 pub mod closest;
 pub mod history;
 pub mod neighbours;

@@ -4,8 +4,10 @@
 //! face (a quadratic), an edge or a corner (quartics) is solved for, over the boxes that the parabola crosses.
 
 mod edge_windows;
+pub mod block;
 mod roots;
 mod parabola_box;
+pub mod top;
 mod touching;
 
 use crate::rock::Vec3;

@@ -41,6 +41,8 @@ pub mod random;
 #[doc(hidden)]
 pub mod rock;
 #[doc(hidden)]
+pub mod body;
+#[doc(hidden)]
 pub mod frequency;
 // world
 #[doc(hidden)]

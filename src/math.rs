@@ -4,6 +4,8 @@
 //! multiplication round differently; rocks of one study computed on unlike machines would then not be the same rocks.
 //! All that reaches a result or a figure is taken from here. Clippy refuses the methods of `f64` (`clippy.toml`).
 
+pub mod elliptic;
+
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 pub use libm::{

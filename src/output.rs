@@ -8,6 +8,7 @@ mod annual;
 mod calibration;
 mod lock;
 mod folder;
+mod journeys;
 mod maps;
 mod merge;
 mod opened;
@@ -42,7 +43,7 @@ use crate::hazard::{
 use crate::plan::PlanEntry;
 use crate::rock::Vec3;
 use crate::scene::Language;
-use crate::simulation::Trajectory;
+use crate::simulation::{ShapeOf, Trajectory};
 use opened::{open, open_maps};
 use progress::{PROGRESS, Progress};
 use std::collections::BTreeMap;
@@ -59,6 +60,7 @@ const TABLES: [&str; 4] = [RELEASES, PATHS, IMPACTS, CROSSINGS];
 
 /// What the results need to know of a plan.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::struct_excessive_bools, reason = "each says of another file whether it is there")]
 pub struct RunInfo {
     /// Title of the scene.
     pub title: String,
@@ -84,6 +86,8 @@ pub struct RunInfo {
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.
     pub keeps_impacts: bool,
+    /// Whether some rocks have shapes: the tables then say how they are turned.
+    pub has_blocks: bool,
     /// Whether `merge` is to put it together with others, were it the only one.
     pub is_shard: bool,
     /// Worker threads.
@@ -144,15 +148,20 @@ impl Output {
         let mut lock = FolderLock::on(dir)?;
         let found = folder::prepare(dir, (&info, mode), &mut lock)?;
         let bytes = found.as_ref().map(|found| &found.bytes);
-        let releases = open(dir, RELEASES, &Row::COLUMNS, bytes)?;
-        let paths =
-            info.keeps_paths.then(|| open(dir, PATHS, &PathRow::COLUMNS, bytes)).transpose()?;
+        let columns = |plain: &[&'static str], more: &[&'static str]| {
+            [plain, if info.has_blocks { more } else { &[] }].concat()
+        };
+        let of_release = columns(&Row::COLUMNS, &Row::SHAPE_COLUMNS);
+        let releases = open(dir, RELEASES, &of_release, bytes)?;
+        let of_path = columns(&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS);
+        let paths = info.keeps_paths.then(|| open(dir, PATHS, &of_path, bytes)).transpose()?;
         let impacts = info
             .keeps_impacts
             .then(|| open(dir, IMPACTS, &ImpactRow::COLUMNS, bytes))
             .transpose()?;
+        let of_crossing = columns(&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
         let crossings = (!info.lines.is_empty())
-            .then(|| open(dir, CROSSINGS, &CrossingRow::COLUMNS, bytes))
+            .then(|| open(dir, CROSSINGS, &of_crossing, bytes))
             .transpose()?;
         let mut lines = read::lines(&info.lines, &info.asked, info.identity.releases);
         if found.is_some() {
@@ -216,7 +225,10 @@ impl Output {
     pub fn write(&mut self, falls: &[Trajectory]) -> Result<()> {
         for fall in falls {
             assert_eq!(fall.index, self.remaining().start, "journeys must be written in order");
-            let row = Row::of(fall, self.info.origin_m);
+            let mut row = Row::of(fall, self.info.origin_m);
+            if self.info.has_blocks {
+                row.shape.get_or_insert(ShapeOf::SPHERE);
+            }
             self.releases.write(&row)?;
             self.write_path(fall)?;
             self.write_impacts(fall)?;
@@ -319,32 +331,6 @@ impl Output {
         let annual = hazard::annual(asked, releases, (lines, barriers), crossings)?;
         annual.as_ref().map_or(Ok(()), |annual| annual::write(&self.dir, annual))?;
         Ok(annual)
-    }
-
-    fn write_path(&mut self, fall: &Trajectory) -> Result<()> {
-        let Some(table) = &mut self.paths else { return Ok(()) };
-        let rows = fall.path.iter().map(|point| PathRow::of(fall.index, point, self.info.origin_m));
-        rows.into_iter().try_for_each(|row| table.write(&row))
-    }
-
-    fn write_impacts(&mut self, fall: &Trajectory) -> Result<()> {
-        let Some(table) = &mut self.impacts else { return Ok(()) };
-        fall.impacts.iter().try_for_each(|impact| {
-            let ground = &self.info.ground_of_sheet[usize::from(impact.sheet)];
-            table.write(&ImpactRow::of(fall.index, impact, ground, self.info.origin_m))
-        })
-    }
-
-    fn write_crossings(&mut self, fall: &Trajectory) -> Result<()> {
-        let Some(table) = &mut self.crossings else { return Ok(()) };
-        for crossing in &fall.crossings {
-            let line = &mut self.lines[crossing.line];
-            let who = (fall.index, &fall.rock);
-            let row = CrossingRow::of(who, crossing, &line.info.name, self.info.origin_m);
-            table.write(&row)?;
-            line.add(&row);
-        }
-        Ok(())
     }
 
     /// The tables that are written, with their names.

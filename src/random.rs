@@ -32,6 +32,8 @@ pub enum Purpose {
     Grounds = 4,
     /// The tilt of the contact normal at its impacts.
     Impacts = 5,
+    /// Its shape and how it is turned at release.
+    Shape = 8,
     /// What stems that give way can take of it.
     Stems = 7,
     /// Which rocks a statistic is computed from again, to see how far chance moves it.

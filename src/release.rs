@@ -1,6 +1,7 @@
 //! Rock number i: drawn from the scene, the seed and i, and put on the terrain.
 
 mod clear;
+mod shapes;
 mod sources;
 mod tried;
 
@@ -12,6 +13,8 @@ use crate::rock::{Motion, Rock, Vec3};
 use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
 use clear::{clear_of, distance_m, is_inside_tree};
+pub use shapes::Drawn;
+use shapes::Shapes;
 use std::path::PathBuf;
 
 /// How deep a rock may sit in the ground at its release, over its radius (–): coordinates are typed with
@@ -83,6 +86,7 @@ pub struct Releases {
     radii_m: Vec<f64>,
     density_kg_m3: f64,
     grounds: Vec<GroundTable>,
+    shapes: Shapes,
 }
 
 impl Releases {
@@ -118,6 +122,7 @@ impl Releases {
             radii_m: asked.blocks.iter().map_while(|block| block.radius_m).collect(),
             density_kg_m3: scene.rocks.density_kg_m3,
             grounds: scene.grounds.values().cloned().collect(),
+            shapes: Shapes::compile(scene)?,
         };
         releases.look_for_ground(terrain)?;
         for index in 0..releases.turns().min(asked.count) {
@@ -155,7 +160,7 @@ impl Releases {
             return self.ground_m(terrain, at_m, who).map(|_| ());
         };
         let [x, y] = local(terrain, at_m);
-        let radius_m = self.unplaced(entry).rock.radius_m;
+        let radius_m = self.around_m(entry, &self.unplaced(entry).rock);
         self.check_held(terrain, (Vec3::new(x, y, z - terrain.origin_m.z), radius_m), at_m, who)
     }
 
@@ -192,14 +197,14 @@ impl Releases {
         let is_fixed = matches!(self.place_of(index).0, Where::Points(_));
         let draws = if is_fixed { 1 } else { MOST_DRAWS };
         let zone = self.draw_zone(&mut random, index).unwrap_or_default();
+        let around_m = self.around_m(index, &release.rock);
         let mut lost = None;
         for drawn in 1..=draws {
             let at_m = self.draw_place(&mut random, (index, zone));
-            let why = match self.centre(terrain, (at_m, release.rock.radius_m), &mut random, index)
-            {
+            let why = match self.centre(terrain, (at_m, around_m), &mut random, index) {
                 Ok(centre) => {
                     release.motion.position_m = centre;
-                    match self.check_clear(terrain, index, &release) {
+                    match self.check_clear(terrain, (index, around_m), &release) {
                         Ok(()) => return (Ok(release), drawn),
                         Err(error) => (IN_GROUND, error),
                     }
@@ -291,17 +296,22 @@ impl Releases {
     }
 
     /// Refuses a rock that starts deeper in ground or tree than its weight would press it.
-    fn check_clear(&self, terrain: &Terrain, index: usize, release: &Release) -> Result<()> {
+    fn check_clear(
+        &self,
+        terrain: &Terrain,
+        (index, around_m): (usize, f64),
+        release: &Release,
+    ) -> Result<()> {
         let Release { rock, motion: Motion { position_m: centre, .. }, grounds } = release;
         let stiffness = grounds.iter().map(|ground| ground.normal_stiffness_n_m);
         let pressed_m =
             rock.mass_kg() * self.gravity_m_s2 / stiffness.fold(f64::INFINITY, f64::min);
-        let depth_m = rock.radius_m - distance_m(terrain, centre, rock.radius_m);
+        let depth_m = around_m - distance_m(terrain, centre, around_m);
         // beyond the edge there is no ground to be under
         let buried = terrain.ground_under(centre.x, centre.y, centre.z).is_none()
             && terrain.ground_below(centre.x, centre.y).is_some();
         let caged = is_inside_tree(terrain, centre);
-        let is_deep = depth_m > 2.0 * pressed_m + TYPED_DEPTH * rock.radius_m;
+        let is_deep = depth_m > 2.0 * pressed_m + TYPED_DEPTH * around_m;
         if !(is_deep || buried || caged) {
             return Ok(());
         }
@@ -315,8 +325,7 @@ impl Releases {
             "found its centre inside a tree".to_owned()
         };
         let remedy = format!(
-            "write a higher place, or another: a rock of radius {} m needs its centre that far from every triangle",
-            rock.radius_m
+            "write a higher place, or another: a rock of radius {around_m} m needs its centre that far from every triangle"
         );
         Err(Error::input(&self.file, who, found, remedy))
     }

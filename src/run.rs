@@ -180,6 +180,7 @@ impl Round<'_> {
             observed: read_measured(plan)?,
             keeps_paths: matches!(options.selection, Selection::Only(_)) || plan.paths.is_kept(),
             keeps_impacts: plan.impacts.is_kept(),
+            has_blocks: plan.releases.has_blocks(),
             is_shard: matches!(options.selection, Selection::Shard { .. }),
             threads: ensemble.threads(),
             plan: plan.entries_for(releases),

@@ -24,6 +24,7 @@ mod refusal;
 mod release;
 mod rewrite;
 mod rocks;
+mod shapes;
 mod sketch;
 mod solver;
 mod source;
@@ -48,6 +49,7 @@ pub use record::{Language, LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
 pub use rocks::{RockContact, Rocks};
+pub use shapes::{CORNERS, Orientation, RandomWord, ShapeTable};
 pub use sketch::sketch;
 pub use solver::SolverTable;
 pub use zones::{Zone, ZonePlace, Zones};
@@ -291,6 +293,7 @@ impl Scene {
         if let Some(maps) = &self.maps {
             maps.check().map_err(|wrong| wrong.inside("maps"))?;
         }
+        self.check_shapes()?;
         self.check_together()
     }
 

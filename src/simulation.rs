@@ -1,8 +1,10 @@
 //! One rock from release to rest: leap, touch, step, stop.
 
+mod block;
 mod rest;
 mod crossings;
 mod driver;
+mod form;
 mod impacts;
 mod recorder;
 mod roughness;
@@ -10,14 +12,16 @@ mod trees;
 mod world;
 mod cells;
 
+use crate::body::ShapeKind;
 pub use crate::contact::FeatureKind;
 use crate::math;
+use crate::release::Drawn;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
 pub use cells::CellPassage;
 pub use crossings::Crossing;
-pub use driver::{RunSettings, Scratch, simulate, simulate_release};
+pub use driver::{RunSettings, Scratch, simulate, simulate_block, simulate_release};
 pub use recorder::Keep;
 pub use world::{Observer, PairMaterial, WorldStats, simulate_releases_together, simulate_world};
 
@@ -106,6 +110,8 @@ pub struct PathPoint {
     pub clearance_m: f64,
     /// Flight, sliding or sticking.
     pub state: PathState,
+    /// How a block is turned, from its principal frame to the world, as a unit quaternion w, x, y, z; none for a sphere.
+    pub attitude: Option<[f64; 4]>,
 }
 
 /// State of a rock on its path.
@@ -155,6 +161,29 @@ pub struct Extremes {
     pub height_m: f64,
 }
 
+/// The shape of one rock, as it was drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ShapeOf {
+    /// What it was made from.
+    pub kind: ShapeKind,
+    /// Second and third side over the first (–).
+    pub sides: [f64; 2],
+    /// How it was turned at release, from its principal frame to the world: a unit quaternion w, x, y, z.
+    pub attitude: [f64; 4],
+}
+
+impl ShapeOf {
+    /// That of a sphere among blocks.
+    pub const SPHERE: Self =
+        Self { kind: ShapeKind::Sphere, sides: [1.0; 2], attitude: [1.0, 0.0, 0.0, 0.0] };
+
+    /// Of a block as it was drawn.
+    pub fn new(drawn: &Drawn) -> Self {
+        let attitude = form::quaternion(&drawn.attitude);
+        Self { kind: drawn.kind, sides: drawn.sides, attitude }
+    }
+}
+
 /// One rock's journey, complete.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
@@ -162,6 +191,8 @@ pub struct Trajectory {
     pub index: usize,
     /// The rock.
     pub rock: Rock,
+    /// Its shape; none in a scene of spheres.
+    pub shape: Option<ShapeOf>,
     /// At release (local coordinates).
     pub start: Motion,
     /// At the end (local coordinates).
@@ -196,6 +227,7 @@ impl Trajectory {
         Self {
             index,
             rock,
+            shape: None,
             start,
             end: start,
             stop: Stop::NotReleased(why),

@@ -1,5 +1,6 @@
 //! One implicit step of a rock in contact.
 
+pub(crate) mod block;
 pub mod step_control;
 mod plane_impact;
 pub mod dda;

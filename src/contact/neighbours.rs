@@ -8,8 +8,11 @@
 //! ball too – a hollow edge that holds the foot of the centre on both its faces, or a vertex among such – can several
 //! minima belong together: then `contact::patch` tells.
 
+mod offered;
 mod pressed;
 mod collect;
+
+pub(crate) use offered::{Peak, SharpEdge};
 
 use super::closest::closest_on;
 use super::patch::Patches;
@@ -337,7 +340,13 @@ impl Neighbours {
 
     /// Whether another triangle runs through `foot` and comes nearer to the centre: then the border or corner at
     /// `foot` lies on the inside of a sheet (a T-junction, a seam) and touches nothing by itself.
-    fn is_covered(&self, terrain: &Terrain, nearest: &Vec3, centre: &Vec3, distance: f64) -> bool {
+    pub(crate) fn is_covered(
+        &self,
+        terrain: &Terrain,
+        nearest: &Vec3,
+        centre: &Vec3,
+        distance: f64,
+    ) -> bool {
         let near = SAME * self.radius;
         self.sheets.iter().any(|&t| {
             let corners = terrain.corners_m(t);

@@ -198,8 +198,7 @@ fn until_stopped<'a>(barriers: &[Barrier], way: &'a [(usize, Arrival)]) -> &'a [
 impl Arrival {
     pub(super) fn of(row: &CrossingRow) -> Self {
         // where there is no ground below, nothing says how high it is: it is let through
-        let top_m =
-            if row.height_m.is_nan() { f64::INFINITY } else { row.height_m + 2.0 * row.radius_m };
+        let top_m = if row.height_m.is_nan() { f64::INFINITY } else { row.highest_m() };
         Self { release: row.index, top_m, total_j: row.total_j() }
     }
 
@@ -276,6 +275,7 @@ mod tests {
             radius_m: 0.5,
             times: 1,
             position_m: [0.0; 3],
+            top_m: None,
         }
     }
 

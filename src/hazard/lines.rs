@@ -56,6 +56,10 @@ pub struct CrossingRow {
     pub times: u32,
     /// Centre of the rock in map coordinates (m).
     pub position_m: [f64; 3],
+    /// Vertical distance from the ground below to the highest point of the rock (m), NaN where there is no ground; none in a
+    /// scene of spheres, where the file has no such column.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub top_m: Option<f64>,
 }
 
 impl CrossingRow {
@@ -79,6 +83,9 @@ impl CrossingRow {
         "z_m",
     ];
 
+    /// The column that follows them where a scene has blocks.
+    pub const SHAPE_COLUMNS: [&'static str; 1] = ["top_m"];
+
     /// The row of one crossing of rock `index`; `origin_m` is the map position of the local (0, 0, 0).
     pub fn of(
         (index, rock): (usize, &Rock),
@@ -95,14 +102,20 @@ impl CrossingRow {
             height_m: crossing.height_m,
             speed_m_s: motion.velocity_m_s.norm(),
             translational_j: motion.translational_j(rock),
-            rotational_j: motion.rotational_j(rock),
+            rotational_j: crossing.rotational_j,
             height_normal_m: crossing.height_normal_m,
             descent_deg: crossing.descent_deg(),
             mass_kg: rock.mass_kg(),
             radius_m: rock.radius_m,
             times: crossing.times,
             position_m: (motion.position_m + origin_m).into(),
+            top_m: crossing.top_m,
         }
+    }
+
+    /// Vertical distance from the ground below to the highest point of the rock (m): of a sphere, a diameter over the lowest.
+    pub fn highest_m(&self) -> f64 {
+        self.top_m.unwrap_or(self.height_m + 2.0 * self.radius_m)
     }
 
     /// Sum of translational and rotational energy (J).

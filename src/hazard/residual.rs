@@ -149,6 +149,7 @@ mod tests {
             radius_m: 0.5,
             times: 1,
             position_m: [0.0; 3],
+            top_m: None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! One released rock as a row of numbers: the only way into the statistics, from a run as from a file.
 
 use crate::rock::Vec3;
-use crate::simulation::{Stop, Trajectory};
+use crate::simulation::{ShapeOf, Stop, Trajectory};
 use serde::{Deserialize, Serialize};
 
 /// One row of `releases.csv`; positions in map coordinates.
@@ -67,6 +67,9 @@ pub struct Row {
     pub others_j: f64,
     /// Energy handed on to other rocks, negative if received (J).
     pub passed_on_j: f64,
+    /// Its shape; none in a scene of spheres, where the file has no such columns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<ShapeOf>,
 }
 
 /// [`Stop`] without the reason of a failure.
@@ -182,6 +185,10 @@ impl Row {
         "passed_on_j",
     ];
 
+    /// Columns that follow them where a scene has blocks: shape, sides 2 and 3 over side 1, and how it was turned at release.
+    pub const SHAPE_COLUMNS: [&'static str; 7] =
+        ["shape", "side_2", "side_3", "start_qw", "start_qx", "start_qy", "start_qz"];
+
     /// The row of one journey; `origin_m` is the map position of the local (0, 0, 0).
     pub fn of(fall: &Trajectory, origin_m: Vec3) -> Self {
         let (start, end, most) = (&fall.start, &fall.end, &fall.extremes);
@@ -216,6 +223,7 @@ impl Row {
             remainder_j: fall.ledger.remainder_j,
             others_j: fall.ledger.others_j,
             passed_on_j: fall.ledger.passed_on_j,
+            shape: fall.shape,
         }
     }
 }

@@ -3,8 +3,9 @@
 use super::progress::Progress;
 use super::read;
 use super::summary::{SUMMARY, Summary};
-use super::{IMPACTS, Mode, Output, PATHS, Results, RunInfo, maps};
+use super::{IMPACTS, Mode, Output, PATHS, Results, RunInfo, maps, table};
 use crate::error::{Error, Result};
+use crate::hazard::Row;
 use crate::rock::Vec3;
 use std::path::{Path, PathBuf};
 
@@ -29,7 +30,7 @@ pub fn merge(parts: &[PathBuf], dir: &Path, mode: Mode) -> Result<Results> {
     };
     check_whole(&shards)?;
     check_apart(&shards, dir)?;
-    let mut output = Output::create(first.run_info(&shards), dir, mode)?;
+    let mut output = Output::create(first.run_info(&shards)?, dir, mode)?;
     for shard in &shards {
         output.append(shard)?;
     }
@@ -64,7 +65,7 @@ impl Shard {
     }
 
     /// What the whole run would have said of itself.
-    fn run_info(&self, shards: &[Self]) -> RunInfo {
+    fn run_info(&self, shards: &[Self]) -> Result<RunInfo> {
         let Summary {
             title,
             identity,
@@ -86,7 +87,8 @@ impl Shard {
         } = self.summary.clone();
         let keeps = |table: &str| self.progress.bytes.contains_key(table);
         let of_releases = identity.of_releases;
-        RunInfo {
+        let has_blocks = table::has_columns(&self.dir.join(super::RELEASES), &Row::SHAPE_COLUMNS)?;
+        Ok(RunInfo {
             title,
             identity: super::Identity { first_release: 0, releases: of_releases, ..identity },
             origin_m: Vec3::from(origin_m),
@@ -100,6 +102,7 @@ impl Shard {
             observed,
             keeps_paths: keeps(PATHS),
             keeps_impacts: keeps(IMPACTS),
+            has_blocks,
             is_shard: false,
             threads: shards.iter().map(|shard| shard.summary.run.threads).max().unwrap_or(0),
             plan: plan_entries,
@@ -109,7 +112,7 @@ impl Shard {
             language,
             warnings,
             mesh_health,
-        }
+        })
     }
 }
 

@@ -126,7 +126,7 @@ impl Results {
     ///
     /// As [`Self::rows`].
     pub fn paths(&self) -> Result<impl Iterator<Item = Result<PathRow>>> {
-        if_there(self.dir.join(PATHS), &PathRow::COLUMNS)
+        if_there(self.dir.join(PATHS), (&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS))
     }
 
     /// Writes the vectors of `maps/`: ends, what stands on the map, and paths where they were kept.
@@ -159,7 +159,7 @@ impl Results {
     ///
     /// As [`Self::rows`].
     pub fn impacts(&self) -> Result<impl Iterator<Item = Result<ImpactRow<'static>>>> {
-        if_there(self.dir.join(IMPACTS), &ImpactRow::COLUMNS)
+        if_there(self.dir.join(IMPACTS), (&ImpactRow::COLUMNS, &[]))
     }
 }
 
@@ -171,7 +171,7 @@ pub(super) fn lines(infos: &[LineInfo], asked: &Asked, releases: usize) -> Vec<L
 
 /// The rows of `crossings.csv` in `dir`.
 pub(super) fn crossings(dir: &Path) -> Result<impl Iterator<Item = Result<CrossingRow>> + use<>> {
-    if_there(dir.join(CROSSINGS), &CrossingRow::COLUMNS)
+    if_there(dir.join(CROSSINGS), CROSSING_COLUMNS)
 }
 
 /// Adds the crossings in `dir` to their lines.
@@ -179,7 +179,7 @@ pub(super) fn recall_lines(dir: &Path, lines: &mut [Line]) -> Result<()> {
     if lines.is_empty() {
         return Ok(());
     }
-    for row in table::rows::<CrossingRow>(dir.join(CROSSINGS), &CrossingRow::COLUMNS)? {
+    for row in table::rows::<CrossingRow>(dir.join(CROSSINGS), CROSSING_COLUMNS)? {
         let row = row?;
         let Some(line) = lines.iter_mut().find(|line| line.info.name == row.line) else {
             let found = format!("the line {}", row.line);
@@ -235,12 +235,17 @@ pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Resu
 }
 
 fn releases(dir: &Path) -> Result<impl Iterator<Item = Result<Row>> + use<>> {
-    table::rows(dir.join(RELEASES), &Row::COLUMNS)
+    table::rows(dir.join(RELEASES), (&Row::COLUMNS, &Row::SHAPE_COLUMNS))
 }
+
+/// Columns of a table, and those that follow where a scene has blocks.
+type Columns = (&'static [&'static str], &'static [&'static str]);
+
+const CROSSING_COLUMNS: Columns = (&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
 
 fn if_there<R: serde::de::DeserializeOwned>(
     path: PathBuf,
-    columns: &'static [&'static str],
+    columns: Columns,
 ) -> Result<impl Iterator<Item = Result<R>>> {
     let there = path.exists().then(|| table::rows(path, columns)).transpose()?;
     Ok(there.into_iter().flatten())

@@ -22,6 +22,9 @@ pub struct PathRow {
     pub clearance_m: f64,
     /// Flight, sliding or sticking.
     pub state: PathState,
+    /// How a block is turned, a unit quaternion w, x, y, z; none in a scene of spheres, where the file has no such columns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<[f64; 4]>,
 }
 
 impl PathRow {
@@ -42,6 +45,9 @@ impl PathRow {
         "state",
     ];
 
+    /// Columns that follow them where a scene has blocks.
+    pub const SHAPE_COLUMNS: [&'static str; 4] = ["qw", "qx", "qy", "qz"];
+
     /// The row of one instant of rock `index`; `origin_m` is the map position of the local (0, 0, 0).
     pub fn of(index: usize, point: &PathPoint, origin_m: Vec3) -> Self {
         Self {
@@ -52,6 +58,7 @@ impl PathRow {
             spin_rad_s: point.motion.spin_rad_s.into(),
             clearance_m: point.clearance_m,
             state: point.state,
+            attitude: point.attitude,
         }
     }
 }

@@ -88,17 +88,18 @@ impl Table {
     }
 }
 
-/// Reads the rows of a CSV file one by one. The columns must be these, in this order.
+/// Reads the rows of a CSV file one by one. The columns must be these, in this order, with all of `more` behind them or none.
 pub(super) fn rows<R: DeserializeOwned>(
     path: PathBuf,
-    columns: &'static [&'static str],
+    (columns, more): (&'static [&'static str], &'static [&'static str]),
 ) -> Result<impl Iterator<Item = Result<R>>> {
     let file = File::open(&path).map_err(Error::file("read", &path))?;
     let mut reader =
         csv::ReaderBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_reader(file);
     let mut record = csv::StringRecord::new();
     reader.read_record(&mut record).map_err(|why| in_file(&path, columns, why))?;
-    if record != *columns {
+    let all = [columns, more].concat();
+    if record != *columns && record != *all {
         let found: Vec<&str> = record.iter().collect();
         return Err(Error::input(
             &path,
@@ -107,7 +108,15 @@ pub(super) fn rows<R: DeserializeOwned>(
             format!("the columns must be \"{}\"", columns.join(",")),
         ));
     }
-    Ok(std::iter::from_fn(move || next_row(&mut reader, &mut record, &path, columns).transpose()))
+    Ok(std::iter::from_fn(move || next_row(&mut reader, &mut record, &path, &all).transpose()))
+}
+
+/// Whether the rows of a CSV file have these columns too.
+pub(super) fn has_columns(path: &Path, columns: &[&str]) -> Result<bool> {
+    let file = File::open(path).map_err(Error::file("read", path))?;
+    let mut reader = csv::Reader::from_reader(file);
+    let header = reader.headers().map_err(|why| in_file(path, columns, why))?;
+    Ok(columns.iter().all(|column| header.iter().any(|found| found == *column)))
 }
 
 /// The next row; none at the end of the file.

@@ -114,7 +114,7 @@ impl Plan {
             format!("{stems}, each whole again for the next rock")
         });
         list.line("flight", format!("leapt over: {}", never(flight)));
-        list.line("orientation", format!("left out: {}", never(orientation)));
+        list.shapes(places_of_release.shapes(), orientation);
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.lines("rolling stops", rolling_stops.iter().cloned());
@@ -226,6 +226,21 @@ impl List {
 
     fn lines(&mut self, label: &str, texts: impl Iterator<Item = String>) {
         texts.for_each(|text| self.line(label, text));
+    }
+
+    /// What shapes there are, and what they cost.
+    fn shapes(&mut self, shapes: &[String], orientation: &Part<Infallible>) {
+        if shapes.is_empty() {
+            self.line("orientation", format!("left out: {}", never(orientation)));
+            return;
+        }
+        self.lines("shape", shapes.iter().cloned());
+        self.line("orientation", "computed for blocks, free rotation in closed form; left out for spheres, which look the same from every side");
+        self.line("impacts of blocks", "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part");
+        self.line(
+            "cost of shape",
+            "a block is followed corner by corner and edge by edge: time grows with their number",
+        );
     }
 
     /// What of the mesh can never be touched.

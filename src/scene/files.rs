@@ -36,7 +36,9 @@ impl Scene {
         let deposits = self.calibrate.iter_mut().map(|table| &mut table.deposits);
         let grounds = self.ground_zones.iter_mut().map(|zones| &mut zones.file);
         let zones = [&mut self.release.zones, &mut self.release.table];
-        let paths = meshes.chain(drawn).chain(zones).flatten().chain(deposits).chain(grounds);
+        let shapes = self.rocks.shapes.iter_mut().map(|shape| &mut shape.mesh);
+        let paths =
+            meshes.chain(shapes).chain(drawn).chain(zones).flatten().chain(deposits).chain(grounds);
         paths.for_each(|path| *path = folder.join(&*path));
     }
 
@@ -148,6 +150,13 @@ impl Scene {
                 Complaint::about(key, format!("{remedy}; {why}")).inside(table)
             })?;
         }
+        for (index, path) in self.scans() {
+            take(path).map_err(|why| {
+                let remedy = "write the path of an STL file as seen from the scene file";
+                let about = Complaint::about("mesh", format!("{remedy}; {why}"));
+                about.in_entry(index).inside("shapes").inside("rocks")
+            })?;
+        }
         for ((table, index, key), path) in self.drawings() {
             for path in gis::files(path) {
                 take(&path).map_err(|why| {
@@ -194,6 +203,12 @@ impl Scene {
         let blocks = self.release.table.iter().map(|path| (("release", "table"), path.as_path()));
         let ends = self.calibrate.iter();
         blocks.chain(ends.map(|c| (("calibrate", "deposits"), c.deposits.as_path()))).collect()
+    }
+
+    /// Scanned shapes: entry and file.
+    fn scans(&self) -> impl Iterator<Item = (usize, &Path)> {
+        let shapes = self.rocks.shapes.iter().enumerate();
+        shapes.filter_map(|(index, shape)| Some((index, shape.mesh.as_deref()?)))
     }
 
     /// Files with drawings: table, entry and key that name them.

@@ -4,6 +4,7 @@ use super::blocks::Block;
 use super::check::{Allowed, Checked, Complaint, drawn};
 use super::frequency::SourceTable;
 use super::places::{Area, Corner, Point, Polyline};
+use super::shapes::Orientation;
 use super::zones::Zones;
 use crate::random::{Distribution, entries};
 use serde::Deserialize;
@@ -26,6 +27,8 @@ pub struct ReleaseTable {
     /// Angular velocity (rad/s).
     #[serde(deserialize_with = "entries")]
     pub spin_rad_s: [Distribution; 3],
+    /// How rocks with a shape are turned; absent = at random.
+    pub orientation: Option<Orientation>,
     /// Where: points in map coordinates (m), cycled through.
     pub points_m: Option<Vec<Point>>,
     /// Where: uniform along a polyline in map coordinates (m).

@@ -1,6 +1,7 @@
 //! `[rocks]` and `[rocks.contact]`.
 
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
+use super::shapes::ShapeTable;
 use crate::frequency::{Frequency, radius_of_m3};
 use crate::random::Distribution;
 use serde::Deserialize;
@@ -13,6 +14,9 @@ pub struct Rocks {
     pub density_kg_m3: f64,
     /// Radius (m), positive; absent in the file where `[frequency]` has volumes, and then filled in to reckon with.
     pub radius_m: Option<Distribution>,
+    /// Shapes, drawn by their weights; none = spheres.
+    #[serde(default)]
+    pub shapes: Vec<ShapeTable>,
     /// Contact between rocks; needed only when they share one world.
     pub contact: Option<RockContact>,
 }

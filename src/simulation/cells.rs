@@ -1,9 +1,10 @@
 //! Which cells of the maps a rock passes, with its largest energy and height in each.
 
+use super::form::{Form, Instant, Turned};
 use super::recorder::between;
 use crate::flight::Parabola;
 use crate::plan::MapGrid;
-use crate::rock::{Motion, Rock, Vec3};
+use crate::rock::{Motion, Vec3};
 use crate::terrain::Terrain;
 
 /// One rock in one cell.
@@ -61,19 +62,21 @@ impl<'a> CellPassages<'a> {
     /// height is taken at both ends and in the middle of that part.
     pub(super) fn fly(
         &mut self,
-        (terrain, rock): (&Terrain, &Rock),
-        from: &Motion,
+        (terrain, form): (&Terrain, &Form),
         flight: &Parabola,
         dt: f64,
+        at: impl Fn(f64) -> Instant,
     ) {
         let Some(cells) = self.cells else { return };
-        let rotational_j = from.rotational_j(rock);
+        let from = at(0.0);
+        let rotational_j = form.rotational_j(&from);
+        let from = &from.motion;
         let total_j =
-            |t: f64| 0.5 * rock.mass_kg() * flight.velocity(t).norm_squared() + rotational_j;
+            |t: f64| 0.5 * form.rock.mass_kg() * flight.velocity(t).norm_squared() + rotational_j;
         let height_m = |t: f64| {
             let centre = flight.centre(t);
             let ground = terrain.ground_under(centre.x, centre.y, centre.z);
-            ground.map_or(0.0, |ground| (centre.z - rock.radius_m - ground).max(0.0))
+            ground.map_or(0.0, |ground| (centre.z - form.below_m(&at(t)) - ground).max(0.0))
         };
         let end = flight.centre(dt);
         walk(cells, [&from.position_m, &end], |cell, s0, s1| {
@@ -87,11 +90,12 @@ impl<'a> CellPassages<'a> {
     }
 
     /// Notes the cells of a step in contact, which are shorter than cells: its ends hold what it has.
-    pub(super) fn step(&mut self, rock: &Rock, from: &Motion, to: &Motion) {
+    pub(super) fn step(&mut self, form: &Form, [from, to]: [&Motion; 2], turned: Option<Turned>) {
         let Some(cells) = self.cells else { return };
         let total_j = |s: f64| {
             let motion = between(from, to, s);
-            motion.translational_j(rock) + motion.rotational_j(rock)
+            let rotational_j = form.rotational_j(&Instant { motion, turned });
+            motion.translational_j(&form.rock) + rotational_j
         };
         walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {
             let total_j = total_j(s0).max(total_j(s1));

@@ -1,10 +1,11 @@
 //! Where a rock passes evaluation lines: exact on the parabola of a flight and on the cubic of a step.
 
+use super::form::{Form, Instant, Turned};
 use super::recorder::between;
 use crate::flight::Parabola;
 use crate::math;
 use crate::plan::{EvaluationLine, Footprint, Piece};
-use crate::rock::{Motion, Rock};
+use crate::rock::{Motion, Vec3};
 use crate::scene::Corner;
 use crate::terrain::Terrain;
 
@@ -15,6 +16,10 @@ pub struct Crossing {
     pub line: usize,
     /// Motion at the crossing (local coordinates).
     pub motion: Motion,
+    /// Rotational energy (J).
+    pub rotational_j: f64,
+    /// Vertical distance from the ground below to the highest point of a block (m); none for a sphere, whose diameter tells.
+    pub top_m: Option<f64>,
     /// Where along the line (m), from its first corner.
     pub along_m: f64,
     /// Vertical distance from the ground below to the lowest point of the rock (m); NaN where there is no ground.
@@ -63,41 +68,38 @@ impl<'a> Crossings<'a> {
         self.found
     }
 
-    /// Notes the lines that a flight of `dt` (s) passes. Seen from above a flight is straight and even: the moment
-    /// follows from one division.
+    /// Notes the lines that a flight of `dt` (s) passes, with the rock as `at` says after a time (s). Seen from above a flight
+    /// is straight and even: the moment follows from one division.
     pub(super) fn fly(
         &mut self,
-        (terrain, rock): (&Terrain, &Rock),
-        from: &Motion,
+        (terrain, form): (&Terrain, &Form),
         flight: &Parabola,
         dt: f64,
+        at: impl Fn(f64) -> Instant,
     ) {
         if self.lines.is_empty() {
             return;
         }
-        let (a, b) = (flat(&from.position_m), flat(&flight.centre(dt)));
+        let (a, b) = (flat(&at(0.0).motion.position_m), flat(&flight.centre(dt)));
         self.pass(
-            (terrain, rock),
+            (terrain, form),
             [a, a, b, b],
             |piece| {
                 let (start, end) = (piece.side_m(a), piece.side_m(b));
                 let crosses = (start > 0.0) != (end > 0.0);
                 crosses.then(|| start / (start - end)).into_iter().collect()
             },
-            |s| {
-                let t = s * dt;
-                Motion {
-                    time_s: from.time_s + t,
-                    position_m: flight.centre(t),
-                    velocity_m_s: flight.velocity(t),
-                    spin_rad_s: from.spin_rad_s,
-                }
-            },
+            |s| at(s * dt),
         );
     }
 
-    /// Notes the lines that a step in contact passes.
-    pub(super) fn step(&mut self, (terrain, rock): (&Terrain, &Rock), from: &Motion, to: &Motion) {
+    /// Notes the lines that a step in contact passes; a block stands as at the end of it.
+    pub(super) fn step(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        [from, to]: [&Motion; 2],
+        turned: Option<Turned>,
+    ) {
         if self.lines.is_empty() {
             return;
         }
@@ -110,10 +112,10 @@ impl<'a> Crossings<'a> {
         ];
         let hull = hull.map(|point| flat(&point));
         self.pass(
-            (terrain, rock),
+            (terrain, form),
             hull,
             |piece| roots(hull.map(|point| piece.side_m(point))),
-            |s| between(from, to, s),
+            |s| Instant { motion: between(from, to, s), turned },
         );
     }
 
@@ -121,23 +123,24 @@ impl<'a> Crossings<'a> {
     /// endless line of a piece, rising, `at` the motion there.
     fn pass(
         &mut self,
-        (terrain, rock): (&Terrain, &Rock),
+        (terrain, form): (&Terrain, &Form),
         hull: [Corner; 4],
         when: impl Fn(&Piece) -> Vec<f64>,
-        at: impl Fn(f64) -> Motion,
+        at: impl Fn(f64) -> Instant,
     ) {
         let low = [0, 1].map(|k| hull.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
         let high = [0, 1].map(|k| hull.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
         for (line, evaluation_line) in self.lines.iter().enumerate() {
             if let Some(footprint) = evaluation_line.footprint {
-                let free = |k: usize| [low[k] - rock.radius_m, high[k] + rock.radius_m];
+                let rim_m = form.rim_m();
+                let free = |k: usize| [low[k] - rim_m, high[k] + rim_m];
                 let ([west, east], [south, north]) = (free(0), free(1));
                 let is_known = self.found.iter().any(|crossing| crossing.line == line);
                 if is_known || !evaluation_line.is_near([west, south], [east, north]) {
                     continue;
                 }
-                if let Some((s, along_m)) = enter((evaluation_line, footprint), rock, hull, &at) {
-                    self.note((terrain, rock), line, (at(s), along_m), 1);
+                if let Some((s, along_m)) = enter((evaluation_line, footprint), rim_m, hull, &at) {
+                    self.note((terrain, form), line, (at(s), along_m), 1);
                 }
                 continue;
             }
@@ -148,7 +151,7 @@ impl<'a> Crossings<'a> {
             let mut met: Vec<(f64, f64)> = Vec::new();
             for (k, piece) in evaluation_line.pieces.iter().enumerate() {
                 for s in when(piece) {
-                    let share = piece.share(flat(&at(s).position_m));
+                    let share = piece.share(flat(&at(s).motion.position_m));
                     // a corner belongs to the piece that it begins
                     if (0.0..1.0).contains(&share) || k == last && share <= 1.0 && share > 0.0 {
                         met.push((s, piece.along_m + share * piece.length_m()));
@@ -157,30 +160,49 @@ impl<'a> Crossings<'a> {
             }
             met.sort_by(|one, other| one.0.total_cmp(&other.0));
             if let Some(&(s, along_m)) = met.first() {
-                self.note((terrain, rock), line, (at(s), along_m), met.len() as u32);
+                self.note((terrain, form), line, (at(s), along_m), met.len() as u32);
             }
         }
     }
 
     fn note(
         &mut self,
-        (terrain, rock): (&Terrain, &Rock),
+        (terrain, form): (&Terrain, &Form),
         line: usize,
-        (motion, along_m): (Motion, f64),
+        (instant, along_m): (Instant, f64),
         times: u32,
     ) {
         if let Some(known) = self.found.iter_mut().find(|crossing| crossing.line == line) {
             known.times += times;
             return;
         }
-        let centre = motion.position_m;
+        let centre = instant.motion.position_m;
         let below = terrain.slope_under(centre.x, centre.y, centre.z);
         let (height_m, height_normal_m) = below.map_or((f64::NAN, f64::NAN), |(ground, normal)| {
             let over = centre.z - ground;
-            (over - rock.radius_m, over * normal.z.abs() - rock.radius_m)
+            let near = over * normal.z.abs() - form.reach_m(&instant, &-up(normal));
+            (over - form.below_m(&instant), near)
         });
-        self.found.push(Crossing { line, motion, along_m, height_m, height_normal_m, times });
+        let over = |(ground, _)| centre.z - ground + form.reach_m(&instant, &Vec3::z());
+        let top_m = form.block.map(|_| below.map_or(f64::NAN, over));
+        let rotational_j = form.rotational_j(&instant);
+        let Instant { motion, .. } = instant;
+        self.found.push(Crossing {
+            line,
+            motion,
+            rotational_j,
+            top_m,
+            along_m,
+            height_m,
+            height_normal_m,
+            times,
+        });
     }
+}
+
+/// The normal of a slope that points up.
+fn up(normal: Vec3) -> Vec3 {
+    if normal.z < 0.0 { -normal } else { normal }
 }
 
 /// Nearer than this (m) touches: a hit is found to 1e-5 m of way, and a rim that comes no deeper over an object than 1e-9 m may be missed.
@@ -194,16 +216,16 @@ const SHORTEST_M: f64 = 1e-5;
 /// than three times the longest side of the hull allows, so the first touch cannot be jumped over.
 fn enter(
     (evaluation_line, footprint): (&EvaluationLine, Footprint),
-    rock: &Rock,
+    rim_m: f64,
     hull: [Corner; 4],
-    at: impl Fn(f64) -> Motion,
+    at: impl Fn(f64) -> Instant,
 ) -> Option<(f64, f64)> {
     let side = |pair: &[Corner]| math::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
     let fastest_m = 3.0 * hull.windows(2).map(side).fold(0.0, f64::max);
     let mut s = 0.0;
     while s <= 1.0 {
-        let (gap_m, along_m) = evaluation_line.gap_m(footprint, flat(&at(s).position_m));
-        let free_m = gap_m - rock.radius_m;
+        let (gap_m, along_m) = evaluation_line.gap_m(footprint, flat(&at(s).motion.position_m));
+        let free_m = gap_m - rim_m;
         if free_m <= TOUCH_M {
             return Some((s, along_m));
         }
@@ -212,7 +234,7 @@ fn enter(
     None
 }
 
-fn flat(point: &crate::rock::Vec3) -> Corner {
+fn flat(point: &Vec3) -> Corner {
     [point.x, point.y]
 }
 

@@ -1,5 +1,7 @@
 //! The fall itself: leap, touch, step, stop.
 
+use super::block::follow_block;
+use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::roughness::Roughness;
@@ -10,8 +12,9 @@ use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan, Recorders, RestRule};
 use crate::random::{Purpose, RandomStream, stream};
-use crate::release::Release;
+use crate::release::{Drawn, Release};
 use crate::rock::Motion;
+use crate::solver::block::Footing;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
 use crate::solver::law::Body;
 use crate::solver::{self, Settings, Stepper};
@@ -41,6 +44,7 @@ pub struct RunSettings<'a> {
 #[derive(Debug, Default)]
 pub struct Scratch {
     state: ContactState,
+    footing: Footing,
     load: StemLoad,
     laws: Vec<Law>,
     /// Dashpots of the grounds of the rock before: most scenes never change them.
@@ -84,12 +88,7 @@ pub fn simulate(
     random: &mut RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
-    let capture = Capture {
-        own_m_s: settings.step.capture_speed_m_s,
-        tolerance_m_s: settings.step.tolerance_m_s,
-        gravity_m_s2: settings.gravity_m_s2,
-    };
-    scratch.make_laws(release, &capture);
+    scratch.make_laws(release, &capture_of(settings));
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
     scratch.load.begin(settings.terrain, &mut scratch.state.near.gone, random);
@@ -107,8 +106,8 @@ pub fn simulate(
         roughness: Roughness::default(),
         recorder: Recorder::new(
             settings.terrain,
-            release.rock,
-            release.motion,
+            Form { rock: release.rock, block: None },
+            (release.motion, None),
             (keep, settings.recorders),
         ),
     };
@@ -121,6 +120,25 @@ pub fn simulate(
         }
     };
     fall.end(release, stop)
+}
+
+/// The same for a block, with scheme `rigid`.
+pub fn simulate_block(
+    settings: &RunSettings,
+    (release, drawn): (&Release, &Drawn),
+    keep: Keep,
+    scratch: &mut Scratch,
+) -> Trajectory {
+    scratch.make_laws(release, &capture_of(settings));
+    follow_block(settings, (release, drawn), keep, &scratch.laws, &mut scratch.footing)
+}
+
+fn capture_of(settings: &RunSettings) -> Capture {
+    Capture {
+        own_m_s: settings.step.capture_speed_m_s,
+        tolerance_m_s: settings.step.tolerance_m_s,
+        gravity_m_s2: settings.gravity_m_s2,
+    }
 }
 
 /// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
@@ -139,9 +157,14 @@ pub fn simulate_release(
         Ok(release) => release,
         Err(lost) => return Ok(Trajectory::not_released(index, lost.rock, lost.start, lost.why)),
     };
-    let mut random = stream(plan.seed, Purpose::Impacts, index);
-    let fallen =
-        simulate(&RunSettings::of(plan), &release, kept(plan, index, paths), &mut random, scratch);
+    let keep = kept(plan, index, paths);
+    let settings = RunSettings::of(plan);
+    let fallen = if let Some(drawn) = plan.releases.block(index, &release.rock) {
+        simulate_block(&settings, (&release, &drawn), keep, scratch)
+    } else {
+        let mut random = stream(plan.seed, Purpose::Impacts, index);
+        simulate(&settings, &release, keep, &mut random, scratch)
+    };
     Ok(Trajectory { index, ..fallen })
 }
 
@@ -215,7 +238,7 @@ impl Fall<'_> {
         self.state.stopwatches.stop(Piece::Leap, begun);
         self.recorder.effort.leaps += 1;
         let begun = self.state.stopwatches.now();
-        self.recorder.fly(&flight, dt);
+        self.recorder.fly(&flight, None, dt);
         self.state.stopwatches.stop(Piece::NotesInFlight, begun);
         // flights count too: between two plates a rock may fly without end and without getting on in time
         stop.or_else(|| self.over_budget())
@@ -331,26 +354,10 @@ impl Fall<'_> {
         self.recorder.end_path();
         self.recorder.effort.sweeps += self.state.sweeps;
         self.recorder.effort.triangles += self.state.near.tested;
-        let recorder = self.recorder;
         let start = release.motion;
-        let fallen = start.position_m.z - recorder.now.position_m.z;
+        let fallen = start.position_m.z - self.recorder.now.position_m.z;
         let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
-        Trajectory {
-            index: 0,
-            rock: release.rock,
-            start,
-            end: recorder.now,
-            stop,
-            extremes: recorder.extremes,
-            impact_count: recorder.impacts.count,
-            tree_impact_count: recorder.tree_impact_count,
-            impacts: recorder.impacts.rows,
-            path: recorder.path,
-            crossings: recorder.crossings.into_found(),
-            passages: recorder.passages.into_found(),
-            ledger: recorder.ledger,
-            released_j: self.world.body.mass * self.settings.gravity_m_s2 * fallen + kinetic,
-            effort: recorder.effort,
-        }
+        let released_j = self.world.body.mass * self.settings.gravity_m_s2 * fallen + kinetic;
+        self.recorder.into_trajectory(release, stop, released_j)
     }
 }

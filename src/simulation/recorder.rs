@@ -2,11 +2,14 @@
 
 use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
+use super::form::{Form, Instant, Turned};
 use super::impacts::{Impacts, ImpactsMark, Struck};
-use super::{Effort, Extremes, Ledger, PathPoint, PathState};
+use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
 use crate::flight::Parabola;
+use crate::flight::top::Top;
 use crate::plan::Recorders;
-use crate::rock::{Motion, Rock, Vec3};
+use crate::release::Release;
+use crate::rock::Motion;
 use crate::solver::contact_state::Loss;
 use crate::terrain::Terrain;
 
@@ -23,9 +26,11 @@ pub struct Keep {
 #[derive(Debug)]
 pub(super) struct Recorder<'a> {
     terrain: &'a Terrain,
-    rock: Rock,
+    form: Form<'a>,
     keep: Keep,
     pub(super) now: Motion,
+    /// How a block is turned now; none for a sphere.
+    pub(super) turned: Option<Turned>,
     pub(super) extremes: Extremes,
     pub(super) path: Vec<PathPoint>,
     pub(super) impacts: Impacts,
@@ -46,6 +51,7 @@ const HEIGHT_STEP_S: f64 = 0.1;
 #[derive(Debug)]
 pub(super) struct Mark {
     now: Motion,
+    turned: Option<Turned>,
     extremes: Extremes,
     path: usize,
     impacts: ImpactsMark,
@@ -59,15 +65,16 @@ pub(super) struct Mark {
 impl<'a> Recorder<'a> {
     pub(super) fn new(
         terrain: &'a Terrain,
-        rock: Rock,
-        start: Motion,
+        form: Form<'a>,
+        (start, turned): (Motion, Option<Turned>),
         (keep, recorders): (Keep, Recorders<'a>),
     ) -> Self {
         let mut recorder = Self {
             terrain,
-            rock,
+            form,
             keep,
             now: start,
+            turned,
             extremes: Extremes::default(),
             path: Vec::new(),
             impacts: Impacts::kept_if(keep.impacts),
@@ -79,7 +86,7 @@ impl<'a> Recorder<'a> {
             next_point_s: if keep.path_step_s.is_some() { 0.0 } else { f64::INFINITY },
         };
         recorder.note_speed();
-        recorder.note_height(&start.position_m);
+        recorder.note_height(&recorder.instant());
         recorder
     }
 
@@ -87,6 +94,7 @@ impl<'a> Recorder<'a> {
     pub(super) fn mark(&self) -> Mark {
         Mark {
             now: self.now,
+            turned: self.turned,
             extremes: self.extremes,
             path: self.path.len(),
             impacts: self.impacts.mark(),
@@ -101,6 +109,7 @@ impl<'a> Recorder<'a> {
     /// Goes back to `mark`; what was tried in vain was work all the same.
     pub(super) fn go_back(&mut self, mark: &Mark) {
         (self.now, self.extremes, self.ledger) = (mark.now, mark.extremes, mark.ledger);
+        self.turned = mark.turned;
         self.path.truncate(mark.path);
         self.impacts.go_back(&mark.impacts);
         self.crossings.go_back(&mark.crossings);
@@ -110,7 +119,8 @@ impl<'a> Recorder<'a> {
 
     /// Notes the present speed and energies.
     pub(super) fn note_speed(&mut self) {
-        let (one, two) = (self.now.translational_j(&self.rock), self.now.rotational_j(&self.rock));
+        let one = self.now.translational_j(&self.form.rock);
+        let two = self.form.rotational_j(&self.instant());
         let most = &mut self.extremes;
         most.speed_m_s = most.speed_m_s.max(self.now.velocity_m_s.norm());
         most.translational_j = most.translational_j.max(one);
@@ -123,43 +133,49 @@ impl<'a> Recorder<'a> {
         self.terrain.sheet_of[triangle as usize]
     }
 
-    fn clearance_m(&self, centre: &Vec3) -> Option<f64> {
-        self.terrain
-            .ground_under(centre.x, centre.y, centre.z)
-            .map(|ground| centre.z - self.rock.radius_m - ground)
+    fn instant(&self) -> Instant {
+        Instant { motion: self.now, turned: self.turned }
     }
 
-    fn note_height(&mut self, centre: &Vec3) {
-        let most_m = centre.z - self.rock.radius_m - self.terrain.floor.under(centre.x, centre.y);
+    fn clearance_m(&self, at: &Instant) -> Option<f64> {
+        let centre = &at.motion.position_m;
+        self.terrain
+            .ground_under(centre.x, centre.y, centre.z)
+            .map(|ground| centre.z - self.form.below_m(at) - ground)
+    }
+
+    fn note_height(&mut self, at: &Instant) {
+        let centre = &at.motion.position_m;
+        let most_m =
+            centre.z - self.form.below_m(at) - self.terrain.floor.under(centre.x, centre.y);
         if most_m <= self.extremes.height_m {
             return;
         }
-        if let Some(height) = self.clearance_m(centre) {
+        if let Some(height) = self.clearance_m(at) {
             self.extremes.height_m = self.extremes.height_m.max(height);
         }
     }
 
-    /// Goes along a flight for `dt` (s).
-    pub(super) fn fly(&mut self, flight: &Parabola, dt: f64) {
+    /// Goes along a flight for `dt` (s); a block turns as `top` does.
+    pub(super) fn fly(&mut self, flight: &Parabola, top: Option<&Top>, dt: f64) {
         let start = self.now;
+        let at = |t: f64| Instant::in_flight(&start, flight, top, t);
         while self.next_point_s <= start.time_s + dt {
             let t = self.next_point_s - start.time_s;
-            let motion = Motion {
-                time_s: self.next_point_s,
-                position_m: flight.centre(t),
-                velocity_m_s: flight.velocity(t),
-                spin_rad_s: start.spin_rad_s,
-            };
-            self.point(motion, PathState::Flight);
+            let instant = at(t);
+            let motion = Motion { time_s: self.next_point_s, ..instant.motion };
+            self.point(&Instant { motion, ..instant }, PathState::Flight);
         }
         let points = (dt / HEIGHT_STEP_S).ceil().min(HEIGHT_POINTS) as u32;
         for k in 1..=points {
-            self.note_height(&flight.centre(dt * f64::from(k) / f64::from(points + 1)));
+            self.note_height(&at(dt * f64::from(k) / f64::from(points + 1)));
         }
-        self.crossings.fly((self.terrain, &self.rock), &start, flight, dt);
-        self.passages.fly((self.terrain, &self.rock), &start, flight, dt);
+        self.crossings.fly((self.terrain, &self.form), flight, dt, at);
+        self.passages.fly((self.terrain, &self.form), flight, dt, at);
+        let end = at(dt);
         self.now.time_s += dt;
         (self.now.position_m, self.now.velocity_m_s) = (flight.centre(dt), flight.velocity(dt));
+        (self.now.spin_rad_s, self.turned) = (end.motion.spin_rad_s, end.turned);
         self.note_speed();
     }
 
@@ -171,24 +187,53 @@ impl<'a> Recorder<'a> {
     /// Goes along one step in `state` to `to`.
     pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
         let from = std::mem::replace(&mut self.now, to);
-        self.crossings.step((self.terrain, &self.rock), &from, &to);
-        self.passages.step(&self.rock, &from, &to);
+        self.crossings.step((self.terrain, &self.form), [&from, &to], self.turned);
+        self.passages.step(&self.form, [&from, &to], self.turned);
         let dt = to.time_s - from.time_s;
         while self.next_point_s <= to.time_s {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };
             let motion = between(&from, &to, s.clamp(0.0, 1.0));
-            self.point(Motion { time_s: self.next_point_s, ..motion }, state);
+            let motion = Motion { time_s: self.next_point_s, ..motion };
+            self.point(&Instant { motion, turned: self.turned }, state);
         }
         if state == PathState::Flight {
-            self.note_height(&to.position_m);
+            self.note_height(&self.instant());
         }
         self.note_speed();
     }
 
-    fn point(&mut self, motion: Motion, state: PathState) {
-        let clearance_m = self.clearance_m(&motion.position_m).unwrap_or(f64::NAN);
-        self.path.push(PathPoint { motion, clearance_m, state });
+    fn point(&mut self, at: &Instant, state: PathState) {
+        let clearance_m = self.clearance_m(at).unwrap_or(f64::NAN);
+        let attitude = at.turned.map(|turned| turned.quaternion());
+        self.path.push(PathPoint { motion: at.motion, clearance_m, state, attitude });
         self.next_point_s += self.keep.path_step_s.unwrap_or(f64::INFINITY);
+    }
+
+    /// The whole journey.
+    pub(super) fn into_trajectory(
+        self,
+        release: &Release,
+        stop: Stop,
+        released_j: f64,
+    ) -> Trajectory {
+        Trajectory {
+            index: 0,
+            rock: release.rock,
+            shape: None,
+            start: release.motion,
+            end: self.now,
+            stop,
+            extremes: self.extremes,
+            impact_count: self.impacts.count,
+            tree_impact_count: self.tree_impact_count,
+            impacts: self.impacts.rows,
+            path: self.path,
+            crossings: self.crossings.into_found(),
+            passages: self.passages.into_found(),
+            ledger: self.ledger,
+            released_j,
+            effort: self.effort,
+        }
     }
 
     /// Keeps the last point of the path.
@@ -197,8 +242,8 @@ impl<'a> Recorder<'a> {
             && self.path.last().is_none_or(|last| last.motion.time_s < self.now.time_s)
         {
             let state = self.path.last().map_or(PathState::Flight, |last| last.state);
-            let now = self.now;
-            self.point(now, state);
+            let now = self.instant();
+            self.point(&now, state);
         }
     }
 

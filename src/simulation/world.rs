@@ -14,6 +14,7 @@ mod prediction;
 mod cached_pairs;
 
 use super::driver::{RunSettings, kept};
+use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::{Stop, Trajectory};
@@ -172,7 +173,12 @@ fn body<'a>(
     let start = (motion.position_m, motion.velocity_m_s, motion.spin_rad_s);
     WorldBody {
         member: BodySlot::new(IslandBody::new(body, laws.collect(), start)),
-        recorder: Recorder::new(settings.terrain, release.rock, motion, (keep, settings.recorders)),
+        recorder: Recorder::new(
+            settings.terrain,
+            Form { rock: release.rock, block: None },
+            (motion, None),
+            (keep, settings.recorders),
+        ),
         state: State::Moving,
         lands: None,
         calm: RestCriterion::from(motion.position_m),

@@ -22,6 +22,7 @@ mod boxes;
 
 mod bad_input;
 mod belongs;
+mod blocks;
 mod bounded;
 mod bounded_worlds;
 mod calibrate;

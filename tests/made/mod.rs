@@ -58,6 +58,7 @@ pub fn info(releases: usize) -> RunInfo {
         observed: vec![],
         keeps_paths: true,
         keeps_impacts: true,
+        has_blocks: false,
         is_shard: false,
         threads: 2,
         plan: vec![PlanEntry {
@@ -96,6 +97,7 @@ impl RandomStream {
             motion: self.motion(step as f64 * 0.05),
             clearance_m: if step == 0 { f64::NAN } else { 0.25 },
             state,
+            attitude: None,
         };
         states.into_iter().enumerate().map(point).collect()
     }
@@ -117,6 +119,8 @@ impl RandomStream {
         let crossing = |line: usize| Crossing {
             line,
             motion: self.motion(2.5),
+            rotational_j: 1234.5,
+            top_m: None,
             along_m: self.number(30.0),
             height_m: self.number(3.0),
             height_normal_m: if index == 1 { f64::NAN } else { self.number(2.0) },
@@ -170,6 +174,7 @@ pub fn fall(index: usize) -> Trajectory {
     let mut fall = Trajectory {
         index,
         rock: Rock { radius_m: 0.1 + random.number(0.5), density_kg_m3: 2700.0 },
+        shape: None,
         start: random.motion(0.0),
         end: random.motion(12.5),
         stop: stop(index),

@@ -293,6 +293,7 @@ fn a_line_by_hand() {
             radius_m: 0.5,
             times: if k.is_multiple_of(40) || k == 7 { 2 } else { 1 },
             position_m: [0.0; 3],
+            top_m: None,
         }
     };
     let info = info(1).lines[0].clone();

@@ -54,6 +54,11 @@ fn every_known_key_stands_in_the_documentation() {
         ("grounds", "[grounds.talus]\n", ""),
         ("rocks", "[rocks]\n", ""),
         ("rocks.contact", contact, contact),
+        (
+            "rocks.shapes",
+            "[[rocks.shapes]]\n",
+            "[[rocks.shapes]]\nkind = \"eota111\"\ncorner_radius = 0.1\n",
+        ),
         ("release", "[release]\n", ""),
         ("solver", "[solver]\n", "[solver]\n"),
         ("record", "[record]\n", ""),

@@ -38,6 +38,7 @@ pub fn row(index: usize, line: &str, volume_m3: f64, energy_j: f64) -> CrossingR
         radius_m: radius_of_m3(volume_m3),
         times: 1,
         position_m: [0.0; 3],
+        top_m: None,
     }
 }
 

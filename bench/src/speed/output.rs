@@ -80,6 +80,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         observed: Vec::new(),
         keeps_paths: false,
         keeps_impacts: false,
+        has_blocks: false,
         is_shard: false,
         threads: 1,
         plan: Vec::new(),

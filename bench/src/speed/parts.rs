@@ -224,6 +224,7 @@ fn info(plan: &Plan) -> RunInfo {
         maps,
         keeps_paths: plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
+        has_blocks: plan.releases.has_blocks(),
         ..super::output::info(&plan.terrain, &plan.ground_names, plan.count)
     }
 }

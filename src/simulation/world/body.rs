@@ -97,7 +97,7 @@ impl WorldBody<'_> {
         let dt = time_s - self.recorder.now.time_s;
         if self.member.flying && dt > 0.0 {
             let flight = self.flight(settings);
-            self.recorder.fly(&flight, dt);
+            self.recorder.fly(&flight, None, dt);
             self.recorder.now.time_s = time_s;
         }
         let now = self.recorder.now;
@@ -336,28 +336,11 @@ impl WorldBody<'_> {
             ledger.remainder_j += entry.min(0.0);
             *entry = entry.max(0.0);
         }
-        let recorder = self.recorder;
         let start = release.motion;
-        let fallen = start.position_m.z - recorder.now.position_m.z;
+        let fallen = start.position_m.z - self.recorder.now.position_m.z;
         let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
-        let mut effort = recorder.effort;
-        effort.triangles += self.member.state.near.tested;
-        Trajectory {
-            index,
-            rock: release.rock,
-            start,
-            end: recorder.now,
-            stop,
-            extremes: recorder.extremes,
-            impact_count: recorder.impacts.count,
-            tree_impact_count: recorder.tree_impact_count,
-            impacts: recorder.impacts.rows,
-            path: recorder.path,
-            crossings: recorder.crossings.into_found(),
-            passages: recorder.passages.into_found(),
-            ledger: recorder.ledger,
-            released_j: self.member.body.mass * settings.gravity_m_s2 * fallen + kinetic,
-            effort,
-        }
+        self.recorder.effort.triangles += self.member.state.near.tested;
+        let released_j = self.member.body.mass * settings.gravity_m_s2 * fallen + kinetic;
+        Trajectory { index, ..self.recorder.into_trajectory(release, stop, released_j) }
     }
 }

@@ -1,0 +1,217 @@
+//! The convex core of a block: corners, edges and faces, coplanar triangles being one face.
+
+use super::BadSurface;
+use crate::rock::Vec3;
+use nalgebra::Matrix3;
+
+/// Points of one face lie in its plane to this (–, relative to the size of the hull).
+const FLAT: f64 = 1e-9;
+/// Most corners of a core.
+const MOST: usize = 64;
+/// Weight of "move along the mean normal" beside "keep every face where it is" when corners are moved inwards (–).
+const GUIDE: f64 = 1e-10;
+
+/// Most corners that a core may have.
+pub const fn most_corners() -> usize {
+    MOST
+}
+
+/// A face of the core.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Face {
+    /// Outward unit normal.
+    pub normal: Vec3,
+    /// Distance of its plane from the origin along the normal.
+    pub level: f64,
+    /// Its corners in turn, seen from outside.
+    pub corners: Vec<u8>,
+}
+
+/// An edge of the core.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ridge {
+    /// Its ends.
+    pub ends: [u8; 2],
+    /// Unit directions across it into its two faces: a direction that has no part along either lies in the cone of its normals.
+    pub into: [Vec3; 2],
+}
+
+/// A convex polyhedron.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Core {
+    /// Corners.
+    pub corners: Vec<Vec3>,
+    /// Edges.
+    pub ridges: Vec<Ridge>,
+    /// Faces.
+    pub faces: Vec<Face>,
+}
+
+impl Core {
+    /// The hull of at most [`most_corners`] points, those on its faces and edges or inside left out.
+    ///
+    /// Every plane through three points with all others on one side is a face: of so few points that takes no time, and no
+    /// rounding can make it miss one.
+    ///
+    /// # Errors
+    /// Too many points, or all of them in one plane.
+    pub fn of(points: &[Vec3]) -> Result<Self, BadSurface> {
+        if points.len() > MOST {
+            return Err(BadSurface::TooMany(points.len()));
+        }
+        let size = points.iter().map(Vec3::norm).fold(0.0, f64::max);
+        let planes = supporting(points, FLAT * size);
+        let on = |k: usize| planes.iter().filter(|plane| plane.points & (1 << k) != 0).count();
+        let kept: Vec<usize> = (0..points.len()).filter(|&k| on(k) > 2).collect();
+        if planes.len() < 4 || kept.len() < 4 {
+            return Err(BadSurface::Flat);
+        }
+        let corners: Vec<Vec3> = kept.iter().map(|&k| points[k]).collect();
+        let faces: Vec<Face> = planes.iter().map(|plane| plane.face(&kept, &corners)).collect();
+        let ridges = ridges(&faces, &corners);
+        Ok(Self { corners, ridges, faces })
+    }
+
+    /// The same, larger.
+    #[must_use]
+    pub fn scaled(&self, by: f64) -> Self {
+        let mut core = self.clone();
+        core.corners.iter_mut().for_each(|p| *p *= by);
+        core.faces.iter_mut().for_each(|face| face.level *= by);
+        core
+    }
+
+    /// Corners moved inwards so that the planes of their faces move by `way`: exactly where three faces meet, by least
+    /// squares where more do.
+    pub(super) fn inset(&self, way: f64) -> Vec<Vec3> {
+        let moved = |k: usize| {
+            let of = |face: &&Face| face.corners.contains(&(k as u8));
+            let normals: Vec<Vec3> = self.faces.iter().filter(of).map(|face| face.normal).collect();
+            let mean = normals.iter().sum::<Vec3>().normalize();
+            let mut square = Matrix3::identity() * GUIDE;
+            let mut right = mean * GUIDE;
+            for n in &normals {
+                square += n * n.transpose();
+                right += n;
+            }
+            let step = square.try_inverse().map_or(mean, |inverse| inverse * right);
+            self.corners[k] - step * way
+        };
+        (0..self.corners.len()).map(moved).collect()
+    }
+
+    /// Distance of a point from the core, 0 inside: that to the nearest of its faces' planes, or more.
+    pub(super) fn distance(&self, p: &Vec3) -> f64 {
+        let corners = self.corners.iter().map(|corner| (p - corner).norm());
+        let ridges = self.ridges.iter().map(|ridge| {
+            let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
+            let s = ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
+            (p - a - (b - a) * s).norm()
+        });
+        let over = |face: &Face| face.normal.dot(p) - face.level;
+        let faces = self.faces.iter().filter(|face| over(face) > 0.0 && self.is_over(face, p));
+        let outside = self.faces.iter().any(|face| over(face) > 0.0);
+        let nearest = corners.chain(ridges).chain(faces.map(over)).fold(f64::INFINITY, f64::min);
+        if outside { nearest } else { 0.0 }
+    }
+
+    /// Whether the foot of a point lies on a face.
+    pub fn is_over(&self, face: &Face, p: &Vec3) -> bool {
+        let count = face.corners.len();
+        (0..count).all(|k| {
+            let [a, b] = [k, (k + 1) % count].map(|k| self.corners[usize::from(face.corners[k])]);
+            face.normal.cross(&(b - a)).dot(&(p - a)) >= 0.0
+        })
+    }
+}
+
+/// A plane with all points on one side.
+struct Plane {
+    normal: Vec3,
+    level: f64,
+    /// Bits of the points on it.
+    points: u64,
+}
+
+fn supporting(points: &[Vec3], flat: f64) -> Vec<Plane> {
+    let mut planes: Vec<Plane> = Vec::new();
+    let count = points.len();
+    for i in 0..count {
+        for j in i + 1..count {
+            let pair = 1 << i | 1 << j;
+            for k in j + 1..count {
+                let three: u64 = pair | 1 << k;
+                if planes.iter().any(|plane| plane.points & three == three) {
+                    continue;
+                }
+                let across = (points[j] - points[i]).cross(&(points[k] - points[i]));
+                let Some(normal) = across.try_normalize(flat * flat) else { continue };
+                planes.extend(plane_through(points, (i, normal), flat));
+            }
+        }
+    }
+    planes
+}
+
+/// The plane through point `i`, turned outwards, if all points are on one side of it.
+fn plane_through(points: &[Vec3], (i, normal): (usize, Vec3), flat: f64) -> Option<Plane> {
+    let level = normal.dot(&points[i]);
+    let (mut above, mut below, mut on) = (false, false, 0);
+    for (k, p) in points.iter().enumerate() {
+        let height = normal.dot(p) - level;
+        if height.abs() <= flat {
+            on |= 1 << k;
+        } else if height > 0.0 {
+            above = true;
+        } else {
+            below = true;
+        }
+        if above && below {
+            return None;
+        }
+    }
+    if above == below {
+        return None;
+    }
+    let side = if above { -1.0 } else { 1.0 };
+    Some(Plane { normal: normal * side, level: level * side, points: on })
+}
+
+impl Plane {
+    /// The face with its corners in turn; `kept` are the points that are corners.
+    fn face(&self, kept: &[usize], corners: &[Vec3]) -> Face {
+        let mut own: Vec<u8> = (0..kept.len())
+            .filter(|&k| self.points & (1 << kept[k]) != 0)
+            .map(|k| k as u8)
+            .collect();
+        let at = |k: &u8| corners[usize::from(*k)];
+        let middle = own.iter().map(at).sum::<Vec3>() / own.len() as f64;
+        let first = (at(&own[0]) - middle).normalize();
+        let second = self.normal.cross(&first);
+        own.sort_by(|one, other| {
+            let angle = |k: &u8| {
+                let to = at(k) - middle;
+                crate::math::atan2(to.dot(&second), to.dot(&first))
+            };
+            angle(one).total_cmp(&angle(other))
+        });
+        Face { normal: self.normal, level: self.level, corners: own }
+    }
+}
+
+fn ridges(faces: &[Face], corners: &[Vec3]) -> Vec<Ridge> {
+    let mut ridges: Vec<Ridge> = Vec::new();
+    for face in faces {
+        let count = face.corners.len();
+        for k in 0..count {
+            let ends = [face.corners[k], face.corners[(k + 1) % count]];
+            let [a, b] = ends.map(|end| corners[usize::from(end)]);
+            let into = face.normal.cross(&(b - a)).normalize();
+            match ridges.iter_mut().find(|ridge| ridge.ends == [ends[1], ends[0]]) {
+                Some(ridge) => ridge.into[1] = into,
+                None => ridges.push(Ridge { ends, into: [into, into] }),
+            }
+        }
+    }
+    ridges
+}

@@ -1,0 +1,108 @@
+//! A scanned surface: is it closed, and which few of its corners will do.
+
+use super::hull::{Core, most_corners};
+use super::solid::Surface;
+use crate::rock::Vec3;
+use parry3d_f64::math::Vector;
+use parry3d_f64::transformation::try_convex_hull;
+use std::collections::BTreeMap;
+
+/// Why a surface makes no block.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum BadSurface {
+    /// So many of its edges do not join two triangles in opposite turns.
+    Open(usize),
+    /// It encloses no volume.
+    Flat,
+    /// More corners than a core may have.
+    TooMany(usize),
+    /// Balls as large as this leave no core between them.
+    NoCore,
+}
+
+impl std::fmt::Display for BadSurface {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Open(edges) => write!(
+                to,
+                "found a surface that is not closed: {edges} of its edges do not join two triangles turned alike"
+            ),
+            Self::Flat => write!(to, "found a body without volume"),
+            Self::TooMany(corners) => {
+                write!(to, "found {corners} corners, where {} is the most", most_corners())
+            }
+            Self::NoCore => write!(to, "found corners so round that nothing is left between them"),
+        }
+    }
+}
+
+/// Few corners of a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thinned {
+    /// The corners.
+    pub corners: Vec<Vec3>,
+    /// Corners of the hull of all points.
+    pub of: usize,
+    /// How far the hull of all points reaches beyond theirs at most (m).
+    pub left: f64,
+}
+
+impl Surface {
+    /// Whether every edge joins two triangles turned alike.
+    ///
+    /// # Errors
+    /// The number of edges that do not.
+    pub fn check_closed(&self) -> Result<(), BadSurface> {
+        let mut edges: BTreeMap<(u32, u32), i32> = BTreeMap::new();
+        for [a, b, c] in &self.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *edges.entry((*from, *to)).or_default() += 1;
+            }
+        }
+        let one = |(from, to): (u32, u32)| edges.get(&(from, to)).copied().unwrap_or(0);
+        let open =
+            edges.iter().filter(|((from, to), count)| **count != 1 || one((*to, *from)) != 1);
+        match open.count() {
+            0 => Ok(()),
+            count => Err(BadSurface::Open(count)),
+        }
+    }
+
+    /// At most `most` corners of the hull, the farthest out of the others' hull first, until none is more than `near` (m)
+    /// outside.
+    ///
+    /// # Errors
+    /// A flat surface.
+    pub fn thinned(&self, most: usize, near: f64) -> Result<Thinned, BadSurface> {
+        let points: Vec<Vector> = self.points.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
+        let (hull, _) = try_convex_hull(&points).map_err(|_| BadSurface::Flat)?;
+        let hull: Vec<Vec3> = hull.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect();
+        let mut kept = first_corners(&hull);
+        loop {
+            let core = Core::of(&kept)?;
+            let far = hull.iter().map(|p| (core.distance(p), p));
+            let (left, farthest) =
+                far.max_by(|a, b| a.0.total_cmp(&b.0)).ok_or(BadSurface::Flat)?;
+            if left <= near || kept.len() >= most.min(most_corners()) {
+                return Ok(Thinned { corners: core.corners, of: hull.len(), left });
+            }
+            kept.push(*farthest);
+        }
+    }
+}
+
+/// Points farthest out along the axes and diagonals, as many as span a body.
+fn first_corners(points: &[Vec3]) -> Vec<Vec3> {
+    let mut kept: Vec<Vec3> = Vec::new();
+    for k in 0..6 {
+        let mut along = Vec3::new(0.02, 0.03, 0.05);
+        along[k / 2] = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let height = |p: &Vec3| p.dot(&along);
+        if let Some(p) = points.iter().max_by(|a, b| height(a).total_cmp(&height(b)))
+            && !kept.contains(p)
+        {
+            kept.push(*p);
+        }
+    }
+    kept
+}

@@ -1,0 +1,207 @@
+//! Where a block touches the mesh.
+//!
+//! A contact is a strict local minimum of the distance to the mesh for **one feature of the block** (not of the distance between the
+//! two bodies: a box lying flat would then have one contact at a time and rattle). Each pair of features owns its contacts:
+//!
+//! | block | mesh | test |
+//! |---|---|---|
+//! | corner | face, edge, vertex | that of a ball |
+//! | edge | edge | feet inside both; the normal outside of every triangle at the mesh's edge, its opposite between the block's two faces |
+//! | edge | vertex | foot inside the block's edge; the vertex behind none of its own edges; the same of the block |
+//! | face | vertex | foot inside the face; the vertex behind none of its own edges |
+//!
+//! Only edges and vertices that stand out of the mesh take part, so most pairs need no test at all.
+
+use super::neighbours::{Neighbours, Peak, SharpEdge};
+use super::{ContactPoint, ContactPoints, Feature};
+use crate::body::Block;
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+use nalgebra::Rotation3;
+
+/// Tests of directions are inclusive to this (–).
+const SLACK: f64 = 1e-9;
+/// Contacts whose points are closer than this over the balls' radius, with normals within it, are one (–).
+const SAME: f64 = 1e-6;
+/// Edges closer to parallel than this meet at their ends (–, squared sine).
+const PARALLEL: f64 = 1e-12;
+
+/// Where a block is and how it is turned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Centre of mass (m, local).
+    pub centre: Vec3,
+    /// From the block's principal frame to the world.
+    pub attitude: Rotation3<f64>,
+}
+
+impl Pose {
+    /// A point of the block's frame in the world (m, local).
+    #[inline]
+    pub fn point(&self, own: &Vec3) -> Vec3 {
+        self.centre + self.attitude * own
+    }
+}
+
+/// One contact of a block.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BlockTouch {
+    /// What of the mesh is touched.
+    pub feature: Feature,
+    /// Triangle whose sheet and ground it answers with.
+    pub triangle: u32,
+    /// Unit normal from the mesh to the block.
+    pub normal: Vec3,
+    /// From the centre of mass to the touching point of the block's surface (m).
+    pub lever: Vec3,
+    /// Distance between the surfaces (m); pressed in when negative.
+    pub gap_m: f64,
+}
+
+/// A block at a pose, with its corners there.
+struct Placed<'a> {
+    block: &'a Block,
+    pose: &'a Pose,
+    corners: Vec<Vec3>,
+}
+
+/// The contacts of a block that are no further away than `reach_m`, in a fixed order: corners, edges, faces. `near` must have been
+/// collected with the balls' radius, for a margin that holds the core.
+pub fn touches(
+    near: &mut Neighbours,
+    terrain: &Terrain,
+    (block, pose): (&Block, &Pose),
+    reach_m: f64,
+    found: &mut Vec<BlockTouch>,
+) {
+    found.clear();
+    let corners = block.core.corners.iter().map(|own| pose.point(own)).collect();
+    let placed = Placed { block, pose, corners };
+    let reach = block.ball_m + reach_m;
+    let mut of_ball = ContactPoints::default();
+    for p in &placed.corners {
+        near.touches(terrain, p, reach, &mut of_ball);
+        for touch in of_ball.iter() {
+            placed.add(p, touch, found);
+        }
+    }
+    for edge in near.sharp_edges() {
+        placed.on_edge((near, terrain), &edge, reach, found);
+    }
+    for peak in near.peaks() {
+        placed.on_peak((near, terrain), &peak, reach, found);
+    }
+}
+
+impl Placed<'_> {
+    /// Adds the contact of a core point `p`, unless it is there already.
+    fn add(&self, p: &Vec3, touch: &ContactPoint, found: &mut Vec<BlockTouch>) {
+        let ball = self.block.ball_m;
+        let lever = p - self.pose.centre - touch.normal * ball;
+        let near = SAME * ball;
+        let known = found.iter().any(|other| {
+            (other.normal - touch.normal).norm_squared() <= SAME * SAME
+                && (other.lever - lever).norm_squared() <= near * near
+        });
+        if !known {
+            found.push(BlockTouch {
+                feature: touch.feature,
+                triangle: touch.triangle,
+                normal: touch.normal,
+                lever,
+                gap_m: touch.distance_m - ball,
+            });
+        }
+    }
+
+    /// The block's edges that cross an edge of the mesh.
+    fn on_edge(
+        &self,
+        (near, terrain): (&Neighbours, &Terrain),
+        edge: &SharpEdge,
+        reach: f64,
+        found: &mut Vec<BlockTouch>,
+    ) {
+        for ridge in &self.block.core.ridges {
+            let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
+            let Some((s, t)) = crossing((a, b - a), (edge.a, edge.along)) else { continue };
+            if s <= 0.0 || s >= 1.0 || t <= 0.0 || t >= edge.length {
+                continue;
+            }
+            let (p, foot) = (a + (b - a) * s, edge.a + edge.along * t);
+            let off = p - foot;
+            let distance = off.norm();
+            if distance >= reach || distance <= SLACK * self.block.ball_m {
+                continue;
+            }
+            let normal = off / distance;
+            if edge.outward.iter().any(|out| out.dot(&normal) < -SLACK)
+                || !self.faces_out(&ridge.into, &normal)
+                || edge.at_border && near.is_covered(terrain, &foot, &p, distance)
+            {
+                continue;
+            }
+            self.add(&p, &point(edge.feature, edge.triangle, (normal, distance)), found);
+        }
+    }
+
+    /// The block's edges and faces over a vertex of the mesh.
+    fn on_peak(
+        &self,
+        (near, terrain): (&Neighbours, &Terrain),
+        peak: &Peak,
+        reach: f64,
+        found: &mut Vec<BlockTouch>,
+    ) {
+        let own = self.pose.attitude.inverse_transform_vector(&(peak.p - self.pose.centre));
+        let touches = |normal: &Vec3| peak.edges.iter().all(|edge| edge.dot(normal) <= SLACK);
+        let covered = |p: &Vec3, distance: f64| {
+            peak.at_border && near.is_covered(terrain, &peak.p, p, distance)
+        };
+        for ridge in &self.block.core.ridges {
+            let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
+            let s = (peak.p - a).dot(&(b - a)) / (b - a).norm_squared();
+            let p = a + (b - a) * s;
+            let distance = (p - peak.p).norm();
+            if s <= 0.0 || s >= 1.0 || distance >= reach || distance <= SLACK * self.block.ball_m {
+                continue;
+            }
+            let normal = (p - peak.p) / distance;
+            if touches(&normal) && self.faces_out(&ridge.into, &normal) && !covered(&p, distance) {
+                self.add(&p, &point(peak.feature, peak.triangle, (normal, distance)), found);
+            }
+        }
+        for face in &self.block.core.faces {
+            let height = face.normal.dot(&own) - face.level;
+            if height <= 0.0 || height >= reach || !self.block.core.is_over(face, &own) {
+                continue;
+            }
+            let normal = -(self.pose.attitude * face.normal);
+            let p = peak.p + normal * height;
+            if touches(&normal) && !covered(&p, height) {
+                self.add(&p, &point(peak.feature, peak.triangle, (normal, height)), found);
+            }
+        }
+    }
+
+    /// Whether the opposite of a direction lies between the normals of the two faces at an edge of the block.
+    fn faces_out(&self, into: &[Vec3; 2], normal: &Vec3) -> bool {
+        let own = self.pose.attitude.inverse_transform_vector(normal);
+        into.iter().all(|into| into.dot(&own) >= -SLACK)
+    }
+}
+
+fn point(feature: Feature, triangle: u32, (normal, distance_m): (Vec3, f64)) -> ContactPoint {
+    ContactPoint { feature, triangle, normal, distance_m, gain2: 1.0 }
+}
+
+/// Where two endless lines are nearest: the share along the first direction, the way along the second, a unit vector.
+fn crossing((p, e): (Vec3, Vec3), (a, f): (Vec3, Vec3)) -> Option<(f64, f64)> {
+    let w = p - a;
+    let (ee, ef, ew, fw) = (e.norm_squared(), e.dot(&f), e.dot(&w), f.dot(&w));
+    let across = ee - ef * ef;
+    if across <= PARALLEL * ee {
+        return None;
+    }
+    Some(((ef * fw - ew) / across, (ee * fw - ef * ew) / across))
+}

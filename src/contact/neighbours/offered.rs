@@ -1,0 +1,63 @@
+//! What was collected, as the edges and faces of a block meet it.
+
+use super::Neighbours;
+use crate::contact::{Feature, FeatureKind};
+use crate::rock::Vec3;
+
+/// An edge of the mesh that stands out, as a block meets it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SharpEdge<'a> {
+    pub(crate) feature: Feature,
+    pub(crate) triangle: u32,
+    pub(crate) a: Vec3,
+    pub(crate) along: Vec3,
+    pub(crate) length: f64,
+    pub(crate) outward: &'a [Vec3],
+    pub(crate) at_border: bool,
+}
+
+/// A vertex of the mesh that stands out, as a block meets it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Peak<'a> {
+    pub(crate) feature: Feature,
+    pub(crate) triangle: u32,
+    pub(crate) p: Vec3,
+    pub(crate) edges: &'a [Vec3],
+    pub(crate) at_border: bool,
+}
+
+impl Neighbours {
+    /// The edges that can be touched from where the centre is, with unit directions out of their triangles.
+    pub(crate) fn sharp_edges(&self) -> impl Iterator<Item = SharpEdge<'_>> {
+        self.edges.iter().map(|edge| SharpEdge {
+            feature: Feature { kind: FeatureKind::Edge, id: edge.id },
+            triangle: edge.triangle,
+            a: edge.a,
+            along: edge.along,
+            length: edge.length,
+            outward: &self.rays[edge.rays.0 as usize..edge.rays.1 as usize],
+            at_border: edge.at_border,
+        })
+    }
+
+    /// The vertices that can be touched from where the centre is, with unit directions along their edges.
+    pub(crate) fn peaks(&self) -> impl Iterator<Item = Peak<'_>> {
+        self.corners.iter().map(|corner| Peak {
+            feature: Feature { kind: FeatureKind::Vertex, id: corner.id },
+            triangle: corner.triangle,
+            p: corner.p,
+            edges: &self.rays[corner.rays.0 as usize..corner.rays.1 as usize],
+            at_border: corner.at_border,
+        })
+    }
+
+    /// Whether what was collected holds for all that is `around_m` about a point or nearer.
+    pub(crate) fn covers_around(&self, point: &Vec3, around_m: f64) -> bool {
+        (point - self.centre).norm() + around_m <= self.margin
+    }
+
+    /// All triangles within reach.
+    pub(crate) fn triangles(&self) -> &[u32] {
+        &self.sheets
+    }
+}

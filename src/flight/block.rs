@@ -1,0 +1,319 @@
+//! First touch of a block in free flight: a bound that cannot miss.
+//!
+//! The ball around the block is leapt ahead exactly; nothing touches before it does. From there the block is gone along feature by
+//! feature (conservative advancement). The distance of a corner to a convex set is a convex function of its place, so with the present
+//! distance `d`, direction `n` and velocity `ṗ`
+//!
+//! ```text
+//! d(t+τ) ≥ d + n·ṗ τ − ½ B τ²,   B = g + ρ (ω_m² + α_m),   ω_m² = 2E/I_min,   α_m = ω_m² (I_max − I_min)/I_min
+//! ```
+//!
+//! as `|ω|² ≤ ω_m²` and `|ω̇| ≤ α_m` for a body without torque. With the speed of approach `c = −n·ṗ` and the gap `δ = d − r` the step
+//! `τ = 2δ/(c + √(c² + 2Bδ))` is never too long, and near a touch it converges like Newton's method from one side. Edges and faces of the
+//! block are hulls of corners: with `n` from their own nearest points the same bound holds for each of their corners.
+
+use super::top::Top;
+use super::{FlightEnd, Parabola, time_of_impact_past};
+use crate::body::Block;
+use crate::contact::block::Pose;
+use crate::contact::closest::closest_on;
+use crate::contact::neighbours::Neighbours;
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+
+/// A gap that counts as touching (–, relative to the radius of the sphere of equal volume).
+const TOUCHING: f64 = 1e-10;
+/// No step forward is shorter (s): what comes so soon touches now.
+const SHORTEST_S: f64 = 1e-13;
+/// Way of the centre for which features are collected at a time (–, relative to the radius of the ball around).
+const WINDOW: f64 = 0.5;
+
+/// A block in free flight.
+#[derive(Debug, Clone, Copy)]
+pub struct Tumble<'a> {
+    /// The block.
+    pub block: &'a Block,
+    /// Its rotation.
+    pub top: Top,
+    /// Way of its centre, with the radius of the ball around it.
+    pub path: Parabola,
+}
+
+/// A moment of the flight.
+struct Moment {
+    pose: Pose,
+    velocity: Vec3,
+    spin: Vec3,
+}
+
+/// A part of the block that may touch, and until when it surely does not (s).
+#[derive(Clone, Copy)]
+struct Due {
+    time: f64,
+    part: Part,
+}
+
+#[derive(Clone, Copy)]
+enum Part {
+    Corner(usize),
+    Ridge(usize),
+    Face(usize),
+}
+
+impl Tumble<'_> {
+    /// Where it is and how it is turned after `t` (s).
+    pub fn pose(&self, t: f64) -> Pose {
+        Pose { centre: self.path.centre(t), attitude: self.top.attitude(t) }
+    }
+
+    fn moment(&self, t: f64) -> Moment {
+        let pose = self.pose(t);
+        let spin = self.top.spin(&pose.attitude);
+        Moment { pose, velocity: self.path.velocity(t), spin }
+    }
+
+    /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²).
+    fn bend(&self) -> f64 {
+        let [low, high] = [f64::min, f64::max]
+            .map(|pick| self.block.inertia_kg_m2.into_iter().reduce(pick).unwrap_or(1.0));
+        let spin2 = 2.0 * self.top.energy_j() / low;
+        spin2 * (1.0 + (high - low) / low)
+    }
+
+    /// Collects what the block can touch while its centre moves up to `way` (m) from `centre`.
+    pub fn collect(
+        block: &Block,
+        near: &mut Neighbours,
+        terrain: &Terrain,
+        (centre, way): (&Vec3, f64),
+    ) {
+        let core = block.bound_m - block.ball_m;
+        near.collect(terrain, centre, block.ball_m, core + way, block.ball_m);
+    }
+}
+
+/// Follows the flight for at most `longest_s`; `near` is overwritten.
+pub fn first_touch(
+    terrain: &Terrain,
+    tumble: &Tumble,
+    longest_s: f64,
+    near: &mut Neighbours,
+) -> FlightEnd {
+    let (bound, mut t) = (tumble.block.bound_m, 0.0);
+    let mut dues = Vec::new();
+    loop {
+        let centre = tumble.path.centre(t);
+        if !is_within(terrain, &centre, bound, near) {
+            let ahead =
+                Parabola { start: centre, velocity: tumble.path.velocity(t), ..tumble.path };
+            let gone = std::mem::take(&mut near.gone);
+            let landing =
+                time_of_impact_past(terrain, &ahead, longest_s - t, &gone, &mut near.tested);
+            near.gone = gone;
+            match landing {
+                FlightEnd::Touch(wait) => t += wait,
+                FlightEnd::Leaves(wait) => return FlightEnd::Leaves(t + wait),
+                FlightEnd::Flies => return FlightEnd::Flies,
+            }
+        }
+        let way = WINDOW * bound;
+        let ends = (t + time_for(&tumble.path, t, way)).min(longest_s);
+        Tumble::collect(tumble.block, near, terrain, (&tumble.path.centre(t), way));
+        if let Some(touch) = advance(terrain, tumble, near, (t, ends), &mut dues) {
+            return FlightEnd::Touch(touch);
+        }
+        if ends >= longest_s {
+            return FlightEnd::Flies;
+        }
+        t = ends;
+    }
+}
+
+/// Whether a triangle is nearer to a point than `reach` (m).
+fn is_within(terrain: &Terrain, point: &Vec3, reach: f64, near: &mut Neighbours) -> bool {
+    let (mut within, mut tested) = (false, 0);
+    terrain.index.near(point, reach, |start, count| {
+        for t in start..start + count {
+            tested += 1;
+            within = within
+                || !terrain.is_gone(t, &near.gone)
+                    && (closest_on(&terrain.corners_m(t), point) - point).norm() < reach;
+        }
+    });
+    near.tested += tested;
+    within
+}
+
+/// A time in which the centre surely moves no further than `way` (m) from where it is at `t`.
+fn time_for(path: &Parabola, t: f64, way: f64) -> f64 {
+    let speed = path.velocity(t).norm();
+    2.0 * way / (speed + (speed * speed + 2.0 * path.gravity * way).sqrt())
+}
+
+/// First touch within a window of time, among what was collected.
+fn advance(
+    terrain: &Terrain,
+    tumble: &Tumble,
+    near: &mut Neighbours,
+    (begins, ends): (f64, f64),
+    dues: &mut Vec<Due>,
+) -> Option<f64> {
+    let core = &tumble.block.core;
+    let bend = tumble.bend();
+    let (edges, peaks) = (near.sharp_edges().next().is_some(), near.peaks().next().is_some());
+    let due = |part| Due { time: begins, part };
+    dues.clear();
+    dues.extend((0..core.corners.len()).map(|k| due(Part::Corner(k))));
+    dues.extend((0..core.ridges.len()).filter(|_| edges).map(|k| due(Part::Ridge(k))));
+    dues.extend((0..core.faces.len()).filter(|_| peaks).map(|k| due(Part::Face(k))));
+    let mut search = Search { terrain, tumble, near, bend, moment: tumble.moment(begins) };
+    let mut now = begins;
+    loop {
+        let next = dues.iter_mut().min_by(|one, other| one.time.total_cmp(&other.time))?;
+        if next.time >= ends {
+            return None;
+        }
+        if next.time > now {
+            now = next.time;
+            search.moment = tumble.moment(now);
+        }
+        let step = search.safe_step(next.part, ends - now);
+        if step < SHORTEST_S {
+            return Some(now);
+        }
+        next.time = now + step;
+    }
+}
+
+/// The search of a window at one moment.
+struct Search<'a> {
+    terrain: &'a Terrain,
+    tumble: &'a Tumble<'a>,
+    near: &'a mut Neighbours,
+    bend: f64,
+    moment: Moment,
+}
+
+/// A corner as it flies.
+#[derive(Clone, Copy)]
+struct Flying {
+    p: Vec3,
+    velocity: Vec3,
+    /// Largest acceleration (m/s²).
+    bend: f64,
+}
+
+impl Search<'_> {
+    fn flying(&self, k: usize) -> Flying {
+        let own = &self.tumble.block.core.corners[k];
+        let arm = self.moment.pose.attitude * own;
+        Flying {
+            p: self.moment.pose.centre + arm,
+            velocity: self.moment.velocity + self.moment.spin.cross(&arm),
+            bend: self.tumble.path.gravity + own.norm() * self.bend,
+        }
+    }
+
+    /// How long a corner surely keeps off a plane with unit normal `n` through `q` (s).
+    fn safe(&self, corner: &Flying, n: &Vec3, q: &Vec3) -> f64 {
+        let gap = n.dot(&(corner.p - q)) - self.tumble.block.ball_m;
+        let closing = -n.dot(&corner.velocity);
+        let touching = TOUCHING * self.tumble.block.radius_m;
+        if closing > 0.0 && gap <= touching {
+            return 0.0;
+        }
+        let root = (closing * closing + 2.0 * corner.bend * gap.max(0.0)).sqrt();
+        if closing > 0.0 {
+            2.0 * gap / (closing + root)
+        } else if corner.bend > 0.0 {
+            (root - closing) / corner.bend
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// How long a part surely touches nothing (s), no longer than `most`.
+    fn safe_step(&mut self, part: Part, most: f64) -> f64 {
+        match part {
+            Part::Corner(k) => self.of_corner(k, most),
+            Part::Ridge(k) => self.of_ridge(k, most),
+            Part::Face(k) => self.of_face(k, most),
+        }
+    }
+
+    fn of_corner(&mut self, k: usize, mut least: f64) -> f64 {
+        let corner = self.flying(k);
+        self.near.tested += self.near.triangles().len() as u64;
+        for &t in self.near.triangles() {
+            let face = &self.terrain.features.faces[t as usize];
+            let side = if face.n.dot(&(corner.p - face.a)) < 0.0 { -face.n } else { face.n };
+            // the plane is never farther than the triangle
+            if self.safe(&corner, &side, &face.a) >= least {
+                continue;
+            }
+            let q = closest_on(&self.terrain.corners_m(t), &corner.p);
+            let n = (corner.p - q).try_normalize(0.0).unwrap_or(side);
+            least = least.min(self.safe(&corner, &n, &q));
+        }
+        least
+    }
+
+    fn of_ridge(&self, k: usize, mut least: f64) -> f64 {
+        let ends = self.tumble.block.core.ridges[k].ends.map(|end| self.flying(usize::from(end)));
+        let [a, b] = ends;
+        let (middle, half) = ((a.p + b.p) * 0.5, 0.5 * (b.p - a.p).norm());
+        let bend = a.bend.max(b.bend);
+        let fastest = a.velocity.norm().max(b.velocity.norm());
+        for edge in self.near.sharp_edges() {
+            let along = edge.along.dot(&(middle - edge.a)).clamp(0.0, edge.length);
+            let room =
+                (middle - edge.a - edge.along * along).norm() - half - self.tumble.block.ball_m;
+            // far away: whatever the directions
+            if room > 0.0 && least * (fastest + 0.5 * bend * least) <= room {
+                continue;
+            }
+            let far = edge.a + edge.along * edge.length;
+            let (p, q) = nearest_of_segments((a.p, b.p), (edge.a, far));
+            let Some(n) = (p - q).try_normalize(0.0) else { continue };
+            for end in &ends {
+                least = least.min(self.safe(end, &n, &q));
+            }
+        }
+        least
+    }
+
+    fn of_face(&self, k: usize, mut least: f64) -> f64 {
+        let face = &self.tumble.block.core.faces[k];
+        let corners: Vec<Flying> =
+            face.corners.iter().map(|&k| self.flying(usize::from(k))).collect();
+        for peak in self.near.peaks() {
+            let nearest = (1..corners.len() - 1)
+                .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], &peak.p))
+                .min_by(|a, b| (a - peak.p).norm_squared().total_cmp(&(b - peak.p).norm_squared()));
+            let Some(n) = nearest.and_then(|p| (p - peak.p).try_normalize(0.0)) else { continue };
+            for corner in &corners {
+                least = least.min(self.safe(corner, &n, &peak.p));
+            }
+        }
+        least
+    }
+}
+
+/// The nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9).
+fn nearest_of_segments((p1, q1): (Vec3, Vec3), (p2, q2): (Vec3, Vec3)) -> (Vec3, Vec3) {
+    let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
+    let (a, e, f) = (d1.norm_squared(), d2.norm_squared(), d2.dot(&r));
+    let (b, c) = (d1.dot(&d2), d1.dot(&r));
+    let across = a * e - b * b;
+    let mut s = if across > 0.0 { ((b * f - c * e) / across).clamp(0.0, 1.0) } else { 0.0 };
+    let mut t = (b * s + f) / e;
+    if t < 0.0 {
+        (t, s) = (0.0, (-c / a).clamp(0.0, 1.0));
+    } else if t > 1.0 {
+        (t, s) = (1.0, ((b - c) / a).clamp(0.0, 1.0));
+    }
+    (p1 + d1 * s, p2 + d2 * t)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,224 @@
+//! Torque-free rotation in closed form: Euler's top (Jacobi's elliptic functions, Legendre's third integral after Carlson).
+//!
+//! The angular momentum `ℓ` is constant in space. With the axes ordered so that the third is the one that the spin circles,
+//!
+//! ```text
+//! ω1 = ω1m cn u,   ω2 = ± ω2m sn u,   ω3 = ± ω3m dn u,   u = λ t + u0
+//! ψ(t) = L t/A + L (2E − L²/A)/(λ C² ω3m²) [Π(n; am u, m) − Π(n; am u0, m)],   n = −(A ω1m)²/(C ω3m)²
+//! ```
+//!
+//! with ψ the angle about `ℓ` of the first axis, which is never along `ℓ`. Differences of energies are formed without
+//! cancellation, `1 − m = (C−A) d_B/((C−B) d_A)`, so that the flip of a rock about its middle axis comes out at its time.
+//! Two equal moments: two rotations, no elliptic function (`m = 0`).
+
+use crate::math::elliptic::Elliptic;
+use crate::math::{self, turn};
+use crate::rock::Vec3;
+use nalgebra::{Matrix3, Rotation3, Unit};
+
+/// Moments of inertia this close are equal (–, relative).
+const EQUAL: f64 = 1e-12;
+/// A wobble smaller than this is none (–, relative to the spin).
+const STEADY: f64 = 1e-15;
+
+/// A body that turns freely.
+#[derive(Debug, Clone, Copy)]
+pub struct Top {
+    start: Rotation3<f64>,
+    inertia: [f64; 3],
+    /// World angular momentum (kg m²/s).
+    momentum: Vec3,
+    motion: TopMotion,
+}
+
+#[derive(Debug, Clone, Copy)]
+#[expect(clippy::large_enum_variant, reason = "one at a time, made and dropped with its flight")]
+enum TopMotion {
+    Still,
+    /// About a principal axis, or a body with three equal moments: spin (rad/s) about a fixed axis.
+    Steady(Unit<Vec3>, f64),
+    /// Two equal moments: rates (rad/s) about `ℓ` and about the body's own axis.
+    Symmetric(Unit<Vec3>, f64, Unit<Vec3>, f64),
+    Elliptic(Wobble),
+}
+
+/// Three unequal moments.
+#[derive(Debug, Clone, Copy)]
+struct Wobble {
+    elliptic: Elliptic,
+    /// Rows: the ordered axes in the body's frame, right-handed.
+    axes: Matrix3<f64>,
+    moments: [f64; 3],
+    /// Amplitudes with their signs (rad/s).
+    most: [f64; 3],
+    rate: f64,
+    u0: f64,
+    n: f64,
+    /// `L/A` (rad/s) and the factor of the third integral (–), with its value at the start.
+    precession: f64,
+    factor: f64,
+    third0: f64,
+    /// World triad at the start, first column along `ℓ`.
+    triad: Matrix3<f64>,
+    about: Unit<Vec3>,
+    size: f64,
+}
+
+impl Top {
+    /// From principal moments of inertia (kg m²), the rotation from body to world and the world angular momentum (kg m²/s).
+    pub fn new(inertia: [f64; 3], start: Rotation3<f64>, momentum: Vec3) -> Self {
+        let motion = motion_of(inertia, &start, &momentum);
+        Self { start, inertia, momentum, motion }
+    }
+
+    /// The rotation from body to world after `t` (s).
+    pub fn attitude(&self, t: f64) -> Rotation3<f64> {
+        match &self.motion {
+            TopMotion::Still => self.start,
+            TopMotion::Steady(axis, rate) => turn(axis, rate * t) * self.start,
+            TopMotion::Symmetric(about, rate, own, own_rate) => {
+                turn(about, rate * t) * self.start * turn(own, own_rate * t)
+            }
+            TopMotion::Elliptic(wobble) => wobble.attitude(t),
+        }
+    }
+
+    /// Angular velocity (rad/s) where the body is turned like this.
+    pub fn spin(&self, attitude: &Rotation3<f64>) -> Vec3 {
+        spin_of(self.inertia, attitude, &self.momentum)
+    }
+
+    /// Rotational energy `ω·ℓ/2` (J), constant.
+    pub fn energy_j(&self) -> f64 {
+        0.5 * self.spin(&self.start).dot(&self.momentum)
+    }
+}
+
+/// `R I⁻¹ Rᵀ ℓ` (rad/s).
+pub fn spin_of(inertia: [f64; 3], attitude: &Rotation3<f64>, momentum: &Vec3) -> Vec3 {
+    let own = attitude.inverse_transform_vector(momentum);
+    attitude * Vec3::new(own.x / inertia[0], own.y / inertia[1], own.z / inertia[2])
+}
+
+fn motion_of(inertia: [f64; 3], start: &Rotation3<f64>, momentum: &Vec3) -> TopMotion {
+    let Some(about) = Unit::try_new(*momentum, 0.0) else { return TopMotion::Still };
+    let size = momentum.norm();
+    let own = start.inverse_transform_vector(momentum);
+    let near = |a: f64, b: f64| (a - b).abs() <= EQUAL * a.max(b);
+    let pair = [(1, 2, 0), (2, 0, 1), (0, 1, 2)].into_iter();
+    let equal: Vec<_> = pair.filter(|&(i, j, _)| near(inertia[i], inertia[j])).collect();
+    if equal.len() > 1 {
+        return TopMotion::Steady(about, size / inertia[0]);
+    }
+    if let [(across, _, along)] = equal[..] {
+        let mut axis = Vec3::zeros();
+        axis[along] = 1.0;
+        let own_rate = own[along] / inertia[along] - own[along] / inertia[across];
+        let axis = Unit::new_unchecked(axis);
+        return TopMotion::Symmetric(about, size / inertia[across], axis, own_rate);
+    }
+    wobble_of(inertia, start, (about, size))
+}
+
+/// Order of the axes with ascending moments of inertia.
+fn ascending(inertia: [f64; 3]) -> [usize; 3] {
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| inertia[i].total_cmp(&inertia[j]));
+    order
+}
+
+fn wobble_of(
+    inertia: [f64; 3],
+    start: &Rotation3<f64>,
+    (about, size): (Unit<Vec3>, f64),
+) -> TopMotion {
+    let own = start.inverse_transform_vector(&(about.as_ref() * size));
+    let mut order = ascending(inertia);
+    let moment = |k: usize, order: &[usize; 3]| inertia[order[k]];
+    let [i1, i2, i3] = [0, 1, 2].map(|k| moment(k, &order));
+    let [w1, _, w3] = [0, 1, 2].map(|k| own[order[k]] / moment(k, &order));
+    if i1 * (i1 - i2) * w1 * w1 + i3 * (i3 - i2) * w3 * w3 < 0.0 {
+        order.swap(0, 2);
+    }
+    let mut axes = Matrix3::zeros();
+    for k in 0..3 {
+        axes[(k, order[k])] = 1.0;
+    }
+    if axes.determinant() < 0.0 {
+        axes.set_row(1, &(-axes.row(1)));
+    }
+    let moments = [0, 1, 2].map(|k| moment(k, &order));
+    let [a, b, c] = moments;
+    let l = axes * own;
+    let w = Vec3::new(l.x / a, l.y / b, l.z / c);
+    let d_a = b * (b - a) * w.y * w.y + c * (c - a) * w.z * w.z;
+    let d_c = a * (c - a) * w.x * w.x + b * (c - b) * w.y * w.y;
+    let d_b = a * (a - b) * w.x * w.x + c * (c - b) * w.z * w.z;
+    let [w1m, w2m, w3m] =
+        [d_c / (a * (c - a)), d_c / (b * (c - b)), d_a / (c * (c - a))].map(|x| x.max(0.0).sqrt());
+    if w1m.max(w2m) <= STEADY * w3m {
+        return TopMotion::Steady(about, w.norm());
+    }
+    let mc = (c - a) * d_b / ((c - b) * d_a);
+    // exactly on the separatrix the motion takes for ever to flip: so does this, for any time that is asked
+    let elliptic = Elliptic::of_complement(mc.clamp(f64::MIN_POSITIVE, 1.0));
+    let sign3 = 1.0_f64.copysign(w.z);
+    let sign2 = sign3.copysign(sign3 * (c - b));
+    let phase = phase_of(w.x / w1m, sign2 * w.y / w2m);
+    let u0 = elliptic.first_kind(phase);
+    let rate = ((c - b) * d_a / (a * b * c)).sqrt();
+    let n = -(a * w1m / (c * w3m)).powi(2);
+    let triad0 = triad(&l);
+    TopMotion::Elliptic(Wobble {
+        elliptic,
+        axes,
+        moments,
+        most: [w1m, sign2 * w2m, sign3 * w3m],
+        rate,
+        u0,
+        n,
+        precession: size / a,
+        factor: -size * d_a / (a * rate * (c * w3m).powi(2)),
+        third0: elliptic.third_kind(n, elliptic.amplitude(u0)),
+        triad: start.matrix() * axes.transpose() * triad0,
+        about,
+        size,
+    })
+}
+
+/// Sine and cosine of the amplitude at the start.
+fn phase_of(cn: f64, sn: f64) -> (f64, f64) {
+    let size = math::hypot(cn, sn);
+    (sn / size, cn / size)
+}
+
+/// The right-handed triad of an angular momentum in the ordered axes: along it, then across the first axis.
+fn triad(l: &Vec3) -> Matrix3<f64> {
+    let one = l.normalize();
+    let two = Vec3::new(0.0, -l.z, l.y).normalize();
+    Matrix3::from_columns(&[one, two, one.cross(&two)])
+}
+
+impl Wobble {
+    fn attitude(&self, t: f64) -> Rotation3<f64> {
+        let amplitude = self.elliptic.amplitude(self.rate * t + self.u0);
+        let (halves, rest) = amplitude;
+        let sign = if halves.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
+        let (sn, cn) = math::sin_cos(rest);
+        let dn = self.elliptic.dn(sn, cn);
+        let [a, b, c] = self.moments;
+        let l = Vec3::new(
+            a * self.most[0] * sign * cn,
+            b * self.most[1] * sign * sn,
+            c * self.most[2] * dn,
+        );
+        let third = self.elliptic.third_kind(self.n, amplitude) - self.third0;
+        let psi = self.precession * t + self.factor * third;
+        let turned = turn(&self.about, psi).matrix() * self.triad;
+        debug_assert!((l.norm() / self.size - 1.0).abs() < 1e-9, "the momentum keeps its size");
+        Rotation3::from_matrix_unchecked(turned * triad(&l).transpose() * self.axes)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,111 @@
+#![allow(
+    clippy::excessive_precision,
+    reason = "digits as they were computed, one more than f64 has"
+)]
+
+use super::*;
+
+/// Leine's box 3 x 2 x 1 m of 1 kg.
+const BOX: [f64; 3] = [5.0 / 12.0, 10.0 / 12.0, 13.0 / 12.0];
+
+fn top(inertia: [f64; 3], spin: Vec3) -> Top {
+    let start = turn(&Unit::new_normalize(Vec3::new(1.0, 2.0, -0.5)), 0.7);
+    let own = Vec3::new(inertia[0] * spin.x, inertia[1] * spin.y, inertia[2] * spin.z);
+    Top::new(inertia, start, start * own)
+}
+
+/// Spin in the body's frame after `t` (s).
+fn own_spin(top: &Top, t: f64) -> Vec3 {
+    let attitude = top.attitude(t);
+    attitude.inverse_transform_vector(&top.spin(&attitude))
+}
+
+/// The two starts of Leine's box against 40 digits: near the middle axis (the flip of Dzhanibekov) and away from it.
+#[test]
+fn spin_after_twenty_seconds_has_its_digits() {
+    let cases = [
+        (
+            Vec3::new(1e-3, 10.0, 1e-3),
+            Vec3::new(0.001_479_651_326_964_0, -9.999_999_920_708_796_4, 0.001_327_559_948_278_5),
+            Vec3::new(-3.039_631_708_321_663_7, 9.363_805_499_743_183_9, 2.433_653_142_256_918_2),
+        ),
+        (
+            Vec3::new(3.0, -4.0, 5.0),
+            Vec3::new(-2.527_626_400_022_449, -4.413_782_169_811_518_1, 4.829_722_029_619_438_8),
+            Vec3::new(4.445_791_008_590_356_6, -1.283_195_130_880_797_1, 5.648_068_520_098_937_6),
+        ),
+    ];
+    for (start, at_5, at_20) in cases {
+        // turned, the start would be rounded, and a flip's time with it
+        let own = Vec3::from(BOX).component_mul(&start);
+        let top = Top::new(BOX, Rotation3::identity(), own);
+        let off = [(own_spin(&top, 5.0) - at_5).norm(), (own_spin(&top, 20.0) - at_20).norm()];
+        assert!(off[0] < 1e-11 && off[1] < 1e-11, "{off:?}");
+    }
+}
+
+/// The classical Runge–Kutta method on attitude and constant momentum: another way to the same rotation.
+fn integrated(top: &Top, t: f64, steps: u32) -> Matrix3<f64> {
+    let rate = |r: &Matrix3<f64>| {
+        let w = top.spin(&Rotation3::from_matrix_unchecked(*r));
+        w.cross_matrix() * r
+    };
+    let h = t / f64::from(steps);
+    let mut r = *top.start.matrix();
+    for _ in 0..steps {
+        let k1 = rate(&r);
+        let k2 = rate(&(r + k1 * (0.5 * h)));
+        let k3 = rate(&(r + k2 * (0.5 * h)));
+        let k4 = rate(&(r + k3 * h));
+        r += (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
+    }
+    r
+}
+
+/// Boxes, nearly symmetric and symmetric bodies, balls, spins near every axis, on both sides of the separatrix.
+#[test]
+fn attitude_follows_the_equation_of_motion() {
+    let scan = [0.83, 1.37, 1.71];
+    for inertia in [BOX, scan, [1.0, 1.0 + 1e-6, 1.6], [1.0, 1.0, 1.6], [1.6, 1.0, 1.0], [0.4; 3]] {
+        for spin in [
+            Vec3::new(3.0, -4.0, 5.0),
+            Vec3::new(9.0, 1.0, -0.3),
+            Vec3::new(0.01, 8.0, 0.02),
+            Vec3::new(-0.2, 0.1, -7.0),
+            Vec3::new(0.0, 0.0, 6.0),
+            Vec3::new(-5.0, 0.0, 0.0),
+        ] {
+            let top = top(inertia, spin);
+            let found = top.attitude(2.0);
+            let off = (found.matrix() - integrated(&top, 2.0, 20_000)).norm();
+            assert!(off < 2e-11, "{inertia:?} {spin:?}: {off:e}");
+        }
+    }
+}
+
+/// Momentum, energy and length of the axes stay to rounding; at time 0 the body is where it was.
+#[test]
+fn what_is_conserved_stays() {
+    for spin in [Vec3::new(1e-3, 10.0, 1e-3), Vec3::new(3.0, -4.0, 5.0)] {
+        let top = top(BOX, spin);
+        assert!((top.attitude(0.0).matrix() - top.start.matrix()).norm() < 3e-15);
+        let energy = top.energy_j();
+        for k in 1..200 {
+            let attitude = top.attitude(0.1 * f64::from(k));
+            let spin = top.spin(&attitude);
+            let square = attitude.matrix().transpose() * attitude.matrix();
+            assert!((square - Matrix3::identity()).norm() < 4e-15);
+            assert!((0.5 * spin.dot(&top.momentum) / energy - 1.0).abs() < 1e-14);
+        }
+    }
+}
+
+/// A wheel in free spin for a minute: its axis stays, however many turns.
+#[test]
+fn a_wheel_keeps_its_axis() {
+    let top = top([1.0, 1.0, 1.6], Vec3::new(0.0, 0.0, 30.0));
+    let axis = top.start * Vec3::z();
+    for k in 1..=60 {
+        assert!((top.attitude(f64::from(k)) * Vec3::z() - axis).norm() < 1e-12);
+    }
+}

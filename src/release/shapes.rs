@@ -1,0 +1,289 @@
+//! The shape of rock number i and how it is turned.
+
+use super::Releases;
+use crate::body::{
+    BadSurface, Block, Shape, ShapeKind, Solid, Surface, box_surface, eota, prism_surface,
+    sphere_points,
+};
+use crate::error::{Error, Result};
+use crate::math;
+use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
+use crate::rock::{Rock, Vec3};
+use crate::scene::{CORNERS, Orientation, Scene, ShapeTable};
+use crate::terrain::stl;
+use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// A rock's shape, drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// What it is made from.
+    pub kind: ShapeKind,
+    /// Second and third side over the first (–); 1 for a scan.
+    pub sides: [f64; 2],
+    /// The block.
+    pub block: Block,
+    /// How it is turned at release, from its principal frame to the world.
+    pub attitude: Rotation3<f64>,
+}
+
+/// What a shape of the scene takes of the whole.
+#[derive(Debug, Clone, PartialEq)]
+struct Entry {
+    table: ShapeTable,
+    /// Weights up to and including its own (–).
+    sum: f64,
+    /// The shape, where nothing of it is drawn.
+    made: Option<Shape>,
+}
+
+/// The shapes of a scene; empty for spheres alone.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Shapes {
+    entries: Vec<Entry>,
+    /// A fixed turn; none if it is drawn.
+    turned: Option<Rotation3<f64>>,
+    /// What the plan says of each.
+    pub(super) lines: Vec<String>,
+}
+
+impl Shapes {
+    /// Reads scans and makes every shape once.
+    ///
+    /// # Errors
+    /// A scan that cannot be read or is not closed, corners too round for a shape.
+    pub(super) fn compile(scene: &Scene) -> Result<Self> {
+        let mut shapes = Self { turned: fixed_turn(scene), ..Self::default() };
+        if !scene.has_blocks() {
+            return Ok(shapes);
+        }
+        let mut sum = 0.0;
+        for (index, table) in scene.rocks.shapes.iter().enumerate() {
+            sum += table.weight.unwrap_or(1.0);
+            let refuse = |why: BadSurface| {
+                let place = format!("[[rocks.shapes]] of #{}", index + 1);
+                let file = table.mesh.as_deref().unwrap_or(&scene.file);
+                Error::input(file, place, why.to_string(), remedy(&why))
+            };
+            let (made, line) = prepared(table)?.map_err(refuse)?;
+            shapes.lines.push(line);
+            shapes.entries.push(Entry { table: table.clone(), sum, made });
+        }
+        Ok(shapes)
+    }
+
+    /// Whether some rocks are no spheres.
+    pub(super) fn has_blocks(&self) -> bool {
+        !self.entries.is_empty()
+    }
+
+    /// The block of release `index`, of the size of its rock; none if it is a sphere.
+    pub(super) fn draw(&self, seed: u64, index: usize, rock: &Rock) -> Option<Drawn> {
+        let all = self.entries.last()?.sum;
+        let mut random = stream(seed, Purpose::Shape, index);
+        let pick = all * unit(&mut random);
+        let entry = &self.entries[self.entries.partition_point(|entry| entry.sum <= pick)];
+        let drawn = [0; 4].map(|_| unit(&mut random));
+        if entry.table.kind == ShapeKind::Sphere {
+            return None;
+        }
+        let attitude = self.turned.unwrap_or_else(|| random_turn(&mut random));
+        let mut next = drawn.into_iter();
+        let mut quantile = |axis: &Distribution| axis.quantile(next.next().unwrap_or(0.5));
+        let sides = sides_of(&entry.table, &mut quantile);
+        let made = match &entry.made {
+            Some(shape) => shape.clone(),
+            // checked at the ends of what can be drawn; between them nothing is rounder
+            None => of_sides(&entry.table, sides).ok()?,
+        };
+        let block = Block::new(&made, rock);
+        let sides = [sides[1] / sides[0], sides[2] / sides[0]];
+        Some(Drawn { kind: entry.table.kind, sides, block, attitude })
+    }
+}
+
+impl Releases {
+    /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
+    pub fn block(&self, index: usize, rock: &Rock) -> Option<Drawn> {
+        self.shapes.draw(self.seed, index, rock)
+    }
+
+    /// Whether some rocks have shapes.
+    pub fn has_blocks(&self) -> bool {
+        self.shapes.has_blocks()
+    }
+
+    /// What the plan says of each shape; empty for spheres alone.
+    pub fn shapes(&self) -> &[String] {
+        &self.shapes.lines
+    }
+
+    /// Radius of the ball around a rock (m): what must be clear where it starts, however it is turned.
+    pub(super) fn around_m(&self, index: usize, rock: &Rock) -> f64 {
+        self.block(index, rock).map_or(rock.radius_m, |drawn| drawn.block.bound_m)
+    }
+}
+
+/// Uniform over all turns, of three numbers (Shoemake 1992).
+fn random_turn(random: &mut RandomStream) -> Rotation3<f64> {
+    let [a, b, c] = [0; 3].map(|_| unit(random));
+    let ((sin_b, cos_b), (sin_c, cos_c)) = (math::sin_cos(TAU * b), math::sin_cos(TAU * c));
+    let (less, more) = ((1.0 - a).sqrt(), a.sqrt());
+    turn_of([more * cos_c, less * sin_b, less * cos_b, more * sin_c])
+}
+
+/// The turn of a quaternion w, x, y, z of any length.
+fn turn_of([w, x, y, z]: [f64; 4]) -> Rotation3<f64> {
+    UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)).to_rotation_matrix()
+}
+
+fn fixed_turn(scene: &Scene) -> Option<Rotation3<f64>> {
+    match &scene.release.orientation {
+        Some(Orientation::Fixed(turn)) => Some(turn_of(*turn)),
+        _ => None,
+    }
+}
+
+/// The three sides of a shape, `value` choosing among those that are drawn.
+fn sides_of(table: &ShapeTable, mut value: impl FnMut(&Distribution) -> f64) -> [f64; 3] {
+    match (table.kind, &table.axes, &table.ratio) {
+        (_, Some(axes), _) if axes.len() == 3 => [0, 1, 2].map(|k| value(&axes[k])),
+        (_, _, Some(ratio)) => [1.0, 1.0, value(ratio)],
+        (ShapeKind::Eota221, ..) => [1.0, 1.0, 0.5],
+        _ => [1.0; 3],
+    }
+}
+
+/// The shape of a table that is not a scan.
+fn make(
+    table: &ShapeTable,
+    value: impl FnMut(&Distribution) -> f64,
+) -> std::result::Result<Shape, BadSurface> {
+    of_sides(table, sides_of(table, value))
+}
+
+fn of_sides(table: &ShapeTable, sides: [f64; 3]) -> std::result::Result<Shape, BadSurface> {
+    let ball = table.corner_radius.unwrap_or(0.0);
+    let surface = match table.kind {
+        ShapeKind::Ellipsoid => {
+            let half = sides.map(|side| 0.5 * side);
+            let stretch = Vec3::from(half);
+            let corners: Vec<Vec3> =
+                sphere_points().iter().map(|p| p.component_mul(&stretch)).collect();
+            return Shape::of(&Solid::ellipsoid(half), &corners, ball);
+        }
+        ShapeKind::Box => box_surface(sides),
+        ShapeKind::Prism => prism_surface(table.sides.unwrap_or(3), sides[2]),
+        _ => eota(sides),
+    };
+    Shape::of(&Solid::of(&surface), &surface.points, ball)
+}
+
+/// A shape where nothing of it is drawn, and what the plan says of it.
+fn prepared(
+    table: &ShapeTable,
+) -> Result<std::result::Result<(Option<Shape>, String), BadSurface>> {
+    Ok(match table.kind {
+        ShapeKind::Sphere => Ok((None, format!("sphere, weight {}", table.weight.unwrap_or(1.0)))),
+        ShapeKind::Mesh => scanned(table)?.map(|(shape, note)| {
+            let line = described(table, &shape, &note);
+            (Some(shape), line)
+        }),
+        _ => made(table),
+    })
+}
+
+fn made(table: &ShapeTable) -> std::result::Result<(Option<Shape>, String), BadSurface> {
+    // the extremes must do too: a shape that is drawn is made without a chance to complain
+    for share in [0.001, 0.999] {
+        make(table, |axis| axis.quantile(share))?;
+    }
+    let shape = make(table, |axis| axis.quantile(0.5))?;
+    let mut drawn = table.axes.iter().flatten().chain(&table.ratio);
+    let is_drawn = drawn.any(|axis| axis.as_fixed().is_none());
+    let note = if is_drawn { ", its sides drawn for each rock, of which the median" } else { "" };
+    let line = described(table, &shape, note);
+    Ok(((!is_drawn).then_some(shape), line))
+}
+
+/// The shape of a scan, with how its hull was thinned.
+fn scanned(table: &ShapeTable) -> Result<std::result::Result<(Shape, String), BadSurface>> {
+    let path = table.mesh.as_deref().unwrap_or(Path::new(""));
+    let soup = stl::read(path)?;
+    Ok(of_surface(&welded(&soup.facets), table))
+}
+
+fn of_surface(
+    surface: &Surface,
+    table: &ShapeTable,
+) -> std::result::Result<(Shape, String), BadSurface> {
+    surface.check_closed()?;
+    let solid = Solid::of(surface);
+    if solid.volume <= 0.0 {
+        return Err(BadSurface::Flat);
+    }
+    let thinned = surface.thinned(table.corners.unwrap_or(CORNERS), 0.0)?;
+    let shape = Shape::of(&solid, &thinned.corners, table.corner_radius.unwrap_or(0.0))?;
+    let note = format!(
+        " of {} corners of the hull of {} points; what is left out stands out by {:.4} of the radius at most",
+        thinned.of,
+        surface.points.len(),
+        thinned.left / solid.equal_radius()
+    );
+    Ok((shape, note))
+}
+
+/// The facets of a file with their common corners joined: those written with the same numbers.
+fn welded(facets: &[stl::Facet]) -> Surface {
+    let mut known: BTreeMap<[u64; 3], u32> = BTreeMap::new();
+    let mut points = Vec::new();
+    let mut place = |p: &Vec3| {
+        // −0 and 0 are one place
+        let key = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
+        *known.entry(key).or_insert_with(|| {
+            points.push(*p);
+            points.len() as u32 - 1
+        })
+    };
+    let triangles: Vec<[u32; 3]> =
+        facets.iter().map(|[a, b, c]| [place(a), place(b), place(c)]).collect();
+    let mut surface = Surface { points, triangles };
+    if Solid::of(&surface).volume < 0.0 {
+        surface.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    }
+    surface
+}
+
+fn remedy(why: &BadSurface) -> &'static str {
+    match why {
+        BadSurface::Open(_) => "close the scan: fill its holes and join its corners",
+        BadSurface::Flat => "write a body with a volume",
+        BadSurface::TooMany(_) => "write fewer corners",
+        BadSurface::NoCore => "write a smaller corner_radius, or a less slender shape",
+    }
+}
+
+/// A shape in the words of the plan.
+fn described(table: &ShapeTable, shape: &Shape, note: &str) -> String {
+    let [low, middle, high] = {
+        let mut moments = shape.inertia.map(|moment| moment / 0.4);
+        moments.sort_by(f64::total_cmp);
+        moments
+    };
+    format!(
+        "{}, weight {}{note}: {} corner balls of {} R, {} edges, {} faces; reaches {:.3} R, moments of inertia {low:.3}, {middle:.3}, {high:.3} of the sphere's; rounding takes {:.4} R off its corners",
+        table.kind.name(),
+        table.weight.unwrap_or(1.0),
+        shape.core.corners.len(),
+        shape.ball,
+        shape.core.ridges.len(),
+        shape.core.faces.len(),
+        shape.bound,
+        shape.cut_off,
+    )
+}
+
+#[cfg(test)]
+mod tests;

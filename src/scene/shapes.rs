@@ -1,0 +1,211 @@
+//! `[[rocks.shapes]]`, `[release] orientation`, and what goes with blocks.
+
+use super::Scene;
+use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
+use crate::body::{SHARPEST, ShapeKind, most_corners};
+use crate::random::Distribution;
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// One shape of the rocks.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table with kind and corner_radius")]
+pub struct ShapeTable {
+    /// What it is made from.
+    pub kind: ShapeKind,
+    /// Radius of the balls at the corners over `radius_m` (–), [`SHARPEST`] to 0.5; not of a sphere.
+    pub corner_radius: Option<f64>,
+    /// How often it is drawn relative to the others (–), positive; absent = 1.
+    pub weight: Option<f64>,
+    /// Sides of a box, diameters of an ellipsoid, in any unit: only their ratios count.
+    pub axes: Option<Vec<Distribution>>,
+    /// Corners of the polygon of a prism, 3 to 32.
+    pub sides: Option<u32>,
+    /// Height of a prism over the diameter of the circle through its corners (–), positive.
+    pub ratio: Option<Distribution>,
+    /// STL file of a closed surface, in any unit; once a scene is read, as seen from the working directory.
+    pub mesh: Option<PathBuf>,
+    /// Most corners that are kept of the mesh's hull, 6 to 64; absent = 32.
+    pub corners: Option<usize>,
+}
+
+/// How rocks with a shape are turned at release.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "\"random\", or a quaternion [w, x, y, z]")]
+pub enum Orientation {
+    /// Uniform over all turns.
+    Random(RandomWord),
+    /// From the shape's own frame to the world, as a quaternion w, x, y, z of any length but 0.
+    Fixed([f64; 4]),
+}
+
+/// The word `random`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RandomWord {
+    /// The only one.
+    Random,
+}
+
+/// Corners kept of a scan where the scene does not say.
+pub const CORNERS: usize = 32;
+
+/// Keys that only some shapes have.
+const OWN: [(&str, &[ShapeKind]); 5] = [
+    ("axes", &[ShapeKind::Box, ShapeKind::Ellipsoid]),
+    ("sides", &[ShapeKind::Prism]),
+    ("ratio", &[ShapeKind::Prism]),
+    ("mesh", &[ShapeKind::Mesh]),
+    ("corners", &[ShapeKind::Mesh]),
+];
+
+impl ShapeTable {
+    pub(super) fn check(&self) -> Checked {
+        let given = [
+            self.axes.is_some(),
+            self.sides.is_some(),
+            self.ratio.is_some(),
+            self.mesh.is_some(),
+            self.corners.is_some(),
+        ];
+        for ((key, kinds), given) in OWN.into_iter().zip(given) {
+            let belongs = kinds.contains(&self.kind);
+            if given && !belongs {
+                let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
+                let remedy = format!("remove it: only {} has it", names.join(" and "));
+                return Err(Complaint::about(key, remedy));
+            }
+            if belongs && !given && key != "corners" {
+                let remedy = format!("write it: kind = \"{}\" needs it", self.kind.name());
+                return Err(Complaint::missing(key, remedy));
+            }
+        }
+        optional("weight", self.weight, Allowed::Positive, "")?;
+        self.check_corner_radius()?;
+        self.check_sizes()
+    }
+
+    fn check_corner_radius(&self) -> Checked {
+        match (self.kind, self.corner_radius) {
+            (ShapeKind::Sphere, None) => Ok(()),
+            (ShapeKind::Sphere, Some(_)) => {
+                Err(Complaint::about("corner_radius", "remove it: a sphere has no corners"))
+            }
+            (_, None) => {
+                let remedy = "write corner_radius = 0.1 or another radius of the corners over radius_m; fresh blocks are near 0.1, worn ones near 0.3";
+                Err(Complaint::missing("corner_radius", remedy))
+            }
+            (_, Some(value)) => {
+                let hint = "sharper corners than that are not computed";
+                number("corner_radius", value, Allowed::Between(SHARPEST, 0.5), hint)
+            }
+        }
+    }
+
+    fn check_sizes(&self) -> Checked {
+        if let Some(axes) = &self.axes {
+            if axes.len() != 3 {
+                let found = format!("found {} values", axes.len());
+                let about = Complaint::about("axes", "write three, as in axes = [1.0, 0.8, 0.5]");
+                return Err(about.finding(found));
+            }
+            for axis in axes {
+                drawn("axes", axis, Allowed::Between(0.01, 100.0), "")?;
+            }
+        }
+        if let Some(ratio) = &self.ratio {
+            drawn("ratio", ratio, Allowed::Between(0.05, 20.0), "")?;
+        }
+        if self.sides.is_some_and(|sides| !(3..=most_corners() as u32 / 2).contains(&sides)) {
+            return Err(Complaint::about("sides", "write 3..32"));
+        }
+        if self.corners.is_some_and(|corners| !(6..=most_corners()).contains(&corners)) {
+            return Err(Complaint::about("corners", "write 6..64"));
+        }
+        Ok(())
+    }
+}
+
+impl Orientation {
+    pub(super) fn check(&self) -> Checked {
+        let Self::Fixed(turn) = self else { return Ok(()) };
+        let size2: f64 = turn.iter().map(|x| x * x).sum();
+        if size2.is_finite() && size2 > 1e-12 {
+            return Ok(());
+        }
+        Err(Complaint::about(
+            "orientation",
+            "write a quaternion [w, x, y, z] of finite length, [1, 0, 0, 0] turns nothing",
+        ))
+    }
+}
+
+impl Scene {
+    /// Whether some rocks are blocks.
+    pub fn has_blocks(&self) -> bool {
+        self.rocks.shapes.iter().any(|shape| shape.kind != ShapeKind::Sphere)
+    }
+
+    /// The tables of shapes, and what cannot be had together with blocks.
+    pub(super) fn check_shapes(&self) -> Checked {
+        for (index, shape) in self.rocks.shapes.iter().enumerate() {
+            shape
+                .check()
+                .map_err(|wrong| wrong.in_entry(index).inside("shapes").inside("rocks"))?;
+        }
+        if let Some(orientation) = &self.release.orientation {
+            orientation.check().map_err(|wrong| wrong.inside("release"))?;
+            if !self.has_blocks() {
+                let remedy =
+                    "remove it, or write [[rocks.shapes]]: a sphere looks the same from every side";
+                return Err(Complaint::about("orientation", remedy).inside("release"));
+            }
+        }
+        if !self.has_blocks() {
+            return Ok(());
+        }
+        if self.solver.scheme().has_springs() {
+            let remedy = "write scheme = \"rigid\": blocks of [[rocks.shapes]] are computed in the rigid limit only, as yet";
+            let about = match self.solver.scheme {
+                Some(_) => Complaint::about("scheme", remedy),
+                None => Complaint::missing("scheme", remedy),
+            };
+            return Err(about.inside("solver"));
+        }
+        if self.release.together {
+            let remedy = "remove it, or the blocks of [[rocks.shapes]]: rocks that share one world are spheres";
+            return Err(Complaint::about("together", remedy).inside("release"));
+        }
+        self.check_grounds_of_blocks()
+    }
+
+    fn check_grounds_of_blocks(&self) -> Checked {
+        let above_0 =
+            |value: &Option<Distribution>| value.as_ref().is_some_and(|v| v.support().1 > 0.0);
+        for (name, ground) in &self.grounds {
+            let refused = [
+                (
+                    "rolling_friction",
+                    above_0(&ground.rolling_friction),
+                    "write rolling_friction = 0.0: how a block rolls is its shape, which [[rocks.shapes]] computes",
+                ),
+                (
+                    "roughness_deg",
+                    above_0(&ground.roughness_deg),
+                    "remove it: the tilt of a facet is computed for spheres only, as yet; blocks are deflected by their corners",
+                ),
+                (
+                    "breaks_above_j",
+                    ground.breaks_above_j.is_some(),
+                    "remove it: stems that give way are computed for spheres only, as yet",
+                ),
+            ];
+            for (key, wrong, remedy) in refused {
+                if wrong {
+                    return Err(Complaint::about(key, remedy).inside(name).inside("grounds"));
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,200 @@
+//! The recorder of a block: tumble, touch, step, stop. Scheme `rigid` only.
+
+use super::driver::RunSettings;
+use super::form::{Form, Turned};
+use super::impacts::Struck;
+use super::recorder::{Keep, Recorder};
+use super::rest::RestCriterion;
+use super::{ShapeOf, Stop, Trajectory};
+use crate::body::Block;
+use crate::flight::block::{Tumble, first_touch};
+use crate::flight::top::Top;
+use crate::flight::{FlightEnd, Parabola};
+use crate::ground::Law;
+use crate::release::{Drawn, Release};
+use crate::rock::{Motion, Vec3};
+use crate::solver::block::{Footing, Moving, law_body};
+use crate::solver::environment::ContactEnvironment;
+
+/// One block on its way.
+struct Roll<'a> {
+    settings: &'a RunSettings<'a>,
+    world: ContactEnvironment<'a>,
+    block: &'a Block,
+    footing: &'a mut Footing,
+    moving: Moving,
+    recorder: Recorder<'a>,
+}
+
+/// Follows one block from its release to its stop; `laws` are those of the grounds for it.
+pub(super) fn follow_block(
+    settings: &RunSettings,
+    (release, drawn): (&Release, &Drawn),
+    keep: Keep,
+    laws: &[Law],
+    footing: &mut Footing,
+) -> Trajectory {
+    let block = &drawn.block;
+    let world = ContactEnvironment {
+        terrain: settings.terrain,
+        body: law_body(block, settings.gravity_m_s2),
+        laws,
+    };
+    footing.near.forget();
+    footing.near.gone.clear();
+    (footing.near.tested, footing.sweeps) = (0, 0);
+    let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
+    let form = Form { rock: release.rock, block: Some(block) };
+    let turned = turned(block, &moving);
+    let start = (release.motion, Some(turned));
+    let recorder = Recorder::new(settings.terrain, form, start, (keep, settings.recorders));
+    let mut roll = Roll { settings, world, block, footing, moving, recorder };
+    let stop = loop {
+        if let Some(stop) = roll.fly().or_else(|| roll.touch()) {
+            break stop;
+        }
+    };
+    roll.end((release, drawn), stop)
+}
+
+fn turned(block: &Block, moving: &Moving) -> Turned {
+    let rotational_j = 0.5 * moving.spin(block).dot(&moving.momentum);
+    Turned { attitude: moving.pose.attitude, rotational_j }
+}
+
+impl Roll<'_> {
+    /// Leaps to the next touch.
+    fn fly(&mut self) -> Option<Stop> {
+        let Motion { time_s, position_m, velocity_m_s, .. } = self.recorder.now;
+        let block = self.block;
+        let path = Parabola {
+            start: position_m,
+            velocity: velocity_m_s,
+            gravity: self.settings.gravity_m_s2,
+            radius: block.bound_m,
+        };
+        let top = Top::new(block.inertia_kg_m2, self.moving.pose.attitude, self.moving.momentum);
+        let left = self.settings.longest_s - time_s;
+        let tumble = Tumble { block, top, path };
+        let landing = first_touch(self.settings.terrain, &tumble, left, &mut self.footing.near);
+        let (dt, stop) = match landing {
+            FlightEnd::Touch(t) => (t, None),
+            FlightEnd::Leaves(t) => (t, Some(Stop::LeftTerrain)),
+            FlightEnd::Flies => (left, Some(Stop::TimeUp)),
+        };
+        // a touch at the very end of the time comes too late
+        let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
+        self.recorder.effort.leaps += 1;
+        self.recorder.fly(&path, Some(&top), dt);
+        self.moving.pose = tumble.pose(dt);
+        self.moving.v = self.recorder.now.velocity_m_s;
+        stop.or_else(|| self.over_budget())
+    }
+
+    fn over_budget(&self) -> Option<Stop> {
+        let most = self.settings.step.scheme.most_work();
+        (self.recorder.effort.work() > most).then_some(Stop::OverBudget)
+    }
+
+    /// Goes on in contact until the block is free again or stops.
+    fn touch(&mut self) -> Option<Stop> {
+        let (before_j, lost_before_j) = (self.total_j(), self.recorder.lost_j());
+        let stop = self.steps();
+        let rise_j = self.total_j() - before_j;
+        let ledger = &mut self.recorder.ledger;
+        ledger.rise_j = ledger.rise_j.max(rise_j);
+        let lost_j = self.recorder.lost_j() - lost_before_j;
+        self.recorder.ledger.remainder_j -= rise_j + lost_j;
+        stop
+    }
+
+    fn steps(&mut self) -> Option<Stop> {
+        let block = self.block;
+        let mut calm = RestCriterion::from(self.moving.pose.centre);
+        loop {
+            let pose = self.moving.pose;
+            self.footing.look(&self.world, block, &pose, block.ball_m);
+            if self.strike() {
+                return None;
+            }
+            let left = self.settings.longest_s - self.recorder.now.time_s;
+            let most_s = self.settings.step.step_s.min(left);
+            let done = self.footing.step(&self.world, block, &mut self.moving, most_s);
+            self.recorder.effort.steps += 1;
+            self.recorder.effort.unsettled += u64::from(done.unsettled);
+            self.recorder.pay(&done.loss, 1.0);
+            let to = Motion {
+                time_s: self.recorder.now.time_s + done.dt,
+                position_m: self.moving.pose.centre,
+                velocity_m_s: self.moving.v,
+                spin_rad_s: self.moving.spin(block),
+            };
+            let finite = to.position_m.iter().chain(to.spin_rad_s.iter()).all(|x| x.is_finite());
+            if !finite {
+                return Some(Stop::Failed("motion is no longer finite".to_owned()));
+            }
+            self.recorder.turned = Some(turned(block, &self.moving));
+            self.recorder.step(to, done.slides);
+            let time_up = (done.dt >= left).then_some(Stop::TimeUp);
+            let ends = time_up.or_else(|| self.over_budget());
+            if done.is_free || ends.is_some() {
+                return ends;
+            }
+            calm.note(done.dt, &to, block.bound_m, &self.settings.rest);
+            if calm.rests() {
+                return Some(Stop::AtRest);
+            }
+        }
+    }
+
+    /// Resolves the impact of the contacts that touch, if there is one; whether it has thrown the block off.
+    fn strike(&mut self) -> bool {
+        let (block, now_s) = (self.block, self.recorder.now.time_s);
+        let struck: Vec<_> = self
+            .footing
+            .touching(block)
+            .filter(|touch| Footing::is_struck(&self.world, (block, &self.moving), touch))
+            .copied()
+            .collect();
+        for touch in &struck {
+            let velocity = self.moving.at(block, &touch.lever);
+            let struck = Struck {
+                point_m: self.moving.pose.centre + touch.lever,
+                normal: touch.normal,
+                feature: touch.feature.kind,
+                sheet: self.recorder.sheet_of(touch.triangle),
+                approach_m_s: -touch.normal.dot(&velocity),
+            };
+            self.recorder.begin_impact(&struck, now_s, 0.0);
+        }
+        let Some(loss) = self.footing.strike(&self.world, block, &mut self.moving) else {
+            return false;
+        };
+        self.recorder.pay(&loss, 1.0);
+        self.recorder.now.velocity_m_s = self.moving.v;
+        self.recorder.now.spin_rad_s = self.moving.spin(block);
+        self.recorder.turned = Some(turned(block, &self.moving));
+        self.recorder.note_speed();
+        self.recorder.end_impacts(|_| false, || 0.0);
+        !self.footing.holds(&self.world, (block, &self.moving), true)
+    }
+
+    /// Mechanical energy (J), weight included.
+    fn total_j(&self) -> f64 {
+        let weight: Vec3 = self.world.body.gravity * self.block.mass_kg;
+        self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
+    }
+
+    fn end(mut self, (release, drawn): (&Release, &Drawn), stop: Stop) -> Trajectory {
+        let start =
+            Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);
+        self.recorder.end_path();
+        self.recorder.effort.sweeps += self.footing.sweeps;
+        self.recorder.effort.triangles += self.footing.near.tested;
+        let fallen = release.motion.position_m.z - self.recorder.now.position_m.z;
+        let weight_j = self.block.mass_kg * self.settings.gravity_m_s2 * fallen;
+        let released_j = weight_j + start.motion_j(self.block);
+        let shape = Some(ShapeOf::new(drawn));
+        Trajectory { shape, ..self.recorder.into_trajectory(release, stop, released_j) }
+    }
+}

@@ -1,0 +1,90 @@
+//! What a rock looks like to those who note its way: a ball, or a block that is turned somehow.
+
+use crate::body::Block;
+use crate::flight::Parabola;
+use crate::flight::top::Top;
+use crate::rock::{Motion, Rock, Vec3};
+use nalgebra::{Rotation3, UnitQuaternion};
+
+/// How a block is turned, and the energy of its rotation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Turned {
+    /// From the block's principal frame to the world.
+    pub(super) attitude: Rotation3<f64>,
+    /// Rotational energy (J).
+    pub(super) rotational_j: f64,
+}
+
+/// A rock at one instant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Instant {
+    pub(super) motion: Motion,
+    /// None for a sphere.
+    pub(super) turned: Option<Turned>,
+}
+
+/// The rock itself.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Form<'a> {
+    pub(super) rock: Rock,
+    /// None for a sphere.
+    pub(super) block: Option<&'a Block>,
+}
+
+impl Turned {
+    /// The turn as a unit quaternion w, x, y, z with w ≥ 0.
+    pub(super) fn quaternion(&self) -> [f64; 4] {
+        quaternion(&self.attitude)
+    }
+}
+
+/// A turn as a unit quaternion w, x, y, z with w ≥ 0.
+pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
+    let turn = UnitQuaternion::from_rotation_matrix(turn);
+    let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
+    [turn.w, turn.i, turn.j, turn.k].map(|x| x * sign)
+}
+
+impl Instant {
+    /// The rock after `t` (s) of a flight that began with `start`; a block turns as `top` does.
+    pub(super) fn in_flight(start: &Motion, flight: &Parabola, top: Option<&Top>, t: f64) -> Self {
+        let turned = top.map(|top| {
+            let attitude = top.attitude(t);
+            (top.spin(&attitude), Turned { attitude, rotational_j: top.energy_j() })
+        });
+        let motion = Motion {
+            time_s: start.time_s + t,
+            position_m: flight.centre(t),
+            velocity_m_s: flight.velocity(t),
+            spin_rad_s: turned.map_or(start.spin_rad_s, |(spin, _)| spin),
+        };
+        Self { motion, turned: turned.map(|(_, turned)| turned) }
+    }
+}
+
+impl Form<'_> {
+    /// How far the rock reaches from its centre along a unit direction (m).
+    pub(super) fn reach_m(&self, at: &Instant, along: &Vec3) -> f64 {
+        match (self.block, &at.turned) {
+            (Some(block), Some(turned)) => {
+                block.support_m(&turned.attitude.inverse_transform_vector(along))
+            }
+            _ => self.rock.radius_m,
+        }
+    }
+
+    /// How far the lowest point lies below the centre (m).
+    pub(super) fn below_m(&self, at: &Instant) -> f64 {
+        self.reach_m(at, &-Vec3::z())
+    }
+
+    /// Radius of the circle that it may cover on the map (m).
+    pub(super) fn rim_m(&self) -> f64 {
+        self.block.map_or(self.rock.radius_m, |block| block.bound_m)
+    }
+
+    /// Rotational energy (J).
+    pub(super) fn rotational_j(&self, at: &Instant) -> f64 {
+        at.turned.map_or_else(|| at.motion.rotational_j(&self.rock), |turned| turned.rotational_j)
+    }
+}

@@ -1,0 +1,378 @@
+//! Scheme `rigid` for blocks: impacts take no time, sustained contact is stepped in velocities.
+//!
+//! A step drifts for half its time (straight on, and round as a free top), meets the contacts of the middle with one set of impulses,
+//! weight included, and drifts on. Impulses are asked for what brings each contact point back to the surface, and back to where it
+//! stuck, at the end of the step: what changed its velocity since the start of the step by turning alone is taken off twice. So a push does
+//! no work, a block in rest stays where it is, and pivoting keeps its energy to second order.
+//!
+//! Restitution is Newton's, contact by contact. With friction and several contacts that rule can gain energy (Glocker 2013); where it
+//! would, all restitutions are lowered together until it does not.
+
+mod solve;
+
+use super::contact_state::Loss;
+use super::environment::ContactEnvironment;
+use super::law::Body;
+use super::rigid::capture_m_s;
+use crate::body::Block;
+use crate::contact::block::{BlockTouch, Pose, touches};
+use crate::contact::neighbours::Neighbours;
+use crate::flight::block::Tumble;
+use crate::flight::top::{Top, spin_of};
+use crate::ground::Law;
+use crate::rock::{Motion, Vec3};
+use nalgebra::{Matrix3, Rotation3};
+use solve::{Contact, Mass, solve};
+
+/// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
+pub(crate) const TOUCH: f64 = 1e-8;
+/// Gaps no wider than this still hold the block (–).
+const HELD: f64 = 1e-4;
+/// Contacts this far ahead take part in a step (–, relative to the balls' radius).
+const AHEAD: f64 = 1.0;
+/// No point of the block moves further in one step (–, relative to the balls' radius) …
+const TRAVEL: f64 = 0.3;
+/// … and the block turns no further (rad).
+const TURN: f64 = 0.03;
+/// An approach slower than this is none (m/s): rounding.
+const STILL_M_S: f64 = 1e-9;
+/// Most contacts that take part at a time.
+const MOST: usize = 8;
+/// A gain of energy that is rounding (–); it is taken off the motion all the same.
+const ROUNDING: f64 = 1e-12;
+/// Halvings of the restitution where it would gain energy.
+const HALVINGS: u32 = 30;
+
+/// A block in contact.
+#[derive(Debug, Clone)]
+pub(crate) struct Moving {
+    pub(crate) pose: Pose,
+    pub(crate) v: Vec3,
+    /// Angular momentum in the world's frame (kg m²/s).
+    pub(crate) momentum: Vec3,
+}
+
+/// Work space of the contact of one block.
+#[derive(Debug, Default)]
+pub(crate) struct Footing {
+    pub(crate) near: Neighbours,
+    pub(crate) touches: Vec<BlockTouch>,
+    contacts: Vec<Contact>,
+    /// Passes over the contacts.
+    pub(crate) sweeps: u64,
+}
+
+/// What a step has done.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Stepped {
+    /// How long it was (s).
+    pub(crate) dt: f64,
+    pub(crate) loss: Loss,
+    /// Whether a contact slides.
+    pub(crate) slides: bool,
+    /// Whether nothing holds the block any more.
+    pub(crate) is_free: bool,
+    /// Whether the impulses did not settle.
+    pub(crate) unsettled: bool,
+}
+
+impl Moving {
+    /// A block at a place and turned like this, with the velocity and spin of `motion`.
+    pub(crate) fn new(
+        block: &Block,
+        (centre, attitude): (Vec3, Rotation3<f64>),
+        motion: &Motion,
+    ) -> Self {
+        let own = attitude.inverse_transform_vector(&motion.spin_rad_s);
+        let own = own.component_mul(&Vec3::from(block.inertia_kg_m2));
+        let momentum = attitude * own;
+        Self { pose: Pose { centre, attitude }, v: motion.velocity_m_s, momentum }
+    }
+
+    pub(crate) fn spin(&self, block: &Block) -> Vec3 {
+        spin_of(block.inertia_kg_m2, &self.pose.attitude, &self.momentum)
+    }
+
+    /// Energy of motion (J).
+    pub(crate) fn motion_j(&self, block: &Block) -> f64 {
+        0.5 * (block.mass_kg * self.v.norm_squared() + self.spin(block).dot(&self.momentum))
+    }
+
+    fn mass(&self, block: &Block) -> Mass {
+        let turned = self.pose.attitude.matrix();
+        let own = Matrix3::from_diagonal(&Vec3::from(block.inertia_kg_m2.map(|i| 1.0 / i)));
+        Mass { mass: block.mass_kg, inverse: turned * own * turned.transpose() }
+    }
+
+    /// Moves on for `t` (s) without any force.
+    fn drift(&mut self, block: &Block, t: f64) {
+        let top = Top::new(block.inertia_kg_m2, self.pose.attitude, self.momentum);
+        self.pose.centre += self.v * t;
+        self.pose.attitude = orthonormal(&top.attitude(t));
+    }
+
+    /// Takes the impulses of the contacts.
+    fn take(&mut self, contacts: &[Contact], mass_kg: f64) {
+        for contact in contacts {
+            self.v += contact.impulse / mass_kg;
+            self.momentum += contact.lever.cross(&contact.impulse);
+        }
+    }
+
+    /// Velocity of a point of the block (m/s).
+    pub(crate) fn at(&self, block: &Block, lever: &Vec3) -> Vec3 {
+        Mass::at(lever, (&self.v, &self.spin(block)))
+    }
+}
+
+/// Takes rounding out of a rotation that is multiplied again and again.
+fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
+    let m = turned.matrix();
+    let one = m.column(0).normalize();
+    let two = m.column(1) - one * one.dot(&m.column(1));
+    let two = two.normalize();
+    Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[one, two, one.cross(&two)]))
+}
+
+impl Footing {
+    /// Looks for the contacts of a block that are no wider apart than `reach_m`.
+    pub(crate) fn look(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        pose: &Pose,
+        reach_m: f64,
+    ) {
+        if !self.near.covers_around(&pose.centre, block.bound_m - block.ball_m) {
+            let way = 0.5 * block.radius_m;
+            Tumble::collect(block, &mut self.near, world.terrain, (&pose.centre, way));
+        }
+        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
+        if self.touches.len() > MOST {
+            keep_widest(&mut self.touches);
+        }
+    }
+
+    /// Contacts that hold the block or strike it: those of the last look that touch.
+    pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
+        let most = TOUCH * block.radius_m;
+        self.touches.iter().filter(move |touch| touch.gap_m <= most)
+    }
+
+    /// Whether a contact that touches is struck, faster than its ground captures.
+    pub(crate) fn is_struck(
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+        touch: &BlockTouch,
+    ) -> bool {
+        -touch.normal.dot(&moving.at(block, &touch.lever)) >= capture_m_s(world.law(touch.triangle))
+    }
+
+    /// The impact of all contacts that touch, at the place and in no time; contacts too slow to rebound take part and give
+    /// nothing back. What it takes, and whether there was any.
+    pub(crate) fn strike(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        moving: &mut Moving,
+    ) -> Option<Loss> {
+        let mass = moving.mass(block);
+        let (v, w) = (moving.v, moving.spin(block));
+        let approach = |touch: &BlockTouch| -touch.normal.dot(&moving.at(block, &touch.lever));
+        if !self.touching(block).any(|touch| approach(touch) > STILL_M_S) {
+            return None;
+        }
+        let wanted: Vec<(Contact, f64)> = self
+            .touching(block)
+            .map(|touch| {
+                let law = world.law(touch.triangle);
+                let back = if Self::is_struck(world, (block, moving), touch) {
+                    law.restitution * approach(touch)
+                } else {
+                    0.0
+                };
+                (contact(&mass, touch, law, Vec3::zeros()), back)
+            })
+            .collect();
+        let before_j = moving.motion_j(block);
+        let mut thrown = moving.clone();
+        let mut try_with = |share: f64| {
+            self.contacts.clear();
+            let goal = |(one, back): &(Contact, f64)| one.with_goal(one.n * (back * share));
+            self.contacts.extend(wanted.iter().map(goal));
+            solve(&mass, &mut self.contacts, (v, w), &mut self.sweeps);
+            thrown = moving.clone();
+            thrown.take(&self.contacts, block.mass_kg);
+            thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
+        };
+        if !try_with(1.0) {
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if try_with(middle) { low = middle } else { high = middle }
+            }
+            try_with(low);
+        }
+        let after = (&thrown.v, &thrown.spin(block));
+        let loss = self.booked(world, [(&v, &w), after], before_j - thrown.motion_j(block));
+        *moving = thrown;
+        hold_energy(block, moving, before_j);
+        Some(loss)
+    }
+
+    /// What friction and restitution of each contact took, together `lost_j`, each at least 0: impulses work with the mean of
+    /// the motion before and after.
+    fn booked(&self, world: &ContactEnvironment, motion: [(&Vec3, &Vec3); 2], lost_j: f64) -> Loss {
+        let part = |contact: &Contact| {
+            let [before, after] = motion.map(|motion| Mass::at(&contact.lever, motion));
+            let mean = (before + after) * 0.5;
+            let (push, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
+            let drag = contact.impulse - contact.n * push;
+            ([-drag.dot(&mean), -push * up].map(|joule| joule.max(0.0)), contact.triangle)
+        };
+        let sum: f64 = self.contacts.iter().flat_map(|contact| part(contact).0).sum();
+        let share = if sum > 0.0 { lost_j.max(0.0) / sum } else { 0.0 };
+        let mut loss = Loss::default();
+        for ([friction, damping], triangle) in self.contacts.iter().map(part) {
+            let one = Loss { friction, damping, ..Loss::default() };
+            loss.add(&one.on(world, triangle), share);
+        }
+        loss
+    }
+
+    /// One step of sustained contact of at most `most_s`.
+    pub(crate) fn step(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        moving: &mut Moving,
+        most_s: f64,
+    ) -> Stepped {
+        let spin = moving.spin(block);
+        let fastest = moving.v.norm() + spin.norm() * block.bound_m;
+        let dt = most_s
+            .min(TRAVEL * block.ball_m / fastest.max(f64::MIN_POSITIVE))
+            .min(TURN / spin.norm().max(f64::MIN_POSITIVE));
+        let dt = self.closing(world, (block, moving), dt);
+        let (start, before_j) = (moving.clone(), moving.motion_j(block));
+        moving.drift(block, 0.5 * dt);
+        self.look(world, block, &moving.pose, AHEAD * block.ball_m);
+        let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
+        let (v, w) = (moving.v, moving.spin(block));
+        self.contacts.clear();
+        for touch in &self.touches {
+            let goal = goal(block, (&start, moving), touch, dt);
+            self.contacts.push(contact(&mass, touch, world.law(touch.triangle), goal));
+        }
+        let settled = solve(&mass, &mut self.contacts, (v + weight, w), &mut self.sweeps);
+        moving.v += weight;
+        moving.take(&self.contacts, block.mass_kg);
+        // the way of the step is that of the mean velocity, so this is just what the weight gives
+        let most_j = before_j + 0.5 * block.mass_kg * weight.dot(&(v + moving.v));
+        let lost_j = most_j - moving.motion_j(block);
+        let after = (&moving.v, &moving.spin(block));
+        let loss = self.booked(world, [(&v, &w), after], lost_j);
+        hold_energy(block, moving, most_j);
+        let pushed = self.contacts.iter().any(|contact| contact.n.dot(&contact.impulse) > 0.0);
+        moving.drift(block, 0.5 * dt);
+        self.look(world, block, &moving.pose, AHEAD * block.ball_m);
+        let slides = self.slides(block, moving);
+        let is_free = !self.holds(world, (block, moving), pushed);
+        Stepped { dt, loss, slides, is_free, unsettled: !settled }
+    }
+
+    /// Whether a contact that touches slides.
+    fn slides(&self, block: &Block, moving: &Moving) -> bool {
+        let speed = 1e-6 * (1.0 + moving.v.norm());
+        self.touching(block).any(|touch| {
+            let u = moving.at(block, &touch.lever);
+            (u - touch.normal * touch.normal.dot(&u)).norm() > speed
+        })
+    }
+
+    /// Whether a contact still holds the block: it is near, and does not let go faster than its ground captures.
+    pub(crate) fn holds(
+        &self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+        pushed: bool,
+    ) -> bool {
+        self.touches.iter().any(|touch| {
+            let up = touch.normal.dot(&moving.at(block, &touch.lever));
+            touch.gap_m <= HELD * block.radius_m
+                && up < capture_m_s(world.law(touch.triangle))
+                && (pushed || up <= 0.0)
+        })
+    }
+
+    /// Cuts a step where a gap closes faster than the capture speed: the impact comes at its end.
+    fn closing(
+        &self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+        dt: f64,
+    ) -> f64 {
+        let most = TOUCH * block.radius_m;
+        self.touches.iter().filter(|touch| touch.gap_m > most).fold(dt, |dt, touch| {
+            let speed = -touch.normal.dot(&moving.at(block, &touch.lever));
+            let fast = speed >= capture_m_s(world.law(touch.triangle));
+            if fast { dt.min((touch.gap_m / speed).max(1e-9)) } else { dt }
+        })
+    }
+}
+
+fn contact(mass: &Mass, touch: &BlockTouch, law: &Law, goal: Vec3) -> Contact {
+    Contact::new(mass, (touch.normal, touch.lever), (law.friction, touch.triangle), goal)
+}
+
+/// The velocity that a contact point seeks in the middle of a step: along the normal what ends the step at the surface, along the surface
+/// what ends it where it began, as far as turning has moved it.
+fn goal(block: &Block, (start, middle): (&Moving, &Moving), touch: &BlockTouch, dt: f64) -> Vec3 {
+    let n = &touch.normal;
+    let core = middle.pose.attitude.inverse_transform_vector(&(touch.lever + n * block.ball_m));
+    let began = start.at(block, &(start.pose.attitude * core - n * block.ball_m));
+    let turned = middle.at(block, &touch.lever) - began;
+    let gap = touch.gap_m - 0.5 * dt * n.dot(&(began + turned * 0.5));
+    // a contact that was pressed in is let out slowly: it must not be thrown
+    let out = (-2.0 * gap / dt).min(0.1 * (block.radius_m * 10.0).sqrt());
+    let up = n.dot(&turned);
+    n * (out - up) - (turned - n * up)
+}
+
+/// Slows a block that has more energy of motion than `most_j`: moving out of what it was pressed into is paid by its motion.
+fn hold_energy(block: &Block, moving: &mut Moving, most_j: f64) {
+    let motion_j = moving.motion_j(block);
+    if motion_j > most_j && motion_j > 0.0 {
+        let kept = (most_j.max(0.0) / motion_j).sqrt();
+        moving.v *= kept;
+        moving.momentum *= kept;
+    }
+}
+
+/// Keeps the contacts that span most: the deepest, then always the one farthest from those kept.
+fn keep_widest(touches: &mut Vec<BlockTouch>) {
+    let deepest = (0..touches.len()).min_by(|&i, &j| touches[i].gap_m.total_cmp(&touches[j].gap_m));
+    touches.swap(0, deepest.unwrap_or(0));
+    for kept in 1..MOST {
+        let apart = |k: usize| {
+            let to = |other: &BlockTouch| (other.lever - touches[k].lever).norm();
+            touches[..kept].iter().map(to).fold(f64::INFINITY, f64::min) - touches[k].gap_m.max(0.0)
+        };
+        let next = (kept..touches.len()).max_by(|&i, &j| apart(i).total_cmp(&apart(j)));
+        touches.swap(kept, next.unwrap_or(kept));
+    }
+    touches.truncate(MOST);
+}
+
+/// The body of a block as the laws of grounds want it: mass and radius of the sphere of equal volume.
+pub(crate) fn law_body(block: &Block, gravity_m_s2: f64) -> Body {
+    Body {
+        mass: block.mass_kg,
+        inertia: block.inertia_kg_m2.iter().sum::<f64>() / 3.0,
+        radius: block.radius_m,
+        gravity: Vec3::new(0.0, 0.0, -gravity_m_s2),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,361 @@
+use super::*;
+use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
+use crate::flight::block::first_touch;
+use crate::flight::{FlightEnd, Parabola};
+use crate::ground::{Capture, Damping, Ground};
+use crate::math::{atan, cos, sin, turn};
+use crate::rock::Rock;
+use crate::terrain::stl::{Facet, Soup};
+use crate::terrain::weld::{Piece, Up, weld};
+use crate::terrain::{Sheet, Terrain};
+use std::path::Path;
+
+/// Gravity of the exact cases (m/s²).
+const G: f64 = 9.81;
+
+fn terrain(facets: Vec<Facet>) -> Terrain {
+    let soup = Soup::from(facets);
+    let piece = Piece { file: Path::new("made"), soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
+    let welded = weld(&[piece], Vec3::zeros(), Some(1e-9)).unwrap();
+    Terrain::new(welded, vec![Sheet { path: "made".into(), ground: 0, is_tree: false }])
+}
+
+/// A plane through the origin that falls along x at an angle (rad).
+fn slope(angle: f64, half_m: f64) -> Terrain {
+    let (along, _) = axes(angle);
+    let at = |x: f64, y: f64| along * (half_m * x) + Vec3::y() * (half_m * y);
+    let [a, b, c, d] = [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)];
+    terrain(vec![[a, b, c], [a, c, d]])
+}
+
+/// Directions along and out of a slope that falls along x.
+fn axes(angle: f64) -> (Vec3, Vec3) {
+    (Vec3::new(cos(angle), 0.0, -sin(angle)), Vec3::new(sin(angle), 0.0, cos(angle)))
+}
+
+/// A block of 2700 kg/m³ with this surface (m) and its frame, rounded by `ball_m`.
+fn block(surface: &Surface, ball_m: f64) -> Block {
+    let solid = Solid::of(surface);
+    let radius_m = solid.equal_radius();
+    let shape = Shape::of(&solid, &surface.points, ball_m / radius_m).unwrap();
+    Block::new(&shape, &Rock { radius_m, density_kg_m3: 2700.0 })
+}
+
+/// One block on a mesh, followed without notes.
+struct Case {
+    terrain: Terrain,
+    block: Block,
+    law: Law,
+    step_s: f64,
+    lost: Loss,
+    impacts: usize,
+    steps: usize,
+}
+
+impl Case {
+    fn new(terrain: Terrain, block: Block, (friction, e): (f64, f64)) -> Self {
+        let ground = Ground {
+            normal_stiffness_n_m: 1e9,
+            shear_stiffness_n_m: 0.25e9,
+            friction_angle_rad: atan(friction),
+            restitution: Some(e),
+            rolling_friction: 0.0,
+            roughness_rad: 0.0,
+            roughness_length_m: None,
+        };
+        let rock = Rock { radius_m: block.radius_m, density_kg_m3: 2700.0 };
+        // slower than that an elastic block would lose what is captured
+        let own_m_s = Some(if e < 1.0 { 1e-3 } else { 0.0 });
+        let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
+        let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
+        let lost = Loss::default();
+        Self { terrain, block, law, step_s: 0.01, lost, impacts: 0, steps: 0 }
+    }
+
+    fn start(&self, attitude: Rotation3<f64>, [centre, v, w]: [Vec3; 3]) -> Moving {
+        let motion = Motion { time_s: 0.0, position_m: centre, velocity_m_s: v, spin_rad_s: w };
+        Moving::new(&self.block, (centre - self.terrain.origin_m, attitude), &motion)
+    }
+
+    /// Follows it for `longest_s`; `see` is told the time and the motion after every flight, impact and step.
+    fn follow(&mut self, moving: &mut Moving, longest_s: f64, mut see: impl FnMut(f64, &Moving)) {
+        let (block, laws) = (self.block.clone(), [self.law]);
+        let world =
+            ContactEnvironment { terrain: &self.terrain, body: law_body(&block, G), laws: &laws };
+        let (mut footing, mut now) = (Footing::default(), 0.0);
+        while now < longest_s {
+            let path = Parabola {
+                start: moving.pose.centre,
+                velocity: moving.v,
+                gravity: G,
+                radius: block.bound_m,
+            };
+            let top = Top::new(block.inertia_kg_m2, moving.pose.attitude, moving.momentum);
+            let tumble = Tumble { block: &block, top, path };
+            let left = longest_s - now;
+            let dt = match first_touch(&self.terrain, &tumble, left, &mut footing.near) {
+                FlightEnd::Touch(dt) => dt,
+                FlightEnd::Flies => left,
+                FlightEnd::Leaves(_) => panic!("it has left the plane after {now} s"),
+            };
+            (moving.pose, moving.v) = (tumble.pose(dt), path.velocity(dt));
+            now += dt;
+            see(now, moving);
+            while now < longest_s {
+                let pose = moving.pose;
+                footing.look(&world, &block, &pose, block.ball_m);
+                if let Some(loss) = footing.strike(&world, &block, moving) {
+                    self.lost.add(&loss, 1.0);
+                    self.impacts += 1;
+                    see(now, moving);
+                    if !footing.holds(&world, (&block, moving), true) {
+                        break;
+                    }
+                }
+                let done = footing.step(&world, &block, moving, self.step_s.min(longest_s - now));
+                self.lost.add(&done.loss, 1.0);
+                self.steps += 1;
+                now += done.dt;
+                see(now, moving);
+                if done.is_free {
+                    break;
+                }
+            }
+        }
+    }
+
+    fn energy_j(&self, moving: &Moving) -> f64 {
+        moving.motion_j(&self.block) + self.block.mass_kg * G * moving.pose.centre.z
+    }
+}
+
+fn still(centre: Vec3) -> [Vec3; 3] {
+    [centre, Vec3::zeros(), Vec3::zeros()]
+}
+
+fn tilted(angle: f64) -> Rotation3<f64> {
+    turn(&Vec3::y_axis(), angle)
+}
+
+/// A cube at rest on 20° stays where it is for 100 s.
+#[test]
+fn a_cube_rests_without_creeping() {
+    let angle = 20_f64.to_radians();
+    let mut case = Case::new(slope(angle, 10.0), block(&box_surface([1.0; 3]), 0.05), (1.0, 0.4));
+    let mut moving = case.start(tilted(angle), still(axes(angle).1 * 0.5));
+    let start = moving.pose.centre;
+    case.follow(&mut moving, 100.0, |_, _| ());
+    let way = (moving.pose.centre - start).norm();
+    assert!(way < 1e-6 && moving.v.norm() < 1e-9, "{way:e} {:e}", moving.v.norm());
+}
+
+/// A cube slides on its face at 40° with μ = 0.5: a = g (sin 40° − 0.5 cos 40°) = 2.5483 m/s², and does not turn.
+#[test]
+fn a_cube_slides_as_a_point_does() {
+    let angle = 40_f64.to_radians();
+    let mut case = Case::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.4));
+    let (along, up) = axes(angle);
+    let mut moving = case.start(tilted(angle), still(up * 0.5));
+    case.follow(&mut moving, 4.0, |_, _| ());
+    let a = G * (sin(angle) - 0.5 * cos(angle));
+    assert!((a - 2.5483).abs() < 1e-4);
+    assert!((moving.v.dot(&along) / (4.0 * a) - 1.0).abs() < 1e-8, "{}", moving.v.dot(&along));
+    let spin = moving.spin(&case.block).norm();
+    assert!(moving.v.dot(&up).abs() < 1e-8 && spin < 1e-8, "{} {spin}", moving.v.dot(&up));
+}
+
+/// A cube on 50° with μ = 1.3 begins to tip about its lower edge with ¾ g/a (sin 50° − cos 50°); the balls at the corners set that
+/// edge a little inside.
+#[test]
+fn a_cube_tips_about_its_lower_edge() {
+    let angle = 50_f64.to_radians();
+    let ball = 0.01;
+    let mut case = Case::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), ball), (1.3, 0.0));
+    let mut moving = case.start(tilted(angle), still(axes(angle).1 * 0.5));
+    case.follow(&mut moving, 0.02, |_, _| ());
+    let sharp = 0.75 * G * (sin(angle) - cos(angle));
+    assert!((sharp - 0.9068).abs() < 1e-4);
+    let arm = 0.5 - ball;
+    let rounded = G * (0.5 * sin(angle) - arm * cos(angle)) / (1.0 / 6.0 + 0.25 + arm * arm);
+    let found = moving.spin(&case.block).y / 0.02;
+    assert!((found / rounded - 1.0).abs() < 2e-3, "{found} {rounded}");
+}
+
+/// A box 2 x 0.2 x 0.2 m tilted by 30° falls at 3 m/s on its lower corners, without friction, e = 0.5: with the lever of those
+/// corners its centre keeps `v' = −v + (1 + e) v m_n/m`, and it spins with `m_n (1 + e) v a/I`.
+#[test]
+fn a_tilted_box_is_thrown_by_its_corners() {
+    for ball in [0.002, 0.02] {
+        let mut case =
+            Case::new(slope(0.0, 50.0), block(&box_surface([2.0, 0.2, 0.2]), ball), (0.0, 0.5));
+        let angle = 30_f64.to_radians();
+        let attitude = tilted(angle);
+        let low = attitude * Vec3::new(1.0 - ball, 0.1 - ball, -0.1 + ball);
+        let centre = Vec3::z() * (ball - low.z);
+        let mut moving = case.start(attitude, [centre, Vec3::z() * -3.0, Vec3::zeros()]);
+        let (block, laws) = (case.block.clone(), [case.law]);
+        let world =
+            ContactEnvironment { terrain: &case.terrain, body: law_body(&block, G), laws: &laws };
+        let mut footing = Footing::default();
+        let pose = moving.pose;
+        footing.look(&world, &block, &pose, block.ball_m);
+        assert_eq!(footing.touching(&block).count(), 2);
+        let loss = footing.strike(&world, &block, &mut moving).unwrap();
+        let (arm, inertia) = (low.x, 4.04 / 12.0);
+        let share = 1.0 / (1.0 + arm * arm / inertia);
+        assert!((moving.v.z - (-3.0 + 4.5 * share)).abs() < 1e-9, "{}", moving.v.z);
+        let spin = moving.spin(&block);
+        assert!((spin.norm() - 4.5 * share * arm / inertia).abs() < 1e-9, "{spin}");
+        if ball < 0.01 {
+            // the sharp corner's digits
+            assert!((share - 0.335_805_618_7).abs() < 2e-3 && (moving.v.z + 1.488_87).abs() < 5e-3);
+        }
+        let lost = 0.5 * block.mass_kg * 0.75 * 9.0 * share;
+        assert!((loss.damping / lost - 1.0).abs() < 1e-9 && loss.friction == 0.0, "{loss:?}");
+        case.impacts += 1;
+    }
+}
+
+/// A regular prism with its axis along y and a face down.
+fn prism_on_its_side(sides: u32) -> Surface {
+    let mut surface = prism_surface(sides, 0.5);
+    let first = std::f64::consts::FRAC_PI_2 - std::f64::consts::PI / f64::from(sides);
+    let turned = turn(&Vec3::y_axis(), first) * turn(&Vec3::x_axis(), -std::f64::consts::FRAC_PI_2);
+    for p in &mut surface.points {
+        *p = turned * *p;
+    }
+    surface
+}
+
+/// A plastic slap of a rolling prism from one edge to the next: ω'/ω = η = (k + cos 2π/n)/(k + 1), k = I/(m ρ²), whatever its
+/// corners' number; rounded corners put the edges at ρ inside.
+#[test]
+fn a_slap_takes_what_it_must() {
+    for (sides, sharp) in [(4, 0.25), (5, 0.501_036_279_4), (6, 11.0 / 17.0), (8, 0.798_169_546_2)]
+    {
+        let ball = 0.001;
+        let mut case =
+            Case::new(slope(0.0, 50.0), block(&prism_on_its_side(sides), ball), (10.0, 0.0));
+        let corners = &case.block.core.corners;
+        let low = corners.iter().map(|p| p.z).fold(f64::MAX, f64::min);
+        let half = corners.iter().filter(|p| p.z < low + 1e-6).map(|p| p.x).fold(0.0, f64::max);
+        let height = ball - low;
+        let inertia = case.block.inertia_kg_m2[1] / case.block.mass_kg;
+        // it has turned about the rear edge until the front edge lands
+        let spin = Vec3::y();
+        let arm = Vec3::new(half, 0.0, height);
+        let mut moving =
+            case.start(Rotation3::identity(), [Vec3::z() * height, spin.cross(&arm), spin]);
+        case.follow(&mut moving, 1e-9, |_, _| ());
+        let found = moving.spin(&case.block).y;
+        let known =
+            (inertia + height * height - half * half) / (inertia + height * height + half * half);
+        assert!((found - known).abs() < 1e-6, "{sides}: {found} {known}");
+        assert!((known - sharp).abs() < 0.01, "{sides}: {known} {sharp}");
+    }
+}
+
+/// A hexagonal prism of side 1 m rolls down with plastic slaps: its spin settles where a slap takes what a sixth of a turn gives.
+#[test]
+fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
+    for (degrees, before, after) in
+        [(10_f64, 2.033_972_418_3, 1.316_099_800_1), (15.0, 2.483_179_187_8, 1.606_763_003_9)]
+    {
+        let (angle, ball) = (degrees.to_radians(), 0.01);
+        let mut case =
+            Case::new(slope(angle, 200.0), block(&prism_on_its_side(6), ball), (1.0, 0.0));
+        let (along, up) = axes(angle);
+        let (height, spin) = (0.75_f64.sqrt(), Vec3::y() * 1.7);
+        let arm = up * height - along * 0.5;
+        let start = [up * (height + 1e-7) - along * 100.0, spin.cross(&arm), spin];
+        let mut moving = case.start(tilted(angle), start);
+        // the last slap: the spin before and after it
+        let (mut slap, mut known) = ((0.0, 0.0), 1.7);
+        let own = case.block.clone();
+        case.follow(&mut moving, 12.0, |_, moving| {
+            let spin = moving.spin(&own).y;
+            if spin < 0.9 * known {
+                slap = (known, spin);
+            }
+            known = spin;
+        });
+        // edges a little inside, and arcs between them: half a face, height, what a slap keeps and how far it takes the prism
+        let (s, h2, inertia) =
+            (0.5 - ball * crate::math::tan(std::f64::consts::FRAC_PI_6), 0.75, 5.0 / 12.0);
+        let eta = (inertia + h2 - s * s) / (inertia + h2 + s * s);
+        let way = 2.0 * s + ball * std::f64::consts::FRAC_PI_3;
+        let square = 2.0 * G * way * sin(angle) / ((inertia + h2 + s * s) * (1.0 - eta * eta));
+        assert!((slap.0 / square.sqrt() - 1.0).abs() < 5e-4, "{degrees}: {slap:?} {square}");
+        assert!((slap.1 / slap.0 / eta - 1.0).abs() < 5e-4, "{degrees}: {slap:?} {eta}");
+        // and near the sharp prism's digits
+        assert!((slap.0 / before - 1.0).abs() < 0.015, "{degrees}: {slap:?} {before}");
+        assert!((slap.1 / after - 1.0).abs() < 0.03, "{degrees}: {slap:?} {after}");
+    }
+}
+
+/// e = 1 without friction: a box bounces hundreds of times and keeps energy, horizontal momentum and spin about the vertical.
+#[test]
+fn a_frictionless_elastic_box_keeps_what_it_should() {
+    let mut case =
+        Case::new(slope(0.0, 1e5), block(&box_surface([3.0, 2.0, 1.0]), 0.1), (0.0, 1.0));
+    let start = [Vec3::z() * 5.0, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.3, -2.0, 1.0)];
+    let mut moving = case.start(Rotation3::identity(), start);
+    let (before, about) = (case.energy_j(&moving), moving.momentum.z);
+    case.follow(&mut moving, 300.0, |_, _| ());
+    assert!(case.impacts > 100 && case.steps < case.impacts, "{} {}", case.impacts, case.steps);
+    assert!((moving.v.x - 1.0).abs() < 1e-12 && (moving.v.y - 0.5).abs() < 1e-12);
+    assert!((moving.momentum.z / about - 1.0).abs() < 1e-9, "{} {about}", moving.momentum.z);
+    let change = case.energy_j(&moving) / before - 1.0;
+    assert!(change.abs() < 1e-9, "{change:e}");
+}
+
+/// An edge of a block across a ridge: one contact, and a plate over a peak: one contact, pushing with the weight.
+#[test]
+fn edges_and_faces_meet_edges_and_peaks() {
+    let ridge = |z: f64| {
+        let (a, b) = (Vec3::new(0.0, -5.0, z), Vec3::new(0.0, 5.0, z));
+        let [p, q, r, s] = [(-5.0, -5.0), (-5.0, 5.0), (5.0, 5.0), (5.0, -5.0)]
+            .map(|(x, y)| Vec3::new(x, y, z - 5.0));
+        terrain(vec![[a, b, q], [a, q, p], [a, s, r], [a, r, b]])
+    };
+    let tip = Vec3::new(0.0, 0.0, 0.0);
+    let feet = [(-3.0, -2.0), (3.0, -2.0), (0.0, 4.0)].map(|(x, y)| Vec3::new(x, y, -4.0));
+    let peak =
+        terrain(vec![[tip, feet[0], feet[1]], [tip, feet[1], feet[2]], [tip, feet[2], feet[0]]]);
+    // on its edge across the ridge; its face over the peak
+    let on_edge = turn(&Vec3::x_axis(), std::f64::consts::FRAC_PI_4);
+    for (mesh, sides, attitude) in
+        [(ridge(0.0), [2.0, 1.0, 1.0], on_edge), (peak, [2.0, 2.0, 0.5], Rotation3::identity())]
+    {
+        let body = block(&box_surface(sides), 0.05);
+        let height = body.support_m(&(attitude.inverse() * -Vec3::z()));
+        let mut case = Case::new(mesh, body.clone(), (0.5, 0.0));
+        let above =
+            case.start(attitude, [Vec3::z() * (height + 0.3), Vec3::zeros(), Vec3::zeros()]);
+        let path = Parabola {
+            start: above.pose.centre,
+            velocity: Vec3::zeros(),
+            gravity: G,
+            radius: body.bound_m,
+        };
+        let top = Top::new(body.inertia_kg_m2, attitude, Vec3::zeros());
+        let tumble = Tumble { block: &body, top, path };
+        let mut footing = Footing::default();
+        let landing = first_touch(&case.terrain, &tumble, 10.0, &mut footing.near);
+        let FlightEnd::Touch(t) = landing else { panic!("{landing:?}") };
+        assert!((t - (0.6_f64 / G).sqrt()).abs() < 1e-6, "{t}");
+        let laws = [case.law];
+        let world =
+            ContactEnvironment { terrain: &case.terrain, body: law_body(&body, G), laws: &laws };
+        let mut moving = above.clone();
+        (moving.pose, moving.v) = (tumble.pose(t), path.velocity(t));
+        let pose = moving.pose;
+        footing.look(&world, &body, &pose, body.ball_m);
+        assert_eq!(footing.touching(&body).count(), 1, "{:?}", footing.touches);
+        assert!((footing.touches[0].normal - Vec3::z()).norm() < 1e-7);
+        // a balanced fall on one point stops dead
+        footing.strike(&world, &body, &mut moving).unwrap();
+        assert!(moving.v.norm() < 1e-7 && moving.spin(&body).norm() < 1e-7, "{}", moving.v);
+        case.impacts += 1;
+    }
+}

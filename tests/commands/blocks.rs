@@ -1,0 +1,143 @@
+//! Blocks from a scene to its tables: what is refused, what every journey must hold, the same bytes on any number of threads.
+#![allow(clippy::unwrap_used, reason = "a test that cannot run the program has failed")]
+
+use crate::program::{message, rockfall, same_results};
+use rockfall::output::read;
+use rockfall::plan::Plan;
+use rockfall::scene::Scene;
+use rockfall::simulation::{Scratch, Stop, simulate_release};
+use std::fs;
+use std::path::Path;
+
+const FILE: &str = "examples/blocks.toml";
+
+fn text() -> String {
+    fs::read_to_string(FILE).unwrap()
+}
+
+fn refused(change: &[(&str, &str)]) -> String {
+    let mut scene = text();
+    for (from, to) in change {
+        assert!(scene.contains(from), "{from}");
+        scene = scene.replacen(from, to, 1);
+    }
+    message(Scene::parse(&scene, Path::new(FILE)))
+}
+
+/// What blocks cannot have as yet, and shapes that cannot be: each is refused with its key.
+#[test]
+fn what_blocks_cannot_have_is_refused() {
+    let rough = ("restitution = 0.35", "restitution = 0.35\nroughness_deg = 8.0");
+    let rolling = ("restitution = 0.35", "restitution = 0.35\nrolling_friction = 0.3");
+    let breaks = ("restitution = 0.2\n", "restitution = 0.2\nbreaks_above_j = 1e4\n");
+    for (change, key, said) in [
+        (("scheme = \"rigid\"", "scheme = \"adaptive\""), "scheme", "rigid"),
+        (("orientation = \"random\"", "together = true"), "together", "spheres"),
+        (rough, "roughness_deg", "as yet"),
+        (rolling, "rolling_friction", "write rolling_friction = 0.0"),
+        (breaks, "breaks_above_j", "as yet"),
+        (("corner_radius = 0.15\n", ""), "corner_radius", "found nothing"),
+        (("corner_radius = 0.15", "corner_radius = 0.001"), "corner_radius", "0.01..0.5"),
+        (
+            ("kind = \"sphere\"", "kind = \"sphere\"\ncorner_radius = 0.1"),
+            "corner_radius",
+            "no corners",
+        ),
+        (("kind = \"eota111\"", "kind = \"prism\""), "sides", "needs it"),
+        (("kind = \"eota111\"", "kind = \"eota111\"\naxes = [1.0, 1.0, 1.0]"), "axes", "only box"),
+        (("axes = [1.0, {", "axes = [1.0, 1.0, {"), "axes", "found 4"),
+        (
+            ("orientation = \"random\"", "orientation = [0.0, 0.0, 0.0, 0.0]"),
+            "orientation",
+            "quaternion",
+        ),
+        (("kind = \"eota111\"", "kind = \"potato\""), "kind", "eota111"),
+    ] {
+        let found = refused(&[change]);
+        assert!(found.contains(key) && found.contains(said), "{key}: {found}");
+    }
+}
+
+/// A shape so slender that its balls leave no core, and a scan with a hole: refused before the run.
+#[test]
+fn shapes_that_are_no_bodies_are_refused() {
+    let thin = text().replace(
+        "axes = [1.0, { uniform = [0.6, 0.9] }, { uniform = [0.3, 0.5] }]",
+        "axes = [1.0, 1.0, 0.02]",
+    );
+    let compile = |text: &str| {
+        let scene = Scene::parse(text, Path::new(FILE)).unwrap();
+        let (terrain, _) = scene.read_terrain().unwrap();
+        message(Plan::compile(&scene, terrain))
+    };
+    let said = compile(&thin);
+    assert!(said.contains("rocks.shapes") && said.contains("corner_radius"), "{said}");
+    let open = text().replacen(
+        "kind = \"eota111\"",
+        "kind = \"mesh\"\nmesh = \"../terrain/paper_ridge.stl\"",
+        1,
+    );
+    let said = compile(&open);
+    assert!(said.contains("paper_ridge.stl") && said.contains("not closed"), "{said}");
+}
+
+/// Every journey ends by itself, its ledger adds up with nothing negative, and no contact gains energy.
+#[test]
+fn every_journey_holds_its_ledger() {
+    let scene = Scene::parse(&text(), Path::new(FILE)).unwrap();
+    let (terrain, _) = scene.read_terrain().unwrap();
+    let plan = Plan::compile(&scene, terrain).unwrap();
+    let (mut scratch, mut blocks) = (Scratch::default(), 0);
+    for index in 0..80 {
+        let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
+        let whole = matches!(fall.stop, Stop::AtRest | Stop::LeftTerrain);
+        assert!(whole, "{index}: {:?}", fall.stop);
+        let ledger = &fall.ledger;
+        let parts = [ledger.friction_j, ledger.damping_j, ledger.rolling_j, ledger.trees_j];
+        assert!(parts.iter().all(|part| *part >= 0.0), "{index}: {ledger:?}");
+        if fall.shape.is_none() {
+            continue;
+        }
+        blocks += 1;
+        let turning_j = fall.crossings.iter().map(|crossing| crossing.rotational_j);
+        assert!(turning_j.fold(0.0, f64::max) <= fall.extremes.rotational_j * (1.0 + 1e-9));
+        assert!(ledger.rise_j <= 1e-9 * fall.released_j, "{index}: {ledger:?}");
+        assert!(fall.energy_balance_error() < 1e-3, "{index}: {ledger:?}");
+    }
+    assert!(blocks > 40, "{blocks}");
+}
+
+/// One thread and two give the same bytes; the tables say how blocks are turned.
+#[test]
+fn tables_of_blocks_do_not_depend_on_threads() {
+    let dir = tempfile::tempdir().unwrap();
+    let folders = ["1", "2"].map(|threads| {
+        let out = dir.path().join(threads);
+        let args = ["run", FILE, "--quiet", "--releases", "24", "--threads", threads, "--out"];
+        let done = rockfall(&[&args[..], &[out.to_str().unwrap()]].concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        out
+    });
+    same_results(&folders[0], &folders[1]);
+    let header = |file: &str| {
+        let table = fs::read_to_string(folders[0].join(file)).unwrap();
+        table.lines().next().unwrap().to_owned()
+    };
+    assert!(
+        header("releases.csv").ends_with("shape,side_2,side_3,start_qw,start_qx,start_qy,start_qz")
+    );
+    assert!(
+        header("paths.csv").ends_with("qw,qx,qy,qz") && header("crossings.csv").ends_with("top_m")
+    );
+    let results = read(&folders[0]).unwrap();
+    for row in results.rows().unwrap() {
+        let shape = row.unwrap().shape.unwrap();
+        let size: f64 = shape.attitude.iter().map(|x| x * x).sum();
+        assert!((size - 1.0).abs() < 1e-12 && shape.sides.iter().all(|side| *side > 0.0));
+    }
+    for row in results.crossings().unwrap() {
+        let row = row.unwrap();
+        assert!(row.top_m.unwrap() > row.height_m, "{row:?}");
+    }
+    assert!(results.paths().unwrap().all(|row| row.unwrap().attitude.is_some()));
+}
