@@ -93,7 +93,7 @@ fn the_surface_is_the_slope() {
     let sheet = Sheet { path, ground: 0, is_tree: false };
     let source = Source { sheet, up: Up::Z, scale: 1.0, options: Some(Options::default()) };
     let origin_m = Vec3::new(2_600_000.0, 1_200_000.0, 0.0);
-    let (terrain, health) = Terrain::read(&[source.clone()], origin_m, None).unwrap();
+    let (terrain, health) = Terrain::read(std::slice::from_ref(&source), origin_m, None).unwrap();
     assert!(health.files[0].notes[0].contains("6000 points"), "{:?}", health.files[0].notes);
     assert_eq!(
         (health.non_manifold_edges.count, health.flipped_edges.count, health.border_loops),
