@@ -1,7 +1,7 @@
 //! The exact cases: one row each, with the scene, the exact solution and where it comes from.
 
 mod closed;
-mod meshes;
+pub(super) mod meshes;
 mod pivot;
 mod starts;
 

@@ -1,6 +1,7 @@
 //! Stiff and extreme cases, each held against its analytic expectation or a bound, for every scheme.
 
 mod fineness;
+mod folds;
 mod geometry;
 mod impacts;
 mod lasting;
@@ -61,7 +62,7 @@ pub const WAYS: [Way; 4] = [
 type Trial = fn(&Way, &mut Notes);
 
 /// Every case by name. To add one: a function and a row.
-const TRIALS: [(&str, Trial); 24] = [
+const TRIALS: [(&str, Trial); 28] = [
     ("impact", impacts::impact),
     ("step and tolerance", fineness::steps),
     ("shear memory", fineness::memory),
@@ -73,6 +74,10 @@ const TRIALS: [(&str, Trial); 24] = [
     ("friction 0 and 89°", impacts::friction),
     ("no gravity", impacts::no_gravity),
     ("edge and corner", geometry::edge_and_corner),
+    ("elastic folds", folds::elastic),
+    ("noisy meshes", folds::noisy),
+    ("larger than its cells", folds::larger_than_cells),
+    ("slides over cells", folds::slides),
     ("parallel walls", geometry::parallel_walls),
     ("narrow groove", geometry::narrow_groove),
     ("degenerate triangles", geometry::degenerate),

@@ -26,13 +26,13 @@ pub(super) fn roof() -> Vec<Facet> {
 }
 
 /// A valley along y at x = z = 0; its sides rise by half of `angle_rad` each.
-pub(super) fn fold(angle_rad: f64, half_m: f64) -> Vec<Facet> {
+pub(in crate::study) fn fold(angle_rad: f64, half_m: f64) -> Vec<Facet> {
     make::v_groove(half_m, 0.5 * angle_rad)
 }
 
 /// `cells` x `cells` squares of `cell_m` about the origin, their corners up to `0.5 noise_m` off the plane z = 0. The numbers
 /// are plain arithmetic, so that another program can make the same mesh.
-pub(super) fn bumpy(cells: usize, cell_m: f64, noise_m: f64) -> Vec<Facet> {
+pub(in crate::study) fn bumpy(cells: usize, cell_m: f64, noise_m: f64) -> Vec<Facet> {
     let at = |i: usize, j: usize| {
         let noise = ((i * 7919 + j * 104_729 + i * j * 31) % 1009) as f64 / 1009.0 - 0.5;
         let place = |k: usize| (k as f64 - 0.5 * cells as f64) * cell_m;

@@ -1,0 +1,222 @@
+//! What is no plane: folds, noise, triangles far smaller than the rock. Energy is watched at the end of every step.
+
+use super::impacts::rebound_m_s;
+use super::{Notes, Way, sprung};
+use crate::flight::{FlightEnd, Parabola, time_of_impact};
+use crate::ground::{Capture, Damping, Ground, Law, damping_ratio, normal_impact};
+use crate::math;
+use crate::rock::{Rock, Vec3};
+use crate::simulation::Stop;
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::law::Body;
+use crate::solver::{Scheme, Stepper, advance};
+use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, settings, terrain};
+use crate::study::cases::meshes::{bumpy, fold};
+use crate::terrain::Terrain;
+
+/// What the energy of a rock did, springs included.
+struct Energy {
+    /// At the end over that at the start (–).
+    kept: f64,
+    /// Largest rise over what an episode had left at an earlier step (–, relative to the start).
+    rise: f64,
+}
+
+/// A rock stepped by hand, its energy taken at the end of every step: what the dashpots take hides no gain.
+struct Watched<'t> {
+    world: ContactEnvironment<'t>,
+    state: ContactState,
+    /// Looks without touching what the steps know.
+    probe: ContactState,
+    is_sprung: bool,
+}
+
+impl Watched<'_> {
+    /// Motion, height and springs (J).
+    fn energy_j(&mut self) -> f64 {
+        let Self { world, state, probe, is_sprung } = self;
+        let body = &world.body;
+        let moving = state.motion_j(body) - body.mass * body.gravity.dot(&state.c);
+        if !*is_sprung {
+            return moving;
+        }
+        (probe.c, probe.histories) = (state.c, state.histories.clone());
+        moving + probe.springs_j(world).sum()
+    }
+
+    /// Goes on from a touch until the rock is free or `left_s` is over; the largest rise (J). `None` if a step fails.
+    fn episode(&mut self, way: &Way, left_s: &mut f64) -> Option<f64> {
+        let step = settings(way.scheme, way.fineness, None);
+        let mut stepper = Stepper::new(&step, &self.world, &mut self.state);
+        let (mut least, mut rise) = (self.energy_j(), 0.0f64);
+        while *left_s > 0.0 {
+            let done = advance(&mut stepper, &self.world, &mut self.state, *left_s).ok()?;
+            *left_s -= done.dt;
+            let now = self.energy_j();
+            (rise, least) = (rise.max(now - least), least.min(now));
+            if self.state.is_free() {
+                break;
+            }
+        }
+        Some(rise)
+    }
+}
+
+/// Follows a rock from touch to touch; nothing where a step fails.
+fn watch(way: &Way, setup: &Setup, terrain: &Terrain, capture_m_s: Option<f64>) -> Option<Energy> {
+    let capture =
+        Capture { own_m_s: capture_m_s, tolerance_m_s: 0.0, gravity_m_s2: setup.gravity_m_s2 };
+    let damping = Damping::of(setup.ground.restitution);
+    let laws = [Law::new(&setup.ground, &damping, &setup.rock, &capture)];
+    let body = Body::new(&setup.rock, setup.gravity_m_s2);
+    let world = ContactEnvironment { terrain, body, laws: &laws };
+    let (state, probe) = (ContactState::default(), ContactState::default());
+    let mut rock = Watched { world, state, probe, is_sprung: sprung(way) };
+    let start = setup.centre_m - terrain.origin_m;
+    (rock.state.c, rock.state.v, rock.state.w) = (start, setup.velocity_m_s, setup.spin_rad_s);
+    let mut left_s = setup.longest_s;
+    let moving = rock.state.motion_j(&body);
+    let scale = moving + body.mass * setup.gravity_m_s2 * setup.rock.radius_m;
+    let (before, mut rise) = (rock.energy_j(), 0.0f64);
+    while left_s > 0.0 {
+        let flight = Parabola {
+            start: rock.state.c,
+            velocity: rock.state.v,
+            gravity: setup.gravity_m_s2,
+            radius: setup.rock.radius_m,
+        };
+        let FlightEnd::Touch(t) = time_of_impact(terrain, &flight, left_s, &mut 0) else {
+            (rock.state.c, rock.state.v) = (flight.centre(left_s), flight.velocity(left_s));
+            break;
+        };
+        left_s -= t;
+        let w = rock.state.w;
+        rock.state.begin(&rock.world, flight.centre(t), flight.velocity(t), w);
+        rise = rise.max(rock.episode(way, &mut left_s)?);
+    }
+    let after = rock.energy_j();
+    Some(Energy { kept: 1.0 + (after - before) / scale, rise: rise / scale })
+}
+
+/// What energy may change by where nothing takes any (–): the schemes' own accuracy, and for the fixed step what it damps.
+fn allowed(way: &Way, omega: f64) -> f64 {
+    match way.scheme {
+        Scheme::Reference => 1e-6,
+        Scheme::Adaptive => 2e-3,
+        Scheme::Rigid => 1e-12,
+        // keeps exp(−π ω Δt/4) of the speed
+        Scheme::Dda => 1.0 - math::exp(-std::f64::consts::PI * omega * way.fineness) + 1e-3,
+    }
+}
+
+/// Holds that nothing is lost and nothing gained.
+fn conserve(way: &Way, notes: &mut Notes, setting: &str, (setup, terrain): (&Setup, &Terrain)) {
+    let omega = (setup.ground.normal_stiffness_n_m / setup.rock.mass_kg()).sqrt();
+    let energy = watch(way, setup, terrain, Some(0.0));
+    let (change, rise) =
+        energy.map_or((f64::NAN, f64::NAN), |energy| ((energy.kept - 1.0).abs(), energy.rise));
+    let bound = allowed(way, omega);
+    notes.hold(way, setting, "change of energy where nothing takes any", change, bound);
+    let bound = if way.scheme == Scheme::Dda { super::RISE } else { bound };
+    notes.hold(way, setting, "rise within an episode, losses not netted", rise, bound);
+}
+
+fn elastic_ground(stiffness: f64) -> Ground {
+    Ground {
+        normal_stiffness_n_m: stiffness,
+        shear_stiffness_n_m: 0.25 * stiffness,
+        friction_angle_rad: 0.0,
+        restitution: Some(1.0),
+        ..GROUND
+    }
+}
+
+/// e = 1 without friction on valleys from the bluntest to the sharpest, beside the bottom and in it.
+pub(super) fn elastic(way: &Way, notes: &mut Notes) {
+    for angle in [1e-6, 1e-3, 0.02, 0.2, 0.6, 2.0] {
+        let valley = terrain(fold(angle, 4.0));
+        for (stiffness, radius, speed) in [(1e9, 0.5, 10.0), (1e7, 0.05, 5.0), (1e12, 1.0, 50.0)] {
+            for place in [-0.35, 0.0, 0.2] {
+                let x = place * f64::min(angle, 0.6) * radius;
+                let z = 1.2 * radius / math::cos(0.5 * angle) + x.abs() * math::tan(0.5 * angle);
+                let setup = Setup {
+                    rock: Rock { radius_m: radius, ..ROCK },
+                    ground: elastic_ground(stiffness),
+                    centre_m: Vec3::new(x, 0.1, z),
+                    velocity_m_s: Vec3::new(0.2 * speed, 0.0, -speed),
+                    longest_s: 1.2 * radius / speed,
+                    ..SETUP
+                };
+                let setting =
+                    format!("{angle} rad, {stiffness:.0e} N/m, R {radius} m, at {place} of it");
+                conserve(way, notes, &setting, (&setup, &valley));
+            }
+        }
+    }
+}
+
+/// e = 1 without friction on noisy ground, from a tenth to fifty times the cells.
+pub(super) fn noisy(way: &Way, notes: &mut Notes) {
+    for (cell, cells, noise) in [(10.0, 4, 0.2), (1.0, 6, 0.05), (0.1, 40, 0.01), (0.02, 140, 1e-3)]
+    {
+        // a fixed step would look at ten thousand triangles a thousand times
+        if way.scheme == Scheme::Dda && cell < 0.1 {
+            continue;
+        }
+        let ground = terrain(bumpy(cells, cell, noise));
+        for place in [[0.03, -0.05], [-0.21, 0.14]] {
+            let setup = Setup {
+                rock: Rock { radius_m: 1.0, ..ROCK },
+                ground: elastic_ground(1e9),
+                centre_m: Vec3::new(place[0], place[1], 1.3),
+                velocity_m_s: Vec3::new(2.0, 1.0, -10.0),
+                longest_s: 0.1,
+                ..SETUP
+            };
+            let setting = format!("R/cell {}, at {place:?}", 1.0 / cell);
+            conserve(way, notes, &setting, (&setup, &ground));
+        }
+    }
+}
+
+/// e = 0.5 on noise that the rock does not see: it rebounds as from a plane. The rigid limit strikes one corner alone, and
+/// rebounds from that.
+pub(super) fn larger_than_cells(way: &Way, notes: &mut Notes) {
+    for noise in [1e-3, 5e-3] {
+        let ground = terrain(bumpy(40, 0.1, noise));
+        let rock = Rock { radius_m: 1.5, ..ROCK };
+        let setup = Setup {
+            rock,
+            ground: Ground { friction_angle_rad: 0.0, ..GROUND },
+            centre_m: Vec3::new(0.02, 0.01, 1.5 + noise),
+            velocity_m_s: Vec3::new(0.0, 0.0, -10.0),
+            longest_s: 0.05,
+            ..SETUP
+        };
+        let setting = format!("{noise} m uneven, R/cell 15");
+        let journey = notes.follow(way, &setting, &setup, &ground);
+        let failed = matches!(journey.stop, Stop::Failed(_));
+        if sprung(way) && !failed {
+            let omega = (GROUND.normal_stiffness_n_m / rock.mass_kg()).sqrt();
+            let plane = normal_impact(10.0, omega, damping_ratio(0.5), GRAVITY_M_S2);
+            let right = plane.rebound_m_s.unwrap_or(0.0);
+            let off = (rebound_m_s(&journey, &setup) / right - 1.0).abs();
+            notes.hold(way, &setting, "rebound off that of a plane (–)", off, 0.05);
+        }
+    }
+}
+
+/// A rock thrown along noisy ground, rubbing, hopping, rolling: no step of an episode gains.
+pub(super) fn slides(way: &Way, notes: &mut Notes) {
+    let ground = terrain(bumpy(60, 0.1, 1e-3));
+    let setup = Setup {
+        centre_m: Vec3::new(-1.5, 0.01, 0.501),
+        velocity_m_s: Vec3::new(4.0, 0.3, -0.2),
+        spin_rad_s: Vec3::new(1.0, -3.0, 2.0),
+        longest_s: 0.5,
+        ..SETUP
+    };
+    let rise = watch(way, &setup, &ground, None).map_or(f64::NAN, |energy| energy.rise);
+    let law = "rise within an episode, losses not netted";
+    notes.hold(way, "R/cell 5, 1 mm uneven", law, rise, allowed(way, 0.0).max(super::RISE));
+}
