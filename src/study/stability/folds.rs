@@ -117,7 +117,7 @@ fn conserve(way: &Way, notes: &mut Notes, setting: &str, (setup, terrain): (&Set
         energy.map_or((f64::NAN, f64::NAN), |energy| ((energy.kept - 1.0).abs(), energy.rise));
     let bound = allowed(way, omega);
     notes.hold(way, setting, "change of energy where nothing takes any", change, bound);
-    let bound = if way.scheme == Scheme::Dda { super::RISE } else { bound };
+    // The fixed step takes a fold as it is at its start: within its first order that may give as well as take.
     notes.hold(way, setting, "rise within an episode, losses not netted", rise, bound);
 }
 
