@@ -58,6 +58,12 @@ pub struct ContactPoint {
 }
 
 impl ContactPoint {
+    /// A single nearest point, from which the centre is `off` and `distance_m` away (m).
+    #[inline]
+    pub(crate) fn single(feature: Feature, triangle: u32, off: &Vec3, distance_m: f64) -> Self {
+        Self { feature, triangle, normal: off / distance_m, distance_m, gain2: 1.0 }
+    }
+
     /// No contact.
     pub const NONE: Self = Self {
         feature: Feature::NONE,

@@ -95,8 +95,3 @@ pub fn keep_inputs(out: &Path, inputs: &[&Path]) -> Result<()> {
         ))),
     }
 }
-
-/// What a file is that Git LFS has put in place of a large one; none of any other.
-pub fn stands_for_another(start: &[u8]) -> Option<&'static str> {
-    start.starts_with(b"version https://git-lfs").then_some("a pointer of Git LFS")
-}

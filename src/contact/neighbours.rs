@@ -294,15 +294,7 @@ impl Neighbours {
             return None;
         }
         let feature = Feature { kind: FeatureKind::Edge, id: edge.id };
-        let normal = off / distance;
-        let touch = ContactPoint {
-            feature,
-            triangle: edge.triangle,
-            normal,
-            distance_m: distance,
-            gain2: 1.0,
-        };
-        Some(touch)
+        Some(ContactPoint::single(feature, edge.triangle, &off, distance))
     }
 
     #[inline]
@@ -327,15 +319,7 @@ impl Neighbours {
             return None;
         }
         let feature = Feature { kind: FeatureKind::Vertex, id: corner.id };
-        let normal = off / distance;
-        let touch = ContactPoint {
-            feature,
-            triangle: corner.triangle,
-            normal,
-            distance_m: distance,
-            gain2: 1.0,
-        };
-        Some(touch)
+        Some(ContactPoint::single(feature, corner.triangle, &off, distance))
     }
 
     /// Whether another triangle runs through `foot` and comes nearer to the centre: then the border or corner at

@@ -203,7 +203,7 @@ impl BodyWorld<'_> {
             return;
         }
         for (a, b) in self.touching_at_start() {
-            let [one, two] = [a, b].map(|k| &self.rover(k).member);
+            let [one, two] = [a, b].map(|k| &self.body(k).member);
             let (n, length) = between(&one.state.c, &two.state.c);
             let radius = one.body.radius.min(two.body.radius);
             let bond = Bond::new(&answer.strength, radius, length);

@@ -228,8 +228,8 @@ impl ContactState {
         done.steps += 1;
     }
 
-    /// Flies out of contacts that push no more, if nothing else is in the way there; within
-    /// `longest` (s); returns the time that took (s).
+    /// Flies out of contacts that push no more, if nothing else is in the way there and it takes no longer than `longest` (s);
+    /// returns the time that took (s).
     fn let_go(&mut self, world: &ContactEnvironment, bounds: &Bounds, longest: f64) -> f64 {
         let dt = LONGEST / bounds.omega;
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {

@@ -13,19 +13,6 @@ impl ContactState {
         self.stored_j(world)
     }
 
-    /// About how much the springs of contacts that last hold (J), as their memories tell: `F²/(2 p_N)` and the stretches.
-    pub fn held_j<'h>(
-        world: &ContactEnvironment,
-        histories: impl Iterator<Item = &'h ContactHistory>,
-    ) -> f64 {
-        let held = histories.map(|history| {
-            let law = world.law(history.triangle);
-            let penetration = history.normal_force / law.p_n;
-            law.stored_j(penetration, history.shear.norm_squared(), history.roll.norm_squared())
-        });
-        held.sum()
-    }
-
     /// The same for the touches of the last look.
     pub fn stored_j(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
@@ -45,6 +32,19 @@ impl ContactState {
             );
         }
         stored
+    }
+
+    /// About how much the springs of contacts that last hold (J), as their memories tell: `F²/(2 p_N)` and the stretches.
+    pub fn held_j<'h>(
+        world: &ContactEnvironment,
+        histories: impl Iterator<Item = &'h ContactHistory>,
+    ) -> f64 {
+        let held = histories.map(|history| {
+            let law = world.law(history.triangle);
+            let penetration = history.normal_force / law.p_n;
+            law.stored_j(penetration, history.shear.norm_squared(), history.roll.norm_squared())
+        });
+        held.sum()
     }
 
     /// A time (s) within which the contacts of `on` take no more than `work_j`: their forces do not grow faster than springs

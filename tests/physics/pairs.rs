@@ -95,7 +95,7 @@ fn plane() -> Terrain {
 }
 
 /// Two far triangles whose box is 100 m wide: nothing but the other spheres is touched.
-fn space() -> Terrain {
+pub(crate) fn space() -> Terrain {
     let corner = |at: f64| {
         let p = Vec3::repeat(at);
         [p, p + Vec3::x(), p + Vec3::y()]
@@ -103,11 +103,12 @@ fn space() -> Terrain {
     terrain(vec![corner(-50.0), corner(50.0)])
 }
 
-fn free(x: f64, y: f64, v: [f64; 3]) -> Sphere {
+pub(crate) fn free(x: f64, y: f64, v: [f64; 3]) -> Sphere {
     (0.5, 2700.0, [x, y, 20.0], v, [0.0; 3])
 }
 
-fn momentum(falls: &[Trajectory], at_end: bool) -> (Vec3, Vec3) {
+/// Linear momentum (kg m/s) and angular momentum about the origin (kg m²/s).
+pub(crate) fn momentum(falls: &[Trajectory], at_end: bool) -> (Vec3, Vec3) {
     falls.iter().fold((Vec3::zeros(), Vec3::zeros()), |(p, l), fall| {
         let motion = if at_end { fall.end } else { fall.start };
         let (m, i) = (fall.rock.mass_kg(), fall.rock.inertia_kg_m2());

@@ -3,34 +3,9 @@
 
 use crate::common;
 
-use common::terrain;
+use crate::pairs::{free, momentum, space};
 use common::together::{Sphere, WORLD, World, energy_j};
-use rockfall::rock::Vec3;
 use rockfall::simulation::Trajectory;
-use rockfall::terrain::Terrain;
-
-/// Two far triangles whose box is 100 m wide: nothing but the other spheres is touched.
-fn space() -> Terrain {
-    let corner = |at: f64| {
-        let p = Vec3::repeat(at);
-        [p, p + Vec3::x(), p + Vec3::y()]
-    };
-    terrain(vec![corner(-50.0), corner(50.0)])
-}
-
-fn free(x: f64, y: f64, v: [f64; 3]) -> Sphere {
-    (0.5, 2700.0, [x, y, 20.0], v, [0.0; 3])
-}
-
-/// Linear momentum (kg m/s) and angular momentum about the origin (kg m²/s).
-fn momentum(falls: &[Trajectory], at_end: bool) -> (Vec3, Vec3) {
-    falls.iter().fold((Vec3::zeros(), Vec3::zeros()), |(p, l), fall| {
-        let motion = if at_end { fall.end } else { fall.start };
-        let (m, i) = (fall.rock.mass_kg(), fall.rock.inertia_kg_m2());
-        let own = motion.velocity_m_s * m;
-        (p + own, l + motion.position_m.cross(&own) + motion.spin_rad_s * i)
-    })
-}
 
 /// Momentum and angular momentum differ by rounding, of the largest single ones.
 fn momenta_are_kept(falls: &[Trajectory]) {

@@ -63,7 +63,7 @@ impl<'a> BodyWorld<'a> {
     }
 
     #[expect(clippy::expect_used, reason = "bodies are away only while their island is computed")]
-    pub(super) fn rover(&self, k: u32) -> &WorldBody<'a> {
+    pub(super) fn body(&self, k: u32) -> &WorldBody<'a> {
         self.bodies[k as usize].as_ref().expect("a body is at home between windows")
     }
 
@@ -72,7 +72,7 @@ impl<'a> BodyWorld<'a> {
     }
 
     pub(super) fn law(&self, a: u32, b: u32) -> Law {
-        let [a, b] = [a, b].map(|k| &self.rover(k).member.body);
+        let [a, b] = [a, b].map(|k| &self.body(k).member.body);
         law_between(a, b, &self.answer, &self.capture)
     }
 
@@ -157,7 +157,7 @@ impl<'a> BodyWorld<'a> {
         });
         let present: Vec<u32> = self.present();
         let dt = end_s - self.now_s;
-        let place = |&k: &u32| place_of(self.rover(k), self.settings, (self.now_s, dt));
+        let place = |&k: &u32| place_of(self.body(k), self.settings, (self.now_s, dt));
         let places: Vec<Place> = present.iter().map(place).collect();
         let mut wide = std::mem::take(&mut self.wide);
         let mut meetings = self.meetings(&mut wide, &present, &places, dt);
@@ -182,7 +182,7 @@ impl<'a> BodyWorld<'a> {
         self.now_s = end_s;
         self.statistics.windows += 1;
         let after = |k: usize| {
-            let body = self.rover(present[k]);
+            let body = self.body(present[k]);
             (body.position_at(self.settings, end_s), body.off.1)
         };
         let deviated = meetings.missed(&places, dt, after, |deviation_m| {
@@ -205,7 +205,7 @@ impl<'a> BodyWorld<'a> {
     /// The rocks that are in the world.
     fn present(&self) -> Vec<u32> {
         let count = self.bodies.len() as u32;
-        (0..count).filter(|&k| !matches!(self.rover(k).state, State::Gone(_))).collect()
+        (0..count).filter(|&k| !matches!(self.body(k).state, State::Gone(_))).collect()
     }
 
     fn window_length(&self) -> f64 {
@@ -257,7 +257,7 @@ impl<'a> BodyWorld<'a> {
         end_s: f64,
     ) -> Vec<IslandWindow<'a>> {
         let mut lists = meetings.islands.lists();
-        lists.retain(|list| is_busy(list.iter().map(|&k| self.rover(present[k as usize])), end_s));
+        lists.retain(|list| is_busy(list.iter().map(|&k| self.body(present[k as usize])), end_s));
         let mut part = vec![(usize::MAX, 0); present.len()];
         for (number, list) in lists.iter().enumerate() {
             for (&k, place) in list.iter().zip(0..) {

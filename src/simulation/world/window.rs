@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-11;
 const SOON_S: f64 = 1e-12;
 
 /// Rocks on their way. They are handed on between islands, and a pointer moves faster than a journey.
-type Rovers<'a> = Vec<Box<WorldBody<'a>>>;
+type Bodies<'a> = Vec<Box<WorldBody<'a>>>;
 
 /// How a rock notes a step with its losses (J), what it gave to others (J), and whether it slides.
 type Going<'a> = fn(&mut WorldBody<'a>, &RunSettings, f64, (Loss, Given), bool);
@@ -28,7 +28,7 @@ type Going<'a> = fn(&mut WorldBody<'a>, &RunSettings, f64, (Loss, Given), bool);
 pub(super) struct IslandWindow<'a> {
     pub(super) settings: &'a RunSettings<'a>,
     pub(super) ids: Vec<u32>,
-    pub(super) bodies: Rovers<'a>,
+    pub(super) bodies: Bodies<'a>,
     pub(super) pair_histories: Vec<PairHistory>,
     pub(super) now_s: f64,
     pub(super) end_s: f64,
@@ -43,7 +43,7 @@ impl<'a> IslandWindow<'a> {
     pub(super) fn new(
         settings: &'a RunSettings<'a>,
         ids: Vec<u32>,
-        bodies: Rovers<'a>,
+        bodies: Bodies<'a>,
         pair_histories: Vec<PairHistory>,
         (now_s, end_s): (f64, f64),
     ) -> Self {
@@ -60,7 +60,7 @@ impl<'a> IslandWindow<'a> {
         }
     }
 
-    pub(super) fn into_parts(self) -> (Vec<u32>, Rovers<'a>, Vec<PairHistory>) {
+    pub(super) fn into_parts(self) -> (Vec<u32>, Bodies<'a>, Vec<PairHistory>) {
         (self.ids, self.bodies, self.pair_histories)
     }
 

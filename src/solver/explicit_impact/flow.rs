@@ -4,7 +4,7 @@ use crate::contact::history::carry;
 use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss, TOUCH};
-use crate::solver::impact::dormand_prince::{Flow, Rates};
+use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
 use crate::solver::law::{Action, Place};
 use crate::solver::stage::End;
 
@@ -59,14 +59,6 @@ impl Pressed {
         normal_force: 0.0,
         slides: false,
     };
-}
-
-fn three<const N: usize>(y: &[f64; N], at: usize) -> Vec3 {
-    Vec3::new(y[at], y[at + 1], y[at + 2])
-}
-
-fn put<const N: usize>(y: &mut [f64; N], at: usize, x: &Vec3) {
-    y[at..at + 3].copy_from_slice(x.as_slice());
 }
 
 impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
@@ -150,7 +142,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         let Self { world, state, .. } = self;
         let body = &world.body;
         let (by_mass, by_inertia) = (1.0 / body.mass, 1.0 / body.inertia);
-        let mut rates = Rates { y: [0.0; N], q: [0.0; SUMS], kinks: [[0.0; 2]; P] };
+        let mut rates = Rates::<N, SUMS, P>::NONE;
         let (c, v, w) = (state.c + three(y, WAY), three(y, V), three(y, W));
         state.look(world, &c, body.radius * (1.0 + TOUCH));
         let (mut dv, mut dw, mut taken) = (body.gravity, Vec3::zeros(), 0);

@@ -1,5 +1,7 @@
 //! An explicit embedded Runge–Kutta pair of order 5(4) (Dormand and Prince 1980), on the stack.
 
+use crate::rock::Vec3;
+
 /// Times of its stages (–, relative to the step).
 pub(in crate::solver) const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 
@@ -28,6 +30,24 @@ pub(in crate::solver) struct Rates<const N: usize, const Q: usize, const P: usiz
     pub(in crate::solver) q: [f64; Q],
     /// What an element asks for, squared, and its cap: where they cross, the law has a kink.
     pub(in crate::solver) kinks: [[f64; 2]; P],
+}
+
+/// The vector that begins at place `at`.
+#[inline]
+pub(in crate::solver) fn three<const N: usize>(y: &[f64; N], at: usize) -> Vec3 {
+    Vec3::new(y[at], y[at + 1], y[at + 2])
+}
+
+/// Writes a vector to place `at`.
+#[inline]
+pub(in crate::solver) fn put<const N: usize>(y: &mut [f64; N], at: usize, x: &Vec3) {
+    y[at..at + 3].copy_from_slice(x.as_slice());
+}
+
+impl<const N: usize, const Q: usize, const P: usize> Rates<N, Q, P> {
+    /// Nothing changes.
+    pub(in crate::solver) const NONE: Self =
+        Self { y: [0.0; N], q: [0.0; Q], kinks: [[0.0; 2]; P] };
 }
 
 /// Something that changes.

@@ -3,7 +3,7 @@
 mod contacts;
 mod rates;
 
-use super::dormand_prince::{Rates, growth, step};
+use super::dormand_prince::{growth, step};
 use super::plane::{Followed, LOCAL, Plane, shared};
 use super::{Effort, Settled};
 use crate::contact::MOST;
@@ -302,9 +302,4 @@ impl Quiet {
         }
         time - self.since
     }
-}
-
-/// No rate of anything.
-fn still<const N: usize, const Q: usize, const P: usize>() -> Rates<N, Q, P> {
-    Rates { y: [0.0; N], q: [0.0; Q], kinks: [[0.0; 2]; P] }
 }

@@ -1,10 +1,10 @@
 //! Rates of a rock among several frozen contacts, and the moments at which contacts open and close.
 
 use super::contacts::{Contacts, Place};
-use super::{FrozenContact, LONGEST, NOTHING, still};
+use super::{FrozenContact, LONGEST, NOTHING};
 use crate::contact::MOST;
 use crate::rock::Vec3;
-use crate::solver::impact::dormand_prince::{Flow, Rates};
+use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
 use crate::solver::law::Body;
 
 /// Where the way of the centre begins among the numbers that change; velocity, spin times radius and the springs follow.
@@ -15,10 +15,6 @@ pub(super) const W: [usize; 3] = [6, 7, 8];
 const SPRINGS: usize = 9;
 /// Halvings of a step in search of the moment of touch.
 const HALVINGS: u32 = 50;
-
-fn three<const N: usize>(y: &[f64; N], at: usize) -> Vec3 {
-    Vec3::new(y[at], y[at + 1], y[at + 2])
-}
 
 /// Velocity.
 pub(super) fn speed_of<const N: usize>(y: &[f64; N]) -> Vec3 {
@@ -173,7 +169,7 @@ impl<const K: usize> ContactRates<K> {
         &self,
         y: &[f64; N],
     ) -> Rates<N, Q, P> {
-        let mut rates = still::<N, Q, P>();
+        let mut rates = Rates::<N, Q, P>::NONE;
         let rolls = N > SPRINGS + 3 * K;
         let (v, w, turns) = (speed_of(y), three(y, W[0]), self.contacts.turns);
         let (mut dv, mut dw) = (Vec3::zeros(), Vec3::zeros());
@@ -217,10 +213,6 @@ impl<const K: usize> ContactRates<K> {
         put(&mut rates.y, W[0], &dw);
         rates
     }
-}
-
-fn put<const N: usize>(y: &mut [f64; N], at: usize, x: &Vec3) {
-    y[at..at + 3].copy_from_slice(x.as_slice());
 }
 
 impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, P>
