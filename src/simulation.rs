@@ -7,7 +7,7 @@ mod driver;
 mod form;
 mod impacts;
 mod recorder;
-mod roughness;
+mod rock_in_contact;
 mod trees;
 mod world;
 mod cells;

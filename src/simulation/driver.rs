@@ -4,7 +4,7 @@ use super::block::follow_block;
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
-use super::roughness::Roughness;
+use super::rock_in_contact::RockInContact;
 use super::trees::StemLoad;
 use super::{Stop, Trajectory};
 use crate::error::Result;
@@ -17,10 +17,10 @@ use crate::rock::Motion;
 use crate::solver::block::Footing;
 use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
 use crate::solver::law::Body;
+use crate::solver::roughness::Facets;
 use crate::solver::{self, Settings, Stepper};
 use crate::stopwatch::{Piece, Stopwatches};
 use crate::terrain::Terrain;
-use std::f64::consts::PI;
 use std::ops::Range;
 
 /// What all rocks of a scene have in common.
@@ -38,6 +38,8 @@ pub struct RunSettings<'a> {
     pub longest_s: f64,
     /// Evaluation lines and map cells.
     pub recorders: Recorders<'a>,
+    /// Seed of the rocks' random streams.
+    pub seed: u64,
 }
 
 /// Work space of one thread; nothing of one rock is left for the next.
@@ -77,21 +79,19 @@ impl Scratch {
     }
 }
 
-/// An impact is over after so many contact times (–), whether the rock has left or not.
-pub(super) const IMPACT_TIMES: f64 = 3.0;
-
 /// Follows one rock from its release to its stop.
 pub fn simulate(
     settings: &RunSettings,
     release: &Release,
     keep: Keep,
-    random: &mut RandomStream,
+    random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, &capture_of(settings));
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
-    scratch.load.begin(settings.terrain, &mut scratch.state.near.gone, random);
+    scratch.load.begin(settings.terrain, &mut scratch.state.near.gone, &random);
+    scratch.state.facets = Facets::of(random);
     let world = ContactEnvironment {
         terrain: settings.terrain,
         body: Body::new(&release.rock, settings.gravity_m_s2),
@@ -102,8 +102,7 @@ pub fn simulate(
         world,
         state: &mut scratch.state,
         load: &mut scratch.load,
-        random,
-        roughness: Roughness::default(),
+        is_rough: world.laws.iter().any(|law| law.roughness_rad > 0.0),
         recorder: Recorder::new(
             settings.terrain,
             Form { rock: release.rock, block: None },
@@ -162,8 +161,8 @@ pub fn simulate_release(
     let fallen = if let Some(drawn) = plan.releases.block(index, &release.rock) {
         simulate_block(&settings, (&release, &drawn), keep, scratch)
     } else {
-        let mut random = stream(plan.seed, Purpose::Impacts, index);
-        simulate(&settings, &release, keep, &mut random, scratch)
+        let random = stream(plan.seed, Purpose::Impacts, index);
+        simulate(&settings, &release, keep, random, scratch)
     };
     Ok(Trajectory { index, ..fallen })
 }
@@ -178,6 +177,7 @@ impl<'a> RunSettings<'a> {
             rest: plan.rest,
             longest_s: plan.longest_s,
             recorders: plan.recorders(),
+            seed: plan.seed,
         }
     }
 }
@@ -198,12 +198,12 @@ pub(super) struct Fall<'a> {
     pub(super) world: ContactEnvironment<'a>,
     pub(super) state: &'a mut ContactState,
     pub(super) load: &'a mut StemLoad,
-    pub(super) random: &'a mut RandomStream,
-    pub(super) roughness: Roughness,
+    /// Whether any ground is rough.
+    is_rough: bool,
     pub(super) recorder: Recorder<'a>,
 }
 
-impl Fall<'_> {
+impl<'a> Fall<'a> {
     /// Whether the rock is in contact with something it is pressed into.
     fn is_pressed(&mut self) -> bool {
         let now = self.recorder.now;
@@ -254,7 +254,7 @@ impl Fall<'_> {
     fn touch(&mut self) -> Option<Stop> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
         self.state.begin(&self.world, c, v, w);
-        self.announce();
+        self.in_contact().announce();
         let before_j = self.total_j();
         let lost_before_j = self.recorder.lost_j();
         // those of the look that `begin` has just taken
@@ -270,7 +270,7 @@ impl Fall<'_> {
         self.recorder.ledger.rise_j =
             self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
         self.recorder.end_impacts(|_| false, || 0.0);
-        self.leave_facet();
+        self.in_contact().leave_facet();
         stop
     }
 
@@ -290,13 +290,16 @@ impl Fall<'_> {
         loop {
             let left = self.settings.longest_s - self.recorder.now.time_s;
             self.strike();
+            if self.is_rough {
+                self.in_contact().meet_next_facet();
+            }
             let most = left.min(self.longest_before_yield_s());
             let done = match solver::advance(stepper, &self.world, self.state, most) {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
             // before its losses are paid, and with the speed before
-            self.announce();
+            self.in_contact().announce();
             let effort = &mut self.recorder.effort;
             effort.steps += done.steps;
             effort.rejected += done.rejected;
@@ -312,11 +315,7 @@ impl Fall<'_> {
             let slides = self.state.histories.iter().any(|history| history.slides);
             let begun = self.state.stopwatches.now();
             self.recorder.step(to, slides);
-            // a blow of the rigid limit is announced first and falls with the next step
-            if !(self.is_rigid() && self.state.is_struck) {
-                self.end_impacts();
-                self.leave_facet_in_time();
-            }
+            self.in_contact().end_impacts();
             self.state.stopwatches.stop(Piece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.over_budget());
@@ -333,15 +332,11 @@ impl Fall<'_> {
         }
     }
 
-    /// The longest an impact is taken to last (s): in the rigid limit no time at all.
-    pub(super) fn impact_time(&self) -> f64 {
-        if self.is_rigid() {
-            return 0.0;
-        }
-        let omegas =
-            self.state.histories.iter().map(|history| self.world.law(history.triangle).omega);
-        let slowest = omegas.fold(f64::INFINITY, f64::min);
-        IMPACT_TIMES * PI / slowest
+    /// The rock and its notes.
+    pub(super) fn in_contact(&mut self) -> RockInContact<'_, 'a, 'a> {
+        let has_springs = !self.is_rigid();
+        let Self { world, state, recorder, .. } = self;
+        RockInContact { world, state, recorder, has_springs }
     }
 
     /// Mechanical energy of the rock in contact (J), weight included.

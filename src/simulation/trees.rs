@@ -103,7 +103,12 @@ impl<'a> Fall<'a> {
             let of_stem =
                 |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
             if !self.state.histories.iter().any(of_stem) {
-                self.begin_impact(&ContactHistory::new(touch, false), 0.0);
+                let approach_m_s = -touch.normal.dot(&self.state.v);
+                self.in_contact().begin_impact(
+                    &ContactHistory::new(touch, false),
+                    approach_m_s,
+                    0.0,
+                );
             }
             (self.state.v, self.state.w) = (v, w);
             self.recorder.ledger.trees_j += left_j;

@@ -6,6 +6,7 @@ use super::explicit_impact::ExplicitImpact;
 use super::friction_rolling::Mode;
 use super::law::{Body, StageContact};
 use super::plane_kernel::PlaneKernel;
+use super::roughness::Facets;
 use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
@@ -131,6 +132,8 @@ pub struct ContactState {
     pub(crate) impact: ExplicitImpact,
     /// Contacts that are about to be struck anew within an episode (`rigid`).
     pub struck: ContactHistories,
+    /// The facets it meets on rough ground.
+    pub(crate) facets: Facets,
     /// Whether what is touched may give way: it is asked step by step.
     pub may_yield: bool,
     /// Whether the blow in hand has been announced (`rigid`).
@@ -183,6 +186,7 @@ impl ContactState {
             struck: ContactHistories::default(),
             is_struck: true,
             may_yield: false,
+            facets: Facets::default(),
             scratch: DdaScratch::default(),
             sweeps: 0,
             stopwatches: Stopwatches::default(),
@@ -295,6 +299,14 @@ impl ContactState {
     pub(crate) fn merge_lost(&mut self, world: &ContactEnvironment) -> bool {
         let Self { histories, near, .. } = self;
         histories.merge_lost(|feature| near.patch_holding(world.terrain, feature))
+    }
+
+    /// All contacts not yet announced rebound after all, from an approach of `speed_m_s`.
+    pub(crate) fn rebound(&mut self, world: &ContactEnvironment, speed_m_s: f64) {
+        for history in self.histories.iter_mut().filter(|history| !history.announced) {
+            history.captured = false;
+        }
+        self.impact.meet(speed_m_s, world.least_impact_m_s());
     }
 
     /// Gives the rock another velocity and spin in the middle of a contact; its springs stay as they are.

@@ -104,3 +104,24 @@ fn facets_are_met_as_often_as_they_are_seen() {
         assert!((average - mean).abs() < 4.0 * ((sum2 / count - average * average) / count).sqrt());
     }
 }
+
+/// A rock that slides without friction over rough ground meets one facet after the other, with every scheme: it hops, and
+/// without losses keeps its energy.
+#[test]
+fn a_sliding_rock_meets_one_facet_after_the_other() {
+    let floor = floor();
+    for (name, case) in SCHEMES {
+        let case = Case { ground: elastic(10.0), ..case };
+        let (mut blows, rocks) = (0, 50);
+        for seed in 0..rocks {
+            let run =
+                case.run_with(&floor, [[0.0, 0.0, 0.5], [4.0, 0.0, 0.0], [0.0; 3]], 2.0, seed);
+            blows += run.impact_count;
+            let energy =
+                0.5 * run.end.velocity_m_s.norm_squared() + G * (run.end.position_m.z - 0.5);
+            assert!((energy / 8.0 - 1.0).abs() < 5e-3, "{name} {seed}: {energy}");
+        }
+        println!("{name}: {blows} blows");
+        assert!(blows > 4 * rocks as u32, "{name}: {blows}");
+    }
+}

@@ -63,6 +63,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
         rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
         longest_s: 20.0,
         recorders: Recorders::default(),
+        seed: 1,
     };
     let motion = Motion {
         time_s: 0.0,
@@ -73,7 +74,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
     let grounds = vec![GROUND; 2];
     let release = Release { rock: ROCK, motion, grounds };
     let keep = Keep { path_step_s: None, impacts: true };
-    simulate(&course, &release, keep, &mut stream(1, Purpose::Impacts, 0), scratch)
+    simulate(&course, &release, keep, stream(1, Purpose::Impacts, 0), scratch)
 }
 
 fn energy_j(fall: &Trajectory, motion: &Motion) -> f64 {

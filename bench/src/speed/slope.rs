@@ -110,6 +110,7 @@ impl Slope {
             rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
             longest_s: LONGEST_S,
             recorders: Recorders::default(),
+            seed: 1,
         }
     }
 
@@ -118,7 +119,7 @@ impl Slope {
         let release = self.release(index);
         let mut random = stream(SEED, Purpose::Impacts, index);
         let keep = Keep { path_step_s: None, impacts: false };
-        let fallen = simulate(&self.course(step), &release, keep, &mut random, scratch);
+        let fallen = simulate(&self.course(step), &release, keep, random, scratch);
         Trajectory { index, ..fallen }
     }
 }

@@ -4,14 +4,14 @@ use super::{State, WorldBody};
 use crate::flight::{FlightEnd, Parabola, time_of_impact};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::simulation::driver::{IMPACT_TIMES, RunSettings};
+use crate::simulation::driver::RunSettings;
 use crate::simulation::impacts::Struck;
 use crate::simulation::rest::RestCriterion;
+use crate::simulation::rock_in_contact::RockInContact;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
+use crate::solver::contact_state::{ContactEnvironment, Loss};
 use crate::solver::island::{Given, Hit, IslandBody};
 use crate::solver::step_control::ONSET;
-use std::f64::consts::PI;
 
 impl WorldBody<'_> {
     pub(super) fn flight(&self, settings: &RunSettings) -> Parabola {
@@ -135,15 +135,13 @@ impl WorldBody<'_> {
             self.recorder.pay(&held, 1.0);
             self.began_j.0 += held.sum();
         }
-        let omega = state
-            .histories
-            .iter()
-            .map(|history| world.law(history.triangle).omega)
-            .fold(0.0, f64::max);
-        if omega > 0.0 {
-            self.h = self.h.min(ONSET / omega);
-        }
-        self.announce(settings);
+        self.h = self.h.min(self.onset_s(settings));
+        self.in_contact(settings, |rock| rock.announce());
+    }
+
+    /// First step after it touches the mesh (s).
+    pub(super) fn onset_s(&self, settings: &RunSettings) -> f64 {
+        ONSET / self.member.omega(settings.terrain)
     }
 
     pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {
@@ -167,7 +165,15 @@ impl WorldBody<'_> {
         }
         let to = self.motion_at(time_s);
         let was_flying = self.lands.is_some();
-        self.announce(settings);
+        self.in_contact(settings, |rock| {
+            rock.announce();
+            // what others give it comes from where they are: it meets no facet meanwhile
+            if given != Given::default() {
+                rock.leave_facet();
+            }
+        });
+        let to =
+            Motion { velocity_m_s: self.member.state.v, spin_rad_s: self.member.state.w, ..to };
         // A rock may be hit and let go within one step: then it flies another way.
         let is_untouched = given == Given::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
@@ -177,6 +183,8 @@ impl WorldBody<'_> {
         self.touch(settings, to, (loss, given), (slides, was_flying));
         if self.member.flying {
             self.look_ahead(settings);
+        } else if self.member.laws.iter().any(|law| law.roughness_rad > 0.0) {
+            self.in_contact(settings, |rock| rock.meet_next_facet());
         }
     }
 
@@ -192,7 +200,8 @@ impl WorldBody<'_> {
             return;
         }
         let to = self.motion_at(time_s);
-        self.announce(settings);
+        // its impacts are listed as hits
+        self.member.state.histories.iter_mut().for_each(|history| history.announced = true);
         if self.member.flew && self.member.flying && !self.member.was_touched {
             self.recorder.step_as(to, PathState::Flight);
             return;
@@ -218,10 +227,15 @@ impl WorldBody<'_> {
         }
     }
 
+    /// Watches how far its velocity has changed.
+    fn watch(&mut self) {
+        self.off.1 = self.off.1.max((self.member.state.v - self.off.0).norm());
+    }
+
     /// What the solver has made of it (the largest change of its velocity is kept).
     fn motion_at(&mut self, time_s: f64) -> Motion {
+        self.watch();
         let state = &self.member.state;
-        self.off.1 = self.off.1.max((state.v - self.off.0).norm());
         Motion { time_s, position_m: state.c, velocity_m_s: state.v, spin_rad_s: state.w }
     }
 
@@ -242,7 +256,7 @@ impl WorldBody<'_> {
         self.recorder.ledger.passed_on_j += given.passed_on;
         let change = self.total_j(settings) - before_j + loss.sum() + given.sum();
         self.recorder.ledger.remainder_j -= change;
-        self.end_impacts(settings);
+        self.in_contact(settings, |rock| rock.end_impacts());
         if was_flying {
             self.lands = None;
             self.calm = RestCriterion::from(self.recorder.now.position_m);
@@ -264,44 +278,18 @@ impl WorldBody<'_> {
         let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
         self.recorder.pay(&stored, -1.0);
         self.recorder.end_impacts(|_| false, || 0.0);
+        self.in_contact(settings, |rock| rock.leave_facet());
         let rise_j = self.total_j(settings) - self.began_j.0 + given_j + stored.sum();
         self.recorder.ledger.rise_j = self.recorder.ledger.rise_j.max(rise_j);
     }
 
-    /// Notes down impacts on the mesh that have just begun.
-    pub(super) fn announce(&mut self, settings: &RunSettings) {
+    /// Runs `what` on the rock in contact and its notes.
+    fn in_contact(&mut self, settings: &RunSettings, what: impl FnOnce(&mut RockInContact)) {
         let IslandBody { state, body, laws, .. } = &mut *self.member;
-        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
-        let known = state.histories.iter().filter(|history| history.announced);
-        let held_j = ContactState::held_j(&world, known);
-        for history in state.histories.iter_mut().filter(|history| !history.announced) {
-            history.announced = true;
-            let law = world.law(history.triangle);
-            let speed = -history.n.dot(&self.recorder.now.velocity_m_s);
-            if !history.captured && speed >= law.capture_m_s {
-                let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / law.omega;
-                let struck = Struck {
-                    point_m: state.c - history.n * body.radius,
-                    normal: history.n,
-                    feature: history.feature.kind,
-                    sheet: self.recorder.sheet_of(history.triangle),
-                    approach_m_s: speed,
-                };
-                history.impact = self.recorder.begin_impact(&struck, until_s, held_j);
-            }
-        }
-    }
-
-    /// Ends the impacts whose patch has let go or whose time is up.
-    fn end_impacts(&mut self, settings: &RunSettings) {
-        let IslandBody { state, body, laws, .. } = &*self.member;
-        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
-        // the rigid limit keeps no memory of what has hit and left again within a step
-        let is_rigid = !settings.step.scheme.has_springs();
-        self.recorder.end_impacts(
-            |number| is_rigid || state.histories.iter().any(|history| history.impact == number),
-            || ContactState::held_j(&world, state.histories.iter()),
-        );
+        let world = &ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        let has_springs = settings.step.scheme.has_springs();
+        what(&mut RockInContact { world, state, recorder: &mut self.recorder, has_springs });
+        self.watch();
     }
 
     pub(super) fn leave(&mut self, stop: Stop) {

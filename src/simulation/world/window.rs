@@ -275,7 +275,11 @@ impl<'a> IslandWindow<'a> {
             effort.sweeps += sweeps + jumps;
             effort.unsettled += u64::from(done.unsettled);
             let given = (done.losses[k], done.given[k]);
+            let met = body.member.state.facets.is_any_met();
             go(body, self.settings, self.now_s, given, slides[k]);
+            if !met && body.member.state.facets.is_any_met() {
+                island.h = island.h.min(body.onset_s(self.settings));
+            }
             body.spend(self.settings);
             std::mem::swap(&mut body.member, &mut island.members[k]);
         }

@@ -10,6 +10,7 @@ use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::dda::contact::Contact;
 use crate::solver::law::{Body, StageContact};
+use crate::solver::roughness::Facets;
 use crate::solver::stage::End;
 use crate::solver::tableau::{STAGES, Tableau};
 use crate::terrain::Terrain;
@@ -53,6 +54,7 @@ pub struct IslandBody {
 pub struct Memory {
     motion: (Vec3, Vec3, Vec3),
     histories: Vec<ContactHistory>,
+    facets: Facets,
     flying: bool,
 }
 
@@ -122,6 +124,7 @@ impl IslandBody {
         Memory {
             motion: (state.c, state.v, state.w),
             histories: state.histories.to_vec(),
+            facets: state.facets.clone(),
             flying: self.flying,
         }
     }
@@ -131,6 +134,7 @@ impl IslandBody {
         let state = &mut self.state;
         (state.c, state.v, state.w) = memory.motion;
         state.histories.restore(&memory.histories);
+        state.facets.clone_from(&memory.facets);
         state.fresh = false;
         self.flying = memory.flying;
         self.kept.clear();
@@ -160,7 +164,7 @@ impl IslandBody {
     }
 
     /// Stiffest contact with the mesh (rad/s), 0 if there is none.
-    pub(super) fn omega(&self, terrain: &Terrain) -> f64 {
+    pub fn omega(&self, terrain: &Terrain) -> f64 {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         self.state
             .histories

@@ -248,6 +248,7 @@ impl IslandBody {
         let world = ContactEnvironment { terrain, body: *body, laws };
         (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
         remember(&world, state, |_| ball.pushed);
+        state.is_struck = false;
         self.flying = state.is_free();
     }
 }

@@ -10,10 +10,11 @@ use super::RigidIsland;
 use super::contacts::{Ball, BallContact, GroundContact};
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::island::assembly::{Given, TOUCH};
 use crate::solver::island::body::{BodySlot, IslandBody};
-use crate::solver::rigid::capture_m_s;
+use crate::solver::rigid::{HELD, capture_m_s};
+use crate::solver::roughness::Meeting;
 use crate::terrain::Terrain;
 use std::cmp::Reverse;
 
@@ -155,7 +156,8 @@ impl RigidIsland {
                 first = Some(first.unwrap_or(0.0).max(s));
             }
         }
-        if let Some(s) = first {
+        let meets_facet = || meets_facet(&world, state, ball).then_some(0.0);
+        if let Some(s) = first.or_else(meets_facet) {
             let place = scene.pair_histories.len() + k;
             self.due.push((s.to_bits(), Reverse(place), [ball.times; 2]));
         }
@@ -214,19 +216,22 @@ impl RigidIsland {
             .copied();
         if let Some(touch) = hit {
             let law = world.law(touch.triangle);
+            let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
+            let facet = state.facets.struck(&world, &meeting);
+            let normal = facet.map_or(touch.normal, |turn| turn * touch.normal);
             let mut ground_contact =
-                GroundContact::new(k, (touch.feature, touch.triangle), touch.normal, law);
+                GroundContact::new(k, (touch.feature, touch.triangle), normal, law);
             ground_contact.impact((body, law), (&v, &ball.w), ball.blows >= LIVELY);
             let before = (ball.v, ball.w);
             ball.take_late(&ground_contact.load(body), s);
             let mean = mean_late(ball, &before, s);
             self.losses[k].add(&ground_contact.loss(&world, &mean), 1.0);
-            let point_m = at - ground_contact.n * body.radius;
+            let point_m = at - touch.normal * body.radius;
             let feature = touch.feature.kind;
             self.hits.push(Hit {
                 rock: k,
                 normal: touch.normal,
-                approach_m_s: -touch.normal.dot(&v),
+                approach_m_s: -normal.dot(&v),
                 point_m,
                 feature,
                 triangle: touch.triangle,
@@ -244,6 +249,17 @@ impl Ball {
         self.pushed = true;
         self.times += 1;
     }
+}
+
+/// Whether a rock that slides or rolls strikes the next facet of rough ground, the last one being behind it.
+fn meets_facet(world: &ContactEnvironment, state: &mut ContactState, ball: &Ball) -> bool {
+    let reach = ball.body.radius * (1.0 + HELD);
+    let ContactState { touches, facets, .. } = state;
+    let rough = touches.iter().filter(|touch| touch.distance_m <= reach).find_map(|touch| {
+        let at = Meeting { n: touch.normal, triangle: touch.triangle, c: ball.c, v: ball.v };
+        facets.are_behind(world, &at).then_some(at)
+    });
+    rough.is_some_and(|at| facets.struck(world, &at).is_some())
 }
 
 /// Mean motion in a blow that fell `s` (s) before the end of the step, from the motions there without and with it.
