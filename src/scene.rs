@@ -376,13 +376,6 @@ impl Scene {
             let remedy = "write \"adaptive\", \"reference\" or \"dda\": a bond breaks by its springs, and the rigid limit has none; with tensile_strength_pa = 0 and cohesion_pa = 0 in [rocks.contact] \"rigid\" can be used";
             return Err(Complaint::about("scheme", remedy).inside("solver"));
         }
-        for (name, ground) in &self.grounds {
-            if ground.breaks_above_j.is_some() {
-                let remedy = "remove it: stems give way to one rock alone, and with [release] together = true others would run into what is gone";
-                let about = Complaint::about("breaks_above_j", remedy);
-                return Err(about.inside(name).inside("grounds"));
-            }
-        }
         Ok(())
     }
 }

@@ -8,7 +8,6 @@ mod form;
 mod impacts;
 mod recorder;
 mod rock_in_contact;
-mod trees;
 mod world;
 mod cells;
 

@@ -18,6 +18,7 @@ pub mod stage;
 pub mod tableau;
 pub mod environment;
 mod springs;
+pub(crate) mod stems;
 pub(crate) mod roughness;
 pub(crate) mod yielding;
 

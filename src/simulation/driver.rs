@@ -5,7 +5,6 @@ use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::rock_in_contact::RockInContact;
-use super::trees::StemLoad;
 use super::{Stop, Trajectory};
 use crate::error::Result;
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
@@ -47,7 +46,6 @@ pub struct RunSettings<'a> {
 pub struct Scratch {
     state: ContactState,
     footing: Footing,
-    load: StemLoad,
     laws: Vec<Law>,
     /// Dashpots of the grounds of the rock before: most scenes never change them.
     damping: Vec<Damping>,
@@ -90,7 +88,7 @@ pub fn simulate(
     scratch.make_laws(release, &capture_of(settings));
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
-    scratch.load.begin(settings.terrain, &mut scratch.state.near.gone, &random);
+    scratch.state.raise_stems(settings.terrain, &random);
     scratch.state.facets = Facets::of(random);
     let world = ContactEnvironment {
         terrain: settings.terrain,
@@ -101,8 +99,6 @@ pub fn simulate(
         settings,
         world,
         state: &mut scratch.state,
-        load: &mut scratch.load,
-        is_rough: world.laws.iter().any(|law| law.roughness_rad > 0.0),
         recorder: Recorder::new(
             settings.terrain,
             Form { rock: release.rock, block: None },
@@ -197,9 +193,6 @@ pub(super) struct Fall<'a> {
     pub(super) settings: &'a RunSettings<'a>,
     pub(super) world: ContactEnvironment<'a>,
     pub(super) state: &'a mut ContactState,
-    pub(super) load: &'a mut StemLoad,
-    /// Whether any ground is rough.
-    is_rough: bool,
     pub(super) recorder: Recorder<'a>,
 }
 
@@ -289,12 +282,8 @@ impl<'a> Fall<'a> {
         let mut calm = RestCriterion::from(self.state.c);
         loop {
             let left = self.settings.longest_s - self.recorder.now.time_s;
-            self.strike();
-            if self.is_rough {
-                self.in_contact().meet_next_facet();
-            }
-            let most = left.min(self.longest_before_yield_s());
-            let done = match solver::advance(stepper, &self.world, self.state, most) {
+            let most = left.min(self.in_contact().before_step());
+            let mut done = match solver::advance(stepper, &self.world, self.state, most) {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
@@ -304,8 +293,10 @@ impl<'a> Fall<'a> {
             effort.steps += done.steps;
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
+            if self.state.bend(&self.world, &mut done.loss) {
+                *stepper = Stepper::new(self.settings.step, &self.world, self.state);
+            }
             self.recorder.pay(&done.loss, 1.0);
-            self.bend(done.loss.trees, stepper);
             let to = Motion {
                 time_s: self.recorder.now.time_s + done.dt,
                 position_m: self.state.c,
@@ -333,10 +324,10 @@ impl<'a> Fall<'a> {
     }
 
     /// The rock and its notes.
-    pub(super) fn in_contact(&mut self) -> RockInContact<'_, 'a, 'a> {
+    fn in_contact(&mut self) -> RockInContact<'_, 'a> {
         let has_springs = !self.is_rigid();
         let Self { world, state, recorder, .. } = self;
-        RockInContact { world, state, recorder, has_springs }
+        RockInContact { world: *world, state, recorder, has_springs }
     }
 
     /// Mechanical energy of the rock in contact (J), weight included.

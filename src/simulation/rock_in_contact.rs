@@ -3,6 +3,7 @@
 
 use super::impacts::Struck;
 use super::recorder::Recorder;
+use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -13,8 +14,8 @@ use std::f64::consts::PI;
 const IMPACT_TIMES: f64 = 3.0;
 
 /// A rock in contact and its notes.
-pub(super) struct RockInContact<'r, 'a, 'w> {
-    pub(super) world: &'r ContactEnvironment<'w>,
+pub(super) struct RockInContact<'r, 'a> {
+    pub(super) world: ContactEnvironment<'r>,
     pub(super) state: &'r mut ContactState,
     pub(super) recorder: &'r mut Recorder<'a>,
     /// Whether contacts have springs, and impacts take time.
@@ -29,24 +30,24 @@ struct Fastest {
     triangle: u32,
 }
 
-impl RockInContact<'_, '_, '_> {
+impl RockInContact<'_, '_> {
     /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
     pub(super) fn announce(&mut self) {
         let Some(fastest) = self.fastest_unannounced() else { return };
         let facet = if self.world.law(fastest.triangle).roughness_rad > 0.0 {
             self.leave_facet();
             let at = self.meeting((fastest.n, fastest.triangle));
-            self.state.facets.struck(self.world, &at)
+            self.state.facets.struck(&self.world, &at)
         } else {
             None
         };
         // whether a rock rebounds is judged by its approach to the facet
         let to_facet_m_s = facet.map_or(0.0, |turn| -(turn * fastest.n).dot(&self.state.v));
         if to_facet_m_s >= self.world.law(fastest.triangle).capture_m_s {
-            self.state.rebound(self.world, to_facet_m_s);
+            self.state.rebound(&self.world, to_facet_m_s);
         }
         let known = self.state.histories.iter().filter(|history| history.announced);
-        let held_j = ContactState::held_j(self.world, known);
+        let held_j = ContactState::held_j(&self.world, known);
         let until_s = self.recorder.now.time_s + self.impact_time();
         let mut rebounds = false;
         for k in 0..self.state.histories.len() {
@@ -60,7 +61,7 @@ impl RockInContact<'_, '_, '_> {
             self.state.struck[k] = history;
         }
         if let Some(turn) = facet.filter(|_| rebounds) {
-            self.state.turn_against(self.world, turn, until_s);
+            self.state.turn_against(&self.world, turn, until_s);
         }
     }
 
@@ -92,8 +93,38 @@ impl RockInContact<'_, '_, '_> {
         true
     }
 
+    /// Breaks the stems that cannot take the blow in hand, and meets the next facet if it is time for it; returns the longest
+    /// step (s) in which no stem takes more than it can.
+    pub(super) fn before_step(&mut self) -> f64 {
+        let longest_s = if self.has_springs {
+            self.state.longest_before_yield_s(&self.world)
+        } else {
+            self.break_stems();
+            f64::INFINITY
+        };
+        if self.world.laws.iter().any(|law| law.roughness_rad > 0.0) {
+            self.meet_next_facet();
+        }
+        longest_s
+    }
+
+    fn break_stems(&mut self) {
+        let Self { world, state, recorder, .. } = self;
+        let world = &*world;
+        let note = |state: &ContactState, touch: &ContactPoint, (taken_j, is_new)| {
+            let approach_m_s = -touch.normal.dot(&state.v);
+            if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
+                let now_s = recorder.now.time_s;
+                let struck = struck(recorder, world, (&state.c, touch), approach_m_s);
+                recorder.begin_impact(&struck, now_s, 0.0);
+            }
+            recorder.ledger.trees_j += taken_j;
+        };
+        state.break_stems(world, note);
+    }
+
     /// A rock that slides or rolls on rough ground meets the next facet once the last is behind it.
-    pub(super) fn meet_next_facet(&mut self) {
+    fn meet_next_facet(&mut self) {
         if self.state.facets.is_any_met() {
             return;
         }
@@ -106,8 +137,8 @@ impl RockInContact<'_, '_, '_> {
         };
         let at =
             Meeting { n: history.n, triangle: history.triangle, c: self.state.c, v: self.state.v };
-        if self.state.facets.are_behind(self.world, &at) {
-            history.announced = self.state.facets.struck(self.world, &at).is_none();
+        if self.state.facets.are_behind(&self.world, &at) {
+            history.announced = self.state.facets.struck(&self.world, &at).is_none();
             self.announce();
             // its blow is announced herewith
             self.state.is_struck |= self.state.facets.is_any_met();
@@ -119,22 +150,12 @@ impl RockInContact<'_, '_, '_> {
     }
 
     /// Begins the impact of a contact, unless it came too slowly for one (0); `held_j` is what other springs hold.
-    pub(super) fn begin_impact(
-        &mut self,
-        history: &ContactHistory,
-        approach_m_s: f64,
-        held_j: f64,
-    ) -> u32 {
+    fn begin_impact(&mut self, history: &ContactHistory, approach_m_s: f64, held_j: f64) -> u32 {
         if approach_m_s < self.world.law(history.triangle).capture_m_s {
             return 0;
         }
-        let struck = Struck {
-            point_m: self.state.c - history.n * self.world.body.radius,
-            normal: history.n,
-            feature: history.feature.kind,
-            sheet: self.recorder.sheet_of(history.triangle),
-            approach_m_s,
-        };
+        let touch = ContactPoint::single(history.feature, history.triangle, &history.n, 1.0);
+        let struck = struck(self.recorder, &self.world, (&self.state.c, &touch), approach_m_s);
         let until_s = self.recorder.now.time_s + self.impact_time();
         self.recorder.begin_impact(&struck, until_s, held_j)
     }
@@ -156,7 +177,8 @@ impl RockInContact<'_, '_, '_> {
         if !self.has_springs && self.state.is_struck {
             return;
         }
-        let (world, histories, has_springs) = (self.world, &self.state.histories, self.has_springs);
+        let (world, histories, has_springs) =
+            (&self.world, &self.state.histories, self.has_springs);
         // the rigid limit keeps no memory of what has hit and left again within a step
         self.recorder.end_impacts(
             |number| !has_springs || histories.iter().any(|history| history.impact == number),
@@ -169,11 +191,27 @@ impl RockInContact<'_, '_, '_> {
 
     /// Turns the rock back, if it is turned.
     pub(super) fn leave_facet(&mut self) {
-        if self.state.turn_back(self.world) {
+        if self.state.turn_back(&self.world) {
             // a rebound into the mean surface is the next impact
             self.recorder.impacts.forget_last();
             let now = &mut self.recorder.now;
             (now.velocity_m_s, now.spin_rad_s) = (self.state.v, self.state.w);
         }
+    }
+}
+
+/// What a rock with its centre at `c` strikes at a touch.
+fn struck(
+    recorder: &Recorder,
+    world: &ContactEnvironment,
+    (c, touch): (&Vec3, &ContactPoint),
+    approach_m_s: f64,
+) -> Struck {
+    Struck {
+        point_m: c - touch.normal * world.body.radius,
+        normal: touch.normal,
+        feature: touch.feature.kind,
+        sheet: recorder.sheet_of(touch.triangle),
+        approach_m_s,
     }
 }

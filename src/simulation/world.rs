@@ -145,7 +145,9 @@ pub fn simulate_world(
         .enumerate()
         .map(|(k, release)| {
             let mut body = body(settings, release, keep(k), &mut damping);
-            body.member.state.facets = Facets::of(stream(settings.seed, Purpose::Impacts, k));
+            let random = stream(settings.seed, Purpose::Impacts, k);
+            body.member.state.raise_stems(settings.terrain, &random);
+            body.member.state.facets = Facets::of(random);
             Some(Box::new(body))
         })
         .collect();

@@ -7,6 +7,7 @@ use super::friction_rolling::Mode;
 use super::law::{Body, StageContact};
 use super::plane_kernel::PlaneKernel;
 use super::roughness::Facets;
+use super::stems::StemLoad;
 use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
@@ -134,6 +135,8 @@ pub struct ContactState {
     pub struck: ContactHistories,
     /// The facets it meets on rough ground.
     pub(crate) facets: Facets,
+    /// What it has done to the stems.
+    pub(crate) stem_load: StemLoad,
     /// Whether what is touched may give way: it is asked step by step.
     pub may_yield: bool,
     /// Whether the blow in hand has been announced (`rigid`).
@@ -187,6 +190,7 @@ impl ContactState {
             is_struck: true,
             may_yield: false,
             facets: Facets::default(),
+            stem_load: StemLoad::default(),
             scratch: DdaScratch::default(),
             sweeps: 0,
             stopwatches: Stopwatches::default(),

@@ -31,7 +31,7 @@ const SHORTEST: f64 = 1e-9;
 const LASTS: f64 = 20.0;
 
 /// What an impact needs besides the rock's state.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct ExplicitImpact {
     /// The step to try next (s), if there is one.
     h: f64,

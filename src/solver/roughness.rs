@@ -95,13 +95,12 @@ impl Facets {
                 && (facet.centre - at.c).norm() < law.roughness_length_m
                 && approach(&facet.turn) > 0.0
         });
-        let turn = match known {
-            Some(facet) => facet.turn,
-            None => {
-                let turn = draw(self.random.as_mut()?, at, law.roughness_rad)?;
-                self.last = Some(Facet { centre: at.c, ground, turn });
-                turn
-            }
+        let turn = if let Some(facet) = known {
+            facet.turn
+        } else {
+            let turn = draw(self.random.as_mut()?, at, law.roughness_rad)?;
+            self.last = Some(Facet { centre: at.c, ground, turn });
+            turn
         };
         let fastest = approach(&turn).max(-at.n.dot(&at.v));
         (fastest >= capture).then_some(turn)

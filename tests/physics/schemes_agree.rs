@@ -124,7 +124,6 @@ fn counts_agree([one, other]: [Scheme; 2], [a, b]: [&[Trajectory]; 2]) {
     for count in counts {
         let ((found, sd), (beside, sd_beside)) = (mean(a, count), mean(b, count));
         let error = ((sd * sd + sd_beside * sd_beside) / ROCKS as f64).sqrt();
-        println!("{one:?} {found:.3} impacts a rock, {other:?} {beside:.3} ± {error:.3}");
         assert!((found - beside).abs() < 4.0 * error, "{one:?} {found}, {other:?} {beside}");
     }
 }

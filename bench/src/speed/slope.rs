@@ -117,7 +117,7 @@ impl Slope {
     /// Follows release number `index`; neither path nor impacts are kept.
     pub fn fall(&self, step: &Settings, index: usize, scratch: &mut Scratch) -> Trajectory {
         let release = self.release(index);
-        let mut random = stream(SEED, Purpose::Impacts, index);
+        let random = stream(SEED, Purpose::Impacts, index);
         let keep = Keep { path_step_s: None, impacts: false };
         let fallen = simulate(&self.course(step), &release, keep, random, scratch);
         Trajectory { index, ..fallen }

@@ -1,7 +1,7 @@
 //! One rock of a world: flying, touching, resting, and what is noted down of it.
 
 use super::{State, WorldBody};
-use crate::flight::{FlightEnd, Parabola, time_of_impact};
+use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
 use crate::simulation::driver::RunSettings;
@@ -13,7 +13,7 @@ use crate::solver::contact_state::{ContactEnvironment, Loss};
 use crate::solver::island::{Given, Hit, IslandBody};
 use crate::solver::step_control::ONSET;
 
-impl WorldBody<'_> {
+impl<'a> WorldBody<'a> {
     pub(super) fn flight(&self, settings: &RunSettings) -> Parabola {
         Parabola {
             start: self.recorder.now.position_m,
@@ -72,12 +72,19 @@ impl WorldBody<'_> {
         let flight = self.flight(settings);
         let effort = &mut self.recorder.effort;
         effort.leaps += 1;
-        self.lands =
-            Some(match time_of_impact(settings.terrain, &flight, left, &mut effort.triangles) {
+        self.lands = Some(
+            match time_of_impact_past(
+                settings.terrain,
+                &flight,
+                left,
+                &self.member.state.near.gone,
+                &mut effort.triangles,
+            ) {
                 FlightEnd::Touch(t) => (now_s + t, None),
                 FlightEnd::Leaves(t) => (now_s + t, Some(Stop::LeftTerrain)),
                 FlightEnd::Flies => (f64::INFINITY, None),
-            });
+            },
+        );
         self.spend(settings);
     }
 
@@ -91,11 +98,11 @@ impl WorldBody<'_> {
 
     /// Goes along the parabola; nothing for a rock in contact.
     pub(super) fn fly_to(&mut self, settings: &RunSettings, time_s: f64) {
-        if matches!(self.state, State::Gone(_)) {
+        if matches!(self.state, State::Gone(_)) || !self.member.flying {
             return;
         }
         let dt = time_s - self.recorder.now.time_s;
-        if self.member.flying && dt > 0.0 {
+        if dt > 0.0 {
             let flight = self.flight(settings);
             self.recorder.fly(&flight, None, dt);
             self.recorder.now.time_s = time_s;
@@ -136,7 +143,7 @@ impl WorldBody<'_> {
             self.began_j.0 += held.sum();
         }
         self.h = self.h.min(self.onset_s(settings));
-        self.in_contact(settings, |rock| rock.announce());
+        self.in_contact(settings).announce();
     }
 
     /// First step after it touches the mesh (s).
@@ -157,23 +164,21 @@ impl WorldBody<'_> {
         &mut self,
         settings: &RunSettings,
         time_s: f64,
-        (loss, given): (Loss, Given),
+        (mut loss, given): (Loss, Given),
         slides: bool,
     ) {
         if matches!(self.state, State::Gone(_)) {
             return;
         }
-        let to = self.motion_at(time_s);
         let was_flying = self.lands.is_some();
-        self.in_contact(settings, |rock| {
-            rock.announce();
-            // what others give it comes from where they are: it meets no facet meanwhile
-            if given != Given::default() {
-                rock.leave_facet();
-            }
-        });
-        let to =
-            Motion { velocity_m_s: self.member.state.v, spin_rad_s: self.member.state.w, ..to };
+        let mut rock = self.in_contact(settings);
+        rock.announce();
+        // what others give it comes from where they are: it meets no facet meanwhile
+        if given != Given::default() {
+            rock.leave_facet();
+        }
+        rock.state.bend(&rock.world, &mut loss);
+        let to = self.motion_at(time_s);
         // A rock may be hit and let go within one step: then it flies another way.
         let is_untouched = given == Given::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
@@ -183,8 +188,6 @@ impl WorldBody<'_> {
         self.touch(settings, to, (loss, given), (slides, was_flying));
         if self.member.flying {
             self.look_ahead(settings);
-        } else if self.member.laws.iter().any(|law| law.roughness_rad > 0.0) {
-            self.in_contact(settings, |rock| rock.meet_next_facet());
         }
     }
 
@@ -256,7 +259,8 @@ impl WorldBody<'_> {
         self.recorder.ledger.passed_on_j += given.passed_on;
         let change = self.total_j(settings) - before_j + loss.sum() + given.sum();
         self.recorder.ledger.remainder_j -= change;
-        self.in_contact(settings, |rock| rock.end_impacts());
+        self.in_contact(settings).end_impacts();
+        self.watch();
         if was_flying {
             self.lands = None;
             self.calm = RestCriterion::from(self.recorder.now.position_m);
@@ -278,18 +282,25 @@ impl WorldBody<'_> {
         let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
         self.recorder.pay(&stored, -1.0);
         self.recorder.end_impacts(|_| false, || 0.0);
-        self.in_contact(settings, |rock| rock.leave_facet());
+        self.in_contact(settings).leave_facet();
         let rise_j = self.total_j(settings) - self.began_j.0 + given_j + stored.sum();
         self.recorder.ledger.rise_j = self.recorder.ledger.rise_j.max(rise_j);
     }
 
-    /// Runs `what` on the rock in contact and its notes.
-    fn in_contact(&mut self, settings: &RunSettings, what: impl FnOnce(&mut RockInContact)) {
+    /// Makes ready for a step in contact; returns the longest that it may be (s).
+    pub(super) fn before_step(&mut self, settings: &RunSettings) -> f64 {
+        if self.member.flying {
+            return f64::INFINITY;
+        }
+        self.in_contact(settings).before_step()
+    }
+
+    /// The rock in contact and its notes.
+    fn in_contact<'r>(&'r mut self, settings: &RunSettings<'r>) -> RockInContact<'r, 'a> {
         let IslandBody { state, body, laws, .. } = &mut *self.member;
-        let world = &ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
         let has_springs = settings.step.scheme.has_springs();
-        what(&mut RockInContact { world, state, recorder: &mut self.recorder, has_springs });
-        self.watch();
+        RockInContact { world, state, recorder: &mut self.recorder, has_springs }
     }
 
     pub(super) fn leave(&mut self, stop: Stop) {

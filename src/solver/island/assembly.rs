@@ -7,9 +7,10 @@ use super::rigid::{Hit, RigidIsland};
 use super::sweeps::ActiveSet;
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
+use crate::solver::Settings;
 use crate::solver::contact_state::{ContactEnvironment, Loss};
 use crate::solver::step_control::{self, Control, ONSET, Outcome, StepError, TRAVEL, Trial};
-use crate::solver::tableau::{STAGES, Tableau};
+use crate::solver::tableau::{STAGES, TR_BDF2, Tableau};
 use crate::terrain::Terrain;
 
 /// A gap between two rocks that counts as a touch (–, relative to the sum of their radii): rounding of the leap.
@@ -98,9 +99,13 @@ impl<'a> Island<'a> {
     /// An island of these rocks.
     pub fn new(
         terrain: &'a Terrain,
-        members: Vec<BodySlot>,
+        mut members: Vec<BodySlot>,
         pair_histories: Vec<PairHistory>,
     ) -> Self {
+        let is_one = members.len() == 1;
+        for member in &mut members {
+            member.enter_island(is_one);
+        }
         let pair_forces = pair_histories
             .iter()
             .map(|pair_history| (pair_history.normal_force, pair_history.shear_force))
@@ -127,9 +132,27 @@ impl<'a> Island<'a> {
     ///
     /// # Errors
     /// [`StepError`] if the step had to become too short to matter.
-    pub fn advance(&mut self, control: &Control, h_max: f64) -> Result<Done, StepError> {
+    pub fn advance(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
+        if let [member] = &mut self.members[..] {
+            let h = &mut self.h;
+            return member.advance_alone(self.terrain, |world, state| {
+                let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
+                let control = Control::new(tableau, settings, world);
+                if !h.is_finite() {
+                    *h = step_control::first_step(world, state);
+                }
+                step_control::advance(world, &control, state, h, h_max)
+            });
+        }
+        let control = &Control {
+            tableau: settings.scheme.tableau().unwrap_or(&TR_BDF2),
+            tolerance: settings.tolerance_m_s,
+            impact: f64::INFINITY,
+            plane_impacts: false,
+        };
         self.tolerance = control.tolerance;
-        if !self.fresh {
+        // a rock that was turned against a facet, or whose stem has given way, has other rates
+        if !self.fresh || self.members.iter().any(|member| !member.state.fresh) {
             self.rates_now();
         }
         let omega = self.omega();

@@ -66,7 +66,9 @@ impl Island<'_> {
     /// [`StepError`] if motion is no longer finite.
     pub fn advance_rigid(&mut self, longest: f64, h_max: f64) -> Result<Done, StepError> {
         if let [member] = &mut self.members[..] {
-            return alone(self.terrain, member, (longest, h_max));
+            return member.advance_alone(self.terrain, |world, state| {
+                crate::solver::rigid::advance(world, state, longest, h_max)
+            });
         }
         let mut island = std::mem::take(&mut self.rigid);
         island.begin(&self.members, &self.pair_histories);
@@ -171,25 +173,6 @@ fn lay(ends: &[[usize; 2]], rocks: usize, (first, links): (&mut Vec<u32>, &mut V
             links[first[k] as usize] = place as u32;
         }
     }
-}
-
-/// One step of a rock that nothing but the mesh can touch.
-fn alone(
-    terrain: &Terrain,
-    member: &mut IslandBody,
-    (longest, h_max): (f64, f64),
-) -> Result<Done, StepError> {
-    member.flew = member.flying;
-    member.kept.clear();
-    let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
-    let done = crate::solver::rigid::advance(&world, &mut member.state, longest, h_max)?;
-    member.flying = member.state.is_free();
-    Ok(Done {
-        dt: done.dt,
-        losses: vec![done.loss],
-        given: vec![Given::default()],
-        ..Done::default()
-    })
 }
 
 impl PairHistory {

@@ -8,6 +8,7 @@
 
 use super::RigidIsland;
 use super::contacts::{Ball, BallContact, GroundContact};
+use crate::contact::ContactPoint;
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -215,6 +216,16 @@ impl RigidIsland {
             .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))
             .copied();
         if let Some(touch) = hit {
+            if let Some(broken) = state.broken_by(&world, &touch, (&v, &ball.w)) {
+                ball.v += broken.motion.0 - v;
+                ball.c += (broken.motion.0 - v) * s;
+                ball.w = broken.motion.1;
+                self.losses[k].trees += broken.taken_j;
+                self.hits.push(hit_of(k, &touch, (&at, body.radius), -touch.normal.dot(&v)));
+                state.fell_broken(&world, &broken);
+                ball.is_struck(s);
+                return;
+            }
             let law = world.law(touch.triangle);
             let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
             let facet = state.facets.struck(&world, &meeting);
@@ -226,16 +237,7 @@ impl RigidIsland {
             ball.take_late(&ground_contact.load(body), s);
             let mean = mean_late(ball, &before, s);
             self.losses[k].add(&ground_contact.loss(&world, &mean), 1.0);
-            let point_m = at - touch.normal * body.radius;
-            let feature = touch.feature.kind;
-            self.hits.push(Hit {
-                rock: k,
-                normal: touch.normal,
-                approach_m_s: -normal.dot(&v),
-                point_m,
-                feature,
-                triangle: touch.triangle,
-            });
+            self.hits.push(hit_of(k, &touch, (&at, body.radius), -normal.dot(&v)));
         }
         ball.is_struck(s);
     }
@@ -248,6 +250,18 @@ impl Ball {
         self.blows += 1;
         self.pushed = true;
         self.times += 1;
+    }
+}
+
+/// The impact of rock `k`, with its centre at `c`, at a touch.
+fn hit_of(k: usize, touch: &ContactPoint, (c, radius): (&Vec3, f64), approach_m_s: f64) -> Hit {
+    Hit {
+        rock: k,
+        normal: touch.normal,
+        approach_m_s,
+        point_m: c - touch.normal * radius,
+        feature: touch.feature.kind,
+        triangle: touch.triangle,
     }
 }
 
