@@ -8,6 +8,7 @@ mod form;
 mod impacts;
 mod recorder;
 mod rock_in_contact;
+mod settings;
 mod world;
 mod cells;
 
@@ -20,8 +21,9 @@ use serde::{Deserialize, Serialize};
 
 pub use cells::CellPassage;
 pub use crossings::Crossing;
-pub use driver::{RunSettings, Scratch, simulate, simulate_block, simulate_release};
+pub use driver::{Scratch, simulate, simulate_block, simulate_release};
 pub use recorder::Keep;
+pub use settings::RunSettings;
 pub use world::{Observer, PairMaterial, WorldStats, simulate_releases_together, simulate_world};
 
 /// Why a rock's journey ended.

@@ -5,41 +5,23 @@ use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::rock_in_contact::RockInContact;
+use super::settings::RunSettings;
 use super::{Stop, Trajectory};
 use crate::error::Result;
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
-use crate::plan::{PATH_STEP_S, Part, Plan, Recorders, RestRule};
+use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
 use crate::release::{Drawn, Release};
 use crate::rock::Motion;
 use crate::solver::block::Footing;
-use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
-use crate::solver::law::Body;
+use crate::solver::body::Body;
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::loss::Loss;
 use crate::solver::roughness::Facets;
-use crate::solver::{self, Settings, Stepper};
+use crate::solver::{self, Stepper};
 use crate::stopwatch::{Piece, Stopwatches};
-use crate::terrain::Terrain;
 use std::ops::Range;
-
-/// What all rocks of a scene have in common.
-#[derive(Debug, Clone, Copy)]
-pub struct RunSettings<'a> {
-    /// The meshes.
-    pub terrain: &'a Terrain,
-    /// Gravity (m/s²).
-    pub gravity_m_s2: f64,
-    /// The step.
-    pub step: &'a Settings,
-    /// When a rock is at rest.
-    pub rest: RestRule,
-    /// Simulated time after which a rock is out of time (s).
-    pub longest_s: f64,
-    /// Evaluation lines and map cells.
-    pub recorders: Recorders<'a>,
-    /// Seed of the rocks' random streams.
-    pub seed: u64,
-}
 
 /// Work space of one thread; nothing of one rock is left for the next.
 #[derive(Debug, Default)]
@@ -161,21 +143,6 @@ pub fn simulate_release(
         simulate(&settings, &release, keep, random, scratch)
     };
     Ok(Trajectory { index, ..fallen })
-}
-
-impl<'a> RunSettings<'a> {
-    /// What the rocks of a plan have in common.
-    pub fn of(plan: &'a Plan) -> Self {
-        Self {
-            terrain: &plan.terrain,
-            gravity_m_s2: plan.gravity_m_s2,
-            step: &plan.step,
-            rest: plan.rest,
-            longest_s: plan.longest_s,
-            recorders: plan.recorders(),
-            seed: plan.seed,
-        }
-    }
 }
 
 /// What to keep of release `index`: a path for the plan's first releases and for `paths`.

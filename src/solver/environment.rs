@@ -1,6 +1,6 @@
 //! What a rock in contact meets: the terrain, the law of every ground, and itself.
 
-use super::law::Body;
+use super::body::Body;
 use crate::contact::ContactPoint;
 use crate::ground::Law;
 use crate::rock::Vec3;

@@ -8,8 +8,8 @@
 //! that the number of its small impacts, which is a matter of stiffness and steps, does not decide how often it is deflected.
 //! A rock that slides or rolls meets the next facet once that length is behind it.
 
-use super::contact_state::{ContactEnvironment, ContactState};
-use super::rigid::capture_m_s;
+use super::environment::ContactEnvironment;
+use super::law::capture_m_s;
 use crate::math;
 use crate::random::{RandomStream, unit};
 use crate::rock::Vec3;
@@ -24,7 +24,7 @@ const DRAWS: u32 = 1000;
 pub(crate) struct Facets {
     random: Option<RandomStream>,
     last: Option<Facet>,
-    tilt: Option<Tilt>,
+    pub(super) tilt: Option<Tilt>,
 }
 
 #[derive(Debug, Clone)]
@@ -37,10 +37,10 @@ struct Facet {
 
 /// What a rock is turned by while it meets a facet.
 #[derive(Debug, Clone)]
-struct Tilt {
-    turn: Rotation3<f64>,
+pub(super) struct Tilt {
+    pub(super) turn: Rotation3<f64>,
     /// When the impact is over at the latest (s).
-    until_s: f64,
+    pub(super) until_s: f64,
 }
 
 /// A rock at a surface.
@@ -119,32 +119,6 @@ impl Facets {
     /// Whether the rock is turned against one.
     pub(crate) fn is_any_met(&self) -> bool {
         self.tilt.is_some()
-    }
-}
-
-impl ContactState {
-    /// Turns the rock against a facet until it is turned back, at `until_s` (s) at the latest; turning keeps every joule.
-    pub(crate) fn turn_against(
-        &mut self,
-        world: &ContactEnvironment,
-        turn: Rotation3<f64>,
-        until_s: f64,
-    ) {
-        let back = turn.inverse();
-        self.redirect(world, back * self.v, back * self.w);
-        self.facets.tilt = Some(Tilt { turn, until_s });
-    }
-
-    /// Turns the rock back if it is turned; whether it was.
-    pub(crate) fn turn_back(&mut self, world: &ContactEnvironment) -> bool {
-        let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
-        self.redirect(world, turn * self.v, turn * self.w);
-        true
-    }
-
-    /// Whether the rock is turned against a facet that it has left, or whose time is up at `now_s` (s).
-    pub(crate) fn has_met_its_facet(&self, now_s: f64) -> bool {
-        self.facets.tilt.as_ref().is_some_and(|tilt| self.is_free() || now_s >= tilt.until_s)
     }
 }
 

@@ -5,10 +5,12 @@
 //! in the rigid limit the impulse ends there. What a stem took in earlier contacts with the same rock is not given back. A stem
 //! gives way to one rock alone: the next, also one that shares its world, finds it whole.
 
-use super::contact_state::{ContactEnvironment, ContactState, Loss, TOUCH};
+use super::contact_state::{ContactEnvironment, ContactState};
+use super::loss::Loss;
 use super::yielding::yielding_impact;
 use crate::contact::ContactPoint;
-use crate::contact::history::{ContactHistories, ContactHistory};
+use crate::contact::TOUCH;
+use crate::contact::history::ContactHistory;
 use crate::random::{Purpose, RandomStream, beside};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -18,43 +20,6 @@ use crate::terrain::stems::Stems;
 const AT_LIMIT: f64 = 1e-6;
 /// A stem that has more than this times the motion left (–) cannot give way.
 const WITHSTANDS: f64 = 1.1;
-
-/// What one rock has done to the stems; its memory is taken once for all rocks of a thread.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct StemLoad {
-    /// What a stem of each ground can take of this rock (J).
-    limits_j: Vec<f64>,
-    /// Stems touched, and what each has taken (J).
-    taken: Vec<(u32, f64)>,
-    /// The stem pressed hardest at the last look.
-    pressed: Option<u32>,
-}
-
-impl StemLoad {
-    /// What a stem can still take (J), positive while it stands.
-    fn left_j(&self, stems: &Stems, stem: u32) -> f64 {
-        let taken = self.taken.iter().find(|(known, _)| *known == stem).map_or(0.0, |(_, j)| *j);
-        self.limits_j[stems.ground_of(stem)] - taken
-    }
-
-    /// Notes what a stem has taken (J), negative where its springs gave something back.
-    fn take(&mut self, stem: u32, joule: f64) {
-        match self.taken.iter_mut().find(|(known, _)| *known == stem) {
-            Some((_, taken)) => *taken += joule,
-            None => self.taken.push((stem, joule)),
-        }
-    }
-
-    /// Sees which stem is pressed hardest; a tree that stands for good may be pressed harder.
-    fn look(&mut self, terrain: &Terrain, stems: &Stems, histories: &ContactHistories) {
-        let trees = histories.iter().filter(|history| terrain.is_tree(history.triangle));
-        if let Some(history) =
-            trees.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force))
-        {
-            self.pressed = stems.of_triangle(history.triangle);
-        }
-    }
-}
 
 /// How a stem gives way to a blow in the rigid limit.
 #[derive(Debug, Clone, Copy)]
@@ -200,7 +165,7 @@ impl ContactState {
         self.near.forget();
         self.histories.retain(|history| stems.of_triangle(history.triangle) != Some(stem));
         self.fresh = false;
-        self.plane_kernel.forget();
+        self.plane.forget();
         self.stem_load.pressed = None;
     }
 }

@@ -4,13 +4,14 @@ use super::{State, WorldBody};
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::simulation::driver::RunSettings;
 use crate::simulation::impacts::Struck;
 use crate::simulation::rest::RestCriterion;
 use crate::simulation::rock_in_contact::RockInContact;
+use crate::simulation::settings::RunSettings;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::{Given, Hit, IslandBody};
+use crate::solver::loss::Loss;
 use crate::solver::step_control::ONSET;
 
 impl<'a> WorldBody<'a> {

@@ -5,10 +5,10 @@ mod rigid;
 use super::{State, WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, meeting_s};
 use crate::simulation::Stop;
-use crate::simulation::driver::RunSettings;
-use crate::solver::contact_state::Loss;
+use crate::simulation::settings::RunSettings;
 use crate::solver::island::partition::Partition;
 use crate::solver::island::{Done, Given, Island};
+use crate::solver::loss::Loss;
 use crate::solver::step_control::{ONSET, StepError};
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).

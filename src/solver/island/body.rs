@@ -1,19 +1,20 @@
 //! One rock of an island.
 
-use super::assembly::{Done, Given};
+use super::outcome::{Done, Given};
 use super::pair_contact::Motion;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 use crate::contact::submatrix::Vec6;
 use crate::ground::Law;
 use crate::rock::Vec3;
+use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::dda::contact::Contact;
-use crate::solver::explicit_impact::ExplicitImpact;
-use crate::solver::law::{Body, StageContact};
+use crate::solver::dda_system::contact::Contact;
+use crate::solver::impact_progress::ImpactProgress;
+use crate::solver::law::StageContact;
 use crate::solver::roughness::Facets;
 use crate::solver::stage::End;
-use crate::solver::stems::StemLoad;
+use crate::solver::stem_load::StemLoad;
 use crate::solver::step_control::{Advance, StepError};
 use crate::solver::tableau::{STAGES, Tableau};
 use crate::terrain::Terrain;
@@ -57,7 +58,7 @@ pub struct IslandBody {
 pub struct Memory {
     motion: (Vec3, Vec3, Vec3),
     histories: Vec<ContactHistory>,
-    impact: ExplicitImpact,
+    impact: ImpactProgress,
     facets: Facets,
     stems: (StemLoad, Vec<u32>),
     flying: bool,
@@ -143,7 +144,7 @@ impl IslandBody {
         state.histories.restore(&memory.histories);
         state.impact.clone_from(&memory.impact);
         state.facets.clone_from(&memory.facets);
-        state.plane_kernel.forget();
+        state.plane.forget();
         state.stem_load.clone_from(&memory.stems.0);
         if state.near.gone != memory.stems.1 {
             state.near.gone.clone_from(&memory.stems.1);
@@ -156,7 +157,7 @@ impl IslandBody {
 
     /// Comes into an island that knows nothing of the steps before; `alone` if nothing but the mesh can touch it there.
     pub(super) fn enter_island(&mut self, alone: bool) {
-        self.state.plane_kernel.forget();
+        self.state.plane.forget();
         self.state.fresh = false;
         if !alone {
             self.state.impact.forget();

@@ -12,9 +12,11 @@ use crate::contact::ContactPoint;
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::island::assembly::{Given, TOUCH};
 use crate::solver::island::body::{BodySlot, IslandBody};
-use crate::solver::rigid::{HELD, capture_m_s};
+use crate::solver::island::outcome::{Given, Hit};
+use crate::solver::island::pair_contact::TOUCH;
+use crate::solver::law::capture_m_s;
+use crate::solver::rigid::HELD;
 use crate::solver::roughness::Meeting;
 use crate::terrain::Terrain;
 use std::cmp::Reverse;
@@ -29,23 +31,6 @@ const NEAR: f64 = 1e-3;
 /// A blow that is due: time before the end of the step (s, as the bits of a positive number: they keep the order), the
 /// place of its contact, the counts of its rocks.
 pub(super) type Due = (u64, Reverse<usize>, [u32; 2]);
-
-/// An impact on the mesh.
-#[derive(Debug, Clone, Copy)]
-pub struct Hit {
-    /// The rock, as a place in the island.
-    pub rock: usize,
-    /// Normal of the patch there.
-    pub normal: Vec3,
-    /// Speed of approach along it (m/s).
-    pub approach_m_s: f64,
-    /// Point that is touched (m).
-    pub point_m: Vec3,
-    /// Where on the mesh.
-    pub feature: crate::contact::FeatureKind,
-    /// Triangle whose ground answers.
-    pub triangle: u32,
-}
 
 /// What blows act on.
 pub(super) struct Scene<'s> {
