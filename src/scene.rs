@@ -25,6 +25,7 @@ mod release;
 mod rewrite;
 mod rocks;
 mod shapes;
+mod sizes;
 mod sketch;
 mod solver;
 mod source;
