@@ -29,6 +29,7 @@ const GROUND: Ground = Ground {
     rolling_friction: 0.05,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 /// Distance of the spheres at the start (m), as in example 3.
 const SPACING_M: f64 = 0.12;

@@ -104,10 +104,12 @@ pub fn simulate_block(
     settings: &RunSettings,
     (release, drawn): (&Release, &Drawn),
     keep: Keep,
+    random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, &capture_of(settings));
-    follow_block(settings, (release, drawn), keep, &scratch.laws, &mut scratch.footing)
+    let Scratch { laws, footing, .. } = scratch;
+    follow_block(settings, (release, drawn), keep, (laws, random), footing)
 }
 
 fn capture_of(settings: &RunSettings) -> Capture {
@@ -136,10 +138,10 @@ pub fn simulate_release(
     };
     let keep = kept(plan, index, paths);
     let settings = RunSettings::of(plan);
+    let random = stream(plan.seed, Purpose::Impacts, index);
     let fallen = if let Some(drawn) = plan.releases.block(index, &release.rock) {
-        simulate_block(&settings, (&release, &drawn), keep, scratch)
+        simulate_block(&settings, (&release, &drawn), keep, random, scratch)
     } else {
-        let random = stream(plan.seed, Purpose::Impacts, index);
         simulate(&settings, &release, keep, random, scratch)
     };
     Ok(Trajectory { index, ..fallen })

@@ -112,6 +112,8 @@ impl ContactState {
         let mut flow = Among::<C>::new(world, self, (omega, allowed));
         let y = flow.begin::<N>();
         let first = flow.rates_of::<N, P>(&y);
+        // what the present place touches is met whatever becomes of the tries
+        flow.state.impact.accept_meeting(world.least_impact_m_s());
         let before = flow.stored_j();
         let known = flow.state.histories.len();
         loop {

@@ -28,6 +28,7 @@ pub const GROUND: Ground = Ground {
     rolling_friction: 0.0,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 
 /// Corners closer than this are one (m): made meshes repeat theirs to rounding.

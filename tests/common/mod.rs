@@ -47,6 +47,7 @@ pub const GROUND: Ground = Ground {
     rolling_friction: 0.0,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 
 /// A case: one rock on one ground.

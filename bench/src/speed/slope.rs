@@ -25,6 +25,7 @@ pub const GROUND: Ground = Ground {
     rolling_friction: 0.5,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 /// Gravity (m/s²).
 pub const GRAVITY_M_S2: f64 = 9.8;

@@ -1,8 +1,11 @@
 use super::*;
+
+mod slip;
+
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
 use crate::flight::block::first_touch;
 use crate::flight::{FlightEnd, Parabola};
-use crate::ground::{Capture, Damping, Ground};
+use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
 use crate::rock::Rock;
 use crate::terrain::stl::{Facet, Soup};
@@ -46,6 +49,7 @@ struct Case {
     terrain: Terrain,
     block: Block,
     law: Law,
+    ground: Ground,
     step_s: f64,
     lost: Loss,
     impacts: usize,
@@ -62,6 +66,7 @@ impl Case {
             rolling_friction: 0.0,
             roughness_rad: 0.0,
             roughness_length_m: None,
+            slip_friction: None,
         };
         let rock = Rock { radius_m: block.radius_m, density_kg_m3: 2700.0 };
         // slower than that an elastic block would lose what is captured
@@ -69,7 +74,7 @@ impl Case {
         let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
         let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
         let lost = Loss::default();
-        Self { terrain, block, law, step_s: 0.01, lost, impacts: 0, steps: 0 }
+        Self { terrain, block, law, ground, step_s: 0.01, lost, impacts: 0, steps: 0 }
     }
 
     fn start(&self, attitude: Rotation3<f64>, [centre, v, w]: [Vec3; 3]) -> Moving {
@@ -83,6 +88,7 @@ impl Case {
         let world =
             ContactEnvironment { terrain: &self.terrain, body: law_body(&block, G), laws: &laws };
         let (mut footing, mut now) = (Footing::default(), 0.0);
+        footing.slip.begin(&[self.ground]);
         while now < longest_s {
             let path = Parabola {
                 start: moving.pose.centre,

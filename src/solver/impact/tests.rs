@@ -21,6 +21,7 @@ fn ground(p_n: f64, e: f64, rolling_friction: f64) -> Ground {
         rolling_friction,
         roughness_rad: 0.0,
         roughness_length_m: None,
+        slip_friction: None,
     }
 }
 

@@ -26,6 +26,7 @@ const GROUND: Ground = Ground {
     rolling_friction: 0.0,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 const G: f64 = 9.8;
 
