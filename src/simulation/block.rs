@@ -14,7 +14,8 @@ use crate::ground::Law;
 use crate::random::RandomStream;
 use crate::release::{Drawn, Release};
 use crate::rock::{Motion, Vec3};
-use crate::solver::block::{Footing, Moving, law_body};
+use crate::solver::block::{Footing, Moving};
+use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::roughness::Facets;
 
@@ -39,7 +40,7 @@ pub(super) fn follow_block(
     let block = &drawn.block;
     let world = ContactEnvironment {
         terrain: settings.terrain,
-        body: law_body(block, settings.gravity_m_s2),
+        body: Body::of_block(block, settings.gravity_m_s2),
         laws,
     };
     footing.near.forget();

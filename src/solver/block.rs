@@ -11,7 +11,6 @@
 mod slip;
 mod solve;
 
-use super::body::Body;
 use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
 use super::loss::Loss;
@@ -387,16 +386,6 @@ fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: [f64; 2]) {
         let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
         moving.v *= kept;
         moving.momentum *= kept;
-    }
-}
-
-/// The body of a block as the laws of grounds want it: mass and radius of the sphere of equal volume.
-pub(crate) fn law_body(block: &Block, gravity_m_s2: f64) -> Body {
-    Body {
-        mass: block.mass_kg,
-        inertia: block.inertia_kg_m2.iter().sum::<f64>() / 3.0,
-        radius: block.radius_m,
-        gravity: Vec3::new(0.0, 0.0, -gravity_m_s2),
     }
 }
 

@@ -8,6 +8,7 @@ use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
 use crate::rock::Rock;
+use crate::solver::body::Body;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
@@ -85,8 +86,11 @@ impl Case {
     /// Follows it for `longest_s`; `see` is told the time and the motion after every flight, impact and step.
     fn follow(&mut self, moving: &mut Moving, longest_s: f64, mut see: impl FnMut(f64, &Moving)) {
         let (block, laws) = (self.block.clone(), [self.law]);
-        let world =
-            ContactEnvironment { terrain: &self.terrain, body: law_body(&block, G), laws: &laws };
+        let world = ContactEnvironment {
+            terrain: &self.terrain,
+            body: Body::of_block(&block, G),
+            laws: &laws,
+        };
         let (mut footing, mut now) = (Footing::default(), 0.0);
         footing.slip.begin(&[self.ground]);
         while now < longest_s {
@@ -200,8 +204,11 @@ fn a_tilted_box_is_thrown_by_its_corners() {
         let centre = Vec3::z() * (ball - low.z);
         let mut moving = case.start(attitude, [centre, Vec3::z() * -3.0, Vec3::zeros()]);
         let (block, laws) = (case.block.clone(), [case.law]);
-        let world =
-            ContactEnvironment { terrain: &case.terrain, body: law_body(&block, G), laws: &laws };
+        let world = ContactEnvironment {
+            terrain: &case.terrain,
+            body: Body::of_block(&block, G),
+            laws: &laws,
+        };
         let mut footing = Footing::default();
         let pose = moving.pose;
         footing.look(&world, &block, &pose, block.ball_m);
