@@ -358,8 +358,11 @@ fn edges_and_faces_meet_edges_and_peaks() {
         let FlightEnd::Touch(t) = landing else { panic!("{landing:?}") };
         assert!((t - (0.6_f64 / G).sqrt()).abs() < 1e-6, "{t}");
         let laws = [case.law];
-        let world =
-            ContactEnvironment { terrain: &case.terrain, body: law_body(&body, G), laws: &laws };
+        let world = ContactEnvironment {
+            terrain: &case.terrain,
+            body: Body::of_block(&body, G),
+            laws: &laws,
+        };
         let mut moving = above.clone();
         (moving.pose, moving.v) = (tumble.pose(t), path.velocity(t));
         let pose = moving.pose;
