@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
-use std::io::Read;
+use std::io::{Read, Seek};
 use std::path::Path;
 
 /// Longest text a scene, a list or a table may have (bytes).
@@ -11,10 +11,14 @@ pub const LONGEST_TEXT: u64 = 256 << 20;
 /// Longest mesh or grid file (bytes): a binary STL with eighty million triangles.
 pub const LONGEST_MESH: u64 = 4 << 30;
 
+/// How a pointer of Git LFS begins: where the file itself was not fetched, its few lines stand under the file's name.
+/// <https://github.com/git-lfs/git-lfs/blob/main/docs/spec.md>
+const LFS_BEGINS: &[u8] = b"version https://git-lfs";
+
 /// Opens a file for reading, which must be one with an end, at most `longest` bytes away.
 ///
 /// # Errors
-/// A file that is not there, may not be read, is a pipe, a socket or a device, or is too long.
+/// A file that is not there, may not be read, is a pipe, a socket or a device, is too long, or is a pointer of Git LFS.
 pub fn open(path: &Path, longest: u64) -> Result<File> {
     // looked at before it is opened: a pipe would keep us waiting for its writer
     let about = fs::metadata(path).map_err(Error::file("read", path))?;
@@ -26,7 +30,23 @@ pub fn open(path: &Path, longest: u64) -> Result<File> {
     if about.len() > longest {
         return Err(too_long(path, about.len(), longest));
     }
-    File::open(path).map_err(Error::file("read", path))
+    let mut file = File::open(path).map_err(Error::file("read", path))?;
+    if about.is_file() {
+        refuse_pointer(&mut file, path)?;
+    }
+    Ok(file)
+}
+
+/// Refuses a pointer of Git LFS in the place of the file; leaves any other file at its first byte.
+fn refuse_pointer(file: &mut File, path: &Path) -> Result<()> {
+    let mut start = Vec::new();
+    let length = LFS_BEGINS.len() as u64;
+    file.by_ref().take(length).read_to_end(&mut start).map_err(Error::file("read", path))?;
+    if start == LFS_BEGINS {
+        let found = "found a pointer of Git LFS in the place of the file";
+        return Err(Error::input(path, "start", found, "fetch the file itself with `git lfs pull`"));
+    }
+    file.rewind().map_err(Error::file("read", path))
 }
 
 /// Reads a whole file, see [`open`].
