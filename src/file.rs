@@ -1,9 +1,9 @@
 //! The user's files, opened with care: a pipe that nobody writes to, a device without end or a file as long as a disk is
-//! refused before it is read.
+//! refused before it is read. Files are written whole or not at all.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
-use std::io::{Read, Seek};
+use std::io::{Read, Seek, Write};
 use std::path::Path;
 
 /// Longest text a scene, a list or a table may have (bytes).
@@ -41,10 +41,15 @@ pub fn open(path: &Path, longest: u64) -> Result<File> {
 fn refuse_pointer(file: &mut File, path: &Path) -> Result<()> {
     let mut start = Vec::new();
     let length = LFS_BEGINS.len() as u64;
-    file.by_ref().take(length).read_to_end(&mut start).map_err(Error::file("read", path))?;
+    Read::by_ref(file).take(length).read_to_end(&mut start).map_err(Error::file("read", path))?;
     if start == LFS_BEGINS {
         let found = "found a pointer of Git LFS in the place of the file";
-        return Err(Error::input(path, "start", found, "fetch the file itself with `git lfs pull`"));
+        return Err(Error::input(
+            path,
+            "start",
+            found,
+            "fetch the file itself with `git lfs pull`",
+        ));
     }
     file.rewind().map_err(Error::file("read", path))
 }
@@ -113,5 +118,60 @@ pub fn keep_inputs(out: &Path, inputs: &[&Path]) -> Result<()> {
             out.display(),
             input.display()
         ))),
+    }
+}
+
+/// Ending of a file that is not yet whole.
+pub(crate) const PART: &str = "part";
+
+/// Writes a file that the user has named: [whole or not at all](write_atomic), through a link to where it leads; straight
+/// on where something else than a file is named, as a pipe.
+///
+/// # Errors
+/// As [`write_atomic`].
+pub fn write(path: &Path, contents: &[u8]) -> Result<()> {
+    match fs::metadata(path) {
+        Ok(about) if !about.is_file() => {
+            fs::write(path, contents).map_err(Error::file("write", path))
+        }
+        Ok(_) => {
+            write_atomic(&fs::canonicalize(path).map_err(Error::file("write", path))?, contents)
+        }
+        Err(_) => write_atomic(path, contents),
+    }
+}
+
+/// Writes a file under a temporary name beside it, and renames it when it is on the disk.
+///
+/// A reader, or a crash, finds the old file or the new one, never a part of it.
+///
+/// # Errors
+///
+/// If the disk is full or the folder cannot be written; the old file then stands as it was.
+pub fn write_atomic(path: &Path, contents: &[u8]) -> Result<()> {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".");
+    name.push(PART);
+    let part = path.with_file_name(name);
+    let write = || {
+        let mut file = File::create(&part)?;
+        file.write_all(contents)?;
+        file.sync_all()?;
+        fs::rename(&part, path)?;
+        sync_folder_of(path)
+    };
+    write().map_err(|why| {
+        // The part is of no use and may fill the disk; that it cannot be removed either would add nothing.
+        let _ = fs::remove_file(&part);
+        Error::file("write", path)(why)
+    })
+}
+
+/// Puts the names in a folder on the disk: a power failure must not bring an old file back.
+fn sync_folder_of(path: &Path) -> std::io::Result<()> {
+    match path.parent().filter(|_| cfg!(unix)) {
+        Some(folder) if folder != Path::new("") => File::open(folder)?.sync_all(),
+        Some(_) => File::open(".")?.sync_all(),
+        None => Ok(()), // elsewhere a folder cannot be opened as a file
     }
 }

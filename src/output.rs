@@ -22,7 +22,7 @@ mod used;
 mod vector;
 mod atomic_file;
 
-pub use atomic_file::write_atomic;
+pub use crate::file::write_atomic;
 pub use calibration::{read_calibration, write_calibration};
 pub use folder::{Mode, announce_figures, releases_in};
 pub use lock::FolderLock;

@@ -1,12 +1,13 @@
 //! What a result folder holds already, and whether a run may use it.
 
 use super::annual::FREQUENCY;
-use super::atomic_file::{final_path, write_atomic};
+use super::atomic_file::final_path;
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
 use super::summary::{SUMMARY, Summary};
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
+use crate::file::write_atomic;
 use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;

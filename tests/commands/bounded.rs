@@ -283,14 +283,17 @@ fn a_pointer_of_git_lfs_is_told_as_such() {
         let words = said.contains("a pointer of Git LFS") && said.contains("git lfs pull");
         assert!(words && said.contains("pointer: start"), "{args:?}: {said}");
     };
-    let (file, slope, out) = (word(&pointer), "terrain/quick_slope.stl", dir.path().join("out.stl"));
+    let (file, slope, out) =
+        (word(&pointer), "terrain/quick_slope.stl", dir.path().join("out.stl"));
     told(&["plan", file]);
     told(&["calibrate", file]);
     told(&["init", file, word(&dir.path().join("new.toml"))]);
     told(&["mesh", "check", file]);
     told(&["mesh", "from-grid", file, word(&out)]);
     told(&["mesh", "stems", file, slope, word(&out)]);
-    told(&["mesh", "stems", slope, file, word(&out)]);
+    let list = dir.path().join("trees.csv");
+    fs::write(&list, "x,y,dbh_m,height_m\n20,20,0.4,10\n").unwrap();
+    told(&["mesh", "stems", word(&list), file, word(&out)]);
     // what a scene names
     let drawn = "[[lines]]\nfile = \"pointer\"";
     let barrier = "[[barriers]]\nfile = \"pointer\"\nheight_m = 4.0\ncapacity_j = 1e6";
