@@ -26,8 +26,8 @@ const FRUGAL_KB: u64 = 300_000;
 fn rocks_that_never_rest_end_by_time_or_budget() {
     let dir = tempfile::tempdir().unwrap();
     let begun = Instant::now();
-    for scheme in ["adaptive", "rigid", "reference"] {
-        let more = format!("[solver]\nscheme = \"{scheme}\"\nlongest_s = 20.0");
+    for scheme in ["\"adaptive\"", "\"rigid\"", "\"reference\"", "\"dda\"\nstep_s = 1e-4"] {
+        let more = format!("[solver]\nlongest_s = 20.0\nscheme = {scheme}");
         let asked = Asked {
             restitution: 1.0,
             place: "count = 1\npoints_m = [[1.0, 1.0, 1.0]]",
@@ -55,6 +55,34 @@ fn rocks_that_never_rest_end_by_time_or_budget() {
     assert!(said.contains("warning: 1 of 1 rocks were still moving when their budget"), "{said}");
     // minutes, before there was a budget
     assert!(begun.elapsed() < Duration::from_secs(120), "{:?}", begun.elapsed());
+}
+
+/// A run of rocks that never rest hears the wish to end.
+#[test]
+fn rocks_that_never_rest_end_when_they_are_told_to() {
+    let dir = tempfile::tempdir().unwrap();
+    let asked = Asked {
+        restitution: 1.0,
+        place: "count = 4000\npoints_m = [[1.0, 1.0, 1.0]]",
+        velocity: [3.0, 2.0, 1.0],
+        more: "[solver]\nlongest_s = 1000.0",
+    };
+    let scene = scene(dir.path(), &closed_box(), &asked);
+    let out = dir.path().join("out");
+    let mut run = program::command(&["run", word(&scene), "--quiet", "--out", word(&out)]);
+    let run = run.stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let begun = Instant::now();
+    while !out.join("progress.json").exists() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let told = Command::new("kill").args(["-TERM", &run.id().to_string()]).status().unwrap();
+    assert!(told.success());
+    let begun = Instant::now();
+    let ended = run.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert_eq!(ended.status.code(), Some(130), "{said}");
+    assert!(said.contains("go on with: rockfall run"), "{said}");
+    assert!(begun.elapsed() < Duration::from_secs(60), "{:?}", begun.elapsed());
 }
 
 /// A plate of 10 x 10 cells of 1 m around the origin without some of them.
