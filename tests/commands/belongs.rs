@@ -226,8 +226,8 @@ fn the_state_of_fine_maps_is_written_now_and_then() {
     for index in 0..RELEASES {
         let mut fall = fall(index);
         if index == 0 {
-            let known = fall.passages[0].clone();
-            fall.passages = (0..60_000).map(|cell| CellPassage { cell, ..known.clone() }).collect();
+            let known = fall.passages[0];
+            fall.passages = (0..60_000).map(|cell| CellPassage { cell, ..known }).collect();
         }
         output.write(&[fall]).unwrap();
         marks.push(done());
