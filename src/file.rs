@@ -4,7 +4,7 @@
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{Read, Seek, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Longest text a scene, a list or a table may have (bytes).
 pub const LONGEST_TEXT: u64 = 256 << 20;
@@ -149,10 +149,7 @@ pub fn write(path: &Path, contents: &[u8]) -> Result<()> {
 ///
 /// If the disk is full or the folder cannot be written; the old file then stands as it was.
 pub fn write_atomic(path: &Path, contents: &[u8]) -> Result<()> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".");
-    name.push(PART);
-    let part = path.with_file_name(name);
+    let part = part_of(path);
     let write = || {
         let mut file = File::create(&part)?;
         file.write_all(contents)?;
@@ -165,6 +162,14 @@ pub fn write_atomic(path: &Path, contents: &[u8]) -> Result<()> {
         let _ = fs::remove_file(&part);
         Error::file("write", path)(why)
     })
+}
+
+/// The name of a file until it is whole.
+pub(crate) fn part_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".");
+    name.push(PART);
+    path.with_file_name(name)
 }
 
 /// Puts the names in a folder on the disk: a power failure must not bring an old file back.

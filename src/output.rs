@@ -316,6 +316,7 @@ impl Output {
         if results.summary.maps.is_some() {
             results.write_vectors()?;
         }
+        folder::remove_parts(&results.dir)?;
         // a part keeps what putting parts together needs
         if !is_part {
             folder::remove(&results.dir.join(PROGRESS))?;

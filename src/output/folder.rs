@@ -7,7 +7,7 @@ use super::progress::{Identity, PROGRESS, Progress};
 use super::summary::{SUMMARY, Summary};
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
-use crate::file::write_atomic;
+use crate::file::{part_of, write_atomic};
 use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
@@ -219,7 +219,13 @@ fn clear(dir: &Path) -> Result<()> {
         name.is_some_and(|name| name == DRAWN || drawn.iter().any(|known| known == name))
     })?;
     remove_all(&dir.join(maps::FOLDER), maps::is_result)?;
-    FILES.iter().try_for_each(|name| remove(&dir.join(name)))
+    FILES.iter().try_for_each(|name| remove(&dir.join(name)))?;
+    remove_parts(dir)
+}
+
+/// Removes what is left of files that were being written when a run was killed.
+pub(super) fn remove_parts(dir: &Path) -> Result<()> {
+    FILES.iter().chain([&PROGRESS]).try_for_each(|name| remove(&part_of(&dir.join(name))))
 }
 
 /// Removes the files of a folder that are `unwanted`; there need be no such folder.

@@ -107,6 +107,21 @@ fn a_finished_folder_is_never_cut() {
     }
 }
 
+/// Killed in the first instant of `--overwrite`, or while any file is written: nothing half-written outlives the next run.
+#[test]
+fn no_half_written_file_stays() {
+    let dir = tempfile::tempdir().unwrap();
+    write_all(dir.path(), Mode::Fresh).unwrap();
+    let before = names(dir.path());
+    for mode in [Mode::Resume, Mode::Overwrite] {
+        for file in ["progress.json", "summary.json", "report.html", "view.glb"] {
+            fs::write(dir.path().join(format!("{file}.part")), "{ \"title\": ").unwrap();
+        }
+        write_all(dir.path(), mode).unwrap();
+        assert_eq!(names(dir.path()), before);
+    }
+}
+
 /// A part that is the whole is put together like any other.
 #[test]
 fn one_part_of_one_is_merged() {
