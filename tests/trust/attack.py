@@ -162,7 +162,7 @@ def extremes(chance):
             d = 3 * 10 ** radius
             changes |= {f"rocks.contact.{key}": value for key, value in ground.items()}
             changes["release.points_m"] = f"[[0.0, 0.0], [{d:.5e}, 0.0], [0.0, {d:.5e}], [{d:.5e}, {d:.5e}]]"
-        elif chance.random() < 0.3:
+        if chance.random() < 0.3:
             changes["grounds.rock.roughness_deg"] = chance.choice(["5.0", "30.0", "60.0"])
         text = text_of((WORLD if is_world else SCENE) | changes)
         yield f"extreme {number}, {mesh}", ["run", "scene.toml"], {"scene.toml": text.encode(), "extreme.stl": stl(MESHES[mesh])}
