@@ -23,7 +23,7 @@ mod used;
 mod vector;
 mod atomic_file;
 
-pub use atomic_file::write_atomic;
+pub use crate::file::write_atomic;
 pub use calibration::{read_calibration, write_calibration};
 pub use folder::{Mode, announce_figures, releases_in};
 pub use lock::FolderLock;
@@ -317,6 +317,7 @@ impl Output {
         if results.summary.maps.is_some() {
             results.write_vectors()?;
         }
+        folder::remove_parts(&results.dir)?;
         // a part keeps what putting parts together needs
         if !is_part {
             removal::remove(&results.dir.join(PROGRESS))?;

@@ -168,8 +168,7 @@ impl Scene {
                 Refusal::File(error) => error,
             },
         )?;
-        let again = "found a name that a line or barrier before has";
-        scene.check_lines().map_err(|wrong| refuse(wrong.finding(again)))?;
+        scene.check_lines().map_err(refuse)?;
         scene.hash = scene.fingerprint(&text).map_err(refuse)?;
         scene.as_read = scene.digest();
         Ok(scene)

@@ -1,7 +1,8 @@
 //! Rasters in plan view: ESRI ASCII grids for every editor, GeoTIFF for every GIS.
 
-use super::atomic_file::{final_path, write_atomic};
+use super::atomic_file::final_path;
 use crate::error::{Error, Result};
+use crate::file::write_atomic;
 use crate::frequency::Weights;
 use crate::hazard::{Asked, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
 use crate::terrain::geotiff::{Image, encode};
