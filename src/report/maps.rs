@@ -1,5 +1,9 @@
 //! Maps in the report: how likely rocks come, with what intensity, energy and height, and where they stay.
 
+mod year;
+
+pub(super) use year::draw as draw_year;
+
 use super::axis::{Axis, round_step};
 use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
