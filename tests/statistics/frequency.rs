@@ -68,6 +68,7 @@ fn maps_carry_the_derivatives_of_the_closed_case() {
     // without power law nothing changes with an exponent
     let law = Law::Events { per_year: 0.1 };
     let plain = self::asked(vec![Source { name: "wall".to_owned(), law }]);
+    let maps = Maps::new(frame, MapState::default());
     assert!(
         year_maps(&maps, &plain, releases).iter().all(|one| !one.file.ends_with("by_exponent"))
     );
