@@ -14,6 +14,7 @@ mod merge;
 mod opened;
 mod progress;
 mod read;
+mod removal;
 mod rows;
 mod site;
 mod summary;
@@ -325,7 +326,7 @@ impl Output {
         }
         // a part keeps what putting parts together needs
         if !is_part {
-            folder::remove(&results.dir.join(PROGRESS))?;
+            removal::remove(&results.dir.join(PROGRESS))?;
             maps::keep_state(&results.dir, None)?;
         }
         Ok(results)

@@ -198,6 +198,7 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
         longest_s,
         recorders: Recorders::default(),
+        seed: 1,
     };
     let releases = heap(spheres, size, terrain.origin_m);
     let answer =

@@ -4,6 +4,7 @@ use super::annual::FREQUENCY;
 use super::atomic_file::{final_path, write_atomic};
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
+use super::removal::{remove, remove_all};
 use super::summary::{SUMMARY, Summary};
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
@@ -219,27 +220,4 @@ fn clear(dir: &Path) -> Result<()> {
     })?;
     remove_all(&dir.join(maps::FOLDER), maps::is_result)?;
     FILES.iter().try_for_each(|name| remove(&dir.join(name)))
-}
-
-/// Removes the files of a folder that are `unwanted`; there need be no such folder.
-pub(super) fn remove_all(folder: &Path, unwanted: impl Fn(&Path) -> bool) -> Result<()> {
-    let entries = match fs::read_dir(folder) {
-        Err(why) if why.kind() == ErrorKind::NotFound => return Ok(()),
-        entries => entries.map_err(Error::file("read", folder))?,
-    };
-    for entry in entries {
-        let path = entry.map_err(Error::file("read", folder))?.path();
-        if unwanted(&path) {
-            remove(&path)?;
-        }
-    }
-    Ok(())
-}
-
-/// Removes a file if it is there.
-pub(super) fn remove(path: &Path) -> Result<()> {
-    match fs::remove_file(path) {
-        Err(why) if why.kind() != ErrorKind::NotFound => Err(Error::file("remove", path)(why)),
-        _ => Ok(()),
-    }
 }

@@ -177,7 +177,7 @@ fn is_of_year(stem: &str) -> bool {
 /// Removes the states of all other moments, whole or not: a run that was killed may have left some.
 pub(super) fn keep_state(dir: &Path, done: Option<usize>) -> Result<()> {
     let kept = done.map(|done| state_path(dir, done));
-    super::folder::remove_all(&dir.join(FOLDER), |path| {
+    super::removal::remove_all(&dir.join(FOLDER), |path| {
         let whole = final_path(path);
         let is_state = whole.extension().is_some_and(|ending| ending == STATE);
         is_state && is_result(path) && Some(whole) != kept

@@ -1,10 +1,10 @@
 //! The recorder of a block: tumble, touch, step, stop. Scheme `rigid` only.
 
-use super::driver::RunSettings;
 use super::form::{Form, Turned};
 use super::impacts::Struck;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
+use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
 use crate::flight::block::{Tumble, first_touch};

@@ -10,10 +10,10 @@
 
 mod solve;
 
-use super::contact_state::Loss;
+use super::body::Body;
 use super::environment::ContactEnvironment;
-use super::law::Body;
-use super::rigid::capture_m_s;
+use super::law::capture_m_s;
+use super::loss::Loss;
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose, touches};
 use crate::contact::neighbours::Neighbours;

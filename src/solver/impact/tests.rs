@@ -6,7 +6,7 @@ mod plane;
 
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::{Rock, Vec3};
-use crate::solver::law::Body;
+use crate::solver::body::Body;
 
 /// Gravity of the exact cases (m/s²).
 const G: f64 = 9.8;
