@@ -34,7 +34,8 @@ pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells)
         layers.push(of_levels(fill(said.map_level, &[("name", &short(name))]), cells));
         level = fill(said.maps_level, &[("source", source)]);
     }
-    let svg = draw_layers("maps-year", said.maps_alt, (report, maps), &layers);
+    // no shaded ground: it stands in all other maps, and would cost more than all else of the year
+    let svg = draw_layers("maps-year", said.maps_alt, (report, maps, None), &layers);
     let found: [(&str, &dyn std::fmt::Display); 4] =
         [("energy", energy), ("years", years), ("exponent", &exponent), ("level", &level)];
     Drawing { svg, caption: fill(said.maps_caption, &found) }
