@@ -39,7 +39,13 @@ fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
 /// without barriers and with them.
 pub(super) fn headline(results: &Results, words: &Words) -> Option<Table> {
     let annual = results.summary.annual.as_ref()?;
-    let mut places: Vec<&AnnualPlace> = annual.places.iter().collect();
+    // what a barrier meets is told of the barrier
+    let is_barrier = |place: &&AnnualPlace| {
+        let barriers = &results.summary.barriers;
+        barriers.iter().any(|one| one.barrier.name == place.name)
+    };
+    let mut places: Vec<&AnnualPlace> =
+        annual.places.iter().filter(|place| !is_barrier(place)).collect();
     // objects are what the year is asked for; lines keep their order behind them
     places.sort_by_key(|place| !place.is_object);
     let row = |place: &AnnualPlace, (which, figures): (&str, &AnnualFigures)| {

@@ -9,7 +9,7 @@ use super::{Layer, draw_layers};
 use plotters::style::RGBColor;
 
 /// Limits of the classes of a change with the exponent over the frequency itself (–).
-const SLOPES: [f64; 4] = [-2.0, 0.0, 2.0, 4.0];
+const SLOPES: [f64; 4] = [-1.0, 0.0, 1.0, 2.0];
 const SLOPE_COLOURS: [RGBColor; 5] = [BLUE, SKY, PALE, ORANGE, VERMILLION];
 
 /// Draws return periods and energies; what the exponent changes and levels of hazard where the scene has them.
