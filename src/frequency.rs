@@ -12,7 +12,7 @@
 mod law;
 mod weights;
 
-pub use law::{Class, Law, Stratum};
+pub use law::{Class, Law, Stratum, power_between};
 pub use weights::Weights;
 
 use crate::math;

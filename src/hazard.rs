@@ -23,7 +23,7 @@ mod totals;
 
 pub use annual::{
     Above, Annual, AnnualBarrier, AnnualFigures, AnnualPlace, Asked, ExceedancePoint, Matrix,
-    Object, Rate, ReturnEnergy, Risk, RiskKind, Saved, Vehicles, YearMap, annual, share_of,
+    Object, Rate, ReturnEnergy, Risk, RiskKind, Saved, Vehicles, Year, YearMap, annual, share_of,
     year_maps,
 };
 pub use barriers::{
@@ -31,7 +31,7 @@ pub use barriers::{
 };
 pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values};
-pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary};
+pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary, by_rock};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{Agreement, Spread, Way, Weighted, distances, effective, rank, runouts};
 pub use proportion::Proportion;

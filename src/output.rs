@@ -40,6 +40,7 @@ use crate::error::{Error, Result};
 use crate::frequency::Weights;
 use crate::hazard::{
     self, Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
+    Year,
 };
 use crate::plan::PlanEntry;
 use crate::rock::Vec3;
@@ -121,6 +122,8 @@ pub struct Output {
     crossings: Option<Table>,
     hazard: Hazard,
     lines: Vec<Line>,
+    /// What rocks do a year; none without sources, and none of a part of a run.
+    year: Option<Year>,
     /// None also when they are complete already.
     maps: Option<Maps>,
     begun: Instant,
@@ -165,8 +168,11 @@ impl Output {
             .then(|| open(dir, CROSSINGS, &of_crossing, bytes))
             .transpose()?;
         let mut lines = read::lines(&info.lines, &info.asked, info.identity.releases);
+        let is_part = info.is_shard || info.identity.is_part();
+        let year = Year::new(&info.asked, &info.lines, &info.barriers);
+        let mut year = year.filter(|_| !is_part);
         if found.is_some() {
-            read::recall_lines(dir, &mut lines)?;
+            read::recall_lines(dir, &mut lines, year.as_mut())?;
         }
         let maps = open_maps(dir, &info, found.as_ref())?;
         let seconds_before = found.as_ref().map_or(0.0, |found| found.seconds);
@@ -192,6 +198,7 @@ impl Output {
             crossings,
             hazard,
             lines,
+            year,
             maps,
             begun,
             seconds_before,
@@ -301,7 +308,7 @@ impl Output {
         let crossings = read::crossings(&self.dir)?;
         let (nets, lines) = (&self.info.barriers, &self.info.lines);
         let residual = hazard::residual(nets, lines, crossings, &weights)?;
-        let annual = if is_part { None } else { self.annual(done)? };
+        let annual = self.annual(done)?;
         let mut summary = Summary::new(self.info, (&self.hazard, &self.lines), seconds);
         (summary.barriers, summary.residual, summary.annual) = (barriers, residual, annual);
         summary.bytes = bytes;
@@ -328,9 +335,7 @@ impl Output {
 
     /// What a year brings, of all releases.
     fn annual(&self, releases: usize) -> Result<Option<Annual>> {
-        let RunInfo { asked, lines, barriers, .. } = &self.info;
-        let crossings = read::crossings(&self.dir)?;
-        let annual = hazard::annual(asked, releases, (lines, barriers), crossings)?;
+        let annual = self.year.as_ref().map(|year| year.said(releases));
         annual.as_ref().map_or(Ok(()), |annual| annual::write(&self.dir, annual))?;
         Ok(annual)
     }

@@ -184,6 +184,9 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         drawn.push((heading("maps.svg", words.maps_title), maps::draw(report, cells)));
         let values = maps::draw_values(report, cells);
         drawn.push((heading("maps_values.svg", words.map_values_title), values));
+        let of_year = report.year_maps.as_ref().map(|year| maps::draw_year(report, cells, year));
+        let of_year = of_year.map(|year| (heading("maps_year.svg", words.year().maps_title), year));
+        drawn.extend(of_year);
     }
     if report.lines.len() > 1 {
         drawn.push((

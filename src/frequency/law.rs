@@ -66,11 +66,21 @@ impl Law {
                     k => least * math::pow(ratio, k as f64 / count as f64),
                 };
                 let beyond = |v: f64| per_year_at_1m3 * math::pow(v, -exponent);
-                let stratum = |k: usize| Stratum {
-                    source,
-                    volume_m3: Some([edge(k), edge(k + 1)]),
-                    exponent: Some(*exponent),
-                    per_year: beyond(edge(k)) - beyond(edge(k + 1)),
+                let per_year = |volume_m3: [f64; 2]| {
+                    let thin = thinly_spread(volume_m3, *exponent);
+                    thin.map_or_else(
+                        || beyond(volume_m3[0]) - beyond(volume_m3[1]),
+                        |spread| -beyond(volume_m3[0]) * libm::expm1(-spread),
+                    )
+                };
+                let stratum = |k: usize| {
+                    let volume_m3 = [edge(k), edge(k + 1)];
+                    Stratum {
+                        source,
+                        volume_m3: Some(volume_m3),
+                        exponent: Some(*exponent),
+                        per_year: per_year(volume_m3),
+                    }
                 };
                 (0..count).map(stratum).collect()
             }
@@ -119,6 +129,21 @@ impl Law {
     }
 }
 
+/// `V_0^−b − V_1^−b` of two volumes (m³): events a year between them for each of 1 m³ or more.
+pub fn power_between(volume_m3: [f64; 2], exponent: f64) -> f64 {
+    let [least, most] = volume_m3.map(|volume| math::pow(volume, -exponent));
+    thinly_spread(volume_m3, exponent).map_or(least - most, |spread| -least * libm::expm1(-spread))
+}
+
+/// Below this `b ln(V_1/V_0)` the difference of two powers would lose its digits (–).
+const THIN: f64 = 1e-3;
+
+/// `b ln(V_1/V_0)` where it is so small that differences must be found from it: nearly equal volumes, or an exponent near 0.
+fn thinly_spread([least, largest]: [f64; 2], exponent: f64) -> Option<f64> {
+    let spread = exponent * libm::log1p((largest - least) / least);
+    (spread < THIN).then_some(spread)
+}
+
 /// A number that may have been computed, without digits that tell nothing.
 fn six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
@@ -132,6 +157,10 @@ impl Stratum {
         let [least, largest] = self.volume_m3?;
         let volume = match self.exponent {
             Some(b) => {
+                if let Some(spread) = thinly_spread([least, largest], b) {
+                    let below = libm::log1p(p * libm::expm1(-spread));
+                    return Some((least * math::exp(-below / b)).clamp(least, largest));
+                }
                 // over the smallest volume, so that steep laws neither overflow nor vanish
                 let end = math::pow(largest / least, -b);
                 least * math::pow(1.0 - p * (1.0 - end), -1.0 / b)
@@ -145,5 +174,16 @@ impl Stratum {
     /// Over its rocks the mean is `∂ ln f_j/∂b`. None where there is no exponent.
     pub fn score(&self, volume_m3: f64) -> Option<f64> {
         self.exponent.map(|b| 1.0 / b - math::ln(volume_m3))
+    }
+
+    /// Its mean over all rocks of the stratum, `∂ ln f_j/∂b = ln(V_1/V_0) r/(1 − r) − ln V_0` with `r = (V_1/V_0)^−b`. None
+    /// where there is no exponent.
+    pub fn mean_score(&self) -> Option<f64> {
+        let ([least, largest], b) = (self.volume_m3?, self.exponent?);
+        let decades = math::ln(largest / least);
+        // of a thin stratum r/(1 − r) is 1/(b ln(V_1/V_0)), and the score that of its volume
+        let grown = libm::expm1(b * decades);
+        let part = if grown > 0.0 { decades / grown } else { 1.0 / b };
+        Some(part - math::ln(least))
     }
 }

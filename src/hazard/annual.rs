@@ -14,7 +14,7 @@ mod risk;
 pub use barriers::AnnualBarrier;
 pub use cells::{YearMap, year_maps};
 pub use curve::{ExceedancePoint, ReturnEnergy};
-pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, annual};
+pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, Year, annual};
 pub(in crate::hazard) use rate::proportion;
 pub use rate::{Rate, share_of};
 pub use risk::{Object, Risk, RiskKind, Vehicles};

@@ -6,7 +6,7 @@
 mod weighted;
 
 use super::design::{Design, Rule};
-use super::lines::CrossingRow;
+use super::lines::{CrossingRow, by_rock};
 use super::proportion::Proportion;
 use super::totals::Largest;
 use super::{Statistic, statistic};
@@ -141,22 +141,17 @@ fn follow<E>(
     let places = |barrier: &Barrier| vec![Vec::new(); 1 + barrier.elsewhere.len()];
     let mut arrivals: Vec<Arrivals> = barriers.iter().map(places).collect();
     let mut crossing = vec![0; barriers.len()];
-    let mut rock: Vec<CrossingRow> = Vec::new();
-    for row in rows {
-        let row = row?;
-        if rock.first().is_some_and(|first| first.index != row.index) {
-            send(barriers, &mut rock, (&mut arrivals, &mut crossing));
-        }
-        rock.push(row);
+    // without barriers no row has anything to say
+    if !barriers.is_empty() {
+        by_rock(rows, |rock| send(barriers, rock, (&mut arrivals, &mut crossing)))?;
     }
-    send(barriers, &mut rock, (&mut arrivals, &mut crossing));
     Ok((arrivals, crossing))
 }
 
 /// Sends one rock through the barriers on its way until one stops it; and again for every other place of one of them.
 fn send(
     barriers: &[Barrier],
-    rock: &mut Vec<CrossingRow>,
+    rock: &mut [CrossingRow],
     (arrivals, crossing): (&mut [Arrivals], &mut [usize]),
 ) {
     rock.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
@@ -183,7 +178,6 @@ fn send(
             arrivals[which][1 + place].extend(arrived.map(|(_, arrival)| *arrival));
         }
     }
-    rock.clear();
 }
 
 /// The part of a way up to the barrier that stops the rock.

@@ -124,6 +124,29 @@ impl CrossingRow {
     }
 }
 
+/// Gives the rows of one rock at a time, from rows that come release by release.
+///
+/// # Errors
+/// Passes on what reading a row says.
+pub fn by_rock<E>(
+    rows: impl Iterator<Item = Result<CrossingRow, E>>,
+    mut take: impl FnMut(&mut Vec<CrossingRow>),
+) -> Result<(), E> {
+    let mut rock: Vec<CrossingRow> = Vec::new();
+    for row in rows {
+        let row = row?;
+        if rock.first().is_some_and(|first| first.index != row.index) {
+            take(&mut rock);
+            rock.clear();
+        }
+        rock.push(row);
+    }
+    if !rock.is_empty() {
+        take(&mut rock);
+    }
+    Ok(())
+}
+
 /// A quantity at a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LineQuantity {

@@ -2,7 +2,7 @@
 
 use super::annual::share_of;
 use super::barriers::{Arrival, Barrier};
-use super::lines::{CrossingRow, LineInfo, LineQuantity};
+use super::lines::{CrossingRow, LineInfo, LineQuantity, by_rock};
 use super::proportion::Proportion;
 use super::sample::Sample;
 use super::totals::Largest;
@@ -53,11 +53,15 @@ pub fn unstopped(barriers: &[Barrier], rock: &[CrossingRow]) -> Vec<bool> {
     passes
 }
 
-/// Values of the rocks that pass one line: without barriers, and with them.
+/// Rocks that pass one line, 24 bytes each.
 #[derive(Default)]
 struct Seen {
     behind: BTreeSet<usize>,
-    rows: [Vec<CrossingRow>; 2],
+    releases: Vec<u32>,
+    energies_j: Vec<f64>,
+    heights_m: Vec<f64>,
+    /// Whether no barrier stops the rock before.
+    passes: Vec<bool>,
 }
 
 /// Every line of the scene that is no barrier's, without and with barriers; `rows` are first crossings, release by
@@ -79,52 +83,49 @@ pub fn residual<E>(
         return Ok(Vec::new());
     }
     let mut seen: Vec<Seen> = lines.iter().map(|_| Seen::default()).collect();
-    let mut rock: Vec<CrossingRow> = Vec::new();
-    for row in rows {
-        let row = row?;
-        if rock.first().is_some_and(|first| first.index != row.index) {
-            take(barriers, &lines, &mut rock, &mut seen);
-        }
-        rock.push(row);
-    }
-    take(barriers, &lines, &mut rock, &mut seen);
+    by_rock(rows, |rock| take(barriers, &lines, rock, &mut seen))?;
     let said = |(line, seen): (&&LineInfo, Seen)| Residual {
         line: line.name.clone(),
         behind: seen.behind.iter().map(|&which| barriers[which].name.clone()).collect(),
-        without: passing(&seen.rows[0], weights),
-        with: passing(&seen.rows[1], weights),
+        without: seen.passing(|_| true, weights),
+        with: seen.passing(|at| seen.passes[at], weights),
     };
     Ok(lines.iter().zip(seen).map(said).collect())
 }
 
-fn take(barriers: &[Barrier], lines: &[&LineInfo], rock: &mut Vec<CrossingRow>, seen: &mut [Seen]) {
+fn take(barriers: &[Barrier], lines: &[&LineInfo], rock: &[CrossingRow], seen: &mut [Seen]) {
     let passes = unstopped(barriers, rock);
     for (row, passes) in rock.iter().zip(passes) {
         let Some(at) = lines.iter().position(|line| line.name == row.line) else { continue };
         let before = rock.iter().filter(|other| other.time_s < row.time_s);
         let met = before.filter_map(|other| barriers.iter().position(|b| b.name == other.line));
-        seen[at].behind.extend(met);
-        seen[at].rows[0].push(row.clone());
-        if passes {
-            seen[at].rows[1].push(row.clone());
-        }
+        let seen = &mut seen[at];
+        seen.behind.extend(met);
+        seen.releases.push(row.index as u32);
+        seen.energies_j.push(LineQuantity::Total.of(row));
+        seen.heights_m.push(LineQuantity::Height.of(row));
+        seen.passes.push(passes);
     }
-    rock.clear();
 }
 
-fn passing(rows: &[CrossingRow], weights: &Weights) -> Passing {
-    let of = |quantity: LineQuantity| {
-        let mut largest = None;
-        for row in rows {
-            Largest::update(&mut largest, row.index, quantity.of(row));
+impl Seen {
+    /// What is said of some of them, by their place in the lists.
+    fn passing(&self, is_one: impl Fn(usize) -> bool, weights: &Weights) -> Passing {
+        let release = |at: usize| self.releases[at] as usize;
+        let some = || (0..self.releases.len()).filter(|at| is_one(*at));
+        let of = |values: &[f64]| {
+            let mut largest = None;
+            for at in some() {
+                Largest::update(&mut largest, release(at), values[at]);
+            }
+            let each = some().map(|at| (values[at], weights.of_release(release(at))));
+            statistic(&Sample::weighted(each), largest)
+        };
+        Passing {
+            reach: share_of(weights, some().map(release)),
+            energy_j: of(&self.energies_j),
+            height_m: of(&self.heights_m),
         }
-        let each = rows.iter().map(|row| (quantity.of(row), weights.of_release(row.index)));
-        statistic(&Sample::weighted(each), largest)
-    };
-    Passing {
-        reach: share_of(weights, rows.iter().map(|row| row.index)),
-        energy_j: of(LineQuantity::Total),
-        height_m: of(LineQuantity::Height),
     }
 }
 

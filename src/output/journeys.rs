@@ -28,6 +28,7 @@ impl Output {
 
     pub(super) fn write_crossings(&mut self, fall: &Trajectory) -> Result<()> {
         let Some(table) = &mut self.crossings else { return Ok(()) };
+        let mut rock = Vec::new();
         for crossing in &fall.crossings {
             let line = &mut self.lines[crossing.line];
             let who = (fall.index, &fall.rock);
@@ -37,6 +38,12 @@ impl Output {
             }
             table.write(&row)?;
             line.add(&row);
+            if self.year.is_some() {
+                rock.push(row);
+            }
+        }
+        if let Some(year) = &mut self.year {
+            year.add(&mut rock);
         }
         Ok(())
     }

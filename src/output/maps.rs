@@ -20,7 +20,7 @@ const NO_DATA: f32 = -9999.0;
 
 /// Writes all layers; a cell where no rock came holds no data.
 ///
-/// Layers of a year stand beside them where the run is no part of another; the ends of their intervals as GeoTIFF alone.
+/// Layers of a year stand beside them where the run is no part of another; ends of intervals and derivatives as GeoTIFF alone.
 pub(super) fn write(
     dir: &Path,
     maps: &Maps,
@@ -42,7 +42,7 @@ pub(super) fn write(
         let cells = raster(&maps.frame, layer.values.into_iter());
         let path = folder.join(&layer.file);
         let said = (layer.name.as_str(), layer.unit);
-        write_raster(&path, said, (&maps.frame, &cells), !layer.is_bound)?;
+        write_raster(&path, said, (&maps.frame, &cells), !layer.is_beside)?;
     }
     Ok(())
 }
@@ -168,7 +168,8 @@ pub(super) fn is_result(path: &Path) -> bool {
 
 /// Whether a name is that of a layer of a year.
 fn is_of_year(stem: &str) -> bool {
-    let value = stem.trim_end_matches("_low_95").trim_end_matches("_high_95");
+    let beside = ["_low_95", "_high_95", "_by_log_rate", "_by_exponent"];
+    let value = beside.iter().fold(stem, |stem, end| stem.trim_end_matches(end));
     value == Matrix::FILE
         || value.starts_with("frequency_") && value.ends_with("per_year")
         || value.starts_with("energy_T") && value.ends_with("_j")

@@ -180,7 +180,7 @@ impl Output {
             };
             table.append(&shard.dir.join(name), bytes)?;
         }
-        read::recall_lines(&shard.dir, &mut self.lines)?;
+        read::recall_lines(&shard.dir, &mut self.lines, self.year.as_mut())?;
         if let Some(all) = &mut self.maps {
             all.join(maps::read_state(&shard.dir, *done)?);
         }

@@ -9,7 +9,9 @@ use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
 use crate::hazard::{
     Asked, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, Quantity, Row, Statistic,
+    Year, by_rock,
 };
+use crate::terrain::geotiff;
 use crate::terrain::grid::Grid;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -62,7 +64,7 @@ pub fn read(dir: &Path) -> Result<Results> {
     recall(dir, &summary.identity, summary.identity.releases, &mut hazard)?;
     let infos: Vec<LineInfo> = summary.lines.iter().map(|line| line.info.clone()).collect();
     let mut lines = self::lines(&infos, asked, summary.identity.releases);
-    recall_lines(dir, &mut lines)?;
+    recall_lines(dir, &mut lines, None)?;
     check_lengths(dir, &summary.bytes)?;
     Ok(Results { dir: dir.to_owned(), summary, hazard, lines, lock: None })
 }
@@ -100,6 +102,21 @@ impl Results {
         // results of an earlier version lack the newer layers
         let is_there = self.summary.maps.is_some() && path.exists();
         is_there.then(|| Grid::read(&path)).transpose()
+    }
+
+    /// One of the maps of a year by the name of its file without ending; none where it was not asked for.
+    ///
+    /// # Errors
+    /// If its file cannot be read or understood.
+    pub fn year_map(&self, name: &str) -> Result<Option<Grid>> {
+        let folder = self.dir.join(super::maps::FOLDER);
+        // names hold points: with_extension would cut them
+        let [text, image] = ["asc", "tif"].map(|ending| folder.join(format!("{name}.{ending}")));
+        if text.exists() {
+            return Grid::read(&text).map(Some);
+        }
+        let image = image.exists().then(|| geotiff::read(&image, None, None)).transpose()?;
+        Ok(image.map(|raster| raster.grid))
     }
 
     /// The kept path of one release, in the order of time; empty if it kept none.
@@ -174,22 +191,30 @@ pub(super) fn crossings(dir: &Path) -> Result<impl Iterator<Item = Result<Crossi
     if_there(dir.join(CROSSINGS), CROSSING_COLUMNS)
 }
 
-/// Adds the crossings in `dir` to their lines.
-pub(super) fn recall_lines(dir: &Path, lines: &mut [Line]) -> Result<()> {
+/// Adds the crossings in `dir` to their lines and to the year.
+pub(super) fn recall_lines(
+    dir: &Path,
+    lines: &mut [Line],
+    mut year: Option<&mut Year>,
+) -> Result<()> {
     if lines.is_empty() {
         return Ok(());
     }
-    for row in table::rows::<CrossingRow>(dir.join(CROSSINGS), CROSSING_COLUMNS)? {
-        let row = row?;
-        let Some(line) = lines.iter_mut().find(|line| line.info.name == row.line) else {
-            let found = format!("the line {}", row.line);
-            let remedy =
-                format!("it must agree with {SUMMARY}: restore it, or run again with --overwrite");
-            return Err(Error::input(&dir.join(CROSSINGS), "rows", found, remedy));
-        };
-        line.add(&row);
-    }
-    Ok(())
+    let mut unknown = None;
+    by_rock(table::rows::<CrossingRow>(dir.join(CROSSINGS), CROSSING_COLUMNS)?, |rock| {
+        for row in rock.iter() {
+            match lines.iter_mut().find(|line| line.info.name == row.line) {
+                Some(line) => line.add(row),
+                None => unknown = Some(row.line.clone()),
+            }
+        }
+        if let Some(year) = &mut year {
+            year.add(rock);
+        }
+    })?;
+    let Some(line) = unknown else { return Ok(()) };
+    let remedy = format!("it must agree with {SUMMARY}: restore it, or run again with --overwrite");
+    Err(Error::input(&dir.join(CROSSINGS), "rows", format!("the line {line}"), remedy))
 }
 
 /// Adds the rocks of all `done` rows, which must be the first releases asked for, in order, and no more.

@@ -161,6 +161,13 @@ impl EvaluationLine {
     pub fn is_near(&self, low_m: Corner, high_m: Corner) -> bool {
         (0..2).all(|axis| low_m[axis] <= self.high_m[axis] && high_m[axis] >= self.low_m[axis])
     }
+
+    /// How much a box in plan view may grow on all sides before it comes near (m); 0 or less where it is.
+    pub fn apart_m(&self, low_m: Corner, high_m: Corner) -> f64 {
+        let apart =
+            |axis: usize| (low_m[axis] - self.high_m[axis]).max(self.low_m[axis] - high_m[axis]);
+        apart(0).max(apart(1))
+    }
 }
 
 /// The square cells of all maps. Cell 0 is the most south-western, its eastern neighbour is cell 1.

@@ -3,7 +3,9 @@
 use super::format::{NO_NUMBER, counted, decimal, percent, significant};
 use super::model::energy_unit;
 use super::words::Words;
-use crate::hazard::{BarrierSummary, LineSummary, Percentile, Proportion, Statistic};
+use crate::hazard::{
+    AnnualPlace, BarrierSummary, LineSummary, Percentile, Proportion, Rate, Statistic,
+};
 use crate::output::Results;
 use crate::scene::Language;
 
@@ -16,7 +18,25 @@ pub fn answers(results: &Results) -> Vec<String> {
         !line.info.of_barrier && barriers.iter().all(|one| one.barrier.name != line.info.name)
     };
     let lines = summary.lines.iter().filter(is_own).map(line);
-    lines.chain(barriers.iter().map(barrier)).collect()
+    let places = summary.annual.iter().flat_map(|annual| &annual.places).filter_map(in_a_year);
+    lines.chain(barriers.iter().map(barrier)).chain(places).collect()
+}
+
+/// How often a year rocks come to an object with the largest energy asked for.
+fn in_a_year(place: &AnnualPlace) -> Option<String> {
+    let without = place.without_barriers.above.last().filter(|_| place.is_object)?;
+    let with = place.with_barriers.as_ref().and_then(|figures| figures.above.last());
+    let said = |rate: &Rate| {
+        let [value, low, high] =
+            [rate.per_year, rate.low_95, rate.high_95].map(|one| significant(one, 2));
+        format!("{value} times a year ({})", interval(&low, &high))
+    };
+    let barriers = with
+        .map_or(String::new(), |with| format!(" without barriers, {} with them", said(&with.rate)));
+    let (unit, size) = energy_unit(without.energy_j);
+    let energy = significant(without.energy_j / size, 3);
+    let name = &place.name;
+    Some(format!("object \"{name}\": {energy} {unit} or more {}{barriers}", said(&without.rate)))
 }
 
 fn line(of: &LineSummary) -> String {

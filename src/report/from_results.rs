@@ -58,7 +58,10 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
             .map(|kind| stop_share(hazard, kind))
             .collect(),
         headline: headline(hazard, words),
-        arrivals: arrivals::tables(results, words, &order),
+        arrivals: annual::headline(results, words)
+            .into_iter()
+            .chain(arrivals::tables(results, words, &order))
+            .collect(),
         zone: results.summary.site.release.clone(),
         further_zones: results.summary.site.further_releases.clone(),
         marks: lines::marks(results),
@@ -74,6 +77,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
         has_view: false,
         barriers: barriers::views(results, ground.as_ref())?,
         maps: maps::maps(results)?,
+        year_maps: maps::of_year(results)?,
         observed: measured::observed(results)?,
         ground,
         checks: Vec::new(),

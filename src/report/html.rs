@@ -264,7 +264,7 @@ fn in_a_year(report: &Report, figures: &Figures) -> String {
     let numbers = 1..=report.annual.len();
     let shown = (figures, report.words());
     let each = numbers.map(|number| figure(shown, &format!("annual_{number}.svg")));
-    each.collect::<String>() + &tables_about(report, About::Year)
+    figure(shown, "maps_year.svg") + &each.collect::<String>() + &tables_about(report, About::Year)
 }
 
 fn how_sure(report: &Report, figures: &Figures) -> String {

@@ -1,5 +1,9 @@
 //! Maps in the report: how likely rocks come, with what intensity, energy and height, and where they stay.
 
+mod year;
+
+pub(super) use year::draw as draw_year;
+
 use super::axis::{Axis, round_step};
 use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use super::colour::{self, INK, ORANGE, SKY, VERMILLION};
@@ -8,6 +12,7 @@ use super::format;
 use super::model::{CellMap, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
+use super::raster::GroundRaster;
 use super::site;
 use super::svg::path::{Frame, Spot};
 use super::words::fill;
@@ -113,7 +118,8 @@ pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
         Layer::of_shares(words.map_reach, &maps.reach),
         Layer::of_intensity(words.map_intensity, &maps.intensity),
     ];
-    let svg = draw_layers("maps", words.maps_alt, (report, maps), &layers);
+    let ground = report.ground.as_ref();
+    let svg = draw_layers("maps", words.maps_alt, (report, maps, ground), &layers);
     let share = |count: usize| {
         let all: usize = maps.intensity_cells.iter().sum();
         format::percent(count as f64 / all.max(1) as f64, 0)
@@ -141,14 +147,15 @@ pub(super) fn draw_values(report: &Report, maps: &CellMap) -> Drawing {
         Layer::of_counts(words.map_deposits, &maps.deposits),
         Layer::of_shares(words.map_exceeds, &maps.exceeds),
     ];
-    let svg = draw_layers("maps-values", words.map_values_alt, (report, maps), &layers);
+    let ground = report.ground.as_ref();
+    let svg = draw_layers("maps-values", words.map_values_alt, (report, maps, ground), &layers);
     Drawing { svg, caption: words.map_values_caption.to_owned() }
 }
 
 fn draw_layers(
     name: &str,
     title: &str,
-    (report, maps): (&Report, &CellMap),
+    (report, maps, ground): (&Report, &CellMap, Option<&GroundRaster>),
     layers: &[Layer],
 ) -> String {
     let (panels, bottom) = panels(report, maps, layers);
@@ -157,7 +164,7 @@ fn draw_layers(
             let at = (panel.frame.left, panel.frame.top - 9.0);
             canvas.text(&Label::new(layer.title.clone(), at).bold().sized(NORMAL));
             canvas.clip(&format!("part{k}"), &panel.frame, || {
-                if let Some(raster) = &report.ground {
+                if let Some(raster) = ground {
                     ground::shade(canvas, panel, raster);
                 }
                 for (class, (_, colour)) in layer.classes.iter().enumerate() {

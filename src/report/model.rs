@@ -4,7 +4,7 @@ mod places;
 
 pub use places::{
     AnnualView, BarrierView, Behind, CellMap, DesignView, Line, LinePoint, MapMark, Observed,
-    PlaceView, RockView,
+    PlaceView, RockView, YearCells,
 };
 
 use super::raster::GroundRaster;
@@ -57,6 +57,8 @@ pub struct Report {
     pub observed: Option<Observed>,
     /// Maps, where the scene asks for them.
     pub maps: Option<CellMap>,
+    /// The same of a year, where the scene says how often rocks are released.
+    pub year_maps: Option<YearCells>,
     /// Whether `view.html` stands beside the page.
     pub has_view: bool,
 }

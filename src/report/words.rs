@@ -8,10 +8,12 @@ mod de;
 mod en;
 mod fr;
 mod it;
+mod year;
 
 use super::format;
 use crate::scene::Language;
 use std::fmt::{Display, Write as _};
+use year::YearWords;
 
 macro_rules! words {
     ($($name:ident),+ $(,)?) => {
@@ -30,7 +32,9 @@ macro_rules! words {
         impl Words {
             /// All texts with places for what is found, by name.
             pub fn texts(&self) -> Vec<(&'static str, &'static str)> {
-                vec![$((stringify!($name), self.$name),)+]
+                let mut texts = vec![$((stringify!($name), self.$name),)+];
+                texts.extend(self.year().texts());
+                texts
             }
         }
     };
@@ -100,6 +104,13 @@ impl Words {
             Language::Fr => &fr::WORDS,
             Language::It => &it::WORDS,
         }
+    }
+
+    /// What is said of a year on the first page and on its maps.
+    pub(super) fn year(&self) -> &'static YearWords {
+        let is_own = |language: &&Language| std::ptr::eq(Self::of(**language), self);
+        let language = Language::ALL.iter().find(is_own).copied();
+        YearWords::of(language.unwrap_or_default())
     }
 
     /// A name that the user has given, in quotation marks.

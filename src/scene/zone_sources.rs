@@ -6,8 +6,7 @@ use super::sizes::{COUNTABLE, STEEPEST, VOLUMES_M3, are_volumes};
 use super::zones::{Zone, Zones};
 use super::{FrequencyTable, Scene};
 use crate::error::{Error, Flaw};
-use crate::frequency::{Class, Frequency, Law, Source};
-use crate::math;
+use crate::frequency::{Class, Frequency, Law, Source, power_between};
 
 /// What `[frequency]` says of the sizes of all zones that do not say it themselves.
 #[derive(Debug, Clone, Copy, Default)]
@@ -59,8 +58,7 @@ impl Zone {
                 Ok(Law::PowerLaw { per_year_at_1m3, exponent, volume_m3 })
             }
             (Some(per_year), None, Some(exponent), Some(volume_m3)) => {
-                let [least, most] = volume_m3.map(|volume| math::pow(volume, -exponent));
-                let per_year_at_1m3 = per_year / (least - most);
+                let per_year_at_1m3 = per_year / power_between(volume_m3, exponent);
                 Ok(Law::PowerLaw { per_year_at_1m3, exponent, volume_m3 })
             }
             (Some(per_year), None, None, Some(volume_m3)) => {

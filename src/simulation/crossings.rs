@@ -43,11 +43,17 @@ impl Crossing {
 pub(super) struct Crossings<'a> {
     lines: &'a [EvaluationLine],
     found: Vec<Crossing>,
+    /// South-western and north-eastern corner of a box in plan view in which nothing can be met: most steps are short and
+    /// far from all lines. None where nothing is known of it.
+    clear: Option<[Corner; 2]>,
 }
+
+/// What is kept of the room to the next line (–): rounding must not make it too large.
+const KEPT: f64 = 0.999;
 
 impl<'a> Crossings<'a> {
     pub(super) fn of(lines: &'a [EvaluationLine]) -> Self {
-        Self { lines, found: Vec::new() }
+        Self { lines, found: Vec::new(), clear: None }
     }
 
     /// So far.
@@ -57,6 +63,8 @@ impl<'a> Crossings<'a> {
 
     /// Goes back to what was found before.
     pub(super) fn go_back(&mut self, found: &[Crossing]) {
+        // an object that is no longer known may be met again
+        self.clear = self.clear.filter(|_| self.found.len() == found.len());
         self.found.clear();
         self.found.extend_from_slice(found);
     }
@@ -129,6 +137,12 @@ impl<'a> Crossings<'a> {
     ) {
         let low = [0, 1].map(|k| hull.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
         let high = [0, 1].map(|k| hull.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
+        let is_inside = |[west_south, east_north]: &[Corner; 2]| {
+            (0..2).all(|k| low[k] >= west_south[k] && high[k] <= east_north[k])
+        };
+        if self.clear.as_ref().is_some_and(is_inside) {
+            return;
+        }
         for (line, evaluation_line) in self.lines.iter().enumerate() {
             if let Some(footprint) = evaluation_line.footprint {
                 let rim_m = form.rim_m();
@@ -162,6 +176,23 @@ impl<'a> Crossings<'a> {
                 self.note((terrain, form), line, (at(s), along_m), met.len() as u32);
             }
         }
+        self.clear = self.clear_around([low, high], form.rim_m());
+    }
+
+    /// The largest box around another in which nothing can be met: an object counts with the rim of the rock, and not at
+    /// all once it is hit.
+    fn clear_around(&self, [low, high]: [Corner; 2], rim_m: f64) -> Option<[Corner; 2]> {
+        let room = |(line, evaluation_line): (usize, &EvaluationLine)| {
+            let apart_m = evaluation_line.apart_m(low, high);
+            if evaluation_line.footprint.is_none() {
+                return apart_m;
+            }
+            let is_known = self.found.iter().any(|crossing| crossing.line == line);
+            if is_known { f64::INFINITY } else { apart_m - rim_m }
+        };
+        let free_m = KEPT * self.lines.iter().enumerate().map(room).fold(f64::INFINITY, f64::min);
+        let grown = [low.map(|at| at - free_m), high.map(|at| at + free_m)];
+        (free_m > 0.0).then_some(grown)
     }
 
     fn note(

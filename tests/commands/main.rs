@@ -43,4 +43,5 @@ mod tiles;
 mod until;
 mod view;
 mod year;
+mod year_extremes;
 mod zone_sources;

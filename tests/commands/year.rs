@@ -100,10 +100,37 @@ fn shards_merge_with_weights() {
     let drawn = rockfall(&["draw", whole.to_str().unwrap()]);
     assert!(drawn.status.success());
     assert_eq!(page, fs::read_to_string(whole.join("report.html")).unwrap());
-    for said in
-        ["How often a year: object “road”", "Kept away by “net”", "Risk a year: object “house”"]
-    {
+    for said in [
+        "How often a year: object “road”",
+        "Kept away by “net”",
+        "Risk a year: object “house”",
+        "A year on the map",
+        "Return period of 300 kJ or more",
+        "Change of ln(frequency) with exponent",
+    ] {
         assert!(page.contains(said), "{said}");
+    }
+    the_first_page_says_how_often(&page, &summary(&whole));
+}
+
+/// How often a year a block above 300 kJ reaches the road, with and without the net, stands on the first page, before what
+/// arrives at lines: with interval, return period and derivatives.
+fn the_first_page_says_how_often(page: &str, summary: &Value) {
+    let (_, answer) = page.split_once("id=\"answer\"").unwrap();
+    let (answer, _) = answer.split_once("</section>").unwrap();
+    let (year, _) = answer.split_once("What arrives").unwrap_or((answer, ""));
+    let places = summary["annual"]["places"].as_array().unwrap();
+    let road = places.iter().find(|place| place["name"] == "road").unwrap();
+    for (which, figures) in [("without", "without_barriers"), ("with", "with_barriers")] {
+        let row = format!("object “road”: 300 kJ or more, {which} barriers");
+        let (_, row) = year.split_once(&row).unwrap_or_else(|| panic!("{row} in {year}"));
+        let (row, _) = row.split_once("</tr>").unwrap();
+        assert_eq!(row.matches("<td").count(), 4, "{row}");
+        let rate = &road[figures]["above"][2]["rate"];
+        let found = rate["per_year"].as_f64().unwrap();
+        // its first digit at least, whatever the number of digits that the interval leaves
+        let digit = format!("{found:e}").chars().next().unwrap();
+        assert!(row.contains(digit), "{rate}: {row}");
     }
 }
 

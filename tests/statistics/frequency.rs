@@ -4,7 +4,11 @@
 use crate::yearly;
 
 use rockfall::frequency::{Class, Frequency, Law, Source, radius_of_m3};
-use rockfall::hazard::{AnnualPlace, Barrier, CrossingRow, Object, RiskKind, Vehicles};
+use rockfall::hazard::{
+    AnnualPlace, Barrier, CrossingRow, MapFrame, MapState, Maps, Object, RiskKind, StopKind,
+    Vehicles, year_maps,
+};
+use rockfall::simulation::CellPassage;
 use yearly::{REACH, asked, crossings, near, power_law, road, row, year};
 
 /// Derivatives against closed forms: λ = p a (V₀^−b − V₁^−b), ∂λ/∂b = p a (V₁^−b ln V₁ − V₀^−b ln V₀), a ∂λ/∂a = λ. The
@@ -30,6 +34,44 @@ fn derivatives_by_rate_and_exponent_are_those_of_the_closed_case() {
     // slopes of a curve of 2 % noise over classes of 5 %
     near(at.by_log_rate.unwrap(), by_rate, 0.25);
     near(at.by_exponent.unwrap(), by_exponent, 0.25);
+}
+
+/// The same on a map of one cell: frequency, what the exponent changes of it and of the energy of 100 years. Sizes in a stratum
+/// count with their mean, which where an energy cuts one through is a few per cent off.
+#[test]
+fn maps_carry_the_derivatives_of_the_closed_case() {
+    let asked = asked(vec![power_law(0.1, 0.5)]);
+    let releases = 100_000;
+    let frequency = asked.frequency.clone().unwrap();
+    let frame =
+        MapFrame { west_m: 0.0, south_m: 0.0, cell_m: 1.0, columns: 1, rows: 1, epsg: None };
+    let mut maps = Maps::new(frame, MapState::default());
+    for row in crossings(&asked, 8, releases) {
+        let passage = CellPassage { cell: 0, total_j: row.total_j(), height_m: 0.0 };
+        let stratum = frequency.stratum_of(row.index) as u16;
+        maps.add(stratum, &[passage], (StopKind::LeftTerrain, [9.0; 3]));
+    }
+    let layers = year_maps(&maps, &asked, releases);
+    let value = |file: &str| layers.iter().find(|layer| layer.file == file).unwrap().values[0].1;
+    let slope = |low: f64| REACH * 0.1 * (100_f64.ln() / 100_f64.sqrt() - low.ln() / low.sqrt());
+    near(value("frequency_per_year_by_exponent"), slope(0.1), 0.02);
+    near(value("frequency_above_300kj_per_year_by_exponent"), slope(300.0 / 540.0), 0.06);
+    let energy_of =
+        |a: f64, b: f64| 540e3 * (1.0 / (100.0 * REACH * a) + 100_f64.powf(-b)).powf(-1.0 / b);
+    near(value("energy_T100_j"), energy_of(0.1, 0.5), 0.03);
+    let step = 1e-4;
+    let by_rate =
+        (energy_of(0.1 + 0.1 * step, 0.5) - energy_of(0.1 - 0.1 * step, 0.5)) / (2.0 * step);
+    let by_exponent = (energy_of(0.1, 0.5 + step) - energy_of(0.1, 0.5 - step)) / (2.0 * step);
+    near(value("energy_T100_j_by_log_rate"), by_rate, 0.25);
+    near(value("energy_T100_j_by_exponent"), by_exponent, 0.25);
+    // without power law nothing changes with an exponent
+    let law = Law::Events { per_year: 0.1 };
+    let plain = self::asked(vec![Source { name: "wall".to_owned(), law }]);
+    let maps = Maps::new(frame, MapState::default());
+    assert!(
+        year_maps(&maps, &plain, releases).iter().all(|one| !one.file.ends_with("by_exponent"))
+    );
 }
 
 /// Twice the events, twice the frequency, to the last bit; interval and derivatives as well.

@@ -2,8 +2,9 @@
 
 use super::super::barriers::{Arrival, Barrier};
 use super::super::lines::CrossingRow;
-use super::places::{All, Strata};
-use super::rate::Rate;
+use super::places::{All, Strata, stratum_of};
+use super::rate::{Rate, Sums};
+use crate::frequency::Frequency;
 use serde::{Deserialize, Serialize};
 
 /// One barrier: of the rocks that arrive each is stopped, or reaches above its edge, or has too much energy.
@@ -22,7 +23,7 @@ pub struct AnnualBarrier {
 }
 
 /// Rocks that meet a barrier, stratum by stratum.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct Met {
     arriving: Strata,
     stopped: Strata,
@@ -32,7 +33,12 @@ pub(super) struct Met {
 
 impl Met {
     /// Notes a rock that arrives; whether it is stopped.
-    pub(super) fn add(&mut self, barrier: &Barrier, row: &CrossingRow, all: &All<'_>) -> bool {
+    pub(super) fn add(
+        &mut self,
+        barrier: &Barrier,
+        row: &CrossingRow,
+        frequency: &Frequency,
+    ) -> bool {
         let arrival = Arrival::of(row);
         let is_stopped = arrival.is_stopped(barrier.height_m, barrier.capacity_j);
         let fate = if is_stopped {
@@ -42,7 +48,8 @@ impl Met {
         } else {
             &mut self.through
         };
-        let (stratum, one) = all.one(row);
+        let (stratum, score) = stratum_of(frequency, row);
+        let one = Sums::one(1.0, score);
         for strata in [fate, &mut self.arriving] {
             strata.entry(stratum).or_default().join(&one);
         }

@@ -2,7 +2,7 @@
 
 use super::super::barriers::Barrier;
 use super::super::classes::class_of;
-use super::super::lines::{CrossingRow, LineInfo};
+use super::super::lines::{CrossingRow, LineInfo, by_rock};
 use super::super::proportion::Proportion;
 use super::Asked;
 use super::barriers::{AnnualBarrier, Met};
@@ -90,7 +90,7 @@ pub struct Saved {
 pub(super) type Strata = BTreeMap<u16, Sums>;
 
 /// Passages of one place that have something in common.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Tally {
     /// All, and above each energy asked for.
     above: Vec<Strata>,
@@ -152,7 +152,7 @@ impl Tally {
     }
 }
 
-/// What all places share.
+/// What all places share when they are told.
 pub(super) struct All<'a> {
     asked: &'a Asked,
     frequency: &'a Frequency,
@@ -163,13 +163,6 @@ pub(super) struct All<'a> {
 }
 
 impl All<'_> {
-    /// One rock, and how its frequency changes with the exponent.
-    pub(super) fn one(&self, row: &CrossingRow) -> (u16, Sums) {
-        let stratum = self.frequency.stratum(row.index);
-        let score = stratum.score(volume_m3(row.radius_m)).unwrap_or(0.0);
-        (self.frequency.stratum_of(row.index) as u16, Sums::one(1.0, score))
-    }
-
     /// How often a year rocks do something that every rock might do.
     pub(super) fn rate_of_any(&self, strata: &Strata) -> Rate {
         self.rate(Some(strata), &Limits::above(&self.weights, &[], 0.0))
@@ -184,13 +177,79 @@ impl All<'_> {
     }
 }
 
-/// A place while rocks come in.
-struct Place<'a> {
-    name: &'a str,
-    object: Option<&'a Object>,
+/// The stratum of the rock of a row, and how its frequency changes with the exponent.
+pub(super) fn stratum_of(frequency: &Frequency, row: &CrossingRow) -> (u16, f64) {
+    let stratum = frequency.stratum(row.index);
+    let score = stratum.score(volume_m3(row.radius_m)).unwrap_or(0.0);
+    (frequency.stratum_of(row.index) as u16, score)
+}
+
+/// Sums of one line or object.
+#[derive(Debug)]
+struct Place {
+    name: String,
+    object: Option<Object>,
     all: Tally,
     unstopped: Tally,
     saved: Vec<Tally>,
+}
+
+/// What a year brings, while rocks come in: sums by stratum and class of energy, which do not grow with the rocks.
+#[derive(Debug)]
+pub struct Year {
+    asked: Asked,
+    frequency: Frequency,
+    barriers: Vec<Barrier>,
+    places: Vec<Place>,
+    nets: Vec<Met>,
+}
+
+impl Year {
+    /// Without rocks; none without sources.
+    pub fn new(asked: &Asked, lines: &[LineInfo], barriers: &[Barrier]) -> Option<Self> {
+        let frequency = asked.frequency.clone()?;
+        let shown = lines.iter().filter(|line| !line.of_barrier);
+        Some(Self {
+            asked: asked.clone(),
+            frequency,
+            barriers: barriers.to_vec(),
+            places: shown.map(|line| Place::of(line, &asked.objects, barriers.len())).collect(),
+            nets: barriers.iter().map(|_| Met::default()).collect(),
+        })
+    }
+
+    /// Notes all first crossings of one rock, and which of them a barrier prevents. The rows are put in the order of time.
+    pub fn add(&mut self, rock: &mut [CrossingRow]) {
+        let Self { frequency, barriers, places, nets, .. } = self;
+        rock.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
+        let stop = rock.iter().find_map(|row| {
+            let which = barriers.iter().position(|barrier| barrier.name == row.line)?;
+            let stops = nets[which].add(&barriers[which], row, frequency);
+            stops.then_some((row.time_s, which))
+        });
+        for row in rock.iter() {
+            let place = places.iter_mut().find(|place| place.name == row.line);
+            let Some(place) = place else { continue };
+            place.add(row, stop.filter(|(time_s, _)| *time_s < row.time_s), frequency);
+        }
+    }
+
+    /// What they say of a run of so many releases.
+    pub fn said(&self, releases: usize) -> Annual {
+        let Self { asked, frequency, barriers, places, nets } = self;
+        let has_exponent = frequency.strata().iter().any(|stratum| stratum.exponent.is_some());
+        let weights = frequency.weights(releases);
+        let ceilings = Ceilings::of(&weights, &asked.most_j);
+        let all = All { asked, frequency, weights, ceilings, has_exponent, barriers };
+        Annual {
+            events_per_year: frequency.per_year(),
+            rocks: releases,
+            effective_rocks: all.weights.effective_rocks(),
+            strata: frequency.strata().len(),
+            places: places.iter().map(|place| place.said(&all)).collect(),
+            barriers: barriers.iter().zip(nets).map(|(one, met)| met.said(one, &all)).collect(),
+        }
+    }
 }
 
 /// What a year brings, from first crossings that come release by release; none without sources.
@@ -203,73 +262,28 @@ pub fn annual<E>(
     (lines, barriers): (&[LineInfo], &[Barrier]),
     rows: impl Iterator<Item = Result<CrossingRow, E>>,
 ) -> Result<Option<Annual>, E> {
-    let Some(frequency) = &asked.frequency else { return Ok(None) };
-    let has_exponent = frequency.strata().iter().any(|stratum| stratum.exponent.is_some());
-    let weights = frequency.weights(releases);
-    let ceilings = Ceilings::of(&weights, &asked.most_j);
-    let all = All { asked, frequency, weights, ceilings, has_exponent, barriers };
-    let place = |line| Place::of(line, &asked.objects, barriers.len());
-    let shown = lines.iter().filter(|line| !line.of_barrier);
-    let mut places: Vec<Place<'_>> = shown.map(place).collect();
-    let mut nets: Vec<Met> = barriers.iter().map(|_| Met::default()).collect();
-    let mut rock: Vec<CrossingRow> = Vec::new();
-    for row in rows {
-        let row = row?;
-        if rock.first().is_some_and(|first| first.index != row.index) {
-            send((&mut places, &mut nets), &mut rock, &all);
-        }
-        rock.push(row);
-    }
-    send((&mut places, &mut nets), &mut rock, &all);
-    Ok(Some(Annual {
-        events_per_year: frequency.per_year(),
-        rocks: releases,
-        effective_rocks: all.weights.effective_rocks(),
-        strata: frequency.strata().len(),
-        places: places.iter().map(|place| place.said(&all)).collect(),
-        barriers: barriers.iter().zip(&nets).map(|(one, met)| met.said(one, &all)).collect(),
-    }))
+    let Some(mut year) = Year::new(asked, lines, barriers) else { return Ok(None) };
+    by_rock(rows, |rock| year.add(rock))?;
+    Ok(Some(year.said(releases)))
 }
 
-/// Notes all passages of one rock, and which of them a barrier prevents.
-fn send(
-    (places, nets): (&mut [Place<'_>], &mut [Met]),
-    rock: &mut Vec<CrossingRow>,
-    all: &All<'_>,
-) {
-    rock.sort_by(|one, other| one.time_s.total_cmp(&other.time_s));
-    let stop = rock.iter().find_map(|row| {
-        let which = all.barriers.iter().position(|barrier| barrier.name == row.line)?;
-        let stops = nets[which].add(&all.barriers[which], row, all);
-        stops.then_some((row.time_s, which))
-    });
-    for row in rock.iter() {
-        let Some(place) = places.iter_mut().find(|place| place.name == row.line) else { continue };
-        place.add(row, stop.filter(|(time_s, _)| *time_s < row.time_s), all);
-    }
-    rock.clear();
-}
-
-impl<'a> Place<'a> {
-    fn of(line: &'a LineInfo, objects: &'a [Object], barriers: usize) -> Self {
+impl Place {
+    fn of(line: &LineInfo, objects: &[Object], barriers: usize) -> Self {
         Self {
-            name: &line.name,
-            object: objects.iter().find(|object| object.name == line.name),
+            name: line.name.clone(),
+            object: objects.iter().find(|object| object.name == line.name).cloned(),
             all: Tally::default(),
             unstopped: Tally::default(),
             saved: (0..barriers).map(|_| Tally::default()).collect(),
         }
     }
 
-    fn add(&mut self, row: &CrossingRow, stopped: Option<(f64, usize)>, all: &All<'_>) {
-        let stratum = all.frequency.stratum(row.index);
-        let passage = Passage {
-            stratum: all.frequency.stratum_of(row.index) as u16,
-            score: stratum.score(volume_m3(row.radius_m)).unwrap_or(0.0),
-            total_j: row.total_j(),
-            blocked_m: self.object.map_or(0.0, |object| object.blocked_m(2.0 * row.radius_m)),
-        };
-        let energies_j = all.frequency.energies_j();
+    fn add(&mut self, row: &CrossingRow, stopped: Option<(f64, usize)>, frequency: &Frequency) {
+        let (stratum, score) = stratum_of(frequency, row);
+        let blocked_m =
+            self.object.as_ref().map_or(0.0, |object| object.blocked_m(2.0 * row.radius_m));
+        let passage = Passage { stratum, score, total_j: row.total_j(), blocked_m };
+        let energies_j = frequency.energies_j();
         self.all.add(&passage, energies_j);
         match stopped {
             None => self.unstopped.add(&passage, energies_j),
@@ -284,7 +298,7 @@ impl<'a> Place<'a> {
             barrier: barrier.name.clone(),
             passages: tally.rate(0, all),
             above: tally.above(all),
-            risks: tally.risks(self.object, all),
+            risks: tally.risks(self.object.as_ref(), all),
         };
         let judged = !all.barriers.is_empty();
         AnnualPlace {
@@ -294,8 +308,8 @@ impl<'a> Place<'a> {
                 &all.weights,
                 reach.map(|(stratum, sums)| (*stratum, rocks(sums))),
             ),
-            without_barriers: self.all.figures(self.object, all),
-            with_barriers: judged.then(|| self.unstopped.figures(self.object, all)),
+            without_barriers: self.all.figures(self.object.as_ref(), all),
+            with_barriers: judged.then(|| self.unstopped.figures(self.object.as_ref(), all)),
             saved: all.barriers.iter().zip(&self.saved).map(saved).collect(),
         }
     }

@@ -79,6 +79,11 @@ impl Sums {
         Self { rocks, y, y2: y, score: 0.0 }
     }
 
+    /// The same, of rocks whose frequency changes so with the exponent on average.
+    pub(in crate::hazard) fn scoring(self, mean: f64) -> Self {
+        Self { score: self.y * mean, ..self }
+    }
+
     /// How many there are.
     pub(in crate::hazard) fn rocks(&self) -> usize {
         self.rocks as usize
@@ -93,32 +98,51 @@ impl Sums {
 }
 
 /// What a rate can reach at most.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(in crate::hazard) struct Limits {
     /// Events a year of all strata that can count (1/year).
     most: f64,
     /// Events a year that a rock of the heaviest of them stands for (1/year).
     heaviest: f64,
+    /// Strata of few rocks that can count, the rate of each of which none may be seen (1/year), largest first.
+    sparse: Vec<(usize, f64)>,
 }
+
+/// With so many rocks in a stratum or more, what none seen leaves open, `3/n`, lies within Wilson's interval, `z²/(n + z²)`.
+const MANY: usize = 14;
+/// None of `n` seen bounds a share by so much over `n`, with 95 % confidence.
+const NONE: f64 = 3.0;
 
 impl Limits {
     /// Of passages with at least an energy (J): strata whose largest rock can never have it do not count. `most_j` is the
     /// most energy of each stratum; of none without an entry anything is known.
     pub(in crate::hazard) fn above(weights: &Weights, most_j: &[f64], energy_j: f64) -> Self {
         let can = |stratum: &usize| most_j.get(*stratum).is_none_or(|most| *most >= energy_j);
-        let strata = || (0..weights.strata()).filter(can);
-        Self {
-            most: strata().map(|stratum| weights.per_year(stratum)).sum(),
-            heaviest: strata().map(|stratum| weights.of_stratum(stratum)).fold(0.0, f64::max),
-        }
+        Self::of(weights, (0..weights.strata()).filter(can), |_| 1.0)
     }
 
     /// Of what every rock can do, where one of a stratum counts for so much at most.
     pub(in crate::hazard) fn weighing(weights: &Weights, most: impl Fn(usize) -> f64) -> Self {
-        let strata = || 0..weights.strata();
+        Self::of(weights, 0..weights.strata(), most)
+    }
+
+    fn of(
+        weights: &Weights,
+        strata: impl Iterator<Item = usize> + Clone,
+        most: impl Fn(usize) -> f64,
+    ) -> Self {
+        let few = |at: &usize| weights.strata() > 1 && weights.rocks(*at) < MANY;
+        let unseen = |at: usize| {
+            let share = (NONE / weights.rocks(at).max(1) as f64).min(1.0);
+            (at, most(at) * weights.per_year(at) * share)
+        };
+        let mut sparse: Vec<(usize, f64)> = strata.clone().filter(few).map(unseen).collect();
+        sparse.sort_by(|one, other| other.1.total_cmp(&one.1));
+        let heaviest = strata.clone().map(|at| most(at) * weights.of_stratum(at));
         Self {
-            most: strata().map(|stratum| most(stratum) * weights.per_year(stratum)).sum(),
-            heaviest: strata().map(|at| most(at) * weights.of_stratum(at)).fold(0.0, f64::max),
+            most: strata.map(|at| most(at) * weights.per_year(at)).sum(),
+            heaviest: heaviest.fold(0.0, f64::max),
+            sparse,
         }
     }
 }
@@ -189,7 +213,9 @@ impl<'a> Running<'a> {
     /// Value, and lower and upper end of the interval.
     pub(in crate::hazard) fn estimate(&self, limits: &Limits) -> [f64; 3] {
         let [low, high] = interval(self.value, self.variance.max(0.0), limits);
-        [self.value, low, high]
+        let unseen = limits.sparse.iter().find(|(stratum, _)| self.strata[*stratum].rocks == 0);
+        let open = unseen.map_or(0.0, |(_, open)| (self.value + open).min(limits.most));
+        [self.value, low, high.max(open)]
     }
 
     /// Change with the exponent.
@@ -217,9 +243,9 @@ impl<'a> Running<'a> {
 /// that of [`Proportion`]. For the upper end one more rock of the heaviest weight is added to variance and sum, as Fay
 /// and Feuer (1997, Statistics in Medicine 16, 791) do: what was not seen may belong to the stratum whose rocks stand for
 /// most; only strata that can count at all are asked. Nothing seen: three of the heaviest, `3 max f_j/n_j`; the mean weight would be too small a bound where the
-/// rocks to come are of the heaviest stratum.
-fn interval(value: f64, variance: f64, &Limits { most, heaviest }: &Limits) -> [f64; 2] {
-    const NONE: f64 = 3.0;
+/// rocks to come are of the heaviest stratum. Of strata with a handful of rocks each the largest of which none was seen bounds
+/// the upper end from below, see [`Running::estimate`].
+fn interval(value: f64, variance: f64, &Limits { most, heaviest, .. }: &Limits) -> [f64; 2] {
     if value <= 0.0 {
         return [0.0, (NONE * heaviest).min(most)];
     }

@@ -35,6 +35,43 @@ fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
     figures.curve.iter().rev().map(point).collect()
 }
 
+/// The first table of the page: how often a year rocks come to each object and line with the largest energy asked for,
+/// without barriers and with them.
+pub(super) fn headline(results: &Results, words: &Words) -> Option<Table> {
+    let annual = results.summary.annual.as_ref()?;
+    // what a barrier meets is told of the barrier
+    let is_barrier = |place: &&AnnualPlace| {
+        let barriers = &results.summary.barriers;
+        barriers.iter().any(|one| one.barrier.name == place.name)
+    };
+    let mut places: Vec<&AnnualPlace> =
+        annual.places.iter().filter(|place| !is_barrier(place)).collect();
+    // objects are what the year is asked for; lines keep their order behind them
+    places.sort_by_key(|place| !place.is_object);
+    let row = |place: &AnnualPlace, (which, figures): (&str, &AnnualFigures)| {
+        let above = figures.above.last()?;
+        let energy = format::plain(above.energy_j / 1e3);
+        let name = named("{name}", place, words);
+        let found: [(&str, &dyn std::fmt::Display); 3] =
+            [("name", &name), ("energy", &energy), ("barriers", &which)];
+        let cells = cells(&above.rate, annual);
+        let shown = [0, 1, 4, 5].map(|column| cells[column]);
+        Some((fill(words.year().head_row, &found), shown.into()))
+    };
+    let rows: Vec<_> = places
+        .into_iter()
+        .flat_map(|place| both(place, words).filter_map(move |one| row(place, one)))
+        .collect();
+    let columns = how_often(words);
+    (!rows.is_empty()).then(|| Table {
+        about: About::Year,
+        title: words.year().head_title.to_owned(),
+        note: words.year().head_note.to_owned(),
+        columns: [0, 1, 4, 5].map(|column| columns[column].clone()).into(),
+        rows,
+    })
+}
+
 /// Three tables a place: how often, with what energy, at what risk; and one a barrier.
 pub(super) fn tables(results: &Results, words: &Words) -> Vec<Table> {
     let Some(annual) = &results.summary.annual else { return Vec::new() };

@@ -73,15 +73,7 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
     let weights = results.hazard.weights().unwrap_or_else(|| Weights::equal(releases));
     let barriers: Vec<Barrier> =
         results.summary.barriers.iter().map(|one| one.barrier.clone()).collect();
-    let mut rock: Vec<CrossingRow> = Vec::new();
-    for row in results.crossings()? {
-        let row = row?;
-        if rock.first().is_some_and(|first| first.index != row.index) {
-            take(&barriers, &mut rock, &mut lines);
-        }
-        rock.push(row);
-    }
-    take(&barriers, &mut rock, &mut lines);
+    hazard::by_rock(results.crossings()?, |rock| take(&barriers, rock, &mut lines))?;
     for line in &mut lines {
         let residual = results.summary.residual.iter().find(|at| at.line == line.name);
         line.behind =
@@ -97,9 +89,9 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
     Ok(lines)
 }
 
-fn take(barriers: &[Barrier], rock: &mut Vec<CrossingRow>, lines: &mut [Line]) {
+fn take(barriers: &[Barrier], rock: &[CrossingRow], lines: &mut [Line]) {
     let passes = hazard::unstopped(barriers, rock);
-    for (row, passes) in rock.drain(..).zip(passes) {
+    for (row, passes) in rock.iter().zip(passes) {
         if let Some(line) = lines.iter_mut().find(|line| line.name == row.line) {
             line.crossings.push(LinePoint {
                 release: row.index,

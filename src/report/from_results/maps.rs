@@ -1,25 +1,18 @@
 //! The maps of the report, read back from their grids.
 
-use super::super::model::CellMap;
+use super::super::model::{CellMap, YearCells};
 use crate::error::Result;
-use crate::hazard::Layer;
+use crate::hazard::{Layer, Matrix};
+use crate::math;
 use crate::output::Results;
+use crate::terrain::grid::Grid;
 use std::collections::BTreeMap;
 
 /// The maps; none where the scene asks for none.
 pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
     let Some(frame) = results.summary.maps else { return Ok(None) };
     let read = |layer: Layer| -> Result<Vec<(u32, f64)>> {
-        let Some(grid) = results.map(layer)? else { return Ok(Vec::new()) };
-        let mut cells = Vec::new();
-        for row in 0..grid.rows {
-            for column in 0..grid.columns {
-                if let Some(value) = grid.value(column, grid.rows - 1 - row) {
-                    cells.push(((row * grid.columns + column) as u32, value));
-                }
-            }
-        }
-        Ok(cells)
+        Ok(results.map(layer)?.map_or(Vec::new(), |grid| cells_of(&grid)))
     };
     let some = |cells: Vec<(u32, f64)>| cells.into_iter().filter(|(_, v)| *v > 0.0).collect();
     let intensity = read(Layer::Intensity)?;
@@ -40,6 +33,71 @@ pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
         deposits: drawn(some(read(Layer::Deposits)?)),
         exceeds: drawn(some(read(Layer::ExceedsWeak)?)),
     }))
+}
+
+/// Maps of the largest energy and of the return period nearest to 300 years asked for; none where nothing is asked of a
+/// year.
+pub(super) fn of_year(results: &Results) -> Result<Option<YearCells>> {
+    let asked = &results.summary.asked;
+    let (Some(frame), Some(frequency), Some(_)) =
+        (results.summary.maps, &asked.frequency, &results.summary.annual)
+    else {
+        return Ok(None);
+    };
+    let periods = frequency.return_periods_years();
+    let from_300 = |years: &&f64| math::ln(**years / 300.0).abs();
+    let nearest = periods.iter().min_by(|a, b| from_300(a).total_cmp(&from_300(b)));
+    let (Some(&energy_j), Some(&years)) = (frequency.energies_j().last(), nearest) else {
+        return Ok(None);
+    };
+    let times = frame.columns.max(frame.rows).div_ceil(MOST_DRAWN);
+    let read = |name: &str| -> Result<Option<Vec<(u32, f64)>>> {
+        let cells = results.year_map(name)?.map(|grid| cells_of(&grid));
+        Ok(cells.map(|cells| coarser(cells, frame.columns, times)))
+    };
+    let above_0 = |cells: Vec<(u32, f64)>| -> Vec<(u32, f64)> {
+        cells.into_iter().filter(|(_, value)| *value > 0.0).collect()
+    };
+    let above = format!("frequency_above_{}kj_per_year", energy_j / 1e3);
+    let Some(frequencies) = read(&above)?.map(above_0) else { return Ok(None) };
+    let slopes = read(&format!("{above}_by_exponent"))?;
+    let levels = match &asked.matrix {
+        Some(matrix) => {
+            read(Matrix::FILE)?.map(|cells| (matrix.name.clone(), matrix.source.clone(), cells))
+        }
+        None => None,
+    };
+    Ok(Some(YearCells {
+        energy_j,
+        by_exponent: slopes.map(|slopes| over(&slopes, &frequencies)),
+        frequencies,
+        return_periods_years: periods.to_vec(),
+        years,
+        energies_j: read(&format!("energy_T{years}_j"))?.map(above_0).unwrap_or_default(),
+        levels,
+    }))
+}
+
+/// Values over others of the same cells, both by rising cell.
+fn over(values: &[(u32, f64)], of: &[(u32, f64)]) -> Vec<(u32, f64)> {
+    let ratio = |&(cell, of): &(u32, f64)| {
+        let at = values.binary_search_by_key(&cell, |(cell, _)| *cell).ok()?;
+        Some((cell, values[at].1 / of))
+    };
+    of.iter().filter_map(ratio).collect()
+}
+
+/// Cells that hold a value, rising from the south-western.
+fn cells_of(grid: &Grid) -> Vec<(u32, f64)> {
+    let mut cells = Vec::new();
+    for row in 0..grid.rows {
+        for column in 0..grid.columns {
+            if let Some(value) = grid.value(column, grid.rows - 1 - row) {
+                cells.push(((row * grid.columns + column) as u32, value));
+            }
+        }
+    }
+    cells
 }
 
 /// Most cells along a side of a drawn map: no print shows more, and a page with each of millions weighs tens of megabytes.

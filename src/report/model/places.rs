@@ -212,6 +212,25 @@ pub struct CellMap {
     pub intensity_cells: [usize; 3],
 }
 
+/// Maps of a year in plan view, over the cells of [`CellMap`]; values where rocks pass.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct YearCells {
+    /// Energy of the frequencies (J).
+    pub energy_j: f64,
+    /// Passages a year with at least that energy (1/year), above 0.
+    pub frequencies: Vec<(u32, f64)>,
+    /// Their change with the exponents over themselves (–); none without power law.
+    pub by_exponent: Option<Vec<(u32, f64)>>,
+    /// Return periods asked for (years), rising.
+    pub return_periods_years: Vec<f64>,
+    /// The return period of the energies (years).
+    pub years: f64,
+    /// Energy of that return period (J), above 0.
+    pub energies_j: Vec<(u32, f64)>,
+    /// Name and source of the table of levels, and the level of each cell; none without a table.
+    pub levels: Option<(String, String, Vec<(u32, f64)>)>,
+}
+
 impl CellMap {
     /// Middle of a cell, map coordinates (m).
     pub fn centre_m(&self, cell: u32) -> (f64, f64) {

@@ -1,0 +1,104 @@
+//! Maps of a year: how often rocks pass with much energy, with what energy once in so many years, and what moves that.
+
+use super::super::colour::{self, BLUE, ORANGE, PALE, SKY, VERMILLION};
+use super::super::figure::Drawing;
+use super::super::format;
+use super::super::model::{CellMap, Report, YearCells, energy_unit};
+use super::super::words::fill;
+use super::{Layer, draw_layers};
+use plotters::style::RGBColor;
+
+/// Limits of the classes of a change with the exponent over the frequency itself (–).
+const SLOPES: [f64; 4] = [-1.0, 0.0, 1.0, 2.0];
+const SLOPE_COLOURS: [RGBColor; 5] = [BLUE, SKY, PALE, ORANGE, VERMILLION];
+
+/// Draws return periods and energies; what the exponent changes and levels of hazard where the scene has them.
+pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells) -> Drawing {
+    let words = report.words();
+    let said = words.year();
+    let energy: &dyn std::fmt::Display = &format::plain(year.energy_j / 1e3);
+    let years: &dyn std::fmt::Display = &format::plain(year.years);
+    let most_j = year.energies_j.iter().map(|(_, v)| *v).fold(0.0, f64::max);
+    let energy_title = fill(said.map_energy, &[("years", years)]);
+    let mut layers = vec![
+        periods(fill(said.map_period, &[("energy", energy)]), year),
+        Layer::of_values(&energy_title, &year.energies_j, energy_unit(most_j), &[1.0, 3.0]),
+    ];
+    let mut exponent = "";
+    if let Some(slopes) = &year.by_exponent {
+        layers.push(of_slopes(said.map_by_exponent, slopes));
+        exponent = said.maps_by_exponent;
+    }
+    let mut level = String::new();
+    if let Some((name, source, cells)) = &year.levels {
+        layers.push(of_levels(fill(said.map_level, &[("name", &short(name))]), cells));
+        level = fill(said.maps_level, &[("source", source)]);
+    }
+    // no shaded ground: it stands in all other maps, and would cost more than all else of the year
+    let svg = draw_layers("maps-year", said.maps_alt, (report, maps, None), &layers);
+    let found: [(&str, &dyn std::fmt::Display); 4] =
+        [("energy", energy), ("years", years), ("exponent", &exponent), ("level", &level)];
+    Drawing { svg, caption: fill(said.maps_caption, &found) }
+}
+
+/// Most letters of a name over a map.
+const NAME: usize = 40;
+
+/// The beginning of a name that is too long for the head of a map.
+fn short(name: &str) -> String {
+    match name.char_indices().nth(NAME) {
+        Some((end, _)) => format!("{}…", &name[..end]),
+        None => name.to_owned(),
+    }
+}
+
+/// Frequencies in classes between the return periods asked for, from seldom to often.
+fn periods(title: String, year: &YearCells) -> Layer {
+    let periods = &year.return_periods_years;
+    let class = |per_year: f64| periods.iter().filter(|years| per_year >= 1.0 / **years).count();
+    let plain = |k: usize| format::plain(periods[k]);
+    let last = periods.len();
+    let name = |k: usize| match k {
+        0 => format!("> {}", plain(last - 1)),
+        k if k == last => format!("≤\u{2009}{}", plain(0)),
+        k => format!("{}–{}", plain(last - k - 1), plain(last - k)),
+    };
+    let shade = |k: usize| colour::sequential(k as f64 / last.max(1) as f64);
+    Layer {
+        title,
+        cells: year.frequencies.iter().map(|&(cell, value)| (cell, class(value))).collect(),
+        classes: (0..=last).filter(|_| last > 0).map(|k| (name(k), shade(k))).collect(),
+    }
+}
+
+fn of_slopes(title: &str, values: &[(u32, f64)]) -> Layer {
+    let class = |value: f64| SLOPES.iter().filter(|limit| value >= **limit).count();
+    let sign = |value: f64| format::plain(value).replace('-', "−");
+    let name = |k: usize| match k {
+        0 => format!("< {}", sign(SLOPES[0])),
+        k if k == SLOPES.len() => format!("≥ {}", sign(SLOPES[k - 1])),
+        k => format!("{} … {}", sign(SLOPES[k - 1]), sign(SLOPES[k])),
+    };
+    Layer {
+        title: title.to_owned(),
+        cells: values.iter().map(|&(cell, value)| (cell, class(value))).collect(),
+        classes: SLOPE_COLOURS.iter().enumerate().map(|(k, c)| (name(k), *c)).collect(),
+    }
+}
+
+fn of_levels(title: String, values: &[(u32, f64)]) -> Layer {
+    let mut levels: Vec<u8> = values.iter().map(|(_, level)| *level as u8).collect();
+    levels.sort_unstable();
+    levels.dedup();
+    let class = |level: f64| levels.iter().filter(|other| f64::from(**other) < level).count();
+    let shade = |k: usize| colour::sequential(k as f64 / (levels.len().max(2) - 1) as f64);
+    Layer {
+        title,
+        cells: values.iter().map(|&(cell, level)| (cell, class(level))).collect(),
+        classes: levels
+            .iter()
+            .enumerate()
+            .map(|(k, level)| (level.to_string(), shade(k)))
+            .collect(),
+    }
+}
