@@ -3,9 +3,10 @@
 //! The `las` crate reads both (LAZ through a decoder in pure Rust), `spade` makes the Delaunay triangulation with exact
 //! predicates: points in rows and on circles, as thinned clouds have them, are no trouble.
 
+use super::facets::Facets;
 use super::formats::{Crop, Options, wider};
 use super::grid::distance;
-use super::stl::{Facet, Format, Soup};
+use super::stl::{Format, Soup};
 use crate::error::{Error, Result};
 use crate::gis::wkt;
 use crate::rock::Vec3;
@@ -262,7 +263,7 @@ impl Cloud {
 }
 
 /// The triangles, always in the same order, and the longest edge in plan view (m).
-fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Vec<Facet>, f64) {
+fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Facets, f64) {
     let local: Vec<Vec3> = points_m.iter().map(|point| point - map_origin_m).collect();
     // the library refuses numbers below 1e-43, which are 0 here
     let plain = |m: f64| if m.abs() < f64::from(f32::MIN_POSITIVE) { 0.0 } else { m };
@@ -270,7 +271,7 @@ fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Vec<Facet>, f64) {
     let numbered =
         numbered.map(|(number, p)| Numbered { at: Point2::new(plain(p.x), plain(p.y)), number });
     let Ok(mesh) = DelaunayTriangulation::<Numbered>::bulk_load(numbered.collect()) else {
-        return (Vec::new(), 0.0);
+        return (Facets::default(), 0.0);
     };
     let mut triangles: Vec<[usize; 3]> = mesh
         .inner_faces()
@@ -279,7 +280,8 @@ fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Vec<Facet>, f64) {
     triangles.sort_unstable();
     settle_ties(&mut triangles, &local);
     triangles.sort_unstable();
-    let facets: Vec<Facet> = triangles.iter().map(|corners| corners.map(|k| local[k])).collect();
+    let corners = triangles.iter().map(|corners| corners.map(|k| k as u32)).collect();
+    let facets = Facets::Shared { points: local, corners };
     let edges = facets.iter().flat_map(|[a, b, c]| [b - a, c - b, a - c]);
     let longest_m = edges.map(|edge| edge.xy().norm()).fold(0.0, f64::max);
     (facets, longest_m)

@@ -166,7 +166,7 @@ fn stand(lists: &Lists, sources: &[Source], soups: &mut [Soup], map_origin_m: Ve
     for (number, list) in lists {
         let mut facets = make::plant(&sources[*number].sheet.path, list, &slope)?;
         facets.iter_mut().flatten().for_each(|corner| *corner -= map_origin_m);
-        soups[*number].facets = facets;
+        soups[*number].facets = facets.into();
     }
     Ok(())
 }

@@ -6,10 +6,11 @@
 
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
-use crate::terrain::edges::Edges;
+use crate::terrain::edges::{self, Edges};
+use crate::terrain::facets::Facets;
 use crate::terrain::merge::Merger;
 use crate::terrain::stl::Soup;
-use rayon::slice::ParallelSliceMut;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::path::Path;
 
 /// Weld tolerance relative to the longest side of the box of the model (–).
@@ -165,9 +166,16 @@ impl Joined {
     /// The second half of [`weld`].
     pub(super) fn finish(self) -> Welded {
         let Self(mut welded) = self;
-        welded.drop_duplicates();
-        welded.drop_unused_vertices();
         welded.edges = Edges::of(&welded.triangles);
+        let again = welded.duplicates();
+        if !again.is_empty() {
+            welded.edges = Edges::default();
+            welded.drop_triangles(&again);
+            welded.edges = Edges::of(&welded.triangles);
+        }
+        if welded.zero_area.count + again.len() > 0 {
+            welded.drop_unused_vertices();
+        }
         welded
     }
 }
@@ -185,7 +193,9 @@ impl Piece<'_> {
             return Err(Error::input(self.file, "scale", found, remedy));
         }
         let far = |&corner: &Vec3| self.placed(corner).amax() > LARGEST_M;
-        let Some(number) = self.soup.facets.iter().position(|facet| facet.iter().any(far)) else {
+        let facets = &self.soup.facets;
+        let is_far = |&number: &usize| facets.at(number).iter().any(far);
+        let Some(number) = (0..facets.len()).into_par_iter().find_first(is_far) else {
             return Ok(());
         };
         let found = format!("coordinates beyond {LARGEST_M:e} m, more than around the Earth");
@@ -205,13 +215,18 @@ struct Frame {
 
 impl Frame {
     fn around(pieces: &[Piece]) -> Result<Self> {
-        let (mut low, mut high) = (Vec3::repeat(LARGEST_M), Vec3::repeat(-LARGEST_M));
+        let nothing = (Vec3::repeat(LARGEST_M), Vec3::repeat(-LARGEST_M));
+        let both =
+            |one: (Vec3, Vec3), other: (Vec3, Vec3)| (one.0.inf(&other.0), one.1.sup(&other.1));
+        let (mut low, mut high) = nothing;
         for piece in pieces {
             piece.check()?;
-            for &corner in piece.soup.facets.iter().flatten() {
-                let point = piece.placed(corner);
-                (low, high) = (low.inf(&point), high.sup(&point));
-            }
+            let box_of = |facet: [Vec3; 3]| {
+                let [a, b, c] = facet.map(|corner| piece.placed(corner));
+                (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
+            };
+            let of_piece = piece.soup.facets.par_iter().map(box_of).reduce(|| nothing, both);
+            (low, high) = both((low, high), of_piece);
         }
         let facets = pieces.iter().map(|piece| piece.soup.facets.len()).sum();
         if facets > MOST_FACETS {
@@ -235,9 +250,14 @@ impl Welded {
         self.triangles[triangle].map(|v| self.vertices_m[v as usize])
     }
 
+    /// The two vertices of an edge, the lower number first.
+    pub fn ends(&self, edge: u32) -> [u32; 2] {
+        edges::ends(&self.triangles, edge)
+    }
+
     /// From the first to the second end of an edge (m).
     pub fn edge_m(&self, edge: u32) -> Vec3 {
-        let [a, b] = self.edges.ends[edge as usize];
+        let [a, b] = self.ends(edge);
         self.vertices_m[b as usize] - self.vertices_m[a as usize]
     }
 
@@ -245,11 +265,13 @@ impl Welded {
     fn take(&mut self, pieces: &[Piece], frame: &Frame) {
         let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
         for piece in pieces {
-            for (number, facet) in piece.soup.facets.iter().enumerate() {
+            let facets = &piece.soup.facets;
+            let mut numbers = Numbers::of(facets);
+            for number in 0..facets.len() {
                 // `+ 0.0` turns −0.0 into 0.0.
-                let corners =
-                    facet.map(|corner| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0));
-                let triangle = corners.map(|corner| merger.number_of(corner));
+                let local = |corner: Vec3| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0);
+                let corners = facets.at(number).map(local);
+                let triangle = numbers.of_corners(number, &corners, &mut merger);
                 let merged = triangle.map(|v| merger.kept_m()[v as usize]);
                 self.moved_corners += (0..3).filter(|&k| merged[k] != corners[k]).count();
                 if has_area(&merged) {
@@ -264,26 +286,26 @@ impl Welded {
         self.vertices_m = merger.into_kept_m();
     }
 
-    /// Keeps the first of all triangles with the same three corners, wound either way.
-    fn drop_duplicates(&mut self) {
-        let mut order: Vec<([u32; 3], u32)> = (0u32..)
-            .zip(&self.triangles)
-            .map(|(t, &corners)| {
-                let mut sorted = corners;
-                sorted.sort_unstable();
-                (sorted, t)
-            })
-            .collect();
-        order.par_sort_unstable();
-        let mut again: Vec<u32> =
-            order.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1].1).collect();
-        again.sort_unstable();
-        for &t in &again {
+    /// All triangles but the first with the same three corners, wound either way; ascending.
+    fn duplicates(&self) -> Vec<u32> {
+        let third = |side: u32| {
+            let (corners, k) = (self.triangles[side as usize / 3], side as usize % 3);
+            corners[(k + 2) % 3]
+        };
+        let is_again = |&t: &u32| {
+            let same = |side: u32| side / 3 < t && third(side) == third(3 * t);
+            self.edges.sides_on(3 * t).any(same)
+        };
+        (0..self.triangles.len() as u32).into_par_iter().filter(is_again).collect()
+    }
+
+    fn drop_triangles(&mut self, again: &[u32]) {
+        for &t in again {
             self.duplicates.add(self.on_map(self.corners_m(t as usize)[0]));
         }
-        drop_at(&mut self.triangles, &again);
-        drop_at(&mut self.sheet_of, &again);
-        drop_at(&mut self.facet_of, &again);
+        drop_at(&mut self.triangles, again);
+        drop_at(&mut self.sheet_of, again);
+        drop_at(&mut self.facet_of, again);
     }
 
     /// Vertices that only dropped triangles used go; the others keep their order.
@@ -301,6 +323,42 @@ impl Welded {
         for v in self.triangles.iter_mut().flatten() {
             *v = renumbered[*v as usize];
         }
+    }
+}
+
+/// The numbers of a file's points after merging; a common point is merged once.
+struct Numbers<'a> {
+    /// Points of each facet; none where every facet has points of its own.
+    corners: &'a [[u32; 3]],
+    /// Number of each point, or [`NO_NUMBER`].
+    known: Vec<u32>,
+}
+
+/// A point that was not asked for yet.
+const NO_NUMBER: u32 = u32::MAX;
+
+impl<'a> Numbers<'a> {
+    fn of(facets: &'a Facets) -> Self {
+        match facets {
+            Facets::Apart(_) => Self { corners: &[], known: Vec::new() },
+            Facets::Shared { points, corners } => {
+                Self { corners, known: vec![NO_NUMBER; points.len()] }
+            }
+        }
+    }
+
+    /// Of the corners of a facet, which lie at `at` (m).
+    fn of_corners(&mut self, facet: usize, at: &[Vec3; 3], merger: &mut Merger) -> [u32; 3] {
+        let Some(points) = self.corners.get(facet) else {
+            return at.map(|corner| merger.number_of(corner));
+        };
+        [0, 1, 2].map(|k| {
+            let known = &mut self.known[points[k] as usize];
+            if *known == NO_NUMBER {
+                *known = merger.number_of(at[k]);
+            }
+            *known
+        })
     }
 }
 

@@ -3,8 +3,9 @@
 use super::{Crop, Heights, Loaded, Options, wider};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
+use crate::terrain::facets::Facets;
 use crate::terrain::grid::{Grid, Standing, nothing_there};
-use crate::terrain::stl::{Facet, Format, Soup};
+use crate::terrain::stl::{Format, Soup};
 use std::path::Path;
 
 /// Cells of a grid, or points of a cloud, that are cut into triangles at most: a tile of 14 km at 1 m takes about 100 GB.
@@ -93,7 +94,7 @@ impl Loaded {
     pub(in crate::terrain) fn into_soup(
         self,
         file: &Path,
-        facets: Vec<Facet>,
+        facets: Facets,
         map_origin_m: Vec3,
     ) -> Result<Soup> {
         match self {
@@ -168,7 +169,7 @@ impl Heights {
         Ok(self)
     }
 
-    fn into_soup(self, file: &Path, facets: Vec<Facet>) -> Result<Soup> {
+    fn into_soup(self, file: &Path, facets: Facets) -> Result<Soup> {
         let mut soup = Soup::of_format(self.format);
         (soup.epsg, soup.notes, soup.facets) = (self.epsg, self.notes, facets);
         // a tile whose places all belong to earlier ones has none of its own
@@ -189,7 +190,7 @@ pub(in crate::terrain) fn facets(
     all: &mut [Loaded],
     files: &[&Path],
     map_origin_m: Vec3,
-) -> Result<Vec<Vec<Facet>>> {
+) -> Result<Vec<Facets>> {
     let mut joined = vec![Vec::new(); all.len()];
     for one in 0..all.len() {
         for other in 0..all.len() {
@@ -219,7 +220,7 @@ pub(in crate::terrain) fn facets(
     let of = |(one, list): (usize, &Vec<(usize, [i64; 2])>)| {
         let others = list.iter().filter_map(|&(k, steps)| Some((grid(k)?, steps, k < one)));
         let others: Vec<_> = others.collect();
-        grid(one).map_or_else(Vec::new, |own| own.facets_beside(&others, map_origin_m))
+        grid(one).map_or_else(Facets::default, |own| own.facets_beside(&others, map_origin_m))
     };
     Ok(joined.iter().enumerate().map(of).collect())
 }
