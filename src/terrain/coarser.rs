@@ -87,7 +87,9 @@ fn in_turn(terrain: &Terrain, trees: &[bool]) -> Vec<u32> {
     let edges = &terrain.features.edges;
     let mut rank = vec![3u8; terrain.vertices_m.len()];
     for edge in edges.borders() {
-        ends(&terrain.triangles, edge).iter().for_each(|&v| rank[v as usize] = 2);
+        for v in ends(&terrain.triangles, edge) {
+            rank[v as usize] = 2;
+        }
     }
     for (v, rank) in rank.iter_mut().enumerate().filter(|(_, rank)| **rank == 2) {
         // a corner of a sheet has no more than two neighbours along the border and one across

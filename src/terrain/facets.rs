@@ -141,7 +141,9 @@ impl Facets {
                     if cut.is_empty() {
                         all.push(whole);
                     }
-                    cut.into_iter().for_each(|facet| add(&mut points, &mut all, facet));
+                    for facet in cut {
+                        add(&mut points, &mut all, facet);
+                    }
                 }
                 Ok(Self::Shared { points, corners: all })
             }

@@ -100,9 +100,10 @@ impl Features {
     /// Weighs the vertices: with `T` triangles and `E` edges at one, the edges weigh `E − 2 T` together.
     fn weigh(&mut self, mesh: Mesh) {
         let weight = |vertex: u32| {
-            let triangles = self.triangles_at(vertex).len() as i64;
-            let weight = 1 + triangles - self.count_neighbours(vertex, mesh) as i64;
-            weight.clamp(i8::MIN.into(), i8::MAX.into()) as i8
+            let triangles = self.triangles_at(vertex).len();
+            let more =
+                (1 + triangles).cast_signed() - self.count_neighbours(vertex, mesh).cast_signed();
+            more.clamp(i8::MIN.into(), i8::MAX.into()) as i8
         };
         self.vertex_weight =
             (0..mesh.vertices_m.len() as u32).into_par_iter().map(weight).collect();
@@ -134,7 +135,7 @@ impl Features {
         for other in self.neighbours(vertex, mesh) {
             match rises(other) {
                 (_, true) => return false,
-                (is_up, _) => up += i32::from(is_up),
+                (is_up, _) => up += usize::from(is_up),
             }
         }
         if up == 0 {
@@ -142,7 +143,7 @@ impl Features {
         }
         // χ of what comes nearer: edges less the triangles between two of them
         let both_up = |t: &&u32| mesh.others(**t, vertex).into_iter().all(|other| rises(other).0);
-        up - self.triangles_at(vertex).iter().filter(both_up).count() as i32 == 1
+        up == 1 + self.triangles_at(vertex).iter().filter(both_up).count()
     }
 
     /// Whether a vertex lies on a border of its sheet.

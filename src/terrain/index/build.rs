@@ -22,7 +22,7 @@ struct Part<'a> {
     above: Option<(usize, usize)>,
 }
 
-impl<'a> Part<'a> {
+impl Part<'_> {
     /// Cut across the middle of the side along which the centres lie widest apart; as many triangles in both, and the same
     /// ones whatever order they come in.
     fn halves(self, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> [Self; 2] {
@@ -176,7 +176,7 @@ impl Index {
         for place in (0..self.nodes.len()).rev() {
             for side in 0..WIDE {
                 let node = &self.nodes[place];
-                let is_open = node.lo[0].as_array()[side] == f32::MAX;
+                let is_open = node.lo[0].as_array()[side] >= f32::MAX;
                 if let (true, Child::Inner(below)) = (is_open, Child::of(node.child[side])) {
                     let (lo, hi) = self.nodes[below as usize].whole();
                     self.nodes[place].put(side, below, (&lo, &hi));
