@@ -41,6 +41,7 @@ pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>> {
     if read as u64 > longest {
         return Err(too_long(path, read as u64, longest));
     }
+    no_pointer(path, &bytes)?;
     Ok(bytes)
 }
 
@@ -52,7 +53,20 @@ pub fn head(path: &Path) -> Result<Vec<u8>> {
     let mut head = Vec::new();
     let file = open(path, LONGEST_MESH)?;
     file.take(4096).read_to_end(&mut head).map_err(Error::file("read", path))?;
+    no_pointer(path, &head)?;
     Ok(head)
+}
+
+/// How a file begins that stands in place of a large one until Git LFS has fetched that.
+const POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
+
+/// Refuses the pointer of a file that was not fetched, of whatever kind the file would be.
+fn no_pointer(path: &Path, start: &[u8]) -> Result<()> {
+    if !start.starts_with(POINTER) {
+        return Ok(());
+    }
+    let remedy = "fetch the file itself with `git lfs pull`";
+    Err(Error::input(path, "start", "found a pointer of Git LFS", remedy))
 }
 
 /// Reads a whole text, see [`open`].

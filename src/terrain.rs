@@ -83,9 +83,9 @@ impl Terrain {
     /// Indexes a welded mesh.
     pub fn new(welded: Welded, sheets: Vec<Sheet>) -> Self {
         let is_many = welded.triangles.len() > MANY_TRIANGLES;
-        let leaf = if is_many { index::MOST_IN_LEAF } else { index::LEAF };
+        let sizes = if is_many { index::Sizes::SMALL } else { index::Sizes::FAST };
         let corners = |t: u32| welded.corners_m(t as usize);
-        let (index, order) = Index::build(welded.triangles.len(), leaf, corners);
+        let (index, order) = Index::build(welded.triangles.len(), sizes, corners);
         let Welded { vertices_m, triangles, sheet_of, facet_of, edges, origin_m, .. } = welded;
         let triangles = in_order(&order, triangles);
         let (sheet_of, facet_of) = (in_order(&order, sheet_of), in_order(&order, facet_of));

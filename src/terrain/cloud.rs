@@ -3,6 +3,11 @@
 //! The `las` crate reads both (LAZ through a decoder in pure Rust), `spade` makes the Delaunay triangulation with exact
 //! predicates: points in rows and on circles, as thinned clouds have them, are no trouble.
 
+mod announced;
+mod tiles;
+
+pub(super) use tiles::join;
+
 use super::facets::Facets;
 use super::formats::{Crop, Options, wider};
 use super::grid::distance;
@@ -13,7 +18,6 @@ use crate::rock::Vec3;
 use las::{PointDataBuilder, Reader};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// ASPRS class of ground.
@@ -24,13 +28,6 @@ const CELL_M: f64 = 1.0;
 const AT_ONCE: u64 = 100_000;
 /// Cells to one side of the origin that can be numbered; a cell of a millimetre spans the Earth in fewer.
 const MOST_CELLS: f64 = 1e12;
-
-/// Where the header of a LAS file says where points begin, and of which format they are (ASPRS LAS 1.4).
-const POINTS_BEGIN: u64 = 96;
-/// See [`POINTS_BEGIN`].
-const POINT_FORMAT: u64 = 104;
-/// Bit of the format of packed points.
-const PACKED: u64 = 0x80;
 
 /// A box on the map (m): west, south, east, north.
 type BoxM = [f64; 4];
@@ -44,6 +41,8 @@ pub struct Cloud {
     cell_m: f64,
     /// Points in the file, and those of the ground classes.
     counts: [u64; 2],
+    /// Files that it is of.
+    tiles: usize,
 }
 
 /// Reads the ground points of a LAS or LAZ file.
@@ -72,13 +71,7 @@ where
         )
     };
     let mut bytes = bytes;
-    let most = bytes.seek(SeekFrom::End(0)).map_err(Error::file("read", file))?;
-    if chunks(&mut bytes).is_ok_and(|count| u64::from(count) > most) {
-        let found = "found more chunks of points than bytes";
-        let remedy = "the file is damaged: write it again with pdal translate";
-        return Err(Error::input(file, "chunk table", found, remedy));
-    }
-    bytes.rewind().map_err(Error::file("read", file))?;
+    announced::check(&mut bytes, file)?;
     let mut reader = Reader::new(bytes).map_err(broken)?;
     let epsg = system(&reader, file, options.epsg)?;
     let classes = if options.classes.is_empty() { &[GROUND][..] } else { &options.classes };
@@ -99,28 +92,6 @@ where
         }
     }
     thinner.finish(file, classes, epsg)
-}
-
-/// How many chunks a LAZ file says it has: the decoder takes memory for all of them before it reads the first. 0 of a LAS
-/// file; an error where the file ends before.
-fn chunks<R: Read + Seek>(bytes: &mut R) -> std::io::Result<u32> {
-    let mut number = |place: SeekFrom, length: usize| -> std::io::Result<u64> {
-        let mut little = [0; 8];
-        bytes.seek(place)?;
-        bytes.read_exact(&mut little[..length])?;
-        Ok(u64::from_le_bytes(little))
-    };
-    if number(SeekFrom::Start(POINT_FORMAT), 1)? & PACKED == 0 {
-        return Ok(0);
-    }
-    let points = number(SeekFrom::Start(POINTS_BEGIN), 4)?;
-    // a writer that could not go back has put the place of the table at the end
-    let table = match number(SeekFrom::Start(points), 8)? {
-        u64::MAX => number(SeekFrom::End(-8), 8)?,
-        table => table,
-    };
-    // behind the version
-    Ok(number(SeekFrom::Start(table.saturating_add(4)), 4)? as u32)
 }
 
 /// EPSG code of the file's coordinates; degrees are refused.
@@ -188,7 +159,7 @@ impl Thinner {
             return Err(Error::input(file, "classes", found, remedy));
         }
         let points_m = self.lowest.into_values().collect();
-        Ok(Cloud { points_m, epsg, cell_m: self.cell_m, counts: self.counts })
+        Ok(Cloud { points_m, epsg, cell_m: self.cell_m, counts: self.counts, tiles: 1 })
     }
 }
 
@@ -246,6 +217,9 @@ impl Cloud {
         soup.epsg = self.epsg;
         let [all, ground] = self.counts;
         soup.notes.push(format!("{all} points, {ground} of them ground"));
+        if self.tiles > 1 {
+            soup.notes.push(format!("of {} tiles that touch", self.tiles));
+        }
         let kept = self.points_m.len();
         soup.notes.push(format!("thinned to {kept}, the lowest of each cell of {} m", self.cell_m));
         let (facets, longest_m) = delaunay(&self.points_m, map_origin_m);

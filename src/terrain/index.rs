@@ -6,13 +6,15 @@
 
 mod build;
 
+pub(super) use build::Sizes;
+
 use crate::rock::Vec3;
 use wide::f32x4;
 
 /// Most triangles in one leaf: four boxes at once are cheaper than the triangles that smaller ones leave out.
-pub(super) const LEAF: u32 = 3;
+const LEAF: u32 = 3;
 /// What a word of a child has room for: fewer nodes, where memory counts more than time.
-pub(super) const MOST_IN_LEAF: u32 = 8;
+const MOST_IN_LEAF: u32 = 8;
 const LEAF_BIT: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
 const START_MASK: u32 = (1 << COUNT_SHIFT) - 1;

@@ -145,12 +145,7 @@ pub fn parse(bytes: Vec<u8>, file: &Path) -> Result<Soup> {
 }
 
 /// How other files begin that end up under the name of an STL file, and what to do about them.
-const OTHER_KINDS: [(&[u8], &str, &str); 13] = [
-    (
-        b"version https://git-lfs",
-        "a pointer of Git LFS",
-        "fetch the file itself with `git lfs pull`",
-    ),
+const OTHER_KINDS: [(&[u8], &str, &str); 12] = [
     (b"\xff\xfe", "text in UTF-16", "save it as UTF-8 or ASCII"),
     (b"\xfe\xff", "text in UTF-16", "save it as UTF-8 or ASCII"),
     (b"PK\x03\x04", "a ZIP archive", "unpack it and write the STL file in it"),

@@ -32,6 +32,8 @@ impl Loaded {
             Self::Grid(heights) => heights.grid.highest_in(box_m),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => cloud.highest_in(box_m),
+            #[cfg(feature = "cloud")]
+            Self::Joined(..) => None,
         }
     }
 
@@ -42,6 +44,8 @@ impl Loaded {
             Self::Grid(heights) => heights.grid.reached(starts, slope),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => cloud.reached(starts, slope),
+            #[cfg(feature = "cloud")]
+            Self::Joined(..) => None,
         }
     }
 
@@ -52,7 +56,7 @@ impl Loaded {
             Self::Unreached(format) => *format,
             Self::Trees(_) => Format::Trees,
             #[cfg(feature = "cloud")]
-            Self::Cloud(_) => Format::Cloud,
+            Self::Cloud(_) | Self::Joined(..) => Format::Cloud,
         }
     }
 
@@ -66,6 +70,10 @@ impl Loaded {
         options: &Options,
         starts: &Starts,
     ) -> Result<Self> {
+        #[cfg(feature = "cloud")]
+        if matches!(self, Self::Joined(..)) {
+            return Ok(self);
+        }
         let box_m = match &options.crop {
             None => None,
             Some(Crop::Box(box_m, margin_m)) => Some(wider(*box_m, *margin_m)),
@@ -80,6 +88,16 @@ impl Loaded {
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => Ok(Self::Cloud(cloud.cropped(box_m))),
             whole => Ok(whole),
+        }
+    }
+
+    /// Whether no triangle of its own comes of it.
+    pub(in crate::terrain) fn is_left_out(&self) -> bool {
+        match self {
+            Self::Unreached(_) => true,
+            #[cfg(feature = "cloud")]
+            Self::Joined(..) => true,
+            _ => false,
         }
     }
 
@@ -113,6 +131,14 @@ impl Loaded {
             Self::Grid(heights) => heights.into_soup(file, facets),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => cloud.into_soup(file, map_origin_m),
+            #[cfg(feature = "cloud")]
+            Self::Joined(first, epsg) => {
+                let mut soup = Soup::of_format(Format::Cloud);
+                soup.epsg = epsg;
+                let first = first.display();
+                soup.notes.push(format!("joined with {first}, which it touches: one surface"));
+                Ok(soup)
+            }
         }
     }
 }

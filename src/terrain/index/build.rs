@@ -1,14 +1,26 @@
 //! Building the index: trees of parry's, packed.
 
-use super::{COUNT_SHIFT, Child, DEPTH, Index, LEAF_BIT, Node, WIDE};
+use super::{COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, Node, WIDE};
 use crate::rock::Vec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
-/// Most triangles that one tree of parry's is built over: it takes about 300 bytes for each until it is packed.
-const AT_ONCE: usize = 1 << 19;
+/// How an index is built: triangles in a leaf, and in one tree of parry's, which takes about 300 bytes for each until it is
+/// packed.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::terrain) struct Sizes {
+    leaf: u32,
+    at_once: usize,
+}
+
+impl Sizes {
+    /// For the fastest rocks.
+    pub(in crate::terrain) const FAST: Self = Self { leaf: LEAF, at_once: 1 << 19 };
+    /// For the least memory.
+    pub(in crate::terrain) const SMALL: Self = Self { leaf: MOST_IN_LEAF, at_once: 1 << 17 };
+}
 
 /// Trees of parry's that are built beside each other, at most: each takes its memory.
 const BESIDE: usize = 4;
@@ -84,26 +96,16 @@ struct Loose {
 }
 
 impl Index {
-    /// Builds the index over `count` triangles given by their corners, and the order in which it wants them, with up to
-    /// `leaf` triangles in a leaf.
+    /// Builds the index over `count` triangles given by their corners, and the order in which it wants them.
     ///
     /// `order[k]` is the number that triangle `k` of the index had in the input.
     ///
     /// # Panics
     /// If the tree were deeper than a traversal can walk, which no mesh makes it.
-    pub fn build(
+    pub(in crate::terrain) fn build(
         count: usize,
-        leaf: u32,
+        Sizes { leaf, at_once }: Sizes,
         corners: impl Fn(u32) -> [Vec3; 3] + Sync,
-    ) -> (Self, Vec<u32>) {
-        Self::build_in_parts((count, leaf), corners, AT_ONCE)
-    }
-
-    /// The same with at most so many triangles in one tree of parry's.
-    fn build_in_parts(
-        (count, leaf): (usize, u32),
-        corners: impl Fn(u32) -> [Vec3; 3] + Sync,
-        at_once: usize,
     ) -> (Self, Vec<u32>) {
         let mut order: Vec<u32> = (0..count as u32).collect();
         if count == 0 {
@@ -319,7 +321,6 @@ fn gather(nodes: &[Loose], top: u32, order: &mut Vec<u32>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::terrain::index::{LEAF, MOST_IN_LEAF};
     use crate::terrain::make;
     use crate::terrain::stl::Facet;
 
@@ -334,7 +335,7 @@ mod tests {
                 .all(|k| box_m.mins[k] <= centre[k] + radius && box_m.maxs[k] >= centre[k] - radius)
         };
         for (at_once, leaf) in [(usize::MAX, LEAF), (1000, LEAF), (37, MOST_IN_LEAF), (9, 1)] {
-            let (index, order) = Index::build_in_parts((facets.len(), leaf), corners, at_once);
+            let (index, order) = Index::build(facets.len(), Sizes { leaf, at_once }, corners);
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert!(sorted.iter().copied().eq(0..facets.len() as u32), "{at_once}");
