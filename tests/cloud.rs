@@ -174,7 +174,7 @@ fn a_header_that_promises_too_much_is_refused_at_once() {
         let whole = std::fs::read(Path::new("fuzz/seeds/las").join(name)).unwrap();
         assert!(parse(whole.clone()).is_ok(), "{name}");
         for (at, own) in whole.iter().enumerate() {
-            for byte in [0, 1, 0x7f, 0x80, 0xff, own ^ 1] {
+            for byte in [0, 0xff, own ^ 1] {
                 let start = std::time::Instant::now();
                 let _ = parse(with(&whole, at, &[byte]));
                 // milliseconds each; 18 s when long records were believed

@@ -4,6 +4,7 @@
 //! predicates: points in rows and on circles, as thinned clouds have them, are no trouble.
 
 mod announced;
+mod decoder;
 mod tiles;
 
 pub(super) use tiles::join;
@@ -15,6 +16,7 @@ use super::stl::{Format, Soup};
 use crate::error::{Error, Result};
 use crate::gis::wkt;
 use crate::rock::Vec3;
+use decoder::guarded;
 use las::{PointDataBuilder, Reader};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 use std::collections::{BTreeMap, BTreeSet};
@@ -62,18 +64,16 @@ pub fn parse<R>(bytes: R, file: &Path, options: &Options) -> Result<Cloud>
 where
     R: std::io::Read + std::io::Seek + Send + Sync + 'static,
 {
-    let broken = |why: las::Error| {
-        Error::input(
-            file,
-            "LAS",
-            format!("found {why}"),
-            "the file is damaged: write it again with pdal translate",
-        )
+    let refused = |found: String| {
+        let remedy = "the file is damaged: write it again with pdal translate";
+        Error::input(file, "LAS", found, remedy)
     };
+    let broken = |why: las::Error| refused(format!("found {why}"));
+    let given_up = || refused("found what the decoder gives up on".to_owned());
     let mut bytes = bytes;
     announced::check(&mut bytes, file)?;
-    let mut reader = Reader::new(bytes).map_err(broken)?;
-    let epsg = system(&reader, file, options.epsg)?;
+    let mut reader = guarded(|| Reader::new(bytes)).ok_or_else(given_up)?.map_err(broken)?;
+    let epsg = guarded(|| system(&reader, file, options.epsg)).ok_or_else(given_up)??;
     let classes = if options.classes.is_empty() { &[GROUND][..] } else { &options.classes };
     let within = match &options.crop {
         Some(Crop::Box(box_m, margin_m)) => Some(wider(*box_m, *margin_m)),
@@ -82,7 +82,8 @@ where
     let mut thinner = Thinner::new(options.resample_m.unwrap_or(CELL_M), within);
     let mut part = PointDataBuilder::new().for_header(reader.header()).build();
     loop {
-        let count = reader.fill_points(AT_ONCE, &mut part).map_err(broken)?;
+        let filled = guarded(|| reader.fill_points(AT_ONCE, &mut part));
+        let count = filled.ok_or_else(given_up)?.map_err(broken)?;
         if count == 0 {
             break;
         }

@@ -277,6 +277,9 @@ fn asked_of_gdal(packing: &str, predictor: u16, layout: &str) -> Vec<String> {
         "big" => ("GTiff", &["BIGTIFF=YES", "ENDIANNESS=BIG"]),
         _ => ("COG", &["BLOCKSIZE=128"]),
     };
+    // libtiff sorts the bytes of floating-point differences by the machine's order, not by the file's: no other reader
+    // can tell which that was
+    let more = if predictor == 3 && layout == "big" { &more[..1] } else { more };
     words.extend(more.iter().map(|text| option((*text).to_owned())));
     if predictor > 1 {
         let named = ["STANDARD", "FLOATING_POINT"][usize::from(predictor) - 2];
@@ -304,7 +307,7 @@ fn what_gdal_writes_is_read_bit_for_bit() {
         packings.flat_map(move |(packing, predictor)| {
             let layouts = ["strips", "tiles", "big", "cog"].into_iter();
             // the driver of cloud-optimised files does not know PackBits
-            let known = layouts.filter(|layout| *layout != "cog" || packing != "PACKBITS");
+            let known = layouts.filter(move |layout| *layout != "cog" || packing != "PACKBITS");
             let plain = plain.clone();
             known.map(move |layout| (kind, plain.clone(), packing, predictor, layout))
         })
