@@ -170,6 +170,13 @@ fn a_header_that_promises_too_much_is_refused_at_once() {
             "{what}: {said}"
         );
     }
+    // in the first chunk: a point of 30 bytes, how many points, and how long the first of nine layers is
+    let begin = u32::from_le_bytes(laz[96..100].try_into().unwrap()) as usize + 8;
+    let said = parse(with(&laz, begin + 34, &u32::MAX.to_le_bytes())).unwrap_err().to_string();
+    assert!(said.contains("found more layers of points than its"), "{said}");
+    // many chunks, all of which fit
+    let many: Vec<Point> = (0..25).flat_map(|_| points()).collect();
+    assert_eq!(parse(file_of(many, true)).unwrap().points_m(), parse(laz).unwrap().points_m());
     for name in ["new.las", "new.laz", "old.las", "old.laz"] {
         let whole = std::fs::read(Path::new("fuzz/seeds/las").join(name)).unwrap();
         assert!(parse(whole.clone()).is_ok(), "{name}");

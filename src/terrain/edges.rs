@@ -4,6 +4,7 @@
 //! first of its sides, and every side knows the next one on its edge: four bytes a side tell all.
 
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::slice::ParallelSliceMut;
 
 /// The two ends of a side, the lower number first.
 #[inline]
@@ -24,23 +25,24 @@ pub struct Edges {
 impl Edges {
     /// Lists the edges of `triangles` (vertex indices, all three different).
     pub fn of(triangles: &[[u32; 3]]) -> Self {
-        let (buckets, sides) = sides_by_lower_vertex(triangles);
-        let mut edges = Self { next: vec![[0; 3]; triangles.len()], count: 0 };
-        let mut bucket: Vec<(u32, u32)> = Vec::new();
-        for range in buckets.windows(2) {
-            let sides = &sides[range[0] as usize..range[1] as usize];
-            bucket.clear();
-            bucket.extend(sides.iter().map(|&side| (ends(triangles, side)[1], side)));
-            // short: a vertex has about three edges to later ones
-            bucket.sort_unstable();
-            for on_edge in bucket.chunk_by(|one, other| one.0 == other.0) {
-                edges.count += 1;
-                for (k, &(_, side)) in on_edge.iter().enumerate() {
-                    let next = on_edge[if k + 1 == on_edge.len() { 0 } else { k + 1 }].1;
-                    edges.next[side as usize / 3][side as usize % 3] = next;
-                }
-            }
-        }
+        let (starts, mut sides) = sides_by_lower_vertex(triangles);
+        let [lower, upper] = [0, 1].map(|end| move |side: u32| ends(triangles, side)[end]);
+        // short: a vertex has about three edges to later ones
+        sides
+            .par_chunk_by_mut(|&one, &other| lower(one) == lower(other))
+            .for_each(|bucket| bucket.sort_unstable_by_key(|&side| (upper(side), side)));
+        let next = |side: u32| {
+            let from = lower(side) as usize;
+            let bucket = &sides[starts[from] as usize..starts[from + 1] as usize];
+            let first = bucket.partition_point(|&other| upper(other) < upper(side));
+            let on_edge = bucket[first..].iter().copied();
+            let mut later = on_edge.take_while(|&other| upper(other) == upper(side));
+            later.find(|&other| other > side).unwrap_or(bucket[first])
+        };
+        let all = 0..triangles.len() as u32;
+        let next = all.into_par_iter().map(|t| [0, 1, 2].map(|k| next(3 * t + k)));
+        let mut edges = Self { next: next.collect(), count: 0 };
+        edges.count = edges.par_all().count();
         edges
     }
 

@@ -147,9 +147,9 @@ pub(super) fn join(
         map_origin_m,
         tolerance_m,
         vertices_m: Vec::new(),
-        triangles: Vec::with_capacity(frame.facets),
+        triangles: Vec::new(),
         sheet_of: Vec::with_capacity(frame.facets),
-        facet_of: Vec::with_capacity(frame.facets),
+        facet_of: Vec::new(),
         edges: Edges::default(),
         zero_area: Tally::default(),
         duplicates: Tally::default(),
@@ -266,22 +266,31 @@ impl Welded {
         let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
         for piece in pieces {
             let facets = &piece.soup.facets;
+            // `+ 0.0` turns −0.0 into 0.0.
+            let local = |corner: Vec3| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0);
             let mut numbers = Numbers::of(facets);
-            for number in 0..facets.len() {
-                // `+ 0.0` turns −0.0 into 0.0.
-                let local = |corner: Vec3| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0);
-                let corners = facets.at(number).map(local);
-                let triangle = numbers.of_corners(number, &corners, &mut merger);
-                let merged = triangle.map(|v| merger.kept_m()[v as usize]);
-                self.moved_corners += (0..3).filter(|&k| merged[k] != corners[k]).count();
-                if has_area(&merged) {
-                    self.triangles.push(triangle);
-                    self.sheet_of.push(piece.sheet);
-                    self.facet_of.push(number as u32);
-                } else {
-                    self.zero_area.add(merged[0] + self.origin_m);
-                }
+            let mut all = Vec::with_capacity(facets.len());
+            all.extend((0..facets.len()).map(|number| {
+                numbers.of_corners(number, |k| local(facets.at(number)[k]), &mut merger)
+            }));
+            let merged = |number: usize| all[number].map(|v| merger.kept_m()[v as usize]);
+            let moved = (0..facets.len()).into_par_iter().map(|number| {
+                let (merged, corners) = (merged(number), facets.at(number).map(local));
+                (0..3).filter(|&k| merged[k] != corners[k]).count()
+            });
+            self.moved_corners += moved.sum::<usize>();
+            let flat = (0..all.len() as u32).into_par_iter();
+            let flat: Vec<u32> =
+                flat.filter(|&number| !has_area(&merged(number as usize))).collect();
+            for &number in &flat {
+                self.zero_area.add(merged(number as usize)[0] + self.origin_m);
             }
+            let mut numbers: Vec<u32> = (0..all.len() as u32).collect();
+            drop_at(&mut numbers, &flat);
+            drop_at(&mut all, &flat);
+            self.sheet_of.resize(self.sheet_of.len() + all.len(), piece.sheet);
+            append(&mut self.facet_of, numbers);
+            append(&mut self.triangles, all);
         }
         self.vertices_m = merger.into_kept_m();
     }
@@ -347,23 +356,40 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// Of the corners of a facet, which lie at `at` (m).
-    fn of_corners(&mut self, facet: usize, at: &[Vec3; 3], merger: &mut Merger) -> [u32; 3] {
+    /// Of the corners of a facet, which lie where `at` says (m).
+    fn of_corners(
+        &mut self,
+        facet: usize,
+        at: impl Fn(usize) -> Vec3,
+        merger: &mut Merger,
+    ) -> [u32; 3] {
         let Some(points) = self.corners.get(facet) else {
-            return at.map(|corner| merger.number_of(corner));
+            return [0, 1, 2].map(|k| merger.number_of(at(k)));
         };
         [0, 1, 2].map(|k| {
             let known = &mut self.known[points[k] as usize];
             if *known == NO_NUMBER {
-                *known = merger.number_of(at[k]);
+                *known = merger.number_of(at(k));
             }
             *known
         })
     }
 }
 
+/// Puts one list behind another; the first one is taken as it is.
+fn append<T>(list: &mut Vec<T>, more: Vec<T>) {
+    if list.is_empty() {
+        *list = more;
+    } else {
+        list.extend(more);
+    }
+}
+
 /// Removes the elements at the given ascending positions.
 fn drop_at<T>(list: &mut Vec<T>, positions: &[u32]) {
+    if positions.is_empty() {
+        return;
+    }
     let mut positions = positions.iter().peekable();
     let mut at = 0;
     list.retain(|_| {

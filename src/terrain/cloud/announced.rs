@@ -7,6 +7,7 @@ use std::path::Path;
 
 /// Where the header says what.
 mod at {
+    pub(super) const HEADER_BYTES: u64 = 94;
     pub(super) const MINOR_VERSION: u64 = 25;
     pub(super) const POINTS_BEGIN: u64 = 96;
     pub(super) const RECORDS: u64 = 100;
@@ -27,6 +28,10 @@ const LONG_RECORD_BYTES: u64 = 60;
 const LONG_RECORD_LENGTH: u64 = 20;
 /// Packed points of one byte, at most: measured ground takes two bytes a point and more, a lattice of level points a tenth.
 const POINTS_OF_A_BYTE: u64 = 64;
+/// Number of the record of LASzip, its compressor in layers, and where its list of items begins with their number.
+const LASZIP: u64 = 22_204;
+const LAYERED: u64 = 3;
+const ITEMS: u64 = 32;
 /// Points of a file of no length to speak of.
 const POINTS_AT_LEAST: u64 = 1 << 16;
 
@@ -82,6 +87,9 @@ impl<R: Read + Seek> Announced<'_, R> {
         if is_packed && self.chunks()? > self.length {
             return Ok(Some("chunks of points"));
         }
+        if is_packed && !self.layers_fit()? {
+            return Ok(Some("layers of points"));
+        }
         Ok(None)
     }
 
@@ -101,15 +109,74 @@ impl<R: Read + Seek> Announced<'_, R> {
         Ok(place <= self.length || count == 0)
     }
 
-    /// How many chunks a packed file says it has.
-    fn chunks(&mut self) -> io::Result<u64> {
+    /// Where the table of chunks of a packed file begins, behind the last of them.
+    fn table(&mut self) -> io::Result<u64> {
         let points = self.at(at::POINTS_BEGIN, 4)?;
         // a writer that could not go back has put the place of the table at the end
-        let table = match self.at(points, 8)? {
+        Ok(match self.at(points, 8)? {
             u64::MAX => self.number(SeekFrom::End(-8), 8)?,
             table => table,
-        };
+        })
+    }
+
+    /// How many chunks a packed file says it has.
+    fn chunks(&mut self) -> io::Result<u64> {
+        let table = self.table()?;
         // behind the version
         self.at(table.saturating_add(4), 4)
+    }
+
+    /// Whether the layers of every chunk fit into the file, where points are packed in layers (formats 6 to 10): a chunk is a
+    /// first point as it is, the number of points, how long each layer is, and the layers.
+    fn layers_fit(&mut self) -> io::Result<bool> {
+        let Some((point_bytes, layers)) = self.layers()? else { return Ok(true) };
+        let mut place = self.at(at::POINTS_BEGIN, 4)? + 8;
+        let end = self.table()?.min(self.length);
+        while place < end {
+            let sizes = place + point_bytes + 4;
+            place = sizes.saturating_add(4 * layers);
+            for layer in 0..layers {
+                place = place.saturating_add(self.at(sizes + 4 * layer, 4)?);
+            }
+            if place > self.length {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Bytes of a point and the number of its layers; none where points are not packed in layers.
+    fn layers(&mut self) -> io::Result<Option<(u64, u64)>> {
+        let Some(record) = self.laszip_record()? else { return Ok(None) };
+        if self.at(record, 2)? != LAYERED {
+            return Ok(None);
+        }
+        let (mut bytes, mut layers) = (0, 0);
+        for item in 0..self.at(record + ITEMS, 2)? {
+            let place = record + ITEMS + 2 + 6 * item;
+            let (kind, size) = (self.at(place, 2)?, self.at(place + 2, 2)?);
+            let more = match kind {
+                10 => (30, 9),
+                11 => (6, 1),
+                12 => (8, 2),
+                13 => (29, 1),
+                14 => (size, size),
+                _ => return Ok(None),
+            };
+            (bytes, layers) = (bytes + more.0, layers + more.1);
+        }
+        Ok((layers > 0).then_some((bytes, layers)))
+    }
+
+    /// Where the record begins that says how points are packed.
+    fn laszip_record(&mut self) -> io::Result<Option<u64>> {
+        let mut place = self.at(at::HEADER_BYTES, 2)?;
+        for _ in 0..self.at(at::RECORDS, 4)? {
+            if self.at(place + 18, 2)? == LASZIP {
+                return Ok(Some(place + RECORD_BYTES));
+            }
+            place += RECORD_BYTES + self.at(place + 20, 2)?;
+        }
+        Ok(None)
     }
 }

@@ -8,7 +8,7 @@ use crate::terrain::grid::{Grid, Standing, nothing_there};
 use crate::terrain::stl::{Format, Soup};
 use std::path::Path;
 
-/// Cells of a grid, or points of a cloud, that are cut into triangles at most: a tile of 14 km at 1 m takes about 100 GB.
+/// Cells of a grid, or points of a cloud, that are cut into triangles at most: a tile of 14 km at 1 m takes about 35 GB.
 const MOST_CELLS: usize = 200_000_000;
 /// Cells on each side below which a grid has no triangle.
 const FEWEST: usize = 2;

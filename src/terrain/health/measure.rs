@@ -138,12 +138,23 @@ pub(super) fn edge_quantiles_m(welded: &Welded) -> [f64; 5] {
     let length = |edge: u32| welded.edge_m(edge).norm();
     let mut lengths: Vec<f64> = welded.edges.par_all().map(length).collect();
     let last = lengths.len().saturating_sub(1) as f64;
-    let rank = |share: f64| (share * last).round() as usize;
-    QUANTILES.map(|share| {
-        let rank = rank(share);
-        if rank >= lengths.len() {
-            return 0.0;
-        }
-        *lengths.select_nth_unstable_by(rank, f64::total_cmp).1
-    })
+    if lengths.is_empty() {
+        return [0.0; QUANTILES.len()];
+    }
+    let ranks = QUANTILES.map(|share| (share * last).round() as usize);
+    let mut found = [0.0; QUANTILES.len()];
+    select(&mut lengths, 0, (&ranks, &mut found));
+    found
+}
+
+/// The values at some ranks, ascending, of which the list holds those from `first` on.
+fn select(values: &mut [f64], first: usize, (ranks, found): (&[usize], &mut [f64])) {
+    let middle = ranks.len() / 2;
+    let Some(&rank) = ranks.get(middle) else { return };
+    let (low, &mut at, high) = values.select_nth_unstable_by(rank - first, f64::total_cmp);
+    let before = ranks.partition_point(|&other| other < rank);
+    let behind = ranks.partition_point(|&other| other <= rank);
+    found[before..behind].fill(at);
+    select(low, first, (&ranks[..before], &mut found[..before]));
+    select(high, rank + 1, (&ranks[behind..], &mut found[behind..]));
 }

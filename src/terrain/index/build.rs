@@ -47,11 +47,20 @@ impl Part<'_> {
         let axis = (hi - lo).imax();
         let middle = self.triangles.len() / 2;
         // looked up once: selecting asks for every centre many times
-        let mut keys: Vec<(f64, u32)> =
+        let keys: Vec<(f64, u32)> =
             self.triangles.par_iter().map(|&t| (centre(t)[axis], t)).collect();
-        keys.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        self.triangles.iter_mut().zip(keys).for_each(|(triangle, (_, t))| *triangle = t);
+        let by_key = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let mut shuffled = keys.clone();
+        let first_high = *shuffled.select_nth_unstable_by(middle, by_key).1;
+        drop(shuffled);
+        // Both halves keep the order of the input: what is near in it is near in memory.
+        let is_low = |key: &&(f64, u32)| by_key(key, &first_high).is_lt();
         let (low, high) = self.triangles.split_at_mut(middle);
+        let take = |half: &mut [u32], of: &mut dyn Iterator<Item = &(f64, u32)>| {
+            half.iter_mut().zip(of).for_each(|(triangle, key)| *triangle = key.1);
+        };
+        take(low, &mut keys.iter().filter(is_low));
+        take(high, &mut keys.iter().filter(|key| !is_low(key)));
         let next = self.start + middle as u32;
         let part = |start, triangles| Part { start, triangles, above: self.above };
         [part(self.start, low), part(next, high)]
