@@ -28,7 +28,7 @@ const LONG_RECORD_BYTES: u64 = 60;
 const LONG_RECORD_LENGTH: u64 = 20;
 /// Packed points of one byte, at most: measured ground takes two bytes a point and more, a lattice of level points a tenth.
 const POINTS_OF_A_BYTE: u64 = 64;
-/// Number of the record of LASzip, its compressor in layers, and where its list of items begins with their number.
+/// Number of the record of `LASzip`, its compressor in layers, and where its list of items begins with their number.
 const LASZIP: u64 = 22_204;
 const LAYERED: u64 = 3;
 const ITEMS: u64 = 32;
