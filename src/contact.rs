@@ -14,6 +14,8 @@ use serde::{Deserialize, Serialize};
 
 /// Most contacts one rock keeps at a time, the deepest first.
 pub const MOST: usize = 8;
+/// A gap this small is a touch (–, relative to R): rounding of the leap.
+pub const TOUCH: f64 = 1e-9;
 
 /// What of the mesh was touched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

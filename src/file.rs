@@ -1,20 +1,24 @@
 //! The user's files, opened with care: a pipe that nobody writes to, a device without end or a file as long as a disk is
-//! refused before it is read.
+//! refused before it is read. Files are written whole or not at all.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
-use std::io::Read;
-use std::path::Path;
+use std::io::{Read, Seek, Write};
+use std::path::{Path, PathBuf};
 
 /// Longest text a scene, a list or a table may have (bytes).
 pub const LONGEST_TEXT: u64 = 256 << 20;
 /// Longest mesh or grid file (bytes): a binary STL with eighty million triangles.
 pub const LONGEST_MESH: u64 = 4 << 30;
 
+/// How a pointer of Git LFS begins: where the file itself was not fetched, its few lines stand under the file's name.
+/// <https://github.com/git-lfs/git-lfs/blob/main/docs/spec.md>
+const LFS_BEGINS: &[u8] = b"version https://git-lfs";
+
 /// Opens a file for reading, which must be one with an end, at most `longest` bytes away.
 ///
 /// # Errors
-/// A file that is not there, may not be read, is a pipe, a socket or a device, or is too long.
+/// A file that is not there, may not be read, is a pipe, a socket or a device, is too long, or is a pointer of Git LFS.
 pub fn open(path: &Path, longest: u64) -> Result<File> {
     // looked at before it is opened: a pipe would keep us waiting for its writer
     let about = fs::metadata(path).map_err(Error::file("read", path))?;
@@ -26,7 +30,28 @@ pub fn open(path: &Path, longest: u64) -> Result<File> {
     if about.len() > longest {
         return Err(too_long(path, about.len(), longest));
     }
-    File::open(path).map_err(Error::file("read", path))
+    let mut file = File::open(path).map_err(Error::file("read", path))?;
+    if about.is_file() {
+        refuse_pointer(&mut file, path)?;
+    }
+    Ok(file)
+}
+
+/// Refuses a pointer of Git LFS in the place of the file; leaves any other file at its first byte.
+fn refuse_pointer(file: &mut File, path: &Path) -> Result<()> {
+    let mut start = Vec::new();
+    let length = LFS_BEGINS.len() as u64;
+    Read::by_ref(file).take(length).read_to_end(&mut start).map_err(Error::file("read", path))?;
+    if start == LFS_BEGINS {
+        let found = "found a pointer of Git LFS in the place of the file";
+        return Err(Error::input(
+            path,
+            "start",
+            found,
+            "fetch the file itself with `git lfs pull`",
+        ));
+    }
+    file.rewind().map_err(Error::file("read", path))
 }
 
 /// Reads a whole file, see [`open`].
@@ -41,7 +66,6 @@ pub fn read(path: &Path, longest: u64) -> Result<Vec<u8>> {
     if read as u64 > longest {
         return Err(too_long(path, read as u64, longest));
     }
-    no_pointer(path, &bytes)?;
     Ok(bytes)
 }
 
@@ -53,20 +77,7 @@ pub fn head(path: &Path) -> Result<Vec<u8>> {
     let mut head = Vec::new();
     let file = open(path, LONGEST_MESH)?;
     file.take(4096).read_to_end(&mut head).map_err(Error::file("read", path))?;
-    no_pointer(path, &head)?;
     Ok(head)
-}
-
-/// How a file begins that stands in place of a large one until Git LFS has fetched that.
-const POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
-
-/// Refuses the pointer of a file that was not fetched, of whatever kind the file would be.
-fn no_pointer(path: &Path, start: &[u8]) -> Result<()> {
-    if !start.starts_with(POINTER) {
-        return Ok(());
-    }
-    let remedy = "fetch the file itself with `git lfs pull`";
-    Err(Error::input(path, "start", "found a pointer of Git LFS", remedy))
 }
 
 /// Reads a whole text, see [`open`].
@@ -107,5 +118,65 @@ pub fn keep_inputs(out: &Path, inputs: &[&Path]) -> Result<()> {
             out.display(),
             input.display()
         ))),
+    }
+}
+
+/// Ending of a file that is not yet whole.
+pub(crate) const PART: &str = "part";
+
+/// Writes a file that the user has named: [whole or not at all](write_atomic), through a link to where it leads; straight
+/// on where something else than a file is named, as a pipe.
+///
+/// # Errors
+/// As [`write_atomic`].
+pub fn write(path: &Path, contents: &[u8]) -> Result<()> {
+    match fs::metadata(path) {
+        Ok(about) if !about.is_file() => {
+            fs::write(path, contents).map_err(Error::file("write", path))
+        }
+        Ok(_) => {
+            write_atomic(&fs::canonicalize(path).map_err(Error::file("write", path))?, contents)
+        }
+        Err(_) => write_atomic(path, contents),
+    }
+}
+
+/// Writes a file under a temporary name beside it, and renames it when it is on the disk.
+///
+/// A reader, or a crash, finds the old file or the new one, never a part of it.
+///
+/// # Errors
+///
+/// If the disk is full or the folder cannot be written; the old file then stands as it was.
+pub fn write_atomic(path: &Path, contents: &[u8]) -> Result<()> {
+    let part = part_of(path);
+    let write = || {
+        let mut file = File::create(&part)?;
+        file.write_all(contents)?;
+        file.sync_all()?;
+        fs::rename(&part, path)?;
+        sync_folder_of(path)
+    };
+    write().map_err(|why| {
+        // The part is of no use and may fill the disk; that it cannot be removed either would add nothing.
+        let _ = fs::remove_file(&part);
+        Error::file("write", path)(why)
+    })
+}
+
+/// The name of a file until it is whole.
+pub(crate) fn part_of(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".");
+    name.push(PART);
+    path.with_file_name(name)
+}
+
+/// Puts the names in a folder on the disk: a power failure must not bring an old file back.
+fn sync_folder_of(path: &Path) -> std::io::Result<()> {
+    match path.parent().filter(|_| cfg!(unix)) {
+        Some(folder) if folder != Path::new("") => File::open(folder)?.sync_all(),
+        Some(_) => File::open(".")?.sync_all(),
+        None => Ok(()), // elsewhere a folder cannot be opened as a file
     }
 }

@@ -21,6 +21,21 @@ pub struct Ground {
     pub roughness_rad: f64,
     /// Way over which one tilted facet reaches (m), positive; `None` = the radius of the rock.
     pub roughness_length_m: Option<f64>,
+    /// Friction that grows while a block slips; `None` = Coulomb's.
+    pub slip_friction: Option<SlipFriction>,
+}
+
+/// Friction that grows with the way slipped `s` (m), as soil is pushed up before a block (Leine et al. 2014, Eqs. 46–47):
+/// `μ(s) = μ_0 + (2/π)(μ_max − μ_0) atan(κ s)`, `s' = |slip|` in contact and `s' = −β s` in flight; `μ_0` is that of the friction
+/// angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlipFriction {
+    /// Largest coefficient of friction `μ_max` (–).
+    pub most: f64,
+    /// How fast it grows `κ` (1/m), positive.
+    pub kappa_per_m: f64,
+    /// How fast it is forgotten in flight `β` (1/s), 0 or more.
+    pub beta_per_s: f64,
 }
 
 /// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.

@@ -14,6 +14,7 @@ mod merge;
 mod opened;
 mod progress;
 mod read;
+mod removal;
 mod rows;
 mod site;
 mod summary;
@@ -22,7 +23,7 @@ mod used;
 mod vector;
 mod atomic_file;
 
-pub use atomic_file::write_atomic;
+pub use crate::file::write_atomic;
 pub use calibration::{read_calibration, write_calibration};
 pub use folder::{Mode, announce_figures, releases_in};
 pub use lock::FolderLock;
@@ -316,9 +317,10 @@ impl Output {
         if results.summary.maps.is_some() {
             results.write_vectors()?;
         }
+        folder::remove_parts(&results.dir)?;
         // a part keeps what putting parts together needs
         if !is_part {
-            folder::remove(&results.dir.join(PROGRESS))?;
+            removal::remove(&results.dir.join(PROGRESS))?;
             maps::keep_state(&results.dir, None)?;
         }
         Ok(results)

@@ -352,6 +352,7 @@ impl Releases {
                     .map_or(0.0, |angle| angle.draw(&mut random))
                     .to_radians(),
                 roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
+                slip_friction: table.slip_friction,
             }
         };
         self.grounds.iter().map(draw_ground).collect()

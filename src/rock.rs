@@ -31,7 +31,7 @@ impl Rock {
 pub struct Motion {
     /// Time since release (s).
     pub time_s: f64,
-    /// Centre (m), in the terrain's local coordinates (map minus [`Terrain::origin_m`](crate::terrain::Terrain)).
+    /// Centre (m), in the terrain's local coordinates (map minus the terrain's `origin_m`).
     pub position_m: Vec3,
     /// Velocity of the centre (m/s).
     pub velocity_m_s: Vec3,

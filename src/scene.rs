@@ -25,6 +25,7 @@ mod release;
 mod rewrite;
 mod rocks;
 mod shapes;
+mod sizes;
 mod sketch;
 mod solver;
 mod source;
@@ -167,8 +168,7 @@ impl Scene {
                 Refusal::File(error) => error,
             },
         )?;
-        let again = "found a name that a line or barrier before has";
-        scene.check_lines().map_err(|wrong| refuse(wrong.finding(again)))?;
+        scene.check_lines().map_err(refuse)?;
         scene.hash = scene.fingerprint(&text).map_err(refuse)?;
         scene.as_read = scene.digest();
         Ok(scene)
@@ -375,18 +375,6 @@ impl Scene {
         if !scheme.has_springs() && contact.has_bonds() {
             let remedy = "write \"adaptive\", \"reference\" or \"dda\": a bond breaks by its springs, and the rigid limit has none; with tensile_strength_pa = 0 and cohesion_pa = 0 in [rocks.contact] \"rigid\" can be used";
             return Err(Complaint::about("scheme", remedy).inside("solver"));
-        }
-        for (name, ground) in &self.grounds {
-            if ground.roughness_deg.as_ref().is_some_and(|value| value.support().1 > 0.0) {
-                let remedy = "remove it: a random tilt of an impact belongs to one rock alone, and with [release] together = true others may touch it meanwhile";
-                let about = Complaint::about("roughness_deg", remedy);
-                return Err(about.inside(name).inside("grounds"));
-            }
-            if ground.breaks_above_j.is_some() {
-                let remedy = "remove it: stems give way to one rock alone, and with [release] together = true others would run into what is gone";
-                let about = Complaint::about("breaks_above_j", remedy);
-                return Err(about.inside(name).inside("grounds"));
-            }
         }
         Ok(())
     }

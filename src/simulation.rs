@@ -7,8 +7,8 @@ mod driver;
 mod form;
 mod impacts;
 mod recorder;
-mod roughness;
-mod trees;
+mod rock_in_contact;
+mod settings;
 mod world;
 mod cells;
 
@@ -21,8 +21,9 @@ use serde::{Deserialize, Serialize};
 
 pub use cells::CellPassage;
 pub use crossings::Crossing;
-pub use driver::{RunSettings, Scratch, simulate, simulate_block, simulate_release};
+pub use driver::{Scratch, simulate, simulate_block, simulate_release};
 pub use recorder::Keep;
+pub use settings::RunSettings;
 pub use world::{Observer, PairMaterial, WorldStats, simulate_releases_together, simulate_world};
 
 /// Why a rock's journey ended.

@@ -1,9 +1,15 @@
 //! One implicit step of a rock in contact.
 
 pub(crate) mod block;
+pub mod body;
+pub mod loss;
 pub mod step_control;
 mod plane_impact;
 pub mod dda;
+pub(crate) mod dda_system;
+mod impact_progress;
+pub(crate) mod plane_state;
+mod stem_load;
 pub(crate) mod explicit_impact;
 pub(crate) mod plane_kernel;
 pub mod contact_state;
@@ -18,6 +24,8 @@ pub mod stage;
 pub mod tableau;
 pub mod environment;
 mod springs;
+pub(crate) mod stems;
+pub(crate) mod roughness;
 pub(crate) mod yielding;
 
 use contact_state::{ContactEnvironment, ContactState};

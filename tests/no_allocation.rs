@@ -39,11 +39,11 @@ fn no_memory_is_taken_while_a_rock_falls() {
         let (mut steps, mut leaps) = (0, 0);
         for index in WARM..WARM + rocks {
             let release = slope.release(index);
-            let mut random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, index);
+            let random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, index);
             let keep = Keep { path_step_s: None, impacts: false };
             let mut fallen = None;
             let taken = measure(|| {
-                fallen = Some(simulate(&course, &release, keep, &mut random, &mut scratch));
+                fallen = Some(simulate(&course, &release, keep, random, &mut scratch));
             });
             let fallen = fallen.expect("it has fallen");
             assert!(!matches!(fallen.stop, Stop::Failed(_)), "{:?}", fallen.stop);
@@ -67,11 +67,11 @@ fn a_kept_path_takes_memory() {
     let slope = Slope::of(10_000);
     let step = settings(SCHEMES[0].0, SCHEMES[0].1, None);
     let (course, release) = (slope.course(&step), slope.release(0));
-    let mut random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, 0);
+    let random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, 0);
     let keep = Keep { path_step_s: Some(0.05), impacts: false };
     let mut scratch = Scratch::default();
     let taken = measure(|| {
-        drop(simulate(&course, &release, keep, &mut random, &mut scratch));
+        drop(simulate(&course, &release, keep, random, &mut scratch));
     });
     assert!(taken.count_total > 0);
 }

@@ -1,7 +1,11 @@
 //! What reading an elevation model takes of memory: so much a triangle at most, however it is done.
 //!
 //! One test in one program: other threads' memory would count too.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking, and says what it measured"
+)]
 
 use peak_alloc::PeakAlloc;
 use rockfall::rock::Vec3;

@@ -29,6 +29,7 @@ const GROUND: Ground = Ground {
     rolling_friction: 0.05,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 /// Distance of the spheres at the start (m), as in example 3.
 const SPACING_M: f64 = 0.12;
@@ -198,6 +199,7 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
         longest_s,
         recorders: Recorders::default(),
+        seed: 1,
     };
     let releases = heap(spheres, size, terrain.origin_m);
     let answer =

@@ -32,7 +32,7 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode> {
     }
     file::keep_inputs(&out, &[&args.terrain])?;
     let text = scene::sketch(&args.terrain, &out)?;
-    std::fs::write(&out, text).map_err(Error::file("write", &out))?;
+    file::write(&out, text.as_bytes())?;
     let quoted = words::quoted(&out.to_string_lossy());
     Ok(say(format!(
         "{} written\nfill in [grounds.slope] (`rockfall grounds` lists values), check [rocks] and [release]; then: rockfall plan {quoted}",

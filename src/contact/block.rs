@@ -205,3 +205,18 @@ fn crossing((p, e): (Vec3, Vec3), (a, f): (Vec3, Vec3)) -> Option<(f64, f64)> {
     }
     Some(((ef * fw - ew) / across, (ee * fw - ef * ew) / across))
 }
+
+/// Keeps the `most` contacts that span most: the deepest, then always the one farthest from those kept.
+pub(crate) fn keep_widest(touches: &mut Vec<BlockTouch>, most: usize) {
+    let deepest = (0..touches.len()).min_by(|&i, &j| touches[i].gap_m.total_cmp(&touches[j].gap_m));
+    touches.swap(0, deepest.unwrap_or(0));
+    for kept in 1..most {
+        let apart = |k: usize| {
+            let to = |other: &BlockTouch| (other.lever - touches[k].lever).norm();
+            touches[..kept].iter().map(to).fold(f64::INFINITY, f64::min) - touches[k].gap_m.max(0.0)
+        };
+        let next = (kept..touches.len()).max_by(|&i, &j| apart(i).total_cmp(&apart(j)));
+        touches.swap(kept, next.unwrap_or(kept));
+    }
+    touches.truncate(most);
+}

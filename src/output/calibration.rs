@@ -1,8 +1,9 @@
 //! What a calibration found: every trial as a row, the result as JSON.
 
-use super::atomic_file::{read_json, write_atomic, write_json};
+use super::atomic_file::{read_json, write_json};
 use crate::calibrate::{Calibration, Ends, Trial};
 use crate::error::{Error, Result};
+use crate::file::write_atomic;
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -1,12 +1,14 @@
 //! What a result folder holds already, and whether a run may use it.
 
 use super::annual::FREQUENCY;
-use super::atomic_file::{final_path, write_atomic};
+use super::atomic_file::final_path;
 use super::lock::FolderLock;
 use super::progress::{Identity, PROGRESS, Progress};
+use super::removal::{remove, remove_all};
 use super::summary::{SUMMARY, Summary};
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, RunInfo, TABLES, maps};
 use crate::error::{Error, Result};
+use crate::file::{part_of, write_atomic};
 use std::ffi::OsStr;
 use std::fs;
 use std::io::ErrorKind;
@@ -218,28 +220,11 @@ fn clear(dir: &Path) -> Result<()> {
         name.is_some_and(|name| name == DRAWN || drawn.iter().any(|known| known == name))
     })?;
     remove_all(&dir.join(maps::FOLDER), maps::is_result)?;
-    FILES.iter().try_for_each(|name| remove(&dir.join(name)))
+    FILES.iter().try_for_each(|name| remove(&dir.join(name)))?;
+    remove_parts(dir)
 }
 
-/// Removes the files of a folder that are `unwanted`; there need be no such folder.
-pub(super) fn remove_all(folder: &Path, unwanted: impl Fn(&Path) -> bool) -> Result<()> {
-    let entries = match fs::read_dir(folder) {
-        Err(why) if why.kind() == ErrorKind::NotFound => return Ok(()),
-        entries => entries.map_err(Error::file("read", folder))?,
-    };
-    for entry in entries {
-        let path = entry.map_err(Error::file("read", folder))?.path();
-        if unwanted(&path) {
-            remove(&path)?;
-        }
-    }
-    Ok(())
-}
-
-/// Removes a file if it is there.
-pub(super) fn remove(path: &Path) -> Result<()> {
-    match fs::remove_file(path) {
-        Err(why) if why.kind() != ErrorKind::NotFound => Err(Error::file("remove", path)(why)),
-        _ => Ok(()),
-    }
+/// Removes what is left of files that were being written when a run was killed.
+pub(super) fn remove_parts(dir: &Path) -> Result<()> {
+    FILES.iter().chain([&PROGRESS]).try_for_each(|name| remove(&part_of(&dir.join(name))))
 }

@@ -1,7 +1,8 @@
 //! Rasters in plan view: ESRI ASCII grids for every editor, GeoTIFF for every GIS.
 
-use super::atomic_file::{final_path, write_atomic};
+use super::atomic_file::final_path;
 use crate::error::{Error, Result};
+use crate::file::write_atomic;
 use crate::frequency::Weights;
 use crate::hazard::{Asked, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
 use crate::terrain::geotiff::{Image, encode};
@@ -176,7 +177,7 @@ fn is_of_year(stem: &str) -> bool {
 /// Removes the states of all other moments, whole or not: a run that was killed may have left some.
 pub(super) fn keep_state(dir: &Path, done: Option<usize>) -> Result<()> {
     let kept = done.map(|done| state_path(dir, done));
-    super::folder::remove_all(&dir.join(FOLDER), |path| {
+    super::removal::remove_all(&dir.join(FOLDER), |path| {
         let whole = final_path(path);
         let is_state = whole.extension().is_some_and(|ending| ending == STATE);
         is_state && is_result(path) && Some(whole) != kept

@@ -1,9 +1,9 @@
 //! What a run started from, for a GIS: the ground as it was used, and the places that the scene names.
 
-use super::atomic_file::write_atomic;
 use super::maps::FOLDER;
 use super::vector::Features;
 use crate::error::{Error, Result};
+use crate::file::write_atomic;
 use crate::plan::{Part, Plan};
 use crate::release::{Releases, Where};
 use crate::scene::{Area, BarrierTable, Corner, Polyline, Zone, ZonePlace};

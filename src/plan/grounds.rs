@@ -122,5 +122,6 @@ pub(super) fn between_rocks(scene: &Scene) -> Option<Ground> {
         rolling_friction: 0.0,
         roughness_rad: 0.0,
         roughness_length_m: None,
+        slip_friction: None,
     })
 }

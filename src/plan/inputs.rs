@@ -52,6 +52,15 @@ fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, Strin
     say("rolling friction", ground.rolling_friction.as_ref(), "");
     say("roughness", ground.roughness_deg.as_ref(), "°");
     say("roughness length", ground.roughness_length_m.as_ref(), "m");
+    if let Some(soil) = &ground.slip_friction {
+        parts.push(format!(
+            "friction of blocks grows with slip to {}, κ {} 1/m, forgotten with {} 1/s",
+            soil.most, soil.kappa_per_m, soil.beta_per_s
+        ));
+    }
+    let mut say = |name: &str, value: Option<&Distribution>, unit: &str| {
+        parts.extend(value.map(|value| format!("{name} {}", words(value, unit))));
+    };
     say("gives way above", ground.breaks_above_j.as_ref(), " J");
     if let Some(known) = ground.like.as_deref().and_then(known_ground) {
         parts.push(format!("like {}", known.name));

@@ -118,7 +118,10 @@ impl Plan {
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.lines("rolling stops", rolling_stops.iter().cloned());
-        list.part("roughness", roughness, |()| "drawn at every impact".to_owned());
+        list.part("roughness", roughness, |()| {
+            "a facet at every impact, and after every roughness length of sliding or rolling"
+                .to_owned()
+        });
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
             let how = if step.scheme.has_springs() {

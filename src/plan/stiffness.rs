@@ -124,6 +124,7 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
             rolling_friction: 0.0,
             roughness_rad: 0.0,
             roughness_length_m: None,
+            slip_friction: None,
         };
         let damping = Damping::of(ground.restitution);
         Law::new(&ground, &damping, &rock, &capture).capture_m_s

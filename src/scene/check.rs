@@ -142,7 +142,11 @@ pub(super) fn check_names(tables: &[(&str, Vec<&str>)]) -> Checked {
                 known.push(name);
                 continue;
             };
-            return Err(Complaint::about("name", wrong).in_entry(index).inside(table));
+            let found = format!("found {name:?}");
+            return Err(Complaint::about("name", wrong)
+                .finding(found)
+                .in_entry(index)
+                .inside(table));
         }
     }
     Ok(())

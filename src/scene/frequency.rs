@@ -3,6 +3,7 @@
 use super::check::{Allowed, Checked, Complaint, number, optional};
 use super::matrix::MatrixEntry;
 use super::places::{Area, Point, Polyline};
+use super::sizes::{COUNTABLE, STEEPEST, VOLUMES_M3, are_volumes, positive_list};
 use super::zone_sources::CommonSizes;
 use super::zones::Zones;
 use crate::frequency::{Class, Frequency, Law, Source};
@@ -84,10 +85,6 @@ struct LawKeys<'a> {
 const RETURN_PERIODS_YEARS: [f64; 4] = [30.0, 100.0, 300.0, 1000.0];
 /// Energies unless the scene names others (J): the limits of the classes of the intensity map.
 const ENERGIES_J: [f64; 2] = [30e3, 300e3];
-/// Largest exponent (–): measured ones are below 2, and far steeper laws have one size only.
-pub(super) const STEEPEST: f64 = 20.0;
-/// What rates must be.
-pub(super) const COUNTABLE: &str = "write rates, exponent and volumes that make 1e-120 to 1e12 events a year in every class of size";
 const LAW: &str = "write per_year = … (sizes as [rocks] radius_m has them), or per_year_at_1m3, exponent and volume_m3, or classes";
 
 impl FrequencyTable {
@@ -294,15 +291,6 @@ fn classes_law(classes: &[ClassTable]) -> Result<Law, Complaint> {
     Ok(Law::Classes(classes.iter().map(class).collect()))
 }
 
-/// Volumes of blocks (m³) that a run can follow, from a pebble to a hillside.
-pub(super) const VOLUMES_M3: [f64; 2] = [1e-6, 1e6];
-
-/// Whether two volumes (m³) rise and can be followed.
-pub(super) fn are_volumes([least, largest]: [f64; 2], may_be_equal: bool) -> bool {
-    let rise = least < largest || may_be_equal && least <= largest;
-    rise && least >= VOLUMES_M3[0] && largest <= VOLUMES_M3[1]
-}
-
 fn volumes(key: &str, range: [f64; 2], may_be_equal: bool) -> Checked {
     if are_volumes(range, may_be_equal) {
         return Ok(());
@@ -310,10 +298,6 @@ fn volumes(key: &str, range: [f64; 2], may_be_equal: bool) -> Checked {
     let [low, high] = VOLUMES_M3;
     let remedy = format!("write smallest and largest volume, from {low:e} to {high:e} m³");
     Err(Complaint::about(key, remedy))
-}
-
-pub(super) fn positive_list(key: &str, list: Option<&[f64]>) -> Checked {
-    list.unwrap_or_default().iter().try_for_each(|value| number(key, *value, Allowed::Positive, ""))
 }
 
 fn pair<'de, D: Deserializer<'de>>(from: D) -> Result<Option<[f64; 2]>, D::Error> {

@@ -1,10 +1,11 @@
 //! `[grounds.NAME]`.
 
 use super::catalogue::{CATALOGUE, known_ground};
-use super::check::{Allowed, Checked, Complaint, drawn, suggest};
+use super::check::{Allowed, Checked, Complaint, drawn, number, suggest};
+use crate::ground::SlipFriction;
 use crate::random::Distribution;
 use crate::solver::Scheme;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 /// How one ground answers a rock; every value may be a distribution, drawn once per release.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -28,6 +29,9 @@ pub struct GroundTable {
     pub roughness_deg: Option<Distribution>,
     /// Way over which one tilted facet of a rough ground reaches (m), positive; absent = the radius of the rock.
     pub roughness_length_m: Option<Distribution>,
+    /// Of blocks: friction that grows with the way slipped, from that of the friction angle; absent = Coulomb's.
+    #[serde(default, deserialize_with = "slip_friction")]
+    pub slip_friction: Option<SlipFriction>,
     /// Trees only: energy that a stem takes before it gives way to a rock (J), positive; absent = it stands for good.
     pub breaks_above_j: Option<Distribution>,
 }
@@ -64,6 +68,12 @@ impl GroundTable {
             ("roughness_length_m", &self.roughness_length_m, Allowed::Positive),
             ("breaks_above_j", &self.breaks_above_j, Allowed::Positive),
         ];
+        if let Some(soil) = &self.slip_friction {
+            number("max", soil.most, Allowed::Positive, "")
+                .and_then(|()| number("kappa_per_m", soil.kappa_per_m, Allowed::Positive, ""))
+                .and_then(|()| number("beta_per_s", soil.beta_per_s, Allowed::NotNegative, ""))
+                .map_err(|complaint| complaint.inside("slip_friction"))?;
+        }
         for (key, value, allowed) in may_be_absent {
             if let Some(value) = value {
                 drawn(key, value, allowed, "")?;
@@ -102,4 +112,19 @@ pub(super) const TANGENTIAL: Allowed = Allowed::Between(1e-3, 10.0);
 
 fn stiffness(key: &str, value: &Distribution) -> Checked {
     drawn(key, value, Allowed::Positive, "rock is near 1e9")
+}
+
+/// `slip_friction = { max = …, kappa_per_m = …, beta_per_s = … }`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table { max, kappa_per_m, beta_per_s }")]
+struct SlipTable {
+    max: f64,
+    kappa_per_m: f64,
+    beta_per_s: f64,
+}
+
+fn slip_friction<'de, D: Deserializer<'de>>(from: D) -> Result<Option<SlipFriction>, D::Error> {
+    SlipTable::deserialize(from).map(|SlipTable { max, kappa_per_m, beta_per_s }| {
+        Some(SlipFriction { most: max, kappa_per_m, beta_per_s })
+    })
 }

@@ -1,7 +1,7 @@
 //! `[frequency.matrix]`: levels of hazard by the energy of each return period.
 
 use super::check::{Checked, Complaint};
-use super::frequency::positive_list;
+use super::sizes::positive_list;
 use serde::Deserialize;
 
 /// Levels of hazard as they are written: a table of the scene's own, or one of [`MATRICES`] by its name.

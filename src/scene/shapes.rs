@@ -1,7 +1,7 @@
 //! `[[rocks.shapes]]`, `[release] orientation`, and what goes with blocks.
 
-use super::Scene;
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
+use super::{GroundTable, Scene};
 use crate::body::{SHARPEST, ShapeKind, most_corners};
 use crate::random::Distribution;
 use serde::Deserialize;
@@ -161,6 +161,13 @@ impl Scene {
                 return Err(Complaint::about("orientation", remedy).inside("release"));
             }
         }
+        let all_blocks = self.has_blocks()
+            && self.rocks.shapes.iter().all(|shape| shape.kind != ShapeKind::Sphere);
+        let slips = |(_, ground): &(&String, &GroundTable)| ground.slip_friction.is_some();
+        if let Some((name, _)) = self.grounds.iter().find(slips).filter(|_| !all_blocks) {
+            let remedy = "remove it, or let all rocks be blocks of [[rocks.shapes]]: friction that grows with slip is computed for blocks only, as yet";
+            return Err(Complaint::about("slip_friction", remedy).inside(name).inside("grounds"));
+        }
         if !self.has_blocks() {
             return Ok(());
         }
@@ -188,11 +195,6 @@ impl Scene {
                     "rolling_friction",
                     above_0(&ground.rolling_friction),
                     "write rolling_friction = 0.0: how a block rolls is its shape, which [[rocks.shapes]] computes",
-                ),
-                (
-                    "roughness_deg",
-                    above_0(&ground.roughness_deg),
-                    "remove it: the tilt of a facet is computed for spheres only, as yet; blocks are deflected by their corners",
                 ),
                 (
                     "breaks_above_j",

@@ -1,8 +1,8 @@
 //! Zones of release that are sources: each releases rocks as often as its properties say.
 
 use super::check::{Checked, Complaint};
-use super::frequency::{COUNTABLE, STEEPEST, VOLUMES_M3, are_volumes};
 use super::refusal::Refusal;
+use super::sizes::{COUNTABLE, STEEPEST, VOLUMES_M3, are_volumes};
 use super::zones::{Zone, Zones};
 use super::{FrequencyTable, Scene};
 use crate::error::{Error, Flaw};

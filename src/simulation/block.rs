@@ -1,20 +1,23 @@
 //! The recorder of a block: tumble, touch, step, stop. Scheme `rigid` only.
 
-use super::driver::RunSettings;
 use super::form::{Form, Turned};
 use super::impacts::Struck;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
+use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
 use crate::flight::block::{Tumble, first_touch};
 use crate::flight::top::Top;
 use crate::flight::{FlightEnd, Parabola};
 use crate::ground::Law;
+use crate::random::RandomStream;
 use crate::release::{Drawn, Release};
 use crate::rock::{Motion, Vec3};
-use crate::solver::block::{Footing, Moving, law_body};
+use crate::solver::block::{Footing, Moving};
+use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::roughness::Facets;
 
 /// One block on its way.
 struct Roll<'a> {
@@ -31,18 +34,20 @@ pub(super) fn follow_block(
     settings: &RunSettings,
     (release, drawn): (&Release, &Drawn),
     keep: Keep,
-    laws: &[Law],
+    (laws, random): (&[Law], RandomStream),
     footing: &mut Footing,
 ) -> Trajectory {
     let block = &drawn.block;
     let world = ContactEnvironment {
         terrain: settings.terrain,
-        body: law_body(block, settings.gravity_m_s2),
+        body: Body::of_block(block, settings.gravity_m_s2),
         laws,
     };
     footing.near.forget();
     footing.near.gone.clear();
     (footing.near.tested, footing.sweeps) = (0, 0);
+    footing.facets = Facets::of(random);
+    footing.slip.begin(&release.grounds);
     let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
     let form = Form { rock: release.rock, block: Some(block) };
     let turned = turned(block, &moving);
@@ -86,6 +91,7 @@ impl Roll<'_> {
         let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
         self.recorder.effort.leaps += 1;
         self.recorder.fly(&path, Some(&top), dt);
+        self.footing.slip.fly(dt);
         self.moving.pose = tumble.pose(dt);
         self.moving.v = self.recorder.now.velocity_m_s;
         stop.or_else(|| self.over_budget())

@@ -1,7 +1,6 @@
 //! Which cells of the maps a rock passes, with its largest energy and height in each.
 
-use super::form::{Form, Instant, Turned};
-use super::recorder::between;
+use super::form::{Form, Instant, Turned, between};
 use crate::flight::Parabola;
 use crate::plan::MapGrid;
 use crate::rock::{Motion, Vec3};

@@ -1,7 +1,6 @@
 //! Where a rock passes evaluation lines: exact on the parabola of a flight and on the cubic of a step.
 
-use super::form::{Form, Instant, Turned};
-use super::recorder::between;
+use super::form::{Form, Instant, Turned, between};
 use crate::flight::Parabola;
 use crate::math;
 use crate::plan::{EvaluationLine, Footprint, Piece};

@@ -4,48 +4,30 @@ use super::block::follow_block;
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
-use super::roughness::Roughness;
-use super::trees::StemLoad;
+use super::rock_in_contact::RockInContact;
+use super::settings::RunSettings;
 use super::{Stop, Trajectory};
 use crate::error::Result;
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
-use crate::plan::{PATH_STEP_S, Part, Plan, Recorders, RestRule};
+use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
 use crate::release::{Drawn, Release};
 use crate::rock::Motion;
 use crate::solver::block::Footing;
-use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
-use crate::solver::law::Body;
-use crate::solver::{self, Settings, Stepper};
+use crate::solver::body::Body;
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::loss::Loss;
+use crate::solver::roughness::Facets;
+use crate::solver::{self, Stepper};
 use crate::stopwatch::{Piece, Stopwatches};
-use crate::terrain::Terrain;
-use std::f64::consts::PI;
 use std::ops::Range;
-
-/// What all rocks of a scene have in common.
-#[derive(Debug, Clone, Copy)]
-pub struct RunSettings<'a> {
-    /// The meshes.
-    pub terrain: &'a Terrain,
-    /// Gravity (m/s²).
-    pub gravity_m_s2: f64,
-    /// The step.
-    pub step: &'a Settings,
-    /// When a rock is at rest.
-    pub rest: RestRule,
-    /// Simulated time after which a rock is out of time (s).
-    pub longest_s: f64,
-    /// Evaluation lines and map cells.
-    pub recorders: Recorders<'a>,
-}
 
 /// Work space of one thread; nothing of one rock is left for the next.
 #[derive(Debug, Default)]
 pub struct Scratch {
     state: ContactState,
     footing: Footing,
-    load: StemLoad,
     laws: Vec<Law>,
     /// Dashpots of the grounds of the rock before: most scenes never change them.
     damping: Vec<Damping>,
@@ -77,21 +59,19 @@ impl Scratch {
     }
 }
 
-/// An impact is over after so many contact times (–), whether the rock has left or not.
-pub(super) const IMPACT_TIMES: f64 = 3.0;
-
 /// Follows one rock from its release to its stop.
 pub fn simulate(
     settings: &RunSettings,
     release: &Release,
     keep: Keep,
-    random: &mut RandomStream,
+    random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, &capture_of(settings));
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
-    scratch.load.begin(settings.terrain, &mut scratch.state.near.gone, random);
+    scratch.state.raise_stems(settings.terrain, &random);
+    scratch.state.facets = Facets::of(random);
     let world = ContactEnvironment {
         terrain: settings.terrain,
         body: Body::new(&release.rock, settings.gravity_m_s2),
@@ -101,9 +81,6 @@ pub fn simulate(
         settings,
         world,
         state: &mut scratch.state,
-        load: &mut scratch.load,
-        random,
-        roughness: Roughness::default(),
         recorder: Recorder::new(
             settings.terrain,
             Form { rock: release.rock, block: None },
@@ -127,10 +104,12 @@ pub fn simulate_block(
     settings: &RunSettings,
     (release, drawn): (&Release, &Drawn),
     keep: Keep,
+    random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, &capture_of(settings));
-    follow_block(settings, (release, drawn), keep, &scratch.laws, &mut scratch.footing)
+    let Scratch { laws, footing, .. } = scratch;
+    follow_block(settings, (release, drawn), keep, (laws, random), footing)
 }
 
 fn capture_of(settings: &RunSettings) -> Capture {
@@ -159,27 +138,13 @@ pub fn simulate_release(
     };
     let keep = kept(plan, index, paths);
     let settings = RunSettings::of(plan);
+    let random = stream(plan.seed, Purpose::Impacts, index);
     let fallen = if let Some(drawn) = plan.releases.block(index, &release.rock) {
-        simulate_block(&settings, (&release, &drawn), keep, scratch)
+        simulate_block(&settings, (&release, &drawn), keep, random, scratch)
     } else {
-        let mut random = stream(plan.seed, Purpose::Impacts, index);
-        simulate(&settings, &release, keep, &mut random, scratch)
+        simulate(&settings, &release, keep, random, scratch)
     };
     Ok(Trajectory { index, ..fallen })
-}
-
-impl<'a> RunSettings<'a> {
-    /// What the rocks of a plan have in common.
-    pub fn of(plan: &'a Plan) -> Self {
-        Self {
-            terrain: &plan.terrain,
-            gravity_m_s2: plan.gravity_m_s2,
-            step: &plan.step,
-            rest: plan.rest,
-            longest_s: plan.longest_s,
-            recorders: plan.recorders(),
-        }
-    }
 }
 
 /// What to keep of release `index`: a path for the plan's first releases and for `paths`.
@@ -197,13 +162,10 @@ pub(super) struct Fall<'a> {
     pub(super) settings: &'a RunSettings<'a>,
     pub(super) world: ContactEnvironment<'a>,
     pub(super) state: &'a mut ContactState,
-    pub(super) load: &'a mut StemLoad,
-    pub(super) random: &'a mut RandomStream,
-    pub(super) roughness: Roughness,
     pub(super) recorder: Recorder<'a>,
 }
 
-impl Fall<'_> {
+impl<'a> Fall<'a> {
     /// Whether the rock is in contact with something it is pressed into.
     fn is_pressed(&mut self) -> bool {
         let now = self.recorder.now;
@@ -254,7 +216,7 @@ impl Fall<'_> {
     fn touch(&mut self) -> Option<Stop> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
         self.state.begin(&self.world, c, v, w);
-        self.announce();
+        self.in_contact().announce();
         let before_j = self.total_j();
         let lost_before_j = self.recorder.lost_j();
         // those of the look that `begin` has just taken
@@ -270,7 +232,7 @@ impl Fall<'_> {
         self.recorder.ledger.rise_j =
             self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
         self.recorder.end_impacts(|_| false, || 0.0);
-        self.leave_facet();
+        self.in_contact().leave_facet();
         stop
     }
 
@@ -289,20 +251,21 @@ impl Fall<'_> {
         let mut calm = RestCriterion::from(self.state.c);
         loop {
             let left = self.settings.longest_s - self.recorder.now.time_s;
-            self.strike();
-            let most = left.min(self.longest_before_yield_s());
-            let done = match solver::advance(stepper, &self.world, self.state, most) {
+            let most = left.min(self.in_contact().before_step());
+            let mut done = match solver::advance(stepper, &self.world, self.state, most) {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
             // before its losses are paid, and with the speed before
-            self.announce();
+            self.in_contact().announce();
             let effort = &mut self.recorder.effort;
             effort.steps += done.steps;
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
+            if self.state.bend(&self.world, &mut done.loss) {
+                *stepper = Stepper::new(self.settings.step, &self.world, self.state);
+            }
             self.recorder.pay(&done.loss, 1.0);
-            self.bend(done.loss.trees, stepper);
             let to = Motion {
                 time_s: self.recorder.now.time_s + done.dt,
                 position_m: self.state.c,
@@ -312,11 +275,7 @@ impl Fall<'_> {
             let slides = self.state.histories.iter().any(|history| history.slides);
             let begun = self.state.stopwatches.now();
             self.recorder.step(to, slides);
-            // a blow of the rigid limit is announced first and falls with the next step
-            if !(self.is_rigid() && self.state.is_struck) {
-                self.end_impacts();
-                self.leave_facet_in_time();
-            }
+            self.in_contact().end_impacts();
             self.state.stopwatches.stop(Piece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.over_budget());
@@ -333,15 +292,11 @@ impl Fall<'_> {
         }
     }
 
-    /// The longest an impact is taken to last (s): in the rigid limit no time at all.
-    pub(super) fn impact_time(&self) -> f64 {
-        if self.is_rigid() {
-            return 0.0;
-        }
-        let omegas =
-            self.state.histories.iter().map(|history| self.world.law(history.triangle).omega);
-        let slowest = omegas.fold(f64::INFINITY, f64::min);
-        IMPACT_TIMES * PI / slowest
+    /// The rock and its notes.
+    fn in_contact(&mut self) -> RockInContact<'_, 'a> {
+        let has_springs = !self.is_rigid();
+        let Self { world, state, recorder, .. } = self;
+        RockInContact { world: *world, state, recorder, has_springs }
     }
 
     /// Mechanical energy of the rock in contact (J), weight included.

@@ -88,3 +88,17 @@ impl Form<'_> {
         at.turned.map_or_else(|| at.motion.rotational_j(&self.rock), |turned| turned.rotational_j)
     }
 }
+
+/// The motion a share `s` of a step after its start: cubic in position, linear in velocity and spin.
+pub(super) fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
+    let dt = to.time_s - from.time_s;
+    let way = to.position_m - from.position_m;
+    let (v0, v1) = (from.velocity_m_s * dt - way, to.velocity_m_s * dt - way);
+    let bend = (v0 * (1.0 - s) - v1 * s) * (s * (1.0 - s));
+    Motion {
+        time_s: from.time_s + s * dt,
+        position_m: from.position_m + way * s + bend,
+        velocity_m_s: from.velocity_m_s.lerp(&to.velocity_m_s, s),
+        spin_rad_s: from.spin_rad_s.lerp(&to.spin_rad_s, s),
+    }
+}

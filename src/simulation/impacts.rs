@@ -4,12 +4,10 @@
 //! end and its own speed after it. What is lost while several are in hand is shared by the squares of their approach speeds,
 //! for the energy that each would bring to rest. A patch that opens for an instant and closes again is still the same impact.
 
-use super::driver::Fall;
 use super::{FeatureKind, Impact};
 use crate::contact::MOST;
-use crate::contact::history::{ContactHistory, SAME_GRIP};
+use crate::contact::history::SAME_GRIP;
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactState;
 
 /// A patch struck again so soon after it has let go (s) is the same impact: its springs opened for an instant, or the rock went
 /// on over the side of a triangle.
@@ -183,73 +181,5 @@ impl Impacts {
         for place in &mut self.hand.list {
             place.take_if(|impact| impact.over_s.is_some());
         }
-    }
-}
-
-impl Fall<'_> {
-    /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
-    pub(super) fn announce(&mut self) {
-        let is_known = |history: &ContactHistory| history.announced;
-        if self.state.struck.is_empty() && self.state.histories.iter().all(is_known) {
-            return;
-        }
-        let known = self.state.histories.iter().filter(|history| history.announced);
-        let held_j = ContactState::held_j(&self.world, known);
-        let mut fastest: Option<(f64, Vec3, u32)> = None;
-        let mut see = |history: &mut ContactHistory, fall: &mut Self| {
-            history.announced = true;
-            if history.captured {
-                return;
-            }
-            history.impact = fall.begin_impact(history, held_j);
-            let speed = -history.n.dot(&fall.recorder.now.velocity_m_s);
-            if speed > fastest.map_or(0.0, |(known, ..)| known) {
-                fastest = Some((speed, history.n, history.triangle));
-            }
-        };
-        for k in 0..self.state.histories.len() {
-            let mut history = self.state.histories[k];
-            if !history.announced {
-                see(&mut history, self);
-                self.state.histories[k] = history;
-            }
-        }
-        for k in 0..self.state.struck.len() {
-            let mut history = self.state.struck[k];
-            if !history.announced {
-                see(&mut history, self);
-                self.state.struck[k] = history;
-            }
-        }
-        if let Some((_, normal, triangle)) = fastest {
-            let until_s = self.recorder.now.time_s + self.impact_time();
-            self.meet_facet(normal, triangle, until_s);
-        }
-    }
-
-    /// Begins the impact of a contact, unless it came too slowly for one (0); `held_j` is what other springs hold.
-    pub(super) fn begin_impact(&mut self, history: &ContactHistory, held_j: f64) -> u32 {
-        let approach_m_s = -history.n.dot(&self.recorder.now.velocity_m_s);
-        if approach_m_s < self.world.law(history.triangle).capture_m_s {
-            return 0;
-        }
-        let struck = Struck {
-            point_m: self.state.c - history.n * self.world.body.radius,
-            normal: history.n,
-            feature: history.feature.kind,
-            sheet: self.recorder.sheet_of(history.triangle),
-            approach_m_s,
-        };
-        let until_s = self.recorder.now.time_s + self.impact_time();
-        self.recorder.begin_impact(&struck, until_s, held_j)
-    }
-
-    /// Ends the impacts whose patch has let go or whose time is up.
-    pub(super) fn end_impacts(&mut self) {
-        let (world, histories) = (&self.world, &self.state.histories);
-        self.recorder.end_impacts(
-            |number| histories.iter().any(|history| history.impact == number),
-            || ContactState::held_j(world, histories.iter()),
-        );
     }
 }

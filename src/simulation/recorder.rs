@@ -2,7 +2,7 @@
 
 use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
-use super::form::{Form, Instant, Turned};
+use super::form::{Form, Instant, Turned, between};
 use super::impacts::{Impacts, ImpactsMark, Struck};
 use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
 use crate::flight::Parabola;
@@ -10,7 +10,7 @@ use crate::flight::top::Top;
 use crate::plan::Recorders;
 use crate::release::Release;
 use crate::rock::Motion;
-use crate::solver::contact_state::Loss;
+use crate::solver::loss::Loss;
 use crate::terrain::Terrain;
 
 /// What to keep of a rock's way.
@@ -291,19 +291,5 @@ impl<'a> Recorder<'a> {
     fn lost_to_mesh_j(&self) -> f64 {
         let ledger = &self.ledger;
         ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
-    }
-}
-
-/// The motion a share `s` of a step after its start: cubic in position, linear in velocity and spin.
-pub(super) fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
-    let dt = to.time_s - from.time_s;
-    let way = to.position_m - from.position_m;
-    let (v0, v1) = (from.velocity_m_s * dt - way, to.velocity_m_s * dt - way);
-    let bend = (v0 * (1.0 - s) - v1 * s) * (s * (1.0 - s));
-    Motion {
-        time_s: from.time_s + s * dt,
-        position_m: from.position_m + way * s + bend,
-        velocity_m_s: from.velocity_m_s.lerp(&to.velocity_m_s, s),
-        spin_rad_s: from.spin_rad_s.lerp(&to.spin_rad_s, s),
     }
 }

@@ -13,19 +13,22 @@ mod body;
 mod prediction;
 mod cached_pairs;
 
-use super::driver::{RunSettings, kept};
+use super::driver::kept;
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
+use super::settings::RunSettings;
 use super::{Stop, Trajectory};
 use crate::contact::pair::{Bond, PairHistory, Strength, between};
 use crate::error::{Error, Result};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::plan::{Part, Plan};
+use crate::random::{Purpose, stream};
 use crate::release::Release;
 use crate::rock::Vec3;
+use crate::solver::body::Body;
 use crate::solver::island::{BodySlot, IslandBody};
-use crate::solver::law::Body;
+use crate::solver::roughness::Facets;
 use bodies::BodyWorld;
 pub use statistics::WorldStats;
 use std::ops::Range;
@@ -141,7 +144,13 @@ pub fn simulate_world(
     let bodies = releases
         .iter()
         .enumerate()
-        .map(|(k, release)| Some(Box::new(body(settings, release, keep(k), &mut damping))))
+        .map(|(k, release)| {
+            let mut body = body(settings, release, keep(k), &mut damping);
+            let random = stream(settings.seed, Purpose::Impacts, k);
+            body.member.state.raise_stems(settings.terrain, &random);
+            body.member.state.facets = Facets::of(random);
+            Some(Box::new(body))
+        })
         .collect();
     let mut world = BodyWorld::new(settings, material, bodies);
     world.bond(material);

@@ -8,20 +8,21 @@
 //! Restitution is Newton's, contact by contact. With friction and several contacts that rule can gain energy (Glocker 2013); where it
 //! would, all restitutions are lowered together until it does not.
 
+mod slip;
 mod solve;
 
-use super::contact_state::Loss;
 use super::environment::ContactEnvironment;
-use super::law::Body;
-use super::rigid::capture_m_s;
+use super::law::capture_m_s;
+use super::loss::Loss;
+use super::roughness::{Facets, Meeting};
 use crate::body::Block;
-use crate::contact::block::{BlockTouch, Pose, touches};
+use crate::contact::block::{BlockTouch, Pose, keep_widest, touches};
 use crate::contact::neighbours::Neighbours;
 use crate::flight::block::Tumble;
 use crate::flight::top::{Top, spin_of};
-use crate::ground::Law;
 use crate::rock::{Motion, Vec3};
 use nalgebra::{Matrix3, Rotation3};
+pub(crate) use slip::Slip;
 use solve::{Contact, Mass, solve};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
@@ -58,6 +59,10 @@ pub(crate) struct Footing {
     pub(crate) near: Neighbours,
     pub(crate) touches: Vec<BlockTouch>,
     contacts: Vec<Contact>,
+    /// The facets it meets on rough ground.
+    pub(crate) facets: Facets,
+    /// How far it has slipped.
+    pub(crate) slip: Slip,
     /// Passes over the contacts.
     pub(crate) sweeps: u64,
 }
@@ -149,7 +154,7 @@ impl Footing {
         }
         touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
         if self.touches.len() > MOST {
-            keep_widest(&mut self.touches);
+            keep_widest(&mut self.touches, MOST);
         }
     }
 
@@ -182,16 +187,21 @@ impl Footing {
         if !self.touching(block).any(|touch| approach(touch) > STILL_M_S) {
             return None;
         }
+        let facet = self.facet(world, block, moving);
+        let tilted = |touch: &BlockTouch| BlockTouch {
+            normal: facet.map_or(touch.normal, |turn| turn * touch.normal),
+            ..*touch
+        };
         let wanted: Vec<(Contact, f64)> = self
             .touching(block)
             .map(|touch| {
-                let law = world.law(touch.triangle);
+                let (law, touch) = (world.law(touch.triangle), &tilted(touch));
                 let back = if Self::is_struck(world, (block, moving), touch) {
                     law.restitution * approach(touch)
                 } else {
                     0.0
                 };
-                (contact(&mass, touch, law, Vec3::zeros()), back)
+                (self.contact(world, (&mass, touch), 0.0, Vec3::zeros()), back)
             })
             .collect();
         let before_j = moving.motion_j(block);
@@ -216,7 +226,7 @@ impl Footing {
         let after = (&thrown.v, &thrown.spin(block));
         let loss = self.booked(world, [(&v, &w), after], before_j - thrown.motion_j(block));
         *moving = thrown;
-        hold_energy(block, moving, before_j);
+        hold_energy(block, moving, [before_j, 0.0]);
         Some(loss)
     }
 
@@ -260,16 +270,19 @@ impl Footing {
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
+        let slip_m_s = self.slip_m_s(block, &start);
         for touch in &self.touches {
             let goal = goal(block, (&start, moving), touch, dt);
-            self.contacts.push(contact(&mass, touch, world.law(touch.triangle), goal));
+            let ahead_m = 0.5 * dt * slip_m_s;
+            self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }
         let settled = solve(&mass, &mut self.contacts, (v + weight, w), &mut self.sweeps);
         moving.v += weight;
         moving.take(&self.contacts, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives
-        let most_j = before_j + 0.5 * block.mass_kg * weight.dot(&(v + moving.v));
-        let lost_j = most_j - moving.motion_j(block);
+        let most_j = [&v, &moving.v].map(|v| 0.5 * block.mass_kg * weight.dot(v));
+        let most_j = [before_j + most_j[0], most_j[1]];
+        let lost_j = most_j[0] + most_j[1] - moving.motion_j(block);
         let after = (&moving.v, &moving.spin(block));
         let loss = self.booked(world, [(&v, &w), after], lost_j);
         hold_energy(block, moving, most_j);
@@ -277,17 +290,44 @@ impl Footing {
         moving.drift(block, 0.5 * dt);
         self.look(world, block, &moving.pose, AHEAD * block.ball_m);
         let slides = self.slides(block, moving);
+        let slipped_m = 0.5 * dt * (slip_m_s + self.slip_m_s(block, moving));
+        let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
+        self.slip.grow(slipped_m, on);
         let is_free = !self.holds(world, (block, moving), pushed);
         Stepped { dt, loss, slides, is_free, unsettled: !settled }
     }
 
+    /// The facet of rough ground that the fastest of the contacts that touch meets.
+    fn facet(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        moving: &Moving,
+    ) -> Option<Rotation3<f64>> {
+        let approach = |touch: &&BlockTouch| -touch.normal.dot(&moving.at(block, &touch.lever));
+        let fastest =
+            self.touching(block).max_by(|one, other| approach(one).total_cmp(&approach(other)))?;
+        let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
+        let v = moving.at(block, &fastest.lever);
+        self.facets.struck(world, &Meeting { n, triangle, c, v })
+    }
+
+    /// A contact at a touch, where the block will have slipped `ahead_m` (m) further.
+    fn contact(
+        &self,
+        world: &ContactEnvironment,
+        (mass, touch): (&Mass, &BlockTouch),
+        ahead_m: f64,
+        goal: Vec3,
+    ) -> Contact {
+        let law = world.law(touch.triangle);
+        let friction = self.slip.friction(world.ground_of(touch.triangle), law, ahead_m);
+        Contact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
+    }
+
     /// Whether a contact that touches slides.
     fn slides(&self, block: &Block, moving: &Moving) -> bool {
-        let speed = 1e-6 * (1.0 + moving.v.norm());
-        self.touching(block).any(|touch| {
-            let u = moving.at(block, &touch.lever);
-            (u - touch.normal * touch.normal.dot(&u)).norm() > speed
-        })
+        self.slip_m_s(block, moving) > 1e-6 * (1.0 + moving.v.norm())
     }
 
     /// Whether a contact still holds the block: it is near, and does not let go faster than its ground captures.
@@ -321,10 +361,6 @@ impl Footing {
     }
 }
 
-fn contact(mass: &Mass, touch: &BlockTouch, law: &Law, goal: Vec3) -> Contact {
-    Contact::new(mass, (touch.normal, touch.lever), (law.friction, touch.triangle), goal)
-}
-
 /// The velocity that a contact point seeks in the middle of a step: along the normal what ends the step at the surface, along the surface
 /// what ends it where it began, as far as turning has moved it.
 fn goal(block: &Block, (start, middle): (&Moving, &Moving), touch: &BlockTouch, dt: f64) -> Vec3 {
@@ -339,38 +375,17 @@ fn goal(block: &Block, (start, middle): (&Moving, &Moving), touch: &BlockTouch, 
     n * (out - up) - (turned - n * up)
 }
 
-/// Slows a block that has more energy of motion than `most_j`: moving out of what it was pressed into is paid by its motion.
-fn hold_energy(block: &Block, moving: &mut Moving, most_j: f64) {
+/// Slows a block that has more energy of motion than it had and its weight gives it (J): what it had with what its weight gave on
+/// the way that is behind it, and what it gives on the way to come, which is slowed too. Moving out of what it was pressed into is
+/// paid by its motion.
+fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: [f64; 2]) {
     let motion_j = moving.motion_j(block);
-    if motion_j > most_j && motion_j > 0.0 {
-        let kept = (most_j.max(0.0) / motion_j).sqrt();
+    if motion_j > had_j + comes_j && motion_j > 0.0 {
+        // motion k² = had + comes k
+        let root = (comes_j * comes_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
+        let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
         moving.v *= kept;
         moving.momentum *= kept;
-    }
-}
-
-/// Keeps the contacts that span most: the deepest, then always the one farthest from those kept.
-fn keep_widest(touches: &mut Vec<BlockTouch>) {
-    let deepest = (0..touches.len()).min_by(|&i, &j| touches[i].gap_m.total_cmp(&touches[j].gap_m));
-    touches.swap(0, deepest.unwrap_or(0));
-    for kept in 1..MOST {
-        let apart = |k: usize| {
-            let to = |other: &BlockTouch| (other.lever - touches[k].lever).norm();
-            touches[..kept].iter().map(to).fold(f64::INFINITY, f64::min) - touches[k].gap_m.max(0.0)
-        };
-        let next = (kept..touches.len()).max_by(|&i, &j| apart(i).total_cmp(&apart(j)));
-        touches.swap(kept, next.unwrap_or(kept));
-    }
-    touches.truncate(MOST);
-}
-
-/// The body of a block as the laws of grounds want it: mass and radius of the sphere of equal volume.
-pub(crate) fn law_body(block: &Block, gravity_m_s2: f64) -> Body {
-    Body {
-        mass: block.mass_kg,
-        inertia: block.inertia_kg_m2.iter().sum::<f64>() / 3.0,
-        radius: block.radius_m,
-        gravity: Vec3::new(0.0, 0.0, -gravity_m_s2),
     }
 }
 

@@ -1,58 +1,22 @@
 //! A rock in contact: its motion, what it remembers of its contacts, and the scratch space of its steps.
 
-use super::dda::DdaScratch;
+use super::body::Body;
+use super::dda_system::DdaScratch;
 pub use super::environment::ContactEnvironment;
-use super::explicit_impact::ExplicitImpact;
 use super::friction_rolling::Mode;
-use super::law::{Body, StageContact};
-use super::plane_kernel::PlaneKernel;
+use super::impact_progress::ImpactProgress;
+use super::law::StageContact;
+use super::loss::Loss;
+use super::plane_state::PlaneState;
+use super::roughness::{Facets, Tilt};
+use super::stem_load::StemLoad;
 use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
-use crate::contact::{ContactPoints, MOST};
+use crate::contact::{ContactPoints, MOST, TOUCH};
 use crate::rock::Vec3;
 use crate::stopwatch::{Piece, Stopwatches};
-
-/// Power that goes into contacts (W) by kind, or energy (J) once summed over time. What springs store is counted
-/// in; it is nothing once the contact is over.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Loss {
-    /// Sliding friction on the slope.
-    pub friction: f64,
-    /// Normal and shear dashpots on the slope.
-    pub damping: f64,
-    /// Rolling friction on the slope.
-    pub rolling: f64,
-    /// Everything in contacts with trees.
-    pub trees: f64,
-}
-
-impl Loss {
-    /// Adds `other` times `factor`.
-    #[inline]
-    pub fn add(&mut self, other: &Self, factor: f64) {
-        self.friction += factor * other.friction;
-        self.damping += factor * other.damping;
-        self.rolling += factor * other.rolling;
-        self.trees += factor * other.trees;
-    }
-
-    /// The same, booked under trees where the triangle is one's.
-    #[must_use]
-    #[inline]
-    pub fn on(self, world: &ContactEnvironment, triangle: u32) -> Self {
-        if world.terrain.is_tree(triangle) {
-            Self { trees: self.sum(), ..Self::default() }
-        } else {
-            self
-        }
-    }
-
-    /// All of it.
-    pub fn sum(&self) -> f64 {
-        self.friction + self.damping + self.rolling + self.trees
-    }
-}
+use nalgebra::Rotation3;
 
 /// Rates of change of a rock in contact.
 #[derive(Debug, Clone, Copy)]
@@ -126,11 +90,15 @@ pub struct ContactState {
     /// How many of them.
     pub contact_count: usize,
     /// The same of a rock on one plane.
-    pub plane_kernel: PlaneKernel,
+    pub plane: PlaneState,
     /// An impact in its own time.
-    pub(crate) impact: ExplicitImpact,
+    pub(crate) impact: ImpactProgress,
     /// Contacts that are about to be struck anew within an episode (`rigid`).
     pub struck: ContactHistories,
+    /// The facets it meets on rough ground.
+    pub(crate) facets: Facets,
+    /// What it has done to the stems.
+    pub(crate) stem_load: StemLoad,
     /// Whether what is touched may give way: it is asked step by step.
     pub may_yield: bool,
     /// Whether the blow in hand has been announced (`rigid`).
@@ -151,8 +119,6 @@ const LEAST_MARGIN: f64 = 0.06;
 const IMPACT_WAY: f64 = 1.3;
 /// … and asked for up to this far beyond the radius (–), so that a stage sees what it is about to run into.
 const SLACK: f64 = 0.1;
-/// A gap this small is a touch (–, relative to R): rounding of the leap.
-pub const TOUCH: f64 = 1e-9;
 
 impl Default for ContactState {
     fn default() -> Self {
@@ -178,11 +144,13 @@ impl ContactState {
             stored: 0.0,
             contacts: [StageContact::NONE; MOST],
             contact_count: 0,
-            plane_kernel: PlaneKernel::default(),
-            impact: ExplicitImpact::default(),
+            plane: PlaneState::default(),
+            impact: ImpactProgress::default(),
             struck: ContactHistories::default(),
             is_struck: true,
             may_yield: false,
+            facets: Facets::default(),
+            stem_load: StemLoad::default(),
             scratch: DdaScratch::default(),
             sweeps: 0,
             stopwatches: Stopwatches::default(),
@@ -196,7 +164,7 @@ impl ContactState {
         (self.c, self.v, self.w) = (c, v, w);
         self.histories.clear();
         self.fresh = false;
-        self.plane_kernel.forget();
+        self.plane.forget();
         self.impact.forget();
         self.struck.clear();
         self.is_struck = true;
@@ -297,6 +265,14 @@ impl ContactState {
         histories.merge_lost(|feature| near.patch_holding(world.terrain, feature))
     }
 
+    /// All contacts not yet announced rebound after all, from an approach of `speed_m_s`.
+    pub(crate) fn rebound(&mut self, world: &ContactEnvironment, speed_m_s: f64) {
+        for history in self.histories.iter_mut().filter(|history| !history.announced) {
+            history.captured = false;
+        }
+        self.impact.meet(speed_m_s, world.least_impact_m_s());
+    }
+
     /// Gives the rock another velocity and spin in the middle of a contact; its springs stay as they are.
     pub fn redirect(&mut self, world: &ContactEnvironment, v: Vec3, w: Vec3) {
         self.leave_plane(world);
@@ -327,4 +303,30 @@ impl ContactState {
 /// Longest step in which a rock at `speed` goes no further than `room` (s); its weight may speed it up on the way.
 pub(crate) fn longest_step(body: &Body, speed: f64, room: f64) -> f64 {
     2.0 * room / (speed + (speed * speed + 2.0 * body.gravity.norm() * room).sqrt())
+}
+
+impl ContactState {
+    /// Turns the rock against a facet until it is turned back, at `until_s` (s) at the latest; turning keeps every joule.
+    pub(crate) fn turn_against(
+        &mut self,
+        world: &ContactEnvironment,
+        turn: Rotation3<f64>,
+        until_s: f64,
+    ) {
+        let back = turn.inverse();
+        self.redirect(world, back * self.v, back * self.w);
+        self.facets.tilt = Some(Tilt { turn, until_s });
+    }
+
+    /// Turns the rock back if it is turned; whether it was.
+    pub(crate) fn turn_back(&mut self, world: &ContactEnvironment) -> bool {
+        let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
+        self.redirect(world, turn * self.v, turn * self.w);
+        true
+    }
+
+    /// Whether the rock is turned against a facet that it has left, or whose time is up at `now_s` (s).
+    pub(crate) fn has_met_its_facet(&self, now_s: f64) -> bool {
+        self.facets.tilt.as_ref().is_some_and(|tilt| self.is_free() || now_s >= tilt.until_s)
+    }
 }

@@ -12,26 +12,18 @@
 //! gains, however long the step. Dashpots act on the mean velocity `D/Δt` for that reason: on `V₁` they may add energy
 //! where a step turns the motion round.
 
-pub(crate) mod contact;
-pub(crate) mod slider;
-
 use super::Settings;
-use super::contact_state::{ContactEnvironment, ContactState, Loss};
-use super::law::Body;
+use super::body::Body;
+use super::contact_state::{ContactEnvironment, ContactState};
+use super::dda_system::contact::{Contact, Step};
+use super::loss::Loss;
 use super::step_control::{Advance, StepError};
-use crate::contact::submatrix::{Mat6, Vec6, inertia};
+use crate::contact::submatrix::Vec6;
 use crate::contact::{ContactPoint, MOST};
 use crate::math;
 use crate::rock::Vec3;
-use contact::{Contact, Shape, Step};
-use nalgebra::{Cholesky, U6};
-use slider::Change;
 use std::f64::consts::PI;
 
-/// Changes of state in the open–close iteration (Shi's practice; the paper states no limit) …
-pub(crate) const ROUNDS: u32 = 6;
-/// … and solves with friction forces brought to agree, which need no new matrix.
-pub(crate) const SOLVES: u32 = 40;
 /// Longest way in one step (–, relative to R) where more than one plane is near: features are seen a tenth of the
 /// radius ahead.
 pub(crate) const TRAVEL: f64 = 0.09;
@@ -129,22 +121,6 @@ pub(crate) fn compliance(body: &Body, dt: f64) -> (f64, f64) {
     (0.5 * dt * dt / body.mass + body.radius * body.radius * turn, turn)
 }
 
-/// Work space of the steps.
-#[derive(Debug)]
-pub struct DdaScratch {
-    contacts: [Contact; MOST],
-    count: usize,
-    /// Memories that belong to the contacts.
-    taken: u32,
-    system: System,
-}
-
-impl Default for DdaScratch {
-    fn default() -> Self {
-        Self { contacts: [Contact::NONE; MOST], count: 0, taken: 0, system: System::default() }
-    }
-}
-
 /// Makes the touches of the step's start into contacts.
 fn meet(world: &ContactEnvironment, step: &Step, state: &mut ContactState) {
     (state.scratch.count, state.scratch.taken) = (0, 0);
@@ -212,103 +188,6 @@ pub(crate) fn knows(
             || contact.leads_to(touch, d)
                 && touches.iter().all(|other| other.feature != contact.feature)
     })
-}
-
-impl DdaScratch {
-    fn contacts(&self) -> &[Contact] {
-        &self.contacts[..self.count]
-    }
-
-    /// Open–close iteration: what contacts add to the free displacement, and whether their states settled.
-    ///
-    /// A step that does not settle is solved by [`Self::stick`]. `None` if it has no solution.
-    fn settle(
-        &mut self,
-        world: &ContactEnvironment,
-        step: &Step,
-        sweeps: &mut u64,
-    ) -> Option<(Vec6, bool)> {
-        let contacts = &mut self.contacts[..self.count];
-        let inertia = inertia(world.body.mass, world.body.inertia, step.dt);
-        let mut rounds = 0;
-        for _ in 0..SOLVES {
-            *sweeps += 1;
-            let added = self.system.solve(&inertia, &step.free, contacts)?;
-            let d = step.free + added;
-            match contacts.iter_mut().map(|contact| contact.judge(&d)).max() {
-                None | Some(Change::None) => return Some((added, true)),
-                Some(Change::Load) => {}
-                Some(Change::Mode) => rounds += 1,
-            }
-            if rounds == ROUNDS {
-                break;
-            }
-        }
-        self.stick(&inertia, &step.free, sweeps).map(|added| (added, false))
-    }
-
-    /// The step without the search for states: contacts that begin inside hold and stick, even if they pull for this
-    /// one step; those that begin apart are smooth. That always has a solution, and no force in it adds energy.
-    ///
-    /// Of those that begin apart one at a time changes, the last first, which cannot go round in circles (Murty 1974).
-    fn stick(&mut self, inertia: &Mat6, free: &Vec6, sweeps: &mut u64) -> Option<Vec6> {
-        let contacts = &mut self.contacts[..self.count];
-        contacts.iter_mut().for_each(Contact::stick);
-        let mut added = Vec6::zeros();
-        for _ in 0..SOLVES {
-            *sweeps += 1;
-            added = self.system.solve(inertia, free, contacts)?;
-            let d = free + added;
-            if !contacts.iter_mut().rev().any(|contact| contact.open_or_close_apart(&d)) {
-                break;
-            }
-        }
-        Some(added)
-    }
-}
-
-/// The matrix of a step; it is made anew only when it has changed.
-#[derive(Debug)]
-struct System {
-    inertia: Mat6,
-    shapes: [Shape; MOST],
-    count: usize,
-    /// What the contacts add to the matrix.
-    springs: Mat6,
-    /// Factor of inertia and contacts; `None` if there is none.
-    factor: Option<Cholesky<f64, U6>>,
-}
-
-impl Default for System {
-    fn default() -> Self {
-        Self {
-            inertia: Mat6::zeros(),
-            shapes: [Shape::NONE; MOST],
-            count: 0,
-            springs: Mat6::zeros(),
-            factor: None,
-        }
-    }
-}
-
-impl System {
-    fn solve(&mut self, inertia: &Mat6, free: &Vec6, contacts: &[Contact]) -> Option<Vec6> {
-        let shapes = || contacts.iter().map(Contact::shape);
-        let same = self.shapes[..self.count].iter().copied().eq(shapes());
-        if !same || self.inertia != *inertia {
-            self.inertia = *inertia;
-            self.count = contacts.len();
-            self.shapes.iter_mut().zip(shapes()).for_each(|(known, shape)| *known = shape);
-            self.springs = shapes().fold(Mat6::zeros(), |sum, shape| sum + shape.stiffness());
-            self.factor = Cholesky::new(self.springs + inertia);
-        }
-        let mut load = -(self.springs * free);
-        for contact in contacts {
-            contact.add_load(&mut load);
-        }
-        self.factor.as_ref()?.solve_mut(&mut load);
-        load.iter().all(|x| x.is_finite()).then_some(load)
-    }
 }
 
 /// Moves the rock by `d`, and changes its velocity by what contacts added.

@@ -1,6 +1,6 @@
 //! What a rock in contact meets: the terrain, the law of every ground, and itself.
 
-use super::law::Body;
+use super::body::Body;
 use crate::contact::ContactPoint;
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -24,8 +24,14 @@ impl ContactEnvironment<'_> {
     /// The law of a triangle's ground.
     #[inline]
     pub fn law(&self, triangle: u32) -> &Law {
+        &self.laws[self.ground_of(triangle) as usize]
+    }
+
+    /// A triangle's ground.
+    #[inline]
+    pub(crate) fn ground_of(&self, triangle: u32) -> u16 {
         let sheet = self.terrain.sheet_of[triangle as usize];
-        &self.laws[self.terrain.sheets[sheet as usize].ground as usize]
+        self.terrain.sheets[sheet as usize].ground
     }
 
     /// Whether a contact is too slow to rebound.

@@ -8,11 +8,13 @@
 
 mod flow;
 
-use super::contact_state::{ContactEnvironment, ContactState, Loss, TOUCH, longest_step};
+use super::contact_state::{ContactEnvironment, ContactState, longest_step};
 use super::impact::LOCAL;
 use super::impact::dormand_prince::{growth, step};
+use super::loss::Loss;
 use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
+use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, HISTORIES};
 use flow::{Among, SUMS};
 
@@ -26,58 +28,6 @@ const KINKED: f64 = 0.3;
 const BALANCED: f64 = 0.1;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
 const SHORTEST: f64 = 1e-9;
-
-/// An impact is over after so long (rad), or goes on as lasting contact.
-const LASTS: f64 = 20.0;
-
-/// What an impact needs besides the rock's state.
-#[derive(Debug, Default)]
-pub(crate) struct ExplicitImpact {
-    /// The step to try next (s), if there is one.
-    h: f64,
-    /// Fastest approach of the contacts (m/s).
-    speed_m_s: f64,
-    /// How much longer it is followed in its own time (rad).
-    left: f64,
-    /// Energy that the steps have gained (J).
-    gained: f64,
-    /// Fastest approach to a contact that has come up in the try in hand (m/s).
-    tried_m_s: f64,
-}
-
-impl ExplicitImpact {
-    /// Forgets the impact before.
-    pub(crate) fn forget(&mut self) {
-        (self.speed_m_s, self.left, self.tried_m_s) = (0.0, 0.0, 0.0);
-    }
-
-    /// A try is made anew: what it met before has not been met.
-    pub(crate) fn try_anew(&mut self) {
-        self.tried_m_s = 0.0;
-    }
-
-    /// A try meets a contact at `speed_m_s` that may rebound.
-    pub(crate) fn try_meeting(&mut self, speed_m_s: f64) {
-        self.tried_m_s = self.tried_m_s.max(speed_m_s);
-    }
-
-    /// The try has become a step.
-    pub(crate) fn accept_meeting(&mut self, slowest: f64) {
-        self.meet(self.tried_m_s, slowest);
-        self.tried_m_s = 0.0;
-    }
-
-    /// A contact begins at `speed_m_s` that may rebound; `slowest` is the speed from which on it is followed here.
-    pub(crate) fn meet(&mut self, speed_m_s: f64, slowest: f64) {
-        if speed_m_s <= slowest {
-            return;
-        }
-        if self.left <= 0.0 {
-            (self.h, self.gained) = (0.0, 0.0);
-        }
-        (self.speed_m_s, self.left) = (self.speed_m_s.max(speed_m_s), LASTS);
-    }
-}
 
 /// How far a step may go, and how exactly.
 #[derive(Debug, Clone, Copy)]
@@ -162,6 +112,8 @@ impl ContactState {
         let mut flow = Among::<C>::new(world, self, (omega, allowed));
         let y = flow.begin::<N>();
         let first = flow.rates_of::<N, P>(&y);
+        // what the present place touches is met whatever becomes of the tries
+        flow.state.impact.accept_meeting(world.least_impact_m_s());
         let before = flow.stored_j();
         let known = flow.state.histories.len();
         loop {

@@ -3,7 +3,7 @@
 //! Both are springs with dashpots in series with sliders. They act on each other: shear turns the rock, the moment
 //! changes the slip. Of the four cases (stick or slip, each) two have closed forms and two a scalar equation for Newton.
 
-use super::law::Body;
+use super::body::Body;
 use crate::ground::Law;
 use crate::rock::Vec3;
 

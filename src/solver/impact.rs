@@ -2,7 +2,7 @@
 //!
 //! The law is the one of `law.rs`, all three elements of it: normal force `max(0, p_N x + c_N x')`, shear and rolling a slider in
 //! series with (spring ∥ dashpot). An element whose dashpot or friction is zero is left out. Only mass, inertia and radius of
-//! [`Body`](super::law::Body) enter.
+//! [`Body`](super::body::Body) enter.
 //!
 //! **One plane, with weight** (schemes `adaptive` and `reference`):
 //!

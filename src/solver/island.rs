@@ -15,10 +15,13 @@ mod newton_step;
 mod dda_contact;
 mod body;
 mod ordering;
+mod outcome;
+mod active_set;
 mod rigid;
 mod stage;
 mod sweeps;
 
-pub use assembly::{Done, Given, Island};
+pub use assembly::Island;
 pub use body::{BodySlot, IslandBody, Memory};
-pub use rigid::{Hit, TRAVEL};
+pub use outcome::{Done, Given, Hit};
+pub use rigid::TRAVEL;

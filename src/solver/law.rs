@@ -5,39 +5,12 @@
 //! contact it needs no matrix. This is the only place where stiffness and damping enter the `adaptive` and
 //! `reference` schemes.
 
+use super::body::Body;
 use super::friction_rolling::{Answers, Frame, Mode, Pair};
-use super::multi_contact;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 use crate::ground::Law;
-use crate::rock::{Rock, Vec3};
-
-/// What of a rock the mechanics needs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Body {
-    /// Mass (kg).
-    pub mass: f64,
-    /// Moment of inertia (kg m²).
-    pub inertia: f64,
-    /// Radius (m).
-    pub radius: f64,
-    /// Gravity vector (m/s²).
-    pub gravity: Vec3,
-}
-
-impl Body {
-    /// The body of a rock under gravity `g_m_s2` along −z.
-    pub fn new(rock: &Rock, g_m_s2: f64) -> Self {
-        let gravity = Vec3::new(0.0, 0.0, -g_m_s2);
-        Self { mass: rock.mass_kg(), inertia: rock.inertia_kg_m2(), radius: rock.radius_m, gravity }
-    }
-
-    /// Velocity of the contact point along the surface with normal `n` (m/s): `Q (v + w × (−R n))`.
-    #[inline]
-    pub fn slip(&self, n: &Vec3, v: &Vec3, w: &Vec3) -> Vec3 {
-        v - n * n.dot(v) + n.cross(w) * self.radius
-    }
-}
+use crate::rock::Vec3;
 
 /// One contact inside a stage: its state at the stage's base and the forces that are sought.
 #[derive(Debug, Clone, Copy)]
@@ -98,6 +71,10 @@ impl Law {
         (force * h + shear * self.c_s) / self.shear_over(h)
     }
 }
+
+/// No impact is slower than this (m/s), whatever capture speed is asked for: a blow takes no time, and rounding would
+/// strike them without end.
+const LEAST_M_S: f64 = 1e-6;
 
 const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
@@ -309,25 +286,7 @@ pub(crate) fn normal_force(
     }
 }
 
-/// Solves all contacts of one stage from `(v, w)`, velocity and spin without contact forces (gravity included).
-///
-/// Returns velocity and spin at the stage's end, or `None` if the sweeps do not settle; `sweeps` counts.
-pub fn solve(
-    body: &Body,
-    contacts: &mut [StageContact],
-    v: Vec3,
-    w: Vec3,
-    h: f64,
-    sweeps: &mut u64,
-) -> Option<(Vec3, Vec3)> {
-    if contacts.is_empty() {
-        return Some((v, w));
-    }
-    if let [contact] = contacts {
-        *sweeps += 1;
-        contact.solve(body, &v, &w, h);
-        let (dv, dw) = contact.effect(body, h);
-        return Some((v + dv, w + dw));
-    }
-    multi_contact::solve(body, contacts, (v, w), h, sweeps)
+/// Speed of approach up to which a contact does not rebound (m/s).
+pub(crate) fn capture_m_s(law: &Law) -> f64 {
+    law.capture_m_s.max(LEAST_M_S)
 }

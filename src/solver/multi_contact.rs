@@ -5,7 +5,8 @@
 //! velocity and spin, the paper's 6×6 system of Eq. (4) for one rock; solving it jumps to where the sweeps were
 //! heading. The sweeps alone decide whether the result holds.
 
-use super::law::{Body, StageContact};
+use super::body::Body;
+use super::law::StageContact;
 use crate::rock::Vec3;
 use nalgebra::{Matrix3, SMatrix, SVector};
 
@@ -23,8 +24,29 @@ const HOLD: f64 = 1e7;
 type Matrix6 = SMatrix<f64, 6, 6>;
 type Vector6 = SVector<f64, 6>;
 
-/// Solves all contacts of one stage from the free velocity and spin; `None` if the sweeps do not settle.
+/// Solves all contacts of one stage from `free`, velocity and spin without contact forces (gravity included).
+///
+/// Returns velocity and spin at the stage's end, or `None` if the sweeps do not settle; `sweeps` counts.
 pub(super) fn solve(
+    body: &Body,
+    contacts: &mut [StageContact],
+    free: (Vec3, Vec3),
+    h: f64,
+    sweeps: &mut u64,
+) -> Option<(Vec3, Vec3)> {
+    match contacts {
+        [] => Some(free),
+        [contact] => {
+            *sweeps += 1;
+            contact.solve(body, &free.0, &free.1, h);
+            let (dv, dw) = contact.effect(body, h);
+            Some((free.0 + dv, free.1 + dw))
+        }
+        several => sweep_and_jump(body, several, free, h, sweeps),
+    }
+}
+
+fn sweep_and_jump(
     body: &Body,
     contacts: &mut [StageContact],
     free: (Vec3, Vec3),

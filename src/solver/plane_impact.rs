@@ -1,8 +1,9 @@
 //! A whole impact on one plane at once.
 
-use super::contact_state::{ContactEnvironment, ContactState, TOUCH};
+use super::contact_state::{ContactEnvironment, ContactState};
 use super::impact::{Followed, Plane, Rebound};
 use super::step_control::Advance;
+use crate::contact::TOUCH;
 use crate::contact::neighbours::Passage;
 use crate::contact::{ContactPoint, FeatureKind};
 use crate::math;

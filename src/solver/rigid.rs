@@ -4,19 +4,19 @@
 //! (projected Gauss–Seidel, after Moreau). What each impulse takes is booked by the mean velocity it acts on, so
 //! the energy balance closes to rounding but for the push-out of penetrations.
 
-use super::contact_state::{ContactEnvironment, ContactState, Loss, TOUCH};
+use super::body::Body;
+use super::contact_state::{ContactEnvironment, ContactState};
 use super::friction_rolling::{Answers, Frame, Mode, Pair};
 use super::impact::{FrozenContact, throw};
-use super::law::Body;
+use super::law::capture_m_s;
+use super::loss::Loss;
 use super::step_control::{Advance, StepError};
+use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, MOST};
 use crate::ground::Law;
 use crate::rock::Vec3;
 
-/// No impact is slower than this (m/s), whatever capture speed is asked for: a blow takes no time, and rounding would
-/// strike them without end.
-const LEAST_M_S: f64 = 1e-6;
 /// Longest way in one step (–, relative to R): less than the slack within which features are seen.
 const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
@@ -207,11 +207,6 @@ pub fn advance(
 fn hits(world: &ContactEnvironment, state: &ContactState) -> bool {
     let reach = world.body.radius * (1.0 + TOUCH);
     state.touches.iter().any(|touch| touch.distance_m < reach && is_fast(world, touch, &state.v))
-}
-
-/// Speed of approach up to which a contact does not rebound (m/s).
-pub(crate) fn capture_m_s(law: &Law) -> f64 {
-    law.capture_m_s.max(LEAST_M_S)
 }
 
 /// Whether a rock with velocity `v` hits a touch too fast to be captured.

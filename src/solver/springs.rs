@@ -1,6 +1,7 @@
 //! What the springs of a rock's contacts hold, and how soon they will have taken more than what they press on can bear.
 
-use super::contact_state::{ContactEnvironment, ContactState, Loss};
+use super::contact_state::{ContactEnvironment, ContactState};
+use super::loss::Loss;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
 

@@ -1,8 +1,11 @@
 //! One implicit stage: the contact law solved with the geometry at the stage's end.
 
-use super::contact_state::{ContactEnvironment, ContactState, Loss, Rate, TOUCH};
-use super::law::{self, Action, Place, StageContact};
+use super::contact_state::{ContactEnvironment, ContactState, Rate};
+use super::law::{Action, Place, StageContact};
+use super::loss::Loss;
+use super::multi_contact;
 use super::tableau::Tableau;
+use crate::contact::TOUCH;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
 
@@ -94,7 +97,8 @@ impl ContactState {
         for _ in 0..PASSES {
             self.place_contacts(world, tableau, (i, h), (&base, &guess));
             let contacts = &mut self.contacts[..self.contact_count];
-            let (v, w) = law::solve(&world.body, contacts, vf, wf, hh, &mut self.sweeps)?;
+            let (v, w) =
+                multi_contact::solve(&world.body, contacts, (vf, wf), hh, &mut self.sweeps)?;
             let c = base.c + v * hh;
             self.look_ahead(world, &c);
             let moved = (c - guess).norm_squared();

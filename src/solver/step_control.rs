@@ -1,6 +1,7 @@
 //! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
 
-use super::contact_state::{ContactEnvironment, ContactState, Loss};
+use super::contact_state::{ContactEnvironment, ContactState};
+use super::loss::Loss;
 use super::stage::End;
 use super::tableau::Tableau;
 use super::{Scheme, Settings};

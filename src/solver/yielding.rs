@@ -1,7 +1,8 @@
 //! An impact on something that gives way, in the limit of stiff springs: the law of one contact at one place, followed in the
 //! impact's own time until what is struck has taken all it can.
 
-use super::law::{Action, Body, Place};
+use super::body::Body;
+use super::law::{Action, Place};
 use crate::ground::Law;
 use crate::rock::Vec3;
 

@@ -28,6 +28,7 @@ pub const GROUND: Ground = Ground {
     rolling_friction: 0.0,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 
 /// Corners closer than this are one (m): made meshes repeat theirs to rounding.
@@ -74,6 +75,7 @@ impl Setup {
     pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
         let course = RunSettings {
             recorders: crate::plan::Recorders::default(),
+            seed: 1,
             terrain,
             gravity_m_s2: self.gravity_m_s2,
             step,
@@ -87,9 +89,9 @@ impl Setup {
             spin_rad_s: self.spin_rad_s,
         };
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
-        let mut random = stream(1, Purpose::Impacts, 0);
+        let random = stream(1, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
-        let mut fallen = simulate(&course, &release, keep, &mut random, scratch);
+        let mut fallen = simulate(&course, &release, keep, random, scratch);
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;
         fallen

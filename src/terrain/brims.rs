@@ -5,8 +5,11 @@
 //! the side on which the feature stands out. So a touch at the radius `R` has its centre between `least · R` and `R` over
 //! the triangle's plane, which tells most edges and corners apart by a height that is known anyway.
 
-use super::features::LEANS;
 use crate::rock::Vec3;
+
+/// A corner whose nearest edge leans towards the ball by this much can never touch it (–, cosine): far above the slack
+/// of the contact's own test, which is 1e-9.
+pub(super) const LEANS: f64 = 1e-6;
 
 /// Cosines below which a direction says nothing of its side (–): far above every slack of the touching tests.
 const SIDELONG: f64 = 1e-2;

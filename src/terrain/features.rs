@@ -5,7 +5,7 @@
 //! vertices with flat edges only, never touch: the face does. Neither do vertices between edges that rise and edges
 //! that fall around them (saddles): from either side of the sheet an edge or a face is nearer.
 
-use super::brims::{Brim, Cone};
+use super::brims::{Brim, Cone, LEANS};
 use super::edges::{Edges, grouped};
 use super::faces::{Faces, Mesh};
 use crate::rock::Vec3;
@@ -16,9 +16,6 @@ use rayon::iter::{
 
 /// Sine of the angle between faces below which an edge is flat (–): rounding of `f64` coordinates, no more.
 const FLAT: f64 = 1e-12;
-/// A corner whose nearest edge leans towards the ball by this much can never touch it (–, cosine): far above the slack
-/// of the contact's own test, which is 1e-9.
-pub(super) const LEANS: f64 = 1e-6;
 /// Sine of the angle between edges below which they say nothing of their corner (–).
 const NEEDLE: f64 = 1e-6;
 /// Corners with more edges are kept as they are: a fan of a thousand would take a billion products.

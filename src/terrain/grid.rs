@@ -200,7 +200,7 @@ impl Grid {
     /// # Errors
     /// A file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
-        std::fs::write(path, self.text()).map_err(Error::file("write", path))
+        file::write(path, self.text().as_bytes())
     }
 }
 

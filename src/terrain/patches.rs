@@ -6,6 +6,7 @@
 
 mod borders;
 mod cut;
+mod drawing;
 mod triangulate;
 #[cfg(test)]
 mod tests;

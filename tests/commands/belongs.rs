@@ -8,6 +8,8 @@ use crate::program;
 use made::{fall, info};
 use program::{command, message, results, rockfall, same_results};
 use rockfall::output::{self, Mode, Output};
+use rockfall::simulation::CellPassage;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -105,6 +107,21 @@ fn a_finished_folder_is_never_cut() {
     }
 }
 
+/// Killed in the first instant of `--overwrite`, or while any file is written: nothing half-written outlives the next run.
+#[test]
+fn no_half_written_file_stays() {
+    let dir = tempfile::tempdir().unwrap();
+    write_all(dir.path(), Mode::Fresh).unwrap();
+    let before = names(dir.path());
+    for mode in [Mode::Resume, Mode::Overwrite] {
+        for file in ["progress.json", "summary.json", "report.html", "view.glb"] {
+            fs::write(dir.path().join(format!("{file}.part")), "{ \"title\": ").unwrap();
+        }
+        write_all(dir.path(), mode).unwrap();
+        assert_eq!(names(dir.path()), before);
+    }
+}
+
 /// A part that is the whole is put together like any other.
 #[test]
 fn one_part_of_one_is_merged() {
@@ -179,6 +196,63 @@ fn a_mesh_is_not_written_over_what_it_is_made_of() {
         assert_eq!(said.status.code(), Some(2));
     }
     assert_eq!(fs::read(&slope).unwrap(), fs::read("terrain/quick_slope.stl").unwrap());
+}
+
+/// A mesh that does not fit on the disk leaves the one before as it was, and no part of itself; one that is written goes
+/// where a link leads.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_mesh_is_written_whole_or_not_at_all() {
+    let dir = tempfile::tempdir().unwrap();
+    let (out, link) = (dir.path().join("slope.stl"), dir.path().join("link.stl"));
+    fs::write(&out, "the mesh before").unwrap();
+    std::os::unix::fs::symlink(&out, &link).unwrap();
+    let before = names(dir.path());
+    let program = env!("CARGO_BIN_EXE_rockfall");
+    let script = format!("ulimit -f 4; exec {program} mesh make valley_slope {}", word(&link));
+    let done = Command::new("sh").args(["-c", &script]).output().unwrap();
+    let said = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(2), "{said}");
+    assert!(said.contains("File too large"), "{said}");
+    assert_eq!(fs::read(&out).unwrap(), b"the mesh before");
+    assert_eq!(names(dir.path()), before);
+    assert!(rockfall(&["mesh", "make", "paper_roof", word(&link)]).status.success());
+    assert!(link.is_symlink());
+    assert_eq!(fs::read(&out).unwrap(), fs::read("terrain/paper_roof.stl").unwrap());
+    assert_eq!(names(dir.path()), before);
+    let piped = rockfall(&["mesh", "make", "paper_roof", "/dev/stdout"]);
+    assert_eq!(piped.stdout[..84], fs::read(&out).unwrap()[..84]);
+}
+
+/// The state of fine maps is as long as they are: it is not written after every chunk, but when the run ends.
+#[test]
+fn the_state_of_fine_maps_is_written_now_and_then() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut info = info(RELEASES);
+    let frame = info.maps.as_mut().unwrap();
+    (frame.columns, frame.rows, frame.cell_m) = (400, 300, 0.2);
+    let mut output = Output::create(info, dir.path(), Mode::Fresh).unwrap();
+    let done = || {
+        let said = fs::read_to_string(dir.path().join("progress.json")).unwrap();
+        let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+        said["done"].as_u64().unwrap()
+    };
+    let mut marks = Vec::new();
+    for index in 0..RELEASES {
+        let mut fall = fall(index);
+        if index == 0 {
+            let known = fall.passages[0];
+            fall.passages = (0..60_000).map(|cell| CellPassage { cell, ..known }).collect();
+        }
+        output.write(&[fall]).unwrap();
+        marks.push(done());
+    }
+    let written: BTreeSet<u64> = marks.iter().copied().collect();
+    assert!(written.len() < RELEASES / 2, "{marks:?}");
+    output.keep().unwrap();
+    assert_eq!(done(), RELEASES as u64);
+    let states = names(&dir.path().join("maps"));
+    assert_eq!(states.len(), 1, "one state at a time: {states:?}");
 }
 
 /// Another file of measured ends is another scene, and results name the build they come from.

@@ -15,6 +15,21 @@ fn text() -> String {
     fs::read_to_string(FILE).unwrap()
 }
 
+/// Gives the rock of the slope friction that grows with slip.
+const SOIL: (&str, &str) = (
+    "restitution = 0.35",
+    "restitution = 0.35\nslip_friction = { max = 1.3, kappa_per_m = 0.7, beta_per_s = 20.0 }",
+);
+
+/// The same, but it never grows.
+const NO_SOIL: (&str, &str) = (
+    "restitution = 0.35",
+    "restitution = 0.35\nslip_friction = { max = 1.3, kappa_per_m = 0.0, beta_per_s = 20.0 }",
+);
+
+/// All rocks are blocks.
+const NO_SPHERES: (&str, &str) = ("[[rocks.shapes]]\nkind = \"sphere\"\n", "");
+
 fn refused(change: &[(&str, &str)]) -> String {
     let mut scene = text();
     for (from, to) in change {
@@ -27,13 +42,11 @@ fn refused(change: &[(&str, &str)]) -> String {
 /// What blocks cannot have as yet, and shapes that cannot be: each is refused with its key.
 #[test]
 fn what_blocks_cannot_have_is_refused() {
-    let rough = ("restitution = 0.35", "restitution = 0.35\nroughness_deg = 8.0");
     let rolling = ("restitution = 0.35", "restitution = 0.35\nrolling_friction = 0.3");
     let breaks = ("restitution = 0.2\n", "restitution = 0.2\nbreaks_above_j = 1e4\n");
     for (change, key, said) in [
         (("scheme = \"rigid\"", "scheme = \"adaptive\""), "scheme", "rigid"),
         (("orientation = \"random\"", "together = true"), "together", "spheres"),
-        (rough, "roughness_deg", "as yet"),
         (rolling, "rolling_friction", "write rolling_friction = 0.0"),
         (breaks, "breaks_above_j", "as yet"),
         (("corner_radius = 0.15\n", ""), "corner_radius", "found nothing"),
@@ -52,6 +65,8 @@ fn what_blocks_cannot_have_is_refused() {
             "quaternion",
         ),
         (("kind = \"eota111\"", "kind = \"potato\""), "kind", "eota111"),
+        // a third of the rocks are spheres
+        (SOIL, "slip_friction", "all rocks be blocks"),
     ] {
         let found = refused(&[change]);
         assert!(found.contains(key) && found.contains(said), "{key}: {found}");
@@ -140,4 +155,42 @@ fn tables_of_blocks_do_not_depend_on_threads() {
         assert!(row.top_m.unwrap() > row.height_m, "{row:?}");
     }
     assert!(results.paths().unwrap().all(|row| row.unwrap().attitude.is_some()));
+}
+
+/// Facets of rough ground deflect blocks, friction that grows with slip slows them; neither gives energy.
+#[test]
+fn rough_ground_and_soil_change_where_blocks_stop() {
+    let mean_m = |changes: &[(&str, &str)]| {
+        let mut scene = text();
+        for (from, to) in [&[NO_SPHERES], changes].concat() {
+            assert!(scene.contains(from), "{from}");
+            scene = scene.replacen(from, to, 1);
+        }
+        let scene = Scene::parse(&scene, Path::new(FILE)).unwrap();
+        let (terrain, _) = scene.read_terrain().unwrap();
+        let plan = Plan::compile(&scene, terrain).unwrap();
+        let mut scratch = Scratch::default();
+        let rocks = 40;
+        let ways = (0..rocks).map(|index| {
+            let fall = simulate_release(&plan, index, None, &mut scratch).unwrap();
+            assert!(!matches!(fall.stop, Stop::Failed(_)), "{:?}", fall.stop);
+            assert!(
+                fall.ledger.rise_j <= 1e-9 * fall.released_j.abs(),
+                "{changes:?} {index} {:?} {:?} {}",
+                fall.ledger,
+                fall.shape,
+                fall.rock.mass_kg()
+            );
+            (fall.end.velocity_m_s.norm(), fall.runout_m())
+        });
+        let ends: Vec<(f64, f64)> = ways.collect();
+        ends.iter().map(|end| end.1).sum::<f64>() / f64::from(rocks as u32)
+    };
+    let smooth = mean_m(&[]);
+    let rough = mean_m(&[("restitution = 0.35", "restitution = 0.35\nroughness_deg = 15.0")]);
+    let soil = mean_m(&[SOIL]);
+    println!("{smooth:.1} m, rough {rough:.1} m, soil {soil:.1} m");
+    assert!((rough - smooth).abs() > 0.01 && soil < smooth, "{smooth} {rough} {soil}");
+    let found = refused(&[NO_SPHERES, NO_SOIL]);
+    assert!(found.contains("slip_friction") && found.contains("kappa_per_m"), "{found}");
 }

@@ -6,7 +6,7 @@
 )]
 #![cfg(target_os = "linux")]
 
-use crate::{asked, program};
+use crate::{asked, drawn, program};
 
 use asked::{Asked, USUAL, closed_box, p, plate, quad, scene, stops, word};
 use program::rockfall;
@@ -26,8 +26,8 @@ const FRUGAL_KB: u64 = 300_000;
 fn rocks_that_never_rest_end_by_time_or_budget() {
     let dir = tempfile::tempdir().unwrap();
     let begun = Instant::now();
-    for scheme in ["adaptive", "rigid", "reference"] {
-        let more = format!("[solver]\nscheme = \"{scheme}\"\nlongest_s = 20.0");
+    for scheme in ["\"adaptive\"", "\"rigid\"", "\"reference\"", "\"dda\"\nstep_s = 1e-4"] {
+        let more = format!("[solver]\nlongest_s = 20.0\nscheme = {scheme}");
         let asked = Asked {
             restitution: 1.0,
             place: "count = 1\npoints_m = [[1.0, 1.0, 1.0]]",
@@ -55,6 +55,34 @@ fn rocks_that_never_rest_end_by_time_or_budget() {
     assert!(said.contains("warning: 1 of 1 rocks were still moving when their budget"), "{said}");
     // minutes, before there was a budget
     assert!(begun.elapsed() < Duration::from_secs(120), "{:?}", begun.elapsed());
+}
+
+/// A run of rocks that never rest hears the wish to end.
+#[test]
+fn rocks_that_never_rest_end_when_they_are_told_to() {
+    let dir = tempfile::tempdir().unwrap();
+    let asked = Asked {
+        restitution: 1.0,
+        place: "count = 4000\npoints_m = [[1.0, 1.0, 1.0]]",
+        velocity: [3.0, 2.0, 1.0],
+        more: "[solver]\nlongest_s = 1000.0",
+    };
+    let scene = scene(dir.path(), &closed_box(), &asked);
+    let out = dir.path().join("out");
+    let mut run = program::command(&["run", word(&scene), "--quiet", "--out", word(&out)]);
+    let run = run.stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let begun = Instant::now();
+    while !out.join("progress.json").exists() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let told = Command::new("kill").args(["-TERM", &run.id().to_string()]).status().unwrap();
+    assert!(told.success());
+    let begun = Instant::now();
+    let ended = run.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert_eq!(ended.status.code(), Some(130), "{said}");
+    assert!(said.contains("go on with: rockfall run"), "{said}");
+    assert!(begun.elapsed() < Duration::from_secs(60), "{:?}", begun.elapsed());
 }
 
 /// A plate of 10 x 10 cells of 1 m around the origin without some of them.
@@ -271,14 +299,65 @@ fn files_without_end_are_refused() {
     }
 }
 
-/// A file that stands for another says which.
+/// A file that stands for another is told as such, whatever it stands for: scene, mesh, grid, drawing, table or list.
 #[test]
 fn a_pointer_of_git_lfs_is_told_as_such() {
     let dir = tempfile::tempdir().unwrap();
-    let mesh = dir.path().join("slope.stl");
-    fs::write(&mesh, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n").unwrap();
-    let said = refused(&["mesh", "check", word(&mesh)]);
-    assert!(said.contains("a pointer of Git LFS") && said.contains("git lfs pull"), "{said}");
+    let pointer = dir.path().join("pointer");
+    fs::write(&pointer, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n")
+        .unwrap();
+    let told = |args: &[&str]| {
+        let said = refused(args);
+        let words = said.contains("a pointer of Git LFS") && said.contains("git lfs pull");
+        assert!(words && said.contains("pointer: start"), "{args:?}: {said}");
+    };
+    let (file, slope, out) =
+        (word(&pointer), "terrain/quick_slope.stl", dir.path().join("out.stl"));
+    told(&["plan", file]);
+    told(&["calibrate", file]);
+    told(&["init", file, word(&dir.path().join("new.toml"))]);
+    told(&["mesh", "check", file]);
+    told(&["mesh", "from-grid", file, word(&out)]);
+    told(&["mesh", "stems", file, slope, word(&out)]);
+    let list = dir.path().join("trees.csv");
+    fs::write(&list, "x,y,dbh_m,height_m\n20,20,0.4,10\n").unwrap();
+    told(&["mesh", "stems", word(&list), file, word(&out)]);
+    // what a scene names
+    let drawn = "[[lines]]\nfile = \"pointer\"";
+    let barrier = "[[barriers]]\nfile = \"pointer\"\nheight_m = 4.0\ncapacity_j = 1e6";
+    let ends = "[calibrate]\ndeposits = \"pointer\"\nvary = [{ ground = \"rock\", key = \"restitution\", from = 0.1, to = 0.5, before = 0.3 }]";
+    let shape = "[[rocks.shapes]]\nkind = \"mesh\"\ncorner_radius = 0.1\nmesh = \"pointer\"\n[solver]\nscheme = \"rigid\"";
+    let trees = |key: &str| format!("[[trees]]\n{key} = \"pointer\"\nground = \"rock\"");
+    let zones = "[[ground_zones]]\nfile = \"pointer\"\nground = \"rock\"";
+    for more in [drawn, barrier, ends, shape, zones, &trees("mesh"), &trees("file")] {
+        let scene = scene(dir.path(), &plate(5.0, 0.0), &Asked { more, ..USUAL });
+        told(&["plan", word(&scene)]);
+    }
+    let place = |key: &str| format!("count = 1\nheight_m = 1.0\n{key} = \"pointer\"");
+    for key in ["zones", "table"] {
+        let asked = Asked { place: &place(key), ..USUAL };
+        told(&["plan", word(&scene(dir.path(), &plate(5.0, 0.0), &asked))]);
+    }
+    for key in ["mesh", "file"] {
+        let scene = scene(dir.path(), &plate(5.0, 0.0), &USUAL);
+        let text = fs::read_to_string(&scene).unwrap();
+        let named = format!("{key} = \"pointer\"");
+        fs::write(&scene, text.replace("mesh = \"mesh.stl\"", &named)).unwrap();
+        told(&["plan", word(&scene)]);
+    }
+}
+
+/// The table beside a Shapefile may be the pointer while the shapes are there.
+#[test]
+fn a_pointer_beside_a_shapefile_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("zones.shp"), drawn::shapefile(&drawn::rings())).unwrap();
+    let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+    fs::write(dir.path().join("zones.dbf"), pointer).unwrap();
+    let place = "count = 1\nheight_m = 1.0\nzones = \"zones.shp\"";
+    let scene = scene(dir.path(), &plate(5.0, 0.0), &Asked { place, ..USUAL });
+    let said = refused(&["plan", word(&scene)]);
+    assert!(said.contains("zones.dbf: start: found a pointer of Git LFS"), "{said}");
 }
 
 /// An aim that no number of releases reaches is refused at once or given up with words.

@@ -221,7 +221,7 @@ fn a_pointer_of_git_lfs_is_told_wherever_a_file_is_read() {
     ] {
         let said = dir.refusal(&text);
         let told =
-            said.contains("found a pointer of Git LFS; fetch the file itself with `git lfs pull`");
+            said.contains("found a pointer of Git LFS in the place of the file; fetch the file itself with `git lfs pull`");
         assert!(told && said.contains(name), "{name}: {said}");
     }
 }

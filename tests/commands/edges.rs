@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot run the program has failed")]
 #![cfg(target_os = "linux")]
 
-use crate::program;
+use crate::{asked, program};
 
+use asked::{Asked, USUAL, closed_box, plate, scene, word};
 use program::{command, rockfall};
 use std::fs;
 use std::path::Path;
@@ -71,6 +72,61 @@ fn meshes_without_ground_are_told_as_such() {
         stl(&dir.path().join("mesh.stl"), facets);
         let said = refused(&["plan", file.to_str().unwrap()]);
         assert!(said.contains(says), "{said}");
+    }
+}
+
+/// A name that a spreadsheet would take for a formula does not come into a table, whether the scene has it or a drawing.
+#[test]
+fn names_that_are_formulas_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let drawn = dir.path().join("lines.geojson");
+    for name in ["=1+1", "+1", "-1", "@cell"] {
+        let line = format!(
+            r#"{{"type":"FeatureCollection","features":[{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{{"type":"LineString","coordinates":[[-4,2],[4,2]]}}}}]}}"#
+        );
+        fs::write(&drawn, line).unwrap();
+        for more in [
+            "[[lines]]\nfile = \"lines.geojson\"".to_owned(),
+            "[[barriers]]\nfile = \"lines.geojson\"\nheight_m = 3.0\ncapacity_j = 1e6".to_owned(),
+            format!("[[lines]]\nname = \"{name}\"\npoints_m = [[-4.0, 2.0], [4.0, 2.0]]"),
+            format!(
+                "[grounds.\"{name}\"]\nlike = \"rstone/debris\"\nfriction_angle_deg = 30.0\nnormal_stiffness_n_m = 1e8\nshear_stiffness_n_m = 1e7"
+            ),
+        ] {
+            let scene = scene(dir.path(), &plate(5.0, 0.0), &Asked { more: &more, ..USUAL });
+            let said = refused(&["plan", word(&scene)]);
+            assert!(said.contains(name) && said.contains("spreadsheets take that"), "{said}");
+        }
+    }
+}
+
+/// What a computation loses by itself is said: in an elastic box without friction a fixed step loses nearly all.
+#[test]
+fn energy_that_the_numerics_lose_is_warned_of() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |scheme: &str| {
+        let more = format!("[solver]\nlongest_s = 20.0\nscheme = {scheme}");
+        let asked = Asked {
+            restitution: 1.0,
+            place: "count = 1\npoints_m = [[1.0, 1.0, 1.0]]",
+            velocity: [3.0, 2.0, 1.0],
+            more: &more,
+        };
+        let scene = scene(dir.path(), &closed_box(), &asked);
+        let text = fs::read_to_string(&scene).unwrap();
+        let smooth = text.replace("friction_angle_deg = 30.0", "friction_angle_deg = 0.0");
+        fs::write(&scene, smooth).unwrap();
+        let out = dir.path().join("out");
+        let done = rockfall(&["run", word(&scene), "--overwrite", "--out", word(&out)]);
+        assert!(done.status.success());
+        String::from_utf8(done.stdout).unwrap()
+    };
+    let said = run("\"dda\"\nstep_s = 1e-4");
+    assert!(said.contains("warning: the computation itself lost"), "{said}");
+    assert!(said.contains("% of the energy released, beside friction and damping"), "{said}");
+    for scheme in ["\"rigid\"", "\"reference\""] {
+        let said = run(scheme);
+        assert!(!said.contains("the computation itself"), "{scheme}: {said}");
     }
 }
 

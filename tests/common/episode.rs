@@ -3,8 +3,8 @@
 use super::Case;
 use rockfall::ground::{Capture, Damping, Law};
 use rockfall::rock::Vec3;
+use rockfall::solver::body::Body;
 use rockfall::solver::contact_state::{ContactEnvironment, ContactState};
-use rockfall::solver::law::Body;
 use rockfall::solver::{Settings, Stepper, advance};
 use rockfall::terrain::Terrain;
 

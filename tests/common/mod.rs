@@ -47,6 +47,7 @@ pub const GROUND: Ground = Ground {
     rolling_friction: 0.0,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 
 /// A case: one rock on one ground.
@@ -107,6 +108,7 @@ impl Case {
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
             recorders: rockfall::plan::Recorders::default(),
+            seed: 1,
         };
         let motion = Motion {
             time_s: 0.0,
@@ -115,9 +117,9 @@ impl Case {
             spin_rad_s: w.into(),
         };
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
-        let mut random = stream(seed, Purpose::Impacts, 0);
+        let random = stream(seed, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
-        let mut fallen = simulate(&course, &release, keep, &mut random, &mut Scratch::default());
+        let mut fallen = simulate(&course, &release, keep, random, &mut Scratch::default());
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;
         fallen

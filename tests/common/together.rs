@@ -26,6 +26,8 @@ pub struct World {
     pub ground: Ground,
     pub rest_time_s: f64,
     pub strength: Strength,
+    /// How many grounds there are, all alike.
+    pub grounds: usize,
 }
 
 pub const WORLD: World = World {
@@ -38,6 +40,7 @@ pub const WORLD: World = World {
     ground: GROUND,
     rest_time_s: 0.3,
     strength: Strength { tensile_pa: 0.0, cohesion_pa: 0.0 },
+    grounds: 1,
 };
 
 /// A sphere: radius, density, centre, velocity, spin.
@@ -65,6 +68,7 @@ impl World {
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
             recorders: Recorders::default(),
+            seed: 1,
         };
         let release = |&(radius_m, density_kg_m3, c, v, w): &Sphere| Release {
             rock: Rock { radius_m, density_kg_m3 },
@@ -74,7 +78,7 @@ impl World {
                 velocity_m_s: v.into(),
                 spin_rad_s: w.into(),
             },
-            grounds: vec![self.ground],
+            grounds: vec![self.ground; self.grounds],
         };
         let releases: Vec<Release> = spheres.iter().map(release).collect();
         let ground = Ground {

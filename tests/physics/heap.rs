@@ -62,6 +62,7 @@ impl World {
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
             recorders: Recorders::default(),
+            seed: 1,
         };
         let release = |&(radius_m, density_kg_m3, c, v): &Sphere| Release {
             rock: Rock { radius_m, density_kg_m3 },

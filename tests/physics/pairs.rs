@@ -59,6 +59,7 @@ impl World {
             rest: RestRule { speed_m_s: 0.02, time_s: self.rest_time_s },
             longest_s,
             recorders: rockfall::plan::Recorders::default(),
+            seed: 1,
         };
         let releases: Vec<Release> = spheres
             .iter()

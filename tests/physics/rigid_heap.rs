@@ -10,8 +10,8 @@ use rockfall::ground::{Capture, Damping, Ground, Law};
 use rockfall::rock::{Rock, Vec3};
 use rockfall::simulation::{Stop, Trajectory};
 use rockfall::solver::Scheme;
+use rockfall::solver::body::Body;
 use rockfall::solver::island::{BodySlot, Island, IslandBody};
-use rockfall::solver::law::Body;
 use rockfall::terrain::Terrain;
 use rockfall::terrain::make::{containers, jittered_plane};
 

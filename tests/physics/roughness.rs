@@ -1,6 +1,7 @@
 //! Rough ground: what facets a rock meets, and that energy knows nothing of them.
 
 use crate::common;
+use common::together::{Sphere, WORLD, World};
 use common::*;
 use rockfall::ground::Ground;
 use rockfall::rock::Vec3;
@@ -102,5 +103,105 @@ fn facets_are_met_as_often_as_they_are_seen() {
         );
         assert!((found - share).abs() < 4.0 * (share * (1.0 - share) / n).sqrt(), "{name}");
         assert!((average - mean).abs() < 4.0 * ((sum2 / count - average * average) / count).sqrt());
+    }
+}
+
+/// A rock that slides without friction over rough ground meets one facet after the other, with every scheme: it hops, and
+/// without losses keeps its energy.
+#[test]
+fn a_sliding_rock_meets_one_facet_after_the_other() {
+    let floor = floor();
+    for (name, case) in SCHEMES {
+        let case = Case { ground: elastic(10.0), ..case };
+        let (mut blows, rocks) = (0, 50);
+        for seed in 0..rocks {
+            let run =
+                case.run_with(&floor, [[0.0, 0.0, 0.5], [4.0, 0.0, 0.0], [0.0; 3]], 2.0, seed);
+            blows += run.impact_count;
+            let energy =
+                0.5 * run.end.velocity_m_s.norm_squared() + G * (run.end.position_m.z - 0.5);
+            assert!((energy / 8.0 - 1.0).abs() < 5e-3, "{name} {seed}: {energy}");
+        }
+        println!("{name}: {blows} blows");
+        assert!(blows > 4 * rocks as u32, "{name}: {blows}");
+    }
+}
+
+/// Rocks of one world that never meet slide over the same facets as each would alone: blows and way are those of rocks alone,
+/// with every scheme. Beside another rock, islands of two, too.
+#[test]
+fn rocks_of_one_world_meet_the_facets_of_rocks_alone() {
+    let floor = floor();
+    let rocks = 40;
+    let mean = |values: &[f64]| {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        (mean, (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n).sqrt() / n.sqrt())
+    };
+    for (name, case) in SCHEMES {
+        if case.scheme == Scheme::Reference {
+            continue;
+        }
+        let ground = Ground { restitution: Some(0.5), ..elastic(10.0) };
+        let start = |y: f64| [[-40.0, y, 0.5], [6.0, 0.0, 0.0], [0.0; 3]];
+        let alone: Vec<_> = (0..rocks)
+            .map(|seed| Case { ground, ..case }.run_with(&floor, start(0.0), 2.0, seed))
+            .collect();
+        let world = World {
+            scheme: case.scheme,
+            tolerance_m_s: case.tolerance_m_s,
+            gravity_m_s2: G,
+            ground,
+            step_s: case.step_s,
+            ..WORLD
+        };
+        let sphere = |y: f64| {
+            let [c, v, w] = start(y);
+            (ROCK.radius_m, ROCK.density_kg_m3, c, v, w)
+        };
+        // far apart, and in pairs so close that the two are one island but hardly ever meet
+        for gap in [2.4, 1.05] {
+            let spheres: Vec<Sphere> = (0..rocks)
+                .map(|k| sphere(-48.0 + 2.4 * (k / 2 * 2) as f64 + gap * (k % 2) as f64))
+                .collect();
+            let (together, _) = world.run(&floor, &spheres, 2.0);
+            let of = |runs: &[rockfall::simulation::Trajectory]| {
+                let blows: Vec<f64> = runs.iter().map(|run| f64::from(run.impact_count)).collect();
+                let ways: Vec<f64> = runs.iter().map(|run| run.end.position_m.x).collect();
+                (mean(&blows), mean(&ways))
+            };
+            let ((a, sa), (x, sx)) = of(&alone);
+            let ((b, sb), (y, sy)) = of(&together);
+            println!(
+                "{name} {gap}: {b:.2} ± {sb:.2} blows for {a:.2} ± {sa:.2}, {y:.2} m for {x:.2} ± {sx:.2}"
+            );
+            assert!((a - b).abs() < 4.0 * sa.hypot(sb), "{name} {gap}: {b} blows for {a}");
+            assert!((x - y).abs() < 4.0 * sx.hypot(sy), "{name} {gap}: {y} m for {x}");
+        }
+    }
+}
+
+/// The only rock of a world strikes what it strikes alone.
+#[test]
+fn the_only_rock_of_a_world_strikes_what_it_strikes_alone() {
+    let floor = floor();
+    let ground = Ground { restitution: Some(0.5), ..elastic(10.0) };
+    let [c, v, w] = [[-40.0, 0.0, 0.5], [6.0, 0.0, 0.0], [0.0; 3]];
+    for (name, case) in SCHEMES {
+        let alone = Case { ground, ..case }.run_with(&floor, [c, v, w], 1.0, 1);
+        let world = World {
+            scheme: case.scheme,
+            tolerance_m_s: case.tolerance_m_s,
+            gravity_m_s2: G,
+            ground,
+            step_s: case.step_s,
+            ..WORLD
+        };
+        let sphere = (ROCK.radius_m, ROCK.density_kg_m3, c, v, w);
+        let (together, _) = world.run(&floor, &[sphere], 1.0);
+        for (one, other) in alone.impacts.iter().zip(&together[0].impacts).take(4) {
+            assert!((one.time_s - other.time_s).abs() < 1e-3, "{name}: {one:?} {other:?}");
+            assert!((one.speed_out_m_s - other.speed_out_m_s).abs() < 2e-3, "{name}");
+        }
     }
 }

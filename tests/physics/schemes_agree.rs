@@ -29,15 +29,16 @@ fn falls_of(rocks: usize, roughness_deg: f64, set: impl Fn(&mut Scene)) -> Vec<T
     (0..rocks).map(|index| simulate_release(&plan, index, None, &mut scratch).unwrap()).collect()
 }
 
-/// Roughness belongs to the place: at one capture speed the mean runout over facets of up to 15° does not depend on how stiff
-/// the springs are, nor on the tolerance. The rocks slide and roll (friction 32°, rolling friction 0.35).
+/// Roughness belongs to the place: the mean runout over facets of up to 15° does not depend on how stiff the springs are, nor on
+/// the tolerance, both of which the capture speed follows if none is given. The rocks slide and roll (friction 32°, rolling
+/// friction 0.35).
 #[test]
 fn roughness_does_not_depend_on_stiffness_or_tolerance() {
     const ROCKS: usize = 500;
-    let runout = |stiffness_n_m: f64, tolerance_m_s: f64| {
+    let runout = |capture_speed_m_s: Option<f64>, stiffness_n_m: f64, tolerance_m_s: f64| {
         let falls = falls_of(ROCKS, 15.0, |scene| {
             scene.solver.tolerance_m_s = Some(tolerance_m_s);
-            scene.solver.capture_speed_m_s = Some(0.2);
+            scene.solver.capture_speed_m_s = capture_speed_m_s;
             let rock = scene.grounds.get_mut("rock").unwrap();
             rock.normal_stiffness_n_m = Distribution::fixed(stiffness_n_m).unwrap();
             rock.shear_stiffness_n_m = Some(Distribution::fixed(0.25 * stiffness_n_m).unwrap());
@@ -46,11 +47,21 @@ fn roughness_does_not_depend_on_stiffness_or_tolerance() {
         let square = falls.iter().map(|rock| (rock.runout_m() - mean).powi(2)).sum::<f64>();
         (mean, (square / (ROCKS * ROCKS) as f64).sqrt())
     };
-    let (mean, error) = runout(1e8, 0.05);
-    for (stiffness_n_m, tolerance_m_s) in
-        [(1e7, 0.05), (1e9, 0.05), (1e10, 0.05), (1e8, 0.1), (1e8, 1e-2), (1e8, 1e-3), (1e8, 1e-4)]
-    {
-        let (other, beside) = runout(stiffness_n_m, tolerance_m_s);
+    let (mean, error) = runout(None, 1e8, 0.05);
+    let one = Some(0.2);
+    for (capture_m_s, stiffness_n_m, tolerance_m_s) in [
+        (one, 1e8, 0.05),
+        (one, 1e7, 0.05),
+        (one, 1e10, 0.05),
+        (None, 1e7, 0.05),
+        (None, 1e9, 0.05),
+        (None, 1e10, 0.05),
+        (None, 1e8, 0.1),
+        (None, 1e8, 1e-2),
+        (None, 1e8, 1e-3),
+        (one, 1e8, 1e-4),
+    ] {
+        let (other, beside) = runout(capture_m_s, stiffness_n_m, tolerance_m_s);
         println!(
             "{stiffness_n_m:e} N/m, {tolerance_m_s} m/s: {other:.3} for {mean:.3} ± {error:.3}"
         );
@@ -97,15 +108,22 @@ fn runout_speed_and_energy_do_not_depend_on_the_scheme() {
             ];
             println!("{roughness_deg}°: {name:?} and {beside:?} are {found:.4?} apart");
             assert!(found.iter().all(|d| *d < limit), "{name:?} {beside:?} {found:?}");
-            // blows within an episode are counted by every scheme
-            let counts: [fn(&Trajectory) -> u32; 2] =
-                [|rock| rock.impact_count, |rock| rock.tree_impact_count];
-            for count in counts {
-                let ((one, sd), (other, sd_beside)) = (mean(a, count), mean(b, count));
-                let error = ((sd * sd + sd_beside * sd_beside) / ROCKS as f64).sqrt();
-                println!("{name:?} {one:.3} impacts a rock, {beside:?} {other:.3} ± {error:.3}");
-                assert!((one - other).abs() < 4.0 * error, "{name:?} {one}, {beside:?} {other}");
+            // Blows within an episode are counted by every scheme. On rough ground a rock that rolls hops from facet to facet,
+            // and while springs are pressed, which takes the rigid limit no time, it meets none.
+            if roughness_deg == 0.0 || *beside == Scheme::Reference && *name == Scheme::Adaptive {
+                counts_agree([*name, *beside], [a, b]);
             }
         }
+    }
+}
+
+/// Impacts, and those on trees, are as many in both.
+fn counts_agree([one, other]: [Scheme; 2], [a, b]: [&[Trajectory]; 2]) {
+    let counts: [fn(&Trajectory) -> u32; 2] =
+        [|rock| rock.impact_count, |rock| rock.tree_impact_count];
+    for count in counts {
+        let ((found, sd), (beside, sd_beside)) = (mean(a, count), mean(b, count));
+        let error = ((sd * sd + sd_beside * sd_beside) / ROCKS as f64).sqrt();
+        assert!((found - beside).abs() < 4.0 * error, "{one:?} {found}, {other:?} {beside}");
     }
 }

@@ -7,6 +7,7 @@
 
 use crate::common;
 
+use common::together::{Sphere, WORLD, World};
 use common::{GROUND, ROCK};
 use proptest::prelude::*;
 use rockfall::contact::ContactPoints;
@@ -63,6 +64,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
         rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
         longest_s: 20.0,
         recorders: Recorders::default(),
+        seed: 1,
     };
     let motion = Motion {
         time_s: 0.0,
@@ -73,7 +75,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
     let grounds = vec![GROUND; 2];
     let release = Release { rock: ROCK, motion, grounds };
     let keep = Keep { path_step_s: None, impacts: true };
-    simulate(&course, &release, keep, &mut stream(1, Purpose::Impacts, 0), scratch)
+    simulate(&course, &release, keep, stream(1, Purpose::Impacts, 0), scratch)
 }
 
 fn energy_j(fall: &Trajectory, motion: &Motion) -> f64 {
@@ -326,5 +328,43 @@ fn a_bad_list_is_refused_with_its_line() {
         assert_eq!(said.status.code(), Some(2), "{stderr}");
         assert!(stderr.starts_with(&format!("error: {list}: {promised}")), "{stderr}");
         assert!(!Path::new(out).exists());
+    }
+}
+
+/// Rocks of one world break stems as rocks alone do, also side by side in one island: each loses what the stem could take, and
+/// finds a stem whole that another has broken.
+#[test]
+fn rocks_of_one_world_break_stems_each_for_itself() {
+    let limit_j = 0.3 * shot_j();
+    let terrain = stand(1, Some(limit_j));
+    for (scheme, numerics) in SCHEMES {
+        let world = World {
+            scheme,
+            tolerance_m_s: if scheme == Scheme::Reference { 1e-8 } else { 1e-3 },
+            step_s: if scheme == Scheme::Dda { 1e-5 } else { 1e-2 },
+            grounds: 2,
+            ..WORLD
+        };
+        let at = |x: f64, z: f64| -> Sphere {
+            (ROCK.radius_m, ROCK.density_kg_m3, [x, 0.0, z], [10.0, 0.0, 0.0], [0.0; 3])
+        };
+        // one far above, two in one island, and one that comes later to a stem that is broken for the others
+        let spheres = [at(-4.0, 3.0), at(-4.0, 0.0), at(-4.0, -1.05), at(-6.0, 0.0)];
+        let (falls, _) = world.run(&terrain, &spheres, 3.0);
+        for fall in &falls {
+            let lost = lost_j(fall) / shot_j();
+            assert!(
+                (lost - 0.3).abs() < numerics.max(1e-6),
+                "{scheme:?}: {lost} {:?}",
+                fall.ledger
+            );
+            assert!(
+                (fall.ledger.trees_j - limit_j).abs() < 1e-6 * shot_j(),
+                "{scheme:?} {:?} {limit_j} {:?}",
+                fall.ledger,
+                fall.start
+            );
+            assert_eq!(fall.tree_impact_count, 1, "{scheme:?}");
+        }
     }
 }

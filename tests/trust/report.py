@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Puts the records in reports/trust together to reports/trust/README.md. A record that is not there is said to be missing.
 
-    tests/trust/kills.sh 500; tests/trust/slurm.sh target/release/rockfall; tests/trust/fuzz.sh 600
-    tests/trust/attack.py target/release/rockfall
+    tests/trust/kills.sh 300; tests/trust/slurm.sh target/release/rockfall; tests/trust/fuzz.sh 600
+    tests/trust/attack.py target/release/rockfall 1 2 3; ROCKFALL_QEMU=qemu-x86_64 tests/trust/processors.sh target/release/rockfall
     tests/trust/load.py target/release/rockfall CASE...; tests/trust/report.py
 """
 
@@ -20,9 +20,34 @@ def record(name):
     return file.read_text().strip() if file.exists() else "not yet recorded"
 
 
-def bad_inputs():
+def kept_inputs():
+    """Wrong scenes and meshes that are kept with their messages."""
     scenes = len(list((ROOT / "tests/bad").glob("*.toml")))
-    meshes = len((ROOT / "tests/bad_meshes/messages.txt").read_text().splitlines())
+    return scenes, len((ROOT / "tests/bad_meshes/messages.txt").read_text().splitlines())
+
+
+def figures():
+    """The records in short."""
+    attack, processors = record("attack.txt"), record("processors.txt")
+    total = lambda words, text: sum(int(number) for number in re.findall(r"(\d+) " + words, text))
+    numbers = lambda pattern: re.search(pattern, attack).groups() if re.search(pattern, attack) else ("?",) * 4
+    tried, refused, most_mb, longest_s = numbers(r"wrong inputs (\d+): (\d+) refused.*\n.*at most (\d+) MB .* and ([\d.]+) s")
+    extreme = numbers(r"extreme scenes (\d+):")[0]
+    findings = numbers(r"(\d+) findings")[0]
+    lines = [
+        f"wrong inputs made by chance: {tried}, of which {refused} refused; the dearest refusal took {most_mb} MB and the longest {longest_s} s; "
+        f"extreme scenes: {extreme}; findings: {findings}",
+        f"wrong inputs kept with their messages: {sum(kept_inputs())}",
+        f"SIGKILLs: {total('kills in', record('kills.txt'))} of plain runs, {total('kills in', record('until.txt'))} under `--until` with "
+        "maps; all were resumed to the same bytes",
+        f"bytes compared without FMA and on an emulated processor: {total('bytes compared', processors):,}; files that differ: "
+        f"{total('files differ', processors)}",
+    ]
+    return "\n".join(f"- {line}" for line in lines)
+
+
+def bad_inputs():
+    scenes, meshes = kept_inputs()
     return (
         f"{scenes} wrong scenes (`tests/bad`) and {meshes} wrong meshes (`tests/bad_meshes`), each with the message that it must "
         f"give: {scenes + meshes} inputs refused with exit status 2 and one line (`cargo test --test commands bad_input::`, in every run of "
@@ -55,6 +80,8 @@ def main():
 
 Written by `tests/trust/report.py` from the records beside it; how to make them anew stands at its head.
 
+{figures()}
+
 ## Bad input
 
 {bad_inputs()}
@@ -65,8 +92,10 @@ Bytes that nobody thought of, fed to the readers of meshes, scenes, grids, GeoTI
 {record("fuzz.txt")}
 ```
 
-Scenes, worlds, meshes, grids, options and files in each other's place, made wrong by chance (`tests/trust/attack.py`); each must end with
-one line that says what to write, in 2 s and 300 MB, or with a result:
+Scenes, worlds, meshes, grids, drawings, tables, options and files in each other's place, made wrong by chance (`tests/trust/attack.py`);
+each must end with one line that says what to write, in 2 s and 300 MB, or with a result. Extreme scenes have allowed values only, on
+a slope, in a closed box, between plates, on teeth and on a needle, with every scheme, every fifth of them a world; each must end with a
+row for every release and a number in every place. Rocks that failed among them sank into springs of which the plan had warned:
 
 ```
 {record("attack.txt")}
@@ -91,7 +120,7 @@ The same under `--until`, with maps, in all of its rounds; the bytes are those o
 ## Unlike processors
 
 Rocks alone and worlds of rocks, natively, with the C library's variants for FMA switched off, and emulated on a processor that has neither
-AVX nor FMA (`ROCKFALL_QEMU=… cargo test --test same_bits -- --nocapture`):
+AVX nor FMA (`tests/trust/processors.sh`):
 
 ```
 {record("processors.txt")}

@@ -25,6 +25,7 @@ pub const GROUND: Ground = Ground {
     rolling_friction: 0.5,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 /// Gravity (m/s²).
 pub const GRAVITY_M_S2: f64 = 9.8;
@@ -110,15 +111,16 @@ impl Slope {
             rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
             longest_s: LONGEST_S,
             recorders: Recorders::default(),
+            seed: 1,
         }
     }
 
     /// Follows release number `index`; neither path nor impacts are kept.
     pub fn fall(&self, step: &Settings, index: usize, scratch: &mut Scratch) -> Trajectory {
         let release = self.release(index);
-        let mut random = stream(SEED, Purpose::Impacts, index);
+        let random = stream(SEED, Purpose::Impacts, index);
         let keep = Keep { path_step_s: None, impacts: false };
-        let fallen = simulate(&self.course(step), &release, keep, &mut random, scratch);
+        let fallen = simulate(&self.course(step), &release, keep, random, scratch);
         Trajectory { index, ..fallen }
     }
 }

@@ -10,7 +10,7 @@ use crate::contact::pair::PairHistory;
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
 use crate::simulation::Trajectory;
-use crate::simulation::driver::RunSettings;
+use crate::simulation::settings::RunSettings;
 use crate::solver::island::TRAVEL;
 use crate::solver::island::broad_phase::{Ball, overlapping};
 use rayon::prelude::*;

@@ -1,19 +1,20 @@
 //! One rock of a world: flying, touching, resting, and what is noted down of it.
 
 use super::{State, WorldBody};
-use crate::flight::{FlightEnd, Parabola, time_of_impact};
+use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
-use crate::simulation::driver::{IMPACT_TIMES, RunSettings};
 use crate::simulation::impacts::Struck;
 use crate::simulation::rest::RestCriterion;
+use crate::simulation::rock_in_contact::RockInContact;
+use crate::simulation::settings::RunSettings;
 use crate::simulation::{PathState, Stop, Trajectory};
-use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss};
+use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::{Given, Hit, IslandBody};
+use crate::solver::loss::Loss;
 use crate::solver::step_control::ONSET;
-use std::f64::consts::PI;
 
-impl WorldBody<'_> {
+impl<'a> WorldBody<'a> {
     pub(super) fn flight(&self, settings: &RunSettings) -> Parabola {
         Parabola {
             start: self.recorder.now.position_m,
@@ -72,12 +73,19 @@ impl WorldBody<'_> {
         let flight = self.flight(settings);
         let effort = &mut self.recorder.effort;
         effort.leaps += 1;
-        self.lands =
-            Some(match time_of_impact(settings.terrain, &flight, left, &mut effort.triangles) {
+        self.lands = Some(
+            match time_of_impact_past(
+                settings.terrain,
+                &flight,
+                left,
+                &self.member.state.near.gone,
+                &mut effort.triangles,
+            ) {
                 FlightEnd::Touch(t) => (now_s + t, None),
                 FlightEnd::Leaves(t) => (now_s + t, Some(Stop::LeftTerrain)),
                 FlightEnd::Flies => (f64::INFINITY, None),
-            });
+            },
+        );
         self.spend(settings);
     }
 
@@ -91,11 +99,11 @@ impl WorldBody<'_> {
 
     /// Goes along the parabola; nothing for a rock in contact.
     pub(super) fn fly_to(&mut self, settings: &RunSettings, time_s: f64) {
-        if matches!(self.state, State::Gone(_)) {
+        if matches!(self.state, State::Gone(_)) || !self.member.flying {
             return;
         }
         let dt = time_s - self.recorder.now.time_s;
-        if self.member.flying && dt > 0.0 {
+        if dt > 0.0 {
             let flight = self.flight(settings);
             self.recorder.fly(&flight, None, dt);
             self.recorder.now.time_s = time_s;
@@ -135,15 +143,13 @@ impl WorldBody<'_> {
             self.recorder.pay(&held, 1.0);
             self.began_j.0 += held.sum();
         }
-        let omega = state
-            .histories
-            .iter()
-            .map(|history| world.law(history.triangle).omega)
-            .fold(0.0, f64::max);
-        if omega > 0.0 {
-            self.h = self.h.min(ONSET / omega);
-        }
-        self.announce(settings);
+        self.h = self.h.min(self.onset_s(settings));
+        self.in_contact(settings).announce();
+    }
+
+    /// First step after it touches the mesh (s).
+    pub(super) fn onset_s(&self, settings: &RunSettings) -> f64 {
+        ONSET / self.member.omega(settings.terrain)
     }
 
     pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {
@@ -159,15 +165,21 @@ impl WorldBody<'_> {
         &mut self,
         settings: &RunSettings,
         time_s: f64,
-        (loss, given): (Loss, Given),
+        (mut loss, given): (Loss, Given),
         slides: bool,
     ) {
         if matches!(self.state, State::Gone(_)) {
             return;
         }
-        let to = self.motion_at(time_s);
         let was_flying = self.lands.is_some();
-        self.announce(settings);
+        let mut rock = self.in_contact(settings);
+        rock.announce();
+        // what others give it comes from where they are: it meets no facet meanwhile
+        if given != Given::default() {
+            rock.leave_facet();
+        }
+        rock.state.bend(&rock.world, &mut loss);
+        let to = self.motion_at(time_s);
         // A rock may be hit and let go within one step: then it flies another way.
         let is_untouched = given == Given::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
@@ -192,7 +204,8 @@ impl WorldBody<'_> {
             return;
         }
         let to = self.motion_at(time_s);
-        self.announce(settings);
+        // its impacts are listed as hits
+        self.member.state.histories.iter_mut().for_each(|history| history.announced = true);
         if self.member.flew && self.member.flying && !self.member.was_touched {
             self.recorder.step_as(to, PathState::Flight);
             return;
@@ -218,10 +231,15 @@ impl WorldBody<'_> {
         }
     }
 
+    /// Watches how far its velocity has changed.
+    fn watch(&mut self) {
+        self.off.1 = self.off.1.max((self.member.state.v - self.off.0).norm());
+    }
+
     /// What the solver has made of it (the largest change of its velocity is kept).
     fn motion_at(&mut self, time_s: f64) -> Motion {
+        self.watch();
         let state = &self.member.state;
-        self.off.1 = self.off.1.max((state.v - self.off.0).norm());
         Motion { time_s, position_m: state.c, velocity_m_s: state.v, spin_rad_s: state.w }
     }
 
@@ -242,7 +260,8 @@ impl WorldBody<'_> {
         self.recorder.ledger.passed_on_j += given.passed_on;
         let change = self.total_j(settings) - before_j + loss.sum() + given.sum();
         self.recorder.ledger.remainder_j -= change;
-        self.end_impacts(settings);
+        self.in_contact(settings).end_impacts();
+        self.watch();
         if was_flying {
             self.lands = None;
             self.calm = RestCriterion::from(self.recorder.now.position_m);
@@ -264,44 +283,25 @@ impl WorldBody<'_> {
         let stored = if is_rigid { Loss::default() } else { state.springs_j(&world) };
         self.recorder.pay(&stored, -1.0);
         self.recorder.end_impacts(|_| false, || 0.0);
+        self.in_contact(settings).leave_facet();
         let rise_j = self.total_j(settings) - self.began_j.0 + given_j + stored.sum();
         self.recorder.ledger.rise_j = self.recorder.ledger.rise_j.max(rise_j);
     }
 
-    /// Notes down impacts on the mesh that have just begun.
-    pub(super) fn announce(&mut self, settings: &RunSettings) {
-        let IslandBody { state, body, laws, .. } = &mut *self.member;
-        let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
-        let known = state.histories.iter().filter(|history| history.announced);
-        let held_j = ContactState::held_j(&world, known);
-        for history in state.histories.iter_mut().filter(|history| !history.announced) {
-            history.announced = true;
-            let law = world.law(history.triangle);
-            let speed = -history.n.dot(&self.recorder.now.velocity_m_s);
-            if !history.captured && speed >= law.capture_m_s {
-                let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / law.omega;
-                let struck = Struck {
-                    point_m: state.c - history.n * body.radius,
-                    normal: history.n,
-                    feature: history.feature.kind,
-                    sheet: self.recorder.sheet_of(history.triangle),
-                    approach_m_s: speed,
-                };
-                history.impact = self.recorder.begin_impact(&struck, until_s, held_j);
-            }
+    /// Makes ready for a step in contact; returns the longest that it may be (s).
+    pub(super) fn before_step(&mut self, settings: &RunSettings) -> f64 {
+        if self.member.flying {
+            return f64::INFINITY;
         }
+        self.in_contact(settings).before_step()
     }
 
-    /// Ends the impacts whose patch has let go or whose time is up.
-    fn end_impacts(&mut self, settings: &RunSettings) {
-        let IslandBody { state, body, laws, .. } = &*self.member;
+    /// The rock in contact and its notes.
+    fn in_contact<'r>(&'r mut self, settings: &RunSettings<'r>) -> RockInContact<'r, 'a> {
+        let IslandBody { state, body, laws, .. } = &mut *self.member;
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
-        // the rigid limit keeps no memory of what has hit and left again within a step
-        let is_rigid = !settings.step.scheme.has_springs();
-        self.recorder.end_impacts(
-            |number| is_rigid || state.histories.iter().any(|history| history.impact == number),
-            || ContactState::held_j(&world, state.histories.iter()),
-        );
+        let has_springs = settings.step.scheme.has_springs();
+        RockInContact { world, state, recorder: &mut self.recorder, has_springs }
     }
 
     pub(super) fn leave(&mut self, stop: Stop) {

@@ -3,7 +3,7 @@
 use super::{State, WorldBody};
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
-use crate::simulation::driver::RunSettings;
+use crate::simulation::settings::RunSettings;
 use crate::solver::island::broad_phase::Ball;
 use crate::solver::island::partition::Partition;
 

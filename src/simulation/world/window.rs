@@ -5,12 +5,11 @@ mod rigid;
 use super::{State, WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, meeting_s};
 use crate::simulation::Stop;
-use crate::simulation::driver::RunSettings;
-use crate::solver::contact_state::Loss;
+use crate::simulation::settings::RunSettings;
 use crate::solver::island::partition::Partition;
 use crate::solver::island::{Done, Given, Island};
-use crate::solver::step_control::{Control, ONSET, StepError};
-use crate::solver::tableau::TR_BDF2;
+use crate::solver::loss::Loss;
+use crate::solver::step_control::{ONSET, StepError};
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
 const ROUNDING: f64 = 1e-11;
@@ -161,22 +160,16 @@ impl<'a> IslandWindow<'a> {
 
     /// Steps the island until a flying rock is due, all fly, or the window is over; whether it goes on.
     fn steps(&mut self, until_s: f64) -> bool {
-        let control = Control {
-            tableau: self.settings.step.scheme.tableau().unwrap_or(&TR_BDF2),
-            tolerance: self.settings.step.tolerance_m_s,
-            impact: f64::INFINITY,
-            plane_impacts: false,
-        };
         let now_s = self.now_s;
         self.bodies.iter_mut().for_each(|body| body.fly_to(self.settings, now_s));
         let mut island = self.cluster();
         let mut goes_on = true;
         while self.now_s < until_s {
-            let room = until_s - self.now_s;
+            let room = (until_s - self.now_s).min(self.before_step(&mut island));
             let spent = (island.sweeps, island.jumps);
             let step = self.settings.step;
             let tried = if step.scheme.controls_error() {
-                island.advance(&control, room)
+                island.advance(step, room)
             } else if step.scheme.has_springs() {
                 island.advance_fixed(step, room)
             } else {
@@ -190,7 +183,8 @@ impl<'a> IslandWindow<'a> {
                     break;
                 }
             };
-            self.now_s = if done.dt >= room { until_s } else { self.now_s + done.dt };
+            let left_s = until_s - self.now_s;
+            self.now_s = if done.dt >= left_s { until_s } else { self.now_s + done.dt };
             let all_fly = self.note(&mut island, &done, (spent, WorldBody::step));
             if all_fly {
                 break;
@@ -205,6 +199,21 @@ impl<'a> IslandWindow<'a> {
             self.begin_contacts();
         }
         goes_on
+    }
+
+    /// Makes the rocks of the island ready for a step in contact; returns the longest that it may be (s).
+    fn before_step(&mut self, island: &mut Island<'a>) -> f64 {
+        let mut longest_s = f64::INFINITY;
+        for (body, member) in self.bodies.iter_mut().zip(&mut island.members) {
+            let met = member.state.facets.is_any_met();
+            std::mem::swap(&mut body.member, member);
+            longest_s = longest_s.min(body.before_step(self.settings));
+            std::mem::swap(&mut body.member, member);
+            if met != member.state.facets.is_any_met() {
+                island.h = island.h.min(ONSET / member.omega(self.settings.terrain));
+            }
+        }
+        longest_s
     }
 
     /// The island as the solver sees it.

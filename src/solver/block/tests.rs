@@ -1,10 +1,14 @@
 use super::*;
+
+mod slip;
+
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
 use crate::flight::block::first_touch;
 use crate::flight::{FlightEnd, Parabola};
-use crate::ground::{Capture, Damping, Ground};
+use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
 use crate::rock::Rock;
+use crate::solver::body::Body;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
@@ -46,6 +50,7 @@ struct Case {
     terrain: Terrain,
     block: Block,
     law: Law,
+    ground: Ground,
     step_s: f64,
     lost: Loss,
     impacts: usize,
@@ -62,6 +67,7 @@ impl Case {
             rolling_friction: 0.0,
             roughness_rad: 0.0,
             roughness_length_m: None,
+            slip_friction: None,
         };
         let rock = Rock { radius_m: block.radius_m, density_kg_m3: 2700.0 };
         // slower than that an elastic block would lose what is captured
@@ -69,7 +75,7 @@ impl Case {
         let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
         let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
         let lost = Loss::default();
-        Self { terrain, block, law, step_s: 0.01, lost, impacts: 0, steps: 0 }
+        Self { terrain, block, law, ground, step_s: 0.01, lost, impacts: 0, steps: 0 }
     }
 
     fn start(&self, attitude: Rotation3<f64>, [centre, v, w]: [Vec3; 3]) -> Moving {
@@ -80,9 +86,13 @@ impl Case {
     /// Follows it for `longest_s`; `see` is told the time and the motion after every flight, impact and step.
     fn follow(&mut self, moving: &mut Moving, longest_s: f64, mut see: impl FnMut(f64, &Moving)) {
         let (block, laws) = (self.block.clone(), [self.law]);
-        let world =
-            ContactEnvironment { terrain: &self.terrain, body: law_body(&block, G), laws: &laws };
+        let world = ContactEnvironment {
+            terrain: &self.terrain,
+            body: Body::of_block(&block, G),
+            laws: &laws,
+        };
         let (mut footing, mut now) = (Footing::default(), 0.0);
+        footing.slip.begin(&[self.ground]);
         while now < longest_s {
             let path = Parabola {
                 start: moving.pose.centre,
@@ -194,8 +204,11 @@ fn a_tilted_box_is_thrown_by_its_corners() {
         let centre = Vec3::z() * (ball - low.z);
         let mut moving = case.start(attitude, [centre, Vec3::z() * -3.0, Vec3::zeros()]);
         let (block, laws) = (case.block.clone(), [case.law]);
-        let world =
-            ContactEnvironment { terrain: &case.terrain, body: law_body(&block, G), laws: &laws };
+        let world = ContactEnvironment {
+            terrain: &case.terrain,
+            body: Body::of_block(&block, G),
+            laws: &laws,
+        };
         let mut footing = Footing::default();
         let pose = moving.pose;
         footing.look(&world, &block, &pose, block.ball_m);
@@ -345,8 +358,11 @@ fn edges_and_faces_meet_edges_and_peaks() {
         let FlightEnd::Touch(t) = landing else { panic!("{landing:?}") };
         assert!((t - (0.6_f64 / G).sqrt()).abs() < 1e-6, "{t}");
         let laws = [case.law];
-        let world =
-            ContactEnvironment { terrain: &case.terrain, body: law_body(&body, G), laws: &laws };
+        let world = ContactEnvironment {
+            terrain: &case.terrain,
+            body: Body::of_block(&body, G),
+            laws: &laws,
+        };
         let mut moving = above.clone();
         (moving.pose, moving.v) = (tumble.pose(t), path.velocity(t));
         let pose = moving.pose;

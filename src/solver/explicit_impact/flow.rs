@@ -1,11 +1,13 @@
 //! Rates of a rock and of the springs of its contacts, wherever it is.
 
+use crate::contact::TOUCH;
 use crate::contact::history::carry;
 use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
-use crate::solver::contact_state::{ContactEnvironment, ContactState, Loss, TOUCH};
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
 use crate::solver::law::{Action, Place};
+use crate::solver::loss::Loss;
 use crate::solver::stage::End;
 
 const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);

@@ -7,9 +7,9 @@ use super::sliders::{Both, Element, Shear};
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::contact_state::Loss;
+use crate::solver::body::Body;
 use crate::solver::friction_rolling::{Along, Frame, Local};
-use crate::solver::law::Body;
+use crate::solver::loss::Loss;
 
 /// From this tolerance on a shorter series of the force is accurate enough (–).
 const COARSE: f64 = 1e-6;

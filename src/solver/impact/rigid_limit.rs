@@ -10,8 +10,8 @@ use crate::contact::MOST;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::contact_state::Loss;
-use crate::solver::law::Body;
+use crate::solver::body::Body;
+use crate::solver::loss::Loss;
 use contacts::Place;
 use rates::{ContactRates, W, speed_of};
 use std::f64::consts::TAU;
@@ -159,11 +159,10 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     }
     let lost = run.flow.contacts.energy(start) - run.flow.contacts.energy((place.v, place.w));
     let unit_j = body.mass * speed * speed;
-    let plane_kernel: [f64; 3 * MOST] = std::array::from_fn(|k| parts[k / 3][k % 3]);
-    let plane_kernel = shared(lost.max(0.0) * unit_j, plane_kernel);
+    let taken_j: [f64; 3 * MOST] = std::array::from_fn(|k| parts[k / 3][k % 3]);
+    let taken_j = shared(lost.max(0.0) * unit_j, taken_j);
     for (k, loss) in end.loss.iter_mut().enumerate() {
-        let [friction, damping, rolling] =
-            [plane_kernel[3 * k], plane_kernel[3 * k + 1], plane_kernel[3 * k + 2]];
+        let [friction, damping, rolling] = [taken_j[3 * k], taken_j[3 * k + 1], taken_j[3 * k + 2]];
         *loss = Loss { friction, damping, rolling, trees: 0.0 };
     }
     end.rebounded = std::array::from_fn(|k| {

@@ -7,7 +7,7 @@
 use super::dormand_prince::Rates;
 use super::integrate::Pressed;
 use crate::ground::Law;
-use crate::solver::law::Body;
+use crate::solver::body::Body;
 
 /// A slider in series with spring and dashpot.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@ mod plane;
 
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::rock::{Rock, Vec3};
-use crate::solver::law::Body;
+use crate::solver::body::Body;
 
 /// Gravity of the exact cases (m/s²).
 const G: f64 = 9.8;
@@ -21,6 +21,7 @@ fn ground(p_n: f64, e: f64, rolling_friction: f64) -> Ground {
         rolling_friction,
         roughness_rad: 0.0,
         roughness_length_m: None,
+        slip_friction: None,
     }
 }
 

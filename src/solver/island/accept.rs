@@ -1,13 +1,15 @@
 //! The end of an accepted step: memories, bonds, angular momentum.
 
-use super::assembly::{Done, Given, Island};
+use super::assembly::Island;
 use super::body::IslandBody;
+use super::outcome::{Done, Given};
+use super::pair_contact::break_bond;
 use crate::contact::history::carry;
 use crate::contact::pair::{Bond, PairHistory, between};
 use crate::math;
 use crate::rock::Vec3;
-use crate::solver::contact_state::{ContactEnvironment, Loss};
-use crate::solver::law::within;
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::loss::Loss;
 use crate::solver::step_control;
 use crate::solver::tableau::Tableau;
 use nalgebra::Matrix3;
@@ -103,17 +105,6 @@ impl Island<'_> {
         }
         broken
     }
-}
-
-/// A broken bond keeps what friction can hold; the rest of its stretch is lost.
-pub(super) fn break_bond(pair_history: &mut PairHistory) {
-    pair_history.bond = None;
-    pair_history.captured = true;
-    pair_history.normal_force = pair_history.normal_force.max(0.0);
-    let cap = pair_history.law.friction * pair_history.normal_force / pair_history.law.p_s;
-    pair_history.shear = within(pair_history.shear, cap);
-    pair_history.shear_force =
-        within(pair_history.shear_force, pair_history.law.friction * pair_history.normal_force);
 }
 
 impl Island<'_> {

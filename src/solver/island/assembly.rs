@@ -1,68 +1,21 @@
 //! An island of rocks that may touch each other, and its adaptive step.
 
+use super::active_set::ActiveSet;
 use super::body::{BodySlot, IslandBody};
 use super::dda_system::Global;
+use super::outcome::Done;
 use super::pair_contact::PairContact;
-use super::rigid::{Hit, RigidIsland};
-use super::sweeps::ActiveSet;
+use super::rigid::RigidIsland;
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
-use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::Settings;
+use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::step_control::{self, Control, ONSET, Outcome, StepError, TRAVEL, Trial};
-use crate::solver::tableau::{STAGES, Tableau};
+use crate::solver::tableau::{STAGES, TR_BDF2, Tableau};
 use crate::terrain::Terrain;
 
-/// A gap between two rocks that counts as a touch (–, relative to the sum of their radii): rounding of the leap.
-pub(super) const TOUCH: f64 = 1e-9;
 /// Overload at which a bond does not simply break: the step is cut to find the moment.
 const OVERLOAD: f64 = 0.05;
-
-/// Energy that a rock gives away through its contacts with other rocks (J), or power (W).
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Given {
-    /// Its half of what those contacts take.
-    pub lost: f64,
-    /// Handed on to the other rocks, negative if received.
-    pub passed_on: f64,
-}
-
-impl Given {
-    /// Of the two ends of a contact, from the work that each does on it.
-    pub(super) fn of_ends([a, b]: [f64; 2]) -> [Self; 2] {
-        let lost = 0.5 * (a + b);
-        [Self { lost, passed_on: a - lost }, Self { lost, passed_on: b - lost }]
-    }
-
-    /// Adds `other` times `factor`.
-    pub(super) fn add(&mut self, other: &Self, factor: f64) {
-        self.lost += factor * other.lost;
-        self.passed_on += factor * other.passed_on;
-    }
-
-    /// All of it.
-    pub fn sum(&self) -> f64 {
-        self.lost + self.passed_on
-    }
-}
-
-/// What one step did.
-#[derive(Debug, Clone, Default)]
-pub struct Done {
-    /// Time gone (s).
-    pub dt: f64,
-    /// Energy lost to the ground, for each rock (J).
-    pub losses: Vec<Loss>,
-    /// Energy given to other rocks, for each rock (J).
-    pub given: Vec<Given>,
-    /// Steps tried and deviated away.
-    pub rejected: u64,
-    /// Impacts on the mesh (`rigid`; with the others the memory of a contact tells).
-    pub hits: Vec<Hit>,
-    /// Whether contact states did not settle (`dda`, `rigid`).
-    pub unsettled: bool,
-    /// Bonds that broke.
-    pub broken: u64,
-}
 
 /// An island: rocks, and a history for every two of them that may touch.
 #[derive(Debug)]
@@ -98,9 +51,13 @@ impl<'a> Island<'a> {
     /// An island of these rocks.
     pub fn new(
         terrain: &'a Terrain,
-        members: Vec<BodySlot>,
+        mut members: Vec<BodySlot>,
         pair_histories: Vec<PairHistory>,
     ) -> Self {
+        let is_one = members.len() == 1;
+        for member in &mut members {
+            member.enter_island(is_one);
+        }
         let pair_forces = pair_histories
             .iter()
             .map(|pair_history| (pair_history.normal_force, pair_history.shear_force))
@@ -127,9 +84,27 @@ impl<'a> Island<'a> {
     ///
     /// # Errors
     /// [`StepError`] if the step had to become too short to matter.
-    pub fn advance(&mut self, control: &Control, h_max: f64) -> Result<Done, StepError> {
+    pub fn advance(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
+        if let [member] = &mut self.members[..] {
+            let h = &mut self.h;
+            return member.advance_alone(self.terrain, |world, state| {
+                let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
+                let control = Control::new(tableau, settings, world);
+                if !h.is_finite() {
+                    *h = step_control::first_step(world, state);
+                }
+                step_control::advance(world, &control, state, h, h_max)
+            });
+        }
+        let control = &Control {
+            tableau: settings.scheme.tableau().unwrap_or(&TR_BDF2),
+            tolerance: settings.tolerance_m_s,
+            impact: f64::INFINITY,
+            plane_impacts: false,
+        };
         self.tolerance = control.tolerance;
-        if !self.fresh {
+        // a rock that was turned against a facet, or whose stem has given way, has other rates
+        if !self.fresh || self.members.iter().any(|member| !member.state.fresh) {
             self.rates_now();
         }
         let omega = self.omega();
@@ -141,6 +116,24 @@ impl<'a> Island<'a> {
         let mut trial = Try { island: self, control, omega };
         let dt = step_control::settle(&mut trial, control, h_max, &mut rejected)?;
         Ok(Done { rejected, ..self.accept(control.tableau, dt) })
+    }
+
+    /// One step of the scheme `rigid`, at most `longest` and `h_max` (s) long.
+    ///
+    /// # Errors
+    /// [`StepError`] if motion is no longer finite.
+    pub fn advance_rigid(&mut self, longest: f64, h_max: f64) -> Result<Done, StepError> {
+        let Self { terrain, members, pair_histories, rigid, .. } = self;
+        if let [member] = &mut members[..] {
+            return member.advance_alone(terrain, |world, state| {
+                crate::solver::rigid::advance(world, state, longest, h_max)
+            });
+        }
+        let done = rigid.advance(terrain, members, pair_histories, (longest, h_max));
+        let (sweeps, jumps) = rigid.take_effort();
+        self.sweeps += sweeps;
+        self.jumps += jumps;
+        done
     }
 
     /// Whether motion, height and springs of the whole island together hold more at the step's end than at its start.

@@ -1,16 +1,21 @@
 //! One rock of an island.
 
-use super::assembly::Given;
+use super::outcome::{Done, Given};
 use super::pair_contact::Motion;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 use crate::contact::submatrix::Vec6;
 use crate::ground::Law;
 use crate::rock::Vec3;
+use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::dda::contact::Contact;
-use crate::solver::law::{Body, StageContact};
+use crate::solver::dda_system::contact::Contact;
+use crate::solver::impact_progress::ImpactProgress;
+use crate::solver::law::StageContact;
+use crate::solver::roughness::Facets;
 use crate::solver::stage::End;
+use crate::solver::stem_load::StemLoad;
+use crate::solver::step_control::{Advance, StepError};
 use crate::solver::tableau::{STAGES, Tableau};
 use crate::terrain::Terrain;
 use std::ops::{Deref, DerefMut};
@@ -53,6 +58,9 @@ pub struct IslandBody {
 pub struct Memory {
     motion: (Vec3, Vec3, Vec3),
     histories: Vec<ContactHistory>,
+    impact: ImpactProgress,
+    facets: Facets,
+    stems: (StemLoad, Vec<u32>),
     flying: bool,
 }
 
@@ -122,6 +130,9 @@ impl IslandBody {
         Memory {
             motion: (state.c, state.v, state.w),
             histories: state.histories.to_vec(),
+            impact: state.impact.clone(),
+            facets: state.facets.clone(),
+            stems: (state.stem_load.clone(), state.near.gone.clone()),
             flying: self.flying,
         }
     }
@@ -131,9 +142,48 @@ impl IslandBody {
         let state = &mut self.state;
         (state.c, state.v, state.w) = memory.motion;
         state.histories.restore(&memory.histories);
+        state.impact.clone_from(&memory.impact);
+        state.facets.clone_from(&memory.facets);
+        state.plane.forget();
+        state.stem_load.clone_from(&memory.stems.0);
+        if state.near.gone != memory.stems.1 {
+            state.near.gone.clone_from(&memory.stems.1);
+            state.near.forget();
+        }
         state.fresh = false;
         self.flying = memory.flying;
         self.kept.clear();
+    }
+
+    /// Comes into an island that knows nothing of the steps before; `alone` if nothing but the mesh can touch it there.
+    pub(super) fn enter_island(&mut self, alone: bool) {
+        self.state.plane.forget();
+        self.state.fresh = false;
+        if !alone {
+            self.state.impact.forget();
+        }
+    }
+
+    /// One step of a rock that nothing but the mesh can touch: that of a single rock.
+    pub(super) fn advance_alone(
+        &mut self,
+        terrain: &Terrain,
+        advance: impl FnOnce(&ContactEnvironment, &mut ContactState) -> Result<Advance, StepError>,
+    ) -> Result<Done, StepError> {
+        self.flew = self.flying;
+        self.kept.clear();
+        let Self { state, body, laws, .. } = self;
+        let world = ContactEnvironment { terrain, body: *body, laws };
+        let done = advance(&world, state)?;
+        self.flying = self.state.is_free();
+        Ok(Done {
+            dt: done.dt,
+            rejected: done.rejected,
+            losses: vec![done.loss],
+            given: vec![Given::default()],
+            unsettled: done.unsettled,
+            ..Done::default()
+        })
     }
 
     pub(super) fn contacts(&self) -> &[StageContact] {
@@ -160,7 +210,7 @@ impl IslandBody {
     }
 
     /// Stiffest contact with the mesh (rad/s), 0 if there is none.
-    pub(super) fn omega(&self, terrain: &Terrain) -> f64 {
+    pub fn omega(&self, terrain: &Terrain) -> f64 {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         self.state
             .histories

@@ -10,8 +10,8 @@ use crate::contact::submatrix::{
     Mat3x6, Mat6, Vec6, displacement, force_at, friction_cap, normal_row, slip, touching_point,
 };
 use crate::rock::Vec3;
-use crate::solver::dda::slider::{Change, Slider};
-use crate::solver::law::Body;
+use crate::solver::body::Body;
+use crate::solver::dda_system::slider::{Change, Slider};
 
 /// One contact of two rocks in a step.
 #[derive(Debug, Clone, Copy)]
@@ -190,7 +190,7 @@ impl DdaPairContact {
             |bond: &Bond| bond.overload(self.normal_force, shear_force.norm(), self.tan_phi);
         let breaks = self.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0);
         if breaks {
-            super::accept::break_bond(pair_history);
+            super::pair_contact::break_bond(pair_history);
         }
         breaks
     }

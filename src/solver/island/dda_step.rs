@@ -1,16 +1,19 @@
 //! Scheme `dda` for an island: the paper's step at a fixed time step, open–close iteration over all contacts.
 
-use super::assembly::{Done, Given, Island};
+use super::assembly::Island;
 use super::body::IslandBody;
 use super::dda_contact::DdaPairContact;
+use super::outcome::{Done, Given};
 use crate::contact::ContactPoint;
 use crate::contact::submatrix::Vec6;
 use crate::rock::Vec3;
 use crate::solver::Settings;
-use crate::solver::contact_state::{ContactEnvironment, Loss};
-use crate::solver::dda::contact::{Contact, Step};
-use crate::solver::dda::slider::Change;
-use crate::solver::dda::{DEEPEST, ROUNDS, SOLVES, compliance, free_motion, knows};
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::dda::{DEEPEST, compliance, free_motion, knows};
+use crate::solver::dda_system::contact::{Contact, Step};
+use crate::solver::dda_system::slider::Change;
+use crate::solver::dda_system::{ROUNDS, SOLVES};
+use crate::solver::loss::Loss;
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
 

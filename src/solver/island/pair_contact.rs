@@ -3,7 +3,11 @@
 use crate::contact::pair::{Bond, PairHistory, between};
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::solver::law::{Body, normal_force, within};
+use crate::solver::body::Body;
+use crate::solver::law::{normal_force, within};
+
+/// A gap between two rocks that counts as a touch (–, relative to the sum of their radii): rounding of the leap.
+pub(super) const TOUCH: f64 = 1e-9;
 
 /// A velocity and a spin.
 pub(super) type Motion = (Vec3, Vec3);
@@ -156,4 +160,15 @@ impl PairContact {
     pub(super) fn stretch(&self, h: f64) -> Vec3 {
         self.law.shear_after(&self.shear_force, &self.shear, h)
     }
+}
+
+/// A broken bond keeps what friction can hold; the rest of its stretch is lost.
+pub(super) fn break_bond(pair_history: &mut PairHistory) {
+    pair_history.bond = None;
+    pair_history.captured = true;
+    pair_history.normal_force = pair_history.normal_force.max(0.0);
+    let cap = pair_history.law.friction * pair_history.normal_force / pair_history.law.p_s;
+    pair_history.shear = within(pair_history.shear, cap);
+    pair_history.shear_force =
+        within(pair_history.shear_force, pair_history.law.friction * pair_history.normal_force);
 }

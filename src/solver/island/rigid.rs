@@ -12,16 +12,17 @@ mod impacts;
 mod resting_contacts;
 mod sweeps;
 
-use super::assembly::{Done, Given, Island};
 use super::body::{BodySlot, IslandBody};
+use super::outcome::{Done, Given, Hit};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
-use crate::solver::contact_state::{ContactEnvironment, Loss};
-use crate::solver::rigid::{HELD, capture_m_s, remember};
+use crate::solver::contact_state::ContactEnvironment;
+use crate::solver::law::capture_m_s;
+use crate::solver::loss::Loss;
+use crate::solver::rigid::{HELD, remember};
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
 use contacts::{Ball, BallContact, GroundContact};
-pub use impacts::Hit;
 use impacts::{Due, Scene};
 use std::collections::BinaryHeap;
 use sweeps::{ContactQueue, Leaning};
@@ -59,43 +60,51 @@ pub(super) struct RigidIsland {
     jumps: u64,
 }
 
-impl Island<'_> {
-    /// One step of the scheme `rigid`, at most `longest` and `h_max` (s) long.
+impl RigidIsland {
+    /// One step of several rocks, at most `longest` and `h_max` (s) long.
     ///
     /// # Errors
     /// [`StepError`] if motion is no longer finite.
-    pub fn advance_rigid(&mut self, longest: f64, h_max: f64) -> Result<Done, StepError> {
-        if let [member] = &mut self.members[..] {
-            return alone(self.terrain, member, (longest, h_max));
-        }
-        let mut island = std::mem::take(&mut self.rigid);
-        island.begin(&self.members, &self.pair_histories);
-        let dt = island.step_s(longest, h_max);
-        let (terrain, pair_histories) = (self.terrain, &self.pair_histories);
-        let settled = island.sustain(terrain, (&mut self.members, pair_histories), dt);
-        let mut scene = Scene { terrain, members: &mut self.members, pair_histories };
-        let struck = island.strike(&mut scene, dt);
-        island.part(&mut scene);
-        self.sweeps += std::mem::take(&mut island.sweeps);
-        self.jumps += std::mem::take(&mut island.jumps);
-        let finite = island.balls.iter().all(Ball::is_finite);
-        self.take_over(&island, dt);
+    pub(super) fn advance(
+        &mut self,
+        terrain: &Terrain,
+        members: &mut [BodySlot],
+        pair_histories: &mut [PairHistory],
+        (longest, h_max): (f64, f64),
+    ) -> Result<Done, StepError> {
+        self.begin(members, pair_histories);
+        let dt = self.step_s(longest, h_max);
+        let settled = self.sustain(terrain, (members, pair_histories), dt);
+        let mut scene = Scene { terrain, members, pair_histories };
+        let struck = self.strike(&mut scene, dt);
+        self.part(&mut scene);
+        let finite = self.balls.iter().all(Ball::is_finite);
+        self.take_over(terrain, (members, pair_histories), dt);
         let done = Done {
             dt,
-            losses: std::mem::take(&mut island.losses),
-            given: std::mem::take(&mut island.given),
-            hits: std::mem::take(&mut island.hits),
+            losses: std::mem::take(&mut self.losses),
+            given: std::mem::take(&mut self.given),
+            hits: std::mem::take(&mut self.hits),
             unsettled: !(settled && struck),
             ..Done::default()
         };
-        self.rigid = island;
         if finite { Ok(done) } else { Err(StepError::NotFinite) }
     }
 
+    /// Sweeps and systems solved since this was asked last.
+    pub(super) fn take_effort(&mut self) -> (u64, u64) {
+        (std::mem::take(&mut self.sweeps), std::mem::take(&mut self.jumps))
+    }
+
     /// Takes over the end of the step.
-    fn take_over(&mut self, island: &RigidIsland, dt: f64) {
-        for (pair_history, struck) in self.pair_histories.iter_mut().zip(&island.struck) {
-            let [a, b] = [pair_history.a, pair_history.b].map(|k| &island.balls[k as usize]);
+    fn take_over(
+        &self,
+        terrain: &Terrain,
+        (members, pair_histories): (&mut [BodySlot], &mut [PairHistory]),
+        dt: f64,
+    ) {
+        for (pair_history, struck) in pair_histories.iter_mut().zip(&self.struck) {
+            let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
             let (n, distance) = between(&a.c, &b.c);
             let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
             pair_history.n = n;
@@ -109,10 +118,10 @@ impl Island<'_> {
             }
         }
         for ball_contact in
-            island.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_force > 0.0)
+            self.ball_contacts.iter().filter(|ball_contact| ball_contact.normal_force > 0.0)
         {
-            let pair_history = &mut self.pair_histories[ball_contact.pair_history];
-            let [a, b] = ball_contact.ends.map(|k| &island.balls[k]);
+            let pair_history = &mut pair_histories[ball_contact.pair_history];
+            let [a, b] = ball_contact.ends.map(|k| &self.balls[k]);
             (pair_history.normal_force, pair_history.shear_force) =
                 (ball_contact.normal_force / dt, ball_contact.shear_force / dt);
             pair_history.slides = ball_contact.shear_force.norm()
@@ -120,12 +129,12 @@ impl Island<'_> {
             // what carried in this step is where the next begins to look for what carries
             pair_history.closed |= pair_history.is_slow(&(a.v - b.v));
         }
-        let mut ground_contacts = island
+        let mut ground_contacts = self
             .ground_contacts
             .iter()
             .filter(|ground_contact| ground_contact.normal_force > 0.0)
             .peekable();
-        for (k, (member, ball)) in self.members.iter_mut().zip(&island.balls).enumerate() {
+        for (k, (member, ball)) in members.iter_mut().zip(&self.balls).enumerate() {
             let member = &mut **member;
             member.kept.clear();
             while let Some(ground_contact) =
@@ -138,12 +147,11 @@ impl Island<'_> {
                 );
                 member.kept.push((ground_contact.feature, kept.0, kept.1, kept.2));
             }
-            member.land_on(self.terrain, ball);
+            member.land_on(terrain, ball);
         }
-        for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
-        {
+        for pair_history in pair_histories.iter().filter(|pair_history| pair_history.is_held()) {
             for k in [pair_history.a, pair_history.b] {
-                self.members[k as usize].flying = false;
+                members[k as usize].flying = false;
             }
         }
     }
@@ -171,25 +179,6 @@ fn lay(ends: &[[usize; 2]], rocks: usize, (first, links): (&mut Vec<u32>, &mut V
             links[first[k] as usize] = place as u32;
         }
     }
-}
-
-/// One step of a rock that nothing but the mesh can touch.
-fn alone(
-    terrain: &Terrain,
-    member: &mut IslandBody,
-    (longest, h_max): (f64, f64),
-) -> Result<Done, StepError> {
-    member.flew = member.flying;
-    member.kept.clear();
-    let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
-    let done = crate::solver::rigid::advance(&world, &mut member.state, longest, h_max)?;
-    member.flying = member.state.is_free();
-    Ok(Done {
-        dt: done.dt,
-        losses: vec![done.loss],
-        given: vec![Given::default()],
-        ..Done::default()
-    })
 }
 
 impl PairHistory {
@@ -248,6 +237,7 @@ impl IslandBody {
         let world = ContactEnvironment { terrain, body: *body, laws };
         (state.c, state.v, state.w) = (ball.c, ball.v, ball.w);
         remember(&world, state, |_| ball.pushed);
+        state.is_struck = false;
         self.flying = state.is_free();
     }
 }

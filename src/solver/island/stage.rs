@@ -1,8 +1,10 @@
 //! One implicit stage of an island, and the rates at its start.
 
-use super::assembly::{Given, Island, TOUCH};
+use super::assembly::Island;
 use super::body::IslandBody;
+use super::outcome::Given;
 use super::pair_contact::PairContact;
+use super::pair_contact::TOUCH;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;

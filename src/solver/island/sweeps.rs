@@ -5,6 +5,7 @@
 //! contacts oppose each other stiffly (a light rock under a heavy one, a high pile) sweeps creep; then the stirred part
 //! of the island is solved at once in the modes that they have found, and the sweeps judge the result.
 
+use super::active_set::SETTLED_AT_ONCE;
 use super::assembly::Island;
 use super::body::IslandBody;
 use super::newton_step::jump;
@@ -20,69 +21,12 @@ const JUMPS: usize = 10;
 /// Change of velocity by a change of force that is still to come, relative to the step's tolerance, below which the force
 /// has settled (–).
 const SETTLED: f64 = 1e-2;
-/// Part of that below which a change counts as settled however fast changes die out (–).
-const SETTLED_AT_ONCE: f64 = 1e-4;
 /// Part of that from which a change stirs the rocks: what is passed over adds up (–).
 const STIRS: f64 = 1e-4;
 /// An island of no more rocks than this is swept as a whole.
 const SMALL: usize = 4;
 /// Change of a force, relative to itself, that is rounding (–).
 const ROUNDING: f64 = 1e-11;
-
-/// Which rocks have been stirred, and what every contact has seen of that.
-#[derive(Debug, Default)]
-pub(super) struct ActiveSet {
-    /// How often each rock was set in another motion.
-    times: Vec<u32>,
-    /// The count at which each rock's contacts with the mesh were solved …
-    contacts: Vec<u32>,
-    /// … and each contact of two rocks.
-    pairs: Vec<[u32; 2]>,
-    /// Rocks whose forces changed in the last sweep.
-    pub(super) lately: Vec<bool>,
-    /// Largest change in the sweep in hand and in the two before, relative to what is allowed.
-    changes: [f64; 3],
-}
-
-impl ActiveSet {
-    /// Nothing has been solved yet.
-    fn begin(&mut self, rocks: usize, pairs: usize) {
-        self.times.clear();
-        self.times.resize(rocks, 1);
-        self.contacts.clear();
-        self.contacts.resize(rocks, 0);
-        self.pairs.clear();
-        self.pairs.resize(pairs, [0; 2]);
-        self.lately.clear();
-        self.lately.resize(rocks, true);
-        self.changes = [f64::INFINITY; 3];
-    }
-
-    /// Begins another sweep.
-    fn begin_sweep(&mut self) {
-        self.lately.fill(false);
-        self.changes = [0.0, self.changes[0], self.changes[1]];
-    }
-
-    /// Notes a change, relative to what is allowed.
-    fn note(&mut self, change: f64) {
-        self.changes[0] = self.changes[0].max(change);
-    }
-
-    /// Whether all changes still to come are small: `q + q² + …` times the last one, if each sweep leaves the share `q` of
-    /// the change before. Where sweeps creep, that is far more than the last change, and only the third sweep tells.
-    fn is_settled(&self) -> bool {
-        let [now, before, earlier] = self.changes;
-        let share = f64::max(now / before, before / earlier);
-        let knows = earlier.is_finite() && share < 1.0;
-        now <= SETTLED_AT_ONCE || knows && now <= 1.0 && now * share <= 1.0 - share
-    }
-
-    fn stir(&mut self, k: usize) {
-        self.times[k] += 1;
-        self.lately[k] = true;
-    }
-}
 
 impl Island<'_> {
     /// Finds all contact forces of a stage of length `h`; whether they settled.
@@ -277,23 +221,5 @@ impl Island<'_> {
                 pair.shear_force = within(stick, law.friction * pair.normal_force);
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::ActiveSet;
-
-    /// A contact is looked at again exactly when one of its rocks was stirred after it had been solved.
-    #[test]
-    fn what_is_stirred_is_solved_again() {
-        let mut stirred = ActiveSet::default();
-        stirred.begin(2, 1);
-        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
-        stirred.pairs[0] = [stirred.times[0], stirred.times[1]];
-        stirred.stir(1);
-        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
-        stirred.begin(2, 1);
-        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
     }
 }

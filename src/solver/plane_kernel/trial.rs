@@ -1,16 +1,17 @@
 //! One step on a plane, tried with any length.
 
-use super::PlaneKernel;
-use super::state::{
-    PlaneForces, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, accelerations, dot, slip, square,
-    stored_j, three, two,
-};
 use crate::contact::neighbours::Neighbours;
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::solver::contact_state::{ContactEnvironment, Loss};
+use crate::solver::body::Body;
+use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::friction_rolling::{Answers, Local, Mode, Pair};
-use crate::solver::law::{Body, normal_force};
+use crate::solver::law::normal_force;
+use crate::solver::loss::Loss;
+use crate::solver::plane_state::{
+    PlaneForces, PlaneState, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, accelerations, dot, slip,
+    square, stored_j, three, two,
+};
 use crate::solver::step_control::{
     Advance, Control, ONSET, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, StepFailure, Trial,
     settle,
@@ -30,7 +31,7 @@ pub(super) struct Try<'a, 'w> {
     pub(super) control: &'a Control,
     pub(super) world: &'a ContactEnvironment<'w>,
     pub(super) law: &'a Law,
-    pub(super) plane_kernel: &'a mut PlaneKernel,
+    pub(super) plane: &'a mut PlaneState,
     /// Normal damping in force (N s/m).
     pub(super) c_n: f64,
     pub(super) gravity: Local,
@@ -78,8 +79,8 @@ impl Try<'_, '_> {
     fn stage(&mut self, i: usize, dt: f64, by: &Length) {
         let (body, law, tableau) = (&self.world.body, self.law, self.control.tableau);
         let hh = by.hh;
-        let mut base = self.plane_kernel.state;
-        for (rate, a) in self.plane_kernel.rates.iter().zip(tableau.a[i]) {
+        let mut base = self.plane.state;
+        for (rate, a) in self.plane.rates.iter().zip(tableau.a[i]) {
             for (base, rate) in base.iter_mut().zip(rate) {
                 *base += rate * (dt * a);
             }
@@ -97,7 +98,7 @@ impl Try<'_, '_> {
             (shear_force, rolling_moment) = Pair { answers, a, d, caps }.solve(&mut self.mode);
         }
         let (dv, dw) = accelerations(body, normal_force, shear_force, rolling_moment);
-        let (rate, end) = (&mut self.plane_kernel.rates[i], &mut self.end);
+        let (rate, end) = (&mut self.plane.rates[i], &mut self.end);
         for k in 0..3 {
             let v = speed[k] + dv[k] * hh;
             rate[WAY + k] = v;
@@ -116,8 +117,7 @@ impl Try<'_, '_> {
         let press = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
         let (speed, spin) = (three(end, SPEED), three(end, SPIN));
         let shear_rate = two(rate, SHEAR);
-        self.plane_kernel.losses[i] =
-            press.losses(slip(body, speed, spin), (speed[2], spin), shear_rate);
+        self.plane.losses[i] = press.losses(slip(body, speed, spin), (speed[2], spin), shear_rate);
         self.press = press;
         self.solved += 1;
     }
@@ -131,7 +131,7 @@ impl Try<'_, '_> {
         if self.near.plane() == Some(self.face) {
             return None;
         }
-        let centre = self.start + self.plane_kernel.frame.out_local(three(&self.end, WAY));
+        let centre = self.start + self.plane.frame.out_local(three(&self.end, WAY));
         if !self.near.is_over(self.face, &centre) {
             return Some(Outcome::Elsewhere);
         }
@@ -148,7 +148,7 @@ impl Try<'_, '_> {
     fn error(&self, dt: f64) -> f64 {
         let tableau = self.control.tableau;
         let mut off = [0.0; SIZE];
-        for (rate, weight) in self.plane_kernel.rates[..tableau.stages].iter().zip(tableau.error) {
+        for (rate, weight) in self.plane.rates[..tableau.stages].iter().zip(tableau.error) {
             for (off, rate) in off.iter_mut().zip(rate) {
                 *off += rate * weight;
             }
@@ -210,7 +210,7 @@ impl Try<'_, '_> {
     #[inline]
     fn accept(&mut self, dt: f64, sum: &mut Local) {
         let tableau = self.control.tableau;
-        for (k, losses) in self.plane_kernel.losses[..tableau.stages].iter().enumerate() {
+        for (k, losses) in self.plane.losses[..tableau.stages].iter().enumerate() {
             let weight = dt * tableau.work_weight(k);
             for (sum, loss) in sum.iter_mut().zip(losses) {
                 *sum += weight * loss;
@@ -218,17 +218,16 @@ impl Try<'_, '_> {
         }
         self.energy = self.energy_at_end;
         let last = tableau.stages - 1;
-        let plane_kernel = &mut *self.plane_kernel;
-        (plane_kernel.rates[0], plane_kernel.losses[0]) =
-            (plane_kernel.rates[last], plane_kernel.losses[last]);
-        plane_kernel.state = self.end;
+        let plane = &mut *self.plane;
+        (plane.rates[0], plane.losses[0]) = (plane.rates[last], plane.losses[last]);
+        plane.state = self.end;
     }
 
     /// Whether the next step stays where what is near is known, and within the longest step that was allowed for.
     #[inline]
     fn has_room(&mut self, dt: f64) -> bool {
         self.room_s -= dt;
-        let (state, h) = (&self.plane_kernel.state, *self.h);
+        let (state, h) = (&self.plane.state, *self.h);
         let ahead = [0, 1, 2].map(|k| state[WAY + k] + state[SPEED + k] * h);
         h <= self.room_s && square(ahead) < self.room2
     }

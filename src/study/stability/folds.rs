@@ -7,8 +7,8 @@ use crate::ground::{Capture, Damping, Ground, Law, damping_ratio, normal_impact}
 use crate::math;
 use crate::rock::{Rock, Vec3};
 use crate::simulation::Stop;
+use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::law::Body;
 use crate::solver::{Scheme, Stepper, advance};
 use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, settings, terrain};
 use crate::study::cases::meshes::{bumpy, fold};

@@ -29,7 +29,8 @@ fn together(
     let step = settings(way.scheme, way.fineness, None);
     let rest = RestRule { speed_m_s: 0.02, time_s: f64::INFINITY };
     let recorders = Recorders::default();
-    let course = RunSettings { terrain: on, gravity_m_s2, step: &step, rest, longest_s, recorders };
+    let course =
+        RunSettings { terrain: on, gravity_m_s2, step: &step, rest, longest_s, recorders, seed: 1 };
     let release = |&(density_kg_m3, z, up): &Sphere| Release {
         rock: Rock { radius_m: RADIUS_M, density_kg_m3 },
         motion: Motion {

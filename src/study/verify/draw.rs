@@ -1,9 +1,11 @@
 //! The paper's figures drawn anew.
 
-use super::paper::STEP_S;
 use crate::report::curves::Curves;
 use crate::simulation::{PathPoint, Trajectory};
 use crate::terrain::Terrain;
+
+/// The paper's time step (s): steps are printed, not times.
+pub(super) const STEP_S: f64 = 1e-5;
 
 /// A line in a figure.
 pub(super) type Line = Vec<(f64, f64)>;

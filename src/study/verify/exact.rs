@@ -26,6 +26,7 @@ const GROUND: Ground = Ground {
     rolling_friction: 0.0,
     roughness_rad: 0.0,
     roughness_length_m: None,
+    slip_friction: None,
 };
 const G: f64 = 9.8;
 
@@ -95,8 +96,15 @@ fn rocks(
     };
     let rest = RestRule { speed_m_s: 0.02, time_s: 1.0 };
     let recorders = Recorders::default();
-    let course =
-        RunSettings { terrain: &terrain, gravity_m_s2, step: &step, rest, longest_s, recorders };
+    let course = RunSettings {
+        terrain: &terrain,
+        gravity_m_s2,
+        step: &step,
+        rest,
+        longest_s,
+        recorders,
+        seed: 1,
+    };
     let releases: Vec<Release> = places
         .iter()
         .zip([velocity_m_s, [0.0; 3]])

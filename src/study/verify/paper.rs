@@ -1,6 +1,6 @@
 //! The paper's four examples, with its scheme, step and Table 1.
 
-use super::draw::{Line, heights, outline, side, speeds};
+use super::draw::{Line, STEP_S, heights, outline, side, speeds};
 use super::{Row, Verification, timed};
 use crate::error::{Error, Result};
 use crate::math;
@@ -18,8 +18,6 @@ use crate::terrain::weld::{Piece, weld};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// The paper's time step (s): steps are printed, not times.
-pub(super) const STEP_S: f64 = 1e-5;
 /// Slower than this a sphere has settled (m/s), as the printed step numbers were read.
 const SETTLED_M_S: f64 = 1e-3;
 /// Share by which a printed step number may be missed: sizes are not printed, and were fitted to 3 %.

@@ -1,7 +1,7 @@
 //! Triangles between given points that keep given lines: the shortest further lines first, as long as none crosses another
 //! (greedy triangulation). Slow for many points and simple for the few that lie in one triangle of a slope.
 
-use super::cut::{Drawing, cross, lies_within};
+use super::drawing::{Drawing, cross, lies_within};
 use super::{Corner, side};
 
 /// All triangles of a drawing, anticlockwise, by their nodes.

@@ -2,6 +2,7 @@
 
 use super::{Facet, Format, Soup, unit_normal};
 use crate::error::{Error, Result};
+use crate::file;
 use crate::rock::Vec3;
 use std::fmt::Write;
 use std::path::Path;
@@ -189,5 +190,5 @@ pub fn ascii_text(name: &str, facets: &[Facet]) -> String {
 /// # Errors
 /// A file that cannot be written.
 pub fn write_ascii(path: &Path, name: &str, facets: &[Facet]) -> Result<()> {
-    std::fs::write(path, ascii_text(name, facets)).map_err(Error::file("write", path))
+    file::write(path, ascii_text(name, facets).as_bytes())
 }

@@ -2,6 +2,7 @@
 
 use super::{Facet, Format, Soup, Spacing, unit_normal};
 use crate::error::{Error, Result};
+use crate::file;
 use crate::rock::Vec3;
 use std::io::Cursor;
 use std::path::Path;
@@ -79,5 +80,5 @@ pub fn write_binary(path: &Path, facets: &[Facet]) -> Result<()> {
         let remedy = "subtract a map origin first, or write ASCII";
         return Err(Error::input(path, "coordinates", spacing.to_string(), remedy));
     }
-    std::fs::write(path, binary_bytes(facets)).map_err(Error::file("write", path))
+    file::write(path, &binary_bytes(facets))
 }

@@ -4,9 +4,9 @@ use super::FrozenContact;
 use crate::contact::MOST;
 use crate::ground::restitution;
 use crate::rock::Vec3;
+use crate::solver::body::Body;
 use crate::solver::impact::normal_motion::NONE;
 use crate::solver::impact::sliders::Element;
-use crate::solver::law::Body;
 
 /// A speed along a normal that is none, in impact speeds (–).
 const REST: f64 = 1e-9;

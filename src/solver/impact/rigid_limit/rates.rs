@@ -4,8 +4,8 @@ use super::contacts::{Contacts, Place};
 use super::{FrozenContact, LONGEST, NOTHING};
 use crate::contact::MOST;
 use crate::rock::Vec3;
+use crate::solver::body::Body;
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
-use crate::solver::law::Body;
 
 /// Where the way of the centre begins among the numbers that change; velocity, spin times radius and the springs follow.
 pub(super) const WAY: usize = 0;

@@ -5,10 +5,10 @@ use super::{G, case, ground, motion_j, uniforms};
 use crate::contact::MOST;
 use crate::ground::{Ground, Law};
 use crate::rock::Vec3;
-use crate::solver::contact_state::Loss;
+use crate::solver::body::Body;
 use crate::solver::impact::rigid_limit::Thrown;
 use crate::solver::impact::{Followed, FrozenContact, Plane, Settled, throw};
-use crate::solver::law::Body;
+use crate::solver::loss::Loss;
 use nalgebra::Rotation3;
 use proptest::prelude::*;
 

@@ -3,7 +3,8 @@
 
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::solver::law::{Body, within};
+use crate::solver::body::Body;
+use crate::solver::law::within;
 
 /// One contact of a frozen geometry.
 #[derive(Debug, Clone, Copy)]

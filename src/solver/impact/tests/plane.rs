@@ -4,9 +4,9 @@ use super::oracle::{self, Touch};
 use super::{G, case, ground, motion_j, uniforms};
 use crate::ground::{Damping, Law, normal_impact};
 use crate::rock::Vec3;
+use crate::solver::body::Body;
 use crate::solver::impact::plane::Rebound;
 use crate::solver::impact::{Followed, Plane};
-use crate::solver::law::Body;
 use nalgebra::Rotation3;
 use proptest::prelude::*;
 

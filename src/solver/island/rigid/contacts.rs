@@ -4,10 +4,11 @@ use crate::contact::Feature;
 use crate::contact::pair::{PairHistory, between};
 use crate::ground::Law;
 use crate::rock::Vec3;
+use crate::solver::body::Body;
 use crate::solver::friction_rolling::Mode;
 use crate::solver::impact::{FrozenContact, throw};
 use crate::solver::island::pair_contact::Motion;
-use crate::solver::law::{Body, within};
+use crate::solver::law::within;
 use crate::solver::rigid::{IMPACT, rub};
 
 /// One rock inside a step.

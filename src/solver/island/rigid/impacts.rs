@@ -8,12 +8,16 @@
 
 use super::RigidIsland;
 use super::contacts::{Ball, BallContact, GroundContact};
+use crate::contact::ContactPoint;
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
-use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::assembly::{Given, TOUCH};
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::island::body::{BodySlot, IslandBody};
-use crate::solver::rigid::capture_m_s;
+use crate::solver::island::outcome::{Given, Hit};
+use crate::solver::island::pair_contact::TOUCH;
+use crate::solver::law::capture_m_s;
+use crate::solver::rigid::HELD;
+use crate::solver::roughness::Meeting;
 use crate::terrain::Terrain;
 use std::cmp::Reverse;
 
@@ -27,23 +31,6 @@ const NEAR: f64 = 1e-3;
 /// A blow that is due: time before the end of the step (s, as the bits of a positive number: they keep the order), the
 /// place of its contact, the counts of its rocks.
 pub(super) type Due = (u64, Reverse<usize>, [u32; 2]);
-
-/// An impact on the mesh.
-#[derive(Debug, Clone, Copy)]
-pub struct Hit {
-    /// The rock, as a place in the island.
-    pub rock: usize,
-    /// Normal of the patch there.
-    pub normal: Vec3,
-    /// Speed of approach along it (m/s).
-    pub approach_m_s: f64,
-    /// Point that is touched (m).
-    pub point_m: Vec3,
-    /// Where on the mesh.
-    pub feature: crate::contact::FeatureKind,
-    /// Triangle whose ground answers.
-    pub triangle: u32,
-}
 
 /// What blows act on.
 pub(super) struct Scene<'s> {
@@ -155,7 +142,8 @@ impl RigidIsland {
                 first = Some(first.unwrap_or(0.0).max(s));
             }
         }
-        if let Some(s) = first {
+        let meets_facet = || meets_facet(&world, state, ball).then_some(0.0);
+        if let Some(s) = first.or_else(meets_facet) {
             let place = scene.pair_histories.len() + k;
             self.due.push((s.to_bits(), Reverse(place), [ball.times; 2]));
         }
@@ -213,24 +201,28 @@ impl RigidIsland {
             .min_by(|a, b| a.normal.dot(&v).total_cmp(&b.normal.dot(&v)))
             .copied();
         if let Some(touch) = hit {
+            if let Some(broken) = state.broken_by(&world, &touch, (&v, &ball.w)) {
+                ball.v += broken.motion.0 - v;
+                ball.c += (broken.motion.0 - v) * s;
+                ball.w = broken.motion.1;
+                self.losses[k].trees += broken.taken_j;
+                self.hits.push(hit_of(k, &touch, (&at, body.radius), -touch.normal.dot(&v)));
+                state.fell_broken(&world, &broken);
+                ball.is_struck(s);
+                return;
+            }
             let law = world.law(touch.triangle);
+            let meeting = Meeting { n: touch.normal, triangle: touch.triangle, c: at, v };
+            let facet = state.facets.struck(&world, &meeting);
+            let normal = facet.map_or(touch.normal, |turn| turn * touch.normal);
             let mut ground_contact =
-                GroundContact::new(k, (touch.feature, touch.triangle), touch.normal, law);
+                GroundContact::new(k, (touch.feature, touch.triangle), normal, law);
             ground_contact.impact((body, law), (&v, &ball.w), ball.blows >= LIVELY);
             let before = (ball.v, ball.w);
             ball.take_late(&ground_contact.load(body), s);
             let mean = mean_late(ball, &before, s);
             self.losses[k].add(&ground_contact.loss(&world, &mean), 1.0);
-            let point_m = at - ground_contact.n * body.radius;
-            let feature = touch.feature.kind;
-            self.hits.push(Hit {
-                rock: k,
-                normal: touch.normal,
-                approach_m_s: -touch.normal.dot(&v),
-                point_m,
-                feature,
-                triangle: touch.triangle,
-            });
+            self.hits.push(hit_of(k, &touch, (&at, body.radius), -normal.dot(&v)));
         }
         ball.is_struck(s);
     }
@@ -244,6 +236,29 @@ impl Ball {
         self.pushed = true;
         self.times += 1;
     }
+}
+
+/// The impact of rock `k`, with its centre at `c`, at a touch.
+fn hit_of(k: usize, touch: &ContactPoint, (c, radius): (&Vec3, f64), approach_m_s: f64) -> Hit {
+    Hit {
+        rock: k,
+        normal: touch.normal,
+        approach_m_s,
+        point_m: c - touch.normal * radius,
+        feature: touch.feature.kind,
+        triangle: touch.triangle,
+    }
+}
+
+/// Whether a rock that slides or rolls strikes the next facet of rough ground, the last one being behind it.
+fn meets_facet(world: &ContactEnvironment, state: &mut ContactState, ball: &Ball) -> bool {
+    let reach = ball.body.radius * (1.0 + HELD);
+    let ContactState { touches, facets, .. } = state;
+    let rough = touches.iter().filter(|touch| touch.distance_m <= reach).find_map(|touch| {
+        let at = Meeting { n: touch.normal, triangle: touch.triangle, c: ball.c, v: ball.v };
+        facets.are_behind(world, &at).then_some(at)
+    });
+    rough.is_some_and(|at| facets.struck(world, &at).is_some())
 }
 
 /// Mean motion in a blow that fell `s` (s) before the end of the step, from the motions there without and with it.

@@ -3,9 +3,10 @@
 use super::RigidIsland;
 use super::contacts::Ball;
 use super::impacts::Scene;
+use crate::contact::TOUCH;
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
-use crate::solver::contact_state::{ContactEnvironment, TOUCH};
+use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::island::body::IslandBody;
 
 /// Overlap of two rocks that is left alone: what their weight presses springs in, within bounds (–, relative to the smaller

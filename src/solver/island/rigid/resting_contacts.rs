@@ -10,9 +10,9 @@ use super::contacts::{Ball, BallContact, GroundContact};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::island::assembly::Given;
 use crate::solver::island::body::BodySlot;
-use crate::solver::rigid::capture_m_s;
+use crate::solver::island::outcome::Given;
+use crate::solver::law::capture_m_s;
 use crate::terrain::Terrain;
 
 /// Whether a contact with this gap (m) and normal speed (m/s) at the start of a step of length `dt` (s) is a sustained

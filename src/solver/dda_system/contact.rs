@@ -1,6 +1,7 @@
 //! One contact inside a fixed step: its submatrices, and the judgement of its state.
 
 use super::slider::{Change, Slider, along};
+use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, SAME_GRIP, carry};
 use crate::contact::submatrix::{
     Mat6, Vec6, displacement, friction_cap, friction_load, gap, moment_load, normal_load,
@@ -10,7 +11,7 @@ use crate::contact::submatrix::{
 use crate::contact::{ContactPoint, Feature};
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::solver::contact_state::{Loss, TOUCH};
+use crate::solver::loss::Loss;
 
 /// What is the same for all contacts of a step.
 #[derive(Debug, Clone, Copy)]

@@ -1,8 +1,10 @@
 //! A rock on one plane: the fourteen numbers that change along a step, and what presses on it.
 
+use super::body::Body;
+use super::friction_rolling::{Along, Frame, Local, cut, cut_moment};
+use super::tableau::STAGES;
 use crate::ground::Law;
-use crate::solver::friction_rolling::{Along, Local};
-use crate::solver::law::Body;
+use crate::rock::Vec3;
 
 /// Numbers that change along a step, and where each kind begins.
 pub(super) const SIZE: usize = 14;
@@ -96,5 +98,69 @@ impl PlaneForces {
             held - self.normal_force * rise,
             dot(self.rolling_moment, spin),
         ]
+    }
+}
+
+/// State and rates of a rock on one plane.
+#[derive(Debug)]
+pub struct PlaneState {
+    /// Whether they are those of the rock in hand.
+    pub(super) on: bool,
+    pub(super) frame: Frame,
+    pub(super) state: State,
+    pub(super) rates: [State; STAGES],
+    /// Power that goes into friction, damping and rolling at each stage (W).
+    pub(super) losses: [Local; STAGES],
+}
+
+impl Default for PlaneState {
+    fn default() -> Self {
+        Self {
+            on: false,
+            frame: Frame::of(&Vec3::z()),
+            state: [0.0; SIZE],
+            rates: [[0.0; SIZE]; STAGES],
+            losses: [[0.0; 3]; STAGES],
+        }
+    }
+}
+
+impl PlaneState {
+    /// Forgets whose state it holds (before the next contact).
+    pub(crate) fn forget(&mut self) {
+        self.on = false;
+    }
+
+    /// Rates at the present state, for the explicit first stage; returns the energy in the springs (J).
+    pub(super) fn begin(&mut self, law: &Law, body: &Body, (penetration, c_n): (f64, f64)) -> f64 {
+        let (penetration, s) = (penetration.max(0.0), &self.state);
+        let (speed, spin) = (three(s, SPEED), three(s, SPIN));
+        let slip = slip(body, speed, spin);
+        let normal_force = (law.p_n * penetration - c_n * speed[2]).max(0.0);
+        let held = two(s, SHEAR).map(|x| x * law.p_s);
+        let shear_force =
+            cut([0, 1].map(|k| held[k] + slip[k] * law.c_s), law.friction * normal_force);
+        let wound = three(s, ROLL).map(|x| x * law.k_r);
+        let rolling_moment = cut_moment(
+            [0, 1, 2].map(|k| wound[k] + spin[k] * law.c_r),
+            law.rolling_m * normal_force,
+        );
+        let over = |damping: f64| if damping > 0.0 { 1.0 / damping } else { 0.0 };
+        let (over_s, over_r) = (over(law.c_s), over(law.c_r));
+        let gravity = self.frame.local(&body.gravity);
+        let (dv, dw) = accelerations(body, normal_force, shear_force, rolling_moment);
+        let rate = &mut self.rates[0];
+        for k in 0..3 {
+            rate[WAY + k] = speed[k];
+            rate[SPEED + k] = gravity[k] + dv[k];
+            rate[SPIN + k] = dw[k];
+            rate[ROLL + k] = (rolling_moment[k] - wound[k]) * over_r;
+        }
+        for k in 0..2 {
+            rate[SHEAR + k] = (shear_force[k] - held[k]) * over_s;
+        }
+        let press = PlaneForces { normal_force, shear_force, rolling_moment, closed: true };
+        self.losses[0] = press.losses(slip, (speed[2], spin), two(&self.rates[0], SHEAR));
+        stored_j(law, penetration, &self.state)
     }
 }

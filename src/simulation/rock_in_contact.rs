@@ -1,0 +1,217 @@
+//! A rock in contact with the mesh, alone or among others: its impacts are noted down as they begin and end, and on rough
+//! ground it is turned against the facets that it meets.
+
+use super::impacts::Struck;
+use super::recorder::Recorder;
+use crate::contact::ContactPoint;
+use crate::contact::history::ContactHistory;
+use crate::rock::Vec3;
+use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::roughness::Meeting;
+use std::f64::consts::PI;
+
+/// An impact is over after so many contact times (–), whether the rock has left or not.
+const IMPACT_TIMES: f64 = 3.0;
+
+/// A rock in contact and its notes.
+pub(super) struct RockInContact<'r, 'a> {
+    pub(super) world: ContactEnvironment<'r>,
+    pub(super) state: &'r mut ContactState,
+    pub(super) recorder: &'r mut Recorder<'a>,
+    /// Whether contacts have springs, and impacts take time.
+    pub(super) has_springs: bool,
+}
+
+/// The contact that a rock comes to fastest.
+#[derive(Clone, Copy)]
+struct Fastest {
+    approach_m_s: f64,
+    n: Vec3,
+    triangle: u32,
+}
+
+impl RockInContact<'_, '_> {
+    /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
+    pub(super) fn announce(&mut self) {
+        let Some(fastest) = self.fastest_unannounced() else { return };
+        let facet = if self.world.law(fastest.triangle).roughness_rad > 0.0 {
+            self.leave_facet();
+            let at = self.meeting((fastest.n, fastest.triangle));
+            self.state.facets.struck(&self.world, &at)
+        } else {
+            None
+        };
+        // whether a rock rebounds is judged by its approach to the facet
+        let to_facet_m_s = facet.map_or(0.0, |turn| -(turn * fastest.n).dot(&self.state.v));
+        if to_facet_m_s >= self.world.law(fastest.triangle).capture_m_s {
+            self.state.rebound(&self.world, to_facet_m_s);
+        }
+        let known = self.state.histories.iter().filter(|history| history.announced);
+        let held_j = ContactState::held_j(&self.world, known);
+        let until_s = self.recorder.now.time_s + self.impact_time();
+        let mut rebounds = false;
+        for k in 0..self.state.histories.len() {
+            let mut history = self.state.histories[k];
+            rebounds |= self.announce_one(&mut history, (&fastest, to_facet_m_s), held_j);
+            self.state.histories[k] = history;
+        }
+        for k in 0..self.state.struck.len() {
+            let mut history = self.state.struck[k];
+            rebounds |= self.announce_one(&mut history, (&fastest, to_facet_m_s), held_j);
+            self.state.struck[k] = history;
+        }
+        if let Some(turn) = facet.filter(|_| rebounds) {
+            self.state.turn_against(&self.world, turn, until_s);
+        }
+    }
+
+    /// The fastest of the contacts that have begun.
+    fn fastest_unannounced(&self) -> Option<Fastest> {
+        let both = self.state.histories.iter().chain(self.state.struck.iter());
+        let begun = both.filter(|history| !history.announced).map(|history| Fastest {
+            approach_m_s: -history.n.dot(&self.recorder.now.velocity_m_s),
+            n: history.n,
+            triangle: history.triangle,
+        });
+        begun.reduce(|one, other| if other.approach_m_s > one.approach_m_s { other } else { one })
+    }
+
+    /// Notes down a contact that has begun, the `fastest` by its approach to the facet; whether it rebounds.
+    fn announce_one(
+        &mut self,
+        history: &mut ContactHistory,
+        (fastest, to_facet_m_s): (&Fastest, f64),
+        held_j: f64,
+    ) -> bool {
+        if std::mem::replace(&mut history.announced, true) || history.captured {
+            return false;
+        }
+        let own_m_s = -history.n.dot(&self.recorder.now.velocity_m_s);
+        let is_fastest = history.n == fastest.n;
+        let approach_m_s = if is_fastest { own_m_s.max(to_facet_m_s) } else { own_m_s };
+        history.impact = self.begin_impact(history, approach_m_s, held_j);
+        true
+    }
+
+    /// Breaks the stems that cannot take the blow in hand, and meets the next facet if it is time for it; returns the longest
+    /// step (s) in which no stem takes more than it can.
+    pub(super) fn before_step(&mut self) -> f64 {
+        let longest_s = if self.has_springs {
+            self.state.longest_before_yield_s(&self.world)
+        } else {
+            self.break_stems();
+            f64::INFINITY
+        };
+        if self.world.laws.iter().any(|law| law.roughness_rad > 0.0) {
+            self.meet_next_facet();
+        }
+        longest_s
+    }
+
+    fn break_stems(&mut self) {
+        let Self { world, state, recorder, .. } = self;
+        let world = &*world;
+        let note = |state: &ContactState, touch: &ContactPoint, (taken_j, is_new)| {
+            let approach_m_s = -touch.normal.dot(&state.v);
+            if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
+                let now_s = recorder.now.time_s;
+                let struck = struck(recorder, world, (&state.c, touch), approach_m_s);
+                recorder.begin_impact(&struck, now_s, 0.0);
+            }
+            recorder.ledger.trees_j += taken_j;
+        };
+        state.break_stems(world, note);
+    }
+
+    /// A rock that slides or rolls on rough ground meets the next facet once the last is behind it.
+    fn meet_next_facet(&mut self) {
+        if self.state.facets.is_any_met() {
+            return;
+        }
+        let rests = |history: &&mut ContactHistory| history.closed && history.announced;
+        let pressed = self.state.histories.iter_mut().filter(rests);
+        let Some(history) =
+            pressed.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force))
+        else {
+            return;
+        };
+        let at =
+            Meeting { n: history.n, triangle: history.triangle, c: self.state.c, v: self.state.v };
+        if self.state.facets.are_behind(&self.world, &at) {
+            history.announced = self.state.facets.struck(&self.world, &at).is_none();
+            self.announce();
+            // its blow is announced herewith
+            self.state.is_struck |= self.state.facets.is_any_met();
+        }
+    }
+
+    fn meeting(&self, (n, triangle): (Vec3, u32)) -> Meeting {
+        Meeting { n, triangle, c: self.state.c, v: self.state.v }
+    }
+
+    /// Begins the impact of a contact, unless it came too slowly for one (0); `held_j` is what other springs hold.
+    fn begin_impact(&mut self, history: &ContactHistory, approach_m_s: f64, held_j: f64) -> u32 {
+        if approach_m_s < self.world.law(history.triangle).capture_m_s {
+            return 0;
+        }
+        let touch = ContactPoint::single(history.feature, history.triangle, &history.n, 1.0);
+        let struck = struck(self.recorder, &self.world, (&self.state.c, &touch), approach_m_s);
+        let until_s = self.recorder.now.time_s + self.impact_time();
+        self.recorder.begin_impact(&struck, until_s, held_j)
+    }
+
+    /// The longest an impact is taken to last (s): in the rigid limit no time at all.
+    fn impact_time(&self) -> f64 {
+        if !self.has_springs {
+            return 0.0;
+        }
+        let omegas =
+            self.state.histories.iter().map(|history| self.world.law(history.triangle).omega);
+        let slowest = omegas.fold(f64::INFINITY, f64::min);
+        IMPACT_TIMES * PI / slowest
+    }
+
+    /// Ends the impacts whose patch has let go or whose time is up, and turns the rock back from a facet that is behind it.
+    pub(super) fn end_impacts(&mut self) {
+        // a blow of the rigid limit is announced first and falls with the next step
+        if !self.has_springs && self.state.is_struck {
+            return;
+        }
+        let (world, histories, has_springs) =
+            (&self.world, &self.state.histories, self.has_springs);
+        // the rigid limit keeps no memory of what has hit and left again within a step
+        self.recorder.end_impacts(
+            |number| !has_springs || histories.iter().any(|history| history.impact == number),
+            || ContactState::held_j(world, histories.iter()),
+        );
+        if self.state.has_met_its_facet(self.recorder.now.time_s) {
+            self.leave_facet();
+        }
+    }
+
+    /// Turns the rock back, if it is turned.
+    pub(super) fn leave_facet(&mut self) {
+        if self.state.turn_back(&self.world) {
+            // a rebound into the mean surface is the next impact
+            self.recorder.impacts.forget_last();
+            let now = &mut self.recorder.now;
+            (now.velocity_m_s, now.spin_rad_s) = (self.state.v, self.state.w);
+        }
+    }
+}
+
+/// What a rock with its centre at `c` strikes at a touch.
+fn struck(
+    recorder: &Recorder,
+    world: &ContactEnvironment,
+    (c, touch): (&Vec3, &ContactPoint),
+    approach_m_s: f64,
+) -> Struck {
+    Struck {
+        point_m: c - touch.normal * world.body.radius,
+        normal: touch.normal,
+        feature: touch.feature.kind,
+        sheet: recorder.sheet_of(touch.triangle),
+        approach_m_s,
+    }
+}

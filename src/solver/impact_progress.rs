@@ -1,0 +1,53 @@
+//! How far an impact that is followed in its own time has come.
+
+/// An impact is over after so long (rad), or goes on as lasting contact.
+const LASTS: f64 = 20.0;
+
+/// What an impact needs besides the rock's state.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ImpactProgress {
+    /// The step to try next (s), if there is one.
+    pub(super) h: f64,
+    /// Fastest approach of the contacts (m/s).
+    pub(super) speed_m_s: f64,
+    /// How much longer it is followed in its own time (rad).
+    pub(super) left: f64,
+    /// Energy that the steps have gained (J).
+    pub(super) gained: f64,
+    /// Fastest approach to a contact that has come up in the try in hand (m/s).
+    pub(super) tried_m_s: f64,
+}
+
+impl ImpactProgress {
+    /// Forgets the impact before.
+    pub(crate) fn forget(&mut self) {
+        (self.speed_m_s, self.left, self.tried_m_s) = (0.0, 0.0, 0.0);
+    }
+
+    /// A try is made anew: what it met before has not been met.
+    pub(crate) fn try_anew(&mut self) {
+        self.tried_m_s = 0.0;
+    }
+
+    /// A try meets a contact at `speed_m_s` that may rebound.
+    pub(crate) fn try_meeting(&mut self, speed_m_s: f64) {
+        self.tried_m_s = self.tried_m_s.max(speed_m_s);
+    }
+
+    /// The try has become a step.
+    pub(crate) fn accept_meeting(&mut self, slowest: f64) {
+        self.meet(self.tried_m_s, slowest);
+        self.tried_m_s = 0.0;
+    }
+
+    /// A contact begins at `speed_m_s` that may rebound; `slowest` is the speed from which on it is followed here.
+    pub(crate) fn meet(&mut self, speed_m_s: f64, slowest: f64) {
+        if speed_m_s <= slowest {
+            return;
+        }
+        if self.left <= 0.0 {
+            (self.h, self.gained) = (0.0, 0.0);
+        }
+        (self.speed_m_s, self.left) = (self.speed_m_s.max(speed_m_s), LASTS);
+    }
+}

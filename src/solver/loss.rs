@@ -1,0 +1,44 @@
+//! Where energy goes in contacts.
+
+use super::environment::ContactEnvironment;
+
+/// Power that goes into contacts (W) by kind, or energy (J) once summed over time. What springs store is counted
+/// in; it is nothing once the contact is over.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Loss {
+    /// Sliding friction on the slope.
+    pub friction: f64,
+    /// Normal and shear dashpots on the slope.
+    pub damping: f64,
+    /// Rolling friction on the slope.
+    pub rolling: f64,
+    /// Everything in contacts with trees.
+    pub trees: f64,
+}
+
+impl Loss {
+    /// Adds `other` times `factor`.
+    #[inline]
+    pub fn add(&mut self, other: &Self, factor: f64) {
+        self.friction += factor * other.friction;
+        self.damping += factor * other.damping;
+        self.rolling += factor * other.rolling;
+        self.trees += factor * other.trees;
+    }
+
+    /// The same, booked under trees where the triangle is one's.
+    #[must_use]
+    #[inline]
+    pub fn on(self, world: &ContactEnvironment, triangle: u32) -> Self {
+        if world.terrain.is_tree(triangle) {
+            Self { trees: self.sum(), ..Self::default() }
+        } else {
+            self
+        }
+    }
+
+    /// All of it.
+    pub fn sum(&self) -> f64 {
+        self.friction + self.damping + self.rolling + self.trees
+    }
+}

@@ -1,0 +1,42 @@
+//! What one rock has done to the stems.
+
+use crate::contact::history::ContactHistories;
+use crate::terrain::Terrain;
+use crate::terrain::stems::Stems;
+
+/// What one rock has done to the stems; its memory is taken once for all rocks of a thread.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct StemLoad {
+    /// What a stem of each ground can take of this rock (J).
+    pub(super) limits_j: Vec<f64>,
+    /// Stems touched, and what each has taken (J).
+    pub(super) taken: Vec<(u32, f64)>,
+    /// The stem pressed hardest at the last look.
+    pub(super) pressed: Option<u32>,
+}
+
+impl StemLoad {
+    /// What a stem can still take (J), positive while it stands.
+    pub(super) fn left_j(&self, stems: &Stems, stem: u32) -> f64 {
+        let taken = self.taken.iter().find(|(known, _)| *known == stem).map_or(0.0, |(_, j)| *j);
+        self.limits_j[stems.ground_of(stem)] - taken
+    }
+
+    /// Notes what a stem has taken (J), negative where its springs gave something back.
+    pub(super) fn take(&mut self, stem: u32, joule: f64) {
+        match self.taken.iter_mut().find(|(known, _)| *known == stem) {
+            Some((_, taken)) => *taken += joule,
+            None => self.taken.push((stem, joule)),
+        }
+    }
+
+    /// Sees which stem is pressed hardest; a tree that stands for good may be pressed harder.
+    pub(super) fn look(&mut self, terrain: &Terrain, stems: &Stems, histories: &ContactHistories) {
+        let trees = histories.iter().filter(|history| terrain.is_tree(history.triangle));
+        if let Some(history) =
+            trees.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force))
+        {
+            self.pressed = stems.of_triangle(history.triangle);
+        }
+    }
+}

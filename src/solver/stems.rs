@@ -1,0 +1,171 @@
+//! Stems that give way.
+//!
+//! What a rock puts into its contact with a stem, springs and friction included, counts against what the stem can take. When
+//! that is what was left of the stem, the stem is gone and the rock goes on: the schemes with springs cut their step there,
+//! in the rigid limit the impulse ends there. What a stem took in earlier contacts with the same rock is not given back. A stem
+//! gives way to one rock alone: the next, also one that shares its world, finds it whole.
+
+use super::contact_state::{ContactEnvironment, ContactState};
+use super::loss::Loss;
+use super::yielding::yielding_impact;
+use crate::contact::ContactPoint;
+use crate::contact::TOUCH;
+use crate::contact::history::ContactHistory;
+use crate::random::{Purpose, RandomStream, beside};
+use crate::rock::Vec3;
+use crate::terrain::Terrain;
+use crate::terrain::stems::Stems;
+
+/// A stem with no more than this left of what it can take (–) gives way: the steps come ever nearer to the end of it.
+const AT_LIMIT: f64 = 1e-6;
+/// A stem that has more than this times the motion left (–) cannot give way.
+const WITHSTANDS: f64 = 1.1;
+
+/// How a stem gives way to a blow in the rigid limit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Broken {
+    stem: u32,
+    /// Velocity (m/s) and spin (rad/s) with which the rock goes on.
+    pub(crate) motion: (Vec3, Vec3),
+    /// What was left of the stem and is lost (J).
+    pub(crate) taken_j: f64,
+}
+
+impl ContactState {
+    /// All stems stand again, with limits drawn for the rock of this random stream.
+    pub(crate) fn raise_stems(&mut self, terrain: &Terrain, random: &RandomStream) {
+        let (load, gone) = (&mut self.stem_load, &mut self.near.gone);
+        gone.clear();
+        let Some(stems) = &terrain.stems else { return };
+        gone.reserve(stems.count());
+        load.taken.clear();
+        load.taken.reserve(stems.count());
+        load.pressed = None;
+        let mut random = beside(random, Purpose::Stems);
+        load.limits_j.clear();
+        let limits = stems.limits_j.iter();
+        load.limits_j.extend(
+            limits.map(|limit| limit.as_ref().map_or(f64::INFINITY, |l| l.draw(&mut random))),
+        );
+    }
+
+    /// Sees whether a stem that is pressed may give way in the next step, and returns the longest step (s) in which it does
+    /// not take more than is left of it.
+    pub(crate) fn longest_before_yield_s(&mut self, world: &ContactEnvironment) -> f64 {
+        let Some(stems) = world.terrain.stems.as_ref() else { return f64::INFINITY };
+        self.stem_load.look(world.terrain, stems, &self.histories);
+        let motion_j = self.motion_j(&world.body);
+        let load = &self.stem_load;
+        let yielding =
+            load.pressed.filter(|stem| load.left_j(stems, *stem) <= WITHSTANDS * motion_j);
+        self.may_yield = yielding.is_some();
+        yielding.map_or(f64::INFINITY, |stem| {
+            let left_j = self.stem_load.left_j(stems, stem);
+            let of_stem =
+                |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(stem);
+            self.time_to_take_s(world, left_j, of_stem)
+        })
+    }
+
+    /// After a step with these losses: the stem pressed hardest has taken what went into contacts with trees. Whether it has
+    /// given way; what the step took beyond the limit is then given back.
+    pub(crate) fn bend(&mut self, world: &ContactEnvironment, loss: &mut Loss) -> bool {
+        let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees != 0.0) else {
+            return false;
+        };
+        self.stem_load.look(world.terrain, stems, &self.histories);
+        let Some(stem) = self.stem_load.pressed else { return false };
+        self.stem_load.take(stem, loss.trees);
+        let left_j = self.stem_load.left_j(stems, stem);
+        if left_j > AT_LIMIT * self.stem_load.limits_j[stems.ground_of(stem)] {
+            return false;
+        }
+        let normal_force: Vec3 = self
+            .histories
+            .iter()
+            .filter(|history| stems.of_triangle(history.triangle) == Some(stem))
+            .map(|history| history.n * history.normal_force.max(f64::MIN_POSITIVE))
+            .sum();
+        self.give_back(world, -left_j, &normal_force);
+        loss.trees += left_j;
+        self.fell(stems, stem);
+        true
+    }
+
+    /// Gives back what the last step took beyond the limit (J), negative for what it left, along the push of the stem.
+    fn give_back(&mut self, world: &ContactEnvironment, joule: f64, normal_force: &Vec3) {
+        let v = self.v;
+        let along =
+            normal_force.try_normalize(0.0).or_else(|| v.try_normalize(0.0)).unwrap_or(Vec3::z());
+        let speed = along.dot(&v);
+        let after = (speed * speed + 2.0 * joule / world.body.mass).max(0.0).sqrt();
+        // a rock that is still on its way in, as nearly always, goes against the push
+        let after = if speed > 0.0 { after } else { -after };
+        self.v += along * (after - speed);
+    }
+
+    /// How the stem that is struck at `touch` with a velocity and spin gives way, if it cannot take the blow.
+    pub(crate) fn broken_by(
+        &self,
+        world: &ContactEnvironment,
+        touch: &ContactPoint,
+        motion: (&Vec3, &Vec3),
+    ) -> Option<Broken> {
+        let stems = world.terrain.stems.as_ref()?;
+        let stem = stems.of_triangle(touch.triangle)?;
+        if self.near.gone.contains(&stem) {
+            return None;
+        }
+        let taken_j = self.stem_load.left_j(stems, stem);
+        let body = &world.body;
+        let speed2 = body.mass * motion.0.norm_squared() + body.inertia * motion.1.norm_squared();
+        if taken_j > WITHSTANDS * 0.5 * speed2 {
+            return None;
+        }
+        let law = world.law(touch.triangle);
+        yielding_impact(body, (law, &touch.normal), motion, taken_j).map(|motion| Broken {
+            stem,
+            motion,
+            taken_j,
+        })
+    }
+
+    /// A stem is gone.
+    pub(crate) fn fell_broken(&mut self, world: &ContactEnvironment, broken: &Broken) {
+        if let Some(stems) = world.terrain.stems.as_ref() {
+            self.fell(stems, broken.stem);
+        }
+    }
+
+    /// Breaks the stems that cannot take the blow in hand, in the rigid limit; `note` hears of each, with the touch and the
+    /// energy it took (J), and whether the rock has just come to it.
+    pub(crate) fn break_stems(
+        &mut self,
+        world: &ContactEnvironment,
+        mut note: impl FnMut(&Self, &ContactPoint, (f64, bool)),
+    ) {
+        let Some(stems) = world.terrain.stems.as_ref() else { return };
+        let c = self.c;
+        self.look(world, &c, world.body.radius * (1.0 + TOUCH));
+        let touches = self.touches;
+        for touch in touches.iter() {
+            let Some(broken) = self.broken_by(world, touch, (&self.v, &self.w)) else { continue };
+            let of_stem =
+                |history: &ContactHistory| stems.of_triangle(history.triangle) == Some(broken.stem);
+            let is_new = !self.histories.iter().any(of_stem);
+            note(self, touch, (broken.taken_j, is_new));
+            (self.v, self.w) = broken.motion;
+            self.fell(stems, broken.stem);
+        }
+    }
+
+    /// A stem is gone for this rock, with all that its contacts remember.
+    fn fell(&mut self, stems: &Stems, stem: u32) {
+        self.near.gone.push(stem);
+        self.near.forget();
+        self.histories.retain(|history| stems.of_triangle(history.triangle) != Some(stem));
+        self.fresh = false;
+        self.plane.forget();
+        self.stem_load.pressed = None;
+    }
+}
