@@ -111,7 +111,7 @@ impl ContactPoints {
             return false;
         }
         for touch in touches {
-            let corner = terrain.features.faces[touch.feature.id as usize].a;
+            let corner = terrain.face(touch.feature.id).a;
             touch.distance_m = touch.normal.dot(&(centre - corner));
         }
         true

@@ -6,6 +6,8 @@ pub mod cliffs;
 pub mod cloud;
 pub mod coarser;
 pub mod edges;
+pub mod faces;
+pub mod facets;
 pub mod features;
 pub mod floor;
 pub mod formats;
@@ -25,12 +27,17 @@ pub mod t_junctions;
 pub mod weld;
 
 use crate::rock::Vec3;
+use faces::{Face, Mesh};
 use features::Features;
 use floor::Floor;
 use index::Index;
 use std::path::PathBuf;
 use stems::Stems;
 use weld::Welded;
+
+/// A terrain of more triangles than this is kept in less than half of the memory: its faces are made anew at every look, and
+/// the leaves of its index hold more triangles. Rocks come to rest at the same places, somewhat later.
+pub const MANY_TRIANGLES: usize = 1 << 20;
 
 /// One mesh file of the scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,16 +82,21 @@ pub struct Terrain {
 impl Terrain {
     /// Indexes a welded mesh.
     pub fn new(welded: Welded, sheets: Vec<Sheet>) -> Self {
-        let (index, order) = Index::build(welded.triangles.len(), |t| welded.corners_m(t as usize));
+        let is_many = welded.triangles.len() > MANY_TRIANGLES;
+        let sizes = if is_many { index::Sizes::SMALL } else { index::Sizes::FAST };
+        let corners = |t: u32| welded.corners_m(t as usize);
+        let (index, order) = Index::build(welded.triangles.len(), sizes, corners);
         let Welded { vertices_m, triangles, sheet_of, facet_of, edges, origin_m, .. } = welded;
         let triangles = in_order(&order, triangles);
         let (sheet_of, facet_of) = (in_order(&order, sheet_of), in_order(&order, facet_of));
         let edges = edges.reordered(&order);
         drop(order);
-        let features = Features::of_edges(edges, &vertices_m, &triangles);
-        let is_ground = |(_, sheet): &(_, &u16)| !sheets[**sheet as usize].is_tree;
-        let ground = features.faces.iter().zip(&sheet_of).filter(is_ground).map(|(face, _)| face);
-        let floor = Floor::of(ground, triangles.len(), index.bounds());
+        let mesh = Mesh { vertices_m: &vertices_m, triangles: &triangles };
+        let features = Features::of_edges(edges, mesh, !is_many);
+        let is_ground = |t: &u32| !sheets[usize::from(sheet_of[*t as usize])].is_tree;
+        let ground = (0..triangles.len() as u32).filter(is_ground);
+        let faces = ground.map(|t| features.faces.at(t, mesh));
+        let floor = Floor::of(faces, triangles.len(), index.bounds());
         Self {
             origin_m,
             vertices_m,
@@ -132,6 +144,23 @@ impl Terrain {
         self.sheets[self.sheet_of[triangle as usize] as usize].is_tree
     }
 
+    /// Its vertices and triangles.
+    #[inline]
+    pub fn mesh(&self) -> Mesh<'_> {
+        Mesh { vertices_m: &self.vertices_m, triangles: &self.triangles }
+    }
+
+    /// A triangle ready for use.
+    #[inline]
+    pub fn face(&self, triangle: u32) -> Face {
+        self.features.faces.at(triangle, self.mesh())
+    }
+
+    /// The vertices joined to `vertex` by an edge, each once.
+    pub fn neighbours(&self, vertex: u32) -> impl Iterator<Item = u32> + '_ {
+        self.features.neighbours(vertex, self.mesh())
+    }
+
     /// Corners of a triangle (m, local).
     pub fn corners_m(&self, triangle: u32) -> [Vec3; 3] {
         self.triangles[triangle as usize].map(|v| self.vertices_m[v as usize])
@@ -160,14 +189,14 @@ impl Terrain {
             }
         });
         of.map(|triangle| {
-            let face = &self.features.faces[triangle as usize];
+            let face = self.face(triangle);
             (best, face.e1.cross(&face.e2).normalize())
         })
     }
 
     /// Height at which the vertical through (x, y) meets a triangle, −∞ if it does not (m).
     fn height_of(&self, triangle: u32, x: f64, y: f64) -> f64 {
-        let face = &self.features.faces[triangle as usize];
+        let face = self.face(triangle);
         let (dx, dy) = (x - face.a.x, y - face.a.y);
         let det = face.e1.x * face.e2.y - face.e1.y * face.e2.x;
         let (u, v) = (dx * face.e2.y - dy * face.e2.x, face.e1.x * dy - face.e1.y * dx);

@@ -135,7 +135,113 @@ fn a_damaged_or_empty_cloud_is_refused() {
     let mut greedy = whole.clone();
     greedy[table + 4..table + 8].fill(0xff);
     let said = parse(greedy, &Options::default()).unwrap_err().to_string();
-    assert!(said.contains("more chunks of points than bytes"), "{said}");
+    assert!(said.contains("found more chunks of points than its"), "{said}");
+}
+
+/// Numbers that a file cannot hold are refused before memory or time is spent on them; no byte of the header makes a small
+/// file take long.
+#[test]
+fn a_header_that_promises_too_much_is_refused_at_once() {
+    let parse = |bytes: Vec<u8>| {
+        cloud::parse(Cursor::new(bytes), Path::new("cloud.las"), &Options::default())
+    };
+    let with = |whole: &[u8], at: usize, number: &[u8]| {
+        let mut wrong = whole.to_vec();
+        wrong[at..at + number.len()].copy_from_slice(number);
+        wrong
+    };
+    let (las, laz) = (written(false), written(true));
+    let long_record = [las.len() as u64, 1u64].map(u64::to_le_bytes).concat();
+    let mut long = with(&las, 235, &long_record[..12]);
+    // a record behind the points that says it has 16 GB
+    long.extend([[0; 20].as_slice(), &(16u64 << 30).to_le_bytes(), &[0; 32]].concat());
+    for (bytes, what) in [
+        (with(&las, 247, &6001u64.to_le_bytes()), "points"),
+        (with(&las, 247, &u64::MAX.to_le_bytes()), "points"),
+        (with(&laz, 247, &(1u64 << 40).to_le_bytes()), "points"),
+        (with(&las, 107, &u32::MAX.to_le_bytes()), "points"),
+        (with(&las, 100, &u32::MAX.to_le_bytes()), "records"),
+        (with(&laz, 243, &u32::MAX.to_le_bytes()), "long records"),
+        (long, "long records"),
+    ] {
+        let said = parse(bytes).unwrap_err().to_string();
+        assert!(
+            said.contains(&format!("LAS header: found more {what} than its")),
+            "{what}: {said}"
+        );
+    }
+    // in the first chunk: a point of 30 bytes, how many points, and how long the first of nine layers is
+    let begin = u32::from_le_bytes(laz[96..100].try_into().unwrap()) as usize + 8;
+    let said = parse(with(&laz, begin + 34, &u32::MAX.to_le_bytes())).unwrap_err().to_string();
+    assert!(said.contains("found more layers of points than its"), "{said}");
+    // many chunks, all of which fit
+    let many: Vec<Point> = (0..25).flat_map(|_| points()).collect();
+    assert_eq!(parse(file_of(many, true)).unwrap().points_m(), parse(laz).unwrap().points_m());
+    for name in ["new.las", "new.laz", "old.las", "old.laz"] {
+        let whole = std::fs::read(Path::new("fuzz/seeds/las").join(name)).unwrap();
+        assert!(parse(whole.clone()).is_ok(), "{name}");
+        for (at, own) in whole.iter().enumerate() {
+            for byte in [0, 0xff, own ^ 1] {
+                let start = std::time::Instant::now();
+                let _ = parse(with(&whole, at, &[byte]));
+                // milliseconds each; 18 s when long records were believed
+                assert!(start.elapsed().as_secs() < 5, "{name}: byte {at} = {byte}");
+            }
+        }
+    }
+}
+
+fn source(path: &Path, ground: u16, options: Options) -> Source {
+    let sheet = Sheet { path: path.to_owned(), ground, is_tree: false };
+    Source { sheet, up: Up::Z, scale: 1.0, options: Some(options) }
+}
+
+/// A cloud in tiles is the whole cloud, triangle for triangle; one far away stays a surface of its own.
+#[test]
+fn tiles_of_a_cloud_are_one_surface() {
+    let dir = tempfile::tempdir().unwrap();
+    let put = |name: &str, points: Vec<Point>| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, file_of(points, true)).unwrap();
+        path
+    };
+    let part = |from: f64, to: f64| {
+        let is_in = |point: &Point| (from..to).contains(&(point.x - 2_600_000.0));
+        points().into_iter().filter(is_in).collect::<Vec<_>>()
+    };
+    let far = points().into_iter().map(|point| Point { x: point.x + 500.0, ..point }).collect();
+    let whole = put("whole.laz", points());
+    // side by side, and with four metres in common
+    let tiles = [("a", 0.0, 11.0), ("b", 11.0, 24.0), ("c", 20.0, 99.0)];
+    let tiles = tiles.map(|(name, from, to)| put(&format!("{name}.laz"), part(from, to)));
+    let far = put("far.laz", far);
+    let origin_m = Vec3::new(2_600_000.0, 1_200_000.0, 0.0);
+    let read = |paths: &[&Path]| {
+        let sources: Vec<Source> =
+            paths.iter().map(|path| source(path, 0, Options::default())).collect();
+        Terrain::read(&sources, origin_m, None).unwrap()
+    };
+    let (one, _) = read(&[&whole]);
+    let [a, b, c] = &tiles;
+    let (joined, health) = read(&[b, c, a]);
+    assert_eq!((&joined.vertices_m, &joined.triangles), (&one.vertices_m, &one.triangles));
+    assert_eq!((health.border_loops, health.parts.len()), (1, 1));
+    let said = |file: usize| health.files[file].notes.join("; ");
+    assert!(said(0).contains("of 3 tiles that touch"), "{}", said(0));
+    assert!(said(1).contains("joined with") && said(1).contains("b.laz"), "{}", said(1));
+    let (_, health) = read(&[a, &far]);
+    assert_eq!(health.parts.len(), 2);
+    // tiles that are not meant alike
+    let coarse = Options { resample_m: Some(2.0), ..Options::default() };
+    for (other, what) in [
+        (source(b, 1, Options::default()), "found another ground than of"),
+        (source(b, 0, coarse), "found another resample_m, classes or crop than of"),
+    ] {
+        let sources = [source(a, 0, Options::default()), other];
+        let said = Terrain::read(&sources, origin_m, None).unwrap_err().to_string();
+        assert!(said.contains("b.laz") && said.contains(what), "{said}");
+        assert!(said.contains("write the same for all tiles of a cloud"), "{said}");
+    }
 }
 
 /// A slope as STL and as points at the same corners: the same triangles, the same statistics.

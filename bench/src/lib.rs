@@ -5,3 +5,4 @@ pub mod rocks;
 pub mod scaling;
 pub mod scaling_page;
 pub mod speed;
+pub mod tile;

@@ -8,7 +8,7 @@ use rockfall::error::{Error, Result};
 use rockfall::solver::Scheme;
 use rockfall_bench::scaling::{Phase, resident_now, world};
 use rockfall_bench::speed::{SpeedOptions, WRITTEN, study, write};
-use rockfall_bench::{rocks, scaling_page};
+use rockfall_bench::{rocks, scaling_page, tile};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -22,6 +22,17 @@ enum Asked {
     Scaling(ScalingArgs),
     /// Rocks of one scheme on one made slope, counted in a line
     Rocks(RocksArgs),
+    /// Writes a large elevation model and a scene over it, for `rockfall plan` under `/usr/bin/time -v`
+    Tile(TileArgs),
+}
+
+#[derive(Debug, Args)]
+struct TileArgs {
+    /// Folder for `tile.tif` and `scene.toml`
+    out: PathBuf,
+    /// Cells of 1 m on each side; 3163 are ten million
+    #[arg(default_value = "3163")]
+    side: u32,
 }
 
 #[derive(Debug, Args)]
@@ -90,6 +101,7 @@ fn main() -> ExitCode {
     let done = match Asked::parse() {
         Asked::Speed(args) => speed(&args).map(|()| true),
         Asked::Scaling(args) => scaling(&args),
+        Asked::Tile(TileArgs { side, out }) => tile::write(side, &out).map(|()| true),
         Asked::Rocks(RocksArgs { rocks, triangles, scheme, fineness }) => {
             println!("{}", rocks::follow(rocks, triangles, scheme.as_deref(), fineness));
             Ok(true)

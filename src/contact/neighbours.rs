@@ -171,11 +171,11 @@ impl Neighbours {
         terrain.index.near(centre, self.reach, |start, count| {
             for t in start..start + count {
                 self.tested += 1;
-                let face = &terrain.features.faces[t as usize];
+                let face = terrain.face(t);
                 let to = centre - face.a;
                 let height = face.n.dot(&to);
                 if height.abs() <= self.reach && !terrain.is_gone(t, &self.gone) {
-                    self.take(terrain, t, (to, height));
+                    self.take(terrain, (t, &face), (to, height));
                 }
             }
         });

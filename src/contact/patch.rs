@@ -18,6 +18,7 @@ use super::closest::{Part, closest_part};
 use super::{ContactPoint, Feature, FeatureKind};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use crate::terrain::edges::ends;
 
 /// Squared length of `a` below which a patch presses nowhere (–): opposite walls of one patch cancel.
 const BALANCED: f64 = 1e-12;
@@ -38,14 +39,17 @@ struct Pressed {
 /// An edge or a vertex inside the ball, once for every triangle on it.
 #[derive(Debug, Clone, Copy)]
 struct Shared {
-    /// Edges by their number, then vertices by theirs.
+    /// Edges by the numbers of their ends, then vertices by theirs.
     key: u64,
     place: u32,
+    /// Of an edge, a side on it.
+    side: u32,
     distance_m: f64,
     normal: Vec3,
 }
 
-const VERTEX: u64 = 1 << 32;
+/// There are fewer than 2³¹ vertices.
+const VERTEX: u64 = 1 << 63;
 
 /// Work space.
 #[derive(Debug, Default)]
@@ -96,7 +100,7 @@ impl Patches {
         let id = feature.id;
         let has = |t: u32| match feature.kind {
             FeatureKind::Face => t == id,
-            FeatureKind::Edge => terrain.features.edges.of_triangle[t as usize].contains(&id),
+            FeatureKind::Edge => terrain.features.edges.sides_on(id).any(|side| side / 3 == t),
             FeatureKind::Vertex => terrain.triangles[t as usize].contains(&id),
         };
         let mut place = self.pressed.iter().position(|pressed| has(pressed.triangle))?;
@@ -108,7 +112,7 @@ impl Patches {
 
     /// Notes a triangle that is inside the ball, and those of its sides and corners that are.
     fn press(&mut self, terrain: &Terrain, t: u32, (centre, radius): (&Vec3, f64)) {
-        let face = &terrain.features.faces[t as usize];
+        let face = terrain.face(t);
         let height = face.n.dot(&(centre - face.a));
         if height.abs() >= radius {
             return;
@@ -120,11 +124,12 @@ impl Patches {
         if distance2 >= radius * radius || distance2 == 0.0 {
             return;
         }
-        let (sides, vertices) =
-            (terrain.features.edges.of_triangle[t as usize], terrain.triangles[t as usize]);
+        let (edges, vertices) = (&terrain.features.edges, terrain.triangles[t as usize]);
         let feature = match part {
             Part::Face => Feature { kind: FeatureKind::Face, id: t },
-            Part::Side(k) => Feature { kind: FeatureKind::Edge, id: sides[k] },
+            Part::Side(k) => {
+                Feature { kind: FeatureKind::Edge, id: edges.edge_of(3 * t + k as u32) }
+            }
             Part::Corner(k) => Feature { kind: FeatureKind::Vertex, id: vertices[k] },
         };
         let (distance_m, normal) = match part {
@@ -140,17 +145,21 @@ impl Patches {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
             let side = b - a;
             let s = (side.dot(&(centre - a)) / side.norm_squared()).clamp(0.0, 1.0);
-            self.share(u64::from(sides[k]), place, (centre - (a + side * s), radius));
-            self.share(VERTEX + u64::from(vertices[k]), place, (centre - a, radius));
+            let number = 3 * t + k as u32;
+            let [lower, upper] = ends(&terrain.triangles, number).map(u64::from);
+            let edge = (lower << 32 | upper, place, number);
+            self.share(edge, (centre - (a + side * s), radius));
+            let vertex = (VERTEX + u64::from(vertices[k]), place, number);
+            self.share(vertex, (centre - a, radius));
         }
     }
 
     #[inline]
-    fn share(&mut self, key: u64, place: u32, (off, radius): (Vec3, f64)) {
+    fn share(&mut self, (key, place, side): (u64, u32, u32), (off, radius): (Vec3, f64)) {
         let distance2 = off.norm_squared();
         if distance2 < radius * radius && distance2 > 0.0 {
             let distance_m = distance2.sqrt();
-            self.shared.push(Shared { key, place, distance_m, normal: off / distance_m });
+            self.shared.push(Shared { key, place, side, distance_m, normal: off / distance_m });
         }
     }
 
@@ -165,7 +174,7 @@ impl Patches {
             }
             let features = &terrain.features;
             let weight = if first.key < VERTEX {
-                1.0 - features.edges.triangles_on(first.key as u32).len() as f64
+                1.0 - features.edges.count_on(first.side) as f64
             } else {
                 f64::from(features.vertex_weight[(first.key - VERTEX) as usize])
             };

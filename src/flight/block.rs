@@ -245,7 +245,7 @@ impl Search<'_> {
         let corner = self.flying(k);
         self.near.tested += self.near.triangles().len() as u64;
         for &t in self.near.triangles() {
-            let face = &self.terrain.features.faces[t as usize];
+            let face = self.terrain.face(t);
             let side = if face.n.dot(&(corner.p - face.a)) < 0.0 { -face.n } else { face.n };
             // the plane is never farther than the triangle
             if self.safe(&corner, &side, &face.a) >= least {

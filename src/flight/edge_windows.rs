@@ -4,7 +4,7 @@
 //! are quadratic in time: their range over a window costs a few products and spares most of the quartics.
 
 use super::{Parabola, least, most};
-use crate::terrain::features::Face;
+use crate::terrain::faces::Face;
 
 /// Feet this far on the wrong side still count (–, relative to R): rounding.
 const SLACK: f64 = 1e-6;

@@ -6,7 +6,7 @@ use super::{Parabola, least, most};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::brims::Brim;
-use crate::terrain::features::Face;
+use crate::terrain::faces::Face;
 use crate::terrain::seen::Seen;
 
 /// A start nearer to touching than this counts as touching (–, relative to R²): rounding of the contact before.
@@ -29,7 +29,7 @@ pub(super) fn of_triangle(
     window: (f64, f64),
 ) -> Option<f64> {
     let (ta, tb) = (most(window.0, 0.0), window.1);
-    let face = &terrain.features.faces[t as usize];
+    let face = terrain.face(t);
     let height = Height {
         h0: face.n.dot(&(flight.start - face.a)),
         h1: face.n.dot(&flight.velocity),
@@ -44,7 +44,7 @@ pub(super) fn of_triangle(
     let mut found = None;
     // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
     let slack = BESIDE * flight.radius;
-    let starts_near = ta <= 0.0 && starts_near(face, flight, height.h0);
+    let starts_near = ta <= 0.0 && starts_near(&face, flight, height.h0);
     let on_it = starts_near && face.holds_foot_of(&flight.start, slack);
     let level = flight.radius * (1.0 - 2.0 * NEAR);
     for (side, above) in [(1.0, range.1), (-1.0, -range.0)] {
@@ -140,12 +140,12 @@ fn of_rim(
     flight: &Parabola,
     (rim, slab): (&Rim, (f64, f64)),
 ) -> Option<f64> {
-    let face = &terrain.features.faces[t as usize];
+    let face = terrain.face(t);
     let (owned, aside) = (rim.owned, rim.aside);
     let lasts = slab.1 - slab.0;
     let way = (flight.velocity(slab.0).norm() + 0.5 * flight.gravity * lasts) * lasts;
-    Seen::of(face, flight.centre(slab.0) - face.a, (0.0, way + aside + NEAR * flight.radius))?;
-    let abreast = EdgeWindows::new(face, flight, slab);
+    Seen::of(&face, flight.centre(slab.0) - face.a, (0.0, way + aside + NEAR * flight.radius))?;
+    let abreast = EdgeWindows::new(&face, flight, slab);
     let (mut best, mut found) = (slab.1, None);
     for k in 0..3 {
         let window = (slab.0, best);

@@ -10,6 +10,7 @@ use crate::math;
 use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Rock, Vec3};
 use crate::scene::{CORNERS, Orientation, Scene, ShapeTable};
+use crate::terrain::facets::Facets;
 use crate::terrain::stl;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use std::collections::BTreeMap;
@@ -236,19 +237,18 @@ fn of_surface(
 }
 
 /// The facets of a file with their common corners joined: those written with the same numbers.
-fn welded(facets: &[stl::Facet]) -> Surface {
+fn welded(facets: &Facets) -> Surface {
     let mut known: BTreeMap<[u64; 3], u32> = BTreeMap::new();
     let mut points = Vec::new();
-    let mut place = |p: &Vec3| {
+    let mut place = |p: Vec3| {
         // −0 and 0 are one place
         let key = [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits());
         *known.entry(key).or_insert_with(|| {
-            points.push(*p);
+            points.push(p);
             points.len() as u32 - 1
         })
     };
-    let triangles: Vec<[u32; 3]> =
-        facets.iter().map(|[a, b, c]| [place(a), place(b), place(c)]).collect();
+    let triangles: Vec<[u32; 3]> = facets.iter().map(|facet| facet.map(&mut place)).collect();
     let mut surface = Surface { points, triangles };
     if Solid::of(&surface).volume < 0.0 {
         surface.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));

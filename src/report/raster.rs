@@ -54,16 +54,14 @@ impl GroundRaster {
             let sheet = terrain.sheet_of.get(triangle).map(|&s| usize::from(s));
             sheet.and_then(|s| terrain.sheets.get(s)).is_some_and(|s| s.is_tree)
         };
-        let (trees, ground): (Vec<usize>, Vec<usize>) =
-            (0..terrain.triangles.len()).partition(|&triangle| is_tree(triangle));
-        let corners = |triangle: &usize| corners_on_map(terrain, *triangle);
-        let mut raster = Self::empty_over(bounds_of(ground.iter().map(corners)), cells);
-        for triangle in &ground {
-            raster.raise(corners(triangle));
-        }
+        let all = 0..terrain.triangles.len();
+        let ground = || all.clone().filter(|&triangle| !is_tree(triangle));
+        let corners = |triangle: usize| corners_on_map(terrain, triangle);
+        let mut raster = Self::empty_over(bounds_of(ground().map(corners)), cells);
+        ground().for_each(|triangle| raster.raise(corners(triangle)));
         raster.round_heights();
         let mut cover = cover::Cover::over(&raster);
-        for triangle in &trees {
+        for triangle in all.clone().filter(|&triangle| is_tree(triangle)) {
             cover.mark(corners(triangle));
         }
         raster.trees = cover.with_holes_filled();

@@ -28,7 +28,7 @@ fn is_on_face(world: &ContactEnvironment, rock: &ContactState) -> bool {
     if history.feature.kind != FeatureKind::Face {
         return false;
     }
-    let face = &world.terrain.features.faces[history.feature.id as usize];
+    let face = world.terrain.face(history.feature.id);
     // Deep inside, or with a memory from elsewhere, the side it is on must be looked up.
     history.n.dot(&(rock.c - face.a)) > 0.5 * world.body.radius
         && (history.n == face.n || history.n == -face.n)
@@ -106,7 +106,7 @@ impl ContactState {
     /// Penetration into the plane of the one contact (m).
     fn sunk(&self, world: &ContactEnvironment) -> f64 {
         let history = &self.histories[0];
-        let corner = &world.terrain.features.faces[history.feature.id as usize].a;
+        let corner = world.terrain.face(history.feature.id).a;
         world.body.radius - history.n.dot(&(self.c - corner))
     }
 

@@ -3,16 +3,23 @@
 //! The `las` crate reads both (LAZ through a decoder in pure Rust), `spade` makes the Delaunay triangulation with exact
 //! predicates: points in rows and on circles, as thinned clouds have them, are no trouble.
 
+mod announced;
+mod decoder;
+mod tiles;
+
+pub(super) use tiles::join;
+
+use super::facets::Facets;
 use super::formats::{Crop, Options, wider};
 use super::grid::distance;
-use super::stl::{Facet, Format, Soup};
+use super::stl::{Format, Soup};
 use crate::error::{Error, Result};
 use crate::gis::wkt;
 use crate::rock::Vec3;
+use decoder::guarded;
 use las::{PointDataBuilder, Reader};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// ASPRS class of ground.
@@ -23,13 +30,6 @@ const CELL_M: f64 = 1.0;
 const AT_ONCE: u64 = 100_000;
 /// Cells to one side of the origin that can be numbered; a cell of a millimetre spans the Earth in fewer.
 const MOST_CELLS: f64 = 1e12;
-
-/// Where the header of a LAS file says where points begin, and of which format they are (ASPRS LAS 1.4).
-const POINTS_BEGIN: u64 = 96;
-/// See [`POINTS_BEGIN`].
-const POINT_FORMAT: u64 = 104;
-/// Bit of the format of packed points.
-const PACKED: u64 = 0x80;
 
 /// A box on the map (m): west, south, east, north.
 type BoxM = [f64; 4];
@@ -43,6 +43,8 @@ pub struct Cloud {
     cell_m: f64,
     /// Points in the file, and those of the ground classes.
     counts: [u64; 2],
+    /// Files that it is of.
+    tiles: usize,
 }
 
 /// Reads the ground points of a LAS or LAZ file.
@@ -62,24 +64,16 @@ pub fn parse<R>(bytes: R, file: &Path, options: &Options) -> Result<Cloud>
 where
     R: std::io::Read + std::io::Seek + Send + Sync + 'static,
 {
-    let broken = |why: las::Error| {
-        Error::input(
-            file,
-            "LAS",
-            format!("found {why}"),
-            "the file is damaged: write it again with pdal translate",
-        )
-    };
-    let mut bytes = bytes;
-    let most = bytes.seek(SeekFrom::End(0)).map_err(Error::file("read", file))?;
-    if chunks(&mut bytes).is_ok_and(|count| u64::from(count) > most) {
-        let found = "found more chunks of points than bytes";
+    let refused = |found: String| {
         let remedy = "the file is damaged: write it again with pdal translate";
-        return Err(Error::input(file, "chunk table", found, remedy));
-    }
-    bytes.rewind().map_err(Error::file("read", file))?;
-    let mut reader = Reader::new(bytes).map_err(broken)?;
-    let epsg = system(&reader, file, options.epsg)?;
+        Error::input(file, "LAS", found, remedy)
+    };
+    let broken = |why: las::Error| refused(format!("found {why}"));
+    let given_up = || refused("found what the decoder gives up on".to_owned());
+    let mut bytes = bytes;
+    announced::check(&mut bytes, file)?;
+    let mut reader = guarded(|| Reader::new(bytes)).ok_or_else(given_up)?.map_err(broken)?;
+    let epsg = guarded(|| system(&reader, file, options.epsg)).ok_or_else(given_up)??;
     let classes = if options.classes.is_empty() { &[GROUND][..] } else { &options.classes };
     let within = match &options.crop {
         Some(Crop::Box(box_m, margin_m)) => Some(wider(*box_m, *margin_m)),
@@ -88,7 +82,8 @@ where
     let mut thinner = Thinner::new(options.resample_m.unwrap_or(CELL_M), within);
     let mut part = PointDataBuilder::new().for_header(reader.header()).build();
     loop {
-        let count = reader.fill_points(AT_ONCE, &mut part).map_err(broken)?;
+        let filled = guarded(|| reader.fill_points(AT_ONCE, &mut part));
+        let count = filled.ok_or_else(given_up)?.map_err(broken)?;
         if count == 0 {
             break;
         }
@@ -98,28 +93,6 @@ where
         }
     }
     thinner.finish(file, classes, epsg)
-}
-
-/// How many chunks a LAZ file says it has: the decoder takes memory for all of them before it reads the first. 0 of a LAS
-/// file; an error where the file ends before.
-fn chunks<R: Read + Seek>(bytes: &mut R) -> std::io::Result<u32> {
-    let mut number = |place: SeekFrom, length: usize| -> std::io::Result<u64> {
-        let mut little = [0; 8];
-        bytes.seek(place)?;
-        bytes.read_exact(&mut little[..length])?;
-        Ok(u64::from_le_bytes(little))
-    };
-    if number(SeekFrom::Start(POINT_FORMAT), 1)? & PACKED == 0 {
-        return Ok(0);
-    }
-    let points = number(SeekFrom::Start(POINTS_BEGIN), 4)?;
-    // a writer that could not go back has put the place of the table at the end
-    let table = match number(SeekFrom::Start(points), 8)? {
-        u64::MAX => number(SeekFrom::End(-8), 8)?,
-        table => table,
-    };
-    // behind the version
-    Ok(number(SeekFrom::Start(table.saturating_add(4)), 4)? as u32)
 }
 
 /// EPSG code of the file's coordinates; degrees are refused.
@@ -187,7 +160,7 @@ impl Thinner {
             return Err(Error::input(file, "classes", found, remedy));
         }
         let points_m = self.lowest.into_values().collect();
-        Ok(Cloud { points_m, epsg, cell_m: self.cell_m, counts: self.counts })
+        Ok(Cloud { points_m, epsg, cell_m: self.cell_m, counts: self.counts, tiles: 1 })
     }
 }
 
@@ -245,6 +218,9 @@ impl Cloud {
         soup.epsg = self.epsg;
         let [all, ground] = self.counts;
         soup.notes.push(format!("{all} points, {ground} of them ground"));
+        if self.tiles > 1 {
+            soup.notes.push(format!("of {} tiles that touch", self.tiles));
+        }
         let kept = self.points_m.len();
         soup.notes.push(format!("thinned to {kept}, the lowest of each cell of {} m", self.cell_m));
         let (facets, longest_m) = delaunay(&self.points_m, map_origin_m);
@@ -262,7 +238,7 @@ impl Cloud {
 }
 
 /// The triangles, always in the same order, and the longest edge in plan view (m).
-fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Vec<Facet>, f64) {
+fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Facets, f64) {
     let local: Vec<Vec3> = points_m.iter().map(|point| point - map_origin_m).collect();
     // the library refuses numbers below 1e-43, which are 0 here
     let plain = |m: f64| if m.abs() < f64::from(f32::MIN_POSITIVE) { 0.0 } else { m };
@@ -270,7 +246,7 @@ fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Vec<Facet>, f64) {
     let numbered =
         numbered.map(|(number, p)| Numbered { at: Point2::new(plain(p.x), plain(p.y)), number });
     let Ok(mesh) = DelaunayTriangulation::<Numbered>::bulk_load(numbered.collect()) else {
-        return (Vec::new(), 0.0);
+        return (Facets::default(), 0.0);
     };
     let mut triangles: Vec<[usize; 3]> = mesh
         .inner_faces()
@@ -279,7 +255,8 @@ fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Vec<Facet>, f64) {
     triangles.sort_unstable();
     settle_ties(&mut triangles, &local);
     triangles.sort_unstable();
-    let facets: Vec<Facet> = triangles.iter().map(|corners| corners.map(|k| local[k])).collect();
+    let corners = triangles.iter().map(|corners| corners.map(|k| k as u32)).collect();
+    let facets = Facets::Shared { points: local, corners };
     let edges = facets.iter().flat_map(|[a, b, c]| [b - a, c - b, a - c]);
     let longest_m = edges.map(|edge| edge.xy().norm()).fold(0.0, f64::max);
     (facets, longest_m)

@@ -6,7 +6,7 @@
 //! stay as they are.
 
 use super::Terrain;
-use super::edges::Edges;
+use super::edges::{Edges, ends};
 use super::weld::{Tally, Welded};
 use crate::rock::Vec3;
 use std::cmp::Reverse;
@@ -87,11 +87,13 @@ fn in_turn(terrain: &Terrain, trees: &[bool]) -> Vec<u32> {
     let edges = &terrain.features.edges;
     let mut rank = vec![3u8; terrain.vertices_m.len()];
     for edge in edges.borders() {
-        edges.ends[edge as usize].iter().for_each(|&v| rank[v as usize] = 2);
+        for v in ends(&terrain.triangles, edge) {
+            rank[v as usize] = 2;
+        }
     }
     for (v, rank) in rank.iter_mut().enumerate().filter(|(_, rank)| **rank == 2) {
         // a corner of a sheet has no more than two neighbours along the border and one across
-        *rank -= u8::from(terrain.features.neighbours(v as u32).len() <= 3);
+        *rank -= u8::from(terrain.neighbours(v as u32).count() <= 3);
     }
     let mut turn: Vec<u32> = (0..rank.len() as u32).collect();
     turn.sort_by_key(|&v| (!trees[v as usize], rank[v as usize], v));
@@ -120,7 +122,7 @@ fn spread(terrain: &Terrain, from: u32, nearest: &mut [(f64, u32)]) {
         if nearest[v as usize] != (way, from) {
             continue;
         }
-        for &next in terrain.features.neighbours(v) {
+        for next in terrain.neighbours(v) {
             let way = way + (at(next) - at(v)).norm();
             if way < nearest[next as usize].0 {
                 nearest[next as usize] = (way, from);

@@ -1,125 +1,181 @@
 //! The edges of a triangle mesh and the triangles that share them.
+//!
+//! Side `3 t + k` is the side of triangle `t` from its corner `k` to its corner `(k + 1) % 3`. An edge has the number of the
+//! first of its sides, and every side knows the next one on its edge: four bytes a side tell all.
 
-use rayon::iter::{IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator};
+use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::slice::ParallelSliceMut;
 
-/// Every edge of a mesh once, with the triangles on it.
-///
-/// Edge `k` of a triangle runs from its vertex `k` to its vertex `(k + 1) % 3`.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Edges {
-    /// The two vertices of each edge, the lower index first; sorted.
-    pub ends: Vec<[u32; 2]>,
-    /// The three edges of each triangle.
-    pub of_triangle: Vec<[u32; 3]>,
-    /// `triangles[starts[e]..starts[e + 1]]` lie on edge `e`.
-    starts: Vec<u32>,
-    /// Triangles by edge, ascending within an edge.
-    triangles: Vec<u32>,
+/// The two ends of a side, the lower number first.
+#[inline]
+pub fn ends(triangles: &[[u32; 3]], side: u32) -> [u32; 2] {
+    let (corners, k) = (triangles[side as usize / 3], side as usize % 3);
+    let [a, b] = [corners[k], corners[if k == 2 { 0 } else { k + 1 }]];
+    [a.min(b), a.max(b)]
 }
 
-/// A side of a triangle in the bucket of its lower vertex: the upper vertex, and its place `3 t + k`.
-type Side = (u32, u32);
+/// Who shares the edges of a mesh.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Edges {
+    /// Of each side the next one on its edge; of the last one the first.
+    next: Vec<[u32; 3]>,
+    count: usize,
+}
 
 impl Edges {
     /// Lists the edges of `triangles` (vertex indices, all three different).
     pub fn of(triangles: &[[u32; 3]]) -> Self {
-        let (buckets, sides) = sides_by_lower_vertex(triangles);
-        let mut edges = Self { of_triangle: vec![[0; 3]; triangles.len()], ..Self::default() };
-        edges.triangles.reserve_exact(sides.len());
-        for (lower, bucket) in (0..).zip(buckets.windows(2)) {
-            let mut last = None;
-            for &(upper, side) in &sides[bucket[0] as usize..bucket[1] as usize] {
-                if last != Some(upper) {
-                    edges.starts.push(edges.triangles.len() as u32);
-                    edges.ends.push([lower, upper]);
-                    last = Some(upper);
-                }
-                let (triangle, k) = (side / 3, side as usize % 3);
-                edges.of_triangle[triangle as usize][k] = edges.ends.len() as u32 - 1;
-                edges.triangles.push(triangle);
-            }
-        }
-        edges.starts.push(edges.triangles.len() as u32);
-        // lists that grew have room to spare: a tenth of all that a terrain takes
-        edges.ends.shrink_to_fit();
-        edges.starts.shrink_to_fit();
+        let (starts, mut sides) = sides_by_lower_vertex(triangles);
+        let [lower, upper] = [0, 1].map(|end| move |side: u32| ends(triangles, side)[end]);
+        // short: a vertex has about three edges to later ones
+        sides
+            .par_chunk_by_mut(|&one, &other| lower(one) == lower(other))
+            .for_each(|bucket| bucket.sort_unstable_by_key(|&side| (upper(side), side)));
+        let next = |side: u32| {
+            let from = lower(side) as usize;
+            let bucket = &sides[starts[from] as usize..starts[from + 1] as usize];
+            let first = bucket.partition_point(|&other| upper(other) < upper(side));
+            let on_edge = bucket[first..].iter().copied();
+            let mut later = on_edge.take_while(|&other| upper(other) == upper(side));
+            later.find(|&other| other > side).unwrap_or(bucket[first])
+        };
+        let all = 0..triangles.len() as u32;
+        let next = all.into_par_iter().map(|t| [0, 1, 2].map(|k| next(3 * t + k)));
+        let mut edges = Self { next: next.collect(), count: 0 };
+        edges.count = edges.par_all().count();
         edges
     }
 
     /// The same edges when triangle `k` is the one that was `order[k]`: what [`Edges::of`] would list, without sorting
     /// again.
     #[must_use]
-    pub fn reordered(mut self, order: &[u32]) -> Self {
+    pub fn reordered(self, order: &[u32]) -> Self {
         let mut place = vec![0u32; order.len()];
         for (now, &before) in (0..).zip(order) {
             place[before as usize] = now;
         }
-        self.triangles.par_iter_mut().for_each(|triangle| *triangle = place[*triangle as usize]);
-        drop(place);
-        for on_edge in self.starts.windows(2) {
-            self.triangles[on_edge[0] as usize..on_edge[1] as usize].sort_unstable();
-        }
-        self.of_triangle =
-            order.par_iter().map(|&before| self.of_triangle[before as usize]).collect();
-        self
+        let now = |side: u32| 3 * place[side as usize / 3] + side % 3;
+        let next = |side: u32| {
+            let next = self.next(side);
+            if next == side || self.next(next) == side {
+                return now(next);
+            }
+            // three or more: what comes after it in the new order
+            let all = || self.sides_on(side).map(now);
+            let later = all().filter(|&other| other > now(side)).min();
+            later.or_else(|| all().min()).unwrap_or(now(side))
+        };
+        let next = order.par_iter().map(|&before| [0, 1, 2].map(|k| next(3 * before + k)));
+        Self { next: next.collect(), count: self.count }
     }
 
-    /// Number of edges.
+    /// How many there are.
     pub fn len(&self) -> usize {
-        self.ends.len()
+        self.count
     }
 
     /// Memory that they take (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val::<[[u32; 2]]>(&self.ends)
-            + size_of_val::<[[u32; 3]]>(&self.of_triangle)
-            + size_of_val::<[u32]>(&self.starts)
-            + size_of_val::<[u32]>(&self.triangles)
+        size_of_val::<[[u32; 3]]>(&self.next)
     }
 
     /// Whether there is no edge.
     pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
+        self.count == 0
+    }
+
+    #[inline]
+    fn next(&self, side: u32) -> u32 {
+        self.next[side as usize / 3][side as usize % 3]
+    }
+
+    /// All sides on the edge of a side, from that one on.
+    #[inline]
+    pub fn sides_on(&self, side: u32) -> impl Iterator<Item = u32> + '_ {
+        let next = move |&last: &u32| Some(self.next(last)).filter(|&next| next != side);
+        std::iter::successors(Some(side), next)
+    }
+
+    /// The edge of a side: the first side on it.
+    #[inline]
+    pub fn edge_of(&self, side: u32) -> u32 {
+        self.sides_on(side).min().unwrap_or(side)
+    }
+
+    /// Whether a side is the first one on its edge, whose number the edge has.
+    #[inline]
+    pub fn is_edge(&self, side: u32) -> bool {
+        let next = self.next(side);
+        // of a ring that ascends, the last one points back
+        next >= side && (self.next(next) == side || self.edge_of(side) == side)
+    }
+
+    /// All edges by their numbers, ascending.
+    pub fn all(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..3 * self.next.len() as u32).filter(|&side| self.is_edge(side))
+    }
+
+    /// The same on all threads.
+    pub(super) fn par_all(&self) -> impl ParallelIterator<Item = u32> + '_ {
+        (0..3 * self.next.len() as u32).into_par_iter().filter(|&side| self.is_edge(side))
     }
 
     /// The triangles on an edge, ascending: one at a border, two inside a sheet, more where sheets meet.
-    pub fn triangles_on(&self, edge: u32) -> &[u32] {
-        let edge = edge as usize;
-        &self.triangles[self.starts[edge] as usize..self.starts[edge + 1] as usize]
+    #[inline]
+    pub fn triangles_on(&self, edge: u32) -> impl Iterator<Item = u32> + '_ {
+        self.sides_on(edge).map(|side| side / 3)
     }
 
-    /// How many triangles lie on an edge.
-    pub fn count_on(&self, edge: u32) -> i32 {
-        i32::try_from(self.triangles_on(edge).len()).unwrap_or(i32::MAX)
+    /// The two triangles on an edge inside a sheet.
+    #[inline]
+    pub fn pair_on(&self, edge: u32) -> Option<[u32; 2]> {
+        let next = self.next(edge);
+        (next != edge && self.next(next) == edge).then_some([edge / 3, next / 3])
+    }
+
+    /// How many triangles lie on the edge of a side.
+    #[inline]
+    pub fn count_on(&self, side: u32) -> usize {
+        self.sides_on(side).count()
+    }
+
+    /// Whether the edge of a side has one triangle only.
+    #[inline]
+    pub fn is_border(&self, side: u32) -> bool {
+        self.next(side) == side
     }
 
     /// The edges with one triangle only.
     pub fn borders(&self) -> Vec<u32> {
-        (0..self.len() as u32).filter(|&edge| self.triangles_on(edge).len() == 1).collect()
+        (0..3 * self.next.len() as u32).filter(|&side| self.is_border(side)).collect()
     }
 }
 
-/// The sides of all triangles sorted by lower vertex, upper vertex and place, and where the bucket of each vertex begins.
-fn sides_by_lower_vertex(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<Side>) {
-    let ends = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a)].map(|(a, b)| (a.min(b), a.max(b)));
+/// The sides of all triangles by lower vertex, ascending, and where the bucket of each vertex begins.
+fn sides_by_lower_vertex(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
+    let lower = |[a, b, c]: &[u32; 3]| [*a.min(b), *b.min(c), *c.min(a)];
     let vertices = triangles.iter().flatten().max().map_or(0, |&highest| highest as usize + 1);
-    let mut starts = vec![0u32; vertices + 1];
-    for (lower, _) in triangles.iter().copied().flat_map(ends) {
-        starts[lower as usize + 1] += 1;
+    grouped(triangles.iter().map(lower), triangles.len(), vertices)
+}
+
+/// Where the places of each vertex begin, and the places in a list of 3 `triangles` vertices by vertex, ascending.
+pub(super) fn grouped<'a>(
+    list: impl Iterator<Item = [u32; 3]> + Clone + 'a,
+    triangles: usize,
+    vertices: usize,
+) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; vertices + 2];
+    // counted two places on: while places are given out, each start moves to where the next one is
+    list.clone().flatten().for_each(|vertex| starts[vertex as usize + 2] += 1);
+    for vertex in 2..starts.len() {
+        starts[vertex] += starts[vertex - 1];
     }
-    for vertex in 0..vertices {
-        starts[vertex + 1] += starts[vertex];
+    let mut places = vec![0u32; 3 * triangles];
+    for (place, vertex) in (0..).zip(list.flatten()) {
+        let free = &mut starts[vertex as usize + 1];
+        places[*free as usize] = place;
+        *free += 1;
     }
-    let mut free = starts.clone();
-    let mut sides: Vec<Side> = vec![(0, 0); 3 * triangles.len()];
-    for (side, (lower, upper)) in (0..).zip(triangles.iter().copied().flat_map(ends)) {
-        let place = &mut free[lower as usize];
-        sides[*place as usize] = (upper, side);
-        *place += 1;
-    }
-    // buckets are short: a vertex has about three edges to later ones
-    for bucket in starts.windows(2) {
-        sides[bucket[0] as usize..bucket[1] as usize].sort_unstable();
-    }
-    (starts, sides)
+    starts.pop();
+    (starts, places)
 }

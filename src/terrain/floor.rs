@@ -1,6 +1,6 @@
 //! How low the slope lies at most, cell by cell: tells without a search that a rock flies no higher than before.
 
-use super::features::Face;
+use super::faces::Face;
 use super::index::below;
 use crate::rock::Vec3;
 
@@ -26,8 +26,8 @@ pub struct Floor {
 
 impl Floor {
     /// Of the faces that are ground, in the box from `lo` to `hi`.
-    pub fn of<'a>(
-        ground: impl Iterator<Item = &'a Face>,
+    pub fn of(
+        ground: impl Iterator<Item = Face>,
         triangles: usize,
         (lo, hi): (Vec3, Vec3),
     ) -> Self {
@@ -40,7 +40,7 @@ impl Floor {
         let mut floor =
             Self { west_m: lo.x, south_m: lo.y, per_m: 1.0 / cell_m, columns, rows, low_m };
         for face in ground {
-            floor.lower_to(face, WIDER * longest);
+            floor.lower_to(&face, WIDER * longest);
         }
         floor
     }

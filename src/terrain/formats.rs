@@ -14,6 +14,7 @@ use super::cloud;
 use super::geotiff;
 use super::grid::{self, Grid};
 use super::make;
+use super::read::Source;
 use super::stl::{self, Facet, Format, Soup};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
@@ -62,6 +63,9 @@ pub(super) enum Loaded {
     /// Ground points, in map coordinates.
     #[cfg(feature = "cloud")]
     Cloud(cloud::Cloud),
+    /// Was a tile of a cloud, whose points another file has taken over; its EPSG code.
+    #[cfg(feature = "cloud")]
+    Joined(std::path::PathBuf, Option<u32>),
 }
 
 /// An elevation model.
@@ -157,6 +161,18 @@ fn read_cloud(path: &Path, options: &Options) -> Result<Loaded> {
 fn read_cloud(path: &Path, _: &Options) -> Result<Loaded> {
     let remedy = "build rockfall with `--features cloud`, or make an elevation model of it: pdal translate IN.laz OUT.tif -w gdal --writers.gdal.resolution=1 --writers.gdal.output_type=min";
     Err(Error::input(path, "start", "found a LAS or LAZ point cloud", remedy))
+}
+
+/// Joins what must be one before it is cropped and cut: tiles of a point cloud. Grids are joined later, cell by cell.
+#[cfg(feature = "cloud")]
+pub(super) fn join_tiles(all: &mut [Loaded], sources: &[Source]) -> Result<()> {
+    cloud::join(all, sources)
+}
+
+#[cfg(not(feature = "cloud"))]
+#[expect(clippy::unnecessary_wraps, reason = "with clouds it can fail")]
+pub(super) fn join_tiles(_: &mut [Loaded], _: &[Source]) -> Result<()> {
+    Ok(())
 }
 
 fn format_of(head: &[u8]) -> Option<Format> {

@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
 use crate::rock::Vec3;
-use crate::terrain::stl::Facet;
+use crate::terrain::facets::{Facet, Facets};
+use lattice::Lattice;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -67,10 +68,16 @@ impl Grid {
     /// The origin is subtracted from the corner before a cell's place is added: no digit of the grid is lost to the size
     /// of map coordinates.
     pub fn facets(&self, map_origin_m: Vec3) -> Vec<Facet> {
-        triangulate(self.columns, self.rows, |column, row_from_south| {
+        self.surface(map_origin_m).iter().collect()
+    }
+
+    /// The same facets over common points: those of all cells, with or without a height.
+    pub(super) fn surface(&self, map_origin_m: Vec3) -> Facets {
+        let point = |column: usize, row_from_south: usize| {
             let z = self.value(column, self.rows - 1 - row_from_south)?;
             Some(self.centre_around(column, row_from_south, map_origin_m, z))
-        })
+        };
+        Lattice::of(self.columns, self.rows, point).cut(|_, _| true)
     }
 
     /// A cell's centre at the height `z_m` of the map, around `map_origin_m`.
@@ -108,7 +115,7 @@ impl Grid {
             return wrong("heights", format!("found {high:e}"), remedy);
         }
         let heights = self.values.iter().flatten().count();
-        if self.facets(Vec3::zeros()).is_empty() {
+        if self.surface(Vec3::zeros()).is_empty() {
             let found = format!(
                 "found {heights} heights in {} x {} cells, and no three that make a triangle",
                 self.columns, self.rows
@@ -304,66 +311,11 @@ fn clipped(line: &str) -> String {
     line.chars().take(40).collect()
 }
 
-/// Two facets for every cell of a lattice of points, wound to face up when columns run east and rows run north.
-///
-/// Each cell is cut along the diagonal whose ends differ less in height, from the south-west to the north-east corner
-/// when they are equal: ridges and valleys are followed, and a mirrored grid gives the mirrored mesh. A cell with one
-/// missing corner keeps the triangle of the other three, a cell with more is left out.
-pub fn triangulate(
-    columns: usize,
-    rows: usize,
-    point: impl Fn(usize, usize) -> Option<Vec3>,
-) -> Vec<Facet> {
-    cut_cells(columns, rows, |cell| around(cell).map(|[column, row]| point(column, row)))
-}
-
-/// Facets of the cells of a lattice of points; `corners` gives those of a cell: south-west, south-east, north-east,
-/// north-west.
-fn cut_cells(
-    columns: usize,
-    rows: usize,
-    corners: impl Fn((usize, usize)) -> [Option<Vec3>; 4],
-) -> Vec<Facet> {
-    let cells = || {
-        let of_row =
-            move |row: usize| (0..columns.saturating_sub(1)).map(move |column| (column, row));
-        (0..rows.saturating_sub(1)).flat_map(of_row)
-    };
-    // Counted first: millions of facets are not moved about while the list grows.
-    let count = |corners: [Option<Vec3>; 4]| corners.iter().flatten().count().saturating_sub(2);
-    let mut facets = Vec::with_capacity(cells().map(|cell| count(corners(cell))).sum());
-    for cell in cells() {
-        facets.extend(cut(corners(cell)).into_iter().flatten());
-    }
-    facets
-}
-
-/// The corners of a cell: column and row of the points, in the order of [`cut_cells`].
-fn around((column, row): (usize, usize)) -> [[usize; 2]; 4] {
-    [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[i, j]| [column + i, row + j])
-}
-
-/// Cuts a cell with corners south-west, south-east, north-east, north-west.
-fn cut(around: [Option<Vec3>; 4]) -> [Option<Facet>; 2] {
-    match around {
-        [Some(sw), Some(se), Some(ne), Some(nw)] => {
-            if (sw.z - ne.z).abs() <= (se.z - nw.z).abs() {
-                [Some([sw, se, ne]), Some([sw, ne, nw])]
-            } else {
-                [Some([sw, se, nw]), Some([se, ne, nw])]
-            }
-        }
-        [None, Some(a), Some(b), Some(c)]
-        | [Some(c), None, Some(a), Some(b)]
-        | [Some(b), Some(c), None, Some(a)]
-        | [Some(a), Some(b), Some(c), None] => [Some([a, b, c]), None],
-        _ => [None, None],
-    }
-}
-
+mod lattice;
 mod mosaic;
 mod window;
 
+pub use lattice::triangulate;
 pub(super) use mosaic::Standing;
 
 #[cfg(feature = "cloud")]

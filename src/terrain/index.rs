@@ -6,11 +6,15 @@
 
 mod build;
 
+pub(super) use build::Sizes;
+
 use crate::rock::Vec3;
 use wide::f32x4;
 
 /// Most triangles in one leaf: four boxes at once are cheaper than the triangles that smaller ones leave out.
 const LEAF: u32 = 3;
+/// What a word of a child has room for: fewer nodes, where memory counts more than time.
+const MOST_IN_LEAF: u32 = 8;
 const LEAF_BIT: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
 const START_MASK: u32 = (1 << COUNT_SHIFT) - 1;
@@ -73,6 +77,21 @@ impl Node {
             self.lo[k].as_mut_array()[side] = below(lo[k]);
             self.hi[k].as_mut_array()[side] = above(hi[k]);
         }
+    }
+
+    /// The box of all children (m).
+    fn whole(&self) -> (Vec3, Vec3) {
+        let of = |boxes: &[f32x4; 3], keep: fn(f32, f32) -> f32| {
+            let child =
+                |side: usize| Vec3::from([0, 1, 2].map(|k| boxes[k].as_array()[side].into()));
+            let narrow = |a: Vec3, b: Vec3| a.zip_map(&b, |a, b| keep(a as f32, b as f32).into());
+            (0..WIDE)
+                .filter(|&side| self.lo[0].as_array()[side] < f32::MAX)
+                .map(child)
+                .reduce(narrow)
+        };
+        let none = Vec3::repeat(f32::MAX.into());
+        (of(&self.lo, f32::min).unwrap_or(none), of(&self.hi, f32::max).unwrap_or(none))
     }
 
     /// Bits of the children whose boxes share a point with the box from `lo` to `hi`.

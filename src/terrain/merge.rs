@@ -42,7 +42,7 @@ impl Merger {
             (CELL_OF_TOLERANCE * tolerance_m).max(CELL_OF_SIZE * size_m).max(SMALLEST_CELL_M);
         // A closed fan of triangles uses each vertex about six times: one bucket for three uses.
         let buckets = (points / 3).next_power_of_two().max(2);
-        let kept_m = Vec::with_capacity(points / 6);
+        let kept_m = Vec::with_capacity(points / 6 + points / 100);
         Self { tolerance_m, cell_m, heads: vec![NONE; buckets], next: Vec::new(), kept_m }
     }
 
@@ -67,7 +67,9 @@ impl Merger {
     }
 
     /// The kept points, by number.
-    pub(super) fn into_kept_m(self) -> Vec<Vec3> {
+    pub(super) fn into_kept_m(mut self) -> Vec<Vec3> {
+        // a lattice has a few more points than half its triangles: room for twice as many would stay
+        self.kept_m.shrink_to_fit();
         self.kept_m
     }
 

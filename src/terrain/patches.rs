@@ -11,7 +11,8 @@ mod triangulate;
 #[cfg(test)]
 mod tests;
 
-use super::stl::{Facet, Soup};
+use super::facets::Facet;
+use super::stl::Soup;
 use crate::error::{Error, Result};
 use crate::math;
 use crate::rock::Vec3;
@@ -88,37 +89,36 @@ impl Layer {
         base: u16,
         placed: &dyn Fn(Vec3) -> Vec3,
     ) -> Result<Vec<u16>> {
-        let mut facets = Vec::with_capacity(soup.facets.len());
         let mut grounds = Vec::with_capacity(soup.facets.len());
         // numbers of facets change when some are cut
         let (mut off, mut normals_off) = (soup.normals_off.iter().peekable(), Vec::new());
-        for (number, facet) in soup.facets.iter().enumerate() {
-            let first = facets.len() as u32;
+        let facets = std::mem::take(&mut soup.facets).cut(|number, facet| {
+            let first = grounds.len() as u32;
             let corners = facet.map(|corner| plan(placed(corner)));
             let whole = self.borders.ground_at(middle(corners)).unwrap_or(base);
-            let pieces = cut(facet, corners, &self.borders).map_err(too_many)?;
+            let mut pieces = cut(facet, corners, &self.borders).map_err(too_many)?;
             self.count(&pieces, (whole, base), placed);
-            if pieces.is_empty() || !self.done.is_cut {
-                if whole != base {
+            if !self.done.is_cut {
+                pieces.clear();
+            }
+            let mut lay = |corners: [Corner; 3], ground: u16| {
+                if ground != base {
                     self.done.laid_m2 += area_m2(corners);
                 }
-                facets.push(*facet);
-                grounds.push(whole);
-            } else {
-                for piece in pieces {
-                    let corners = piece.map(|corner| plan(placed(corner)));
-                    let ground = self.borders.ground_at(middle(corners)).unwrap_or(base);
-                    if ground != base {
-                        self.done.laid_m2 += area_m2(corners);
-                    }
-                    facets.push(piece);
-                    grounds.push(ground);
-                }
+                grounds.push(ground);
+            };
+            if pieces.is_empty() {
+                lay(corners, whole);
+            }
+            for piece in &pieces {
+                let corners = piece.map(|corner| plan(placed(corner)));
+                lay(corners, self.borders.ground_at(middle(corners)).unwrap_or(base));
             }
             if off.next_if(|&&facet| facet as usize == number).is_some() {
-                normals_off.extend(first..facets.len() as u32);
+                normals_off.extend(first..grounds.len() as u32);
             }
-        }
+            Ok::<_, Error>(pieces)
+        })?;
         (soup.facets, soup.normals_off) = (facets, normals_off);
         Ok(grounds)
     }

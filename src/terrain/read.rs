@@ -166,14 +166,15 @@ fn stand(lists: &Lists, sources: &[Source], soups: &mut [Soup], map_origin_m: Ve
     for (number, list) in lists {
         let mut facets = make::plant(&sources[*number].sheet.path, list, &slope)?;
         facets.iter_mut().flatten().for_each(|corner| *corner -= map_origin_m);
-        soups[*number].facets = facets;
+        soups[*number].facets = facets.into();
     }
     Ok(())
 }
 
 /// All files as triangles, and lists of trees apart. What one file may be cropped to depends on the heights of all.
 fn read_soups(sources: &[Source], map_origin_m: Vec3) -> Result<(Vec<Soup>, Lists)> {
-    let loaded: Vec<Loaded> = sources.iter().map(Source::load).collect::<Result<_>>()?;
+    let mut loaded: Vec<Loaded> = sources.iter().map(Source::load).collect::<Result<_>>()?;
+    formats::join_tiles(&mut loaded, sources)?;
     let none = Options::default();
     let asked = |source: &Source| source.options.clone().unwrap_or_else(|| none.clone());
     let starts: Vec<_> = sources.iter().map(|source| starts(&asked(source), &loaded)).collect();
@@ -183,9 +184,8 @@ fn read_soups(sources: &[Source], map_origin_m: Vec3) -> Result<(Vec<Soup>, List
     let mut used: Vec<Loaded> =
         sources.iter().zip(loaded).zip(&starts).map(used).collect::<Result<_>>()?;
     let files: Vec<&Path> = sources.iter().map(|source| source.sheet.path.as_path()).collect();
-    let is_unreached = |(loaded, source): &(&Loaded, &Source)| {
-        source.sheet.is_tree || matches!(loaded, Loaded::Unreached(_))
-    };
+    let is_unreached =
+        |(loaded, source): &(&Loaded, &Source)| source.sheet.is_tree || loaded.is_left_out();
     if let Some(first) =
         files.first().filter(|_| used.iter().zip(sources).all(|s| is_unreached(&s)))
     {

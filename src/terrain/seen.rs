@@ -1,6 +1,6 @@
 //! A triangle seen from the centre of a rock: what tells, without roots, which of its parts the rock can come to.
 
-use super::features::Face;
+use super::faces::Face;
 use crate::rock::Vec3;
 
 /// Where a centre stands to the sides of a triangle. Side `k` runs from corner `k` to the next.

@@ -13,6 +13,9 @@ pub use ascii::{ascii_text, write_ascii};
 pub use binary::{binary_bytes, write_binary};
 pub use spacing::Spacing;
 
+pub use super::facets::Facet;
+
+use super::facets::Facets;
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
 use crate::rock::Vec3;
@@ -20,9 +23,6 @@ use std::path::Path;
 
 /// Cosine of 30°: a stored normal further from the winding than this disagrees with it.
 const COS_NORMAL_OFF: f64 = 0.866_025_403_784_438_6;
-
-/// A facet: its three corners, anticlockwise seen from outside (from above, on a slope).
-pub type Facet = [Vec3; 3];
 
 /// What a file is; of STL also how it stores its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -66,7 +66,7 @@ impl Format {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Soup {
     /// Corners of each facet in file order, in the file's own unit and axes.
-    pub facets: Vec<Facet>,
+    pub facets: Facets,
     /// Names of the solids in the file (may be empty strings); the header text of a binary file.
     pub solids: Vec<String>,
     /// How the file stores its numbers.
@@ -85,14 +85,14 @@ pub struct Soup {
 impl From<Vec<Facet>> for Soup {
     /// A made mesh, with all its digits.
     fn from(facets: Vec<Facet>) -> Self {
-        Self { facets, ..Self::of_format(Format::Ascii) }
+        Self { facets: facets.into(), ..Self::of_format(Format::Ascii) }
     }
 }
 
 impl Soup {
     pub(super) fn of_format(format: Format) -> Self {
         Self {
-            facets: Vec::new(),
+            facets: Facets::default(),
             solids: Vec::new(),
             format,
             normals_off: Vec::new(),

@@ -17,7 +17,8 @@ pub struct TJunction {
 
 /// All T-junctions within the weld tolerance, sorted by vertex and edge.
 pub fn t_junctions(welded: &Welded) -> Vec<TJunction> {
-    let border = welded.edges.borders();
+    let mut border = welded.edges.borders();
+    border.sort_by_key(|&edge| welded.ends(edge));
     let cells = Cells::of(welded, &border);
     let mut found = Vec::new();
     for &edge in &border {
@@ -34,7 +35,7 @@ pub fn t_junctions(welded: &Welded) -> Vec<TJunction> {
 
 /// Whether the vertex is no end of the edge and within the tolerance of its inside.
 fn lies_inside(welded: &Welded, vertex: u32, edge: u32) -> bool {
-    let ends = welded.edges.ends[edge as usize];
+    let ends = welded.ends(edge);
     if ends.contains(&vertex) {
         return false;
     }
@@ -58,8 +59,7 @@ impl<'a> Cells<'a> {
         let length_m: f64 = border.iter().map(|&edge| welded.edge_m(edge).norm()).sum();
         let cell_m = (length_m / border.len().max(1) as f64).max(2.0 * welded.tolerance_m);
         let mut cells = Self { welded, cell_m, vertices: Vec::new() };
-        let mut ends: Vec<u32> =
-            border.iter().flat_map(|&edge| welded.edges.ends[edge as usize]).collect();
+        let mut ends: Vec<u32> = border.iter().flat_map(|&edge| welded.ends(edge)).collect();
         ends.sort_unstable();
         ends.dedup();
         cells.vertices =
@@ -74,7 +74,7 @@ impl<'a> Cells<'a> {
 
     /// Calls `seen` with every border vertex near the edge, some more than once.
     fn visit_near(&self, edge: u32, mut seen: impl FnMut(u32)) {
-        let start_m = self.welded.vertices_m[self.welded.edges.ends[edge as usize][0] as usize];
+        let start_m = self.welded.vertices_m[self.welded.ends(edge)[0] as usize];
         let along_m = self.welded.edge_m(edge);
         // Pieces no longer than a cell: a long slanting edge passes cells in a line, not the whole box around it.
         let pieces = (along_m.norm() / self.cell_m).ceil().max(1.0);

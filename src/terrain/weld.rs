@@ -6,10 +6,11 @@
 
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
-use crate::terrain::edges::Edges;
+use crate::terrain::edges::{self, Edges};
 use crate::terrain::merge::Merger;
 use crate::terrain::stl::Soup;
-use rayon::slice::ParallelSliceMut;
+use numbers::Numbers;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::path::Path;
 
 /// Weld tolerance relative to the longest side of the box of the model (–).
@@ -146,9 +147,9 @@ pub(super) fn join(
         map_origin_m,
         tolerance_m,
         vertices_m: Vec::new(),
-        triangles: Vec::with_capacity(frame.facets),
+        triangles: Vec::new(),
         sheet_of: Vec::with_capacity(frame.facets),
-        facet_of: Vec::with_capacity(frame.facets),
+        facet_of: Vec::new(),
         edges: Edges::default(),
         zero_area: Tally::default(),
         duplicates: Tally::default(),
@@ -165,9 +166,16 @@ impl Joined {
     /// The second half of [`weld`].
     pub(super) fn finish(self) -> Welded {
         let Self(mut welded) = self;
-        welded.drop_duplicates();
-        welded.drop_unused_vertices();
         welded.edges = Edges::of(&welded.triangles);
+        let again = welded.duplicates();
+        if !again.is_empty() {
+            welded.edges = Edges::default();
+            welded.drop_triangles(&again);
+            welded.edges = Edges::of(&welded.triangles);
+        }
+        if welded.zero_area.count + again.len() > 0 {
+            welded.drop_unused_vertices();
+        }
         welded
     }
 }
@@ -185,7 +193,9 @@ impl Piece<'_> {
             return Err(Error::input(self.file, "scale", found, remedy));
         }
         let far = |&corner: &Vec3| self.placed(corner).amax() > LARGEST_M;
-        let Some(number) = self.soup.facets.iter().position(|facet| facet.iter().any(far)) else {
+        let facets = &self.soup.facets;
+        let is_far = |&number: &usize| facets.at(number).iter().any(far);
+        let Some(number) = (0..facets.len()).into_par_iter().find_first(is_far) else {
             return Ok(());
         };
         let found = format!("coordinates beyond {LARGEST_M:e} m, more than around the Earth");
@@ -205,13 +215,18 @@ struct Frame {
 
 impl Frame {
     fn around(pieces: &[Piece]) -> Result<Self> {
-        let (mut low, mut high) = (Vec3::repeat(LARGEST_M), Vec3::repeat(-LARGEST_M));
+        let nothing = (Vec3::repeat(LARGEST_M), Vec3::repeat(-LARGEST_M));
+        let both =
+            |one: (Vec3, Vec3), other: (Vec3, Vec3)| (one.0.inf(&other.0), one.1.sup(&other.1));
+        let (mut low, mut high) = nothing;
         for piece in pieces {
             piece.check()?;
-            for &corner in piece.soup.facets.iter().flatten() {
-                let point = piece.placed(corner);
-                (low, high) = (low.inf(&point), high.sup(&point));
-            }
+            let box_of = |facet: [Vec3; 3]| {
+                let [a, b, c] = facet.map(|corner| piece.placed(corner));
+                (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
+            };
+            let of_piece = piece.soup.facets.par_iter().map(box_of).reduce(|| nothing, both);
+            (low, high) = both((low, high), of_piece);
         }
         let facets = pieces.iter().map(|piece| piece.soup.facets.len()).sum();
         if facets > MOST_FACETS {
@@ -235,9 +250,14 @@ impl Welded {
         self.triangles[triangle].map(|v| self.vertices_m[v as usize])
     }
 
+    /// The two vertices of an edge, the lower number first.
+    pub fn ends(&self, edge: u32) -> [u32; 2] {
+        edges::ends(&self.triangles, edge)
+    }
+
     /// From the first to the second end of an edge (m).
     pub fn edge_m(&self, edge: u32) -> Vec3 {
-        let [a, b] = self.edges.ends[edge as usize];
+        let [a, b] = self.ends(edge);
         self.vertices_m[b as usize] - self.vertices_m[a as usize]
     }
 
@@ -245,45 +265,56 @@ impl Welded {
     fn take(&mut self, pieces: &[Piece], frame: &Frame) {
         let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
         for piece in pieces {
-            for (number, facet) in piece.soup.facets.iter().enumerate() {
-                // `+ 0.0` turns −0.0 into 0.0.
-                let corners =
-                    facet.map(|corner| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0));
-                let triangle = corners.map(|corner| merger.number_of(corner));
-                let merged = triangle.map(|v| merger.kept_m()[v as usize]);
-                self.moved_corners += (0..3).filter(|&k| merged[k] != corners[k]).count();
-                if has_area(&merged) {
-                    self.triangles.push(triangle);
-                    self.sheet_of.push(piece.sheet);
-                    self.facet_of.push(number as u32);
-                } else {
-                    self.zero_area.add(merged[0] + self.origin_m);
-                }
+            let facets = &piece.soup.facets;
+            // `+ 0.0` turns −0.0 into 0.0.
+            let local = |corner: Vec3| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0);
+            let mut numbers = Numbers::of(facets);
+            let mut all = Vec::with_capacity(facets.len());
+            all.extend((0..facets.len()).map(|number| {
+                numbers.of_corners(number, |k| local(facets.at(number)[k]), &mut merger)
+            }));
+            let merged = |number: usize| all[number].map(|v| merger.kept_m()[v as usize]);
+            let moved = (0..facets.len()).into_par_iter().map(|number| {
+                let (merged, corners) = (merged(number), facets.at(number).map(local));
+                (0..3).filter(|&k| merged[k] != corners[k]).count()
+            });
+            self.moved_corners += moved.sum::<usize>();
+            let flat = (0..all.len() as u32).into_par_iter();
+            let flat: Vec<u32> =
+                flat.filter(|&number| !has_area(&merged(number as usize))).collect();
+            for &number in &flat {
+                self.zero_area.add(merged(number as usize)[0] + self.origin_m);
             }
+            let mut numbers: Vec<u32> = (0..all.len() as u32).collect();
+            drop_at(&mut numbers, &flat);
+            drop_at(&mut all, &flat);
+            self.sheet_of.resize(self.sheet_of.len() + all.len(), piece.sheet);
+            append(&mut self.facet_of, numbers);
+            append(&mut self.triangles, all);
         }
         self.vertices_m = merger.into_kept_m();
     }
 
-    /// Keeps the first of all triangles with the same three corners, wound either way.
-    fn drop_duplicates(&mut self) {
-        let mut order: Vec<([u32; 3], u32)> = (0u32..)
-            .zip(&self.triangles)
-            .map(|(t, &corners)| {
-                let mut sorted = corners;
-                sorted.sort_unstable();
-                (sorted, t)
-            })
-            .collect();
-        order.par_sort_unstable();
-        let mut again: Vec<u32> =
-            order.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1].1).collect();
-        again.sort_unstable();
-        for &t in &again {
+    /// All triangles but the first with the same three corners, wound either way; ascending.
+    fn duplicates(&self) -> Vec<u32> {
+        let third = |side: u32| {
+            let (corners, k) = (self.triangles[side as usize / 3], side as usize % 3);
+            corners[(k + 2) % 3]
+        };
+        let is_again = |&t: &u32| {
+            let same = |side: u32| side / 3 < t && third(side) == third(3 * t);
+            self.edges.sides_on(3 * t).any(same)
+        };
+        (0..self.triangles.len() as u32).into_par_iter().filter(is_again).collect()
+    }
+
+    fn drop_triangles(&mut self, again: &[u32]) {
+        for &t in again {
             self.duplicates.add(self.on_map(self.corners_m(t as usize)[0]));
         }
-        drop_at(&mut self.triangles, &again);
-        drop_at(&mut self.sheet_of, &again);
-        drop_at(&mut self.facet_of, &again);
+        drop_at(&mut self.triangles, again);
+        drop_at(&mut self.sheet_of, again);
+        drop_at(&mut self.facet_of, again);
     }
 
     /// Vertices that only dropped triangles used go; the others keep their order.
@@ -304,8 +335,20 @@ impl Welded {
     }
 }
 
+/// Puts one list behind another; the first one is taken as it is.
+fn append<T>(list: &mut Vec<T>, more: Vec<T>) {
+    if list.is_empty() {
+        *list = more;
+    } else {
+        list.extend(more);
+    }
+}
+
 /// Removes the elements at the given ascending positions.
 fn drop_at<T>(list: &mut Vec<T>, positions: &[u32]) {
+    if positions.is_empty() {
+        return;
+    }
     let mut positions = positions.iter().peekable();
     let mut at = 0;
     list.retain(|_| {
@@ -337,5 +380,6 @@ fn nothing_left(pieces: &[Piece], welded: &Welded) -> Error {
     )
 }
 
+mod numbers;
 #[cfg(test)]
 mod tests;

@@ -108,31 +108,30 @@ fn what_is_written_can_be_read_again() {
 /// A release file as Shapefile or as GeoJSON: the same bytes in every result.
 #[test]
 fn a_shapefile_and_a_geojson_of_the_same_zones_give_the_same_bytes() {
-    const SCRIPT: &str = "import sys\ntry:\n    import pyogrio\nexcept ImportError:\n    print('none'); sys.exit()\n\
-                          pyogrio.write_dataframe if False else None\nimport pyogrio.raw as r\n\
-                          m, _, g, f = r.read(sys.argv[1])\n\
-                          r.write(sys.argv[2], geometry=g, field_data=f, fields=m['fields'], geometry_type='Polygon', crs='EPSG:2056', driver='ESRI Shapefile')\nprint('done')\n";
     let dir = Folder::new();
     dir.slope();
     let drawn = dir.put("zones.geojson", zones(["\"weight\":1.5", "\"weight\":3"]));
-    let shp = dir.path("zones.shp");
-    let said = std::process::Command::new("python3")
-        .args(["-c", SCRIPT, drawn.to_str().unwrap(), shp.to_str().unwrap()])
+    let said = std::process::Command::new("ogr2ogr")
+        .args(["-f", "ESRI Shapefile", "-a_srs", "EPSG:2056"])
+        .args([dir.path("of_gdal.shp"), drawn])
         .output();
-    if said.is_ok_and(|said| String::from_utf8_lossy(&said.stdout).contains("done")) {
-        eprintln!("the Shapefile is GDAL's");
-    } else {
-        eprintln!("skipped GDAL's Shapefile: python3 has no pyogrio; the one written here is read");
-        dir.put("zones.shp", shapefile(&rings()));
-        dir.put("zones.dbf", column("weight", &["1.5", "3"]));
+    let by_gdal = said.is_ok_and(|said| said.status.success());
+    if !by_gdal {
+        eprintln!("skipped GDAL's Shapefile: ogr2ogr is not there; the one written here is read");
     }
+    dir.put("zones.shp", shapefile(&rings()));
+    dir.put("zones.dbf", column("weight", &["1.5", "3"]));
     let run = |file: &str| {
         dir.run(
             &file.replace('.', "_"),
             &scene("file = \"dem.asc\"", &format!("zones = \"{file}\"|")),
         )
     };
-    assert!(table(&run("zones.shp")) == table(&run("zones.geojson")));
+    let geojson = table(&run("zones.geojson"));
+    assert!(table(&run("zones.shp")) == geojson);
+    if by_gdal {
+        assert!(table(&run("of_gdal.shp")) == geojson);
+    }
 }
 
 /// The plan names every file with its size, crop and holes; every byte of them counts in the scene's hash.
@@ -189,6 +188,42 @@ fn a_run_with_everything_drawn_is_the_same_in_parts() {
     let said = rockfall(&["merge", &out("a"), &out("b"), "--out", &out("merged")]);
     assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
     same_results(&dir.path("whole"), &dir.path("merged"));
+}
+
+/// What stands in place of a large file until Git LFS has fetched it is told as that, whatever it stands for.
+#[test]
+fn a_pointer_of_git_lfs_is_told_wherever_a_file_is_read() {
+    let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
+    let dir = Folder::new();
+    dir.slope();
+    let good = dir.put("good.geojson", zones(["\"class\":\"scree\"", "\"class\":\"rock\""]));
+    dir.put("zones.shp", shapefile(&rings()));
+    for name in ["lfs.tif", "lfs.asc", "lfs.laz", "lfs.stl", "lfs.shp", "lfs.geojson", "zones.dbf"]
+    {
+        dir.put(name, pointer);
+    }
+    assert!(good.exists());
+    let dem = |more: &str| scene("file = \"dem.tif\"", more);
+    let terrain = |table: &str| scene(table, "");
+    for (text, name) in [
+        (terrain("file = \"lfs.tif\""), "lfs.tif"),
+        (terrain("file = \"lfs.asc\""), "lfs.asc"),
+        (terrain("file = \"lfs.laz\""), "lfs.laz"),
+        (terrain("file = \"lfs.stl\""), "lfs.stl"),
+        (terrain("mesh = \"lfs.stl\""), "lfs.stl"),
+        (dem("zones = \"lfs.geojson\"|"), "lfs.geojson"),
+        (dem("zones = \"lfs.shp\"|"), "lfs.shp"),
+        (dem("zones = \"zones.shp\"|"), "zones.dbf"),
+        (dem("[[lines]]\nfile = \"lfs.geojson\"\n"), "lfs.geojson"),
+        (dem("[[barriers]]\nfile = \"lfs.geojson\"\n"), "lfs.geojson"),
+        (dem("[[ground_zones]]\nfile = \"lfs.shp\"\nground_from = \"class\"\n"), "lfs.shp"),
+        (dem("[[trees]]\nfile = \"lfs.geojson\"\nground = \"scree\"\n"), "lfs.geojson"),
+    ] {
+        let said = dir.refusal(&text);
+        let told =
+            said.contains("found a pointer of Git LFS in the place of the file; fetch the file itself with `git lfs pull`");
+        assert!(told && said.contains(name), "{name}: {said}");
+    }
 }
 
 #[test]

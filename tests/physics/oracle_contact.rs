@@ -173,8 +173,8 @@ fn one_plane_is_one_contact() {
         let (mut near, mut touches) = (Neighbours::default(), ContactPoints::default());
         let features = &terrain.features;
         let mut feet: Vec<Vec3> = terrain.vertices_m.clone();
-        for &[a, b] in &features.edges.ends {
-            let [a, b] = [a, b].map(|v| terrain.vertices_m[v as usize]);
+        for edge in features.edges.all() {
+            let [a, b] = terrain.mesh().ends_m(edge);
             feet.extend([0.5, 0.1, 1e-6, 1e-7, 1e-9, 1e-12].map(|s| a + (b - a) * s));
         }
         let middle = map - terrain.origin_m;

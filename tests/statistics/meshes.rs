@@ -46,7 +46,7 @@ fn files_of_other_programs_hold_the_same_roof() {
 fn several_solids_are_one_soup() {
     let soup = stl::read(&file("two_solids.stl")).unwrap();
     let twice = [roof(Vec3::zeros()), roof(Vec3::zeros())].concat();
-    assert_eq!((soup.solids.len(), soup.facets), (2, twice));
+    assert_eq!((soup.solids.len(), soup.facets), (2, twice.into()));
 }
 
 /// Text keeps map coordinates to the last bit; 32-bit numbers are 0.25 m apart there and are refused.

@@ -4,7 +4,7 @@ use super::{NearCorner, NearEdge, NearFace, NearSaddle, Neighbours, SLACK};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::brims::Brim;
-use crate::terrain::features::Face;
+use crate::terrain::faces::Face;
 use crate::terrain::seen::Seen;
 
 /// What stands out on one side of a triangle is not touched from further than this on the other (–, relative to the
@@ -15,9 +15,13 @@ const ASIDE_SLACK: f32 = 1e-3;
 
 impl Neighbours {
     /// Takes of one triangle what may touch; the centre is `to` from its first corner and `height` over its plane (m).
-    pub(super) fn take(&mut self, terrain: &Terrain, t: u32, (to, height): (Vec3, f64)) {
+    pub(super) fn take(
+        &mut self,
+        terrain: &Terrain,
+        (t, face): (u32, &Face),
+        (to, height): (Vec3, f64),
+    ) {
         self.sheets.push(t);
-        let face = &terrain.features.faces[t as usize];
         let near = self.margin + SLACK * self.radius;
         let brim = &terrain.features.brims[t as usize];
         self.take_vertices(terrain, t, brim.vertices);
@@ -30,10 +34,10 @@ impl Neighbours {
         }
         for k in (0..3).filter(|_| owned | hollow != 0) {
             if owned & (1 << k) != 0 && seen.may_meet_edge(k, (near, self.reach)) {
-                self.take_edge(terrain, terrain.features.edges.of_triangle[t as usize][k], t);
+                self.take_edge(terrain, (3 * t + k as u32, face));
             }
             if hollow & (1 << k) != 0 && seen.may_press_edge(k, (near, self.radius + near)) {
-                self.take_hollow(terrain, terrain.features.edges.of_triangle[t as usize][k]);
+                self.take_hollow(terrain, (3 * t + k as u32, face));
             }
             if owned & (8 << k) != 0 && seen.may_meet_corner(k, (near, self.reach)) {
                 self.take_corner(terrain, terrain.triangles[t as usize][k], t);
@@ -88,14 +92,13 @@ impl Neighbours {
         (hollow, self.margin + self.radius * f64::from(aside))
     }
 
-    /// Takes an edge that the ball can press into from its hollow side.
-    fn take_hollow(&mut self, terrain: &Terrain, id: u32) {
-        let faces = terrain.features.edges.triangles_on(id);
-        if faces.len() < 2 {
+    /// Takes an edge that the ball can press into from its hollow side; `face` is the first triangle on it.
+    fn take_hollow(&mut self, terrain: &Terrain, (edge, face): (u32, &Face)) {
+        let edges = &terrain.features.edges;
+        if edges.is_border(edge) {
             return; // a border has a face on one side only: nothing meets there
         }
-        let [a, b] =
-            terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
+        let ends_m @ [a, b] = terrain.mesh().ends_m(edge);
         let length = (b - a).norm();
         let along = (b - a) / length;
         let to = self.centre - a;
@@ -104,13 +107,14 @@ impl Neighbours {
             return;
         }
         let first = self.rays.len();
-        for &t in faces.iter().filter(|_| faces.len() == 2) {
-            let outward = terrain.features.outward(id, t, &terrain.vertices_m);
-            if outward.dot(&off) > self.margin + SLACK * self.radius {
-                self.rays.truncate(first);
-                return;
+        if let Some([_, other]) = edges.pair_on(edge) {
+            for outward in [face.outward(&ends_m), terrain.face(other).outward(&ends_m)] {
+                if outward.dot(&off) > self.margin + SLACK * self.radius {
+                    self.rays.truncate(first);
+                    return;
+                }
+                self.rays.push(outward);
             }
-            self.rays.push(outward);
         }
         let rays = (first as u32, self.rays.len() as u32);
         self.saddles.push(NearSaddle::Edge { a, along, length, rays });
@@ -129,9 +133,9 @@ impl Neighbours {
         }
     }
 
-    fn take_edge(&mut self, terrain: &Terrain, id: u32, owner: u32) {
-        let [a, b] =
-            terrain.features.edges.ends[id as usize].map(|v| terrain.vertices_m[v as usize]);
+    /// Takes an edge; `face` is the first triangle on it.
+    fn take_edge(&mut self, terrain: &Terrain, (edge, face): (u32, &Face)) {
+        let ends_m @ [a, b] = terrain.mesh().ends_m(edge);
         let length = (b - a).norm();
         let along = (b - a) / length;
         let to = self.centre - a;
@@ -140,18 +144,25 @@ impl Neighbours {
             return;
         }
         let first = self.rays.len();
-        let faces = terrain.features.edges.triangles_on(id);
-        for &t in faces {
-            let outward = terrain.features.outward(id, t, &terrain.vertices_m);
+        let edges = &terrain.features.edges;
+        let others = edges.triangles_on(edge).skip(1).map(|t| terrain.face(t).outward(&ends_m));
+        for outward in std::iter::once(face.outward(&ends_m)).chain(others) {
             if outward.dot(&to) < -self.margin - SLACK * self.radius {
                 self.rays.truncate(first);
                 return;
             }
             self.rays.push(outward);
         }
-        let rays = (first as u32, self.rays.len() as u32);
-        let at_border = faces.len() == 1;
-        self.edges.push(NearEdge { id, triangle: owner, a, along, length, rays, at_border });
+        let (rays, at_border) = ((first as u32, self.rays.len() as u32), edges.is_border(edge));
+        self.edges.push(NearEdge {
+            id: edge,
+            triangle: edge / 3,
+            a,
+            along,
+            length,
+            rays,
+            at_border,
+        });
     }
 
     fn take_corner(&mut self, terrain: &Terrain, id: u32, owner: u32) {
@@ -161,7 +172,7 @@ impl Neighbours {
             return;
         }
         let first = self.rays.len();
-        for &v in terrain.features.neighbours(id) {
+        for v in terrain.neighbours(id) {
             let along = (terrain.vertices_m[v as usize] - p).normalize();
             if along.dot(&to) > self.margin + SLACK * self.radius {
                 self.rays.truncate(first);
@@ -170,7 +181,7 @@ impl Neighbours {
             self.rays.push(along);
         }
         let rays = (first as u32, self.rays.len() as u32);
-        let at_border = terrain.features.is_border_vertex(id);
+        let at_border = terrain.features.is_border_vertex(id, terrain.mesh());
         self.corners.push(NearCorner { id, triangle: owner, p, rays, at_border });
     }
 }

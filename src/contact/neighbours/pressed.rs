@@ -113,12 +113,7 @@ impl Neighbours {
             NearSaddle::Vertex { id, p } => {
                 let off = centre - p;
                 off.norm_squared() < self.radius * self.radius
-                    && !terrain.features.is_regular(
-                        *id,
-                        &off,
-                        SLACK * self.radius,
-                        &terrain.vertices_m,
-                    )
+                    && !terrain.features.is_regular(*id, &off, SLACK * self.radius, terrain.mesh())
             }
         })
     }
@@ -138,8 +133,8 @@ impl Neighbours {
             let features = &terrain.features;
             let at_border = match touch.feature.kind {
                 FeatureKind::Face => false,
-                FeatureKind::Edge => features.edges.triangles_on(touch.feature.id).len() == 1,
-                FeatureKind::Vertex => features.is_border_vertex(touch.feature.id),
+                FeatureKind::Edge => features.edges.is_border(touch.feature.id),
+                FeatureKind::Vertex => features.is_border_vertex(touch.feature.id, terrain.mesh()),
             };
             let covered = at_border && self.is_covered(terrain, &nearest, centre, touch.distance_m);
             if !covered {

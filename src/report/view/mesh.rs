@@ -3,7 +3,6 @@
 use super::frame::Frame;
 use super::pack::Section;
 use super::thin;
-use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -50,8 +49,8 @@ impl Mesh {
     /// The same with another limit.
     pub fn limited(terrain: &Terrain, most: usize) -> Self {
         let mut notes = Vec::new();
-        let ground = thin::ground(part(terrain, false), most, &mut notes);
-        let trees = thin::trees(part(terrain, true), most, &mut notes);
+        let ground = thin::ground(&Part::of(terrain, false), most, &mut notes);
+        let trees = thin::trees(Part::of(terrain, true).soup(), most, &mut notes);
         let places = || ground.places_m.iter().chain(&trees.places_m).copied();
         let frame = Frame::round(places());
         let shift = ground.places_m.len() as u32;
@@ -89,26 +88,64 @@ impl Mesh {
     }
 }
 
-/// Ground or trees of a terrain in the order of their files: neighbours of a grid stand side by side there.
-fn part(terrain: &Terrain, trees: bool) -> Soup {
-    let own = |t: &usize| terrain.is_tree(*t as u32) == trees;
-    let mut order: Vec<usize> = (0..terrain.triangles.len()).filter(own).collect();
-    order.sort_by_key(|&t| (terrain.sheet_of[t], terrain.facet_of[t]));
-    let mut number = vec![u32::MAX; terrain.vertices_m.len()];
-    let mut soup = Soup::default();
-    for t in order {
-        let corners = terrain.triangles[t].map(|v| {
-            let number = &mut number[v as usize];
+/// Ground or trees of a terrain in the order of their files: neighbours of a grid stand side by side there. Large terrains
+/// are looked at where they are: a copy would not fit beside them.
+#[derive(Debug)]
+pub(super) struct Part<'a> {
+    terrain: &'a Terrain,
+    /// Its triangles.
+    order: Vec<u32>,
+    /// Numbers of the terrain's vertices in the part, in the order in which triangles first use them.
+    number: Vec<u32>,
+    /// The vertices by that number.
+    used: Vec<u32>,
+}
+
+impl<'a> Part<'a> {
+    fn of(terrain: &'a Terrain, trees: bool) -> Self {
+        let own = |t: &u32| terrain.is_tree(*t) == trees;
+        let mut order: Vec<u32> = (0..terrain.triangles.len() as u32).filter(own).collect();
+        let key = |t: u32| (terrain.sheet_of[t as usize], terrain.facet_of[t as usize], t);
+        order.sort_unstable_by_key(|&t| key(t));
+        let vertices = if order.is_empty() { 0 } else { terrain.vertices_m.len() };
+        let (mut number, mut used) = (vec![u32::MAX; vertices], Vec::new());
+        for vertex in order.iter().flat_map(|&t| terrain.triangles[t as usize]) {
+            let number = &mut number[vertex as usize];
             if *number == u32::MAX {
-                *number = soup.places_m.len() as u32;
-                let place: Vec3 = terrain.vertices_m[v as usize] + terrain.origin_m;
-                soup.places_m.push(place.into());
+                *number = used.len() as u32;
+                used.push(vertex);
             }
-            *number
-        });
-        soup.triangles.push(corners);
+        }
+        Self { terrain, order, number, used }
     }
-    soup
+
+    /// How many triangles it has.
+    pub(super) fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// How many vertices it has.
+    pub(super) fn vertices(&self) -> usize {
+        self.used.len()
+    }
+
+    /// Place of a vertex, map coordinates (m).
+    pub(super) fn place_m(&self, vertex: u32) -> [f64; 3] {
+        let local_m = self.terrain.vertices_m[self.used[vertex as usize] as usize];
+        (local_m + self.terrain.origin_m).into()
+    }
+
+    /// Corners of its triangles.
+    pub(super) fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let corners = |&t: &u32| self.terrain.triangles[t as usize];
+        self.order.iter().map(corners).map(|corners| corners.map(|v| self.number[v as usize]))
+    }
+
+    /// A copy of its own.
+    pub(super) fn soup(&self) -> Soup {
+        let places_m = (0..self.used.len() as u32).map(|vertex| self.place_m(vertex)).collect();
+        Soup { places_m, triangles: self.triangles().collect() }
+    }
 }
 
 /// Vertices numbered in the order in which triangles first use them; unused ones go.

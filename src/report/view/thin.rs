@@ -1,22 +1,23 @@
 //! Terrain too fine for a page, drawn coarser.
 
-use super::mesh::Soup;
+use super::mesh::{Part, Soup};
 use crate::report::format;
 use crate::rock::Vec3;
+use rayon::slice::ParallelSliceMut;
 use std::collections::BTreeSet;
 
 /// How much longer the cells become when there are still too many triangles (–).
 const LONGER: f64 = 1.2;
 
 /// Ground of at most so many triangles: vertices that share a cell become one, in their middle.
-pub(super) fn ground(soup: Soup, most: usize, notes: &mut Vec<String>) -> Soup {
-    let all = soup.triangles.len();
+pub(super) fn ground(part: &Part, most: usize, notes: &mut Vec<String>) -> Soup {
+    let all = part.len();
     if all <= most {
-        return soup;
+        return part.soup();
     }
-    let mut cell_m = mean_edge_m(&soup) * (all as f64 / most as f64).sqrt();
+    let mut cell_m = mean_edge_m(part) * (all as f64 / most as f64).sqrt();
     loop {
-        let (thinned, moved_m) = joined(&soup, cell_m);
+        let (thinned, moved_m) = joined(part, cell_m);
         if thinned.triangles.len() <= most {
             notes.push(format!(
                 "Ground drawn with {} of {} triangles; no point of it moved by more than {} m. The rocks fell on all.",
@@ -30,40 +31,39 @@ pub(super) fn ground(soup: Soup, most: usize, notes: &mut Vec<String>) -> Soup {
     }
 }
 
-fn mean_edge_m(soup: &Soup) -> f64 {
-    let at = |v: u32| soup.places_m[v as usize];
+fn mean_edge_m(part: &Part) -> f64 {
     let length = |a: [f64; 3], b: [f64; 3]| (Vec3::from(b) - Vec3::from(a)).norm();
-    let sum: f64 = soup.triangles.iter().map(|[a, b, _]| length(at(*a), at(*b))).sum();
-    (sum / soup.triangles.len() as f64).max(1e-9)
+    let sides = part.triangles().map(|[a, b, _]| length(part.place_m(a), part.place_m(b)));
+    (sides.sum::<f64>() / part.len() as f64).max(1e-9)
 }
 
-/// The soup with one vertex a cell, and the longest way that one moved (m).
-fn joined(soup: &Soup, cell_m: f64) -> (Soup, f64) {
-    let cell = |place: &[f64; 3]| place.map(|x| (x / cell_m).floor() as i64);
-    let mut order: Vec<u32> = (0..soup.places_m.len() as u32).collect();
-    order.sort_by_cached_key(|&v| (cell(&soup.places_m[v as usize]), v));
-    let mut number = vec![0; soup.places_m.len()];
+/// The part with one vertex a cell, and the longest way that one moved (m).
+fn joined(part: &Part, cell_m: f64) -> (Soup, f64) {
+    let at = |v: u32| part.place_m(v);
+    let cell = |v: u32| at(v).map(|x| (x / cell_m).floor() as i64);
+    let mut order: Vec<u32> = (0..part.vertices() as u32).collect();
+    order.par_sort_unstable_by_key(|&v| (cell(v), v));
+    let mut number = vec![0; part.vertices()];
     let (mut places_m, mut moved_m): (Vec<[f64; 3]>, f64) = (Vec::new(), 0.0);
-    let at = |v: &u32| soup.places_m[*v as usize];
-    for group in order.chunk_by(|a, b| cell(&at(a)) == cell(&at(b))) {
+    for group in order.chunk_by(|&a, &b| cell(a) == cell(b)) {
         let middle: [f64; 3] = std::array::from_fn(|axis| {
-            group.iter().map(|v| at(v)[axis]).sum::<f64>() / group.len() as f64
+            group.iter().map(|&v| at(v)[axis]).sum::<f64>() / group.len() as f64
         });
-        for v in group {
+        for &v in group {
             let way: f64 = (0..3).map(|axis| (at(v)[axis] - middle[axis]).powi(2)).sum();
             moved_m = moved_m.max(way.sqrt());
-            number[*v as usize] = places_m.len() as u32;
+            number[v as usize] = places_m.len() as u32;
         }
         places_m.push(middle);
     }
     let mut seen = BTreeSet::new();
-    let left = |corners: &[u32; 3]| {
+    let left = |corners: [u32; 3]| {
         let corners = corners.map(|v| number[v as usize]);
         let mut key = corners;
         key.sort_unstable();
         (key[0] < key[1] && key[1] < key[2] && seen.insert(key)).then_some(corners)
     };
-    let triangles = soup.triangles.iter().filter_map(left).collect();
+    let triangles = part.triangles().filter_map(left).collect();
     (Soup { places_m, triangles }, moved_m)
 }
 

@@ -3,11 +3,12 @@
 use super::{Crop, Heights, Loaded, Options, wider};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
+use crate::terrain::facets::Facets;
 use crate::terrain::grid::{Grid, Standing, nothing_there};
-use crate::terrain::stl::{Facet, Format, Soup};
+use crate::terrain::stl::{Format, Soup};
 use std::path::Path;
 
-/// Cells of a grid, or points of a cloud, that are cut into triangles at most: a tile of 14 km at 1 m takes about 100 GB.
+/// Cells of a grid, or points of a cloud, that are cut into triangles at most: a tile of 14 km at 1 m takes about 35 GB.
 const MOST_CELLS: usize = 200_000_000;
 /// Cells on each side below which a grid has no triangle.
 const FEWEST: usize = 2;
@@ -31,6 +32,8 @@ impl Loaded {
             Self::Grid(heights) => heights.grid.highest_in(box_m),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => cloud.highest_in(box_m),
+            #[cfg(feature = "cloud")]
+            Self::Joined(..) => None,
         }
     }
 
@@ -41,6 +44,8 @@ impl Loaded {
             Self::Grid(heights) => heights.grid.reached(starts, slope),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => cloud.reached(starts, slope),
+            #[cfg(feature = "cloud")]
+            Self::Joined(..) => None,
         }
     }
 
@@ -51,7 +56,7 @@ impl Loaded {
             Self::Unreached(format) => *format,
             Self::Trees(_) => Format::Trees,
             #[cfg(feature = "cloud")]
-            Self::Cloud(_) => Format::Cloud,
+            Self::Cloud(_) | Self::Joined(..) => Format::Cloud,
         }
     }
 
@@ -65,6 +70,10 @@ impl Loaded {
         options: &Options,
         starts: &Starts,
     ) -> Result<Self> {
+        #[cfg(feature = "cloud")]
+        if matches!(self, Self::Joined(..)) {
+            return Ok(self);
+        }
         let box_m = match &options.crop {
             None => None,
             Some(Crop::Box(box_m, margin_m)) => Some(wider(*box_m, *margin_m)),
@@ -82,6 +91,16 @@ impl Loaded {
         }
     }
 
+    /// Whether no triangle of its own comes of it.
+    pub(in crate::terrain) fn is_left_out(&self) -> bool {
+        match self {
+            Self::Unreached(_) => true,
+            #[cfg(feature = "cloud")]
+            Self::Joined(..) => true,
+            _ => false,
+        }
+    }
+
     /// Its triangles around `map_origin_m`; `facets` are those of a grid. Of trees none: they wait for the slope.
     ///
     /// # Errors
@@ -93,7 +112,7 @@ impl Loaded {
     pub(in crate::terrain) fn into_soup(
         self,
         file: &Path,
-        facets: Vec<Facet>,
+        facets: Facets,
         map_origin_m: Vec3,
     ) -> Result<Soup> {
         match self {
@@ -112,6 +131,14 @@ impl Loaded {
             Self::Grid(heights) => heights.into_soup(file, facets),
             #[cfg(feature = "cloud")]
             Self::Cloud(cloud) => cloud.into_soup(file, map_origin_m),
+            #[cfg(feature = "cloud")]
+            Self::Joined(first, epsg) => {
+                let mut soup = Soup::of_format(Format::Cloud);
+                soup.epsg = epsg;
+                let first = first.display();
+                soup.notes.push(format!("joined with {first}, which it touches: one surface"));
+                Ok(soup)
+            }
         }
     }
 }
@@ -168,7 +195,7 @@ impl Heights {
         Ok(self)
     }
 
-    fn into_soup(self, file: &Path, facets: Vec<Facet>) -> Result<Soup> {
+    fn into_soup(self, file: &Path, facets: Facets) -> Result<Soup> {
         let mut soup = Soup::of_format(self.format);
         (soup.epsg, soup.notes, soup.facets) = (self.epsg, self.notes, facets);
         // a tile whose places all belong to earlier ones has none of its own
@@ -189,7 +216,7 @@ pub(in crate::terrain) fn facets(
     all: &mut [Loaded],
     files: &[&Path],
     map_origin_m: Vec3,
-) -> Result<Vec<Vec<Facet>>> {
+) -> Result<Vec<Facets>> {
     let mut joined = vec![Vec::new(); all.len()];
     for one in 0..all.len() {
         for other in 0..all.len() {
@@ -219,7 +246,7 @@ pub(in crate::terrain) fn facets(
     let of = |(one, list): (usize, &Vec<(usize, [i64; 2])>)| {
         let others = list.iter().filter_map(|&(k, steps)| Some((grid(k)?, steps, k < one)));
         let others: Vec<_> = others.collect();
-        grid(one).map_or_else(Vec::new, |own| own.facets_beside(&others, map_origin_m))
+        grid(one).map_or_else(Facets::default, |own| own.facets_beside(&others, map_origin_m))
     };
     Ok(joined.iter().enumerate().map(of).collect())
 }

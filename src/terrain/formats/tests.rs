@@ -66,12 +66,12 @@ fn every_coding_of_ply_gives_the_same_mesh() {
     assert_eq!(ply(ply_text().replace('\n', "\r\n").as_bytes()).unwrap().facets, quad());
     for big in [false, true] {
         let soup = ply(&ply_binary(big, false)).unwrap();
-        assert_eq!((soup.facets, soup.is_single), (quad(), false));
+        assert_eq!((soup.facets, soup.is_single), (quad().into(), false));
         let soup = ply(&ply_binary(big, true)).unwrap();
         let narrow = |corner: Vec3| corner.map(|x| f64::from(x as f32));
         let rounded: Vec<Facet> = quad().iter().map(|facet| facet.map(narrow)).collect();
         // the health report measures what 32 bits do to such coordinates
-        assert_eq!((soup.facets, soup.is_single), (rounded, true));
+        assert_eq!((soup.facets, soup.is_single), (rounded.into(), true));
     }
 }
 

@@ -4,9 +4,10 @@
 //! grid that one of its places belongs to. So grids that touch leave no gap, grids that overlap give no double surface, and
 //! the triangles are those of one grid that holds all of them.
 
-use super::{Grid, around, cut_cells};
+use super::Grid;
+use super::lattice::Lattice;
 use crate::rock::Vec3;
-use crate::terrain::stl::Facet;
+use crate::terrain::facets::Facets;
 
 /// Difference of two cells (–, relative), and of two lattices (in cells), below which they are the same: digits of a writer.
 const SAME: f64 = 1e-6;
@@ -75,25 +76,29 @@ impl Grid {
         &self,
         others: &[(&Self, [i64; 2], bool)],
         map_origin_m: Vec3,
-    ) -> Vec<Facet> {
+    ) -> Facets {
         if others.is_empty() {
-            return self.facets(map_origin_m);
+            return self.surface(map_origin_m);
         }
         let of = |&(other, [right, up], _): &(&Self, [i64; 2], bool), [column, row]: [i64; 2]| {
             other.place([column - right, row - up], map_origin_m)
         };
-        // the place, and whether it is its own
-        let place = |at: [i64; 2]| {
-            let first = others.iter().filter(|other| other.2).find_map(|other| of(other, at));
-            let own = || self.place(at, map_origin_m).map(|place| (place, true));
-            let later = || others.iter().filter(|other| !other.2).find_map(|other| of(other, at));
-            first.map(|place| (place, false)).or_else(own).or_else(|| later().map(|p| (p, false)))
-        };
         // a cell further on each side: that is where it meets the others
-        cut_cells(self.columns + 2, self.rows + 2, |cell| {
-            let corners = around(cell).map(|at| place(at.map(|n| n.cast_signed() as i64 - 1)));
-            let is_own = corners.iter().flatten().next().is_some_and(|(_, is_own)| *is_own);
-            corners.map(|corner| corner.filter(|_| is_own).map(|(place, _)| place))
+        let (columns, rows) = (self.columns + 2, self.rows + 2);
+        let inner = |column: usize, row: usize| [column, row].map(|n| n.cast_signed() as i64 - 1);
+        let first = |at: [i64; 2]| others.iter().filter(|other| other.2).find_map(|o| of(o, at));
+        let later = |at: [i64; 2]| others.iter().filter(|other| !other.2).find_map(|o| of(o, at));
+        let own = |at: [i64; 2]| self.place(at, map_origin_m);
+        let lattice = Lattice::of(columns, rows, |column, row| {
+            let at = inner(column, row);
+            first(at).or_else(|| own(at)).or_else(|| later(at))
+        });
+        let is_own = |point: u32| {
+            let at = inner(point as usize % columns, point as usize / columns);
+            own(at).is_some() && first(at).is_none()
+        };
+        lattice.cut(|lattice, around| {
+            around.iter().find(|&&point| lattice.has(point)).is_some_and(|&point| is_own(point))
         })
     }
 }
@@ -101,6 +106,7 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terrain::facets::Facet;
 
     fn grid(columns: usize, rows: usize, corner_m: [f64; 2]) -> Grid {
         let mut grid = Grid { columns, rows, corner_m, cell_m: 0.5, values: Vec::new() };
@@ -136,7 +142,7 @@ mod tests {
                     _ => None,
                 })
                 .collect();
-            all.extend(grid.facets_beside(&others, ORIGIN_M));
+            all.extend(grid.facets_beside(&others, ORIGIN_M).iter());
         }
         all
     }

@@ -6,6 +6,7 @@ use crate::terrain::groups::Groups;
 use crate::terrain::stl::{Spacing, area_vector};
 use crate::terrain::t_junctions;
 use crate::terrain::weld::{Piece, Tally, Welded};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// Longest edge over height (–) above which a triangle counts as a needle: a quarter of a millimetre on 2.5 m. Such a
 /// triangle is kept; its normal is known to about 1e-12.
@@ -19,11 +20,11 @@ pub(super) fn file(piece: &Piece, map_origin_m: Vec3) -> FileHealth {
     let soup = piece.soup;
     let down = soup
         .facets
-        .iter()
+        .par_iter()
         .filter(|facet| area_vector(&facet.map(|corner| piece.placed(corner))).z < 0.0);
     let mut normals_off = Tally::default();
     for &facet in &soup.normals_off {
-        normals_off.add(piece.placed(soup.facets[facet as usize][0]) + map_origin_m);
+        normals_off.add(piece.placed(soup.facets.at(facet as usize)[0]) + map_origin_m);
     }
     FileHealth {
         file: piece.file.display().to_string(),
@@ -48,11 +49,18 @@ pub(super) fn box_m(welded: &Welded) -> [[f64; 3]; 2] {
     [low, high].map(|corner| welded.on_map(corner).into())
 }
 
-/// The edges that fulfil a condition, located at their middle.
-pub(super) fn edges(welded: &Welded, condition: impl Fn(u32) -> bool) -> Tally {
+/// The edges that fulfil a condition, located at their middle, by the numbers of their ends.
+pub(super) fn edges(welded: &Welded, condition: impl Fn(u32) -> bool + Sync) -> Tally {
+    let mut found: Vec<[u32; 2]> = welded
+        .edges
+        .par_all()
+        .filter(|&edge| condition(edge))
+        .map(|edge| welded.ends(edge))
+        .collect();
+    found.sort_unstable();
     let mut tally = Tally::default();
-    for edge in (0..welded.edges.len() as u32).filter(|&edge| condition(edge)) {
-        let [a, b] = welded.edges.ends[edge as usize].map(|v| welded.vertices_m[v as usize]);
+    for ends in found {
+        let [a, b] = ends.map(|v| welded.vertices_m[v as usize]);
         tally.add(welded.on_map((a + b) / 2.0));
     }
     tally
@@ -60,29 +68,27 @@ pub(super) fn edges(welded: &Welded, condition: impl Fn(u32) -> bool) -> Tally {
 
 /// Whether an edge has two triangles that both run along it the same way.
 pub(super) fn is_flipped(welded: &Welded, edge: u32) -> bool {
-    let [first, _] = welded.edges.ends[edge as usize];
-    let runs_up = |triangle: u32| {
-        let triangle = triangle as usize;
-        let sides = welded.edges.of_triangle[triangle];
-        (0..3).any(|k| sides[k] == edge && welded.triangles[triangle][k] == first)
-    };
-    match welded.edges.triangles_on(edge) {
-        &[a, b] => runs_up(a) == runs_up(b),
+    let from = |side: u32| welded.triangles[side as usize / 3][side as usize % 3];
+    let mut sides = welded.edges.sides_on(edge);
+    match (sides.next(), sides.next(), sides.next()) {
+        (Some(one), Some(other), None) => from(one) == from(other),
         _ => false,
     }
 }
 
 /// Triangles more than [`NEEDLE`] times as long as high.
 pub(super) fn needles(welded: &Welded) -> Tally {
-    let mut tally = Tally::default();
-    for triangle in 0..welded.triangles.len() {
+    let is_needle = |&triangle: &usize| {
         let corners @ [a, b, c] = welded.corners_m(triangle);
         let longest2 =
             (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
         // longest / height = longest² / (2 area)
-        if longest2 > NEEDLE * area_vector(&corners).norm() {
-            tally.add(welded.on_map(a));
-        }
+        longest2 > NEEDLE * area_vector(&corners).norm()
+    };
+    let needles = (0..welded.triangles.len()).into_par_iter().filter(is_needle);
+    let mut tally = Tally::default();
+    for triangle in needles.collect::<Vec<_>>() {
+        tally.add(welded.on_map(welded.corners_m(triangle)[0]));
     }
     tally
 }
@@ -92,7 +98,7 @@ pub(super) fn border_loops(welded: &Welded) -> usize {
     let borders = welded.edges.borders();
     let mut groups = Groups::of(welded.vertices_m.len());
     for &edge in &borders {
-        let [a, b] = welded.edges.ends[edge as usize];
+        let [a, b] = welded.ends(edge);
         groups.join(a, b);
     }
     groups.sizes().into_iter().filter(|&vertices| vertices > 1).count()
@@ -112,9 +118,9 @@ pub(super) fn t_junctions(welded: &Welded) -> Tally {
 /// Triangles of each edge-connected part, the largest first.
 pub(super) fn parts(welded: &Welded) -> Vec<usize> {
     let mut groups = Groups::of(welded.triangles.len());
-    for edge in 0..welded.edges.len() as u32 {
-        for pair in welded.edges.triangles_on(edge).windows(2) {
-            groups.join(pair[0], pair[1]);
+    for side in 0..3 * welded.triangles.len() as u32 {
+        for other in welded.edges.sides_on(side).skip(1).take_while(|&other| other > side) {
+            groups.join(side / 3, other / 3);
         }
     }
     let mut sizes = groups.sizes();
@@ -129,9 +135,26 @@ pub(super) fn area_m2(welded: &Welded) -> f64 {
 
 /// Edge lengths (m) at [`QUANTILES`], by the nearest rank.
 pub(super) fn edge_quantiles_m(welded: &Welded) -> [f64; 5] {
-    let mut lengths: Vec<f64> =
-        (0..welded.edges.len() as u32).map(|edge| welded.edge_m(edge).norm()).collect();
-    lengths.sort_unstable_by(f64::total_cmp);
+    let length = |edge: u32| welded.edge_m(edge).norm();
+    let mut lengths: Vec<f64> = welded.edges.par_all().map(length).collect();
     let last = lengths.len().saturating_sub(1) as f64;
-    QUANTILES.map(|share| lengths.get((share * last).round() as usize).copied().unwrap_or(0.0))
+    if lengths.is_empty() {
+        return [0.0; QUANTILES.len()];
+    }
+    let ranks = QUANTILES.map(|share| (share * last).round() as usize);
+    let mut found = [0.0; QUANTILES.len()];
+    select(&mut lengths, 0, (&ranks, &mut found));
+    found
+}
+
+/// The values at some ranks, ascending, of which the list holds those from `first` on.
+fn select(values: &mut [f64], first: usize, (ranks, found): (&[usize], &mut [f64])) {
+    let middle = ranks.len() / 2;
+    let Some(&rank) = ranks.get(middle) else { return };
+    let (low, &mut at, high) = values.select_nth_unstable_by(rank - first, f64::total_cmp);
+    let before = ranks.partition_point(|&other| other < rank);
+    let behind = ranks.partition_point(|&other| other <= rank);
+    found[before..behind].fill(at);
+    select(low, first, (&ranks[..before], &mut found[..before]));
+    select(high, rank + 1, (&ranks[behind..], &mut found[behind..]));
 }

@@ -87,7 +87,7 @@ fn cells_find_the_t_junctions_that_brute_force_finds() {
     let welded = weld(&[piece], Vec3::zeros(), Some(1e-3)).unwrap();
     let mut expected = Vec::new();
     for edge in welded.edges.borders() {
-        let [a, b] = welded.edges.ends[edge as usize];
+        let [a, b] = welded.ends(edge);
         let (start, along) = (welded.vertices_m[a as usize], welded.edge_m(edge));
         for vertex in (0..welded.vertices_m.len() as u32).filter(|v| ![a, b].contains(v)) {
             let to = welded.vertices_m[vertex as usize] - start;
@@ -147,7 +147,8 @@ proptest! {
         let found = Health::of(&welded, &pieces);
         prop_assert_eq!(found.triangles + found.zero_area.count + found.duplicates.count, soup.facets.len());
         prop_assert_eq!(found.parts.iter().sum::<usize>(), found.triangles);
-        let sides: usize = (0..found.edges as u32).map(|edge| welded.edges.triangles_on(edge).len()).sum();
+        let sides: usize = welded.edges.all().map(|edge| welded.edges.count_on(edge)).sum();
+        prop_assert_eq!(welded.edges.all().count(), found.edges);
         prop_assert_eq!(sides, 3 * found.triangles);
         prop_assert!(found.edge_quantiles_m.is_sorted() && found.edge_quantiles_m[0] > found.tolerance_m);
         prop_assert!(found.border_loops <= found.border_edges.count);

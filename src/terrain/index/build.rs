@@ -1,40 +1,69 @@
 //! Building the index: trees of parry's, packed.
 
-use super::{COUNT_SHIFT, DEPTH, Index, LEAF, LEAF_BIT, Node, WIDE};
+use super::{COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, Node, WIDE};
 use crate::rock::Vec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
+use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 
-/// Most triangles that one tree of parry's is built over: it takes about 300 bytes for each until it is packed.
-const AT_ONCE: usize = 1 << 19;
+/// How an index is built: triangles in a leaf, and in one tree of parry's, which takes about 300 bytes for each until it is
+/// packed.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::terrain) struct Sizes {
+    leaf: u32,
+    at_once: usize,
+}
+
+impl Sizes {
+    /// For the fastest rocks.
+    pub(in crate::terrain) const FAST: Self = Self { leaf: LEAF, at_once: 1 << 19 };
+    /// For the least memory.
+    pub(in crate::terrain) const SMALL: Self = Self { leaf: MOST_IN_LEAF, at_once: 1 << 17 };
+}
+
+/// Trees of parry's that are built beside each other, at most: each takes its memory.
+const BESIDE: usize = 4;
 
 /// Triangles that stand side by side in the index, by their numbers in the input.
 struct Part<'a> {
     /// Place of the first one in the index.
     start: u32,
     triangles: &'a mut [u32],
+    /// Node and child under which it hangs; none for the root.
+    above: Option<(usize, usize)>,
 }
 
 impl Part<'_> {
     /// Cut across the middle of the side along which the centres lie widest apart; as many triangles in both, and the same
     /// ones whatever order they come in.
-    fn halves(self, corners: &impl Fn(u32) -> [Vec3; 3]) -> [Self; 2] {
+    fn halves(self, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> [Self; 2] {
         let centre = |t: u32| corners(t).iter().sum::<Vec3>();
         let first = centre(self.triangles[0]);
-        let (lo, hi) = self
-            .triangles
-            .iter()
-            .map(|&t| centre(t))
-            .fold((first, first), |(lo, hi), at| (lo.inf(&at), hi.sup(&at)));
+        let both =
+            |(lo, hi): (Vec3, Vec3), other: (Vec3, Vec3)| (lo.inf(&other.0), hi.sup(&other.1));
+        let boxes = self.triangles.par_iter().map(|&t| centre(t)).map(|at| (at, at));
+        let (lo, hi) = boxes.reduce(|| (first, first), both);
         let axis = (hi - lo).imax();
         let middle = self.triangles.len() / 2;
-        self.triangles.select_nth_unstable_by(middle, |&a, &b| {
-            centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b))
-        });
+        // looked up once: selecting asks for every centre many times
+        let keys: Vec<(f64, u32)> =
+            self.triangles.par_iter().map(|&t| (centre(t)[axis], t)).collect();
+        let by_key = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let mut shuffled = keys.clone();
+        let first_high = *shuffled.select_nth_unstable_by(middle, by_key).1;
+        drop(shuffled);
+        // Both halves keep the order of the input: what is near in it is near in memory.
+        let is_low = |key: &&(f64, u32)| by_key(key, &first_high).is_lt();
         let (low, high) = self.triangles.split_at_mut(middle);
+        let take = |half: &mut [u32], of: &mut dyn Iterator<Item = &(f64, u32)>| {
+            half.iter_mut().zip(of).for_each(|(triangle, key)| *triangle = key.1);
+        };
+        take(low, &mut keys.iter().filter(is_low));
+        take(high, &mut keys.iter().filter(|key| !is_low(key)));
         let next = self.start + middle as u32;
-        [Part { start: self.start, triangles: low }, Part { start: next, triangles: high }]
+        let part = |start, triangles| Part { start, triangles, above: self.above };
+        [part(self.start, low), part(next, high)]
     }
 }
 
@@ -82,59 +111,102 @@ impl Index {
     ///
     /// # Panics
     /// If the tree were deeper than a traversal can walk, which no mesh makes it.
-    pub fn build(count: usize, corners: impl Fn(u32) -> [Vec3; 3]) -> (Self, Vec<u32>) {
-        Self::build_in_parts(count, corners, AT_ONCE)
-    }
-
-    /// The same with at most so many triangles in one tree of parry's.
-    fn build_in_parts(
+    pub(in crate::terrain) fn build(
         count: usize,
-        corners: impl Fn(u32) -> [Vec3; 3],
-        at_once: usize,
+        Sizes { leaf, at_once }: Sizes,
+        corners: impl Fn(u32) -> [Vec3; 3] + Sync,
     ) -> (Self, Vec<u32>) {
         let mut order: Vec<u32> = (0..count as u32).collect();
         if count == 0 {
             return (Self::default(), order);
         }
         let mut index = Self::default();
-        let whole = Part { start: 0, triangles: &mut order };
-        let Packed { depth, lo, hi } = index.pack_part(whole, &corners, at_once);
+        let mut parts = Vec::new();
+        let whole = Part { start: 0, triangles: &mut order, above: None };
+        let levels = index.share_out(whole, &mut parts, (&corners, at_once));
+        let mut whole = Packed::NOTHING;
+        let beside = rayon::current_num_threads().min(BESIDE);
+        while !parts.is_empty() {
+            let some: Vec<Part> = parts.drain(..beside.min(parts.len())).collect();
+            let above: Vec<_> = some.iter().map(|part| part.above).collect();
+            let packed = some.into_par_iter().map(|part| Tree::pack(part, &corners, leaf));
+            for ((tree, packed), above) in packed.collect::<Vec<_>>().into_iter().zip(above) {
+                index.hang(tree, above, &packed);
+                whole = whole.and(&packed);
+            }
+        }
+        let depth = levels + whole.depth;
         assert!(depth <= DEPTH, "the index of the mesh has {depth} levels");
-        (index.lo, index.hi) = (lo, hi);
+        (index.lo, index.hi) = (whole.lo, whole.hi);
+        index.close_boxes();
         index.nodes.shrink_to_fit();
         (index, order)
     }
 
-    /// Packs a part of the triangles and puts them into the order of the tree. What is too large for one tree of parry's is
-    /// cut into four first.
-    fn pack_part(
+    /// Cuts what is too large for one tree of parry's into four, and those again; returns the levels above the parts.
+    fn share_out<'a>(
         &mut self,
-        part: Part,
-        corners: &impl Fn(u32) -> [Vec3; 3],
-        at_once: usize,
-    ) -> Packed {
-        let Part { start, triangles } = part;
-        if triangles.len() <= at_once {
-            return self.pack_at_once(Part { start, triangles }, corners);
+        part: Part<'a>,
+        parts: &mut Vec<Part<'a>>,
+        (corners, at_once): (&(impl Fn(u32) -> [Vec3; 3] + Sync), usize),
+    ) -> usize {
+        if part.triangles.len() <= at_once {
+            parts.push(part);
+            return 0;
         }
         let place = self.nodes.len();
         self.nodes.push(Node::EMPTY);
-        let [west, east] = Part { start, triangles }.halves(corners);
-        let quarters = west.halves(corners).into_iter().chain(east.halves(corners));
-        let mut whole = Packed::NOTHING;
-        for (side, quarter) in quarters.enumerate() {
-            let word = self.nodes.len() as u32;
-            let packed = self.pack_part(quarter, corners, at_once);
-            self.nodes[place].put(side, word, (&packed.lo, &packed.hi));
-            whole = whole.and(&packed);
+        if let Some((node, side)) = part.above {
+            self.nodes[node].child[side] = place as u32;
         }
-        whole.depth += 1;
-        whole
+        let quarters: Vec<Part> =
+            part.halves(corners).into_iter().flat_map(|half| half.halves(corners)).collect();
+        let mut levels = 0;
+        for (side, quarter) in quarters.into_iter().enumerate() {
+            let quarter = Part { above: Some((place, side)), ..quarter };
+            levels = levels.max(self.share_out(quarter, parts, (corners, at_once)));
+        }
+        levels + 1
     }
 
-    /// The same with one tree of parry's.
-    fn pack_at_once(&mut self, part: Part, corners: &impl Fn(u32) -> [Vec3; 3]) -> Packed {
-        let Part { start, triangles } = part;
+    /// Adds the nodes of a part's tree, and notes where they are and their box.
+    fn hang(&mut self, tree: Tree, above: Option<(usize, usize)>, packed: &Packed) {
+        let first = self.nodes.len() as u32;
+        self.nodes.extend(tree.nodes.into_iter().map(|mut node| {
+            let inner = node.child.iter_mut().filter(|word| **word & LEAF_BIT == 0);
+            inner.for_each(|word| *word += first);
+            node
+        }));
+        if let Some((node, side)) = above {
+            self.nodes[node].put(side, first, (&packed.lo, &packed.hi));
+        }
+    }
+
+    /// Gives the nodes above the parts the boxes of what is below them: those that have none yet.
+    fn close_boxes(&mut self) {
+        for place in (0..self.nodes.len()).rev() {
+            for side in 0..WIDE {
+                let node = &self.nodes[place];
+                let is_open = node.lo[0].as_array()[side] >= f32::MAX;
+                if let (true, Child::Inner(below)) = (is_open, Child::of(node.child[side])) {
+                    let (lo, hi) = self.nodes[below as usize].whole();
+                    self.nodes[place].put(side, below, (&lo, &hi));
+                }
+            }
+        }
+    }
+}
+
+/// A tree of parry's, packed: places count from its own first node.
+struct Tree {
+    nodes: Vec<Node>,
+    leaf: u32,
+}
+
+impl Tree {
+    /// Packs a part of the triangles and puts them into the order of the tree.
+    fn pack(part: Part, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync), leaf: u32) -> (Self, Packed) {
+        let Part { start, triangles, .. } = part;
         // The tree may depend on the order in which it is given triangles, and selecting leaves an order of its own.
         triangles.sort_unstable();
         let boxes: Vec<Aabb> = triangles.iter().map(|&t| box_of(corners(t))).collect();
@@ -145,28 +217,29 @@ impl Index {
         count_leaves(&mut loose);
         let (lo, hi) = (loose[0].lo, loose[0].hi);
         let mut order = Order { start, leaves: Vec::with_capacity(triangles.len()) };
-        let depth = self.pack(&loose, 0, &mut order);
+        let mut packed = Self { nodes: Vec::new(), leaf };
+        let depth = packed.take(&loose, 0, &mut order);
         let sorted = triangles.to_vec();
         for (triangle, leaf) in triangles.iter_mut().zip(order.leaves) {
             *triangle = sorted[leaf as usize];
         }
-        Packed { depth, lo, hi }
+        (packed, Packed { depth, lo, hi })
     }
 
     /// Packs what is below a node, in the order of the tree; returns how deep it is.
-    fn pack(&mut self, loose: &[Loose], top: u32, order: &mut Order) -> usize {
+    fn take(&mut self, loose: &[Loose], top: u32, order: &mut Order) -> usize {
         let place = self.nodes.len();
         self.nodes.push(Node::EMPTY);
         let mut depth = 0;
-        for (side, child) in widest(loose, top).enumerate() {
+        for (side, child) in widest(loose, top, self.leaf).enumerate() {
             let from = &loose[child as usize];
-            let word = if from.count <= LEAF {
+            let word = if from.count <= self.leaf {
                 let start = order.start + order.leaves.len() as u32;
                 gather(loose, child, &mut order.leaves);
                 LEAF_BIT | ((from.count - 1) << COUNT_SHIFT) | start
             } else {
                 let next = self.nodes.len() as u32;
-                depth = depth.max(self.pack(loose, child, order));
+                depth = depth.max(self.take(loose, child, order));
                 next
             };
             self.nodes[place].put(side, word, (&from.lo, &from.hi));
@@ -177,7 +250,7 @@ impl Index {
 
 /// The children that a packed node takes below a node of the tree, from left to right: of what it has, the largest box is
 /// opened as long as there is room.
-fn widest(loose: &[Loose], top: u32) -> impl Iterator<Item = u32> {
+fn widest(loose: &[Loose], top: u32, leaf: u32) -> impl Iterator<Item = u32> {
     let area = |node: u32| {
         let size = loose[node as usize].hi - loose[node as usize].lo;
         size.x * size.y + size.y * size.z + size.z * size.x
@@ -185,7 +258,7 @@ fn widest(loose: &[Loose], top: u32) -> impl Iterator<Item = u32> {
     let mut taken = [top; WIDE];
     let mut count = 1;
     while count < WIDE {
-        let open = (0..count).filter(|&k| loose[taken[k] as usize].count > LEAF);
+        let open = (0..count).filter(|&k| loose[taken[k] as usize].count > leaf);
         let Some(largest) = open.max_by(|&a, &b| area(taken[a]).total_cmp(&area(taken[b]))) else {
             break;
         };
@@ -270,8 +343,8 @@ mod tests {
             (0..3)
                 .all(|k| box_m.mins[k] <= centre[k] + radius && box_m.maxs[k] >= centre[k] - radius)
         };
-        for at_once in [usize::MAX, 1000, 37, 4] {
-            let (index, order) = Index::build_in_parts(facets.len(), corners, at_once);
+        for (at_once, leaf) in [(usize::MAX, LEAF), (1000, LEAF), (37, MOST_IN_LEAF), (9, 1)] {
+            let (index, order) = Index::build(facets.len(), Sizes { leaf, at_once }, corners);
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert!(sorted.iter().copied().eq(0..facets.len() as u32), "{at_once}");
@@ -296,7 +369,7 @@ mod tests {
         let facets = make::natural_slope(20, 20).facets;
         let corners = |t: u32| facets[t as usize];
         let halves = |mut triangles: Vec<u32>| {
-            let halves = Part { start: 0, triangles: &mut triangles }.halves(&corners);
+            let halves = Part { start: 0, triangles: &mut triangles, above: None }.halves(&corners);
             halves.map(|half| {
                 half.triangles.sort_unstable();
                 half.triangles.to_vec()

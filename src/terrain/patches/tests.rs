@@ -36,7 +36,7 @@ fn plan_area_m2(facet: &Facet) -> f64 {
 
 fn area_of(soup: &Soup, grounds: &[u16], ground: u16) -> f64 {
     let has = soup.facets.iter().zip(grounds).filter(|(_, g)| **g == ground);
-    has.map(|(facet, _)| plan_area_m2(facet)).sum()
+    has.map(|(facet, _)| plan_area_m2(&facet)).sum()
 }
 
 /// Length of all edges of the welded mesh with one triangle (m, in plan view): the outline's 48. A gap or a T-junction
@@ -44,9 +44,7 @@ fn area_of(soup: &Soup, grounds: &[u16], ground: u16) -> f64 {
 fn open_m(soup: &Soup) -> f64 {
     let piece = Piece { file: Path::new("t.stl"), soup, up: Up::Z, scale: 1.0, sheet: 0 };
     let welded = weld(&[piece], Vec3::zeros(), Some(1e-6)).unwrap();
-    let open = |edge: &u32| welded.edges.triangles_on(*edge).len() == 1;
-    let all = 0..welded.edges.len() as u32;
-    all.filter(open).map(|edge| welded.edge_m(edge).xy().norm()).sum()
+    welded.edges.borders().into_iter().map(|edge| welded.edge_m(edge).xy().norm()).sum()
 }
 
 fn is_closed(soup: &Soup) -> bool {
@@ -70,7 +68,7 @@ fn cut_triangles_have_exactly_the_area_of_the_zone() {
     assert!(is_closed(&soup));
     assert_eq!(soup.facets.len(), 288 - done.crossed + done.pieces);
     // every piece lies in the plane of the slope and faces up
-    for [a, b, c] in &soup.facets {
+    for [a, b, c] in soup.facets.iter() {
         assert!([a, b, c].iter().all(|p| (p.z - (0.5 * p.x - 0.25 * p.y)).abs() < 1e-12));
         assert!((b - a).cross(&(c - a)).z > 0.0);
     }
@@ -135,7 +133,7 @@ proptest! {
         let corners = |list: &[[i16; 2]]| list.iter().map(|c| c.map(|x| f64::from(x) / 40.0)).collect::<Vec<Corner>>();
         let list = vec![ring(&corners(&one)), Patch { ground: 3, ..ring(&corners(&other)) }];
         let (soup, grounds, done) = laid(list.clone(), true);
-        let whole: f64 = soup.facets.iter().map(plan_area_m2).sum();
+        let whole: f64 = soup.facets.iter().map(|facet| plan_area_m2(&facet)).sum();
         prop_assert!((whole - 144.0).abs() < 1e-4, "{whole}");
         prop_assert!(is_closed(&soup));
         prop_assert_eq!(soup.facets.len(), 288 - done.crossed + done.pieces);
@@ -143,7 +141,7 @@ proptest! {
         let borders = Borders::of(&list);
         for (facet, &ground) in soup.facets.iter().zip(&grounds) {
             let [a, b, c] = facet.map(plan);
-            if plan_area_m2(facet) > 1e-6 {
+            if plan_area_m2(&facet) > 1e-6 {
                 for weight in [[0.8, 0.1], [0.1, 0.8], [0.1, 0.1]] {
                     let [u, v] = weight;
                     let at = [0, 1].map(|k| a[k] * u + b[k] * v + c[k] * (1.0 - u - v));

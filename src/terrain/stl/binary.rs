@@ -75,7 +75,7 @@ pub fn binary_bytes(facets: &[Facet]) -> Vec<u8> {
 /// Coordinates so large that `f32` would spoil the mesh ([`Spacing::spoils`]): subtract an origin first. A file that
 /// cannot be written.
 pub fn write_binary(path: &Path, facets: &[Facet]) -> Result<()> {
-    let spacing = Spacing::of(facets);
+    let spacing = Spacing::of(&facets.to_vec().into());
     if spacing.spoils() {
         let remedy = "subtract a map origin first, or write ASCII";
         return Err(Error::input(path, "coordinates", spacing.to_string(), remedy));

@@ -1,6 +1,6 @@
 //! What 32-bit coordinates do to a mesh.
 
-use super::Facet;
+use crate::terrain::facets::Facets;
 use std::fmt;
 
 /// Spacing over median edge above which normals suffer visibly (–): 0.1 % is about 0.06°.
@@ -24,12 +24,11 @@ pub struct Spacing {
 
 impl Spacing {
     /// Measures the facets.
-    pub fn of(facets: &[Facet]) -> Self {
+    pub fn of(facets: &Facets) -> Self {
         let largest_coordinate = facets
             .iter()
             .flatten()
-            .flat_map(|corner| corner.iter())
-            .fold(0.0, |m: f64, x| m.max(x.abs()));
+            .fold(0.0, |m: f64, corner| corner.iter().fold(m, |m, x| m.max(x.abs())));
         let mut edges2: Vec<f64> = facets
             .iter()
             .flat_map(|[a, b, c]| [b - a, c - b, a - c])

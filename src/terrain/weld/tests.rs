@@ -28,12 +28,12 @@ fn edge_k_runs_from_vertex_k_to_the_next() {
     let welded = weld_one(crate::terrain::make::tetrahedron(1.0), None).unwrap();
     for (t, corners) in (0u32..).zip(&welded.triangles) {
         for k in 0..3 {
-            let edge = welded.edges.of_triangle[t as usize][k];
+            let edge = welded.edges.edge_of(3 * t + k as u32);
             let mut ends = [corners[k], corners[(k + 1) % 3]];
             ends.sort_unstable();
-            assert_eq!(welded.edges.ends[edge as usize], ends);
-            assert_eq!(welded.edges.triangles_on(edge).len(), 2);
-            assert!(welded.edges.triangles_on(edge).contains(&t));
+            assert_eq!(welded.ends(edge), ends);
+            assert_eq!(welded.edges.count_on(edge), 2);
+            assert!(welded.edges.triangles_on(edge).any(|on| on == t));
         }
     }
 }
