@@ -5,6 +5,7 @@
 //! grouping in which rocks arrive, and a drawing from files shows the same bits as the run itself.
 
 mod annual;
+mod arrival;
 mod barriers;
 mod classes;
 mod design;
@@ -15,6 +16,7 @@ mod observed;
 mod proportion;
 mod quantile;
 mod quantity;
+mod rate;
 mod residual;
 mod row;
 mod sample;
@@ -23,12 +25,10 @@ mod totals;
 
 pub use annual::{
     Above, Annual, AnnualBarrier, AnnualFigures, AnnualPlace, Asked, ExceedancePoint, Matrix,
-    Object, Rate, ReturnEnergy, Risk, RiskKind, Saved, Vehicles, Year, YearMap, annual, share_of,
-    year_maps,
+    Object, ReturnEnergy, Risk, RiskKind, Saved, Vehicles, Year, YearMap, annual, year_maps,
 };
-pub use barriers::{
-    Arrival, Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge,
-};
+pub use arrival::Arrival;
+pub use barriers::{Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge};
 pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary, by_rock};
@@ -37,6 +37,7 @@ pub use observed::{Agreement, Spread, Way, Weighted, distances, effective, rank,
 pub use proportion::Proportion;
 pub use quantile::{Open, Percentile, Ranks};
 pub use quantity::Quantity;
+pub use rate::{Rate, share_of};
 pub use residual::{Passing, Residual, residual, unstopped};
 pub use row::{Row, StopKind};
 pub use sample::{Exceedance, Histogram, Mean, Sample};
@@ -155,7 +156,7 @@ impl Hazard {
             Some(weights) => {
                 let strata = self.stops.get(&stop).map_or(&[][..], |ended| &ended.0);
                 let each = strata.iter().enumerate().map(|(at, count)| (at as u16, *count));
-                annual::proportion(&weights, each)
+                rate::proportion(&weights, each)
             }
         }
     }

@@ -8,15 +8,13 @@ mod barriers;
 mod cells;
 mod curve;
 mod places;
-mod rate;
 mod risk;
+mod strata;
 
 pub use barriers::AnnualBarrier;
 pub use cells::{YearMap, year_maps};
 pub use curve::{ExceedancePoint, ReturnEnergy};
 pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, Year, annual};
-pub(in crate::hazard) use rate::proportion;
-pub use rate::{Rate, share_of};
 pub use risk::{Object, Risk, RiskKind, Vehicles};
 
 use crate::frequency::{Frequency, radius_of_m3};

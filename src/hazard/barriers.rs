@@ -5,6 +5,7 @@
 
 mod weighted;
 
+use super::arrival::{Arrival, sample};
 use super::design::{Design, Rule};
 use super::lines::{CrossingRow, by_rock};
 use super::proportion::Proportion;
@@ -13,7 +14,6 @@ use super::{Statistic, statistic};
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
 use std::iter;
-pub(super) use weighted::sample;
 use weighted::{arriving, stopped_at};
 
 /// A barrier on one of the evaluation lines.
@@ -93,17 +93,6 @@ impl AtPlace {
     pub fn at_own_height(&self) -> Option<&Proportion> {
         self.by_height.get(OWN_HEIGHT).map(|(_, share)| share)
     }
-}
-
-/// A rock that arrives at a barrier.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Arrival {
-    /// Release number.
-    pub release: usize,
-    /// Height of its highest point above the ground (m); infinite where there is no ground below.
-    pub top_m: f64,
-    /// Total energy (J).
-    pub total_j: f64,
 }
 
 /// Rocks that arrive at each place of a barrier, its own first.

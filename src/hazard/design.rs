@@ -1,6 +1,6 @@
 //! What a rule asks of a barrier, from the rocks that arrive at it.
 
-use super::barriers::{Arrival, sample};
+use super::arrival::{Arrival, sample};
 use super::quantile::Percentile;
 use super::sample::Sample;
 use crate::frequency::Weights;

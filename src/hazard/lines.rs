@@ -1,7 +1,7 @@
 //! What all rocks say at one evaluation line.
 
-use super::annual::proportion;
 use super::proportion::Proportion;
+use super::rate::proportion;
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};

@@ -4,8 +4,8 @@
 //! [classes](super::classes) of equal ratio. Counts and largest values are the same in whatever order rocks arrive, so a
 //! resumed run gives the same maps.
 
-use super::annual::proportion;
 use super::classes::Counts;
+use super::rate::proportion;
 use super::row::StopKind;
 use crate::frequency::Weights;
 use crate::simulation::CellPassage;

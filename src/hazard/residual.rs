@@ -1,9 +1,10 @@
 //! What arrives at the evaluation lines, without barriers and with them: the risk that remains.
 
-use super::annual::share_of;
-use super::barriers::{Arrival, Barrier};
+use super::arrival::Arrival;
+use super::barriers::Barrier;
 use super::lines::{CrossingRow, LineInfo, LineQuantity, by_rock};
 use super::proportion::Proportion;
+use super::rate::share_of;
 use super::sample::Sample;
 use super::totals::Largest;
 use super::{Statistic, statistic};

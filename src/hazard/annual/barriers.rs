@@ -1,9 +1,10 @@
 //! How often a year rocks arrive at a barrier, and what it does with them.
 
-use super::super::barriers::{Arrival, Barrier};
+use super::super::arrival::Arrival;
+use super::super::barriers::Barrier;
 use super::super::lines::CrossingRow;
-use super::places::{All, Strata, stratum_of};
-use super::rate::{Rate, Sums};
+use super::super::rate::{Rate, Sums};
+use super::strata::{All, Strata, stratum_of};
 use crate::frequency::Frequency;
 use serde::{Deserialize, Serialize};
 

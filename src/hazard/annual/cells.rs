@@ -2,8 +2,8 @@
 
 use super::super::classes::{Counts, class_of, place_in_class};
 use super::super::maps::Maps;
+use super::super::rate::{Limits, Running, Sums};
 use super::curve::{Ceilings, curve, return_energy};
-use super::rate::{Limits, Running, Sums};
 use super::{Asked, Matrix};
 use crate::frequency::{Frequency, Stratum};
 

@@ -1,7 +1,7 @@
 //! The curve of energy exceedance λ(E ≥ e), and the energy of a return period on it.
 
 use super::super::classes::{RATIO, class_of, lower_end_of};
-use super::rate::{Limits, Running, Sums};
+use super::super::rate::{Limits, Running, Sums};
 use crate::frequency::Weights;
 use crate::math;
 use serde::{Deserialize, Serialize};

@@ -4,12 +4,13 @@ use super::super::barriers::Barrier;
 use super::super::classes::class_of;
 use super::super::lines::{CrossingRow, LineInfo, by_rock};
 use super::super::proportion::Proportion;
+use super::super::rate::{Limits, Rate, Running, Sums, proportion};
 use super::Asked;
 use super::barriers::{AnnualBarrier, Met};
 use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
-use super::rate::{Limits, Rate, Running, Sums, proportion};
 use super::risk::{Object, Risk};
-use crate::frequency::{Frequency, Weights, volume_m3};
+use super::strata::{All, Strata, stratum_of};
+use crate::frequency::Frequency;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -86,9 +87,6 @@ pub struct Saved {
     pub risks: Vec<Risk>,
 }
 
-/// Sums over rocks, stratum by stratum.
-pub(super) type Strata = BTreeMap<u16, Sums>;
-
 /// Passages of one place that have something in common.
 #[derive(Debug, Default)]
 struct Tally {
@@ -150,38 +148,6 @@ impl Tally {
         let limits = Limits::weighing(&all.weights, longest_m);
         object.risks(&self.rate(0, all), &all.rate(Some(&self.blocked), &limits))
     }
-}
-
-/// What all places share when they are told.
-pub(super) struct All<'a> {
-    asked: &'a Asked,
-    frequency: &'a Frequency,
-    weights: Weights,
-    ceilings: Ceilings,
-    has_exponent: bool,
-    barriers: &'a [Barrier],
-}
-
-impl All<'_> {
-    /// How often a year rocks do something that every rock might do.
-    pub(super) fn rate_of_any(&self, strata: &Strata) -> Rate {
-        self.rate(Some(strata), &Limits::above(&self.weights, &[], 0.0))
-    }
-
-    fn rate(&self, strata: Option<&Strata>, limits: &Limits) -> Rate {
-        let mut running = Running::new(&self.weights);
-        for (stratum, sums) in strata.into_iter().flatten() {
-            running.add(*stratum, sums);
-        }
-        running.rate(limits, self.has_exponent)
-    }
-}
-
-/// The stratum of the rock of a row, and how its frequency changes with the exponent.
-pub(super) fn stratum_of(frequency: &Frequency, row: &CrossingRow) -> (u16, f64) {
-    let stratum = frequency.stratum(row.index);
-    let score = stratum.score(volume_m3(row.radius_m)).unwrap_or(0.0);
-    (frequency.stratum_of(row.index) as u16, score)
 }
 
 /// Sums of one line or object.

@@ -1,6 +1,6 @@
 //! From hits a year to risk: who is there, and what a hit does.
 
-use super::rate::Rate;
+use super::super::rate::Rate;
 use serde::{Deserialize, Serialize};
 
 /// A road, a path or a house.

@@ -1,9 +1,9 @@
 //! Shares and values of the rocks that arrive, by what each of them stands for.
 
-use super::super::annual::share_of;
+use super::super::arrival::Arrival;
 use super::super::proportion::Proportion;
-use super::super::sample::Sample;
-use super::{Arrival, Barrier};
+use super::super::rate::share_of;
+use super::Barrier;
 use crate::frequency::Weights;
 
 /// The share of some rocks that the barrier would stop at another height (m).
@@ -35,13 +35,4 @@ pub(super) fn stopped_at(
 /// Share of all releases, by what they stand for, that arrive.
 pub(super) fn arriving(rocks: &[Arrival], weights: &Weights) -> Proportion {
     share_of(weights, rocks.iter().map(|rock| rock.release))
-}
-
-/// Values of rocks, each with what the rock stands for.
-pub(in crate::hazard) fn sample(
-    rocks: &[Arrival],
-    weights: &Weights,
-    of: impl Fn(&Arrival) -> f64,
-) -> Sample {
-    Sample::weighted(rocks.iter().map(|rock| (of(rock), weights.of_release(rock.release))))
 }

@@ -4,7 +4,7 @@
 //! strata add (Hantz et al. 2021, Geosciences 11, 158: passage frequency = Σ failure frequency × reach probability).
 //! Every rock may count for more or less than one, by its exposure `y` for instance.
 
-use super::super::proportion::{Proportion, wilson};
+use super::proportion::{Proportion, wilson};
 use crate::frequency::Weights;
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +52,7 @@ impl Rate {
 
 /// Sums over the rocks of one stratum that count.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(in crate::hazard) struct Sums {
+pub(super) struct Sums {
     rocks: u32,
     /// Sum of what each counts for, and of its square.
     y: f64,
@@ -63,33 +63,33 @@ pub(in crate::hazard) struct Sums {
 
 impl Sums {
     /// One rock that counts for `y`, whose frequency changes so with the exponent.
-    pub(in crate::hazard) fn one(y: f64, score: f64) -> Self {
+    pub(super) fn one(y: f64, score: f64) -> Self {
         Self { rocks: 1, y, y2: y * y, score: y * score }
     }
 
     /// So many rocks that count for one each.
-    pub(in crate::hazard) fn many(rocks: u32) -> Self {
+    pub(super) fn many(rocks: u32) -> Self {
         let y = f64::from(rocks);
         Self { rocks, y, y2: y, score: 0.0 }
     }
 
     /// A share of so many rocks: which of them is not known.
-    pub(in crate::hazard) fn part(rocks: u32, share: f64) -> Self {
+    pub(super) fn part(rocks: u32, share: f64) -> Self {
         let y = share * f64::from(rocks);
         Self { rocks, y, y2: y, score: 0.0 }
     }
 
     /// The same, of rocks whose frequency changes so with the exponent on average.
-    pub(in crate::hazard) fn scoring(self, mean: f64) -> Self {
+    pub(super) fn scoring(self, mean: f64) -> Self {
         Self { score: self.y * mean, ..self }
     }
 
     /// How many there are.
-    pub(in crate::hazard) fn rocks(&self) -> usize {
+    pub(super) fn rocks(&self) -> usize {
         self.rocks as usize
     }
 
-    pub(in crate::hazard) fn join(&mut self, other: &Self) {
+    pub(super) fn join(&mut self, other: &Self) {
         self.rocks += other.rocks;
         self.y += other.y;
         self.y2 += other.y2;
@@ -99,7 +99,7 @@ impl Sums {
 
 /// What a rate can reach at most.
 #[derive(Debug, Clone)]
-pub(in crate::hazard) struct Limits {
+pub(super) struct Limits {
     /// Events a year of all strata that can count (1/year).
     most: f64,
     /// Events a year that a rock of the heaviest of them stands for (1/year).
@@ -116,13 +116,13 @@ const NONE: f64 = 3.0;
 impl Limits {
     /// Of passages with at least an energy (J): strata whose largest rock can never have it do not count. `most_j` is the
     /// most energy of each stratum; of none without an entry anything is known.
-    pub(in crate::hazard) fn above(weights: &Weights, most_j: &[f64], energy_j: f64) -> Self {
+    pub(super) fn above(weights: &Weights, most_j: &[f64], energy_j: f64) -> Self {
         let can = |stratum: &usize| most_j.get(*stratum).is_none_or(|most| *most >= energy_j);
         Self::of(weights, (0..weights.strata()).filter(can), |_| 1.0)
     }
 
     /// Of what every rock can do, where one of a stratum counts for so much at most.
-    pub(in crate::hazard) fn weighing(weights: &Weights, most: impl Fn(usize) -> f64) -> Self {
+    pub(super) fn weighing(weights: &Weights, most: impl Fn(usize) -> f64) -> Self {
         Self::of(weights, 0..weights.strata(), most)
     }
 
@@ -149,7 +149,7 @@ impl Limits {
 
 /// The rate of all rocks added so far.
 #[derive(Debug)]
-pub(in crate::hazard) struct Running<'a> {
+pub(super) struct Running<'a> {
     weights: &'a Weights,
     strata: Vec<Sums>,
     touched: Vec<u16>,
@@ -160,13 +160,13 @@ pub(in crate::hazard) struct Running<'a> {
 
 impl<'a> Running<'a> {
     /// Without rocks.
-    pub(in crate::hazard) fn new(weights: &'a Weights) -> Self {
+    pub(super) fn new(weights: &'a Weights) -> Self {
         let strata = vec![Sums::default(); weights.strata()];
         Self { weights, strata, touched: Vec::new(), value: 0.0, score: 0.0, variance: 0.0 }
     }
 
     /// Adds rocks of a stratum. Sums depend on the order in their last bits: callers add in a fixed one.
-    pub(in crate::hazard) fn add(&mut self, stratum: u16, sums: &Sums) {
+    pub(super) fn add(&mut self, stratum: u16, sums: &Sums) {
         let at = usize::from(stratum);
         self.variance -= self.variance_of(at);
         if self.strata[at].rocks == 0 {
@@ -180,7 +180,7 @@ impl<'a> Running<'a> {
     }
 
     /// Without rocks again.
-    pub(in crate::hazard) fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         for stratum in self.touched.drain(..) {
             self.strata[usize::from(stratum)] = Sums::default();
         }
@@ -211,7 +211,7 @@ impl<'a> Running<'a> {
     }
 
     /// Value, and lower and upper end of the interval.
-    pub(in crate::hazard) fn estimate(&self, limits: &Limits) -> [f64; 3] {
+    pub(super) fn estimate(&self, limits: &Limits) -> [f64; 3] {
         let [low, high] = interval(self.value, self.variance.max(0.0), limits);
         let unseen = limits.sparse.iter().find(|(stratum, _)| self.strata[*stratum].rocks == 0);
         let open = unseen.map_or(0.0, |(_, open)| (self.value + open).min(limits.most));
@@ -219,12 +219,12 @@ impl<'a> Running<'a> {
     }
 
     /// Change with the exponent.
-    pub(in crate::hazard) fn by_exponent(&self) -> f64 {
+    pub(super) fn by_exponent(&self) -> f64 {
         self.score
     }
 
     /// All of it; `has_exponent` where a source has one.
-    pub(in crate::hazard) fn rate(&self, limits: &Limits, has_exponent: bool) -> Rate {
+    pub(super) fn rate(&self, limits: &Limits, has_exponent: bool) -> Rate {
         let [per_year, low_95, high_95] = self.estimate(limits);
         Rate {
             rocks: self.strata.iter().map(|sums| sums.rocks as usize).sum(),
@@ -268,7 +268,7 @@ pub fn share_of(weights: &Weights, releases: impl Iterator<Item = usize>) -> Pro
 }
 
 /// Share of all events that some rocks stand for, given by their number in each stratum.
-pub(in crate::hazard) fn proportion(
+pub(super) fn proportion(
     weights: &Weights,
     counts: impl Iterator<Item = (u16, usize)>,
 ) -> Proportion {

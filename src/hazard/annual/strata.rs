@@ -1,0 +1,44 @@
+//! What all places of a year share when they are told.
+
+use super::super::barriers::Barrier;
+use super::super::lines::CrossingRow;
+use super::super::rate::{Limits, Rate, Running, Sums};
+use super::Asked;
+use super::curve::Ceilings;
+use crate::frequency::{Frequency, Weights, volume_m3};
+use std::collections::BTreeMap;
+
+/// Sums over rocks, stratum by stratum.
+pub(super) type Strata = BTreeMap<u16, Sums>;
+
+/// What all places share when they are told.
+pub(super) struct All<'a> {
+    pub(super) asked: &'a Asked,
+    pub(super) frequency: &'a Frequency,
+    pub(super) weights: Weights,
+    pub(super) ceilings: Ceilings,
+    pub(super) has_exponent: bool,
+    pub(super) barriers: &'a [Barrier],
+}
+
+impl All<'_> {
+    /// How often a year rocks do something that every rock might do.
+    pub(super) fn rate_of_any(&self, strata: &Strata) -> Rate {
+        self.rate(Some(strata), &Limits::above(&self.weights, &[], 0.0))
+    }
+
+    pub(super) fn rate(&self, strata: Option<&Strata>, limits: &Limits) -> Rate {
+        let mut running = Running::new(&self.weights);
+        for (stratum, sums) in strata.into_iter().flatten() {
+            running.add(*stratum, sums);
+        }
+        running.rate(limits, self.has_exponent)
+    }
+}
+
+/// The stratum of the rock of a row, and how its frequency changes with the exponent.
+pub(super) fn stratum_of(frequency: &Frequency, row: &CrossingRow) -> (u16, f64) {
+    let stratum = frequency.stratum(row.index);
+    let score = stratum.score(volume_m3(row.radius_m)).unwrap_or(0.0);
+    (frequency.stratum_of(row.index) as u16, score)
+}
