@@ -212,23 +212,26 @@ pub struct CellMap {
     pub intensity_cells: [usize; 3],
 }
 
+/// Cells, row by row from the south-west, each with a value.
+pub(crate) type CellValues = Vec<(u32, f64)>;
+
 /// Maps of a year in plan view, over the cells of [`CellMap`]; values where rocks pass.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct YearCells {
     /// Energy of the frequencies (J).
     pub energy_j: f64,
     /// Passages a year with at least that energy (1/year), above 0.
-    pub frequencies: Vec<(u32, f64)>,
+    pub frequencies: CellValues,
     /// Their change with the exponents over themselves (–); none without power law.
-    pub by_exponent: Option<Vec<(u32, f64)>>,
+    pub by_exponent: Option<CellValues>,
     /// Return periods asked for (years), rising.
     pub return_periods_years: Vec<f64>,
     /// The return period of the energies (years).
     pub years: f64,
     /// Energy of that return period (J), above 0.
-    pub energies_j: Vec<(u32, f64)>,
+    pub energies_j: CellValues,
     /// Name and source of the table of levels, and the level of each cell; none without a table.
-    pub levels: Option<(String, String, Vec<(u32, f64)>)>,
+    pub levels: Option<(String, String, CellValues)>,
 }
 
 impl CellMap {
