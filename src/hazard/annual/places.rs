@@ -302,7 +302,7 @@ impl Place {
         };
         let judged = !all.barriers.is_empty();
         AnnualPlace {
-            name: self.name.to_owned(),
+            name: self.name.clone(),
             is_object: self.object.is_some(),
             conditional_on_release: proportion(
                 &all.weights,
