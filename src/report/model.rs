@@ -3,8 +3,8 @@
 mod places;
 
 pub use places::{
-    AnnualView, BarrierView, Behind, CellMap, DesignView, Line, LinePoint, MapMark, Observed,
-    PlaceView, RockView, YearCells,
+    AnnualView, BarrierView, Behind, CellMap, DesignView, LevelCells, Line, LinePoint, MapMark,
+    Observed, PlaceView, RockView, YearCells,
 };
 
 use super::raster::GroundRaster;

@@ -88,7 +88,7 @@ fn laws_near_their_limits_hold() {
     for b in [1e-12, 1e-6, 0.3, 3.0, 6.0] {
         found(b, middle);
     }
-    let near_1: Vec<[f64; 2]> = [1.0 - 1e-7, 1.0, 1.0 + 1e-7].map(|b| found(b, middle)).to_vec();
+    let near_1 = [1.0 - 1e-7, 1.0, 1.0 + 1e-7].map(|b| found(b, middle));
     for other in [&near_1[0], &near_1[2]] {
         for (one, other) in near_1[1].iter().zip(other) {
             assert!((one / other - 1.0).abs() < 1e-4, "{near_1:?}");

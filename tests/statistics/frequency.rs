@@ -48,7 +48,7 @@ fn maps_carry_the_derivatives_of_the_closed_case() {
     let mut maps = Maps::new(frame, MapState::default());
     for row in crossings(&asked, 8, releases) {
         let passage = CellPassage { cell: 0, total_j: row.total_j(), height_m: 0.0 };
-        let stratum = frequency.stratum_of(row.index) as u16;
+        let stratum = u16::try_from(frequency.stratum_of(row.index)).unwrap();
         maps.add(stratum, &[passage], (StopKind::LeftTerrain, [9.0; 3]));
     }
     let layers = year_maps(&maps, &asked, releases);

@@ -1,6 +1,6 @@
 //! The maps of the report, read back from their grids.
 
-use super::super::model::{CellMap, YearCells};
+use super::super::model::{CellMap, LevelCells, YearCells};
 use crate::error::Result;
 use crate::hazard::{Layer, Matrix};
 use crate::math;
@@ -62,9 +62,11 @@ pub(super) fn of_year(results: &Results) -> Result<Option<YearCells>> {
     let Some(frequencies) = read(&above)?.map(above_0) else { return Ok(None) };
     let slopes = read(&format!("{above}_by_exponent"))?;
     let levels = match &asked.matrix {
-        Some(matrix) => {
-            read(Matrix::FILE)?.map(|cells| (matrix.name.clone(), matrix.source.clone(), cells))
-        }
+        Some(matrix) => read(Matrix::FILE)?.map(|cells| LevelCells {
+            name: matrix.name.clone(),
+            source: matrix.source.clone(),
+            cells,
+        }),
         None => None,
     };
     Ok(Some(YearCells {

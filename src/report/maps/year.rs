@@ -3,7 +3,7 @@
 use super::super::colour::{self, BLUE, ORANGE, PALE, SKY, VERMILLION};
 use super::super::figure::Drawing;
 use super::super::format;
-use super::super::model::{CellMap, Report, YearCells, energy_unit};
+use super::super::model::{CellMap, LevelCells, Report, YearCells, energy_unit};
 use super::super::words::fill;
 use super::{Layer, draw_layers};
 use plotters::style::RGBColor;
@@ -30,7 +30,7 @@ pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells)
         exponent = said.maps_by_exponent;
     }
     let mut level = String::new();
-    if let Some((name, source, cells)) = &year.levels {
+    if let Some(LevelCells { name, source, cells }) = &year.levels {
         layers.push(of_levels(fill(said.map_level, &[("name", &short(name))]), cells));
         level = fill(said.maps_level, &[("source", source)]);
     }

@@ -230,8 +230,19 @@ pub struct YearCells {
     pub years: f64,
     /// Energy of that return period (J), above 0.
     pub energies_j: CellValues,
-    /// Name and source of the table of levels, and the level of each cell; none without a table.
-    pub levels: Option<(String, String, CellValues)>,
+    /// Levels of hazard; none without a table of them.
+    pub levels: Option<LevelCells>,
+}
+
+/// A map of levels of hazard.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LevelCells {
+    /// Name of the table.
+    pub name: String,
+    /// Where the table was read.
+    pub source: String,
+    /// The level of each cell.
+    pub cells: CellValues,
 }
 
 impl CellMap {
