@@ -4,7 +4,6 @@
 //! first of its sides, and every side knows the next one on its edge: four bytes a side tell all.
 
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use rayon::slice::ParallelSliceMut;
 
 /// The two ends of a side, the lower number first.
 #[inline]
@@ -26,18 +25,22 @@ impl Edges {
     /// Lists the edges of `triangles` (vertex indices, all three different).
     pub fn of(triangles: &[[u32; 3]]) -> Self {
         let (starts, mut sides) = sides_by_lower_vertex(triangles);
-        let [lower, upper] = [0, 1].map(|end| move |side: u32| ends(triangles, side)[end]);
-        // short: a vertex has about three edges to later ones
-        sides
-            .par_chunk_by_mut(|&one, &other| lower(one) == lower(other))
-            .for_each(|bucket| bucket.sort_unstable_by_key(|&side| (upper(side), side)));
+        let bucket_of = |vertex: usize| starts[vertex] as usize..starts[vertex + 1] as usize;
+        // a vertex has about three edges to later ones; only the fans of a thousand are worth sorting
+        for vertex in 0..starts.len() - 1 {
+            if bucket_of(vertex).len() > LONG {
+                sides[bucket_of(vertex)].sort_unstable();
+            }
+        }
         let next = |side: u32| {
-            let from = lower(side) as usize;
-            let bucket = &sides[starts[from] as usize..starts[from + 1] as usize];
-            let first = bucket.partition_point(|&other| upper(other) < upper(side));
-            let on_edge = bucket[first..].iter().copied();
-            let mut later = on_edge.take_while(|&other| upper(other) == upper(side));
-            later.find(|&other| other > side).unwrap_or(bucket[first])
+            let [lower, upper] = ends(triangles, side);
+            let bucket = &sides[bucket_of(lower as usize)];
+            let is_long = bucket.len() > LONG;
+            let from = if is_long { bucket.partition_point(|one| one.0 < upper) } else { 0 };
+            let sides = bucket[from..].iter().take_while(|one| !is_long || one.0 == upper);
+            let mut on_edge = sides.filter(|one| one.0 == upper).map(|one| one.1);
+            let first = on_edge.next().unwrap_or(side);
+            on_edge.find(|&other| other > side).unwrap_or(first)
         };
         let all = 0..triangles.len() as u32;
         let next = all.into_par_iter().map(|t| [0, 1, 2].map(|k| next(3 * t + k)));
@@ -151,11 +154,17 @@ impl Edges {
     }
 }
 
-/// The sides of all triangles by lower vertex, ascending, and where the bucket of each vertex begins.
-fn sides_by_lower_vertex(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
+/// More sides than this in the bucket of a vertex are sorted.
+const LONG: usize = 32;
+
+/// Where the bucket of each vertex begins, and the sides of all triangles by lower vertex, ascending, each with its upper
+/// vertex.
+fn sides_by_lower_vertex(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u32)>) {
     let lower = |[a, b, c]: &[u32; 3]| [*a.min(b), *b.min(c), *c.min(a)];
     let vertices = triangles.iter().flatten().max().map_or(0, |&highest| highest as usize + 1);
-    grouped(triangles.iter().map(lower), triangles.len(), vertices)
+    let (starts, sides) = grouped(triangles.iter().map(lower), triangles.len(), vertices);
+    let with_upper = |&side: &u32| (ends(triangles, side)[1], side);
+    (starts, sides.par_iter().map(with_upper).collect())
 }
 
 /// Where the places of each vertex begin, and the places in a list of 3 `triangles` vertices by vertex, ascending.

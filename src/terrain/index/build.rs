@@ -67,6 +67,16 @@ impl Part<'_> {
     }
 }
 
+impl<'a> Part<'a> {
+    /// Cut into halves, and those again.
+    fn quarters(self, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> [Part<'a>; 4] {
+        let [low, high] = self.halves(corners);
+        let (low, high) = rayon::join(|| low.halves(corners), || high.halves(corners));
+        let ([a, b], [c, d]) = (low, high);
+        [a, b, c, d]
+    }
+}
+
 /// What was packed: its levels and its box (m).
 struct Packed {
     depth: usize,
@@ -121,9 +131,8 @@ impl Index {
             return (Self::default(), order);
         }
         let mut index = Self::default();
-        let mut parts = Vec::new();
         let whole = Part { start: 0, triangles: &mut order, above: None };
-        let levels = index.share_out(whole, &mut parts, (&corners, at_once));
+        let (mut parts, levels) = index.share_out(whole, (&corners, at_once));
         let mut whole = Packed::NOTHING;
         let beside = rayon::current_num_threads().min(BESIDE);
         while !parts.is_empty() {
@@ -143,30 +152,38 @@ impl Index {
         (index, order)
     }
 
-    /// Cuts what is too large for one tree of parry's into four, and those again; returns the levels above the parts.
+    /// Cuts what is too large for one tree of parry's into four, and those again; gives the parts and the levels above them.
     fn share_out<'a>(
         &mut self,
-        part: Part<'a>,
-        parts: &mut Vec<Part<'a>>,
+        whole: Part<'a>,
         (corners, at_once): (&(impl Fn(u32) -> [Vec3; 3] + Sync), usize),
-    ) -> usize {
-        if part.triangles.len() <= at_once {
-            parts.push(part);
-            return 0;
+    ) -> (Vec<Part<'a>>, usize) {
+        let (mut ready, mut open, mut levels) = (Vec::new(), vec![whole], 0);
+        loop {
+            let (large, small): (Vec<Part>, Vec<Part>) =
+                open.into_iter().partition(|part| part.triangles.len() > at_once);
+            ready.extend(small);
+            if large.is_empty() {
+                ready.sort_unstable_by_key(|part| part.start);
+                return (ready, levels);
+            }
+            levels += 1;
+            let first = self.nodes.len();
+            for part in &large {
+                let place = self.nodes.len() as u32;
+                self.nodes.push(Node::EMPTY);
+                if let Some((node, side)) = part.above {
+                    self.nodes[node].child[side] = place;
+                }
+            }
+            let quarters: Vec<_> =
+                large.into_par_iter().map(|part| part.quarters(corners)).collect();
+            let below = quarters.into_iter().enumerate().flat_map(|(k, quarters)| {
+                let hung = move |(side, part)| Part { above: Some((first + k, side)), ..part };
+                quarters.into_iter().enumerate().map(hung)
+            });
+            open = below.collect();
         }
-        let place = self.nodes.len();
-        self.nodes.push(Node::EMPTY);
-        if let Some((node, side)) = part.above {
-            self.nodes[node].child[side] = place as u32;
-        }
-        let quarters: Vec<Part> =
-            part.halves(corners).into_iter().flat_map(|half| half.halves(corners)).collect();
-        let mut levels = 0;
-        for (side, quarter) in quarters.into_iter().enumerate() {
-            let quarter = Part { above: Some((place, side)), ..quarter };
-            levels = levels.max(self.share_out(quarter, parts, (corners, at_once)));
-        }
-        levels + 1
     }
 
     /// Adds the nodes of a part's tree, and notes where they are and their box.
