@@ -33,6 +33,7 @@ pub mod panel;
 pub mod canvas;
 mod plan_view;
 mod plausibility;
+mod profile;
 pub mod raster;
 mod reach_angle;
 mod runout;
@@ -171,6 +172,9 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         .iter()
         .map(|figure| (heading(figure.file, (figure.title)(words)), (figure.draw)(report)))
         .collect();
+    if let Some(view) = &report.profile {
+        drawn.push((heading("profile.svg", words.profile_title), profile::draw(report, view)));
+    }
     if let Some(drawing) = along_paths::draw(report) {
         drawn.push((heading("along.svg", words.along_title), drawing));
     }

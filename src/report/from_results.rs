@@ -6,6 +6,7 @@ mod barriers;
 mod lines;
 mod maps;
 mod measured;
+mod profile;
 
 use super::model::{
     About, BandPoint, Check, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row,
@@ -41,12 +42,14 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let hazard = &results.hazard;
     let language = results.summary.language;
     let words = Words::of(language);
-    let releases =
+    let releases: Vec<Fall> =
         results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
     let lines = lines::lines(results, ground.as_ref())?;
     let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
+    let profile = profile::view(results, &releases)?;
     let mut report = Report {
         language,
+        profile,
         text: text_of(results, words),
         releases,
         paths: paths_of(results)?,

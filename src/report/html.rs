@@ -231,7 +231,7 @@ fn where_to(report: &Report, figures: &Figures) -> String {
 }
 
 fn how_fast(report: &Report, figures: &Figures) -> String {
-    all((figures, report.words()), &["side.svg", "along.svg", "distributions.svg"])
+    all((figures, report.words()), &["side.svg", "profile.svg", "along.svg", "distributions.svg"])
         + &tables_about(report, About::Rocks)
 }
 

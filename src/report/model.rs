@@ -4,7 +4,7 @@ mod places;
 
 pub use places::{
     AnnualView, BarrierView, Behind, CellMap, DesignView, Line, LinePoint, MapMark, Observed,
-    PlaceView, RockView,
+    OfStretch, PlaceView, ProfileStretch, ProfileView, RockView,
 };
 
 use super::raster::GroundRaster;
@@ -57,6 +57,8 @@ pub struct Report {
     pub observed: Option<Observed>,
     /// Maps, where the scene asks for them.
     pub maps: Option<CellMap>,
+    /// Speed and height by distance from the release; none of results that lack it.
+    pub profile: Option<ProfileView>,
     /// Whether `view.html` stands beside the page.
     pub has_view: bool,
 }

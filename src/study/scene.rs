@@ -145,6 +145,7 @@ pub fn study(
 ) -> Result<SceneStudy> {
     plan.paths = Part::LeftOut("a study keeps no paths");
     plan.impacts = Part::LeftOut("a study keeps no impacts");
+    plan.profile = Part::LeftOut("a study draws no profile");
     let own_step = plan.step;
     let (relatives, order) = ladder_of(own_step.scheme);
     let mut rungs: Vec<Rung> =

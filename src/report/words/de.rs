@@ -130,7 +130,10 @@ pub(super) static WORDS: Words = Words {
     north: "N",
     // Side view
     side_title: "Längsprofil",
-    side_caption: "Längsprofil der gespeicherten Bahnen von {paths} von {releases} Ablösungen, projiziert auf die mittlere Falllinie, die vom mittleren Ablösepunkt nach {compass} verläuft ({bearing}); Höhen und Strecken im gleichen Maßstab. Braun: Median des Geländes unter den Bahnen selbst; schattiert: dessen Spannweite. Unten: größter Wert jeder gespeicherten Bahn in Abschnitten von {step} m, P95 und Maximum über die Bahnen; Sprunghöhe ab dem Gelände lotrecht unter dem Block. Gestrichelt: Größtwert aller Ablösungen.",
+    side_caption: "Längsprofil der gespeicherten Bahnen von {paths} von {releases} Ablösungen, projiziert auf die mittlere Falllinie, die vom mittleren Ablösepunkt nach {compass} verläuft ({bearing}); Höhen und Strecken im gleichen Maßstab. Braun: Median des Geländes unter den Bahnen selbst; schattiert: dessen Spannweite.",
+    profile_title: "Geschwindigkeit und Sprunghöhe entlang des Weges",
+    profile_caption: "Größte Geschwindigkeit und Sprunghöhe jedes Blocks auf je {step} m Abstand von seinem Ablösepunkt, über alle {rocks}, nicht nur die mit gespeicherter Bahn: Median, P95 mit 95-%-Intervall und Maximum über die Blöcke, die so weit kommen. P95 endet, wo es weniger als {needs} sind. Perzentile stammen aus Klassen und stimmen auf 2,5 %. Sprunghöhe lotrecht ab dem Gelände unter dem Block. Linien und Werke stehen im mittleren Abstand (Median), in dem Blöcke sie queren.",
+    profile_axis: "Horizontaler Abstand vom Ablösepunkt (m)",
     bearing: "Azimut {degrees}°",
     no_bearing: "die Blöcke bewegen sich im Mittel nicht: nach Osten angenommen",
     along_fall_line: "Strecke entlang der mittleren Falllinie (m)",
@@ -138,7 +141,7 @@ pub(super) static WORDS: Words = Words {
     elevation_axis: "Höhe (m)",
     bounce_axis: "Sprunghöhe (m)",
     no_path: "keine Bahn gespeichert",
-    largest_of_all: "Größtwert aller",
+    median: "Median",
     // Runout
     runout_axis: "Auslaufstrecke (m)",
     share_farther: "Anteil, der weiter kommt",

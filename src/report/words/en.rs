@@ -130,7 +130,10 @@ pub(super) static WORDS: Words = Words {
     north: "N",
     // Side view
     side_title: "Side view",
-    side_caption: "Side view of the stored paths of {paths} of {releases} releases, projected on the mean fall line, which runs {compass} from the mean release ({bearing}); heights and distances at the same scale. Brown: median of the ground under the paths themselves; shaded: its lowest to highest. Lower panels: each stored path's largest value within steps of {step} m, P95 and maximum over the paths; bounce height is measured from the ground right below each rock. Dashed: the largest of all releases.",
+    side_caption: "Side view of the stored paths of {paths} of {releases} releases, projected on the mean fall line, which runs {compass} from the mean release ({bearing}); heights and distances at the same scale. Brown: median of the ground under the paths themselves; shaded: its lowest to highest.",
+    profile_title: "Speed and bounce height along the way",
+    profile_caption: "Largest speed and bounce height of each rock in every {step} m of distance from its release, over all {rocks} and not only those with a stored path: median, P95 with its 95 % interval, and maximum over the rocks that come so far. P95 ends where fewer than {needs} of them do. Percentiles are read from classes and keep within 2.5 %. Bounce height is vertical, from the ground right below. Lines and barriers stand at the median distance at which rocks cross them.",
+    profile_axis: "Distance from the release, in plan view (m)",
     bearing: "bearing {degrees}°",
     no_bearing: "the rocks on the mean do not move: taken eastwards",
     along_fall_line: "Distance along the mean fall line (m)",
@@ -138,7 +141,7 @@ pub(super) static WORDS: Words = Words {
     elevation_axis: "Height (m)",
     bounce_axis: "Bounce height (m)",
     no_path: "no path kept",
-    largest_of_all: "largest of all",
+    median: "median",
     // Runout
     runout_axis: "Runout (m)",
     share_farther: "Share running farther",

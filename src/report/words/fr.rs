@@ -130,7 +130,10 @@ pub(super) static WORDS: Words = Words {
     north: "N",
     // Side view
     side_title: "Profil en long",
-    side_caption: "Profil des trajectoires enregistrées de {paths} départs sur {releases}, projetées sur la ligne de plus grande pente moyenne, qui va du départ moyen vers {compass} ({bearing})\u{a0}; hauteurs et distances à la même échelle. Brun\u{a0}: médiane du terrain sous les trajectoires\u{a0}; ombré\u{a0}: son étendue. En bas\u{a0}: plus grande valeur de chaque trajectoire par tronçon de {step} m, P95 et maximum\u{a0}; hauteur de rebond mesurée depuis le terrain juste sous le bloc. Tirets\u{a0}: le maximum de tous les départs.",
+    side_caption: "Profil des trajectoires enregistrées de {paths} départs sur {releases}, projetées sur la ligne de plus grande pente moyenne, qui va du départ moyen vers {compass} ({bearing})\u{a0}; hauteurs et distances à la même échelle. Brun\u{a0}: médiane du terrain sous les trajectoires\u{a0}; ombré\u{a0}: son étendue.",
+    profile_title: "Vitesse et hauteur de rebond le long du parcours",
+    profile_caption: "Plus grande vitesse et hauteur de rebond de chaque bloc par tronçon de {step} m de distance depuis son départ, sur tous les {rocks} et non les seules trajectoires enregistrées\u{a0}: médiane, P95 avec son intervalle à 95 % et maximum des blocs qui viennent jusque-là. P95 s’arrête où il en vient moins de {needs}. Les percentiles sont lus dans des classes, à 2,5 % près. Hauteur de rebond verticale, depuis le terrain juste dessous. Lignes et ouvrages sont à la distance médiane à laquelle les blocs les franchissent.",
+    profile_axis: "Distance horizontale depuis le départ (m)",
     bearing: "azimut {degrees}°",
     no_bearing: "les blocs ne bougent pas en moyenne\u{a0}: prise vers l’est",
     along_fall_line: "Distance le long de la ligne de pente moyenne (m)",
@@ -138,7 +141,7 @@ pub(super) static WORDS: Words = Words {
     elevation_axis: "Altitude (m)",
     bounce_axis: "Rebond (m)",
     no_path: "aucune trajectoire",
-    largest_of_all: "maximum de tous",
+    median: "médiane",
     // Runout
     runout_axis: "Distance de propagation (m)",
     share_farther: "Part allant plus loin",

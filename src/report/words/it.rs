@@ -130,7 +130,10 @@ pub(super) static WORDS: Words = Words {
     north: "N",
     // Side view
     side_title: "Profilo longitudinale",
-    side_caption: "Profilo delle traiettorie salvate di {paths} distacchi su {releases}, proiettate sulla linea di massima pendenza media, che va dal distacco medio verso {compass} ({bearing}); altezze e distanze alla stessa scala. Marrone: mediana del terreno sotto le traiettorie; ombreggiato: il suo intervallo. Sotto: valore massimo di ogni traiettoria per tratti di {step} m, P95 e massimo; altezza di rimbalzo misurata dal terreno sotto il masso. Tratteggio: il massimo di tutti i distacchi.",
+    side_caption: "Profilo delle traiettorie salvate di {paths} distacchi su {releases}, proiettate sulla linea di massima pendenza media, che va dal distacco medio verso {compass} ({bearing}); altezze e distanze alla stessa scala. Marrone: mediana del terreno sotto le traiettorie; ombreggiato: il suo intervallo.",
+    profile_title: "Velocità e altezza di rimbalzo lungo il percorso",
+    profile_caption: "Massima velocità e altezza di rimbalzo di ogni masso per tratti di {step} m di distanza dal suo distacco, su tutti i {rocks} e non solo sulle traiettorie salvate: mediana, P95 con intervallo al 95 % e massimo dei massi che arrivano fin lì. P95 finisce dove ne arrivano meno di {needs}. I percentili sono letti da classi, entro il 2,5 %. Altezza di rimbalzo verticale, dal terreno subito sotto. Linee e opere stanno alla distanza mediana a cui i massi le attraversano.",
+    profile_axis: "Distanza orizzontale dal distacco (m)",
     bearing: "azimut {degrees}°",
     no_bearing: "i massi in media non si muovono: presa verso est",
     along_fall_line: "Distanza lungo la linea di pendenza media (m)",
@@ -138,7 +141,7 @@ pub(super) static WORDS: Words = Words {
     elevation_axis: "Quota (m)",
     bounce_axis: "Rimbalzo (m)",
     no_path: "nessuna traiettoria",
-    largest_of_all: "massimo di tutti",
+    median: "mediana",
     // Runout
     runout_axis: "Distanza di arresto (m)",
     share_farther: "Quota che va oltre",
