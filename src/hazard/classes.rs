@@ -88,6 +88,27 @@ impl Counts {
 }
 
 impl Counts {
+    /// The value below which the share `p` of all weight lies, the weight of a class spread evenly over it; 0 of nothing.
+    fn interpolated(&self, p: f64, weights: &Weights) -> f64 {
+        let equal = weights.are_equal();
+        let weight = |&(_, stratum, count): &(u16, u16, u32)| {
+            let one = if equal { 1.0 } else { weights.of_stratum(usize::from(stratum)) };
+            one * f64::from(count)
+        };
+        let asked = p * self.0.iter().map(weight).sum::<f64>();
+        let mut below = 0.0;
+        for of_class in self.0.chunk_by(|one, next| one.0 == next.0) {
+            let (class, all) = (of_class[0].0, of_class.iter().map(weight).sum::<f64>());
+            if below + all >= asked && all > 0.0 {
+                let share = ((asked - below) / all).clamp(0.0, 1.0);
+                return if class == 0 { SMALLEST * share } else { lower_end_of(class) * math::pow(RATIO, share) };
+            }
+            below += all;
+        }
+        // rounding may keep the last sum from reaching the whole
+        self.0.last().map_or(0.0, |(class, ..)| middle_of(*class))
+    }
+
     /// How many values there are.
     pub(super) fn rocks(&self) -> usize {
         self.0.iter().map(|(.., count)| *count as usize).sum()
@@ -100,10 +121,10 @@ impl Counts {
         if rocks == 0 {
             return None;
         }
-        let value = self.percentile(p, weights);
+        let value = self.interpolated(p, weights);
         let [low_95, high_95] = if weights.are_equal() {
             let ranks = Ranks::of(rocks, p);
-            let at = |rank: usize| self.percentile((rank as f64 - 0.5) / rocks as f64, weights);
+            let at = |rank: usize| self.interpolated((rank as f64 - 0.5) / rocks as f64, weights);
             [ranks.low.map(at), ranks.high.map(at)]
         } else {
             let one = |stratum: u16| weights.of_stratum(usize::from(stratum));
@@ -114,7 +135,7 @@ impl Counts {
                 f64::from(n) * (one(stratum) * (below - p)).powi(2)
             };
             let sd = each().map(side).sum::<f64>().sqrt() / all;
-            let at = |p: f64| (p > 0.0 && p < 1.0).then(|| self.percentile(p, weights));
+            let at = |p: f64| (p > 0.0 && p < 1.0).then(|| self.interpolated(p, weights));
             [at(p - NORMAL_95 * sd), at(p + NORMAL_95 * sd)]
         };
         let needs = needed(p);

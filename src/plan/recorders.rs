@@ -230,7 +230,7 @@ pub struct Recorders<'a> {
 }
 
 /// Stretches that the longest way over a terrain is parted into, at least.
-const STRETCHES: f64 = 100.0;
+const STRETCHES: f64 = 50.0;
 /// And at most: a figure shows no more.
 const MOST_STRETCHES: f64 = 1000.0;
 

@@ -334,27 +334,34 @@ fn text_of(results: &Results, words: &Words) -> Text {
     };
     let planned = |name: &str| {
         let entry = summary.plan_entries.iter().find(|entry| entry.name == name);
-        entry.map(|entry| entry.said.clone()).unwrap_or_default()
+        entry.map(|entry| words.say(&entry.said)).unwrap_or_default()
     };
     Text {
         title: summary.title.clone(),
         subtitle: planned("file"),
         scheme: fill(words.scheme_in_force, &[("scheme", &planned("scheme"))]),
         title_block: title_block(&summary.title_block, words),
-        inputs: summary.inputs.clone(),
+        inputs: summary.inputs.iter().map(|(name, said)| (words.say(name), words.say_inside(said))).collect(),
         terrain_source: [summary.sources[0].clone(), planned("terrain")]
             .into_iter()
             .filter(|words| !words.is_empty())
             .collect::<Vec<_>>()
             .join("; "),
-        parameter_source: summary.sources[1].clone(),
-        plan: summary.plan.clone(),
+        parameter_source: words.say(&summary.sources[1]),
+        plan: summary
+            .plan_entries
+            .iter()
+            .map(|entry| (words.part(&entry.name), words.say_inside(&entry.said)))
+            .collect(),
         warnings: [
             &summary.warnings[..],
             &fast_warnings(results)[..],
             &summary.totals.warnings(results.hazard.rocks()),
         ]
-        .concat(),
+        .concat()
+        .iter()
+        .map(|warning| words.say(warning))
+        .collect(),
         mesh_health: lines(&summary.mesh_health),
         seed: summary.identity.seed,
         version: summary.identity.version.clone(),

@@ -85,8 +85,8 @@ pub struct Text {
     pub inputs: Vec<(String, String)>,
     /// Health of the meshes, one line each.
     pub mesh_health: Vec<String>,
-    /// The plan: what was computed, what was left out and why.
-    pub plan: Vec<String>,
+    /// The plan: each part, and what was computed of it or why it was left out.
+    pub plan: Vec<(String, String)>,
     /// What the reader must know before using the numbers.
     pub warnings: Vec<String>,
     /// Where the terrain comes from and how fine it is.
