@@ -154,8 +154,7 @@ fn error_study(dir: &Path, report: &Report) -> Option<(Heading, Drawing)> {
     let words = report.words();
     let (svg, releases) =
         studied::figure(dir, (report.text.scene_hash.as_str(), report.text.seed))?;
-    let heading =
-        Heading { file: studied::FIGURE.to_owned(), title: words.error_study.to_owned() };
+    let heading = Heading { file: studied::FIGURE.to_owned(), title: words.error_study.to_owned() };
     let releases = format::decimal(releases as f64, 0);
     let caption = fill(words.error_study_caption, &[("releases", &releases)]);
     Some((heading, Drawing { svg, caption }))

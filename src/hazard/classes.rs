@@ -101,7 +101,11 @@ impl Counts {
             let (class, all) = (of_class[0].0, of_class.iter().map(weight).sum::<f64>());
             if below + all >= asked && all > 0.0 {
                 let share = ((asked - below) / all).clamp(0.0, 1.0);
-                return if class == 0 { SMALLEST * share } else { lower_end_of(class) * math::pow(RATIO, share) };
+                return if class == 0 {
+                    SMALLEST * share
+                } else {
+                    lower_end_of(class) * math::pow(RATIO, share)
+                };
             }
             below += all;
         }

@@ -341,7 +341,11 @@ fn text_of(results: &Results, words: &Words) -> Text {
         subtitle: planned("file"),
         scheme: fill(words.scheme_in_force, &[("scheme", &planned("scheme"))]),
         title_block: title_block(&summary.title_block, words),
-        inputs: summary.inputs.iter().map(|(name, said)| (words.say(name), words.say_inside(said))).collect(),
+        inputs: summary
+            .inputs
+            .iter()
+            .map(|(name, said)| (words.say(name), words.say_inside(said)))
+            .collect(),
         terrain_source: [summary.sources[0].clone(), planned("terrain")]
             .into_iter()
             .filter(|words| !words.is_empty())

@@ -111,7 +111,12 @@ impl View {
 }
 
 /// The name of a mark above the frame, or in it where a neighbour's stands above already.
-pub(super) fn name_above(canvas: &Canvas<'_>, frame: &Frame, (x, name): (f64, &str), colour: RGBColor) {
+pub(super) fn name_above(
+    canvas: &Canvas<'_>,
+    frame: &Frame,
+    (x, name): (f64, &str),
+    colour: RGBColor,
+) {
     let words = fitted(name, SMALL, 0.4 * frame.width());
     let rows = [frame.top - 9.0, frame.top + 10.0, frame.top + 24.0, frame.top + 38.0];
     let candidates = rows.into_iter().flat_map(|y| {

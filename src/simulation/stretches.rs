@@ -201,8 +201,7 @@ mod tests {
     #[test]
     fn a_stretch_holds_the_largest() {
         let (rest, start) = (Vec3::zeros(), Vec3::new(0.0, 0.0, 9.0));
-        let start =
-            Motion { time_s: 0.0, position_m: start, velocity_m_s: rest, spin_rad_s: rest };
+        let start = Motion { time_s: 0.0, position_m: start, velocity_m_s: rest, spin_rad_s: rest };
         let mut all = Stretches::of(Some(1.0), &start);
         for (x, speed, height) in [(0.5, 1.0, 0.2), (1.5, 3.0, 0.0), (0.7, 2.0, 0.1)] {
             all.note(&Vec3::new(x, 0.0, 9.0), speed, height);

@@ -200,7 +200,11 @@ pub fn study(
     }
     Ok(SceneStudy {
         title: plan.title.clone(),
-        studied: Studied { scene_hash: plan.scene_hash.clone(), seed: plan.seed, releases: plan.count },
+        studied: Studied {
+            scene_hash: plan.scene_hash.clone(),
+            seed: plan.seed,
+            releases: plan.count,
+        },
         language: plan.language,
         releases: plan.count,
         threads: ensemble.threads(),

@@ -1,12 +1,12 @@
 //! Both errors of a scene's statistics over run time.
 
 use super::scene::{Of, SceneStudy, Statistic, StudyQuantity};
+use crate::hazard::Quantity;
 use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use crate::report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel, align};
-use crate::hazard::Quantity;
 use crate::report::svg::path::Frame;
 use crate::report::words::{Words, fill};
 use std::fmt::Display;

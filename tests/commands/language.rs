@@ -68,11 +68,8 @@ fn spoken(page: &str) -> String {
     let (_, body) = rest.split_once("</style>").unwrap();
     let mut words = svg::strip_tags(head);
     for (k, part) in body.split("lang=\"en\"").enumerate() {
-        let rest = if k == 0 {
-            part
-        } else {
-            part.split_once("</pre>").map_or("", |(_, behind)| behind)
-        };
+        let rest =
+            if k == 0 { part } else { part.split_once("</pre>").map_or("", |(_, behind)| behind) };
         words += &svg::strip_tags(rest);
     }
     words
@@ -127,7 +124,8 @@ fn a_run_speaks_the_language_of_its_scene() {
     let folder = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
     let (a, b, out) = (folder("valley_de"), folder("valley_de_b"), folder("compared"));
     let scene = folder("valley_de.toml");
-    let said = rockfall(&["run", &scene, "--releases", "120", "--seed", "3", "--out", &b, "--quiet"]);
+    let said =
+        rockfall(&["run", &scene, "--releases", "120", "--seed", "3", "--out", &b, "--quiet"]);
     assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
     assert!(rockfall(&["compare", &a, &b, "--out", &out]).status.success());
     check_page(Path::new(&out), "compare.html", "de");

@@ -41,7 +41,8 @@ pub(super) fn all(comparison: &Comparison) -> Vec<(Heading, Drawing)> {
     for (number, pair) in comparison.populations.iter().enumerate() {
         let curves = curves_of(pair);
         if curves.iter().any(|(_, values)| values.iter().any(|one| !one.is_empty())) {
-            let (file, title) = (format!("exceedance_{}.svg", number + 1), words.say(&pair[0].name));
+            let (file, title) =
+                (format!("exceedance_{}.svg", number + 1), words.say(&pair[0].name));
             drawn.push((
                 heading(file, title),
                 exceedance(&format!("compare-{number}"), pair, &curves, words),
@@ -81,32 +82,31 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
     let reach = reach.fold(0.05_f64, |most, x| most.max(x.abs())).min(MOST_CHANGE);
     let x = Axis::linear(-105.0 * reach, 105.0 * reach, words.say("Change from A to B (% of A)"));
     let panel = Panel::new(frame, x, Axis::linear(0.0, 1.0, ""));
-    let svg =
-        paint("compare", (WIDTH_PX, bottom + FOOT_PX), &words.say(CHANGES), |canvas| {
-            panel.grid_upright(canvas);
-            panel.upright(canvas, 0.0, Pen::full(GREY, 1.2));
-            for (k, (name, values)) in rows.iter().enumerate() {
-                let y = frame.top + ROW_PX * (k as f64 + 0.5);
-                canvas.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
-                let [at, low, high] =
-                    values.map(|x| panel.at(100.0 * x.clamp(-reach, reach), 0.0).0);
-                let is_clear = values[1] > 0.0 || values[2] < 0.0;
-                let colour = if is_clear { VERMILLION } else { INK };
-                canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
-                // told apart without colour: a diamond where the interval leaves out zero
-                canvas.mark(if is_clear { 2 } else { 0 }, (at, y), 3.0, colour);
-                canvas.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
-            }
-            canvas.outline(&frame, Pen::full(INK, 0.8));
-            panel.x_axis(canvas);
-            if rows.is_empty() {
-                panel.nothing(canvas, &words.say("nothing to compare"));
-            }
-        });
+    let svg = paint("compare", (WIDTH_PX, bottom + FOOT_PX), &words.say(CHANGES), |canvas| {
+        panel.grid_upright(canvas);
+        panel.upright(canvas, 0.0, Pen::full(GREY, 1.2));
+        for (k, (name, values)) in rows.iter().enumerate() {
+            let y = frame.top + ROW_PX * (k as f64 + 0.5);
+            canvas.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
+            let [at, low, high] = values.map(|x| panel.at(100.0 * x.clamp(-reach, reach), 0.0).0);
+            let is_clear = values[1] > 0.0 || values[2] < 0.0;
+            let colour = if is_clear { VERMILLION } else { INK };
+            canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
+            // told apart without colour: a diamond where the interval leaves out zero
+            canvas.mark(if is_clear { 2 } else { 0 }, (at, y), 3.0, colour);
+            canvas.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
+        }
+        canvas.outline(&frame, Pen::full(INK, 0.8));
+        panel.x_axis(canvas);
+        if rows.is_empty() {
+            panel.nothing(canvas, &words.say("nothing to compare"));
+        }
+    });
     let beyond = rows.iter().flat_map(|(_, values)| values).any(|x| x.abs() > MOST_CHANGE);
     let mut caption = words.say(CHANGES_CAPTION);
     if beyond {
-        caption = format!("{caption} {}", words.say("What lies beyond the frame is drawn at its edge."));
+        caption =
+            format!("{caption} {}", words.say("What lies beyond the frame is drawn at its edge."));
     }
     Drawing { svg, caption }
 }
@@ -165,8 +165,11 @@ fn one_panel(
     let far = samples.iter().filter_map(|sample| Some(sample.percentile(1.0 - BEYOND)?.value));
     let x = Axis::from_zero(far, format!("{name} ({unit})"));
     let rocks = samples.iter().map(|sample| sample.values().len()).max().unwrap_or(0);
-    let mut panel =
-        Panel::new(frame, x, Axis::log(1.0 / rocks.clamp(10, 200) as f64, 1.0, words.say("Share exceeding")));
+    let mut panel = Panel::new(
+        frame,
+        x,
+        Axis::log(1.0 / rocks.clamp(10, 200) as f64, 1.0, words.say("Share exceeding")),
+    );
     panel.frame.left += panel.room_left();
     let at = (panel.frame.left, panel.frame.top - 9.0);
     canvas.text(&Label::new(name, at).bold().sized(NORMAL));

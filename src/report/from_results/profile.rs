@@ -51,7 +51,8 @@ fn marks(results: &Results, releases: &[Fall]) -> Result<Vec<(f64, MapMark)>> {
         all.sort_by(f64::total_cmp);
         Some((all[all.len() / 2], mark))
     };
-    let mut marks: Vec<(f64, MapMark)> = lines::marks(results).into_iter().filter_map(middle).collect();
+    let mut marks: Vec<(f64, MapMark)> =
+        lines::marks(results).into_iter().filter_map(middle).collect();
     marks.sort_by(|one, other| one.0.total_cmp(&other.0));
     Ok(marks)
 }

@@ -590,6 +590,7 @@ pub(super) static WORDS: Words = Words {
         ("roughness length {a}", "Rauheitslänge {a}"),
         ("roughness {a}", "Rauheit {a}"),
         ("gives way above {a}", "gibt nach über {a}"),
+        ("{a} ({b} to {c} in nine of ten, {d}) {unit}", "{a} ({b} bis {c} in neun von zehn, {d}) {unit}"),
         ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} bis {c} in neun von zehn, {d})"),
         // Two runs beside each other
         ("Two runs compared", "Zwei Läufe im Vergleich"),

@@ -590,6 +590,7 @@ pub(super) static WORDS: Words = Words {
         ("roughness length {a}", "lunghezza di rugosità {a}"),
         ("roughness {a}", "rugosità {a}"),
         ("gives way above {a}", "cede sopra {a}"),
+        ("{a} ({b} to {c} in nine of ten, {d}) {unit}", "{a} (da {b} a {c} in nove casi su dieci, {d}) {unit}"),
         ("{a} ({b} to {c} in nine of ten, {d})", "{a} (da {b} a {c} in nove casi su dieci, {d})"),
         // Two runs beside each other
         ("Two runs compared", "Due calcoli a confronto"),

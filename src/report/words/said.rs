@@ -33,6 +33,10 @@ impl Words {
         if !text.contains(' ') {
             return text.to_owned();
         }
+        // components of a vector stand apart whatever is in them
+        if text.contains(" | ") {
+            return text.split(" | ").map(|part| self.say(part)).collect::<Vec<_>>().join(" | ");
+        }
         if let Some(said) = self.knows(text) {
             return said;
         }
@@ -136,7 +140,9 @@ mod tests {
         let all = [Language::De, Language::Fr, Language::It].map(Words::of);
         for words in all {
             for (one, other) in [(words.said, all[0].said), (words.view, all[0].view)] {
-                assert!(one.iter().map(|(known, _)| known).eq(other.iter().map(|(known, _)| known)));
+                assert!(
+                    one.iter().map(|(known, _)| known).eq(other.iter().map(|(known, _)| known))
+                );
                 for (known, said) in one {
                     assert!(!said.is_empty(), "{known}");
                     assert_eq!(names(known), names(said), "{known}");

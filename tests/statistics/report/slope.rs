@@ -287,7 +287,10 @@ fn text() -> Text {
         ]),
         plan: [
             ("terrain", "56 680 triangles; 61 % of edges flat or hollow: left out of contact"),
-            ("flight", "leapt over: nothing but gravity acts between touches, the parabola is exact"),
+            (
+                "flight",
+                "leapt over: nothing but gravity acts between touches, the parabola is exact",
+            ),
             ("rock against rock", "left out: releases are independent"),
             ("paths", "kept for 300 of 1000 releases"),
         ]
