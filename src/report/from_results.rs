@@ -344,7 +344,7 @@ fn text_of(results: &Results, words: &Words) -> Text {
         inputs: summary
             .inputs
             .iter()
-            .map(|(name, said)| (words.say(name), words.say_inside(said)))
+            .map(|(name, said)| (words.say(name), words.say_all(said)))
             .collect(),
         terrain_source: [summary.sources[0].clone(), planned("terrain")]
             .into_iter()
@@ -355,7 +355,7 @@ fn text_of(results: &Results, words: &Words) -> Text {
         plan: summary
             .plan_entries
             .iter()
-            .map(|entry| (words.part(&entry.name), words.say_inside(&entry.said)))
+            .map(|entry| (words.part(&entry.name), words.say_all(&entry.said)))
             .collect(),
         warnings: [
             &summary.warnings[..],

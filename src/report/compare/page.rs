@@ -79,7 +79,7 @@ fn inputs(comparison: &Comparison) -> String {
             Some(part) => format!("{}{}", words.plan_of, words.part(part)),
             None => words.say(name),
         };
-        let [a, b] = values.each_ref().map(|value| words.say_inside(value));
+        let [a, b] = values.each_ref().map(|value| words.say_all(value));
         let _ = writeln!(
             rows,
             "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>",

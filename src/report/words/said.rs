@@ -28,8 +28,13 @@ impl Words {
         Some(fill(said, &values))
     }
 
+    /// A recorded text that may be made of several.
+    pub(crate) fn say_all(&self, text: &str) -> String {
+        if text.contains(' ') { self.say_inside(text) } else { self.say(text) }
+    }
+
     /// What stands in a place: a text of its own, or several. Single words are names and numbers.
-    pub(crate) fn say_inside(&self, text: &str) -> String {
+    fn say_inside(&self, text: &str) -> String {
         if !text.contains(' ') {
             return text.to_owned();
         }
@@ -122,6 +127,12 @@ mod tests {
         assert_eq!(said, "300 entlang einer Linie von 30.0 m, reihum von 2 Punkten, Startwert 1");
         assert_eq!(words.say("left out: the scene has none"), "weggelassen: die Szene hat keine");
         assert_eq!(words.say("Nothing that is known"), "Nothing that is known");
+        // a line may be called as the program calls something
+        assert_eq!(words.say_all("computed"), "gerechnet");
+        let said = words.say_all("1: computed (2.0 m); crossings exact between stored points");
+        assert!(said.starts_with("1: computed (2.0 m)"), "{said}");
+        let said = words.say_all("0 | 0.5 (0.1 to 0.9 in nine of ten, uniform) m/s");
+        assert_eq!(said, "0 | 0.5 (0.1 bis 0.9 in neun von zehn, uniform) m/s");
         let english = Words::of(Language::En);
         assert_eq!(english.say("left out: x"), "left out: x");
         assert_eq!(english.part("flat edges"), "flat edges");
