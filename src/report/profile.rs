@@ -107,7 +107,9 @@ fn marks(canvas: &Canvas<'_>, panels: &[Panel; 2], view: &ProfileView) {
             Some(_) => (DARK_GREEN, Pen::full(DARK_GREEN, 1.6)),
             None => (INK, Pen::full(INK, 0.9).dotted()),
         };
-        panels.iter().for_each(|panel| panel.upright(canvas, *at, pen));
+        for panel in panels {
+            panel.upright(canvas, *at, pen);
+        }
         let x = panels[0].at(*at, panels[0].y.low).0;
         name_above(canvas, &panels[0].frame, (x, &mark.name), colour);
     }

@@ -159,11 +159,10 @@ impl<'a> Recorder<'a> {
         if most_m <= self.extremes.height_m {
             return;
         }
-        if let Some(height) = self.clearance_m(at) {
-            if height > self.extremes.height_m {
-                self.extremes.height_m = height;
-                self.stretches.note(&at.motion.position_m, 0.0, height);
-            }
+        let higher = |height: &f64| *height > self.extremes.height_m;
+        if let Some(height) = self.clearance_m(at).filter(higher) {
+            self.extremes.height_m = height;
+            self.stretches.note(&at.motion.position_m, 0.0, height);
         }
     }
 
