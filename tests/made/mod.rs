@@ -175,7 +175,7 @@ fn stretches(index: usize) -> Vec<Stretch> {
         speed_m_s: 1.0 + 0.1 * index as f64,
         height_m: 0.3 * f64::from(number),
     };
-    (0..1 + index as u32 % 4).map(stretch).collect()
+    (0..=index as u32 % 4).map(stretch).collect()
 }
 
 /// The journey of rock `index`.
