@@ -5,7 +5,7 @@
 //! short enough that an interrupt is answered in seconds and that its paths fit in memory.
 
 use crate::error::{Error, Result};
-use crate::simulation::{CellPassage, Crossing, Impact, PathPoint, Trajectory};
+use crate::simulation::{CellPassage, Crossing, Impact, PathPoint, Stretch, Trajectory};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -169,6 +169,7 @@ fn bytes_of(falls: &[Trajectory]) -> usize {
             + size_of_val::<[Impact]>(&fall.impacts)
             + size_of_val::<[Crossing]>(&fall.crossings)
             + size_of_val::<[CellPassage]>(&fall.passages)
+            + size_of_val::<[Stretch]>(&fall.stretches)
     };
     falls.iter().map(kept).sum()
 }

@@ -78,6 +78,8 @@ pub struct RunInfo {
     pub lines: Vec<LineInfo>,
     /// Where the maps lie; none leaves them out.
     pub maps: Option<MapFrame>,
+    /// Length of the stretches of the profile (m).
+    pub profile_step_m: f64,
     /// Barriers; each on the line of its name.
     pub barriers: Vec<Barrier>,
     /// What is asked of the year: sources, objects, classes of hazard.
@@ -241,13 +243,17 @@ impl Output {
             self.write_path(fall)?;
             self.write_impacts(fall)?;
             self.write_crossings(fall)?;
+            let frequency = self.info.asked.frequency.as_ref();
+            let stratum = frequency.map_or(0, |one| one.stratum_of(row.index)) as u16;
             if let Some(maps) = &mut self.maps {
-                let frequency = self.info.asked.frequency.as_ref();
-                let stratum = frequency.map_or(0, |one| one.stratum_of(row.index));
-                maps.add(stratum as u16, &fall.passages, (row.stop, row.end_m));
+                maps.add(stratum, &fall.passages, (row.stop, row.end_m));
             }
             self.hazard.add(&row);
             self.hazard.totals.add(fall);
+            if row.stop.counts() {
+                let profile = &mut self.hazard.totals.profile;
+                profile.add(self.info.profile_step_m, stratum, &fall.stretches);
+            }
         }
         self.is_marked = false;
         let (last, took) = self.marked;

@@ -145,6 +145,8 @@ pub struct Plan {
     pub year: Part<Year>,
     /// Cells of the maps.
     pub maps: Part<MapGrid>,
+    /// Length of the stretches of the profile of speed and height (m).
+    pub profile: Part<f64>,
     /// Grounds with values of the catalogue: name, what was taken, source.
     pub catalogued: Vec<String>,
     /// Up to which slope each ground stops a rolling sphere, in words.
@@ -268,9 +270,10 @@ impl Plan {
             objects,
             year,
             maps: Part::when(
-                map_grid(scene, &terrain)?,
+                recorders::map_grid(scene, &terrain)?,
                 "not asked for, [maps] cell_m = … writes them",
             ),
+            profile: Part::Kept(recorders::profile_step_m(scene, &terrain)?),
             inputs: inputs::of(scene),
             title_block: inputs::title_block(&scene.report),
             sources: [
@@ -313,6 +316,7 @@ impl Plan {
         Recorders {
             lines: if let Part::Kept(lines) = &self.lines { lines } else { &[] },
             cells: if let Part::Kept(cells) = &self.maps { Some(cells) } else { None },
+            profile_step_m: if let Part::Kept(step_m) = self.profile { Some(step_m) } else { None },
         }
     }
 
@@ -387,10 +391,6 @@ fn evaluation_lines(scene: &Scene, terrain: &Terrain) -> Result<Option<Vec<Evalu
     );
     all.extend(annual::evaluation_lines(scene, terrain)?);
     Ok(Some(all).filter(|all| !all.is_empty()))
-}
-
-fn map_grid(scene: &Scene, terrain: &Terrain) -> Result<Option<MapGrid>> {
-    scene.maps.as_ref().map(|maps| MapGrid::over(terrain, maps, &scene.file)).transpose()
 }
 
 fn can_exceed_0(value: Option<&Distribution>) -> bool {

@@ -33,12 +33,14 @@ pub mod panel;
 pub mod canvas;
 mod plan_view;
 mod plausibility;
+mod profile;
 pub mod raster;
 mod reach_angle;
 mod runout;
 mod side_view;
 mod site;
 mod stops;
+pub mod studied;
 pub mod svg;
 pub mod view;
 pub mod words;
@@ -138,7 +140,7 @@ pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     let figures = dir.join("figures");
     fs::create_dir_all(&figures).map_err(Error::file("create", &figures))?;
     let mut drawn = drawings(report);
-    drawn.extend(error_study(dir, report.words()));
+    drawn.extend(error_study(dir, report));
     let names: Vec<&str> = drawn.iter().map(|(heading, _)| heading.file.as_str()).collect();
     output::announce_figures(dir, &names)?;
     for (heading, drawing) in &drawn {
@@ -147,18 +149,15 @@ pub fn draw(report: &Report, dir: &Path) -> Result<()> {
     write_atomic(&dir.join("report.html"), html::page(report, &drawn).as_bytes())
 }
 
-/// The figure that `rockfall study error` has left in `error/` below the results, if it has.
-fn error_study(dir: &Path, words: &Words) -> Option<(Heading, Drawing)> {
-    let file = html::ERROR_STUDY;
-    let svg = fs::read_to_string(dir.join("error").join(file)).ok()?;
-    let heading = Heading { file: file.to_owned(), title: words.error_study.to_owned() };
-    Some((
-        heading,
-        Drawing {
-            svg: svg[svg.find("<svg")?..].to_owned(),
-            caption: words.error_study_caption.to_owned(),
-        },
-    ))
+/// The figure of errors over run time, where this very scene has been studied.
+fn error_study(dir: &Path, report: &Report) -> Option<(Heading, Drawing)> {
+    let words = report.words();
+    let (svg, releases) =
+        studied::figure(dir, (report.text.scene_hash.as_str(), report.text.seed))?;
+    let heading = Heading { file: studied::FIGURE.to_owned(), title: words.error_study.to_owned() };
+    let releases = format::decimal(releases as f64, 0);
+    let caption = fill(words.error_study_caption, &[("releases", &releases)]);
+    Some((heading, Drawing { svg, caption }))
 }
 
 /// All figures, drawn. Lines and barriers that no rock reaches have a sentence on the page and no figure.
@@ -171,6 +170,9 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         .iter()
         .map(|figure| (heading(figure.file, (figure.title)(words)), (figure.draw)(report)))
         .collect();
+    if let Some(view) = &report.profile {
+        drawn.push((heading("profile.svg", words.profile_title), profile::draw(report, view)));
+    }
     if let Some(drawing) = along_paths::draw(report) {
         drawn.push((heading("along.svg", words.along_title), drawing));
     }

@@ -175,6 +175,7 @@ impl Round<'_> {
             ground_of_sheet: plan.terrain.sheets.iter().map(ground_of).collect(),
             lines: infos::line_infos(plan),
             maps: infos::map_frame(plan),
+            profile_step_m: plan.recorders().profile_step_m.unwrap_or_default(),
             barriers: infos::barriers(plan),
             asked: year::asked(plan),
             observed: read_measured(plan)?,

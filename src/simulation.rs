@@ -2,6 +2,7 @@
 
 mod block;
 mod rest;
+mod stretches;
 mod crossings;
 mod driver;
 mod form;
@@ -24,6 +25,7 @@ pub use crossings::Crossing;
 pub use driver::{Scratch, simulate, simulate_block, simulate_release};
 pub use recorder::Keep;
 pub use settings::RunSettings;
+pub use stretches::Stretch;
 pub use world::{Observer, PairMaterial, WorldStats, simulate_releases_together, simulate_world};
 
 /// Why a rock's journey ended.
@@ -214,6 +216,8 @@ pub struct Trajectory {
     pub crossings: Vec<Crossing>,
     /// Cells of the plan's maps that it passed, in the order of cells.
     pub passages: Vec<CellPassage>,
+    /// Stretches of distance from its release that it passed, in their order.
+    pub stretches: Vec<Stretch>,
     /// Energy ledger.
     pub ledger: Ledger,
     /// Potential energy released plus kinetic energy at the start (J): the scale of the ledger.
@@ -239,6 +243,7 @@ impl Trajectory {
             path: Vec::new(),
             crossings: Vec::new(),
             passages: Vec::new(),
+            stretches: Vec::new(),
             ledger: Ledger::default(),
             released_j: 0.0,
             effort: Effort::default(),

@@ -68,6 +68,7 @@ pub fn write_exact(
 pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     write_atomic(&dir.join("error.svg"), scene_figure::draw(study).as_bytes())?;
+    study.studied.write(dir)?;
     write_atomic(&dir.join("error.csv"), scene_page::csv(study).as_bytes())?;
     if !study.meshes.is_empty() {
         write_atomic(&dir.join("mesh.csv"), scene_page::mesh_csv(study).as_bytes())?;

@@ -1,5 +1,7 @@
 //! Counts over classes of equal ratio: percentiles and exceedance without keeping values.
 
+use super::proportion::NORMAL_95;
+use super::quantile::{Percentile, Ranks, needed};
 use crate::frequency::Weights;
 use crate::math;
 use serde::{Deserialize, Serialize};
@@ -82,6 +84,109 @@ impl Counts {
         }
         // rounding may keep the last sum from reaching the whole
         self.0.last().map_or(0.0, |(class, ..)| middle_of(*class))
+    }
+}
+
+impl Counts {
+    /// The value below which the share `p` of all weight lies, the weight of a class spread evenly over it; 0 of nothing.
+    fn interpolated(&self, p: f64, weights: &Weights) -> f64 {
+        let equal = weights.are_equal();
+        let weight = |&(_, stratum, count): &(u16, u16, u32)| {
+            let one = if equal { 1.0 } else { weights.of_stratum(usize::from(stratum)) };
+            one * f64::from(count)
+        };
+        let asked = p * self.0.iter().map(weight).sum::<f64>();
+        let mut below = 0.0;
+        for of_class in self.0.chunk_by(|one, next| one.0 == next.0) {
+            let (class, all) = (of_class[0].0, of_class.iter().map(weight).sum::<f64>());
+            if below + all >= asked && all > 0.0 {
+                let share = ((asked - below) / all).clamp(0.0, 1.0);
+                return if class == 0 {
+                    SMALLEST * share
+                } else {
+                    lower_end_of(class) * math::pow(RATIO, share)
+                };
+            }
+            below += all;
+        }
+        // rounding may keep the last sum from reaching the whole
+        self.0.last().map_or(0.0, |(class, ..)| middle_of(*class))
+    }
+
+    /// How many values there are.
+    pub(super) fn rocks(&self) -> usize {
+        self.0.iter().map(|(.., count)| *count as usize).sum()
+    }
+
+    /// Percentile `p` by its class, with the interval of [`Percentile`]: by ranks where all weigh the same, else
+    /// Woodruff's; none of nothing.
+    pub(super) fn percentile_with_interval(&self, p: f64, weights: &Weights) -> Option<Percentile> {
+        let rocks = self.rocks();
+        if rocks == 0 {
+            return None;
+        }
+        let value = self.interpolated(p, weights);
+        let [low_95, high_95] = if weights.are_equal() {
+            let ranks = Ranks::of(rocks, p);
+            let at = |rank: usize| self.interpolated((rank as f64 - 0.5) / rocks as f64, weights);
+            [ranks.low.map(at), ranks.high.map(at)]
+        } else {
+            let one = |stratum: u16| weights.of_stratum(usize::from(stratum));
+            let each = || self.0.iter();
+            let all: f64 = each().map(|&(_, stratum, n)| one(stratum) * f64::from(n)).sum();
+            let side = |&(class, stratum, n): &(u16, u16, u32)| {
+                let below = f64::from(u8::from(middle_of(class) <= value));
+                f64::from(n) * (one(stratum) * (below - p)).powi(2)
+            };
+            let sd = each().map(side).sum::<f64>().sqrt() / all;
+            let at = |p: f64| (p > 0.0 && p < 1.0).then(|| self.interpolated(p, weights));
+            [at(p - NORMAL_95 * sd), at(p + NORMAL_95 * sd)]
+        };
+        let needs = needed(p);
+        Some(Percentile { value, low_95, high_95, upper_95: None, needs, censored: false })
+    }
+}
+
+/// Counts as one text of numbers: classes by their distance from the one before. In lists a summary would have a line a number.
+pub(super) mod in_words {
+    use super::Counts;
+    use serde::de::Error as _;
+    use serde::{Deserialize, Deserializer, Serializer};
+    use std::fmt::Write as _;
+
+    pub(in crate::hazard) fn serialize<S: Serializer>(
+        counts: &Counts,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        let (mut text, mut before) = (String::new(), 0);
+        for &(class, stratum, count) in &counts.0 {
+            let gap = if text.is_empty() { "" } else { " " };
+            // writing to a string cannot fail
+            let _ = write!(text, "{gap}{} {stratum} {count}", class - before);
+            before = class;
+        }
+        to.serialize_str(&text)
+    }
+
+    pub(in crate::hazard) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<Counts, D::Error> {
+        let text = String::deserialize(from)?;
+        let numbers: Vec<u32> = text
+            .split_ascii_whitespace()
+            .map(str::parse)
+            .collect::<Result<_, _>>()
+            .map_err(D::Error::custom)?;
+        let mut class = 0;
+        let (triples, []) = numbers.as_chunks::<3>() else {
+            return Err(D::Error::custom("numbers that are no triples"));
+        };
+        let entry = |&[step, stratum, count]: &[u32; 3]| {
+            class += step;
+            Some((u16::try_from(class).ok()?, u16::try_from(stratum).ok()?, count))
+        };
+        let entries: Option<Vec<_>> = triples.iter().map(entry).collect();
+        entries.map(Counts).ok_or_else(|| D::Error::custom("a class beyond all"))
     }
 }
 

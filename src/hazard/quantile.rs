@@ -130,7 +130,7 @@ pub(super) fn between(sorted: &[f64], place: f64) -> f64 {
 }
 
 /// Fewest rocks of which the largest value bounds percentile `p` with 95 % confidence: `pⁿ ≤ 0.05`.
-fn needed(p: f64) -> usize {
+pub(super) fn needed(p: f64) -> usize {
     (math::ln(WHOLE_TAIL) / math::ln(p)).ceil() as usize
 }
 

@@ -1,5 +1,6 @@
 //! Sums over all rocks of what `releases.csv` has no column for.
 
+use super::profile::Profile;
 use super::sum::Sum;
 use crate::simulation::{Effort, Ledger, Stop, Trajectory};
 use serde::{Deserialize, Serialize};
@@ -66,6 +67,9 @@ pub struct Totals {
     pub released_j: Sum,
     /// Largest rise of mechanical energy over one contact episode (J).
     pub largest_energy_rise_j: Option<Largest>,
+    /// Speed and height by distance from the release, over the same rocks.
+    #[serde(default, skip_serializing_if = "Profile::is_empty")]
+    pub profile: Profile,
 }
 
 impl Totals {
@@ -99,7 +103,9 @@ impl Totals {
             ledger,
             released_j,
             largest_energy_rise_j,
+            profile,
         } = next;
+        self.profile.join(profile);
         for (why, releases) in not_released {
             self.not_released.entry(why.clone()).or_default().extend(releases);
         }

@@ -97,6 +97,8 @@ impl Shard {
             ground_of_sheet: Vec::new(),
             lines: lines.into_iter().map(|line| line.info).collect(),
             maps,
+            // rows are copied, and the profile is joined
+            profile_step_m: 0.0,
             barriers: barriers.into_iter().map(|one| one.barrier).collect(),
             asked,
             observed,

@@ -64,6 +64,7 @@ impl Plan {
             objects,
             year,
             maps,
+            profile,
             catalogued,
             rolling_stops,
             tangential,
@@ -165,6 +166,9 @@ impl Plan {
         }
         list.part("maps", maps, |cells| {
             format!("{} x {} cells of {} m", cells.columns, cells.rows, cells.cell_m)
+        });
+        list.part("profile", profile, |step_m| {
+            format!("speed and height every {step_m} m from the release, over all rocks")
         });
         let cost = self.cost(count);
         let asks = if cost.is_modest() { "" } else { "; runs with --yes only" };

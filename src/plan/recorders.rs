@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::math;
 use crate::rock::Vec3;
-use crate::scene::{Corner, MapsTable, ObjectTable, Polyline};
+use crate::scene::{Corner, MapsTable, ObjectTable, Polyline, Scene};
 use crate::terrain::Terrain;
 use std::path::Path;
 
@@ -232,4 +232,42 @@ pub struct Recorders<'a> {
     pub lines: &'a [EvaluationLine],
     /// Cells of the maps.
     pub cells: Option<&'a MapGrid>,
+    /// Length of the stretches of distance from the release in which speed and height are noted (m).
+    pub profile_step_m: Option<f64>,
+}
+
+/// Stretches that the longest way over a terrain is parted into, at least.
+const STRETCHES: f64 = 50.0;
+/// And at most: a figure shows no more.
+const MOST_STRETCHES: f64 = 1000.0;
+
+/// The cells of a scene that asks for maps.
+pub(super) fn map_grid(scene: &Scene, terrain: &Terrain) -> Result<Option<MapGrid>> {
+    scene.maps.as_ref().map(|maps| MapGrid::over(terrain, maps, &scene.file)).transpose()
+}
+
+/// Length of the stretches of a profile (m): as the scene says, or a round part of the terrain's diagonal in plan view.
+///
+/// # Errors
+/// A length so small that there would be too many.
+pub(super) fn profile_step_m(scene: &Scene, terrain: &Terrain) -> Result<f64> {
+    let (low, high) = terrain.index.bounds();
+    let longest_m = math::hypot(high.x - low.x, high.y - low.y);
+    let Some(asked) = scene.record.profile_step_m else {
+        return Ok(round_below(longest_m / STRETCHES));
+    };
+    if longest_m > MOST_STRETCHES * asked {
+        let found = format!("found {asked} on a terrain of {longest_m:.0} m");
+        let remedy = format!("write {:.1e} or more", longest_m / MOST_STRETCHES);
+        return Err(Error::input(&scene.file, "[record] profile_step_m", found, remedy));
+    }
+    Ok(asked)
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is no larger.
+fn round_below(value: f64) -> f64 {
+    let power = math::log10(value).floor() as i32;
+    // written and read, not multiplied: the doubles that everybody else has for them
+    let round = [5, 2, 1].map(|digit| format!("{digit}e{power}").parse().unwrap_or(value));
+    round.into_iter().find(|round| *round <= value).unwrap_or(value)
 }

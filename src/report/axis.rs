@@ -72,8 +72,8 @@ impl Axis {
         let least = some.iter().copied().reduce(f64::min).unwrap_or(1.0);
         let most = some.iter().copied().reduce(f64::max).unwrap_or(1.0);
         if most > 30.0 * least {
-            // what is a millionth of the largest needs no room
-            Self::ratios(least.max(1e-6 * most), most, title)
+            // what is a ten-thousandth of the largest needs no room
+            Self::ratios(least.max(1e-4 * most), most, title)
         } else {
             Self::from_zero(some, title)
         }

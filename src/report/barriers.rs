@@ -121,6 +121,8 @@ fn draw_cloud(
         .collect();
     canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
     canvas.outline(&stopped, Pen::full(GREEN, 1.6));
+    let weak = rocks.iter().filter(|rock| rock.total_j / size < panel.x.low).count();
+    super::lines::weaker(canvas, panel, weak);
     if let Some(design) = barrier.design {
         draw_design(canvas, panel, (&design, size), words.design);
     }
@@ -159,7 +161,7 @@ fn lower_panels(words: &Words, barrier: &BarrierView, top: f64) -> (Panel, Optio
     let (low, high) = offsets().fold((-0.2 * reach, 0.2 * reach), |(low, high), x| {
         (low.min(1.15 * x), high.max(1.15 * x))
     });
-    let share = || Axis::linear(0.0, 100.0, words.stopped_axis);
+    let share = || Axis::linear(0.0, 104.0, words.stopped_axis);
     let placed = |frame: Frame, x: Axis| {
         let mut panel = Panel::new(frame, x, share());
         panel.frame.left += panel.room_left();

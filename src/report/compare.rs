@@ -15,6 +15,7 @@ mod table;
 
 use crate::error::{Error, Result};
 use crate::output::{self, Results, write_atomic};
+use crate::report::words::Words;
 use populations::Population;
 use std::fs;
 use std::path::Path;
@@ -38,6 +39,8 @@ pub struct Comparison {
     groups: Vec<Group>,
     /// The rocks of each group, for the figures.
     populations: Vec<[Population; 2]>,
+    /// In the language of the first run.
+    words: &'static Words,
 }
 
 impl Comparison {
@@ -82,6 +85,7 @@ impl Comparison {
             notes,
             groups,
             populations,
+            words: Words::of(runs[0].summary.language),
         })
     }
 

@@ -73,7 +73,6 @@ impl<'a> Distribution<'a> {
         let values: Vec<f64> = si.iter().map(|v| v / unit_size).collect();
         let bins = match quantity {
             _ if quantity.is_energy() => Histogram::of_ratios(&values),
-            Quantity::ReachAngle => Histogram::of(&values),
             _ => Histogram::clipped(&values),
         };
         let words = report.words();
@@ -95,10 +94,7 @@ impl<'a> Distribution<'a> {
         }
         self.panel.axes(canvas);
         if self.bins.beyond > 0 {
-            let Frame { right, top, .. } = self.panel.frame;
-            let words = format!("+{} →", format::decimal(self.bins.beyond as f64, 0));
-            canvas
-                .text_on_rim(&Label::new(words, (right - 4.0, top + 10.0)).right().coloured(GREY));
+            words.push(format!("+{} →", format::decimal(self.bins.beyond as f64, 0)));
         }
         let above = Frame { top: self.panel.frame.top - head_px, ..self.panel.frame };
         head(canvas, &above, self.quantity.name(said), &words.join(" · "));

@@ -6,6 +6,7 @@ mod barriers;
 mod lines;
 mod maps;
 mod measured;
+mod profile;
 
 use super::model::{
     About, BandPoint, Check, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row,
@@ -41,12 +42,14 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let hazard = &results.hazard;
     let language = results.summary.language;
     let words = Words::of(language);
-    let releases =
+    let releases: Vec<Fall> =
         results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
     let lines = lines::lines(results, ground.as_ref())?;
     let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
+    let profile = profile::view(results, &releases)?;
     let mut report = Report {
         language,
+        profile,
         text: text_of(results, words),
         releases,
         paths: paths_of(results)?,
@@ -335,27 +338,38 @@ fn text_of(results: &Results, words: &Words) -> Text {
     };
     let planned = |name: &str| {
         let entry = summary.plan_entries.iter().find(|entry| entry.name == name);
-        entry.map(|entry| entry.said.clone()).unwrap_or_default()
+        entry.map(|entry| words.say(&entry.said)).unwrap_or_default()
     };
     Text {
         title: summary.title.clone(),
         subtitle: planned("file"),
         scheme: fill(words.scheme_in_force, &[("scheme", &planned("scheme"))]),
         title_block: title_block(&summary.title_block, words),
-        inputs: summary.inputs.clone(),
+        inputs: summary
+            .inputs
+            .iter()
+            .map(|(name, said)| (words.say(name), words.say_all(said)))
+            .collect(),
         terrain_source: [summary.sources[0].clone(), planned("terrain")]
             .into_iter()
             .filter(|words| !words.is_empty())
             .collect::<Vec<_>>()
             .join("; "),
-        parameter_source: summary.sources[1].clone(),
-        plan: summary.plan.clone(),
+        parameter_source: words.say(&summary.sources[1]),
+        plan: summary
+            .plan_entries
+            .iter()
+            .map(|entry| (words.part(&entry.name), words.say_all(&entry.said)))
+            .collect(),
         warnings: [
             &summary.warnings[..],
             &fast_warnings(results)[..],
             &summary.totals.warnings(results.hazard.rocks()),
         ]
-        .concat(),
+        .concat()
+        .iter()
+        .map(|warning| words.say(warning))
+        .collect(),
         mesh_health: lines(&summary.mesh_health),
         seed: summary.identity.seed,
         version: summary.identity.version.clone(),

@@ -231,7 +231,7 @@ fn where_to(report: &Report, figures: &Figures) -> String {
 }
 
 fn how_fast(report: &Report, figures: &Figures) -> String {
-    all((figures, report.words()), &["side.svg", "along.svg", "distributions.svg"])
+    all((figures, report.words()), &["side.svg", "profile.svg", "along.svg", "distributions.svg"])
         + &tables_about(report, About::Rocks)
 }
 
@@ -269,13 +269,10 @@ fn in_a_year(report: &Report, figures: &Figures) -> String {
 
 fn how_sure(report: &Report, figures: &Figures) -> String {
     let words = report.words();
-    let study = figure((figures, words), ERROR_STUDY);
+    let study = figure((figures, words), super::studied::FIGURE);
     let study = if study.is_empty() { note(words.no_error_study) } else { study };
     study + &checks(&report.checks, words) + &quality(report)
 }
-
-/// File of the figure that `rockfall study error` leaves.
-pub(super) const ERROR_STUDY: &str = "error.svg";
 
 fn checks(checks: &[Check], words: &Words) -> String {
     if checks.is_empty() {
@@ -300,7 +297,7 @@ fn checks(checks: &[Check], words: &Words) -> String {
 
 pub(super) fn figure_section(figures: &Figures, words: &Words) -> String {
     let each = figures.iter().enumerate().map(|(k, figure)| numbered(figure, k + 1, words));
-    section("Figures", &each.collect::<String>())
+    section(words.figures, &each.collect::<String>())
 }
 
 fn method(report: &Report) -> String {
@@ -310,33 +307,21 @@ fn method(report: &Report) -> String {
 
 fn inputs(report: &Report) -> String {
     let (text, words) = (&report.text, report.words());
-    let mut body = recorded(words, pairs(&text.inputs));
+    let mut body = pairs(&text.inputs);
     if !text.mesh_health.is_empty() {
         let lines: String = text.mesh_health.iter().map(|line| escape(line) + "\n").collect();
         let _ = write!(
             body,
-            "<h3>{}</h3>\n<pre lang=\"en\">{lines}</pre>\n",
-            escape(words.mesh_health)
+            "<h3>{}</h3>\n{}<pre lang=\"en\">{lines}</pre>\n",
+            escape(words.mesh_health),
+            note(words.in_english)
         );
     }
     body
 }
 
 fn plan(report: &Report) -> String {
-    let lines = &report.text.plan;
-    if lines.is_empty() {
-        return String::new();
-    }
-    let lines: String = lines.iter().map(|line| escape(line) + "\n").collect();
-    recorded(report.words(), format!("<pre>{lines}</pre>\n"))
-}
-
-/// What the program has recorded of a run, in English on every page.
-fn recorded(words: &Words, body: String) -> String {
-    if words.in_english.is_empty() || body.is_empty() {
-        return body;
-    }
-    format!("{}<div lang=\"en\">\n{body}</div>\n", note(words.in_english))
+    pairs(&report.text.plan)
 }
 
 fn quality(report: &Report) -> String {

@@ -23,6 +23,8 @@ const KEY_PX: f64 = 18.0;
 const RIGHT_PX: f64 = WIDTH_PX - 20.0;
 /// From so many crossings on, marks shrink to dots.
 const MANY: usize = 400;
+/// Heights up to here at least are shown (m): rocks that only roll are not drawn as if they leapt.
+const LEAST_M: f64 = 0.1;
 /// Marked percentiles, the second one dashed.
 const MARKED: [f64; 2] = [0.50, 0.95];
 
@@ -130,7 +132,7 @@ fn upper_panels(
     let mut cloud = Panel::new(
         frame(TOP_PX + ALONG_PX + FOOT_PX + GAP_PX, CLOUD_PX),
         Axis::energies(energies, fill(words.energy_axis, &[("unit", &unit)])),
-        Axis::from_zero(heights, words.height_axis),
+        Axis::from_zero(heights.chain([LEAST_M]), words.height_axis),
     );
     align([&mut along, &mut cloud]);
     (along, cloud)
@@ -152,7 +154,7 @@ fn lower_panels((words, line): (&Words, &Line), top: f64, (unit, size): (&str, f
         panel
     };
     let energies = line.energy_exceedance.iter().map(|p| p.x / size);
-    let heights = line.height_exceedance.iter().map(|p| p.x);
+    let heights = line.height_exceedance.iter().map(|p| p.x).chain([LEAST_M]);
     [
         panel(0, Axis::energies(energies, fill(words.energy_axis, &[("unit", &unit)]))),
         panel(1, Axis::from_zero(heights, words.height_axis)),
@@ -168,6 +170,8 @@ fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &Line, size: f64) {
         .filter(|&spot| panel.frame.holds(spot))
         .collect();
     canvas.dots(&spots, if spots.len() > MANY { 1.1 } else { 2.0 }, BLUE);
+    let weak = line.crossings.iter().filter(|at| at.total_j / size < panel.x.low).count();
+    weaker(canvas, panel, weak);
     for probability in MARKED {
         let pen = Pen::full(VERMILLION, 1.2);
         let pen = if probability < 0.9 { pen } else { pen.dashed() };
@@ -188,6 +192,15 @@ fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &Line, size: f64) {
         }
     }
     panel.axes(canvas);
+}
+
+/// How many rocks have less energy than the axis shows.
+pub(super) fn weaker(canvas: &Canvas<'_>, panel: &Panel, count: usize) {
+    if count > 0 {
+        let words = format!("← +{}", format::decimal(count as f64, 0));
+        let at = (panel.frame.left + 4.0, panel.frame.top + 10.0);
+        canvas.text_on_rim(&Label::new(words, at).coloured(GREY));
+    }
 }
 
 /// A height without what a rock presses into the ground; NaN where there is no ground.

@@ -163,6 +163,7 @@ fn draw_layers(
         for (k, (panel, layer)) in panels.iter().zip(layers).enumerate() {
             let at = (panel.frame.left, panel.frame.top - 9.0);
             canvas.text(&Label::new(layer.title.clone(), at).bold().sized(NORMAL));
+            let names = site::places(canvas, panel, report, |mark| mark.name.clone());
             canvas.clip(&format!("part{k}"), &panel.frame, || {
                 if let Some(raster) = ground {
                     ground::shade(canvas, panel, raster);
@@ -172,7 +173,11 @@ fn draw_layers(
                 }
                 site::zones(canvas, panel, report);
                 site::marks(canvas, panel, report);
+                site::names(canvas, &names);
             });
+            if layer.cells.is_empty() {
+                panel.nothing(canvas, report.words().no_rock);
+            }
             panel.axes(canvas);
             key(canvas, panel, layer);
         }

@@ -37,7 +37,7 @@ pub(super) fn draw(report: &Report, observed: &Observed) -> Drawing {
         head(canvas, &map, words.measured_map);
         canvas.clip("map", &map.frame, || {
             if let Some(raster) = &report.ground {
-                let _ = ground::draw(canvas, &map, raster);
+                let _ = ground::draw(canvas, &map, raster, &[]);
             }
             canvas.dots(&ends(&map, &observed.computed), 1.2, BLUE);
             let measured = ends(&map, &observed.measured);

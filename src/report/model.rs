@@ -4,7 +4,7 @@ mod places;
 
 pub use places::{
     AnnualView, BarrierView, Behind, CellMap, DesignView, LevelCells, Line, LinePoint, MapMark,
-    Observed, PlaceView, RockView, YearCells,
+    Observed, OfStretch, PlaceView, ProfileStretch, ProfileView, RockView, YearCells,
 };
 
 use super::raster::GroundRaster;
@@ -59,6 +59,8 @@ pub struct Report {
     pub maps: Option<CellMap>,
     /// The same of a year, where the scene says how often rocks are released.
     pub year_maps: Option<YearCells>,
+    /// Speed and height by distance from the release; none of results that lack it.
+    pub profile: Option<ProfileView>,
     /// Whether `view.html` stands beside the page.
     pub has_view: bool,
 }
@@ -85,8 +87,8 @@ pub struct Text {
     pub inputs: Vec<(String, String)>,
     /// Health of the meshes, one line each.
     pub mesh_health: Vec<String>,
-    /// The plan: what was computed, what was left out and why.
-    pub plan: Vec<String>,
+    /// The plan: each part, and what was computed of it or why it was left out.
+    pub plan: Vec<(String, String)>,
     /// What the reader must know before using the numbers.
     pub warnings: Vec<String>,
     /// Where the terrain comes from and how fine it is.

@@ -47,10 +47,10 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let fastest = fastest_m_s(report);
     let mut contours = None;
     let svg = paint("plan", (WIDTH_PX, height), words.plan_title, |canvas| {
-        let names = site::places(canvas, &panel, report);
+        let names = site::places(canvas, &panel, report, site::in_words);
         canvas.clip("map", &panel.frame, || {
             if let Some(ground) = &report.ground {
-                contours = ground::draw(canvas, &panel, ground);
+                contours = ground::draw(canvas, &panel, ground, &site::outline(&panel, report));
             }
             paths(canvas, &panel, report, fastest);
             ends(canvas, &panel, report);

@@ -171,8 +171,8 @@ fn mark(canvas: &Canvas<'_>, panel: &Panel, quantiles: &[Quantile]) {
         let at = |dx: f64, dy: f64| Label::new(words.clone(), (x + dx, y + dy)).bold();
         let candidates =
             [at(6.0, -10.0), at(-6.0, -10.0).right(), at(-6.0, 11.0).right(), at(6.0, 11.0)];
-        let fits =
-            |label: &Label| panel.frame.contains(&label.frame()) && canvas.is_free(&label.frame());
+        let inner = Frame { right: panel.frame.right - 5.0, ..panel.frame };
+        let fits = |label: &Label| inner.contains(&label.frame()) && canvas.is_free(&label.frame());
         if let Some(label) = candidates.into_iter().find(fits) {
             canvas.text_on_rim(&label);
         }

@@ -27,6 +27,27 @@ pub(super) fn zones(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     }
 }
 
+/// Spots along the outlines of the zones, closer to each other than a word is high: text is written beside them.
+pub(super) fn outline(panel: &Panel, report: &Report) -> Vec<Spot> {
+    let zones = std::iter::once(&report.zone).chain(&report.further_zones);
+    let of_zone = |zone: &Zone| -> Vec<Spot> {
+        let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
+        if matches!(zone, Zone::Points(_)) {
+            return spots;
+        }
+        spots.extend(spots.first().copied());
+        let between = |pair: &[Spot]| -> Vec<Spot> {
+            let ((x, y), (to_x, to_y)) = (pair[0], pair[1]);
+            let pieces = (math::hypot(to_x - x, to_y - y) / 4.0).ceil().clamp(1.0, 1000.0);
+            let share = |k: u32| f64::from(k) / pieces;
+            let at = |s: f64| (x + s * (to_x - x), y + s * (to_y - y));
+            (0..=pieces as u32).map(|k| at(share(k))).collect()
+        };
+        spots.windows(2).flat_map(between).collect()
+    };
+    zones.flat_map(of_zone).collect()
+}
+
 fn zone(canvas: &Canvas<'_>, panel: &Panel, zone: &Zone) {
     let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
     match zone {
@@ -100,8 +121,13 @@ pub(super) fn in_words(mark: &MapMark) -> String {
 }
 
 /// Finds room for the names of lines and barriers beside them and keeps it free; they are drawn with [`names`] when all
-/// else is.
-pub(super) fn places(canvas: &Canvas<'_>, panel: &Panel, report: &Report) -> Vec<Label> {
+/// else is. `said` gives the words of each.
+pub(super) fn places(
+    canvas: &Canvas<'_>,
+    panel: &Panel,
+    report: &Report,
+    said: impl Fn(&MapMark) -> String,
+) -> Vec<Label> {
     let inner = Frame {
         left: panel.frame.left + 3.0,
         right: panel.frame.right - 3.0,
@@ -109,7 +135,7 @@ pub(super) fn places(canvas: &Canvas<'_>, panel: &Panel, report: &Report) -> Vec
         bottom: panel.frame.bottom - 3.0,
     };
     let place = |mark: &MapMark| {
-        let words = fitted(&in_words(mark), SMALL, 0.6 * panel.frame.width());
+        let words = fitted(&said(mark), SMALL, 0.6 * panel.frame.width());
         let colour = if mark.barrier.is_some() { super::colour::DARK_GREEN } else { INK };
         let parts = on_paper(panel, mark);
         let candidates = parts.iter().flat_map(|part| beside(part, &words));

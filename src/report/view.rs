@@ -21,6 +21,7 @@ mod thin;
 mod walls;
 
 use super::raster::GroundRaster;
+use super::words::Words;
 use crate::error::{Error, Result};
 use crate::hazard::Row;
 use crate::output::{Results, write_atomic};
@@ -42,6 +43,7 @@ const MOST_ROCKS: usize = 20_000;
 /// All that a view shows.
 #[derive(Debug, Clone)]
 pub struct Shown {
+    words: &'static Words,
     title: String,
     mesh: Mesh,
     rows: Vec<Row>,
@@ -59,10 +61,16 @@ impl Shown {
     /// A result file that cannot be read.
     pub fn of(results: &Results, mesh: Mesh, ground: Option<&GroundRaster>) -> Result<Self> {
         let rows = results.rows()?.take(MOST_ROCKS).collect::<Result<Vec<Row>>>()?;
+        let words = Words::of(results.summary.language);
+        let mut walls = walls::of(results, ground);
+        for wall in &mut walls {
+            wall.words = words.of_view(&wall.words);
+        }
         Ok(Self {
+            words,
             title: results.summary.title.clone(),
             ways: Ways::of(results, &rows)?,
-            walls: walls::of(results, ground),
+            walls,
             layers: MapLayers::of(results)?,
             first_release: results.summary.identity.first_release,
             releases: results.summary.identity.releases,

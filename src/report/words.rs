@@ -1,13 +1,14 @@
 //! Every word of page and figures, one file a language: a word that one of them lacks does not compile.
 //!
 //! A text may have places for what is found, written `{name}`; `fill` puts it in. Names of lines, scenes and sources are
-//! the user's and stay as they are, and so is what the program itself has recorded of a run: plan, health of the meshes,
-//! inputs and its warnings.
+//! the user's and stay as they are. What the program records of a run in English (plan, inputs, warnings) is said by patterns.
+//! Health of the meshes and what no pattern knows stay as they were recorded.
 
 mod de;
 mod en;
 mod fr;
 mod it;
+mod said;
 mod year;
 
 use super::format;
@@ -27,6 +28,10 @@ macro_rules! words {
             pub(crate) method: [&'static str; 4],
             /// What the terms mean here.
             pub(crate) glossary: [(&'static str, &'static str); 24],
+            /// What the program records in English, by patterns, and how it is said here; none in English.
+            said: &'static [(&'static str, &'static str)],
+            /// Texts of the view, the same way.
+            view: &'static [(&'static str, &'static str)],
         }
 
         impl Words {
@@ -46,7 +51,8 @@ words! {
     stored_path_one, stored_path_many, seed, slope_in_3d, client, project, author, date, question,
     question_lines, question_barriers, read_first, ch_where, ch_how, ch_lines, ch_barriers,
     ch_year, ch_sure, ch_out, ch_inputs, ch_words, figure, no_error_study, error_study,
-    error_study_caption, plausible, look_here, plausibility, mesh_health, quality, not_recorded,
+    error_study_caption, figures, plan_of, error_head, error_axis, error_time, error_own, error_sampling,
+    error_steps, error_mesh, plausible, look_here, plausibility, mesh_health, quality, not_recorded,
     remainder, not_stated, terrain, ground_values, releases, lost_rocks, lost_rocks_are,
     not_accounted, seed_row, version, rate, numerical_remainder, scene, scheme_in_force,
     in_english, all_rocks, value, interval_head, unit, headline_note, percentile_of,
@@ -57,8 +63,8 @@ words! {
     time_up, over_budget, not_released, failed, stops_title, stops_alt, share_of_releases_percent,
     stops_caption, no_release, plan_title, no_release_no_ground, contour_interval, plan_caption,
     plan_density, key_release, key_line, key_barrier, key_tree, speed_axis, north, side_title,
-    side_caption, bearing, no_bearing, along_fall_line, height_axis, elevation_axis, bounce_axis,
-    no_path, largest_of_all, runout_axis, share_farther, open_end, no_curve, runout_open,
+    side_caption, profile_title, profile_caption, profile_axis, bearing, no_bearing, along_fall_line, height_axis, elevation_axis, bounce_axis,
+    no_path, median, runout_axis, share_farther, open_end, no_curve, runout_open,
     runout_left_out, runout_caption, low_slope, high_talus, band, median_inside, median_outside,
     reach_caption, distributions_title, distributions_caption, no_finite, along_title, along_alt,
     along_energy, along_axis, along_rock, along_rock_caption, median_runout, most_energy,
@@ -136,7 +142,7 @@ impl Words {
 }
 
 /// A text with what is found in its places; a place that nothing is given for stays as it is.
-pub(super) fn fill(text: &str, found: &[(&str, &dyn Display)]) -> String {
+pub(crate) fn fill(text: &str, found: &[(&str, &dyn Display)]) -> String {
     let mut filled = String::with_capacity(text.len() + 16 * found.len());
     let mut rest = text;
     // one way through: braces in what the user wrote are no places

@@ -14,6 +14,8 @@ pub struct RecordTable {
     pub path_step_s: Option<f64>,
     /// Whether impacts are kept.
     pub impacts: Option<bool>,
+    /// Length of the stretches in which the profile of speed and height is noted (m), positive.
+    pub profile_step_m: Option<f64>,
 }
 
 /// One evaluation line: a vertical curtain over a polyline of the map.
@@ -84,7 +86,8 @@ impl RecordTable {
                 format!("write {SHORTEST_STEP_S:e} or more"),
             ));
         }
-        optional("path_step_s", self.path_step_s, Allowed::Positive, "")
+        optional("path_step_s", self.path_step_s, Allowed::Positive, "")?;
+        optional("profile_step_m", self.profile_step_m, Allowed::Positive, "")
     }
 }
 

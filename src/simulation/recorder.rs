@@ -4,6 +4,7 @@ use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
 use super::form::{Form, Instant, Turned, between};
 use super::impacts::{Impacts, ImpactsMark, Struck};
+use super::stretches::{Stretch, Stretches};
 use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
 use crate::flight::Parabola;
 use crate::flight::top::Top;
@@ -36,6 +37,7 @@ pub(super) struct Recorder<'a> {
     pub(super) impacts: Impacts,
     pub(super) crossings: Crossings<'a>,
     pub(super) passages: CellPassages<'a>,
+    stretches: Stretches,
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
     pub(super) effort: Effort,
@@ -57,6 +59,7 @@ pub(super) struct Mark {
     impacts: ImpactsMark,
     crossings: Vec<Crossing>,
     passages: (usize, Option<CellPassage>),
+    stretches: (usize, Option<Stretch>),
     tree_impact_count: u32,
     ledger: Ledger,
     next_point_s: f64,
@@ -80,6 +83,7 @@ impl<'a> Recorder<'a> {
             impacts: Impacts::kept_if(keep.impacts),
             crossings: Crossings::of(recorders.lines),
             passages: CellPassages::of(recorders.cells),
+            stretches: Stretches::of(recorders.profile_step_m, &start),
             tree_impact_count: 0,
             ledger: Ledger::default(),
             effort: Effort::default(),
@@ -87,6 +91,8 @@ impl<'a> Recorder<'a> {
         };
         recorder.note_speed();
         recorder.note_height(&recorder.instant());
+        let (at, speed_m_s) = (start.position_m, start.velocity_m_s.norm());
+        recorder.stretches.note(&at, speed_m_s, recorder.extremes.height_m);
         recorder
     }
 
@@ -100,6 +106,7 @@ impl<'a> Recorder<'a> {
             impacts: self.impacts.mark(),
             crossings: self.crossings.found().to_vec(),
             passages: self.passages.mark(),
+            stretches: self.stretches.mark(),
             tree_impact_count: self.tree_impact_count,
             ledger: self.ledger,
             next_point_s: self.next_point_s,
@@ -114,6 +121,7 @@ impl<'a> Recorder<'a> {
         self.impacts.go_back(&mark.impacts);
         self.crossings.go_back(&mark.crossings);
         self.passages.go_back(mark.passages);
+        self.stretches.go_back(mark.stretches);
         (self.tree_impact_count, self.next_point_s) = (mark.tree_impact_count, mark.next_point_s);
     }
 
@@ -151,8 +159,10 @@ impl<'a> Recorder<'a> {
         if most_m <= self.extremes.height_m {
             return;
         }
-        if let Some(height) = self.clearance_m(at) {
-            self.extremes.height_m = self.extremes.height_m.max(height);
+        let higher = |height: &f64| *height > self.extremes.height_m;
+        if let Some(height) = self.clearance_m(at).filter(higher) {
+            self.extremes.height_m = height;
+            self.stretches.note(&at.motion.position_m, 0.0, height);
         }
     }
 
@@ -172,6 +182,7 @@ impl<'a> Recorder<'a> {
         }
         self.crossings.fly((self.terrain, &self.form), flight, dt, at);
         self.passages.fly((self.terrain, &self.form), flight, dt, at);
+        self.stretches.fly((self.terrain, &self.form), flight, dt, at);
         let end = at(dt);
         self.now.time_s += dt;
         (self.now.position_m, self.now.velocity_m_s) = (flight.centre(dt), flight.velocity(dt));
@@ -196,9 +207,12 @@ impl<'a> Recorder<'a> {
             let motion = Motion { time_s: self.next_point_s, ..motion };
             self.point(&Instant { motion, turned: self.turned }, state);
         }
-        if state == PathState::Flight {
+        let flies = state == PathState::Flight;
+        if flies {
             self.note_height(&self.instant());
         }
+        let height_m = if flies { self.clearance_m(&self.instant()).unwrap_or(0.0) } else { 0.0 };
+        self.stretches.step(&to, height_m.max(0.0));
         self.note_speed();
     }
 
@@ -230,6 +244,7 @@ impl<'a> Recorder<'a> {
             path: self.path,
             crossings: self.crossings.into_found(),
             passages: self.passages.into_found(),
+            stretches: self.stretches.into_found(),
             ledger: self.ledger,
             released_j,
             effort: self.effort,

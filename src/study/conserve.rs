@@ -103,6 +103,7 @@ pub fn study(mut plan: Plan, ensemble: &Ensemble, done: impl Fn(usize)) -> Resul
     plan.impacts = Part::LeftOut("this study keeps no impacts");
     plan.lines = Part::LeftOut("this study has no lines");
     plan.maps = Part::LeftOut("this study draws no maps");
+    plan.profile = Part::LeftOut("this study draws no profile");
     let mut found = Conservation {
         title: plan.title.clone(),
         setting: format!("{}, {}", plan.step.scheme.name(), setting(&plan.step)),

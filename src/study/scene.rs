@@ -13,6 +13,8 @@ use crate::error::Result;
 use crate::hazard::{Percentile, Row};
 use crate::math;
 use crate::plan::{Part, Plan};
+use crate::report::studied::Studied;
+use crate::scene::Language;
 use crate::simulation::{self, Effort, Scratch, Trajectory};
 use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
@@ -87,6 +89,10 @@ pub struct Mesh {
 pub struct SceneStudy {
     /// Title of the scene.
     pub title: String,
+    /// Of which scene, as its results name it.
+    pub studied: Studied,
+    /// In which language the figure speaks.
+    pub language: Language,
     /// Releases under every setting.
     pub releases: usize,
     /// Worker threads.
@@ -145,6 +151,7 @@ pub fn study(
 ) -> Result<SceneStudy> {
     plan.paths = Part::LeftOut("a study keeps no paths");
     plan.impacts = Part::LeftOut("a study keeps no impacts");
+    plan.profile = Part::LeftOut("a study draws no profile");
     let own_step = plan.step;
     let (relatives, order) = ladder_of(own_step.scheme);
     let mut rungs: Vec<Rung> =
@@ -193,6 +200,12 @@ pub fn study(
     }
     Ok(SceneStudy {
         title: plan.title.clone(),
+        studied: Studied {
+            scene_hash: plan.scene_hash.clone(),
+            seed: plan.seed,
+            releases: plan.count,
+        },
+        language: plan.language,
         releases: plan.count,
         threads: ensemble.threads(),
         rungs,

@@ -1,12 +1,15 @@
 //! Both errors of a scene's statistics over run time.
 
-use super::scene::{Of, SceneStudy, Statistic};
+use super::scene::{Of, SceneStudy, Statistic, StudyQuantity};
+use crate::hazard::Quantity;
 use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use crate::report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel, align};
 use crate::report::svg::path::Frame;
+use crate::report::words::{Words, fill};
+use std::fmt::Display;
 
 const PLOT_PX: f64 = 150.0;
 const TOP_PX: f64 = 44.0;
@@ -27,8 +30,9 @@ pub(super) fn draw(study: &SceneStudy) -> String {
         align([a, b, c]);
     }
     let bottom = panels.last().map_or(TOP_PX, |panel| panel.frame.bottom);
-    paint("error", (WIDTH_PX, bottom + FOOT_PX), "Error over run time", |canvas| {
-        key(canvas, panels.first(), !study.meshes.is_empty());
+    let words = Words::of(study.language);
+    paint("error", (WIDTH_PX, bottom + FOOT_PX), words.error_study, |canvas| {
+        key(canvas, panels.first(), !study.meshes.is_empty(), words);
         for (panel, statistic) in panels.iter().zip(&shown) {
             panel.grid(canvas);
             draw_statistic(canvas, panel, study, statistic);
@@ -52,6 +56,19 @@ fn is_shown(study: &SceneStudy, statistic: &Statistic) -> bool {
     is_whole && statistic.percent == SHOWN
 }
 
+/// Its name in the language of the figure.
+fn name(subject: &StudyQuantity, words: &Words) -> String {
+    let said = match subject.of {
+        Of::Rock(Quantity::Runout) => words.runout,
+        Of::Rock(Quantity::MaxTotal) => words.total,
+        Of::Rock(Quantity::MaxHeight) => words.bounce_height,
+        _ => return subject.name.clone(),
+    };
+    let mut letters = said.chars();
+    let first = letters.next().into_iter().flat_map(char::to_lowercase);
+    if words.code == "de" { said.to_owned() } else { first.chain(letters).collect() }
+}
+
 fn panel(
     study: &SceneStudy,
     statistic: &Statistic,
@@ -63,10 +80,14 @@ fn panel(
     let least = errors().filter(|error| *error > 0.0).fold(f64::INFINITY, f64::min);
     let most = errors().fold(least, f64::max);
     let subject = &study.subjects[statistic.subject];
-    let (name, unit) = (&subject.name, subject.unit);
-    let y = Axis::log(least.max(1e-3 * most), most, format!("Error of P{SHOWN} {name} ({unit})"));
+    let words = Words::of(study.language);
+    let (name, unit) = (name(subject, words), subject.unit);
+    let found: [(&str, &dyn Display); 3] =
+        [("percent", &SHOWN), ("quantity", &name), ("unit", &unit)];
+    let title = fill(words.error_axis, &found);
+    let y = Axis::log(least.max(1e-3 * most), most, title);
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
-    let title = if is_last { "Run time of the whole ensemble on this machine (s)" } else { "" };
+    let title = if is_last { words.error_time } else { "" };
     let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
     let mut panel = Panel::new(frame, Axis::log(fast, slow, title), y);
     panel.frame.left = panel.room_left();
@@ -133,20 +154,20 @@ fn draw_statistic(canvas: &Canvas<'_>, panel: &Panel, study: &SceneStudy, statis
     }
 }
 
-fn key(canvas: &Canvas<'_>, first: Option<&Panel>, with_meshes: bool) {
+fn key(canvas: &Canvas<'_>, first: Option<&Panel>, with_meshes: bool, words: &Words) {
     let Some(panel) = first else { return };
     let mut x = panel.frame.left;
-    let title = format!("Error of the {SHOWN}th percentiles over run time");
+    let title = fill(words.error_head, &[("percent", &SHOWN)]);
     canvas.text(&Label::new(title, (x, 12.0)).sized(NORMAL).bold());
-    let own = "the scene's own setting";
+    let own = words.error_own;
     let own_x = panel.frame.right - text_width(own, SMALL);
     let ring = Frame { left: own_x - 15.0, right: own_x - 5.0, top: 7.0, bottom: 17.0 };
     canvas.outline(&ring, Pen::full(INK, 1.0));
     canvas.text(&Label::new(own, (own_x, 12.0)).coloured(GREY));
-    for (shape, (ink, words, is_there)) in [
-        (BLUE, "sampling: half the 95 % interval", true),
-        (VERMILLION, "steps: estimate and 95 % bound", true),
-        (GREEN, "mesh: the same", with_meshes),
+    for (shape, (ink, said, is_there)) in [
+        (BLUE, words.error_sampling, true),
+        (VERMILLION, words.error_steps, true),
+        (GREEN, words.error_mesh, with_meshes),
     ]
     .into_iter()
     .enumerate()
@@ -154,8 +175,8 @@ fn key(canvas: &Canvas<'_>, first: Option<&Panel>, with_meshes: bool) {
         if is_there {
             canvas.line(&[(x, 30.0), (x + 18.0, 30.0)], Pen::full(ink, 1.4));
             canvas.mark(shape, (x + 9.0, 30.0), 2.4, ink);
-            canvas.text(&Label::new(words, (x + 23.0, 30.0)));
-            x += 23.0 + text_width(words, SMALL) + 16.0;
+            canvas.text(&Label::new(said, (x + 23.0, 30.0)));
+            x += 23.0 + text_width(said, SMALL) + 16.0;
         }
     }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// English words that page and figures have in other words elsewhere. Names that the examples give, and what the program
 /// records in English, stand apart.
-const ENGLISH: [&str; 17] = [
+const ENGLISH: [&str; 30] = [
     "What arrives",
     "Conditional on release",
     "conditional on release",
@@ -26,6 +26,21 @@ const ENGLISH: [&str; 17] = [
     "How often a year",
     "Passages over",
     "Agreement with",
+    // what the program records
+    "left out",
+    "seed ",
+    "kept for",
+    "smallest",
+    "at rest after",
+    "slower impacts",
+    "no ground has",
+    "friction angle",
+    "in nine of ten",
+    "of memory and",
+    "are sampled by importance",
+    // the page of a comparison
+    "within chance",
+    "Cross it",
 ];
 
 /// Runs an example in a language and returns the folder of its results.
@@ -47,24 +62,33 @@ fn run(dir: &Path, example: &str, language: &str) -> PathBuf {
     out
 }
 
-/// What the page says, without its style and without what the program has recorded in English.
+/// What the page says, without its style and without the health of the meshes, which is recorded in English.
 fn spoken(page: &str) -> String {
     let (head, rest) = page.split_once("<style>").unwrap();
     let (_, body) = rest.split_once("</style>").unwrap();
     let mut words = svg::strip_tags(head);
     for (k, part) in body.split("lang=\"en\"").enumerate() {
-        let rest = if k == 0 {
-            part
-        } else {
-            part.split_once("</section>").map_or("", |(_, behind)| behind)
-        };
+        let rest =
+            if k == 0 { part } else { part.split_once("</pre>").map_or("", |(_, behind)| behind) };
         words += &svg::strip_tags(rest);
     }
     words
 }
 
 fn check(out: &Path, language: &str) {
-    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    check_page(out, "report.html", language);
+    let view = fs::read_to_string(out.join("view.html")).unwrap();
+    assert!(view.contains(&format!("<html lang=\"{language}\">")));
+    let (_, body) = view.split_once("</style>").unwrap();
+    let (seen, _) = body.split_once("<script type=").unwrap();
+    for odd in ["What is shown", "Mouse", "drag", "click", "release", "{", "}"] {
+        assert!(!svg::strip_tags(seen).contains(odd), "{language}: {odd}");
+    }
+}
+
+/// A page and the figures beside it are in a language, whole.
+fn check_page(out: &Path, name: &str, language: &str) {
+    let page = fs::read_to_string(out.join(name)).unwrap();
     assert!(page.contains(&format!("<html lang=\"{language}\">")));
     let words = spoken(&page);
     for odd in ENGLISH.into_iter().chain(["{", "}", "NaN"]) {
@@ -96,6 +120,15 @@ fn a_run_speaks_the_language_of_its_scene() {
             check(&run(dir.path(), example, language), language);
         }
     }
+    // two runs of one language are compared in it
+    let folder = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    let (a, b, out) = (folder("valley_de"), folder("valley_de_b"), folder("compared"));
+    let scene = folder("valley_de.toml");
+    let said =
+        rockfall(&["run", &scene, "--releases", "120", "--seed", "3", "--out", &b, "--quiet"]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    assert!(rockfall(&["compare", &a, &b, "--out", &out]).status.success());
+    check_page(Path::new(&out), "compare.html", "de");
     // drawn again from the files alone it is the same page: the summary knows the language
     let out = dir.path().join("road_it");
     let before = fs::read(out.join("report.html")).unwrap();

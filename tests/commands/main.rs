@@ -35,6 +35,7 @@ mod full_disk;
 mod kill;
 mod language;
 mod library;
+mod pages;
 mod rust_version;
 mod same_everywhere;
 mod shards;

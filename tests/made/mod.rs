@@ -10,7 +10,7 @@ use rockfall::plan::PlanEntry;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
     CellPassage, Crossing, Effort, Extremes, FeatureKind, Impact, Ledger, PathPoint, PathState,
-    Stop, Trajectory,
+    Stop, Stretch, Trajectory,
 };
 
 /// Releases that keep their path.
@@ -53,6 +53,7 @@ pub fn info(releases: usize) -> RunInfo {
             rows: 10,
             epsg: Some(2056),
         }),
+        profile_step_m: 20.0,
         barriers: vec![],
         asked: Asked::default(),
         observed: vec![],
@@ -167,6 +168,16 @@ fn stop(index: usize) -> Stop {
     }
 }
 
+/// Stretches that a rock passed.
+fn stretches(index: usize) -> Vec<Stretch> {
+    let stretch = |number: u32| Stretch {
+        number,
+        speed_m_s: 1.0 + 0.1 * index as f64,
+        height_m: 0.3 * f64::from(number),
+    };
+    (0..=index as u32 % 4).map(stretch).collect()
+}
+
 /// The journey of rock `index`.
 pub fn fall(index: usize) -> Trajectory {
     let mut random = RandomStream(ChaCha8Rng::seed_from_u64(7));
@@ -184,6 +195,7 @@ pub fn fall(index: usize) -> Trajectory {
         impacts: vec![random.impact(index); 1 + index % 2],
         crossings: if index.is_multiple_of(4) { vec![] } else { random.crossings(index) },
         passages: random.passages(),
+        stretches: stretches(index),
         path: if index < PATHS { random.path() } else { vec![] },
         ledger: random.ledger(),
         released_j: random.number(1e6),

@@ -216,7 +216,7 @@ fn what_the_user_wrote_cannot_break_the_page() {
     let nasty = "</pre></title><script>alert(1)</script> & \"quotes\" 'n' \u{0}\u{b}";
     report.text.title = nasty.to_owned();
     report.text.subtitle = nasty.to_owned();
-    report.text.plan = vec![nasty.to_owned()];
+    report.text.plan = vec![(nasty.to_owned(), nasty.to_owned())];
     report.text.warnings = vec![nasty.to_owned()];
     report.text.inputs = vec![(nasty.to_owned(), nasty.to_owned())];
     report.headline[0].name = nasty.to_owned();

@@ -11,11 +11,17 @@ use crate::report::figure::{Drawing, Heading, WIDTH_PX};
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::svg::path::Frame;
+use crate::report::words::{Words, fill};
 
 const A_PEN: Pen = Pen::full(BLUE, 1.6);
 const B_PEN: Pen = Pen::full(VERMILLION, 1.6).dashed();
 const ROW_PX: f64 = 21.0;
 const CURVE_PX: f64 = 165.0;
+const CHANGES: &str = "What changes from A to B";
+const CHANGES_CAPTION: &str = "Change of each statistic over its value in A, with its 95 % interval; a vermillion diamond where the \
+    interval leaves out zero. One in twenty intervals misses by chance.";
+const CURVES_CAPTION: &str = "Share of the rocks that exceed a value: A full, B dashed ({a} and {b} rocks). Axes end where one in \
+    two hundred exceeds in both.";
 const HEAD_PX: f64 = 30.0;
 /// Room for the key above the panels (px).
 const KEY_PX: f64 = 20.0;
@@ -26,18 +32,20 @@ const BEYOND: f64 = 0.005;
 
 /// All figures with their captions.
 pub(super) fn all(comparison: &Comparison) -> Vec<(Heading, Drawing)> {
+    let words = comparison.words;
     let heading = |file: String, title: String| Heading { file, title };
     let mut drawn = vec![(
-        heading("differences.svg".to_owned(), "What changes from A to B".to_owned()),
-        changes(&comparison.groups),
+        heading("differences.svg".to_owned(), words.say(CHANGES)),
+        changes(&comparison.groups, words),
     )];
     for (number, pair) in comparison.populations.iter().enumerate() {
         let curves = curves_of(pair);
         if curves.iter().any(|(_, values)| values.iter().any(|one| !one.is_empty())) {
-            let (file, title) = (format!("exceedance_{}.svg", number + 1), pair[0].name.clone());
+            let (file, title) =
+                (format!("exceedance_{}.svg", number + 1), words.say(&pair[0].name));
             drawn.push((
                 heading(file, title),
-                exceedance(&format!("compare-{number}"), pair, &curves),
+                exceedance(&format!("compare-{number}"), pair, &curves, words),
             ));
         }
     }
@@ -45,61 +53,61 @@ pub(super) fn all(comparison: &Comparison) -> Vec<(Heading, Drawing)> {
 }
 
 /// The rows of the first figure: name, change and its interval over the value of A.
-fn rows(groups: &[Group]) -> Vec<(String, [f64; 3])> {
-    fn relative(group: &Group, row: &Line) -> Option<(String, [f64; 3])> {
+fn rows(groups: &[Group], words: &Words) -> Vec<(String, [f64; 3])> {
+    let relative = |group: &Group, row: &Line| -> Option<(String, [f64; 3])> {
         let (low, high) = row.difference.interval?;
         let a = row.difference.a;
         let named = match group.name.as_str() {
-            "All releases" => row.name.clone(),
-            group => format!("{}: {}", group.split(',').next().unwrap_or(group), row.name),
+            "All releases" => row.name_in(words),
+            group => {
+                let group = words.say(group);
+                let name = group.split(',').next().unwrap_or_default();
+                format!("{name}: {}", row.name_in(words))
+            }
         };
         (a.abs() > 0.0).then(|| (named, [row.difference.value, low, high].map(|x| x / a.abs())))
-    }
-    let of_group = |group| {
-        let rows: &Group = group;
-        rows.rows.iter().filter(|row| row.is_headline).filter_map(move |row| relative(rows, row))
     };
-    groups.iter().flat_map(of_group).collect()
+    let rows = groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)));
+    let first = rows.filter(|(_, row)| row.is_headline);
+    first.filter_map(|(group, row)| relative(group, row)).collect()
 }
 
-fn changes(groups: &[Group]) -> Drawing {
-    let rows = rows(groups);
+fn changes(groups: &[Group], words: &Words) -> Drawing {
+    let rows = rows(groups, words);
     let widest = rows.iter().map(|(name, _)| text_width(name, SMALL)).fold(0.0, f64::max);
     let left = widest.min(0.55 * WIDTH_PX) + 16.0;
     let bottom = 8.0 + ROW_PX * rows.len().max(2) as f64;
     let frame = Frame { left, top: 8.0, right: WIDTH_PX - 14.0, bottom };
     let reach = rows.iter().flat_map(|(_, values)| values).filter(|x| x.is_finite());
     let reach = reach.fold(0.05_f64, |most, x| most.max(x.abs())).min(MOST_CHANGE);
-    let x = Axis::linear(-105.0 * reach, 105.0 * reach, "Change from A to B (% of A)");
+    let x = Axis::linear(-105.0 * reach, 105.0 * reach, words.say("Change from A to B (% of A)"));
     let panel = Panel::new(frame, x, Axis::linear(0.0, 1.0, ""));
-    let svg =
-        paint("compare", (WIDTH_PX, bottom + FOOT_PX), "What changes from A to B", |canvas| {
-            panel.grid_upright(canvas);
-            panel.upright(canvas, 0.0, Pen::full(GREY, 1.2));
-            for (k, (name, values)) in rows.iter().enumerate() {
-                let y = frame.top + ROW_PX * (k as f64 + 0.5);
-                canvas.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
-                let [at, low, high] =
-                    values.map(|x| panel.at(100.0 * x.clamp(-reach, reach), 0.0).0);
-                let is_clear = values[1] > 0.0 || values[2] < 0.0;
-                let colour = if is_clear { VERMILLION } else { INK };
-                canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
-                // told apart without colour: a diamond where the interval leaves out zero
-                canvas.mark(if is_clear { 2 } else { 0 }, (at, y), 3.0, colour);
-                canvas.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
-            }
-            canvas.outline(&frame, Pen::full(INK, 0.8));
-            panel.x_axis(canvas);
-            if rows.is_empty() {
-                panel.nothing(canvas, "nothing to compare");
-            }
-        });
+    let svg = paint("compare", (WIDTH_PX, bottom + FOOT_PX), &words.say(CHANGES), |canvas| {
+        panel.grid_upright(canvas);
+        panel.upright(canvas, 0.0, Pen::full(GREY, 1.2));
+        for (k, (name, values)) in rows.iter().enumerate() {
+            let y = frame.top + ROW_PX * (k as f64 + 0.5);
+            canvas.line(&[(frame.left, y), (frame.right, y)], Pen::full(PALE, 0.5).dotted());
+            let [at, low, high] = values.map(|x| panel.at(100.0 * x.clamp(-reach, reach), 0.0).0);
+            let is_clear = values[1] > 0.0 || values[2] < 0.0;
+            let colour = if is_clear { VERMILLION } else { INK };
+            canvas.line(&[(low, y), (high, y)], Pen::full(colour, 1.6));
+            // told apart without colour: a diamond where the interval leaves out zero
+            canvas.mark(if is_clear { 2 } else { 0 }, (at, y), 3.0, colour);
+            canvas.text(&Label::new(name.clone(), (frame.left - 8.0, y)).right());
+        }
+        canvas.outline(&frame, Pen::full(INK, 0.8));
+        panel.x_axis(canvas);
+        if rows.is_empty() {
+            panel.nothing(canvas, &words.say("nothing to compare"));
+        }
+    });
     let beyond = rows.iter().flat_map(|(_, values)| values).any(|x| x.abs() > MOST_CHANGE);
-    let caption = format!(
-        "Change of each statistic over its value in A, with its 95 % interval; a vermillion diamond where the interval leaves out zero. \
-         One in twenty intervals misses by chance.{}",
-        if beyond { " What lies beyond the frame is drawn at its edge." } else { "" }
-    );
+    let mut caption = words.say(CHANGES_CAPTION);
+    if beyond {
+        caption =
+            format!("{caption} {}", words.say("What lies beyond the frame is drawn at its edge."));
+    }
     Drawing { svg, caption }
 }
 
@@ -111,27 +119,28 @@ fn curves_of([a, b]: &[Population; 2]) -> Vec<(Measure, [&Values; 2])> {
     pairs.map(|((measure, one), (_, other))| (*measure, [one, other])).collect()
 }
 
-fn exceedance(name: &str, pair: &[Population; 2], curves: &[(Measure, [&Values; 2])]) -> Drawing {
+fn exceedance(
+    name: &str,
+    pair: &[Population; 2],
+    curves: &[(Measure, [&Values; 2])],
+    words: &Words,
+) -> Drawing {
     let half = 0.5 * WIDTH_PX;
     let band = HEAD_PX + CURVE_PX + FOOT_PX;
     let height = KEY_PX + band * curves.len().div_ceil(2) as f64;
-    let title = &pair[0].name;
+    let title = &words.say(&pair[0].name);
     let svg = paint(name, (WIDTH_PX, height), title, |canvas| {
         key(canvas);
         for (k, (measure, values)) in curves.iter().enumerate() {
             let top = KEY_PX + band * (k / 2) as f64 + HEAD_PX;
             let left = half * (k % 2) as f64;
             let frame = Frame { left, top, right: left + half - 14.0, bottom: top + CURVE_PX };
-            one_panel(canvas, frame, *measure, *values);
+            one_panel(canvas, frame, (*measure, *values), words);
         }
     });
     let count =
         |k: usize| format::decimal(pair[k].values.first().map_or(0, |(_, v)| v.len()) as f64, 0);
-    let caption = format!(
-        "Share of the rocks that exceed a value: A full, B dashed ({} and {} rocks). Axes end where one in two hundred exceeds in both.",
-        count(0),
-        count(1)
-    );
+    let caption = fill(&words.say(CURVES_CAPTION), &[("a", &count(0)), ("b", &count(1))]);
     Drawing { svg, caption }
 }
 
@@ -144,14 +153,23 @@ fn key(canvas: &Canvas<'_>) {
     }
 }
 
-fn one_panel(canvas: &Canvas<'_>, frame: Frame, measure: Measure, values: [&Values; 2]) {
+fn one_panel(
+    canvas: &Canvas<'_>,
+    frame: Frame,
+    (measure, values): (Measure, [&Values; 2]),
+    words: &Words,
+) {
     let (name, unit, size) = measure.words();
+    let name = words.say(name);
     let samples = values.map(|values| Sample::of(values.iter().map(|(_, x)| x / size)));
     let far = samples.iter().filter_map(|sample| Some(sample.percentile(1.0 - BEYOND)?.value));
     let x = Axis::from_zero(far, format!("{name} ({unit})"));
     let rocks = samples.iter().map(|sample| sample.values().len()).max().unwrap_or(0);
-    let mut panel =
-        Panel::new(frame, x, Axis::log(1.0 / rocks.clamp(10, 200) as f64, 1.0, "Share exceeding"));
+    let mut panel = Panel::new(
+        frame,
+        x,
+        Axis::log(1.0 / rocks.clamp(10, 200) as f64, 1.0, words.say("Share exceeding")),
+    );
     panel.frame.left += panel.room_left();
     let at = (panel.frame.left, panel.frame.top - 9.0);
     canvas.text(&Label::new(name, at).bold().sized(NORMAL));
@@ -163,6 +181,6 @@ fn one_panel(canvas: &Canvas<'_>, frame: Frame, measure: Measure, values: [&Valu
     }
     panel.axes(canvas);
     if rocks == 0 {
-        panel.nothing(canvas, "no rock");
+        panel.nothing(canvas, &words.say("no rock"));
     }
 }

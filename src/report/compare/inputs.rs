@@ -5,6 +5,9 @@ use crate::output::Summary;
 /// Lines of the plan that say nothing that the other rows do not, or follow from what differs.
 const REPEATED: [&str; 6] = ["scene", "file", "version", "releases", "flat edges", "corners"];
 
+/// Stands before the parts of the plan.
+pub(super) const PLAN: &str = "Plan: ";
+
 /// What went in and differs: name, first, second; empty when nothing does.
 pub(super) fn differing(a: &Summary, b: &Summary) -> Vec<(String, [String; 2])> {
     let [mine, others] = [a, b].map(said);
@@ -37,6 +40,6 @@ fn said(run: &Summary) -> Vec<(String, String)> {
     ];
     rows.extend(run.inputs.iter().cloned());
     let entries = run.plan_entries.iter().filter(|entry| !REPEATED.contains(&entry.name.as_str()));
-    rows.extend(entries.map(|entry| row(&format!("Plan: {}", entry.name), entry.said.clone())));
+    rows.extend(entries.map(|entry| row(&format!("{PLAN}{}", entry.name), entry.said.clone())));
     rows
 }

@@ -6,7 +6,6 @@ use crate::report::figure::{Drawing, Heading};
 use crate::report::format::{self, escape};
 use crate::report::html::{figure_section, head, list, section};
 use crate::report::words::Words;
-use crate::scene::Language;
 use std::fmt::Write as _;
 
 /// How the intervals came about.
@@ -18,34 +17,38 @@ const METHOD: &str = "Percentiles differ by their order statistics: the spread o
 
 /// The page with the figures inlined.
 pub(super) fn page(comparison: &Comparison, figures: &[(Heading, Drawing)]) -> String {
-    let words = Words::of(Language::En);
-    let mut page = head("Two runs compared", words);
+    let words = comparison.words;
+    let mut page = head(&words.say("Two runs compared"), words);
     page.push_str(&heading(comparison));
     if !comparison.notes.is_empty() {
         let _ = writeln!(
             page,
-            "<section class=\"warnings\">\n<h2>Read this first</h2>\n{}</section>",
-            list(&comparison.notes)
+            "<section class=\"warnings\">\n<h2>{}</h2>\n{}</section>",
+            escape(words.read_first),
+            list(&comparison.notes.iter().map(|note| words.say(note)).collect::<Vec<_>>())
         );
     }
-    page.push_str(&section("Inputs that differ", &inputs(comparison)));
+    page.push_str(&section(&words.say("Inputs that differ"), &inputs(comparison)));
     page.push_str(&figure_section(figures, words));
     for group in comparison.groups.iter().filter(|group| !group.rows.is_empty()) {
-        page.push_str(&section(&group.name, &table(group)));
+        page.push_str(&section(&words.say(&group.name), &table(group, words)));
     }
-    page.push_str(&section("How it was compared", &format!("<p>{METHOD}</p>\n")));
+    let method = format!("<p>{}</p>\n", escape(&words.say(METHOD)));
+    page.push_str(&section(&words.say("How it was compared"), &method));
     page.push_str("</main>\n</body>\n</html>\n");
     page
 }
 
 fn heading(comparison: &Comparison) -> String {
     let [a, b] = &comparison.names;
+    let words = comparison.words;
     let who = |letter: &str, (folder, title): &(String, String), count: usize| {
         format!(
-            "<tr><th scope=\"row\">{letter}</th><td>{} <small>{}, {} releases</small></td></tr>\n",
+            "<tr><th scope=\"row\">{letter}</th><td>{} <small>{}, {} {}</small></td></tr>\n",
             escape(title),
             escape(folder),
-            format::decimal(count as f64, 0)
+            format::decimal(count as f64, 0),
+            format::counted(count, words.release_one, words.release_many)
         )
     };
     let pairs = match (comparison.same_run, comparison.paired) {
@@ -56,7 +59,9 @@ fn heading(comparison: &Comparison) -> String {
         _ => "Two seeds: nothing pairs.",
     };
     format!(
-        "<header>\n<h1>Two runs compared</h1>\n<p class=\"facts\">{pairs}</p>\n<table class=\"pairs\">\n{}{}</table>\n</header>\n",
+        "<header>\n<h1>{}</h1>\n<p class=\"facts\">{}</p>\n<table class=\"pairs\">\n{}{}</table>\n</header>\n",
+        escape(&words.say("Two runs compared")),
+        escape(&words.say(pairs)),
         who("A", a, comparison.releases[0]),
         who("B", b, comparison.releases[1])
     )
@@ -64,16 +69,23 @@ fn heading(comparison: &Comparison) -> String {
 
 fn inputs(comparison: &Comparison) -> String {
     if comparison.inputs.is_empty() {
-        return "<p>None: scene, meshes, seed, version and releases are the same.</p>\n".to_owned();
+        let same = "None: scene, meshes, seed, version and releases are the same.";
+        return format!("<p>{}</p>\n", escape(&comparison.words.say(same)));
     }
     let mut rows = String::new();
-    for (name, [a, b]) in &comparison.inputs {
+    let words = comparison.words;
+    for (name, values) in &comparison.inputs {
+        let name = match name.strip_prefix(super::inputs::PLAN) {
+            Some(part) => format!("{}{}", words.plan_of, words.part(part)),
+            None => words.say(name),
+        };
+        let [a, b] = values.each_ref().map(|value| words.say_all(value));
         let _ = writeln!(
             rows,
             "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>",
-            escape(name),
-            escape(a),
-            escape(b)
+            escape(&name),
+            escape(&a),
+            escape(&b)
         );
     }
     format!(
@@ -81,24 +93,26 @@ fn inputs(comparison: &Comparison) -> String {
     )
 }
 
-fn table(group: &Group) -> String {
+fn table(group: &Group, words: &Words) -> String {
     let mut rows = String::new();
     for row in &group.rows {
-        let _ = writeln!(rows, "{}", table_row(row));
+        let _ = writeln!(rows, "{}", table_row(row, words));
     }
+    let heads = ["Rocks", "A", "B", "B − A", "95 % interval", "of A"];
+    let heads = heads.map(|head| format!("<th class=\"number\">{}</th>", escape(&words.say(head))));
     format!(
-        "<div class=\"wide\"><table class=\"dense\">\n<thead><tr><th></th><th class=\"number\">Rocks</th><th class=\"number\">A</th>\
-         <th class=\"number\">B</th><th class=\"number\">B − A</th><th class=\"number\">95 % interval</th>\
-         <th class=\"number\">of A</th><th></th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
+        "<div class=\"wide\"><table class=\"dense\">\n<thead><tr><th></th>{}<th></th></tr></thead>\n\
+         <tbody>\n{rows}</tbody>\n</table></div>\n",
+        heads.concat()
     )
 }
 
-fn table_row(row: &Line) -> String {
+fn table_row(row: &Line, words: &Words) -> String {
     let name = match row.unit {
-        "" => row.name.clone(),
-        unit => format!("{} ({unit})", row.name),
+        "" => row.name_in(words),
+        unit => format!("{} ({unit})", row.name_in(words)),
     };
-    let [a, b, change, interval] = in_words(&row.difference);
+    let [a, b, change, interval] = in_words(&row.difference, words);
     let count = |k: usize| format::decimal(row.rocks[k] as f64, 0);
     let share = match row.difference.a {
         0.0 => format::NO_NUMBER.to_owned(),
@@ -106,10 +120,12 @@ fn table_row(row: &Line) -> String {
     };
     let verdict = match row.difference.interval {
         None => "",
-        Some(_) if row.difference.is_clear() => "<b>clear</b>",
+        Some(_) if row.difference.is_clear() => "clear",
         Some((0.0, 0.0)) => "the same",
         Some(_) => "within chance",
     };
+    let said = escape(&words.say(verdict));
+    let verdict = if verdict == "clear" { format!("<b>{said}</b>") } else { said };
     let cells: String = [format!("{} | {}", count(0), count(1)), a, b, change, interval, share]
         .map(|cell| format!("<td class=\"number\">{cell}</td>"))
         .concat();

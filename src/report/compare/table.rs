@@ -32,6 +32,17 @@ pub(super) struct Line {
     pub(super) is_headline: bool,
 }
 
+impl Line {
+    /// Its name in another language: what, and which statistic of it.
+    pub(super) fn name_in(&self, words: &Words) -> String {
+        match self.name.rsplit_once(", ") {
+            Some((what, "mean")) => format!("{}, {}", words.say(what), words.mean),
+            Some((what, percentile)) => format!("{}, {percentile}", words.say(what)),
+            None => words.say(&self.name),
+        }
+    }
+}
+
 /// Compares all statistics of a population of two runs.
 pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> Group {
     let settled = |one: Difference| if same_run { one.of_one_run() } else { one };
@@ -123,7 +134,8 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
         lines.push(group.name.clone());
         let width = rows.iter().map(|row| row.name.chars().count()).max().unwrap_or(0);
         for row in rows {
-            let [a, b, change, interval] = in_words(&row.difference);
+            let english = Words::of(Language::En);
+            let [a, b, change, interval] = in_words(&row.difference, english);
             let mark = if row.difference.is_clear() { "  clear" } else { "" };
             let gap = if row.unit.is_empty() { "" } else { " " };
             lines.push(format!(
@@ -136,7 +148,7 @@ pub(super) fn headline(groups: &[Group]) -> Vec<String> {
 }
 
 /// Both values, the difference with its sign, and its interval.
-pub(super) fn in_words(difference: &Difference) -> [String; 4] {
+pub(super) fn in_words(difference: &Difference, words: &Words) -> [String; 4] {
     let Difference { a, b, value, interval } = *difference;
     let number = |v: f64| format::significant(v, 4);
     // a difference is written as finely as its interval allows: its last digit is at most a twentieth of it
@@ -153,8 +165,8 @@ pub(super) fn in_words(difference: &Difference) -> [String; 4] {
         let is_zero = !text.bytes().any(|byte| (b'1'..=b'9').contains(&byte));
         if v > 0.0 && !is_zero { format!("+{text}") } else { text }
     };
-    let interval = interval.map_or("too few rocks for an interval".to_owned(), |(low, high)| {
-        Words::of(Language::En).interval(&signed(low), &signed(high))
+    let interval = interval.map_or(words.no_interval.to_owned(), |(low, high)| {
+        words.interval(&signed(low), &signed(high))
     });
     [number(a), number(b), signed(value), interval]
 }

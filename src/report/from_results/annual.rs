@@ -19,7 +19,8 @@ pub(super) fn views(results: &Results) -> Vec<AnnualView> {
             name: place.name.clone(),
             is_object: place.is_object,
             without: band(figures),
-            with: place.with_barriers.as_ref().map(band),
+            // where no barrier stands before, both are the same curve
+            with: place.with_barriers.as_ref().filter(|with| *with != figures).map(band),
             return_periods_years: figures.returns.iter().map(|one| one.years).collect(),
         }
     };

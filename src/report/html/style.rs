@@ -51,7 +51,8 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   .note { break-before: avoid; }
   h2 { margin-top: 8mm; }
   .dense { break-inside: avoid; font-size: 8pt; }
-  .dense th, .dense td { padding-right: 5px; }
+  .dense th, .dense td { padding: 1.5px 5px 1.5px 0; }
+  .dense small { line-height: 1.2; }
   .dense tbody th { min-width: 24mm; }
   .dense small { font-size: 6.8pt; }
   figure, tr, .warnings, .note, dt, dd { break-inside: avoid; }
@@ -59,7 +60,7 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   .wide { overflow: visible; }
   figure { margin: 3mm 0 5mm; }
   figure svg { max-height: 205mm; }
-  .map svg { max-height: 138mm; }
+  .map svg { max-height: 116mm; }
   .map { margin: 2mm 0; }
   .warnings { margin: 3mm 0; padding: 2mm 4mm; }
   .warnings ul { font-size: 8.5pt; }

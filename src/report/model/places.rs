@@ -3,6 +3,39 @@
 use super::{BandPoint, Estimate, Quantile};
 use crate::hazard::{Agreement, Way};
 
+/// Speed and height of all rocks by distance from their release.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfileView {
+    /// Length of a stretch (m).
+    pub step_m: f64,
+    /// From the release on.
+    pub stretches: Vec<ProfileStretch>,
+    /// Lines and barriers at the distance (m) at which rocks cross them, by the median.
+    pub marks: Vec<(f64, MapMark)>,
+}
+
+/// One stretch of a profile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProfileStretch {
+    /// Where it begins (m).
+    pub from_m: f64,
+    /// Largest bounce height of each rock in it (m).
+    pub height_m: OfStretch,
+    /// Largest speed of each rock in it (m/s).
+    pub speed_m_s: OfStretch,
+}
+
+/// What is shown of a quantity in a stretch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OfStretch {
+    /// Median over the rocks that come so far.
+    pub median: f64,
+    /// Their 95th percentile; none of too few.
+    pub p95: Estimate,
+    /// The largest.
+    pub largest: f64,
+}
+
 /// One barrier and the rocks that arrive at it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BarrierView {

@@ -47,14 +47,15 @@ impl Contours {
     }
 }
 
-/// Draws everything below the paths.
+/// Draws everything below the paths; heights are written off the spots to be avoided.
 pub(in crate::report) fn draw(
     canvas: &Canvas<'_>,
     panel: &Panel,
     ground: &GroundRaster,
+    avoided: &[Spot],
 ) -> Option<Contours> {
     canvas.fragment(&hillshade::image(&panel.frame, |x, y| slope(panel, ground, (x, y))));
-    let contours = contours(canvas, panel, ground);
+    let contours = contours((canvas, avoided), panel, ground);
     trees(canvas, panel, ground);
     contours
 }
@@ -88,7 +89,11 @@ fn slope(panel: &Panel, ground: &GroundRaster, at: Spot) -> (f64, f64) {
     (across(half, 0.0), across(0.0, half))
 }
 
-fn contours(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster) -> Option<Contours> {
+fn contours(
+    (canvas, avoided): (&Canvas<'_>, &[Spot]),
+    panel: &Panel,
+    ground: &GroundRaster,
+) -> Option<Contours> {
     let frame = &panel.frame;
     let size = ((frame.width() / GRID_PX) as usize + 2, (frame.height() / GRID_PX) as usize + 2);
     let field = Field::sample((frame.left, frame.top), GRID_PX, size, |x, y| {
@@ -120,7 +125,7 @@ fn contours(canvas: &Canvas<'_>, panel: &Panel, ground: &GroundRaster) -> Option
             let decimals = (-math::log10(interval_m).floor()).max(0.0) as usize;
             let text = format::decimal(level_m, decimals);
             let before = labels.len();
-            label_lines((canvas, panel), &lines, &text, &mut labels);
+            label_lines((canvas, panel, avoided), &lines, &text, &mut labels);
             // a line does not run through its own label
             let radius = 0.5 * text_width(&text, LABEL_PX) + 2.0;
             labels[before..].iter().fold(lines, |lines, (at, ..)| outside(&lines, *at, radius))
@@ -177,7 +182,7 @@ fn pieces_outside(a: Spot, b: Spot, at: Spot, radius: f64) -> Vec<(Spot, Spot)> 
 
 /// Puts one label on each long line, at its longest straight piece that is far from other labels and from the frame.
 fn label_lines(
-    (canvas, panel): (&Canvas<'_>, &Panel),
+    (canvas, panel, avoided): (&Canvas<'_>, &Panel, &[Spot]),
     lines: &[Vec<Spot>],
     text: &str,
     labels: &mut Vec<(Spot, f64, String)>,
@@ -199,6 +204,7 @@ fn label_lines(
                 bottom: at.1 + half,
             };
             canvas.is_free(&room)
+                && !avoided.iter().any(|spot| room.holds(*spot))
                 && from_edge > half + 4.0
                 && nearest.fold(f64::INFINITY, f64::min) > LABELS_APART_PX
         };

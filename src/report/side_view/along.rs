@@ -1,13 +1,10 @@
 //! The mean fall line, and what happens along it.
 
 use crate::math;
-use crate::report::axis::nice_step;
-use crate::report::model::{Point, Report};
+use crate::report::model::Report;
 use crate::report::raster::GroundRaster;
 use crate::report::words::{Words, fill};
 
-/// Steps aimed at along the line.
-const STEPS: f64 = 50.0;
 /// Places at which the ground below the paths is taken.
 const PLACES: f64 = 160.0;
 
@@ -148,103 +145,5 @@ impl Ranges {
         };
         self.along = wider(self.along, along);
         self.z = wider(self.z, z);
-    }
-}
-
-/// P95 and maximum over paths, step by step along the line; NaN where no path has a value.
-#[derive(Debug, Clone)]
-pub(super) struct Envelope {
-    pub(super) from_m: f64,
-    pub(super) step_m: f64,
-    pub(super) p95: Vec<f64>,
-    pub(super) most: Vec<f64>,
-}
-
-impl Envelope {
-    /// Takes `value` along all paths; each path counts once a step, with its largest value there.
-    pub(super) fn of(
-        report: &Report,
-        line: &FallLine,
-        (from, to): (f64, f64),
-        value: impl Fn(&Point) -> f64,
-    ) -> Self {
-        let step_m = nice_step((to - from) / STEPS);
-        let from_m = (from / step_m).floor() * step_m;
-        let steps = ((to - from_m) / step_m).ceil().max(1.0) as usize;
-        let mut values: Vec<Vec<f64>> = vec![Vec::new(); steps];
-        for path in &report.paths {
-            let way: Vec<(f64, f64)> = path
-                .points
-                .iter()
-                .map(|p| ((line.along(p.place_m) - from_m) / step_m, value(p)))
-                .collect();
-            let largest = largest_in_steps(&way, steps);
-            for (all, own) in values.iter_mut().zip(largest) {
-                all.extend(Some(own).filter(|v| v.is_finite()));
-            }
-        }
-        for v in &mut values {
-            v.sort_by(f64::total_cmp);
-        }
-        let most = values.iter().map(|v| v.last().copied().unwrap_or(f64::NAN)).collect();
-        let p95 = values.iter().map(|v| order_statistic(v, 0.95)).collect();
-        Self { from_m, step_m, p95, most }
-    }
-}
-
-/// Smallest value that at least a share `p` of the sorted values does not exceed; NaN of nothing.
-fn order_statistic(sorted: &[f64], p: f64) -> f64 {
-    let rank = (p * sorted.len() as f64 - 1e-9).ceil().max(1.0) as usize;
-    sorted.get(rank - 1).copied().unwrap_or(f64::NAN)
-}
-
-/// Largest value of a broken line within each unit step of its first coordinate; −∞ where it never is.
-///
-/// `max` ignores NaN: a point without a value (no ground below) says nothing, its neighbours still do.
-fn largest_in_steps(way: &[(f64, f64)], steps: usize) -> Vec<f64> {
-    let mut largest = vec![f64::NEG_INFINITY; steps];
-    let step_of = |s: f64| s.floor().clamp(0.0, steps as f64 - 1.0) as usize;
-    for &(s, value) in way.iter().filter(|(s, _)| s.is_finite()) {
-        let most = &mut largest[step_of(s)];
-        *most = most.max(value);
-    }
-    for pair in way.windows(2) {
-        let ((s0, v0), (s1, v1)) = (pair[0], pair[1]);
-        if !(s0 + s1).is_finite() {
-            continue;
-        }
-        // where the line passes from one step to the next its value counts in both
-        for next in step_of(s0.min(s1)) + 1..=step_of(s0.max(s1)) {
-            let value = v0 + (v1 - v0) * (next as f64 - s0) / (s1 - s0);
-            for most in &mut largest[next - 1..=next] {
-                *most = most.max(value);
-            }
-        }
-    }
-    largest
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A line crossing several steps between two points counts in each of them, with the value it has there.
-    #[test]
-    fn a_leap_over_several_steps_counts_in_all() {
-        let largest = largest_in_steps(&[(0.5, 0.0), (2.5, 4.0)], 4);
-        assert_eq!(largest, [1.0, 3.0, 4.0, f64::NEG_INFINITY]);
-    }
-
-    #[test]
-    fn missing_clearance_is_no_value() {
-        let largest = largest_in_steps(&[(0.2, f64::NAN), (0.8, 1.0)], 1);
-        assert_eq!(largest, [1.0]);
-    }
-
-    #[test]
-    fn the_95th_of_a_hundred_values() {
-        let values: Vec<f64> = (1..=100).map(f64::from).collect();
-        assert!((order_statistic(&values, 0.95) - 95.0).abs() < 1e-12);
-        assert!(order_statistic(&[], 0.95).is_nan());
     }
 }

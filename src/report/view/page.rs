@@ -4,7 +4,8 @@ use super::{Shown, rocks};
 use crate::hazard::StopKind;
 use crate::math;
 use crate::report::format::escape;
-use serde_json::json;
+use crate::report::words::Words;
+use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
 /// What the page may do: run its own script and style, and nothing else. No request can leave it.
@@ -42,21 +43,27 @@ pub(super) fn class_limits_j(shown: &Shown) -> [f64; 2] {
 
 /// The page.
 pub fn page(shown: &Shown) -> String {
-    let title = escape(&shown.title);
+    let words = shown.words;
+    let said = words.of_view(&format!("{}: view in three dimensions", shown.title));
+    let (title, language, body) = (escape(&said), words.code, body(words));
     let mut page = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+        "<!DOCTYPE html>\n<html lang=\"{language}\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}: view in three dimensions</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{BODY}"
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}"
     );
-    let head = json!({
+    let mut head = json!({
         "version": 1,
         "title": shown.title,
-        "notes": shown.notes(),
+        "notes": shown.notes().iter().map(|note| words.of_view(note)).collect::<Vec<_>>(),
         "classes_j": class_limits_j(shown),
         "stops": StopKind::ALL.map(StopKind::word),
         "walls": shown.walls,
     });
+    let spoken = spoken(words);
+    if !spoken.is_empty() {
+        head["words"] = spoken.into();
+    }
     // a `<` in a name must not end the element; JSON reads the escape as the same character
     let head = head.to_string().replace('<', "\\u003c");
     let _ = writeln!(page, "<script type=\"application/json\" id=\"scene\">{head}</script>");
@@ -76,6 +83,22 @@ pub fn page(shown: &Shown) -> String {
         SCRIPTS.concat()
     );
     page
+}
+
+/// The body with its texts, which stand in double braces, in the language of the page.
+fn body(words: &Words) -> String {
+    let mut parts = BODY.split("{{");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.filter_map(|part| part.split_once("}}")).fold(first, |mut body, (text, rest)| {
+        body += &escape(&words.of_view(text));
+        body += rest;
+        body
+    })
+}
+
+/// The texts that the scripts say, in the language of the page; none in English.
+fn spoken(words: &Words) -> Map<String, Value> {
+    words.of_scripts().map(|(text, said)| (text.to_owned(), Value::from(said))).collect()
 }
 
 fn opening(name: &str) -> String {

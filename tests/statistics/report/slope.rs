@@ -285,12 +285,17 @@ fn text() -> Text {
             "slope.stl: 55 720 triangles, one sheet, no holes, no slivers",
             "trees.stl: 960 triangles, 60 open sheets (stems)",
         ]),
-        plan: lines(&[
-            "terrain            56 680 triangles; 61 % of edges flat or hollow: left out of contact",
-            "flight             leapt over: nothing but gravity acts between touches, the parabola is exact",
-            "rock against rock  left out: releases are independent",
-            "paths              kept for 300 of 1000 releases",
-        ]),
+        plan: [
+            ("terrain", "56 680 triangles; 61 % of edges flat or hollow: left out of contact"),
+            (
+                "flight",
+                "leapt over: nothing but gravity acts between touches, the parabola is exact",
+            ),
+            ("rock against rock", "left out: releases are independent"),
+            ("paths", "kept for 300 of 1000 releases"),
+        ]
+        .map(|(name, said)| (name.to_owned(), said.to_owned()))
+        .into(),
         warnings: lines(&["Maximum speed above 40 m/s in 3 rocks: unusual for single blocks."]),
         terrain_source: "made by formula, 1 m grid".to_owned(),
         parameter_source: "made up".to_owned(),

@@ -6,7 +6,7 @@ const LEAST_PX = 6;
 function fail(why) {
   const box = element("trouble");
   box.hidden = false;
-  box.textContent = `This page cannot be drawn here: ${why}. It needs WebGL 2 and a browser of 2023 or newer.`;
+  box.textContent = T("This page cannot be drawn here: {why}. It needs WebGL 2 and a browser of 2023 or newer.", { why: T(why) });
   document.documentElement.dataset.state = `failed: ${why}`;
 }
 

@@ -2,6 +2,10 @@
 
 const element = (id) => document.getElementById(id);
 
+// A text in the language of the page, with what is found in its places.
+const WORDS = JSON.parse(element("scene").textContent).words ?? {};
+const T = (text, found = {}) => (WORDS[text] ?? text).replace(/\{(\w+)\}/g, (place, name) => found[name] ?? place);
+
 function made(tag, parent, text = "", attributes = {}) {
   const one = Object.assign(document.createElement(tag), attributes);
   one.textContent = text;
@@ -24,9 +28,9 @@ const energyText = (joule, digits = 3) =>
 // One switch for every kind of thing that is there.
 function switches(scene, shown, changed) {
   const kinds = [
-    ["paths", "paths", scene.paths.release.length > 0], ["rocks", "rocks", scene.paths.release.length > 0],
-    ["ends", "ends", scene.rocks !== null], ["trees", "trees", scene.terrain.corners.length > scene.terrain.ground],
-    ["walls", "lines, nets", scene.walls.length > 0], ["contours", "contours", scene.terrain.ground > 0],
+    ["paths", T("paths"), scene.paths.release.length > 0], ["rocks", T("rocks"), scene.paths.release.length > 0],
+    ["ends", T("ends"), scene.rocks !== null], ["trees", T("trees"), scene.terrain.corners.length > scene.terrain.ground],
+    ["walls", T("lines, nets"), scene.walls.length > 0], ["contours", T("contours"), scene.terrain.ground > 0],
   ];
   for (const [kind, name, there] of kinds) {
     shown[kind] = there;
@@ -43,8 +47,8 @@ function layerChoice(scene, chose) {
   element("layer-choice").hidden = !scene.maps;
   if (!scene.maps) return;
   const select = element("layer");
-  made("option", select, "none", { value: -1 });
-  scene.maps.layers.forEach((layer, i) => made("option", select, layer.name, { value: i }));
+  made("option", select, T("none"), { value: -1 });
+  scene.maps.layers.forEach((layer, i) => made("option", select, T(layer.name), { value: i }));
   select.addEventListener("change", () => chose(Number(select.value)));
 }
 
@@ -58,30 +62,30 @@ function legend(scene, shown, layer, contour) {
   };
   const limits = scene.classes_j.map((limit) => energyText(limit, 1));
   if (scene.paths.release.length > 0 && (shown.paths || shown.rocks)) {
-    made("h3", box, "Total energy on the way");
-    entry(CLASS_COLOURS[0], "", `below ${limits[0]}`);
-    entry(CLASS_COLOURS[1], "", `${limits[0]} to ${limits[1]}`);
-    entry(CLASS_COLOURS[2], "", `${limits[1]} and more`);
+    made("h3", box, T("Total energy on the way"));
+    entry(CLASS_COLOURS[0], "", T("below {x}", { x: limits[0] }));
+    entry(CLASS_COLOURS[1], "", T("{low} to {high}", { low: limits[0], high: limits[1] }));
+    entry(CLASS_COLOURS[2], "", T("{x} and more", { x: limits[1] }));
   }
   if (scene.rocks && shown.ends) {
-    made("h3", box, "Ends");
+    made("h3", box, T("Ends"));
     const found = new Set(scene.rocks.stop);
-    scene.stops.forEach((stop, i) => found.has(i) && entry(STOP_COLOURS[i], "dot", STOP_NAMES[stop] ?? stop));
+    scene.stops.forEach((stop, i) => found.has(i) && entry(STOP_COLOURS[i], "dot", T(STOP_NAMES[stop] ?? stop)));
   }
   if (scene.walls.length > 0 && shown.walls) {
-    made("h3", box, "Lines and nets");
-    if (scene.walls.some((wall) => wall.height_m === null)) entry(LINE_COLOUR, "", "evaluation line");
-    if (scene.walls.some((wall) => wall.height_m !== null)) entry(BARRIER_COLOUR, "field", "net, at its height");
+    made("h3", box, T("Lines and nets"));
+    if (scene.walls.some((wall) => wall.height_m === null)) entry(LINE_COLOUR, "", T("evaluation line"));
+    if (scene.walls.some((wall) => wall.height_m !== null)) entry(BARRIER_COLOUR, "field", T("net, at its height"));
   }
   if (layer >= 0) {
     const { name, unit, limits } = scene.maps.layers[layer];
-    made("h3", box, `${name} (${unit})`);
+    made("h3", box, `${T(name)} (${T(unit)})`);
     for (let k = limits.length; k >= 0; k--) {
-      const text = k === 0 ? `below ${written(limits[0] ?? 0, 1)}` : k === limits.length ? `${written(limits[k - 1], 1)} and more` : `${written(limits[k - 1], 1)} to ${written(limits[k], 1)}`;
+      const text = k === 0 ? T("below {x}", { x: written(limits[0] ?? 0, 1) }) : k === limits.length ? T("{x} and more", { x: written(limits[k - 1], 1) }) : T("{low} to {high}", { low: written(limits[k - 1], 1), high: written(limits[k], 1) });
       entry(layerColour(k, limits.length), "field", text);
     }
   }
-  if (shown.contours) made("p", box, `Contours every ${written(contour, 1)} m.`).style.cssText = "margin:8px 0 0;font-size:12px;color:var(--grey)";
+  if (shown.contours) made("p", box, T("Contours every {x} m.", { x: written(contour, 1) })).style.cssText = "margin:8px 0 0;font-size:12px;color:var(--grey)";
 }
 
 // Colour of class k of so many limits: the highest is always the darkest.
@@ -93,7 +97,7 @@ function card(scene, row, instant) {
   const box = element("card");
   const release = row.release;
   box.hidden = false;
-  box.querySelector("h2").textContent = `Rock ${release}`;
+  box.querySelector("h2").textContent = T("Rock {n}", { n: release });
   const table = box.querySelector("table");
   table.replaceChildren();
   const say = (name, text) => {
@@ -103,23 +107,23 @@ function card(scene, row, instant) {
   };
   const k = rocks ? release - rocks.first : -1;
   if (rocks && k >= 0 && k < rocks.stop.length) {
-    say("Radius", `${written(rocks.radius_m[k])} m`);
-    say("Mass", `${written(rocks.mass_kg[k])} kg`);
-    say("Ended", STOP_NAMES[scene.stops[rocks.stop[k]]] ?? "–");
-    say("Runout", `${written(rocks.runout_m[k], 4)} m`);
-    say("Reach angle", `${written(rocks.reach_angle_deg[k])}°`);
-    say("Largest speed", `${written(rocks.max_speed_m_s[k])} m/s`);
-    say("Largest total energy", energyText(rocks.max_total_j[k]));
-    say("Largest bounce height", `${written(rocks.max_height_m[k])} m`);
-    say("Impacts", `${rocks.impacts[k]}${rocks.tree_impacts[k] ? `, ${rocks.tree_impacts[k]} on trees` : ""}`);
+    say(T("Radius"), `${written(rocks.radius_m[k])} m`);
+    say(T("Mass"), `${written(rocks.mass_kg[k])} kg`);
+    say(T("Ended"), T(STOP_NAMES[scene.stops[rocks.stop[k]]] ?? "–"));
+    say(T("Runout"), `${written(rocks.runout_m[k], 4)} m`);
+    say(T("Reach angle"), `${written(rocks.reach_angle_deg[k])}°`);
+    say(T("Largest speed"), `${written(rocks.max_speed_m_s[k])} m/s`);
+    say(T("Largest total energy"), energyText(rocks.max_total_j[k]));
+    say(T("Largest bounce height"), `${written(rocks.max_height_m[k])} m`);
+    say(T("Impacts"), rocks.tree_impacts[k] ? T("{n}, {trees} on trees", { n: rocks.impacts[k], trees: rocks.tree_impacts[k] }) : rocks.impacts[k]);
   }
   if (instant) {
-    say(`At ${instant.time.toFixed(1)} s`, energyText(instant.energy));
+    say(T("At {t} s", { t: instant.time.toFixed(1) }), energyText(instant.energy));
     const map = plus(instant.place, scene.low);
     say("x, y", `${map[0].toFixed(1)}, ${map[1].toFixed(1)}`);
-    say("Height of its centre", `${map[2].toFixed(1)} m`);
+    say(T("Height of its centre"), `${map[2].toFixed(1)} m`);
   }
-  box.querySelector("p").textContent = `index ${release} in releases.csv; “rockfall run SCENE --only ${release}” follows it again.`;
+  box.querySelector("p").textContent = T("index {n} in releases.csv; “rockfall run SCENE --only {n}” follows it again.", { n: release });
 }
 
 // Turns the needle and writes the length of the bar, which holds at the middle of the picture.

@@ -1,0 +1,212 @@
+//! How fast and how high a rock was, stretch by stretch of its distance from its release in plan view.
+
+use super::form::{Form, Instant};
+use crate::flight::Parabola;
+use crate::math;
+use crate::rock::{Motion, Vec3};
+use crate::scene::Corner;
+use crate::terrain::Terrain;
+
+/// One rock in one stretch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Number of the stretch: 0 begins at the release, each is one step long.
+    pub number: u32,
+    /// Largest speed of the centre in it (m/s).
+    pub speed_m_s: f64,
+    /// Largest vertical distance from the ground below to the lowest point of the rock in it (m), 0 in contact.
+    pub height_m: f64,
+}
+
+/// The stretches of one rock so far.
+#[derive(Debug)]
+pub(super) struct Stretches {
+    /// Length of a stretch (m); none where nobody asks.
+    step_m: Option<f64>,
+    from_m: Corner,
+    found: Vec<Stretch>,
+}
+
+impl Stretches {
+    pub(super) fn of(step_m: Option<f64>, start: &Motion) -> Self {
+        let at = start.position_m;
+        Self { step_m, from_m: [at.x, at.y], found: Vec::new() }
+    }
+
+    /// How many there are so far, and the last, which the next may join.
+    pub(super) fn mark(&self) -> (usize, Option<Stretch>) {
+        (self.found.len(), self.found.last().copied())
+    }
+
+    /// Goes back to a mark.
+    pub(super) fn go_back(&mut self, (count, last): (usize, Option<Stretch>)) {
+        self.found.truncate(count);
+        if let (Some(now), Some(last)) = (self.found.last_mut(), last) {
+            *now = last;
+        }
+    }
+
+    /// One entry a stretch, in the order of stretches.
+    pub(super) fn into_found(mut self) -> Vec<Stretch> {
+        self.found.sort_by_key(|stretch| stretch.number);
+        self.found.dedup_by(|next, kept| {
+            let same = next.number == kept.number;
+            if same {
+                kept.join(next);
+            }
+            same
+        });
+        self.found
+    }
+
+    /// Notes a place with the speed and the height there.
+    pub(super) fn note(&mut self, at: &Vec3, speed_m_s: f64, height_m: f64) {
+        let Some(step_m) = self.step_m else { return };
+        let away_m = math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]);
+        add(&mut self.found, Stretch { number: (away_m / step_m) as u32, speed_m_s, height_m });
+    }
+
+    /// Notes the end of a step in contact, and the stretches that it passes over.
+    pub(super) fn step(&mut self, to: &Motion, height_m: f64) {
+        let before = self.found.last().map(|last| last.number);
+        let speed_m_s = to.velocity_m_s.norm();
+        self.note(&to.position_m, speed_m_s, height_m);
+        let (Some(before), Some(now)) = (before, self.found.last().copied()) else { return };
+        // steps are shorter than stretches as a rule: seldom is one passed over
+        let between = before.min(now.number) + 1..before.max(now.number);
+        self.found.extend(between.map(|number| Stretch { number, ..now }));
+    }
+
+    /// Notes the stretches below a flight of `dt` (s).
+    ///
+    /// The speed along a parabola has no largest value inside: the ends of its part in a stretch hold it exactly. The
+    /// height is taken where a stretch ends and in the middle of each part; at its two ends a flight touches.
+    pub(super) fn fly(
+        &mut self,
+        (terrain, form): (&Terrain, &Form),
+        flight: &Parabola,
+        dt: f64,
+        at: impl Fn(f64) -> Instant,
+    ) {
+        let Some(step_m) = self.step_m else { return };
+        let height_m = |t: f64, known_m: f64| {
+            let centre = flight.centre(t);
+            let low = centre.z - form.below_m(&at(t));
+            // what lies under the lowest ground around is not looked for
+            if low - terrain.floor.under(centre.x, centre.y) <= known_m {
+                return known_m;
+            }
+            let ground = terrain.ground_under(centre.x, centre.y, centre.z);
+            ground.map_or(known_m, |ground| known_m.max(low - ground))
+        };
+        let speed_m_s = |t: f64| flight.velocity(t).norm();
+        let (from, to) = (flight.centre(0.0), flight.centre(dt));
+        let place = [from.x - self.from_m[0], from.y - self.from_m[1]];
+        let way = [to.x - from.x, to.y - from.y];
+        let mut before = 0.0;
+        walk(place, way, step_m, |number, s0, s1| {
+            let (t0, t1) = (s0 * dt, s1 * dt);
+            let last = self.found.last().filter(|last| last.number == number);
+            let known_m = last.map_or(before, |last| last.height_m.max(before));
+            let mut highest_m = height_m(0.5 * (t0 + t1), known_m);
+            before = 0.0;
+            if s1 < 1.0 {
+                before = height_m(t1, 0.0);
+                highest_m = highest_m.max(before);
+            }
+            let speed_m_s = speed_m_s(t0).max(speed_m_s(t1));
+            add(&mut self.found, Stretch { number, speed_m_s, height_m: highest_m });
+        });
+    }
+}
+
+impl Stretch {
+    fn join(&mut self, other: &Self) {
+        self.speed_m_s = self.speed_m_s.max(other.speed_m_s);
+        self.height_m = self.height_m.max(other.height_m);
+    }
+}
+
+/// Adds to the last stretch if that is the same: most steps stay in theirs.
+fn add(found: &mut Vec<Stretch>, stretch: Stretch) {
+    match found.last_mut().filter(|last| last.number == stretch.number) {
+        Some(last) => last.join(&stretch),
+        None => found.push(stretch),
+    }
+}
+
+/// Calls `pass` with every stretch under a straight way in plan view and the shares of the way at which it is entered and
+/// left. The distance from the release falls to the nearest point of the way and rises behind it.
+fn walk(place: Corner, way: Corner, step_m: f64, mut pass: impl FnMut(u32, f64, f64)) {
+    let dot = |a: Corner, b: Corner| a[0] * b[0] + a[1] * b[1];
+    let (a, b, c) = (dot(way, way), dot(place, way), dot(place, place));
+    let number = |s: f64| {
+        let at = [0, 1].map(|k| place[k] + s * way[k]);
+        (dot(at, at).sqrt() / step_m) as u32
+    };
+    if a == 0.0 {
+        return pass(number(0.0), 0.0, 1.0);
+    }
+    let nearest = (-b / a).clamp(0.0, 1.0);
+    // where the way is so far from the release, on the branch that falls (−1) or rises (1)
+    let reaches = |edge_m: f64, branch: f64| {
+        (-b + branch * (b * b - a * (c - edge_m * edge_m)).max(0.0).sqrt()) / a
+    };
+    for (from, to, branch) in [(0.0, nearest, -1.0), (nearest, 1.0, 1.0)] {
+        if to <= from {
+            continue;
+        }
+        let (first, last) = (number(from), number(to));
+        let mut entered = from;
+        let mut at = first;
+        while at != last {
+            let edge = if branch > 0.0 { at + 1 } else { at };
+            let left = reaches(f64::from(edge) * step_m, branch).clamp(entered, to);
+            pass(at, entered, left);
+            entered = left;
+            at = if last > at { at + 1 } else { at - 1 };
+        }
+        pass(last, entered, to);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn walked(place: Corner, way: Corner) -> Vec<(u32, f64, f64)> {
+        let mut passed = Vec::new();
+        walk(place, way, 2.0, |number, from, to| passed.push((number, from, to)));
+        passed
+    }
+
+    /// By hand: outwards along the axis over edges at 2 and 4 m; past the release at 3 m distance and away again.
+    #[test]
+    fn a_way_is_cut_where_the_distance_passes_a_stretch() {
+        assert_eq!(
+            walked([1.0, 0.0], [4.0, 0.0]),
+            [(0, 0.0, 0.25), (1, 0.25, 0.75), (2, 0.75, 1.0)]
+        );
+        assert_eq!(walked([3.0, 0.0], [0.0, 0.0]), [(1, 0.0, 1.0)]);
+        let past = walked([-4.0, 3.0], [8.0, 0.0]);
+        let numbers: Vec<u32> = past.iter().map(|one| one.0).collect();
+        assert_eq!(numbers, [2, 1, 1, 2]);
+        // the edge at 4 m is met at x = −√7 and √7
+        assert!((past[0].2 - (4.0 - 7.0_f64.sqrt()) / 8.0).abs() < 1e-12);
+        assert!((past[2].2 - (4.0 + 7.0_f64.sqrt()) / 8.0).abs() < 1e-12);
+        assert!(past.windows(2).all(|pair| (pair[0].2 - pair[1].1).abs() < 1e-15));
+    }
+
+    /// A rock that goes to and fro has one entry a stretch, with its largest values.
+    #[test]
+    fn a_stretch_holds_the_largest() {
+        let (rest, start) = (Vec3::zeros(), Vec3::new(0.0, 0.0, 9.0));
+        let start = Motion { time_s: 0.0, position_m: start, velocity_m_s: rest, spin_rad_s: rest };
+        let mut all = Stretches::of(Some(1.0), &start);
+        for (x, speed, height) in [(0.5, 1.0, 0.2), (1.5, 3.0, 0.0), (0.7, 2.0, 0.1)] {
+            all.note(&Vec3::new(x, 0.0, 9.0), speed, height);
+        }
+        let stretch = |number, speed_m_s, height_m| Stretch { number, speed_m_s, height_m };
+        assert_eq!(all.into_found(), [stretch(0, 2.0, 0.2), stretch(1, 3.0, 0.0)]);
+    }
+}

@@ -1,0 +1,126 @@
+//! The pages in a browser, what stands beside them, and what of a plan they say in each language.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::print_stderr, reason = "what was not tried must be said")]
+
+use crate::program::rockfall;
+use rockfall::plan::Plan;
+use rockfall::report::words::Words;
+use rockfall::scene::{Language, Scene};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+fn run(words: &[&str]) {
+    let said = rockfall(words);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+}
+
+/// A browser without a window, on one file; none where no Chromium is installed.
+fn browser(profile: &Path, file: &Path, words: &[&str]) -> Option<Vec<u8>> {
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    let said = names.iter().find_map(|name| {
+        Command::new(name)
+            .args(["--headless", "--no-sandbox", "--disable-quic", "--no-first-run"])
+            .args(["--disable-background-networking", "--disable-component-update"])
+            .args(["--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
+            .arg("--virtual-time-budget=20000")
+            .arg(format!("--user-data-dir={}", profile.display()))
+            .args(words)
+            .arg(format!("file://{}", file.display()))
+            .output()
+            .ok()
+    })?;
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    Some(said.stdout)
+}
+
+/// The view is drawn with WebGL without an error, in its language; the report prints to pages that are numbered.
+#[test]
+fn the_pages_open_in_a_browser() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = fs::read_to_string("examples/quick.toml").unwrap();
+    let terrain = fs::canonicalize("terrain").unwrap();
+    let scene = scene.replace("../terrain", terrain.to_str().unwrap());
+    let path = dir.path().join("scene.toml");
+    fs::write(&path, format!("{scene}\n[report]\nlanguage = \"de\"\n")).unwrap();
+    let out = dir.path().join("out");
+    let words = [path.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    run(&[&["run", "--quiet", "--releases", "60"], &words[..]].concat());
+    let profile = dir.path().join("profile");
+    let Some(dom) = browser(&profile, &out.join("view.html"), &["--dump-dom"]) else {
+        eprintln!("no Chromium is installed: the pages were not opened in a browser");
+        return;
+    };
+    let dom = String::from_utf8(dom).unwrap();
+    assert!(dom.contains("data-state=\"drawn\""), "{}", &dom[..dom.len().min(400)]);
+    for word in ["Was gezeigt wird", "Gesamtenergie unterwegs", "Höhenlinien alle", "Bahnen"] {
+        assert!(dom.contains(word), "{word}");
+    }
+    let pdf = dir.path().join("report.pdf");
+    let print = format!("--print-to-pdf={}", pdf.display());
+    let _ = browser(&profile, &out.join("report.html"), &[&print, "--no-pdf-header-footer"]);
+    let printed = fs::read(&pdf).unwrap();
+    let pages = printed.windows(11).filter(|at| at == b"/Type /Page").count();
+    assert!(printed.starts_with(b"%PDF") && pages > 4, "{pages} pages");
+}
+
+/// The figure of a study of this very scene stands on its page: from the folder of the results, or from beside it.
+#[test]
+fn a_study_of_this_scene_stands_on_its_page() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    let (out, beside, inside) =
+        (path("reports/quick"), path("reports/error/quick"), path("reports/quick/error"));
+    let of_run = ["run", "examples/quick.toml", "--quiet", "--releases", "60", "--out", &out];
+    let shows = || {
+        let page = fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
+        page.contains("Error against run time") && page.contains("with 80 releases under each")
+    };
+    let study =
+        |to: &str| run(&["study", "error", "examples/quick.toml", "--releases", "80", "--out", to]);
+    run(&of_run);
+    assert!(!shows());
+    study(&beside);
+    run(&["draw", &out]);
+    assert!(shows());
+    // of another seed it says nothing
+    run(&[&of_run[..], &["--overwrite", "--seed", "5"]].concat());
+    assert!(!shows());
+    fs::rename(&beside, &inside).unwrap();
+    // the next run finds it by itself, and leaves it where it is
+    run(&[&of_run[..], &["--overwrite"]].concat());
+    assert!(shows() && Path::new(&inside).join("README.md").exists());
+}
+
+/// Parts that some language calls as English does.
+const SAME: [&str; 5] = ["version", "file", "impacts", "orientation", "terrain"];
+/// Parts whose text is a name, a number or the user's own.
+const NAMES: [&str; 6] = ["scene", "file", "version", "gravity", "grounds", "catalogue"];
+
+/// What the plan of every example says is said in every language, part and text.
+#[test]
+fn every_plan_is_said_in_every_language() {
+    let mut missing = Vec::new();
+    let folders = ["examples", "examples/paper"].map(|dir| fs::read_dir(dir).unwrap());
+    let mut scenes: Vec<_> = folders.into_iter().flatten().map(|one| one.unwrap().path()).collect();
+    scenes.retain(|path| path.extension().is_some_and(|kind| kind == "toml"));
+    scenes.sort();
+    assert!(scenes.len() > 15, "{}", scenes.len());
+    for path in scenes {
+        let plan = Plan::of_scene(&Scene::read(&path).unwrap()).unwrap();
+        for language in [Language::De, Language::Fr, Language::It] {
+            let words = Words::of(language);
+            for entry in plan.entries_for(plan.count) {
+                let is_said =
+                    NAMES.contains(&entry.name.as_str()) || words.knows(&entry.said).is_some();
+                let same = SAME.contains(&entry.name.as_str());
+                if !is_said || !same && words.part(&entry.name) == entry.name {
+                    missing.push(format!("{language:?}: {}: {}", entry.name, entry.said));
+                }
+            }
+        }
+    }
+    missing.sort();
+    missing.dedup();
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+}
