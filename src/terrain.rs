@@ -18,6 +18,7 @@ pub mod health;
 pub mod index;
 pub mod make;
 mod merge;
+mod options;
 pub mod read;
 pub mod patches;
 pub(crate) mod seen;

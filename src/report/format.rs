@@ -1,6 +1,6 @@
 //! Numbers and text as a reader expects them: thin-space thousands, a true minus, raised powers.
 
-use super::model::Is;
+use super::bound::Is;
 
 /// Stands between groups of three digits.
 const THIN_SPACE: char = '\u{2009}';

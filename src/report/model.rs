@@ -7,6 +7,7 @@ pub use places::{
     Observed, OfStretch, PlaceView, ProfileStretch, ProfileView, RockView, YearCells,
 };
 
+pub use super::bound::Is;
 use super::raster::GroundRaster;
 use super::words::Words;
 use crate::output::Zone;
@@ -173,20 +174,6 @@ pub struct Estimate {
     pub high: f64,
     /// What the value is.
     pub is: Is,
-}
-
-/// What an estimate says of the quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Is {
-    /// Its value.
-    #[default]
-    Value,
-    /// A lower bound: rocks that left the terrain would have gone on.
-    AtLeast,
-    /// An upper bound, for the same reason.
-    AtMost,
-    /// Nothing: so many rocks are missing.
-    Lacking(usize),
 }
 
 impl Estimate {

@@ -14,6 +14,7 @@ pub mod glb;
 mod layers;
 pub mod mesh;
 pub mod pack;
+mod part;
 pub mod page;
 mod paths;
 mod rocks;

@@ -7,11 +7,9 @@ mod announced;
 mod decoder;
 mod tiles;
 
-pub(super) use tiles::join;
-
 use super::facets::Facets;
-use super::formats::{Crop, Options, wider};
 use super::grid::distance;
+use super::options::{Crop, Options, wider};
 use super::stl::{Format, Soup};
 use crate::error::{Error, Result};
 use crate::gis::wkt;
@@ -39,7 +37,7 @@ type BoxM = [f64; 4];
 pub struct Cloud {
     /// In map coordinates (m), in the order of their cells.
     points_m: Vec<Vec3>,
-    epsg: Option<u32>,
+    pub(super) epsg: Option<u32>,
     cell_m: f64,
     /// Points in the file, and those of the ground classes.
     counts: [u64; 2],

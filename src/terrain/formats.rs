@@ -1,5 +1,7 @@
 //! The one door for terrain files: what a file is, is told from its first bytes and never from its name.
 
+#[cfg(feature = "cloud")]
+mod cloud_tiles;
 mod obj;
 mod ply;
 pub(super) mod surface;
@@ -14,40 +16,12 @@ use super::cloud;
 use super::geotiff;
 use super::grid::{self, Grid};
 use super::make;
-use super::read::Source;
+pub use super::options::{Crop, Options};
+use super::options::{Source, wider};
 use super::stl::{self, Facet, Format, Soup};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use std::path::Path;
-
-/// What is asked of a file beside its triangles.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Options {
-    /// What part of an elevation model or point cloud is used; absent = all.
-    pub crop: Option<Crop>,
-    /// Side of the cells to use (m): of a grid not below its own; of a cloud, the cell of which the lowest point is kept.
-    pub resample_m: Option<f64>,
-    /// Classes of the points that are ground (ASPRS); empty = 2.
-    pub classes: Vec<u8>,
-    /// EPSG code of the scene.
-    pub epsg: Option<u32>,
-}
-
-/// A part of the map.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Crop {
-    /// A box: west, south, east, north (m), and what is kept around it (m).
-    Box([f64; 4], f64),
-    /// What rocks can reach.
-    Reach {
-        /// Boxes of the places where rocks start (m).
-        starts: Vec<[f64; 4]>,
-        /// Tangent of the lowest angle under which a rock comes to its start from above (–).
-        slope: f64,
-        /// What is kept around it (m).
-        margin_m: f64,
-    },
-}
 
 /// A file as it was read, before it is cropped, resampled and cut into triangles.
 #[derive(Debug)]
@@ -166,7 +140,7 @@ fn read_cloud(path: &Path, _: &Options) -> Result<Loaded> {
 /// Joins what must be one before it is cropped and cut: tiles of a point cloud. Grids are joined later, cell by cell.
 #[cfg(feature = "cloud")]
 pub(super) fn join_tiles(all: &mut [Loaded], sources: &[Source]) -> Result<()> {
-    cloud::join(all, sources)
+    cloud_tiles::join(all, sources)
 }
 
 #[cfg(not(feature = "cloud"))]
@@ -180,11 +154,6 @@ fn format_of(head: &[u8]) -> Option<Format> {
     marked
         .or_else(|| grid::begins_like_grid(head).then_some(Format::AsciiGrid))
         .or_else(|| obj::begins_like_obj(head).then_some(Format::Obj))
-}
-
-/// A box with more around it.
-pub(super) fn wider([west, south, east, north]: [f64; 4], margin_m: f64) -> [f64; 4] {
-    [west - margin_m, south - margin_m, east + margin_m, north + margin_m]
 }
 
 /// The triangles of a convex polygon: a fan from its first corner.

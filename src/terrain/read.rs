@@ -1,9 +1,11 @@
 //! From terrain files to the terrain: read, crop, lay zones of ground on it, weld, examine, index.
 
 use super::formats::surface::{self, starts};
-use super::formats::{self, Loaded, Options};
+use super::formats::{self, Loaded};
 use super::health::{FileHealth, Health};
 use super::make::{self, List};
+use super::options::Options;
+pub use super::options::Source;
 use super::patches::{Layer, Patched, Patches};
 use super::stl::{self, Format, Soup};
 use super::weld::{self, Piece, Up, weld};
@@ -12,25 +14,7 @@ use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use std::path::Path;
 
-/// One file and how it enters the terrain.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Source {
-    /// The file, its ground, and whether it is a tree.
-    pub sheet: Sheet,
-    /// Its up axis.
-    pub up: Up,
-    /// Metres per unit of the file, positive.
-    pub scale: f64,
-    /// What is asked of a file of any format; `None` = an STL file, whatever its name.
-    pub options: Option<Options>,
-}
-
 impl Source {
-    /// An STL file as it stands: z up, metres.
-    pub fn stl(sheet: Sheet) -> Self {
-        Self { sheet, up: Up::Z, scale: 1.0, options: None }
-    }
-
     fn load(&self) -> Result<Loaded> {
         let path = &self.sheet.path;
         let Some(options) = &self.options else { return stl::read(path).map(Loaded::Mesh) };

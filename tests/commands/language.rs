@@ -81,7 +81,7 @@ fn check(out: &Path, language: &str) {
     assert!(view.contains(&format!("<html lang=\"{language}\">")));
     let (_, body) = view.split_once("</style>").unwrap();
     let (seen, _) = body.split_once("<script type=").unwrap();
-    for odd in ["What is shown", "Mouse", "drag", "click", "release", "{", "}"] {
+    for odd in ["What is shown", "Mouse, touch", "drag", "click", "release", "{", "}"] {
         assert!(!svg::strip_tags(seen).contains(odd), "{language}: {odd}");
     }
 }

@@ -78,6 +78,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         barriers: Vec::new(),
         asked: Asked::default(),
         observed: Vec::new(),
+        profile_step_m: 10.0,
         keeps_paths: false,
         keeps_impacts: false,
         has_blocks: false,

@@ -1,6 +1,6 @@
 //! Terrain too fine for a page, drawn coarser.
 
-use super::mesh::{Part, Soup};
+use super::part::{Part, Soup};
 use crate::report::format;
 use crate::rock::Vec3;
 use rayon::slice::ParallelSliceMut;

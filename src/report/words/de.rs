@@ -523,7 +523,10 @@ pub(super) static WORDS: Words = Words {
         ("{name}: on no slope, it has no rolling friction", "{name}: an keinem Hang, er hat keine Rollreibung"),
         ("{name}: on slopes of up to {x}° ({a}° to {b}°)", "{name}: an Hängen bis {x}° ({a}° bis {b}°)"),
         ("{name}: on slopes of up to {x}°", "{name}: an Hängen bis {x}°"),
-        ("drawn at every impact", "bei jedem Aufprall gezogen"),
+        (
+            "a facet at every impact, and after every roughness length of sliding or rolling",
+            "eine Facette bei jedem Aufprall und nach jeder Rauheitslänge im Gleiten oder Rollen",
+        ),
         ("one world: {springs}, friction angle {angle}°, restitution of the scheme itself", "eine Welt: {springs}, Reibungswinkel {angle}°, Rückprall des Verfahrens selbst"),
         ("one world: {springs}, friction angle {angle}°, restitution {e}", "eine Welt: {springs}, Reibungswinkel {angle}°, Rückprall {e}"),
         ("springs of {a} and {b} N/m", "Federn von {a} und {b} N/m"),
@@ -590,6 +593,7 @@ pub(super) static WORDS: Words = Words {
         ("roughness length {a}", "Rauheitslänge {a}"),
         ("roughness {a}", "Rauheit {a}"),
         ("gives way above {a}", "gibt nach über {a}"),
+        ("friction of blocks grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s", "Reibung von Blöcken wächst mit dem Gleitweg bis {a}, κ {b} 1/m, vergessen mit {c} 1/s"),
         ("{a} ({b} to {c} in nine of ten, {d}) {unit}", "{a} ({b} bis {c} in neun von zehn, {d}) {unit}"),
         ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} bis {c} in neun von zehn, {d})"),
         // Two runs beside each other

@@ -200,7 +200,7 @@ pub(super) static WORDS: Words = Words {
     retention: "Rétention",
     retention_axis: "Départs qui franchissent (%)",
     retention_caption: "Probabilité d’atteinte de chaque ligne, conditionnelle au départ, avec l’intervalle à 95 % de Wilson, de la plus haute vers le bas. Clair\u{a0}: sans ouvrages\u{a0}; vert, si un ouvrage précède\u{a0}: ce qu’il laisse. Ce qui manque entre deux lignes successives est resté là.",
-    left: "avec ouvrages {share}",
+    left: "avec ouvr. {share}",
     line_table: "Ligne d’évaluation {name}",
     object_table: "Objet {name}",
     line_note: "Conditionnel au départ\u{a0}: franchie par {count} départs sur {releases}, probabilité d’atteinte {reach} ({interval})\u{a0}; {again} plusieurs fois. Valeurs au premier passage.",
@@ -523,7 +523,10 @@ pub(super) static WORDS: Words = Words {
         ("{name}: on no slope, it has no rolling friction", "{name}\u{a0}: sur aucune pente, sans frottement de roulement"),
         ("{name}: on slopes of up to {x}° ({a}° to {b}°)", "{name}\u{a0}: sur les pentes jusqu’à {x}° ({a}° à {b}°)"),
         ("{name}: on slopes of up to {x}°", "{name}\u{a0}: sur les pentes jusqu’à {x}°"),
-        ("drawn at every impact", "tirée à chaque choc"),
+        (
+            "a facet at every impact, and after every roughness length of sliding or rolling",
+            "une facette à chaque choc, et après chaque longueur de rugosité en glissant ou en roulant",
+        ),
         ("one world: {springs}, friction angle {angle}°, restitution of the scheme itself", "un seul monde\u{a0}: {springs}, angle de frottement {angle}°, restitution du schéma même"),
         ("one world: {springs}, friction angle {angle}°, restitution {e}", "un seul monde\u{a0}: {springs}, angle de frottement {angle}°, restitution {e}"),
         ("springs of {a} and {b} N/m", "ressorts de {a} et {b} N/m"),
@@ -590,6 +593,7 @@ pub(super) static WORDS: Words = Words {
         ("roughness length {a}", "longueur de rugosité {a}"),
         ("roughness {a}", "rugosité {a}"),
         ("gives way above {a}", "cède au-dessus de {a}"),
+        ("friction of blocks grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s", "le frottement des blocs croît avec le glissement jusqu’à {a}, κ {b} 1/m, oublié avec {c} 1/s"),
         ("{a} ({b} to {c} in nine of ten, {d}) {unit}", "{a} ({b} à {c} neuf fois sur dix, {d}) {unit}"),
         ("{a} ({b} to {c} in nine of ten, {d})", "{a} ({b} à {c} neuf fois sur dix, {d})"),
         // Two runs beside each other

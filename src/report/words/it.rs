@@ -523,7 +523,10 @@ pub(super) static WORDS: Words = Words {
         ("{name}: on no slope, it has no rolling friction", "{name}: su nessun pendio, non ha attrito volvente"),
         ("{name}: on slopes of up to {x}° ({a}° to {b}°)", "{name}: su pendii fino a {x}° (da {a}° a {b}°)"),
         ("{name}: on slopes of up to {x}°", "{name}: su pendii fino a {x}°"),
-        ("drawn at every impact", "estratta a ogni urto"),
+        (
+            "a facet at every impact, and after every roughness length of sliding or rolling",
+            "una faccetta a ogni urto, e dopo ogni lunghezza di rugosità scivolando o rotolando",
+        ),
         ("one world: {springs}, friction angle {angle}°, restitution of the scheme itself", "un solo mondo: {springs}, angolo d’attrito {angle}°, restituzione dello schema stesso"),
         ("one world: {springs}, friction angle {angle}°, restitution {e}", "un solo mondo: {springs}, angolo d’attrito {angle}°, restituzione {e}"),
         ("springs of {a} and {b} N/m", "molle di {a} e {b} N/m"),
@@ -590,6 +593,7 @@ pub(super) static WORDS: Words = Words {
         ("roughness length {a}", "lunghezza di rugosità {a}"),
         ("roughness {a}", "rugosità {a}"),
         ("gives way above {a}", "cede sopra {a}"),
+        ("friction of blocks grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s", "l’attrito dei blocchi cresce con lo scivolamento fino a {a}, κ {b} 1/m, dimenticato con {c} 1/s"),
         ("{a} ({b} to {c} in nine of ten, {d}) {unit}", "{a} (da {b} a {c} in nove casi su dieci, {d}) {unit}"),
         ("{a} ({b} to {c} in nine of ten, {d})", "{a} (da {b} a {c} in nove casi su dieci, {d})"),
         // Two runs beside each other
