@@ -15,7 +15,9 @@ impl Words {
         if self.said.is_empty() {
             return Some(text.to_owned());
         }
-        if let Some((_, said)) = self.said.iter().find(|(known, _)| *known == text) {
+        // the view has some of the same words
+        let all = || self.said.iter().chain(self.view.iter());
+        if let Some((_, said)) = all().find(|(known, _)| *known == text) {
             return Some((*said).to_owned());
         }
         let with_places = self.said.iter().filter(|(known, _)| known.contains('{'));
