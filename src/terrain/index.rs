@@ -102,7 +102,7 @@ impl Node {
     }
 }
 
-/// The packed tree. Triangle numbers are positions in the order that [`Index::build`] returns.
+/// The packed tree. Triangle numbers are positions in the order that its construction returns.
 #[derive(Debug, Default)]
 pub struct Index {
     nodes: Vec<Node>,
