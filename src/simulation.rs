@@ -7,6 +7,7 @@ mod crossings;
 mod driver;
 mod form;
 mod impacts;
+mod passages;
 mod recorder;
 mod rock_in_contact;
 mod settings;

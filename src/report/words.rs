@@ -7,6 +7,7 @@
 mod de;
 mod en;
 mod fr;
+mod glossary;
 mod it;
 mod said;
 mod year;
@@ -29,7 +30,7 @@ macro_rules! words {
             /// What the terms mean here.
             pub(crate) glossary: [(&'static str, &'static str); 24],
             /// What the program records in English, by patterns, and how it is said here; none in English.
-            said: &'static [(&'static str, &'static str)],
+            said: &'static [&'static [(&'static str, &'static str)]],
             /// Texts of the view, the same way.
             view: &'static [(&'static str, &'static str)],
         }

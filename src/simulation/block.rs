@@ -7,9 +7,9 @@ use super::rest::RestCriterion;
 use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
+use crate::flight::Parabola;
 use crate::flight::block::{Tumble, first_touch};
 use crate::flight::top::Top;
-use crate::flight::{FlightEnd, Parabola};
 use crate::ground::Law;
 use crate::random::RandomStream;
 use crate::release::{Drawn, Release};
@@ -46,7 +46,7 @@ pub(super) fn follow_block(
     footing.near.forget();
     footing.near.gone.clear();
     (footing.near.tested, footing.sweeps) = (0, 0);
-    footing.facets = Facets::of(random);
+    footing.facets = Facets::of(random, laws);
     footing.slip.begin(&release.grounds);
     let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
     let form = Form { rock: release.rock, block: Some(block) };
@@ -82,24 +82,13 @@ impl Roll<'_> {
         let left = self.settings.longest_s - time_s;
         let tumble = Tumble { block, top, path };
         let landing = first_touch(self.settings.terrain, &tumble, left, &mut self.footing.near);
-        let (dt, stop) = match landing {
-            FlightEnd::Touch(t) => (t, None),
-            FlightEnd::Leaves(t) => (t, Some(Stop::LeftTerrain)),
-            FlightEnd::Flies => (left, Some(Stop::TimeUp)),
-        };
-        // a touch at the very end of the time comes too late
-        let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
+        let (dt, stop) = self.settings.end_of_flight(&landing, time_s);
         self.recorder.effort.leaps += 1;
         self.recorder.fly(&path, Some(&top), dt);
         self.footing.slip.fly(dt);
         self.moving.pose = tumble.pose(dt);
         self.moving.v = self.recorder.now.velocity_m_s;
-        stop.or_else(|| self.over_budget())
-    }
-
-    fn over_budget(&self) -> Option<Stop> {
-        let most = self.settings.step.scheme.most_work();
-        (self.recorder.effort.work() > most).then_some(Stop::OverBudget)
+        stop.or_else(|| self.settings.over_budget(&self.recorder.effort))
     }
 
     /// Goes on in contact until the block is free again or stops.
@@ -142,7 +131,7 @@ impl Roll<'_> {
             self.recorder.turned = Some(turned(block, &self.moving));
             self.recorder.step(to, done.slides);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
-            let ends = time_up.or_else(|| self.over_budget());
+            let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if done.is_free || ends.is_some() {
                 return ends;
             }

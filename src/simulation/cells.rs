@@ -1,6 +1,7 @@
 //! Which cells of the maps a rock passes, with its largest energy and height in each.
 
 use super::form::{Form, Instant, Turned, between};
+use super::passages::{Passage, Passages};
 use crate::flight::Parabola;
 use crate::plan::MapGrid;
 use crate::rock::{Motion, Vec3};
@@ -21,38 +22,12 @@ pub struct CellPassage {
 #[derive(Debug)]
 pub(super) struct CellPassages<'a> {
     cells: Option<&'a MapGrid>,
-    found: Vec<CellPassage>,
+    pub(super) found: Passages<CellPassage>,
 }
 
 impl<'a> CellPassages<'a> {
     pub(super) fn of(cells: Option<&'a MapGrid>) -> Self {
-        Self { cells, found: Vec::new() }
-    }
-
-    /// How many there are so far, and the last, which the next may join.
-    pub(super) fn mark(&self) -> (usize, Option<CellPassage>) {
-        (self.found.len(), self.found.last().copied())
-    }
-
-    /// Goes back to a mark.
-    pub(super) fn go_back(&mut self, (count, last): (usize, Option<CellPassage>)) {
-        self.found.truncate(count);
-        if let (Some(now), Some(last)) = (self.found.last_mut(), last) {
-            *now = last;
-        }
-    }
-
-    /// One entry a cell, in the order of cells.
-    pub(super) fn into_found(mut self) -> Vec<CellPassage> {
-        self.found.sort_by_key(|passage| passage.cell);
-        self.found.dedup_by(|next, kept| {
-            let same = next.cell == kept.cell;
-            if same {
-                kept.join(next);
-            }
-            same
-        });
-        self.found
+        Self { cells, found: Passages::new() }
     }
 
     /// Notes the cells below a flight of `dt` (s).
@@ -81,10 +56,7 @@ impl<'a> CellPassages<'a> {
         walk(cells, [&from.position_m, &end], |cell, s0, s1| {
             let (t0, t1) = (s0 * dt, s1 * dt);
             let height_m = [t0, 0.5 * (t0 + t1), t1].map(height_m).into_iter().fold(0.0, f64::max);
-            add(
-                &mut self.found,
-                CellPassage { cell, total_j: total_j(t0).max(total_j(t1)), height_m },
-            );
+            self.found.add(CellPassage { cell, total_j: total_j(t0).max(total_j(t1)), height_m });
         });
     }
 
@@ -98,23 +70,19 @@ impl<'a> CellPassages<'a> {
         };
         walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {
             let total_j = total_j(s0).max(total_j(s1));
-            add(&mut self.found, CellPassage { cell, total_j, height_m: 0.0 });
+            self.found.add(CellPassage { cell, total_j, height_m: 0.0 });
         });
     }
 }
 
-impl CellPassage {
+impl Passage for CellPassage {
+    fn place(&self) -> u32 {
+        self.cell
+    }
+
     fn join(&mut self, other: &Self) {
         self.total_j = self.total_j.max(other.total_j);
         self.height_m = self.height_m.max(other.height_m);
-    }
-}
-
-/// Adds to the last cell if that is the same: most steps stay in theirs.
-fn add(found: &mut Vec<CellPassage>, passage: CellPassage) {
-    match found.last_mut().filter(|last| last.cell == passage.cell) {
-        Some(last) => last.join(&passage),
-        None => found.push(passage),
     }
 }
 

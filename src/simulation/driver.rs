@@ -8,7 +8,7 @@ use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
 use super::{Stop, Trajectory};
 use crate::error::Result;
-use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
+use crate::flight::{Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
@@ -67,11 +67,11 @@ pub fn simulate(
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
-    scratch.make_laws(release, &capture_of(settings));
+    scratch.make_laws(release, &settings.capture());
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
     scratch.state.raise_stems(settings.terrain, &random);
-    scratch.state.facets = Facets::of(random);
+    scratch.state.facets = Facets::of(random, &scratch.laws);
     let world = ContactEnvironment {
         terrain: settings.terrain,
         body: Body::new(&release.rock, settings.gravity_m_s2),
@@ -107,17 +107,9 @@ pub fn simulate_block(
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
-    scratch.make_laws(release, &capture_of(settings));
+    scratch.make_laws(release, &settings.capture());
     let Scratch { laws, footing, .. } = scratch;
     follow_block(settings, (release, drawn), keep, (laws, random), footing)
-}
-
-fn capture_of(settings: &RunSettings) -> Capture {
-    Capture {
-        own_m_s: settings.step.capture_speed_m_s,
-        tolerance_m_s: settings.step.tolerance_m_s,
-        gravity_m_s2: settings.gravity_m_s2,
-    }
 }
 
 /// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
@@ -158,11 +150,11 @@ pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> K
     Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
-pub(super) struct Fall<'a> {
-    pub(super) settings: &'a RunSettings<'a>,
-    pub(super) world: ContactEnvironment<'a>,
-    pub(super) state: &'a mut ContactState,
-    pub(super) recorder: Recorder<'a>,
+struct Fall<'a> {
+    settings: &'a RunSettings<'a>,
+    world: ContactEnvironment<'a>,
+    state: &'a mut ContactState,
+    recorder: Recorder<'a>,
 }
 
 impl<'a> Fall<'a> {
@@ -184,32 +176,21 @@ impl<'a> Fall<'a> {
         };
         let left = self.settings.longest_s - now.time_s;
         let begun = self.state.stopwatches.now();
-        let (dt, stop) = match time_of_impact_past(
+        let end = time_of_impact_past(
             self.settings.terrain,
             &flight,
             left,
             &self.state.near.gone,
             &mut self.recorder.effort.triangles,
-        ) {
-            FlightEnd::Touch(t) => (t, None),
-            FlightEnd::Leaves(t) => (t, Some(Stop::LeftTerrain)),
-            FlightEnd::Flies => (left, Some(Stop::TimeUp)),
-        };
-        // a touch at the very end of the time comes too late
-        let stop = stop.or_else(|| (dt >= left).then_some(Stop::TimeUp));
+        );
+        let (dt, stop) = self.settings.end_of_flight(&end, now.time_s);
         self.state.stopwatches.stop(Piece::Leap, begun);
         self.recorder.effort.leaps += 1;
         let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
         self.state.stopwatches.stop(Piece::NotesInFlight, begun);
         // flights count too: between two plates a rock may fly without end and without getting on in time
-        stop.or_else(|| self.over_budget())
-    }
-
-    /// Whether the rock has had all the work it may have.
-    fn over_budget(&self) -> Option<Stop> {
-        let most = self.settings.step.scheme.most_work();
-        (self.recorder.effort.work() > most).then_some(Stop::OverBudget)
+        stop.or_else(|| self.settings.over_budget(&self.recorder.effort))
     }
 
     /// Goes on in contact until the rock is free again or stops.
@@ -237,7 +218,7 @@ impl<'a> Fall<'a> {
     }
 
     /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
-    pub(super) fn is_rigid(&self) -> bool {
+    fn is_rigid(&self) -> bool {
         !self.settings.step.scheme.has_springs()
     }
 
@@ -278,7 +259,7 @@ impl<'a> Fall<'a> {
             self.in_contact().end_impacts();
             self.state.stopwatches.stop(Piece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
-            let ends = time_up.or_else(|| self.over_budget());
+            let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if self.state.is_free() {
                 return ends;
             }

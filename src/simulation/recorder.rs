@@ -105,8 +105,8 @@ impl<'a> Recorder<'a> {
             path: self.path.len(),
             impacts: self.impacts.mark(),
             crossings: self.crossings.found().to_vec(),
-            passages: self.passages.mark(),
-            stretches: self.stretches.mark(),
+            passages: self.passages.found.mark(),
+            stretches: self.stretches.found.mark(),
             tree_impact_count: self.tree_impact_count,
             ledger: self.ledger,
             next_point_s: self.next_point_s,
@@ -120,8 +120,8 @@ impl<'a> Recorder<'a> {
         self.path.truncate(mark.path);
         self.impacts.go_back(&mark.impacts);
         self.crossings.go_back(&mark.crossings);
-        self.passages.go_back(mark.passages);
-        self.stretches.go_back(mark.stretches);
+        self.passages.found.go_back(mark.passages);
+        self.stretches.found.go_back(mark.stretches);
         (self.tree_impact_count, self.next_point_s) = (mark.tree_impact_count, mark.next_point_s);
     }
 
@@ -211,7 +211,11 @@ impl<'a> Recorder<'a> {
         if flies {
             self.note_height(&self.instant());
         }
-        let height_m = if flies { self.clearance_m(&self.instant()).unwrap_or(0.0) } else { 0.0 };
+        let height_m = if flies && self.stretches.is_asked() {
+            self.clearance_m(&self.instant()).unwrap_or(0.0)
+        } else {
+            0.0
+        };
         self.stretches.step(&to, height_m.max(0.0));
         self.note_speed();
     }
@@ -243,8 +247,8 @@ impl<'a> Recorder<'a> {
             impacts: self.impacts.rows,
             path: self.path,
             crossings: self.crossings.into_found(),
-            passages: self.passages.into_found(),
-            stretches: self.stretches.into_found(),
+            passages: self.passages.found.into_found(),
+            stretches: self.stretches.found.into_found(),
             ledger: self.ledger,
             released_j,
             effort: self.effort,

@@ -3,8 +3,8 @@
 
 use super::impacts::Struck;
 use super::recorder::Recorder;
-use crate::contact::ContactPoint;
 use crate::contact::history::ContactHistory;
+use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::roughness::Meeting;
@@ -36,7 +36,8 @@ impl RockInContact<'_, '_> {
         let Some(fastest) = self.fastest_unannounced() else { return };
         let facet = if self.world.law(fastest.triangle).roughness_rad > 0.0 {
             self.leave_facet();
-            let at = self.meeting((fastest.n, fastest.triangle));
+            let Fastest { n, triangle, .. } = fastest;
+            let at = Meeting { n, triangle, c: self.state.c, v: self.state.v };
             self.state.facets.struck(&self.world, &at)
         } else {
             None
@@ -52,12 +53,14 @@ impl RockInContact<'_, '_> {
         let mut rebounds = false;
         for k in 0..self.state.histories.len() {
             let mut history = self.state.histories[k];
-            rebounds |= self.announce_one(&mut history, (&fastest, to_facet_m_s), held_j);
+            rebounds |=
+                self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, held_j));
             self.state.histories[k] = history;
         }
         for k in 0..self.state.struck.len() {
             let mut history = self.state.struck[k];
-            rebounds |= self.announce_one(&mut history, (&fastest, to_facet_m_s), held_j);
+            rebounds |=
+                self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, held_j));
             self.state.struck[k] = history;
         }
         if let Some(turn) = facet.filter(|_| rebounds) {
@@ -81,7 +84,7 @@ impl RockInContact<'_, '_> {
         &mut self,
         history: &mut ContactHistory,
         (fastest, to_facet_m_s): (&Fastest, f64),
-        held_j: f64,
+        (until_s, held_j): (f64, f64),
     ) -> bool {
         if std::mem::replace(&mut history.announced, true) || history.captured {
             return false;
@@ -89,7 +92,14 @@ impl RockInContact<'_, '_> {
         let own_m_s = -history.n.dot(&self.recorder.now.velocity_m_s);
         let is_fastest = history.n == fastest.n;
         let approach_m_s = if is_fastest { own_m_s.max(to_facet_m_s) } else { own_m_s };
-        history.impact = self.begin_impact(history, approach_m_s, held_j);
+        // what comes too slowly is no impact
+        history.impact = if approach_m_s < self.world.law(history.triangle).capture_m_s {
+            0
+        } else {
+            let (at, of) = ((&self.state.c, &history.n), (history.feature, history.triangle));
+            let struck = struck(self.recorder, self.world.body.radius, at, of, approach_m_s);
+            self.recorder.begin_impact(&struck, until_s, held_j)
+        };
         true
     }
 
@@ -102,7 +112,7 @@ impl RockInContact<'_, '_> {
             self.break_stems();
             f64::INFINITY
         };
-        if self.world.laws.iter().any(|law| law.roughness_rad > 0.0) {
+        if self.state.facets.are_any() {
             self.meet_next_facet();
         }
         longest_s
@@ -115,7 +125,8 @@ impl RockInContact<'_, '_> {
             let approach_m_s = -touch.normal.dot(&state.v);
             if is_new && approach_m_s >= world.law(touch.triangle).capture_m_s {
                 let now_s = recorder.now.time_s;
-                let struck = struck(recorder, world, (&state.c, touch), approach_m_s);
+                let (at, of) = ((&state.c, &touch.normal), (touch.feature, touch.triangle));
+                let struck = struck(recorder, world.body.radius, at, of, approach_m_s);
                 recorder.begin_impact(&struck, now_s, 0.0);
             }
             recorder.ledger.trees_j += taken_j;
@@ -143,21 +154,6 @@ impl RockInContact<'_, '_> {
             // its blow is announced herewith
             self.state.is_struck |= self.state.facets.is_any_met();
         }
-    }
-
-    fn meeting(&self, (n, triangle): (Vec3, u32)) -> Meeting {
-        Meeting { n, triangle, c: self.state.c, v: self.state.v }
-    }
-
-    /// Begins the impact of a contact, unless it came too slowly for one (0); `held_j` is what other springs hold.
-    fn begin_impact(&mut self, history: &ContactHistory, approach_m_s: f64, held_j: f64) -> u32 {
-        if approach_m_s < self.world.law(history.triangle).capture_m_s {
-            return 0;
-        }
-        let touch = ContactPoint::single(history.feature, history.triangle, &history.n, 1.0);
-        let struck = struck(self.recorder, &self.world, (&self.state.c, &touch), approach_m_s);
-        let until_s = self.recorder.now.time_s + self.impact_time();
-        self.recorder.begin_impact(&struck, until_s, held_j)
     }
 
     /// The longest an impact is taken to last (s): in the rigid limit no time at all.
@@ -200,18 +196,19 @@ impl RockInContact<'_, '_> {
     }
 }
 
-/// What a rock with its centre at `c` strikes at a touch.
+/// What a rock with its centre at `c` strikes with an approach of so much (m/s) at a feature with normal `n`, of a triangle.
 fn struck(
     recorder: &Recorder,
-    world: &ContactEnvironment,
-    (c, touch): (&Vec3, &ContactPoint),
+    radius_m: f64,
+    (c, n): (&Vec3, &Vec3),
+    (feature, triangle): (Feature, u32),
     approach_m_s: f64,
 ) -> Struck {
     Struck {
-        point_m: c - touch.normal * world.body.radius,
-        normal: touch.normal,
-        feature: touch.feature.kind,
-        sheet: recorder.sheet_of(touch.triangle),
+        point_m: c - n * radius_m,
+        normal: *n,
+        feature: feature.kind,
+        sheet: recorder.sheet_of(triangle),
         approach_m_s,
     }
 }

@@ -1,5 +1,8 @@
 //! What all rocks of a scene have in common.
 
+use super::{Effort, Stop};
+use crate::flight::FlightEnd;
+use crate::ground::Capture;
 use crate::plan::{Plan, Recorders, RestRule};
 use crate::solver::Settings;
 use crate::terrain::Terrain;
@@ -35,5 +38,31 @@ impl<'a> RunSettings<'a> {
             recorders: plan.recorders(),
             seed: plan.seed,
         }
+    }
+
+    /// What the laws of grounds and rocks need to know of the run.
+    pub(super) fn capture(&self) -> Capture {
+        Capture {
+            own_m_s: self.step.capture_speed_m_s,
+            tolerance_m_s: self.step.tolerance_m_s,
+            gravity_m_s2: self.gravity_m_s2,
+        }
+    }
+
+    /// Whether a rock has had all the work it may have.
+    pub(super) fn over_budget(&self, effort: &Effort) -> Option<Stop> {
+        (effort.work() > self.step.scheme.most_work()).then_some(Stop::OverBudget)
+    }
+
+    /// How long a flight lasts (s) that ends so and began at `now_s`, and whether the rock stops there.
+    pub(super) fn end_of_flight(&self, end: &FlightEnd, now_s: f64) -> (f64, Option<Stop>) {
+        let left = self.longest_s - now_s;
+        let (dt, stop) = match *end {
+            FlightEnd::Touch(t) => (t, None),
+            FlightEnd::Leaves(t) => (t, Some(Stop::LeftTerrain)),
+            FlightEnd::Flies => (left, Some(Stop::TimeUp)),
+        };
+        // a touch at the very end of the time comes too late
+        (dt, stop.or_else(|| (dt >= left).then_some(Stop::TimeUp)))
     }
 }

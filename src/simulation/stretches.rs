@@ -1,6 +1,7 @@
 //! How fast and how high a rock was, stretch by stretch of its distance from its release in plan view.
 
 use super::form::{Form, Instant};
+use super::passages::{Passage, Passages};
 use crate::flight::Parabola;
 use crate::math;
 use crate::rock::{Motion, Vec3};
@@ -24,46 +25,25 @@ pub(super) struct Stretches {
     /// Length of a stretch (m); none where nobody asks.
     step_m: Option<f64>,
     from_m: Corner,
-    found: Vec<Stretch>,
+    pub(super) found: Passages<Stretch>,
 }
 
 impl Stretches {
     pub(super) fn of(step_m: Option<f64>, start: &Motion) -> Self {
         let at = start.position_m;
-        Self { step_m, from_m: [at.x, at.y], found: Vec::new() }
+        Self { step_m, from_m: [at.x, at.y], found: Passages::new() }
     }
 
-    /// How many there are so far, and the last, which the next may join.
-    pub(super) fn mark(&self) -> (usize, Option<Stretch>) {
-        (self.found.len(), self.found.last().copied())
-    }
-
-    /// Goes back to a mark.
-    pub(super) fn go_back(&mut self, (count, last): (usize, Option<Stretch>)) {
-        self.found.truncate(count);
-        if let (Some(now), Some(last)) = (self.found.last_mut(), last) {
-            *now = last;
-        }
-    }
-
-    /// One entry a stretch, in the order of stretches.
-    pub(super) fn into_found(mut self) -> Vec<Stretch> {
-        self.found.sort_by_key(|stretch| stretch.number);
-        self.found.dedup_by(|next, kept| {
-            let same = next.number == kept.number;
-            if same {
-                kept.join(next);
-            }
-            same
-        });
-        self.found
+    /// Whether somebody asks.
+    pub(super) fn is_asked(&self) -> bool {
+        self.step_m.is_some()
     }
 
     /// Notes a place with the speed and the height there.
     pub(super) fn note(&mut self, at: &Vec3, speed_m_s: f64, height_m: f64) {
         let Some(step_m) = self.step_m else { return };
         let away_m = math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]);
-        add(&mut self.found, Stretch { number: (away_m / step_m) as u32, speed_m_s, height_m });
+        self.found.add(Stretch { number: (away_m / step_m) as u32, speed_m_s, height_m });
     }
 
     /// Notes the end of a step in contact, and the stretches that it passes over.
@@ -115,23 +95,19 @@ impl Stretches {
                 highest_m = highest_m.max(before);
             }
             let speed_m_s = speed_m_s(t0).max(speed_m_s(t1));
-            add(&mut self.found, Stretch { number, speed_m_s, height_m: highest_m });
+            self.found.add(Stretch { number, speed_m_s, height_m: highest_m });
         });
     }
 }
 
-impl Stretch {
+impl Passage for Stretch {
+    fn place(&self) -> u32 {
+        self.number
+    }
+
     fn join(&mut self, other: &Self) {
         self.speed_m_s = self.speed_m_s.max(other.speed_m_s);
         self.height_m = self.height_m.max(other.height_m);
-    }
-}
-
-/// Adds to the last stretch if that is the same: most steps stay in theirs.
-fn add(found: &mut Vec<Stretch>, stretch: Stretch) {
-    match found.last_mut().filter(|last| last.number == stretch.number) {
-        Some(last) => last.join(&stretch),
-        None => found.push(stretch),
     }
 }
 
@@ -207,6 +183,6 @@ mod tests {
             all.note(&Vec3::new(x, 0.0, 9.0), speed, height);
         }
         let stretch = |number, speed_m_s, height_m| Stretch { number, speed_m_s, height_m };
-        assert_eq!(all.into_found(), [stretch(0, 2.0, 0.2), stretch(1, 3.0, 0.0)]);
+        assert_eq!(all.found.into_found(), [stretch(0, 2.0, 0.2), stretch(1, 3.0, 0.0)]);
     }
 }

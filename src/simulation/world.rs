@@ -148,7 +148,7 @@ pub fn simulate_world(
             let mut body = body(settings, release, keep(k), &mut damping);
             let random = stream(settings.seed, Purpose::Impacts, k);
             body.member.state.raise_stems(settings.terrain, &random);
-            body.member.state.facets = Facets::of(random);
+            body.member.state.facets = Facets::of(random, &body.member.laws);
             Some(Box::new(body))
         })
         .collect();
@@ -160,14 +160,6 @@ pub fn simulate_world(
     })
 }
 
-fn capture(settings: &RunSettings) -> Capture {
-    Capture {
-        own_m_s: settings.step.capture_speed_m_s,
-        tolerance_m_s: settings.step.tolerance_m_s,
-        gravity_m_s2: settings.gravity_m_s2,
-    }
-}
-
 fn body<'a>(
     settings: &RunSettings<'a>,
     release: &Release,
@@ -175,7 +167,7 @@ fn body<'a>(
     damping: &mut impl FnMut(Option<f64>) -> Damping,
 ) -> WorldBody<'a> {
     let laws = release.grounds.iter().map(|ground| {
-        Law::new(ground, &damping(ground.restitution), &release.rock, &capture(settings))
+        Law::new(ground, &damping(ground.restitution), &release.rock, &settings.capture())
     });
     let motion = release.motion;
     let body = Body::new(&release.rock, settings.gravity_m_s2);

@@ -10,6 +10,7 @@
 
 use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
+use crate::ground::Law;
 use crate::math;
 use crate::random::{RandomStream, unit};
 use crate::rock::Vec3;
@@ -72,9 +73,15 @@ impl Meeting {
 }
 
 impl Facets {
-    /// Those of a rock with its own random stream.
-    pub(crate) fn of(random: RandomStream) -> Self {
-        Self { random: Some(random), ..Self::default() }
+    /// Those of a rock with its own random stream, on grounds with these laws: none where all are smooth.
+    pub(crate) fn of(random: RandomStream, laws: &[Law]) -> Self {
+        let is_rough = laws.iter().any(|law| law.roughness_rad > 0.0);
+        Self { random: is_rough.then_some(random), ..Self::default() }
+    }
+
+    /// Whether any ground of the rock has some.
+    pub(crate) fn are_any(&self) -> bool {
+        self.random.is_some()
     }
 
     /// The facet that a rock strikes, as the rotation from the surface to it: the last one as far as it reaches, a new one

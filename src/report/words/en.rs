@@ -1,6 +1,6 @@
 //! English. The other files say the same, word for word in the same order.
 
-use super::Words;
+use super::{Words, glossary};
 
 // a word a line: languages can be read beside each other
 #[rustfmt::skip]
@@ -382,32 +382,7 @@ pub(super) static WORDS: Words = Words {
         "Every rock is a function of scene, seed and its number alone: the same alone, among all others, and on any number of threads.",
         "All rocks are counted, those that failed or left the terrain too, and every estimate stands beside its confidence interval.",
     ],
-    glossary: [
-        ("Percentile", "Over rocks, of each rock's value: its largest along the way, or at its first crossing of a line. On maps: of each rock's largest value in the cell. P95 is the value that 95 % of the rocks do not exceed."),
-        ("95 % interval", "For percentiles from order statistics, which assumes no distribution; for shares Wilson's interval. It covers chance in the sample only."),
-        ("≥ and ≤", "The number is a bound: rocks that left the terrain, or were still moving when their time was up, would have gone on. Their runout is at least, their reach angle at most what was seen; a percentile that they decide is a bound too and has no interval on that side. The truth lies there however the rocks would have gone on."),
-        ("With and without barriers", "Without: all rocks that cross the line. With: those that no barrier stops before it. A rock that a barrier lets through keeps its energy."),
-        ("Runout", "Horizontal distance from release to end."),
-        ("Reach angle (Fahrböschung)", "atan(drop / runout), drop and runout measured from release to end."),
-        ("Bounce height", "Vertical distance from the ground below to the lowest point of the rock. A barrier also needs it at right angles to the slope."),
-        ("Translational energy", "m v²/2 of the centre."),
-        ("Rotational energy", "I ω²/2 with I = 2/5 m R²."),
-        ("Total energy", "The sum of both at one instant; its largest value is not the sum of the two largest."),
-        ("Reach probability", "Crossings over releases: conditional on release. It is not a frequency; that needs the frequency of releases."),
-        ("Stop", "At rest: slower than the rest speed for the rest time, in contact. Left the terrain: beyond the edge of the meshes. Time up: still moving at the longest simulated time. Failed: the computation could not go on."),
-        ("Evaluation line", "A vertical curtain over a line of the map. Values are those at a rock's first crossing of it, found on the parabola or the step that crosses; a rock that comes back is counted, its later crossings are in no statistic."),
-        ("Retention", "The share of releases that does not reach a line: what is missing between two lines has stopped there."),
-        ("Height normal to the slope", "Distance from the plane of the triangle below to the rock, at right angles to that triangle: the height that a barrier standing at right angles to the slope must have."),
-        ("Barrier", "A line with a height and an energy capacity. It stops a rock whose highest point is not above its edge and whose total energy it takes, and changes no rock's way in the computation; what it stops does not arrive at those behind it."),
-        ("Design energy, design height", "A percentile over the rocks that arrive, times the partial factors that are printed one by one, and for the height plus the free height. Factors on the speed enter the energy squared. P95 needs 59 rocks, P99 299: with fewer there is none. The interval is that of the percentile."),
-        ("Intensity", "Swiss classes of the 95th percentile of total energy of the rocks that pass a cell: weak below 30 kJ, medium 30 to 300 kJ, strong above 300 kJ. The largest energy would grow with the number of releases."),
-        ("Conditional on release, a year", "Conditional on release: given that a rock has been released; a share of releases or events. A year: how often it happens, the sources' own frequency included. Only tables and figures that say “a year” or “return period” hold numbers of the second kind."),
-        ("Passage frequency, energy exceedance", "Failure frequency (events a year at a source) times reach probability (conditional on release), summed over sources and sizes; energy exceedance λ(E ≥ e) counts passages with at least the total energy e only."),
-        ("Return period", "1/λ. The energy of a return period T is the one with λ(E ≥ e) = 1/T. The probability of one or more in a year is 1 − e^−λ."),
-        ("Hit of an object", "Seen from above, the rim of the rock comes over the object: within (width + diameter)/2 of its line, or half a diameter of its outline. At any height. Each rock counts once, with its energy at that moment."),
-        ("Passages and deposits", "Rocks that have been in a cell, each counted once; rocks that came to rest in it."),
-        ("KS distance (Kolmogorov and Smirnov)", "The largest difference between two cumulative distributions (0 to 1). Its 5 % limit is what two samples of these sizes from one and the same distribution exceed once in twenty times."),
-    ],
+    glossary: glossary::EN,
     said: &[],
     view: &[],
 };

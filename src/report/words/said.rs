@@ -16,11 +16,11 @@ impl Words {
             return Some(text.to_owned());
         }
         // the view has some of the same words
-        let all = || self.said.iter().chain(self.view.iter());
+        let all = || self.recorded().chain(self.view.iter());
         if let Some((_, said)) = all().find(|(known, _)| *known == text) {
             return Some((*said).to_owned());
         }
-        let with_places = self.said.iter().filter(|(known, _)| known.contains('{'));
+        let with_places = self.recorded().filter(|(known, _)| known.contains('{'));
         let mut found = with_places.filter_map(|(known, said)| Some((places(known, text)?, said)));
         let (places, said) = found.next()?;
         let values: Vec<(&str, String)> =
@@ -56,10 +56,15 @@ impl Words {
         text.to_owned()
     }
 
+    /// All patterns of what is recorded.
+    fn recorded(&self) -> impl Iterator<Item = &'static (&'static str, &'static str)> + use<> {
+        self.said.iter().copied().flatten()
+    }
+
     /// The name of a part of the plan.
     pub fn part(&self, name: &str) -> String {
         let key = format!("[{name}]");
-        let said = self.said.iter().find(|(known, _)| *known == key);
+        let said = self.recorded().find(|(known, _)| *known == key);
         said.map_or_else(|| name.to_owned(), |(_, said)| (*said).to_owned())
     }
 
@@ -152,7 +157,9 @@ mod tests {
         };
         let all = [Language::De, Language::Fr, Language::It].map(Words::of);
         for words in all {
-            for (one, other) in [(words.said, all[0].said), (words.view, all[0].view)] {
+            let both =
+                |words: &Words| [words.recorded().collect(), words.view.iter().collect::<Vec<_>>()];
+            for (one, other) in both(words).into_iter().zip(both(all[0])) {
                 assert!(
                     one.iter().map(|(known, _)| known).eq(other.iter().map(|(known, _)| known))
                 );

@@ -5,7 +5,7 @@ use super::prediction::{
     Meetings, Place, is_busy, meetings_in_passing, meetings_of_islands, place_of,
 };
 use super::window::IslandWindow;
-use super::{PairMaterial, State, TOUCHING, WorldBody, WorldStats, capture, law_between};
+use super::{PairMaterial, State, TOUCHING, WorldBody, WorldStats, law_between};
 use crate::contact::pair::PairHistory;
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
@@ -53,7 +53,7 @@ impl<'a> BodyWorld<'a> {
         Self {
             settings,
             answer: (answer.ground, Damping::of(answer.ground.restitution)),
-            capture: capture(settings),
+            capture: settings.capture(),
             bodies,
             pair_histories: Vec::new(),
             wide: CachedPairs::default(),

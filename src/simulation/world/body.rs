@@ -91,9 +91,9 @@ impl<'a> WorldBody<'a> {
 
     /// Takes it out of the world when it has had all the work it may have: others may have less to do.
     pub(super) fn spend(&mut self, settings: &RunSettings) {
-        if self.recorder.effort.work() > settings.step.scheme.most_work() {
+        if let Some(stop) = settings.over_budget(&self.recorder.effort) {
             self.lands = None;
-            self.leave(Stop::OverBudget);
+            self.leave(stop);
         }
     }
 

@@ -204,7 +204,11 @@ impl<'a> IslandWindow<'a> {
     /// Makes the rocks of the island ready for a step in contact; returns the longest that it may be (s).
     fn before_step(&mut self, island: &mut Island<'a>) -> f64 {
         let mut longest_s = f64::INFINITY;
+        let has_stems = self.settings.terrain.stems.is_some();
         for (body, member) in self.bodies.iter_mut().zip(&mut island.members) {
+            if !has_stems && !member.state.facets.are_any() {
+                continue;
+            }
             let met = member.state.facets.is_any_met();
             std::mem::swap(&mut body.member, member);
             longest_s = longest_s.min(body.before_step(self.settings));

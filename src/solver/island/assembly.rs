@@ -85,10 +85,10 @@ impl<'a> Island<'a> {
     /// # Errors
     /// [`StepError`] if the step had to become too short to matter.
     pub fn advance(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
+        let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
         if let [member] = &mut self.members[..] {
             let h = &mut self.h;
             return member.advance_alone(self.terrain, |world, state| {
-                let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
                 let control = Control::new(tableau, settings, world);
                 if !h.is_finite() {
                     *h = step_control::first_step(world, state);
@@ -97,7 +97,7 @@ impl<'a> Island<'a> {
             });
         }
         let control = &Control {
-            tableau: settings.scheme.tableau().unwrap_or(&TR_BDF2),
+            tableau,
             tolerance: settings.tolerance_m_s,
             impact: f64::INFINITY,
             plane_impacts: false,

@@ -1,0 +1,322 @@
+//! What the plan says in English, in French.
+
+/// Names of its parts, and what it says of them, by patterns.
+pub(super) const PLAN: &[(&str, &str)] = &[
+    // Names of the plan's parts
+    ("[scene]", "scène"),
+    ("[file]", "fichier"),
+    ("[version]", "version"),
+    ("[releases]", "départs"),
+    ("[radius]", "rayon"),
+    ("[terrain]", "terrain"),
+    ("[input file]", "fichier lu"),
+    ("[ground zones]", "zones de sol"),
+    ("[map]", "carte"),
+    ("[gravity]", "pesanteur"),
+    ("[grounds]", "sols"),
+    ("[catalogue]", "catalogue"),
+    ("[scheme]", "schéma"),
+    ("[capture speed]", "vitesse de capture"),
+    ("[tangential answer]", "tangentiel"),
+    ("[impacts on one plane]", "chocs sur un plan"),
+    ("[own dissipation]", "dissipation propre"),
+    ("[stop rule]", "règle d’arrêt"),
+    ("[trees]", "arbres"),
+    ("[breaking stems]", "troncs cassants"),
+    ("[flight]", "vol"),
+    ("[orientation]", "orientation"),
+    ("[shape]", "forme"),
+    ("[impacts of blocks]", "chocs des blocs"),
+    ("[cost of shape]", "coût de la forme"),
+    ("[flat edges]", "arêtes plates"),
+    ("[hollow edges]", "arêtes creuses"),
+    ("[corners]", "sommets"),
+    ("[rolling friction]", "frott. de roulement"),
+    ("[rolling stops]", "roulement arrêté"),
+    ("[roughness]", "rugosité"),
+    ("[rock against rock]", "bloc contre bloc"),
+    ("[coupled solve]", "résolution couplée"),
+    ("[bonds]", "liaisons"),
+    ("[paths]", "trajectoires"),
+    ("[impacts]", "impacts"),
+    ("[lines]", "lignes"),
+    ("[barriers]", "ouvrages"),
+    ("[objects]", "objets"),
+    ("[frequency]", "fréquence"),
+    ("[maps]", "cartes"),
+    ("[profile]", "profil"),
+    ("[at most]", "au plus"),
+    ("[compared with]", "comparé à"),
+    ("[warning]", "attention"),
+    // What the plan says
+    ("left out: {why}", "laissé de côté\u{a0}: {why}"),
+    ("leapt over: {why}", "franchi d’un bond\u{a0}: {why}"),
+    ("the scene has none", "la scène n’en a pas"),
+    ("no ground has any", "aucun sol n’en a"),
+    ("releases are independent", "les départs sont indépendants"),
+    ("every file has one ground", "chaque fichier a un seul sol"),
+    (
+        "no ground of trees has breaks_above_j, stems stand for good",
+        "aucun sol d’arbres n’a breaks_above_j, les troncs tiennent",
+    ),
+    (
+        "nothing but gravity acts between touches, the parabola is exact",
+        "entre les contacts n’agit que la pesanteur, la parabole est exacte",
+    ),
+    (
+        "a sphere looks the same from every side; its spin is computed, how far it has turned is not",
+        "une sphère est la même de tous côtés\u{a0}; sa rotation est calculée, son orientation non",
+    ),
+    (
+        "one rock has 6 unknowns, a dense factor is enough",
+        "un bloc a 6 inconnues, un facteur plein suffit",
+    ),
+    (
+        "not asked for, [record] impacts = true keeps them",
+        "non demandé, [record] impacts = true les garde",
+    ),
+    ("not asked for, [maps] cell_m = … writes them", "non demandé, [maps] cell_m = … les écrit"),
+    (
+        "a bond breaks by its springs, and the rigid limit has none",
+        "une liaison rompt par ses ressorts, la limite rigide n’en a pas",
+    ),
+    (
+        "neither tensile_strength_pa nor cohesion_pa is above 0",
+        "ni tensile_strength_pa ni cohesion_pa ne dépasse 0",
+    ),
+    (
+        "the scene has no [frequency], every number is conditional on release",
+        "la scène n’a pas de [frequency], chaque nombre est conditionnel au départ",
+    ),
+    ("the fixed step knows no other", "le pas fixe n’en connaît pas d’autre"),
+    ("every impact is followed step by step", "chaque choc est suivi pas à pas"),
+    ("{count} {place}, seed {seed}", "{count} {place}, graine {seed}"),
+    ("from {n} points in turn", "de {n} points à tour de rôle"),
+    ("along a line of {x} m", "le long d’une ligne de {x} m"),
+    ("over an area of {x} m²", "sur une surface de {x} m²"),
+    ("over {n} zones of {file}, {how}", "sur {n} zones de {file}, {how}"),
+    ("each a source of its own", "chacune une source à part"),
+    ("shared by their weights", "réparties selon leurs poids"),
+    ("shared by their numbers of points", "réparties selon leurs nombres de points"),
+    ("shared by their lengths", "réparties selon leurs longueurs"),
+    ("shared by their areas", "réparties selon leurs surfaces"),
+    (
+        "{a} m smallest, {b} m median, {c} m largest",
+        "{a} m le plus petit, {b} m médian, {c} m le plus grand",
+    ),
+    ("{n} triangles in {files} files", "{n} triangles dans {files} fichiers"),
+    (
+        "{file}, {n} bytes; names no system of coordinates: taken as the scene's",
+        "{file}, {n} octets\u{a0}; ne nomme pas de système de coordonnées\u{a0}: pris comme celui de la scène",
+    ),
+    (
+        "{file}, {n} bytes; its system “{name}” has no EPSG code: taken as the scene's",
+        "{file}, {n} octets\u{a0}; son système «\u{a0}{name}\u{a0}» n’a pas de code EPSG\u{a0}: pris comme celui de la scène",
+    ),
+    ("{file}, {n} bytes", "{file}, {n} octets"),
+    (
+        "{n}, {area} m² in plan view; {k} triangles crossed by a border are {how}",
+        "{n}, {area} m² en plan\u{a0}; {k} triangles traversés par une limite sont {how}",
+    ),
+    (
+        "cut into {n}, by which {area} m² change hands",
+        "coupés en {n}, par quoi {area} m² changent de sol",
+    ),
+    (
+        "left whole, each with the ground at its centroid; cut = true would make {n} of them, and {area} m² would change hands",
+        "laissés entiers, chacun avec le sol de son centre\u{a0}; cut = true en ferait {n}, et {area} m² changeraient de sol",
+    ),
+    ("origin {place} m subtracted, no EPSG code", "origine {place} m soustraite, pas de code EPSG"),
+    ("origin {place} m subtracted, EPSG:{code}", "origine {place} m soustraite, EPSG:{code}"),
+    (
+        "{name} like {known}: {values} unless written in the scene; {source}",
+        "{name} comme {known}\u{a0}: {values} sauf écrit dans la scène\u{a0}; {source}",
+    ),
+    ("{name}, local error {x} m/s", "{name}, erreur locale {x} m/s"),
+    ("{name}, steps of up to {x} s", "{name}, pas de {x} s au plus"),
+    (
+        "{name}, steps of {x} s, with shear memory",
+        "{name}, pas de {x} s, avec mémoire de cisaillement",
+    ),
+    (
+        "{name}, steps of {x} s, as printed, without shear memory",
+        "{name}, pas de {x} s, comme imprimé, sans mémoire de cisaillement",
+    ),
+    (
+        "{x} m/s on {name}, for the median rock: slower impacts do not rebound",
+        "{x} m/s sur {name}, pour le bloc médian\u{a0}: les chocs plus lents ne rebondissent pas",
+    ),
+    (
+        "{x} m/s on {name}, given: slower impacts do not rebound",
+        "{x} m/s sur {name}, donnée\u{a0}: les chocs plus lents ne rebondissent pas",
+    ),
+    (
+        "{name}: shear over normal spring {ratio}, tangential restitution {back} where an impact sticks",
+        "{name}\u{a0}: ressort de cisaillement sur normal {ratio}, restitution tangentielle {back} où un choc adhère",
+    ),
+    (
+        "{name}: shear over normal spring {ratio}",
+        "{name}\u{a0}: ressort de cisaillement sur normal {ratio}",
+    ),
+    ("in no time: the limit of stiff springs", "sans durée\u{a0}: la limite des ressorts raides"),
+    (
+        "followed as a whole, in their own time; all others step by step",
+        "suivis d’un bloc, en leur temps propre\u{a0}; tous les autres pas à pas",
+    ),
+    (
+        "{name}: the scheme itself keeps {all} of the speed; restitution in force",
+        "{name}\u{a0}: le schéma garde lui-même {all} de la vitesse\u{a0}; restitution en vigueur",
+    ),
+    (
+        "{name}: the scheme itself keeps {all} of the speed; beside the ground's own restitution",
+        "{name}\u{a0}: le schéma garde lui-même {all} de la vitesse\u{a0}; outre la restitution du sol",
+    ),
+    (
+        "at rest after {t} s below {v} m/s in contact; time up after {most} s; over budget after {n} steps and flights",
+        "au repos après {t} s sous {v} m/s en contact\u{a0}; temps écoulé après {most} s\u{a0}; budget épuisé après {n} pas et vols",
+    ),
+    ("{n} triangles", "{n} triangles"),
+    (
+        "{n}, each whole again for the next rock",
+        "{n}, chacun de nouveau entier pour le bloc suivant",
+    ),
+    ("sphere, weight {n}", "sphère, poids {n}"),
+    (
+        "{name}, weight {n}, its sides drawn for each rock, of which the median: {a} corner balls of {b} R, {c} edges, {d} faces; reaches {e} R, moments of inertia {f} of the sphere's; rounding takes {g} R off its corners",
+        "{name}, poids {n}, côtés tirés pour chaque bloc, dont le médian\u{a0}: {a} boules d’angle de {b} R, {c} arêtes, {d} faces\u{a0}; portée {e} R, moments d’inertie {f} de la sphère\u{a0}; l’arrondi ôte {g} R aux angles",
+    ),
+    (
+        "{name}, weight {n}: {a} corner balls of {b} R, {c} edges, {d} faces; reaches {e} R, moments of inertia {f} of the sphere's; rounding takes {g} R off its corners",
+        "{name}, poids {n}\u{a0}: {a} boules d’angle de {b} R, {c} arêtes, {d} faces\u{a0}; portée {e} R, moments d’inertie {f} de la sphère\u{a0}; l’arrondi ôte {g} R aux angles",
+    ),
+    (
+        "computed for blocks, free rotation in closed form; left out for spheres, which look the same from every side",
+        "calculée pour les blocs, rotation libre sous forme close\u{a0}; laissée de côté pour les sphères, les mêmes de tous côtés",
+    ),
+    (
+        "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part",
+        "contact par contact\u{a0}: restitution selon la normale, aucune le long de la surface\u{a0}; les raideurs normale et de cisaillement n’interviennent pas",
+    ),
+    (
+        "a block is followed corner by corner and edge by edge: time grows with their number",
+        "un bloc est suivi angle par angle et arête par arête\u{a0}: le temps croît avec leur nombre",
+    ),
+    (
+        "{k} of {n} left out: the faces beside them touch",
+        "{k} sur {n} laissées de côté\u{a0}: les faces voisines touchent",
+    ),
+    (
+        "all kept, however sharp: a rock so deep in a fold that it reaches the edge presses on both sides as one contact",
+        "toutes gardées, si vives soient-elles\u{a0}: un bloc si profond dans un pli qu’il atteint l’arête presse les deux côtés en un seul contact",
+    ),
+    (
+        "{k} of {n} left out: {a} between edges that rise and edges that fall, {b} in flat ground; an edge or a face is always nearer",
+        "{k} sur {n} laissés de côté\u{a0}: {a} entre des arêtes qui montent et d’autres qui descendent, {b} en sol plan\u{a0}; une arête ou une face est toujours plus proche",
+    ),
+    ("computed", "calculé"),
+    (
+        "{name}: on no slope, it has no rolling friction",
+        "{name}\u{a0}: sur aucune pente, sans frottement de roulement",
+    ),
+    (
+        "{name}: on slopes of up to {x}° ({a}° to {b}°)",
+        "{name}\u{a0}: sur les pentes jusqu’à {x}° ({a}° à {b}°)",
+    ),
+    ("{name}: on slopes of up to {x}°", "{name}\u{a0}: sur les pentes jusqu’à {x}°"),
+    (
+        "a facet at every impact, and after every roughness length of sliding or rolling",
+        "une facette à chaque choc, et après chaque longueur de rugosité en glissant ou en roulant",
+    ),
+    (
+        "one world: {springs}, friction angle {angle}°, restitution of the scheme itself",
+        "un seul monde\u{a0}: {springs}, angle de frottement {angle}°, restitution du schéma même",
+    ),
+    (
+        "one world: {springs}, friction angle {angle}°, restitution {e}",
+        "un seul monde\u{a0}: {springs}, angle de frottement {angle}°, restitution {e}",
+    ),
+    ("springs of {a} and {b} N/m", "ressorts de {a} et {b} N/m"),
+    (
+        "springs left out: the rigid limit has none",
+        "ressorts laissés de côté\u{a0}: la limite rigide n’en a pas",
+    ),
+    (
+        "islands of rocks that may touch, each with its own step; impacts in the order of their times, sustained contact swept",
+        "îlots de blocs qui peuvent se toucher, chacun avec son pas\u{a0}; chocs dans l’ordre des temps, contact durable par balayages",
+    ),
+    (
+        "islands of rocks that may touch, each with its own step",
+        "îlots de blocs qui peuvent se toucher, chacun avec son pas",
+    ),
+    (
+        "between rocks that touch at the start: tensile strength {a} Pa, cohesion {b} Pa",
+        "entre blocs qui se touchent au début\u{a0}: résistance à la traction {a} Pa, cohésion {b} Pa",
+    ),
+    (
+        "kept for {k} of {n} releases, every {t} s",
+        "gardées pour {k} départs sur {n}, toutes les {t} s",
+    ),
+    ("kept", "gardés"),
+    (
+        "{n}: {all}; crossings exact between stored points",
+        "{n}\u{a0}: {all}\u{a0}; passages exacts entre les points enregistrés",
+    ),
+    (
+        "{all}: judged on the rocks that cross, they change no way",
+        "{all}\u{a0}: jugés sur les blocs qui passent, ils ne changent aucun parcours",
+    ),
+    (
+        "{all}: hit when the rim of a rock comes over them",
+        "{all}\u{a0}: touchés quand le bord d’un bloc vient au-dessus",
+    ),
+    ("{name} ({a} m long, {b} m wide, {rest})", "{name} (longueur {a} m, largeur {b} m, {rest})"),
+    ("{name} ({a} m long, {b} m wide)", "{name} (longueur {a} m, largeur {b} m)"),
+    ("{a} m long, {b} m wide, {rest}", "longueur {a} m, largeur {b} m, {rest}"),
+    ("{name} ({a} m², {rest})", "{name} ({a} m², {rest})"),
+    ("{n} vehicles a day of {l} m at {v} km/h", "{n} véhicules par jour de {l} m à {v} km/h"),
+    ("{n} passages a day of one person", "{n} passages par jour d’une personne"),
+    ("occupied {x} of the time", "occupé {x} du temps"),
+    ("{x} persons", "{x} personnes"),
+    ("vulnerability {x}", "vulnérabilité {x}"),
+    (
+        "{name}: {a} V^-{b} events a year of V m³ or more, {c} to {d} m³",
+        "{name}\u{a0}: {a} V^-{b} événements par an de V m³ ou plus, {c} à {d} m³",
+    ),
+    (
+        "{a} V^-{b} events a year of V m³ or more, {c} to {d} m³",
+        "{a} V^-{b} événements par an de V m³ ou plus, {c} à {d} m³",
+    ),
+    (
+        "{name}: {a} events a year of the scene's rocks",
+        "{name}\u{a0}: {a} événements par an des blocs de la scène",
+    ),
+    ("{a} events a year of the scene's rocks", "{a} événements par an des blocs de la scène"),
+    (
+        "{a} events a year; {b} classes of size and source, {c} rocks or more each: {d} rocks know what {e} of equal weight would",
+        "{a} événements par an\u{a0}; {b} classes de taille et de source, de {c} blocs ou plus\u{a0}: {d} blocs en savent autant que {e} de même poids",
+    ),
+    (
+        "levels of “{name}”; source: {source}",
+        "niveaux de «\u{a0}{name}\u{a0}»\u{a0}; source\u{a0}: {source}",
+    ),
+    (
+        "{name}: {a} a year of {b} to {c} m³, {rest}",
+        "{name}\u{a0}: {a} par an de {b} à {c} m³, {rest}",
+    ),
+    ("{a} a year of {b} to {c} m³, {rest}", "{a} par an de {b} à {c} m³, {rest}"),
+    ("{a} a year of {b} to {c} m³", "{a} par an de {b} à {c} m³"),
+    ("{a} x {b} cells of {c} m", "{a} x {b} cellules de {c} m"),
+    (
+        "speed and height every {x} m from the release, over all rocks",
+        "vitesse et hauteur tous les {x} m depuis le départ, sur tous les blocs",
+    ),
+    (
+        "{a} of memory and {b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps; runs with --yes only",
+        "{a} de mémoire et {b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} cellules de cartes\u{a0}; seulement avec --yes",
+    ),
+    (
+        "{a} of memory and {b} of disk: {n} releases, up to {p} points of paths, {c} cells of maps",
+        "{a} de mémoire et {b} de disque\u{a0}: {n} départs, jusqu’à {p} points de trajectoires, {c} cellules de cartes",
+    ),
+    ("measured ends in {file}", "arrêts mesurés dans {file}"),
+];

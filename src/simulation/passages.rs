@@ -1,0 +1,63 @@
+//! A list of passages of one rock: through cells, or along stretches of its way.
+
+/// One rock in one place.
+pub(super) trait Passage: Copy {
+    /// Number of the place.
+    fn place(&self) -> u32;
+
+    /// Takes the larger values of another passage of the same place.
+    fn join(&mut self, other: &Self);
+}
+
+/// The passages of one rock so far.
+#[derive(Debug)]
+pub(super) struct Passages<T>(Vec<T>);
+
+impl<T: Passage> Passages<T> {
+    pub(super) fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    pub(super) fn last(&self) -> Option<&T> {
+        self.0.last()
+    }
+
+    /// How many there are so far, and the last, which the next may join.
+    pub(super) fn mark(&self) -> (usize, Option<T>) {
+        (self.0.len(), self.0.last().copied())
+    }
+
+    /// Goes back to a mark.
+    pub(super) fn go_back(&mut self, (count, last): (usize, Option<T>)) {
+        self.0.truncate(count);
+        if let (Some(now), Some(last)) = (self.0.last_mut(), last) {
+            *now = last;
+        }
+    }
+
+    /// Adds to the last if that is in the same place: most steps stay in theirs.
+    pub(super) fn add(&mut self, passage: T) {
+        match self.0.last_mut().filter(|last| last.place() == passage.place()) {
+            Some(last) => last.join(&passage),
+            None => self.0.push(passage),
+        }
+    }
+
+    /// Adds others behind the last.
+    pub(super) fn extend(&mut self, others: impl Iterator<Item = T>) {
+        self.0.extend(others);
+    }
+
+    /// One entry a place, in the order of places.
+    pub(super) fn into_found(mut self) -> Vec<T> {
+        self.0.sort_by_key(Passage::place);
+        self.0.dedup_by(|next, kept| {
+            let same = next.place() == kept.place();
+            if same {
+                kept.join(next);
+            }
+            same
+        });
+        self.0
+    }
+}
