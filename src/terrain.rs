@@ -32,6 +32,7 @@ use faces::{Face, Mesh};
 use features::Features;
 use floor::Floor;
 use index::Index;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
 use stems::Stems;
 use weld::Welded;
@@ -94,10 +95,9 @@ impl Terrain {
         drop(order);
         let mesh = Mesh { vertices_m: &vertices_m, triangles: &triangles };
         let features = Features::of_edges(edges, mesh, !is_many);
-        let is_ground = |t: &u32| !sheets[usize::from(sheet_of[*t as usize])].is_tree;
-        let ground = (0..triangles.len() as u32).filter(is_ground);
-        let faces = ground.map(|t| features.faces.at(t, mesh));
-        let floor = Floor::of(faces, triangles.len(), index.bounds());
+        let is_ground = |t: u32| !sheets[usize::from(sheet_of[t as usize])].is_tree;
+        let ground = |t: u32| is_ground(t).then(|| features.faces.at(t, mesh));
+        let floor = Floor::of(ground, triangles.len(), index.bounds());
         Self {
             origin_m,
             vertices_m,
@@ -213,6 +213,6 @@ impl Terrain {
 
 /// A list in another order.
 #[expect(clippy::needless_pass_by_value, reason = "the old list goes at once: it is large")]
-fn in_order<T: Copy>(order: &[u32], list: Vec<T>) -> Vec<T> {
-    order.iter().map(|&k| list[k as usize]).collect()
+fn in_order<T: Copy + Send + Sync>(order: &[u32], list: Vec<T>) -> Vec<T> {
+    order.par_iter().map(|&k| list[k as usize]).collect()
 }

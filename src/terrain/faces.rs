@@ -26,6 +26,13 @@ impl Mesh<'_> {
         ends(self.triangles, side).map(|v| self.vertices_m[v as usize])
     }
 
+    /// The corner of a side's triangle that is not on the side (m).
+    #[inline]
+    pub(super) fn apex_m(self, side: u32) -> Vec3 {
+        let (corners, k) = (self.triangles[side as usize / 3], side as usize % 3);
+        self.vertices_m[corners[(k + 2) % 3] as usize]
+    }
+
     /// The two corners of a triangle that are not `vertex`.
     #[inline]
     pub(super) fn others(self, triangle: u32, vertex: u32) -> [u32; 2] {
