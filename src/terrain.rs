@@ -164,7 +164,7 @@ impl Terrain {
 
     /// Corners of a triangle (m, local).
     pub fn corners_m(&self, triangle: u32) -> [Vec3; 3] {
-        self.triangles[triangle as usize].map(|v| self.vertices_m[v as usize])
+        self.mesh().corners_m(triangle)
     }
 
     /// Height of the highest slope surface above or below the map-plane point (x, y), local coordinates (m); trees

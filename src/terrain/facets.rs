@@ -78,7 +78,9 @@ impl Facets {
         match self {
             Self::Apart(facets) => facets[number],
             Self::Shared { points, corners, .. } => {
-                corners[number].map(|point| points[point as usize])
+                let [a, b, c] = corners[number];
+                let at = |point: u32| points[point as usize];
+                [at(a), at(b), at(c)]
             }
         }
     }

@@ -7,6 +7,7 @@
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::terrain::edges::{self, Edges};
+use crate::terrain::faces::Mesh;
 use crate::terrain::merge::Merger;
 use crate::terrain::stl::Soup;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -252,7 +253,7 @@ impl Welded {
 
     /// The corners of a triangle, local (m).
     pub fn corners_m(&self, triangle: usize) -> [Vec3; 3] {
-        self.triangles[triangle].map(|v| self.vertices_m[v as usize])
+        Mesh { vertices_m: &self.vertices_m, triangles: &self.triangles }.corners_m(triangle as u32)
     }
 
     /// The two vertices of an edge, the lower number first.

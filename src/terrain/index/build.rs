@@ -6,6 +6,7 @@ use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::slice::ParallelSlice;
 
 /// How an index is built: triangles in a leaf, and in one tree of parry's, which takes about 300 bytes for each until it is
 /// packed.
@@ -19,7 +20,7 @@ impl Sizes {
     /// For the fastest rocks.
     pub(in crate::terrain) const FAST: Self = Self { leaf: LEAF, at_once: 1 << 19 };
     /// For the least memory and the shortest building: halving a part costs less than the same levels of a tree of parry's.
-    pub(in crate::terrain) const SMALL: Self = Self { leaf: MOST_IN_LEAF, at_once: 1 << 13 };
+    pub(in crate::terrain) const SMALL: Self = Self { leaf: MOST_IN_LEAF, at_once: 1 << 11 };
 }
 
 /// Triangles in trees of parry's that wait to be put together, at most.
@@ -39,6 +40,12 @@ impl Placed {
         Self { centre: centre.map(|m| m as f32).into(), triangle }
     }
 }
+
+/// Least and largest coordinates (m).
+type Spans = ([f32; 3], [f32; 3]);
+
+/// Triangles that one thread looks at without a pause.
+const LOOKED_AT: usize = 1 << 14;
 
 /// Triangles that stand side by side in the index.
 struct Part<'a> {
@@ -67,14 +74,18 @@ impl Part<'_> {
 
     /// The axis along which the centres lie widest apart.
     fn widest(&self) -> usize {
-        let both = |(lo, hi): ([f32; 3], [f32; 3]), (other_lo, other_hi): ([f32; 3], [f32; 3])| {
-            let each = |k: usize| (lo[k].min(other_lo[k]), hi[k].max(other_hi[k]));
-            let [x, y, z] = [each(0), each(1), each(2)];
-            ([x.0, y.0, z.0], [x.1, y.1, z.1])
-        };
         let nothing = || ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        let boxes = self.triangles.par_iter().map(|placed| (placed.centre, placed.centre));
-        let (lo, hi) = boxes.reduce(nothing, both);
+        let both = |(mut lo, mut hi): Spans, (other_lo, other_hi): Spans| {
+            for k in 0..3 {
+                lo[k] = lo[k].min(other_lo[k]);
+                hi[k] = hi[k].max(other_hi[k]);
+            }
+            (lo, hi)
+        };
+        let of_some = |some: &[Placed]| {
+            some.iter().fold(nothing(), |all, one| both(all, (one.centre, one.centre)))
+        };
+        let (lo, hi) = self.triangles.par_chunks(LOOKED_AT).map(of_some).reduce(nothing, both);
         Vec3::from([0, 1, 2].map(|k| f64::from(hi[k]) - f64::from(lo[k]))).imax()
     }
 }
