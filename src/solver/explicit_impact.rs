@@ -10,7 +10,7 @@ mod flow;
 
 use super::contact_state::{ContactEnvironment, ContactState, longest_step};
 use super::impact::LOCAL;
-use super::impact::dormand_prince::{growth, step};
+use super::impact::dormand_prince::{Attempt, Stages, growth};
 use super::loss::Loss;
 use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
@@ -111,7 +111,8 @@ impl ContactState {
         let Bounds { omega, limit, h_max, allowed } = *bounds;
         let mut flow = Among::<C>::new(world, self, (omega, allowed));
         let y = flow.begin::<N>();
-        let first = flow.rates_of::<N, P>(&y);
+        let mut stages = Stages::<N, SUMS, P>::NONE;
+        flow.rates_of(&y, stages.first());
         // what the present place touches is met whatever becomes of the tries
         flow.state.impact.accept_meeting(world.least_impact_m_s());
         let before = flow.stored_j();
@@ -121,17 +122,25 @@ impl ContactState {
             flow.begin_try();
             let wished = flow.state.impact.h.min(limit);
             let dt = wished.min(h_max);
-            let tried = step(&mut flow, &y, &first, dt);
+            let is_short = dt * omega < SHORTEST;
+            let attempt = stages.step(&mut flow, &y, dt, (!is_short).then_some(allowed));
             if flow.is_crowded && C < HISTORIES {
                 return Ok(None);
             }
-            let is_short = dt * omega < SHORTEST;
-            let cut = tried.cut(dt, allowed).filter(|_| !is_short);
+            done.rejected += 1;
+            let tried = match attempt {
+                Attempt::Whole(tried) => tried,
+                Attempt::Cut(share) => {
+                    flow.state.impact.h = dt * share;
+                    continue;
+                }
+            };
             let error2 = tried.error2 * if flow.is_smooth { 1.0 } else { 1.0 / (KINKED * KINKED) };
-            if cut.is_none() && (error2 <= 1.0 || is_short) {
+            if error2 <= 1.0 || is_short {
                 if !error2.is_finite() {
                     return Err(StepError::NotFinite);
                 }
+                done.rejected -= 1;
                 let least = if dt < wished { wished } else { 0.0 };
                 flow.state.impact.h = (dt * growth(error2)).max(least);
                 let (end, after) = (flow.end(&tried.y), flow.stored_j());
@@ -139,9 +148,8 @@ impl ContactState {
                 let stored = before.zip(after);
                 return Ok(Some(Accepted { end, dt, sums: tried.q, stored }));
             }
-            done.rejected += 1;
             let grown = if error2.is_finite() { growth(error2) } else { 0.2 };
-            flow.state.impact.h = dt * cut.unwrap_or(grown.min(0.9));
+            flow.state.impact.h = dt * grown.min(0.9);
         }
     }
 

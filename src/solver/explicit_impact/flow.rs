@@ -136,15 +136,16 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         End { c: self.state.c + three(y, WAY), v: three(y, V), w: three(y, W) }
     }
 
-    /// Rates at `y`; its contacts are those of the rock's state then.
+    /// Writes the rates at `y` over `rates`; its contacts are those of the rock's state then.
     pub(super) fn rates_of<const N: usize, const P: usize>(
         &mut self,
         y: &[f64; N],
-    ) -> Rates<N, SUMS, P> {
+        rates: &mut Rates<N, SUMS, P>,
+    ) {
         let Self { world, state, .. } = self;
         let body = &world.body;
         let (by_mass, by_inertia) = (1.0 / body.mass, 1.0 / body.inertia);
-        let mut rates = Rates::<N, SUMS, P>::NONE;
+        *rates = Rates::NONE;
         let (c, v, w) = (state.c + three(y, WAY), three(y, V), three(y, W));
         state.look(world, &c, body.radius * (1.0 + TOUCH));
         let (mut dv, mut dw, mut taken) = (body.gravity, Vec3::zeros(), 0);
@@ -215,14 +216,13 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         put(&mut rates.y, WAY, &v);
         put(&mut rates.y, V, &dv);
         put(&mut rates.y, W, &dw);
-        rates
     }
 }
 
 impl<const C: usize, const N: usize, const P: usize> Flow<N, SUMS, P> for Among<'_, '_, C> {
     #[inline]
-    fn rates(&mut self, _node: usize, y: &[f64; N]) -> Rates<N, SUMS, P> {
-        self.rates_of(y)
+    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, SUMS, P>) {
+        self.rates_of(y, to);
     }
 
     /// A spring that nothing presses on any more holds nothing: how it relaxes does not matter.

@@ -3,7 +3,7 @@
 mod contacts;
 mod rates;
 
-use super::dormand_prince::{growth, step};
+use super::dormand_prince::{Attempt, Stages, growth};
 use super::plane::{Followed, LOCAL, Plane, shared};
 use super::{Effort, Settled};
 use crate::contact::MOST;
@@ -201,7 +201,8 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
         // Whether the contacts have been changed without a step: once is enough.
         let mut turned = false;
         self.flow.press(&mut self.y);
-        let mut rates = self.flow.rates_of::<N, Q, P>(&self.y);
+        let mut stages = Stages::<N, Q, P>::NONE;
+        self.flow.rates_of(&self.y, stages.first());
         loop {
             self.note();
             if time > most || self.effort.steps + self.effort.rejected > MOST_STEPS {
@@ -212,27 +213,35 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
                 // Exact and free of cost: not counted.
                 self.flow.drift(&mut self.y, wait);
                 self.effort.steps += 1;
-                rates = self.flow.rates_of(&self.y);
+                self.flow.rates_of(&self.y, stages.first());
                 continue;
             }
             if quiet.stays(self.place(), time, QUIET * self.flow.allowed) > TAU / softest {
                 return Settled::Jammed;
             }
             let h = wish.min(self.flow.longest);
-            let tried = step(&mut self.flow, &self.y, &rates, h);
+            let felt = (h > SHORTEST).then_some(self.flow.allowed);
             self.effort.evaluations += 6;
-            let kink = tried.cut(h, self.flow.allowed).filter(|_| h > SHORTEST);
-            if tried.error2 > 1.0 || kink.is_some() {
-                self.effort.rejected += 1;
-                // Beyond a kink the law is as smooth as before it.
-                kept = if kink.is_some() { h.max(kept) } else { 0.0 };
-                wish = h * kink.unwrap_or_else(|| growth(tried.error2).min(0.7));
-                continue;
-            }
+            let tried = match stages.step(&mut self.flow, &self.y, h, felt) {
+                Attempt::Whole(tried) if tried.error2 <= 1.0 => tried,
+                Attempt::Whole(tried) => {
+                    self.effort.rejected += 1;
+                    kept = 0.0;
+                    wish = h * growth(tried.error2).min(0.7);
+                    continue;
+                }
+                Attempt::Cut(share) => {
+                    self.effort.rejected += 1;
+                    // Beyond a kink the law is as smooth as before it.
+                    kept = h.max(kept);
+                    wish = h * share;
+                    continue;
+                }
+            };
             match self.flow.crossing(&self.y, &tried.y, h) {
                 Some(Place::Now) if !turned => {
                     turned = true;
-                    rates = self.flow.rates_of(&self.y);
+                    self.flow.rates_of(&self.y, stages.first());
                 }
                 Some(Place::At(share)) => {
                     self.effort.rejected += 1;
@@ -249,8 +258,11 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
                     self.effort.steps += 1;
                     wish = f64::max(h * growth(tried.error2), kept);
                     kept = 0.0;
-                    let changed = self.flow.press(&mut self.y);
-                    rates = if changed { self.flow.rates_of(&self.y) } else { tried.last };
+                    if self.flow.press(&mut self.y) {
+                        self.flow.rates_of(&self.y, stages.first());
+                    } else {
+                        stages.pass();
+                    }
                 }
             }
         }

@@ -72,7 +72,7 @@ pub(super) struct Shear {
 /// Slip, spring `s`; summed up: what slipping takes, slip.
 impl Pressed<4, 3, 1> for Shear {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 4]) -> Rates<4, 3, 1> {
+    fn rates(&self, f: f64, y: &[f64; 4], to: &mut Rates<4, 3, 1>) {
         let Element { damping, rate, .. } = self.element;
         let asked = [y[0] + y[2], y[1] + y[3]];
         let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
@@ -80,7 +80,7 @@ impl Pressed<4, 3, 1> for Shear {
         let p = asked.map(|x| x * share);
         let normal_force = self.lightness * damping;
         let g = self.gravity;
-        Rates {
+        *to = Rates {
             y: [
                 g[0] - normal_force * p[0],
                 g[1] - normal_force * p[1],
@@ -89,7 +89,7 @@ impl Pressed<4, 3, 1> for Shear {
             ],
             q: [damping * cap * slips, y[0], y[1]],
             kinks: [[asked2, cap]],
-        }
+        };
     }
 
     #[inline]
@@ -114,7 +114,7 @@ pub(super) struct Both {
 /// Velocity, spin, springs; summed up: what slipping takes, way, work of rolling and of shear.
 impl Pressed<10, 5, 2> for Both {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 10]) -> Rates<10, 5, 2> {
+    fn rates(&self, f: f64, y: &[f64; 10], to: &mut Rates<10, 5, 2>) {
         let (shear, rolling) = (self.shear, self.rolling);
         let slip = [y[0] - y[3], y[1] + y[2]];
         let asked = [slip[0] + y[5], slip[1] + y[6]];
@@ -127,7 +127,7 @@ impl Pressed<10, 5, 2> for Both {
         let m = wound.map(|x| x * share);
         let (c, turn, g) = (shear.damping, self.turns * shear.damping, self.gravity);
         let stop = self.turns * rolling.damping;
-        Rates {
+        *to = Rates {
             y: [
                 g[0] - c * p[0],
                 g[1] - c * p[1],
@@ -148,7 +148,7 @@ impl Pressed<10, 5, 2> for Both {
                 c * (p[0] * slip[0] + p[1] * slip[1]),
             ],
             kinks: [[asked2, cap], [wound2, most]],
-        }
+        };
     }
 
     #[inline]

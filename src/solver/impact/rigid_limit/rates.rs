@@ -163,13 +163,14 @@ impl<const K: usize> ContactRates<K> {
         Some(Place::Now)
     }
 
-    /// Rates of everything.
+    /// Writes the rates of everything over `rates`.
     #[inline]
     pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
         &self,
         y: &[f64; N],
-    ) -> Rates<N, Q, P> {
-        let mut rates = Rates::<N, Q, P>::NONE;
+        rates: &mut Rates<N, Q, P>,
+    ) {
+        *rates = Rates::NONE;
         let rolls = N > SPRINGS + 3 * K;
         let (v, w, turns) = (speed_of(y), three(y, W[0]), self.contacts.turns);
         let (mut dv, mut dw) = (Vec3::zeros(), Vec3::zeros());
@@ -211,7 +212,6 @@ impl<const K: usize> ContactRates<K> {
         put(&mut rates.y, WAY, &v);
         put(&mut rates.y, V[0], &dv);
         put(&mut rates.y, W[0], &dw);
-        rates
     }
 }
 
@@ -219,8 +219,8 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     for ContactRates<K>
 {
     #[inline]
-    fn rates(&mut self, _node: usize, y: &[f64; N]) -> Rates<N, Q, P> {
-        self.rates_of(y)
+    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
+        self.rates_of(y, to);
     }
 
     #[inline]
