@@ -259,8 +259,7 @@ fn step(world: &ContactEnvironment, state: &mut ContactState, longest: f64, done
     let body = &world.body;
     let r = body.radius;
     let (c, v, w) = (state.c, state.v, state.w);
-    // as far as one face is known to be all there is, its normal is that of the whole step
-    let dt = closing(world, state, longest.min(state.longest_step(world, TRAVEL)));
+    let dt = closing(world, state, longest.min(TRAVEL * r / v.norm().max(f64::MIN_POSITIVE)));
     let middle = c + v * (0.5 * dt);
     state.look_ahead(world, &middle);
     let mut blows = Blows::of(world, state, |blow, distance| {
