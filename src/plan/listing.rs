@@ -1,11 +1,11 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual};
+use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual, settings};
 use crate::ground::Ground;
 use crate::release::{Releases, Where};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
+use crate::solver::Scheme;
 use crate::solver::dda::own_restitution;
-use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::features::Count;
 use crate::terrain::patches::Patched;
@@ -96,7 +96,7 @@ impl Plan {
         list.line("gravity", format!("{gravity_m_s2} m/s²"));
         list.line("grounds", format!("{}: {}", ground_names.len(), ground_names.join(", ")));
         list.lines("catalogue", catalogued.iter().cloned());
-        list.line("scheme", scheme(step));
+        list.line("scheme", settings::scheme(step));
         let captures = ground_names.iter().zip(capture_m_s);
         for (name, speed) in captures {
             let whose =
@@ -107,7 +107,7 @@ impl Plan {
             );
         }
         list.lines("tangential answer", tangential.iter().cloned());
-        list.line("impacts on one plane", plane_impacts(step));
+        list.line("impacts on one plane", settings::plane_impacts(step));
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
@@ -372,27 +372,4 @@ fn one_world(scheme: Scheme, ground: &Ground) -> String {
 fn map([x, y, z]: [f64; 3], epsg: Option<u32>) -> String {
     let code = epsg.map_or_else(|| "no EPSG code".to_owned(), |code| format!("EPSG:{code}"));
     format!("origin ({x}, {y}, {z}) m subtracted, {code}")
-}
-
-fn plane_impacts(step: &Settings) -> &'static str {
-    match (step.scheme, step.plane_impacts) {
-        (Scheme::Rigid, _) => "in no time: the limit of stiff springs",
-        (Scheme::Dda, _) => "left out: the fixed step knows no other",
-        (_, true) => "followed as a whole, in their own time; all others step by step",
-        (_, false) => "left out: every impact is followed step by step",
-    }
-}
-
-fn scheme(step: &Settings) -> String {
-    let name = step.scheme.name();
-    match step.scheme {
-        Scheme::Adaptive | Scheme::Reference => {
-            format!("{name}, local error {} m/s", step.tolerance_m_s)
-        }
-        Scheme::Rigid => format!("{name}, steps of up to {} s", step.step_s),
-        Scheme::Dda => {
-            let memory = if step.shear_memory { "with" } else { "as printed, without" };
-            format!("{name}, steps of {} s, {memory} shear memory", step.step_s)
-        }
-    }
 }

@@ -1,10 +1,10 @@
 //! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
 
+use super::Settings;
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use super::stage::End;
 use super::tableau::Tableau;
-use super::{Scheme, Settings};
 use crate::contact::history::carry;
 use crate::math;
 
@@ -81,10 +81,8 @@ impl Control {
     pub fn new(tableau: &'static Tableau, settings: &Settings, world: &ContactEnvironment) -> Self {
         let own = (world.body.gravity.norm() * world.body.radius).sqrt();
         let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
-        let impact = match settings.scheme {
-            Scheme::Reference => IMPACT_OF_REFERENCE,
-            _ => (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1),
-        };
+        let usual = (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1);
+        let impact = settings.scheme.of([usual, usual, IMPACT_OF_REFERENCE, usual]);
         Self {
             tableau,
             tolerance: settings.tolerance_m_s.min(relative),

@@ -75,7 +75,7 @@ impl Case {
 
     /// Follows its rock with one scheme at one tolerance (m/s) or step (s).
     pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
-        (self.setup)(has_springs(step.scheme)).follow(terrain, step, scratch)
+        (self.setup)(step.scheme.has_springs()).follow(terrain, step, scratch)
     }
 
     /// Settings of a scheme for this case.
@@ -85,15 +85,12 @@ impl Case {
 
     /// What should come out for a scheme. Without a closed form: what the scheme itself gives when it is `finest`.
     pub fn measures(&self, terrain: &Terrain, scheme: Scheme) -> Vec<Measure> {
-        let has_springs = has_springs(scheme);
+        let has_springs = scheme.has_springs();
         if let Some(exact) = self.exact {
             return exact(&(self.setup)(has_springs), has_springs);
         }
-        let finest = if has_springs {
-            self.settings(Scheme::Reference, FINEST_TOLERANCE_M_S)
-        } else {
-            self.settings(Scheme::Rigid, FINEST_STEP_S)
-        };
+        let fineness = if has_springs { FINEST_TOLERANCE_M_S } else { FINEST_STEP_S };
+        let finest = self.settings(scheme.finest(), fineness);
         let end = self.follow(terrain, &finest, &mut Scratch::default()).end.position_m;
         place(end.x, end.y, end.z)
     }
@@ -108,31 +105,34 @@ impl Case {
 
     /// The error that a scheme may have (–) and why.
     pub fn allowed(&self, step: &Settings) -> (f64, &'static str) {
-        match (step.scheme, self.kind) {
-            (Scheme::Adaptive, Kind::Smooth) => (
+        let dda = (
+            HALF_OMEGA_RAD_S * self.growth() * step.step_s,
+            "first order: half the contact oscillation per step",
+        );
+        let adaptive = if self.kind == Kind::Smooth {
+            (
                 0.5 * step.tolerance_m_s + 1e-9,
                 "only the first steps, which must resolve the springs, are as coarse as the local error allows",
-            ),
-            (Scheme::Adaptive, _) => (
+            )
+        } else {
+            (
                 0.2 * self.growth() * math::pow(step.tolerance_m_s, 2.0 / 3.0),
                 "second order under a third-order local error: tolerance to the power 2/3, times what the motion itself makes of an error",
-            ),
-            (Scheme::Reference, _) => (
-                self.growth() * (10.0 * step.tolerance_m_s + 3e-8),
-                "fourth order, and the nine digits of the exact value",
-            ),
-            (Scheme::Rigid, Kind::Impact | Kind::Stairs) => {
-                (3e-6, "an impact is followed to 2e-5 of its speed a step")
-            }
-            (Scheme::Rigid, _) => (
+            )
+        };
+        let reference = (
+            self.growth() * (10.0 * step.tolerance_m_s + 3e-8),
+            "fourth order, and the nine digits of the exact value",
+        );
+        let rigid = if matches!(self.kind, Kind::Impact | Kind::Stairs) {
+            (3e-6, "an impact is followed to 2e-5 of its speed a step")
+        } else {
+            (
                 0.2 * step.step_s,
                 "first order where sliding turns into rolling or the rock lifts off",
-            ),
-            (Scheme::Dda, _) => (
-                HALF_OMEGA_RAD_S * self.growth() * step.step_s,
-                "first order: half the contact oscillation per step",
-            ),
-        }
+            )
+        };
+        step.scheme.of([dda, adaptive, reference, rigid])
     }
 
     /// How much the motion multiplies an error: every impact on an edge by about three.
@@ -147,11 +147,6 @@ const HALF_OMEGA_RAD_S: f64 = 420.0;
 const FINEST_TOLERANCE_M_S: f64 = 1e-10;
 /// Step (s) of what stands in for an exact solution in the rigid limit.
 const FINEST_STEP_S: f64 = 2e-6;
-
-/// Whether the ground answers with springs; the rigid scheme has their limit.
-pub fn has_springs(scheme: Scheme) -> bool {
-    scheme != Scheme::Rigid
-}
 
 /// All exact cases. To add one: a row.
 pub const CASES: [Case; 12] = [

@@ -1,6 +1,5 @@
 //! Error against run time on the exact cases: every scheme over a ladder of steps or tolerances.
 
-use super::bench::goes_by_tolerance;
 use super::cases::{CASES, Case};
 use super::processor_time::ProcessorTime;
 use crate::math;
@@ -34,15 +33,16 @@ pub struct Rungs {
     pub order: f64,
 }
 
+/// The paper's own scheme, with which others are compared.
+pub const PAPER: Scheme = Scheme::Dda;
+/// The scheme of a scene that names none.
+pub const USUAL: Scheme = Scheme::Adaptive;
+
 /// Every scheme. To add one: a row.
 pub const LADDERS: [Rungs; 4] = [
+    Rungs { scheme: PAPER, fineness: &[1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6], order: 1.0 },
     Rungs {
-        scheme: Scheme::Dda,
-        fineness: &[1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6],
-        order: 1.0,
-    },
-    Rungs {
-        scheme: Scheme::Adaptive,
+        scheme: USUAL,
         fineness: &[1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6],
         order: 2.0,
     },
@@ -195,8 +195,7 @@ impl CaseStudy {
     /// What the default scheme saves against the paper's at each error that the paper's reaches on its ladder: the
     /// cheapest run of either that is at least as good. None where one of them does not converge.
     pub fn savings(&self) -> Vec<Saving> {
-        let (Some(paper), Some(ours)) = (self.curve(Scheme::Dda), self.curve(Scheme::Adaptive))
-        else {
+        let (Some(paper), Some(ours)) = (self.curve(PAPER), self.curve(USUAL)) else {
             return Vec::new();
         };
         let saving = |point: &Point| {
@@ -222,7 +221,7 @@ impl CaseStudy {
 
 /// Unit and name of what refines a scheme.
 pub fn fineness_column(scheme: Scheme) -> &'static str {
-    if goes_by_tolerance(scheme) { "tolerance_m_s" } else { "step_s" }
+    if scheme.controls_error() { "tolerance_m_s" } else { "step_s" }
 }
 
 /// All points as CSV.

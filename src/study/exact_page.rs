@@ -1,11 +1,10 @@
 //! The page of the exact cases: orders and savings as tables, then the figures.
 
-use super::exact::{CaseStudy, Curve, LADDERS, Saving};
+use super::exact::{CaseStudy, Curve, LADDERS, PAPER, Saving, USUAL};
 use super::exact_figure::order_in_words;
 use super::exact_values::{self, Value};
 use super::order::{self, Ladder};
 use crate::report::format;
-use crate::solver::Scheme;
 use std::fmt::Write as _;
 
 const INTRODUCTION: &str = "\
@@ -67,7 +66,7 @@ fn reached(curve: &Curve) -> String {
 }
 
 fn savings(page: &mut String, studies: &[CaseStudy]) {
-    let (ours, paper) = (Scheme::Adaptive.name(), Scheme::Dda.name());
+    let (ours, paper) = (USUAL.name(), PAPER.name());
     let _ = writeln!(
         page,
         "## What `{ours}` saves against `{paper}`\n\nAt equal error: the cheapest run of `{paper}` over the cheapest run of `{ours}` that is at least as good. Both leap over free flight, \

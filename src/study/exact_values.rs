@@ -1,6 +1,6 @@
 //! The exact cases in their own units: what is exact, what comes out, how far apart. The table of the README.
 
-use super::cases::{CASES, Case, Measure, has_springs};
+use super::cases::{CASES, Case, Measure};
 use crate::simulation::Scratch;
 use crate::solver::Scheme;
 use std::fmt::Write as _;
@@ -41,7 +41,7 @@ fn of_case(case: &Case) -> Vec<Value> {
     let journeys = COLUMNS.map(|(scheme, fineness)| {
         case.follow(&terrain, &case.settings(scheme, fineness), &mut scratch)
     });
-    let start = (case.setup)(has_springs(COLUMNS[0].0)).centre_m;
+    let start = (case.setup)(COLUMNS[0].0.has_springs()).centre_m;
     let moves = |measure: &Measure| {
         measure.exact.abs() > STAYS && start.iter().all(|at| (at - measure.exact).abs() > STAYS)
     };
@@ -59,8 +59,8 @@ fn of_case(case: &Case) -> Vec<Value> {
 pub fn table(values: &[Value]) -> String {
     let mut text = String::from("| exact case | exact | `reference`, 1e-8 m/s |");
     for (scheme, fineness) in COLUMNS {
-        let unit = if super::bench::goes_by_tolerance(scheme) { "m/s" } else { "s" };
-        let _ = write!(text, " error of `{}`, {fineness:e} {unit} |", scheme.name());
+        let (name, unit) = (scheme.name(), scheme.fineness_unit());
+        let _ = write!(text, " error of `{name}`, {fineness:e} {unit} |");
     }
     let _ = writeln!(text, "\n|---|---|---|{}", "---|".repeat(COLUMNS.len()));
     for Value { title, what, exact, found, .. } in values {

@@ -5,7 +5,7 @@
 //! motion, from well above the contact oscillation to well below it.
 
 use super::bench::{Setup, settings};
-use super::cases::{Case, has_springs, rolling_off_an_edge};
+use super::cases::{Case, rolling_off_an_edge};
 use crate::ground::{Capture, Damping, Law};
 use crate::math;
 use crate::report::axis::Axis;
@@ -47,8 +47,8 @@ pub fn study() -> Vec<Ladder> {
 }
 
 fn ladder(scheme: Scheme) -> Ladder {
-    let (case, exact) = rolling_off_an_edge(has_springs(scheme), LASTS_S);
-    let setup = (case.setup)(has_springs(scheme));
+    let (case, exact) = rolling_off_an_edge(scheme.has_springs(), LASTS_S);
+    let setup = (case.setup)(scheme.has_springs());
     let error = |steps: u32| (steps, (end(scheme, &case, &setup, steps) - exact).norm());
     Ladder { scheme, theory: scheme.order(), errors: STEPS.map(error).into() }
 }
@@ -207,7 +207,7 @@ mod tests {
             let error = |n: u32| (n, 1e5 * f64::from(n).powf(-order));
             let mut errors: Vec<_> = STEPS.map(error).into();
             errors.push((4000, 1e-12));
-            let ladder = Ladder { scheme: Scheme::Adaptive, theory: order, errors };
+            let ladder = Ladder { scheme: Scheme::default(), theory: order, errors };
             assert!((ladder.order() - order).abs() < 1e-9);
         }
     }

@@ -4,7 +4,6 @@
 //! converge. Their statistics do. All settings get the same releases, so most of what chance does drops out of the
 //! difference; what is left is drawn again and again to say how far it can be trusted.
 
-use super::bench::goes_by_tolerance;
 use super::bootstrap::{Interval, Ladder, Paired};
 use super::processor_time::Busy;
 use super::weighing::{FEWEST, Weigh};
@@ -127,15 +126,15 @@ pub struct Offer {
 /// Local error and step are tied by `tolerance ~ step^(p+1)` (p: order of the embedded method); the error of the result
 /// goes with `step^p'`: 2/3 for TR-BDF2, 1 for the fourth-order tableau, 1 for fixed steps.
 fn ladder_of(scheme: Scheme) -> (&'static [f64], f64) {
-    match scheme {
-        Scheme::Adaptive => (&[2.0, 1.0, 0.25, 0.0625, 0.015_625], 2.0 / 3.0),
+    scheme.of([
+        // each halving costs double
+        (&[2.0, 1.0, 0.5][..], 1.0),
+        (&[2.0, 1.0, 0.25, 0.0625, 0.015_625], 2.0 / 3.0),
         // far above the scene's own tolerance the error no longer follows its law, below it a rung costs little more;
         // this one is already at the fine end
-        Scheme::Reference => (&[4096.0, 256.0, 16.0, 1.0], 1.0),
-        Scheme::Rigid => (&[2.0, 1.0, 0.5, 0.25, 0.125], 1.0),
-        // each halving costs double
-        Scheme::Dda => (&[2.0, 1.0, 0.5], 1.0),
-    }
+        (&[4096.0, 256.0, 16.0, 1.0], 1.0),
+        (&[2.0, 1.0, 0.5, 0.25, 0.125], 1.0),
+    ])
 }
 
 /// Runs all releases of a plan under every setting, and on coarser meshes if asked; `done` hears of each, with how much
@@ -247,7 +246,7 @@ impl Mesh {
 /// The same setting with another tolerance or step.
 fn finer(step: &Settings, relative: f64) -> Settings {
     let mut finer = *step;
-    if goes_by_tolerance(step.scheme) {
+    if step.scheme.controls_error() {
         finer.tolerance_m_s *= relative;
     } else {
         finer.step_s *= relative;

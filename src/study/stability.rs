@@ -188,5 +188,5 @@ pub fn study(done: impl Fn(&str)) -> Vec<Outcome> {
 
 /// Whether the ground answers with springs.
 fn sprung(way: &Way) -> bool {
-    super::cases::has_springs(way.scheme)
+    way.scheme.has_springs()
 }

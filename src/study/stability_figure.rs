@@ -1,6 +1,5 @@
 //! The map of stiffness against step: accurate, stable, unstable.
 
-use super::bench::goes_by_tolerance;
 use super::stability::{Map, Verdict};
 use crate::math;
 use crate::report::axis::Axis;
@@ -47,7 +46,7 @@ pub(super) fn draw(maps: &[Map]) -> String {
 /// Axes in powers of ten, a cell round each.
 fn panel(map: &Map, row: usize) -> Panel {
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
-    let name = if goes_by_tolerance(map.scheme) { "Tolerance (m/s)" } else { "Step (s)" };
+    let name = if map.scheme.controls_error() { "Tolerance (m/s)" } else { "Step (s)" };
     let around = |values: &[f64], title: &str| {
         let end = |value: f64| math::log10(value).round();
         Axis::linear(end(values[0]) - 0.5, end(values[values.len() - 1]) + 0.5, title)

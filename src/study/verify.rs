@@ -6,6 +6,7 @@ mod paper;
 
 pub use paper::{EXAMPLES, Example};
 
+use super::exact::{PAPER, USUAL};
 use crate::error::{Error, Result};
 use crate::math;
 use crate::output::write_atomic;
@@ -59,7 +60,7 @@ impl Verification {
     pub fn run() -> Result<Self> {
         let mut all = Self::exact()?;
         for example in EXAMPLES {
-            for scheme in [Scheme::Dda, Scheme::Adaptive] {
+            for scheme in [PAPER, USUAL] {
                 example.run(&mut all, scheme)?;
             }
         }

@@ -9,7 +9,7 @@ use crate::rock::{Rock, Vec3};
 use crate::simulation::Stop;
 use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::{Scheme, Stepper, advance};
+use crate::solver::{Stepper, advance};
 use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, settings, terrain};
 use crate::study::cases::meshes::{bumpy, fold};
 use crate::terrain::Terrain;
@@ -100,13 +100,9 @@ fn watch(way: &Way, setup: &Setup, terrain: &Terrain, capture_m_s: Option<f64>) 
 
 /// What energy may change by where nothing takes any (–): the schemes' own accuracy, and for the fixed step what it damps.
 fn allowed(way: &Way, omega: f64) -> f64 {
-    match way.scheme {
-        Scheme::Reference => 1e-6,
-        Scheme::Adaptive => 2e-3,
-        Scheme::Rigid => 1e-12,
-        // keeps exp(−π ω Δt/4) of the speed
-        Scheme::Dda => 1.0 - math::exp(-std::f64::consts::PI * omega * way.fineness) + 1e-3,
-    }
+    // the fixed step keeps exp(−π ω Δt/4) of the speed
+    let damped = 1.0 - math::exp(-std::f64::consts::PI * omega * way.fineness) + 1e-3;
+    way.scheme.of([damped, 2e-3, 1e-6, 1e-12])
 }
 
 /// Holds that nothing is lost and nothing gained.
@@ -160,7 +156,7 @@ pub(super) fn noisy(way: &Way, notes: &mut Notes) {
     for (cell, cells, noise) in [(10.0, 4, 0.2), (1.0, 6, 0.05), (0.1, 40, 0.01), (0.02, 140, 1e-3)]
     {
         // a fixed step would look at ten thousand triangles a thousand times
-        if way.scheme == Scheme::Dda && cell < 0.1 {
+        if way.scheme.has_fixed_step() && cell < 0.1 {
             continue;
         }
         let ground = terrain(bumpy(cells, cell, noise));

@@ -9,7 +9,6 @@ use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{
     Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, simulate_world,
 };
-use crate::solver::Scheme;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, settings, terrain};
 use crate::terrain::{Terrain, make};
 use std::sync::atomic::AtomicBool;
@@ -116,12 +115,8 @@ pub(super) fn head_on(way: &Way, notes: &mut Notes) {
         let off = (v[0] - expected[0]).abs().max((v[1] - expected[1]).abs());
         // the light one's oscillation decides: a dozen steps at the local error, or ω Δt of the fixed step
         let light = m * n / (m + n);
-        let bound = match way.scheme {
-            Scheme::Dda => way.fineness * (GROUND.normal_stiffness_n_m / light).sqrt(),
-            Scheme::Reference => 100.0 * way.fineness,
-            Scheme::Rigid => 1e-9,
-            Scheme::Adaptive => 3.0 * way.fineness,
-        };
+        let phase = way.fineness * (GROUND.normal_stiffness_n_m / light).sqrt();
+        let bound = way.scheme.of([phase, 3.0 * way.fineness, 100.0 * way.fineness, 1e-9]);
         // where a step does not resolve the impact, restitution is anything between none and all
         notes.hold(
             way,

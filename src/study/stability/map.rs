@@ -58,13 +58,13 @@ impl Map {
             range.map(|power| 10f64.powi(power)).collect()
         };
         let floor = terrain(make::jittered_plane(50.0, 1, 0.0));
-        [
-            (Scheme::Dda, powers(-7..=-2)),
-            (Scheme::Adaptive, powers(-6..=0)),
-            (Scheme::Reference, powers(-8..=-2)),
-        ]
-        .map(|(scheme, fineness)| Self::of(scheme, fineness, powers(6..=14), &floor))
-        .into()
+        let sprung = Scheme::ALL.into_iter().filter(|scheme| scheme.has_springs());
+        sprung
+            .map(|scheme| {
+                let (from, to) = scheme.of([(-7, -2), (-6, 0), (-8, -2), (0, 0)]);
+                Self::of(scheme, powers(from..=to), powers(6..=14), &floor)
+            })
+            .collect()
     }
 
     fn of(scheme: Scheme, fineness: Vec<f64>, stiffness_n_m: Vec<f64>, floor: &Terrain) -> Self {

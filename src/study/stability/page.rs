@@ -1,7 +1,6 @@
 //! The page of the stiff and extreme cases.
 
 use super::{Outcome, WAYS};
-use crate::study::bench::goes_by_tolerance;
 use std::fmt::Write as _;
 
 const INTRODUCTION: &str = "\
@@ -18,7 +17,7 @@ scene.
 pub(in crate::study) fn page(outcomes: &[Outcome]) -> String {
     let mut page = String::from(INTRODUCTION);
     for way in WAYS {
-        let unit = if goes_by_tolerance(way.scheme) { "m/s" } else { "s" };
+        let unit = way.scheme.fineness_unit();
         let _ = writeln!(page, "- `{}` at {} {unit}", way.scheme.name(), way.fineness);
     }
     page += "\n![Stiffness against step](map.svg)\n\n| case |";

@@ -8,7 +8,8 @@ use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
 use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{Keep, Observer, PairMaterial, RunSettings, Trajectory, simulate_world};
-use crate::solver::{Scheme, Settings};
+use crate::solver::Settings;
+use crate::study::exact::USUAL;
 use crate::terrain::make::jittered_plane;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
@@ -87,7 +88,7 @@ fn rocks(
 ) -> Result<Vec<Trajectory>> {
     let terrain = terrain(if gravity_m_s2 > 0.0 { jittered_plane(40.0, 8, 0.0) } else { far() })?;
     let step = Settings {
-        scheme: Scheme::Adaptive,
+        scheme: USUAL,
         tolerance_m_s: 1e-4,
         step_s: f64::INFINITY,
         shear_memory: true,
