@@ -254,7 +254,7 @@ fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Facets, f64) {
     settle_ties(&mut triangles, &local);
     triangles.sort_unstable();
     let corners = triangles.iter().map(|corners| corners.map(|k| k as u32)).collect();
-    let facets = Facets::Shared { points: local, corners };
+    let facets = Facets::Shared { points: local, corners, apart_m: 0.0 };
     let edges = facets.iter().flat_map(|[a, b, c]| [b - a, c - b, a - c]);
     let longest_m = edges.map(|edge| edge.xy().norm()).fold(0.0, f64::max);
     (facets, longest_m)

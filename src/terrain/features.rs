@@ -7,7 +7,7 @@
 
 use super::brims::{Brim, Cone, LEANS};
 use super::edges::{Edges, grouped};
-use super::faces::{Faces, Mesh};
+use super::faces::{Face, Faces, Mesh};
 use crate::rock::Vec3;
 use rayon::iter::{
     IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator,
@@ -16,6 +16,8 @@ use rayon::iter::{
 
 /// Sine of the angle between faces below which an edge is flat (–): rounding of `f64` coordinates, no more.
 const FLAT: f64 = 1e-12;
+/// Sine of an angle above which neither a triangle nor a fold can be the work of rounding (–).
+const FOLDED: f64 = 1e-6;
 /// Sine of the angle between edges below which they say nothing of their corner (–).
 const NEEDLE: f64 = 1e-6;
 /// Corners with more edges are kept as they are: a fan of a thousand would take a billion products.
@@ -204,21 +206,25 @@ impl Features {
     /// From where what `owned` says of triangle `t` can be touched.
     fn brim(&self, t: u32, owned: u8, mesh: Mesh) -> Brim {
         let mut brim = Brim::NONE;
+        if owned == 0 {
+            return brim;
+        }
+        let face = self.faces.at(t, mesh);
         for (k, corner) in (0..3).zip(mesh.triangles[t as usize]) {
             if owned & (1 << k) != 0 {
-                brim.add(1 << k, self.edge_cone(3 * t + k, mesh));
+                brim.add(1 << k, self.edge_cone(3 * t + k, &face, mesh));
             }
             if owned & (8 << k) != 0 {
-                brim.add(8 << k, self.corner_cone(corner, t, mesh));
+                brim.add(8 << k, self.corner_cone(corner, &face, mesh));
             }
         }
         brim
     }
 
     /// From where an edge can be touched, seen from the first triangle on it.
-    fn edge_cone(&self, edge: u32, mesh: Mesh) -> Cone {
-        let Some(pair) = self.edges.pair_on(edge) else { return Cone::Anywhere };
-        let [face, beside] = pair.map(|t| self.faces.at(t, mesh));
+    fn edge_cone(&self, edge: u32, face: &Face, mesh: Mesh) -> Cone {
+        let Some([_, beside]) = self.edges.pair_on(edge) else { return Cone::Anywhere };
+        let beside = self.faces.at(beside, mesh);
         if face.is_sliver() || beside.is_sliver() {
             return Cone::Anywhere;
         }
@@ -226,8 +232,7 @@ impl Features {
         Cone::of_edge(&face.n, &face.outward(&ends_m), &beside.outward(&ends_m))
     }
 
-    fn corner_cone(&self, vertex: u32, owner: u32, mesh: Mesh) -> Cone {
-        let face = self.faces.at(owner, mesh);
+    fn corner_cone(&self, vertex: u32, face: &Face, mesh: Mesh) -> Cone {
         let mut along = [Vec3::zeros(); MOST_EDGES];
         let Some(around) = self.edges_along(vertex, mesh, &mut along) else {
             return Cone::Anywhere;
@@ -312,13 +317,28 @@ impl Features {
     }
 
     fn is_flat(&self, edge: u32, mesh: Mesh) -> bool {
-        let Some(pair) = self.edges.pair_on(edge) else { return false };
+        let Some(sides) = self.edges.sides_of_pair(edge) else { return false };
         let ends_m = mesh.ends_m(edge);
-        let [one, other] = pair.map(|t| self.faces.at(t, mesh));
+        if is_folded(&ends_m, &sides.map(|side| mesh.apex_m(side))) {
+            return false;
+        }
+        let [one, other] = sides.map(|side| self.faces.at(side / 3, mesh));
         let [m_one, m_other] = [one, other].map(|face| face.outward(&ends_m));
         // Flat: the other face goes on in the same plane, on the other side of the edge.
         one.n.dot(&m_other).abs() <= FLAT && m_one.dot(&m_other) < 0.0
     }
+}
+
+/// Whether two triangles on an edge, each with its third corner, are folded beyond doubt: told without a root or a division,
+/// which is enough for nearly every edge of a natural slope.
+fn is_folded([a, b]: &[Vec3; 2], [one, other]: &[Vec3; 2]) -> bool {
+    let (along, to, beyond) = (b - a, one - a, other - a);
+    let normal = along.cross(&to);
+    // height of the other corner over the plane: at least this share of its distance from the edge
+    let height = normal.dot(&beyond);
+    let n2 = normal.norm_squared();
+    n2 > FOLDED * FOLDED * along.norm_squared() * to.norm_squared()
+        && height * height > FOLDED * FOLDED * n2 * beyond.norm_squared()
 }
 
 /// Gives corners that are kept to the first triangle on them: bits 3–5.

@@ -3,7 +3,11 @@
 use super::faces::Face;
 use super::index::below;
 use crate::rock::Vec3;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
+/// Shares of the triangles that are looked at beside each other, each with cells of its own, and the fewest triangles in one.
+const SHARES: usize = 16;
+const LEAST_SHARE: usize = 1 << 16;
 /// Cells a triangle, and their least and largest number.
 const CELLS: usize = 4;
 const LEAST_CELLS: usize = 64;
@@ -14,7 +18,7 @@ const WIDER: f64 = 1e-9;
 const UPRIGHT: f64 = 1e-3;
 
 /// Square cells over the map, each with a height (m, local) that no slope triangle in it lies below.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Floor {
     west_m: f64,
     south_m: f64,
@@ -25,9 +29,9 @@ pub struct Floor {
 }
 
 impl Floor {
-    /// Of the faces that are ground, in the box from `lo` to `hi`.
+    /// Of the first `triangles` faces, where they are ground, in the box from `lo` to `hi`.
     pub fn of(
-        ground: impl Iterator<Item = Face>,
+        ground: impl Fn(u32) -> Option<Face> + Sync,
         triangles: usize,
         (lo, hi): (Vec3, Vec3),
     ) -> Self {
@@ -36,13 +40,32 @@ impl Floor {
         let longest = size.max();
         let cell_m = (size.x * size.y / cells as f64).sqrt().max(longest / cells as f64);
         let [columns, rows] = [size.x, size.y].map(|length| (length / cell_m) as usize + 1);
-        let low_m = vec![f32::INFINITY; columns * rows];
-        let mut floor =
-            Self { west_m: lo.x, south_m: lo.y, per_m: 1.0 / cell_m, columns, rows, low_m };
-        for face in ground {
-            floor.lower_to(&face, WIDER * longest);
+        let empty = Self {
+            west_m: lo.x,
+            south_m: lo.y,
+            per_m: 1.0 / cell_m,
+            columns,
+            rows,
+            low_m: vec![f32::INFINITY; columns * rows],
+        };
+        let share = triangles.div_ceil(SHARES).max(LEAST_SHARE);
+        let shares = (0..triangles.div_ceil(share)).into_par_iter().map(|number| {
+            let mut floor = empty.clone();
+            let of_share = number * share..triangles.min((number + 1) * share);
+            for face in of_share.filter_map(|t| ground(t as u32)) {
+                floor.lower_to(&face, WIDER * longest);
+            }
+            floor
+        });
+        shares.reduce(|| empty.clone(), Self::lower)
+    }
+
+    /// The lower one of two, cell by cell.
+    fn lower(mut self, other: Self) -> Self {
+        for (low, other) in self.low_m.iter_mut().zip(other.low_m) {
+            *low = low.min(other);
         }
-        floor
+        self
     }
 
     /// A height that the slope at (x, y) is not below (m); infinite where there is none.

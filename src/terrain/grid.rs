@@ -32,6 +32,9 @@ const FARTHEST_M: f64 = 1e8;
 /// Heights beyond this (m) are no height on Earth.
 const HIGHEST_M: f64 = 1e5;
 
+/// Share of a cell (–) that rounding of its place can never reach: 1e-5 of the smallest cell at the farthest place.
+const ROUNDING_OF_CELL: f64 = 1e-3;
+
 /// Number written for "no data".
 const NODATA: f64 = -9999.0;
 
@@ -77,7 +80,12 @@ impl Grid {
             let z = self.value(column, self.rows - 1 - row_from_south)?;
             Some(self.centre_around(column, row_from_south, map_origin_m, z))
         };
-        Lattice::of(self.columns, self.rows, point).cut(|_, _| true)
+        Lattice::of(self.columns, self.rows, point).cut(self.apart_m(), |_, _| true)
+    }
+
+    /// Cell centres around any origin are farther apart than this (m): by a cell, less what rounding can take.
+    fn apart_m(&self) -> f64 {
+        (1.0 - ROUNDING_OF_CELL) * self.cell_m
     }
 
     /// A cell's centre at the height `z_m` of the map, around `map_origin_m`.

@@ -97,7 +97,7 @@ impl Grid {
             let at = inner(point as usize % columns, point as usize / columns);
             own(at).is_some() && first(at).is_none()
         };
-        lattice.cut(|lattice, around| {
+        lattice.cut(self.apart_m(), |lattice, around| {
             around.iter().find(|&&point| lattice.has(point)).is_some_and(|&point| is_own(point))
         })
     }

@@ -6,6 +6,7 @@ use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, TraversalAction};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::slice::ParallelSlice;
 
 /// How an index is built: triangles in a leaf, and in one tree of parry's, which takes about 300 bytes for each until it is
 /// packed.
@@ -18,18 +19,39 @@ pub(in crate::terrain) struct Sizes {
 impl Sizes {
     /// For the fastest rocks.
     pub(in crate::terrain) const FAST: Self = Self { leaf: LEAF, at_once: 1 << 19 };
-    /// For the least memory.
-    pub(in crate::terrain) const SMALL: Self = Self { leaf: MOST_IN_LEAF, at_once: 1 << 17 };
+    /// For the least memory and the shortest building: halving a part costs less than the same levels of a tree of parry's.
+    pub(in crate::terrain) const SMALL: Self = Self { leaf: MOST_IN_LEAF, at_once: 1 << 11 };
 }
 
-/// Trees of parry's that are built beside each other, at most: each takes its memory.
-const BESIDE: usize = 4;
+/// Triangles in trees of parry's that wait to be put together, at most.
+const WAITING_TRIANGLES: usize = 1 << 21;
 
-/// Triangles that stand side by side in the index, by their numbers in the input.
+/// A triangle by its number in the input, and where it lies.
+#[derive(Debug, Clone, Copy)]
+struct Placed {
+    /// Three times its centre (m): only the order counts, and what is equal here is told apart by the number.
+    centre: [f32; 3],
+    triangle: u32,
+}
+
+impl Placed {
+    fn of(triangle: u32, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> Self {
+        let centre = corners(triangle).iter().sum::<Vec3>();
+        Self { centre: centre.map(|m| m as f32).into(), triangle }
+    }
+}
+
+/// Least and largest coordinates (m).
+type Spans = ([f32; 3], [f32; 3]);
+
+/// Triangles that one thread looks at without a pause.
+const LOOKED_AT: usize = 1 << 14;
+
+/// Triangles that stand side by side in the index.
 struct Part<'a> {
     /// Place of the first one in the index.
     start: u32,
-    triangles: &'a mut [u32],
+    triangles: &'a mut [Placed],
     /// Node and child under which it hangs; none for the root.
     above: Option<(usize, usize)>,
 }
@@ -37,41 +59,42 @@ struct Part<'a> {
 impl Part<'_> {
     /// Cut across the middle of the side along which the centres lie widest apart; as many triangles in both, and the same
     /// ones whatever order they come in.
-    fn halves(self, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> [Self; 2] {
-        let centre = |t: u32| corners(t).iter().sum::<Vec3>();
-        let first = centre(self.triangles[0]);
-        let both =
-            |(lo, hi): (Vec3, Vec3), other: (Vec3, Vec3)| (lo.inf(&other.0), hi.sup(&other.1));
-        let boxes = self.triangles.par_iter().map(|&t| centre(t)).map(|at| (at, at));
-        let (lo, hi) = boxes.reduce(|| (first, first), both);
-        let axis = (hi - lo).imax();
-        let middle = self.triangles.len() / 2;
-        // looked up once: selecting asks for every centre many times
-        let keys: Vec<(f64, u32)> =
-            self.triangles.par_iter().map(|&t| (centre(t)[axis], t)).collect();
-        let by_key = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let mut shuffled = keys.clone();
-        let first_high = *shuffled.select_nth_unstable_by(middle, by_key).1;
-        drop(shuffled);
-        // Both halves keep the order of the input: what is near in it is near in memory.
-        let is_low = |key: &&(f64, u32)| by_key(key, &first_high).is_lt();
-        let (low, high) = self.triangles.split_at_mut(middle);
-        let take = |half: &mut [u32], of: &mut dyn Iterator<Item = &(f64, u32)>| {
-            half.iter_mut().zip(of).for_each(|(triangle, key)| *triangle = key.1);
+    fn halves(self) -> [Self; 2] {
+        let axis = self.widest();
+        let by_place = |a: &Placed, b: &Placed| {
+            a.centre[axis].total_cmp(&b.centre[axis]).then(a.triangle.cmp(&b.triangle))
         };
-        take(low, &mut keys.iter().filter(is_low));
-        take(high, &mut keys.iter().filter(|key| !is_low(key)));
+        let middle = self.triangles.len() / 2;
+        self.triangles.select_nth_unstable_by(middle, by_place);
+        let (low, high) = self.triangles.split_at_mut(middle);
         let next = self.start + middle as u32;
         let part = |start, triangles| Part { start, triangles, above: self.above };
         [part(self.start, low), part(next, high)]
+    }
+
+    /// The axis along which the centres lie widest apart.
+    fn widest(&self) -> usize {
+        let nothing = || ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let both = |(mut lo, mut hi): Spans, (other_lo, other_hi): Spans| {
+            for k in 0..3 {
+                lo[k] = lo[k].min(other_lo[k]);
+                hi[k] = hi[k].max(other_hi[k]);
+            }
+            (lo, hi)
+        };
+        let of_some = |some: &[Placed]| {
+            some.iter().fold(nothing(), |all, one| both(all, (one.centre, one.centre)))
+        };
+        let (lo, hi) = self.triangles.par_chunks(LOOKED_AT).map(of_some).reduce(nothing, both);
+        Vec3::from([0, 1, 2].map(|k| f64::from(hi[k]) - f64::from(lo[k]))).imax()
     }
 }
 
 impl<'a> Part<'a> {
     /// Cut into halves, and those again.
-    fn quarters(self, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> [Part<'a>; 4] {
-        let [low, high] = self.halves(corners);
-        let (low, high) = rayon::join(|| low.halves(corners), || high.halves(corners));
+    fn quarters(self) -> [Part<'a>; 4] {
+        let [low, high] = self.halves();
+        let (low, high) = rayon::join(|| low.halves(), || high.halves());
         let ([a, b], [c, d]) = (low, high);
         [a, b, c, d]
     }
@@ -126,15 +149,16 @@ impl Index {
         Sizes { leaf, at_once }: Sizes,
         corners: impl Fn(u32) -> [Vec3; 3] + Sync,
     ) -> (Self, Vec<u32>) {
-        let mut order: Vec<u32> = (0..count as u32).collect();
         if count == 0 {
-            return (Self::default(), order);
+            return (Self::default(), Vec::new());
         }
+        let mut placed: Vec<Placed> =
+            (0..count as u32).into_par_iter().map(|t| Placed::of(t, &corners)).collect();
         let mut index = Self::default();
-        let whole = Part { start: 0, triangles: &mut order, above: None };
-        let (mut parts, levels) = index.share_out(whole, (&corners, at_once));
+        let whole = Part { start: 0, triangles: &mut placed, above: None };
+        let (mut parts, levels) = index.share_out(whole, at_once);
         let mut whole = Packed::NOTHING;
-        let beside = rayon::current_num_threads().min(BESIDE);
+        let beside = (WAITING_TRIANGLES / at_once).max(1);
         while !parts.is_empty() {
             let some: Vec<Part> = parts.drain(..beside.min(parts.len())).collect();
             let above: Vec<_> = some.iter().map(|part| part.above).collect();
@@ -149,15 +173,11 @@ impl Index {
         (index.lo, index.hi) = (whole.lo, whole.hi);
         index.close_boxes();
         index.nodes.shrink_to_fit();
-        (index, order)
+        (index, placed.par_iter().map(|placed| placed.triangle).collect())
     }
 
     /// Cuts what is too large for one tree of parry's into four, and those again; gives the parts and the levels above them.
-    fn share_out<'a>(
-        &mut self,
-        whole: Part<'a>,
-        (corners, at_once): (&(impl Fn(u32) -> [Vec3; 3] + Sync), usize),
-    ) -> (Vec<Part<'a>>, usize) {
+    fn share_out<'a>(&mut self, whole: Part<'a>, at_once: usize) -> (Vec<Part<'a>>, usize) {
         let (mut ready, mut open, mut levels) = (Vec::new(), vec![whole], 0);
         loop {
             let (large, small): (Vec<Part>, Vec<Part>) =
@@ -176,8 +196,7 @@ impl Index {
                     self.nodes[node].child[side] = place;
                 }
             }
-            let quarters: Vec<_> =
-                large.into_par_iter().map(|part| part.quarters(corners)).collect();
+            let quarters: Vec<_> = large.into_par_iter().map(Part::quarters).collect();
             let below = quarters.into_iter().enumerate().flat_map(|(k, quarters)| {
                 let hung = move |(side, part)| Part { above: Some((first + k, side)), ..part };
                 quarters.into_iter().enumerate().map(hung)
@@ -225,8 +244,9 @@ impl Tree {
     fn pack(part: Part, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync), leaf: u32) -> (Self, Packed) {
         let Part { start, triangles, .. } = part;
         // The tree may depend on the order in which it is given triangles, and selecting leaves an order of its own.
-        triangles.sort_unstable();
-        let boxes: Vec<Aabb> = triangles.iter().map(|&t| box_of(corners(t))).collect();
+        let mut sorted: Vec<u32> = triangles.iter().map(|placed| placed.triangle).collect();
+        sorted.sort_unstable();
+        let boxes: Vec<Aabb> = sorted.iter().map(|&t| box_of(corners(t))).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
         drop(boxes);
         let mut loose = unroll(&tree);
@@ -236,9 +256,8 @@ impl Tree {
         let mut order = Order { start, leaves: Vec::with_capacity(triangles.len()) };
         let mut packed = Self { nodes: Vec::new(), leaf };
         let depth = packed.take(&loose, 0, &mut order);
-        let sorted = triangles.to_vec();
-        for (triangle, leaf) in triangles.iter_mut().zip(order.leaves) {
-            *triangle = sorted[leaf as usize];
+        for (placed, leaf) in triangles.iter_mut().zip(order.leaves) {
+            placed.triangle = sorted[leaf as usize];
         }
         (packed, Packed { depth, lo, hi })
     }
@@ -385,11 +404,14 @@ mod tests {
     fn halves_are_the_same_whatever_the_order() {
         let facets = make::natural_slope(20, 20).facets;
         let corners = |t: u32| facets[t as usize];
-        let halves = |mut triangles: Vec<u32>| {
-            let halves = Part { start: 0, triangles: &mut triangles, above: None }.halves(&corners);
+        let halves = |triangles: Vec<u32>| {
+            let mut placed: Vec<Placed> =
+                triangles.into_iter().map(|t| Placed::of(t, &corners)).collect();
+            let halves = Part { start: 0, triangles: &mut placed, above: None }.halves();
             halves.map(|half| {
-                half.triangles.sort_unstable();
-                half.triangles.to_vec()
+                let mut half: Vec<u32> = half.triangles.iter().map(|p| p.triangle).collect();
+                half.sort_unstable();
+                half
             })
         };
         let all = 0..facets.len() as u32;
