@@ -163,6 +163,7 @@ fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
     match key {
         VaryKey::FrictionAngleDeg => ground.friction_angle_deg = fixed,
         VaryKey::Restitution => ground.restitution = Some(fixed),
+        VaryKey::RestitutionHalfSpeedMS => ground.restitution_half_speed_m_s = Some(fixed),
         VaryKey::TangentialRatio => {
             (ground.tangential_ratio, ground.shear_stiffness_n_m) = (Some(fixed), None);
         }

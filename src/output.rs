@@ -92,6 +92,8 @@ pub struct RunInfo {
     pub keeps_impacts: bool,
     /// Whether some rocks have shapes: the tables then say how they are turned.
     pub has_blocks: bool,
+    /// Whether some grounds have a scar layer: the tables then say what its drag takes.
+    pub has_scars: bool,
     /// Whether `merge` is to put it together with others, were it the only one.
     pub is_shard: bool,
     /// Worker threads.
@@ -157,13 +159,16 @@ impl Output {
         let columns = |plain: &[&'static str], more: &[&'static str]| {
             [plain, if info.has_blocks { more } else { &[] }].concat()
         };
+        let scars = |names: &'static [&'static str]| if info.has_scars { names } else { &[] };
         let of_release = columns(&Row::COLUMNS, &Row::SHAPE_COLUMNS);
+        let of_release = [&of_release, scars(&Row::SOIL_COLUMNS)].concat();
+        let of_impact = [&ImpactRow::COLUMNS, scars(&ImpactRow::SOIL_COLUMNS)].concat();
         let releases = open(dir, RELEASES, &of_release, bytes)?;
         let of_path = columns(&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS);
         let paths = info.keeps_paths.then(|| open(dir, PATHS, &of_path, bytes)).transpose()?;
         let impacts = info
             .keeps_impacts
-            .then(|| open(dir, IMPACTS, &ImpactRow::COLUMNS, bytes))
+            .then(|| open(dir, IMPACTS, &of_impact, bytes))
             .transpose()?;
         let of_crossing = columns(&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
         let crossings = (!info.lines.is_empty())
@@ -239,6 +244,7 @@ impl Output {
             if self.info.has_blocks {
                 row.shape.get_or_insert(ShapeOf::SPHERE);
             }
+            row.soil_j = self.info.has_scars.then_some(fall.ledger.soil_j);
             self.releases.write(&row)?;
             self.write_path(fall)?;
             self.write_impacts(fall)?;

@@ -353,6 +353,11 @@ impl Releases {
                     .to_radians(),
                 roughness_length_m: table.roughness_length_m.as_ref().map(|l| l.draw(&mut random)),
                 slip_friction: table.slip_friction,
+                scar: table.scar,
+                restitution_half_m_s: table
+                    .restitution_half_speed_m_s
+                    .as_ref()
+                    .map(|speed| speed.draw(&mut random)),
             }
         };
         self.grounds.iter().map(draw_ground).collect()

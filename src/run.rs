@@ -182,6 +182,7 @@ impl Round<'_> {
             keeps_paths: matches!(options.selection, Selection::Only(_)) || plan.paths.is_kept(),
             keeps_impacts: plan.impacts.is_kept(),
             has_blocks: plan.releases.has_blocks(),
+            has_scars: plan.releases.has_scars(),
             is_shard: matches!(options.selection, Selection::Shard { .. }),
             threads: ensemble.threads(),
             plan: plan.entries_for(releases),

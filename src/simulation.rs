@@ -11,6 +11,7 @@ mod passages;
 mod recorder;
 mod rock_in_contact;
 mod settings;
+mod soil;
 mod world;
 mod cells;
 
@@ -93,6 +94,9 @@ pub struct Ledger {
     pub rolling_j: f64,
     /// Everything lost in contacts with trees.
     pub trees_j: f64,
+    /// Drag of soil that gives way.
+    #[serde(default)]
+    pub soil_j: f64,
     /// Lost in contacts with other rocks, half of what each takes; 0 for a rock alone.
     #[serde(default)]
     pub others_j: f64,
@@ -148,6 +152,8 @@ pub struct Impact {
     /// Energy that went into contacts with the mesh (J), ≥ 0; impacts at the same time share it by the squares of their
     /// approach speeds.
     pub energy_lost_j: f64,
+    /// What of it the drag of soil took (J).
+    pub soil_j: f64,
 }
 
 /// Largest values along a journey.

@@ -143,7 +143,7 @@ impl Results {
     ///
     /// As [`Self::rows`].
     pub fn paths(&self) -> Result<impl Iterator<Item = Result<PathRow>>> {
-        if_there(self.dir.join(PATHS), (&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS))
+        if_there(self.dir.join(PATHS), (&PathRow::COLUMNS, &[&PathRow::SHAPE_COLUMNS]))
     }
 
     /// Writes the vectors of `maps/`: ends, what stands on the map, and paths where they were kept.
@@ -176,7 +176,7 @@ impl Results {
     ///
     /// As [`Self::rows`].
     pub fn impacts(&self) -> Result<impl Iterator<Item = Result<ImpactRow<'static>>>> {
-        if_there(self.dir.join(IMPACTS), (&ImpactRow::COLUMNS, &[]))
+        if_there(self.dir.join(IMPACTS), (&ImpactRow::COLUMNS, &[&ImpactRow::SOIL_COLUMNS]))
     }
 }
 
@@ -260,17 +260,15 @@ pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Resu
 }
 
 fn releases(dir: &Path) -> Result<impl Iterator<Item = Result<Row>> + use<>> {
-    table::rows(dir.join(RELEASES), (&Row::COLUMNS, &Row::SHAPE_COLUMNS))
+    table::rows(dir.join(RELEASES), (&Row::COLUMNS, &[&Row::SHAPE_COLUMNS, &Row::SOIL_COLUMNS]))
 }
 
-/// Columns of a table, and those that follow where a scene has blocks.
-type Columns = (&'static [&'static str], &'static [&'static str]);
 
-const CROSSING_COLUMNS: Columns = (&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
+const CROSSING_COLUMNS: table::Columns = (&CrossingRow::COLUMNS, &[&CrossingRow::SHAPE_COLUMNS]);
 
 fn if_there<R: serde::de::DeserializeOwned>(
     path: PathBuf,
-    columns: Columns,
+    columns: table::Columns,
 ) -> Result<impl Iterator<Item = Result<R>>> {
     let there = path.exists().then(|| table::rows(path, columns)).transpose()?;
     Ok(there.into_iter().flatten())

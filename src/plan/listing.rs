@@ -54,6 +54,7 @@ impl Plan {
             orientation,
             rolling,
             roughness,
+            soil,
             rock_against_rock,
             coupled_solve,
             bonds,
@@ -123,6 +124,7 @@ impl Plan {
             "a facet at every impact, and after every roughness length of sliding or rolling"
                 .to_owned()
         });
+        list.part("soil", soil, |lines| lines.join("; "));
         list.part("rock against rock", rock_against_rock, |ground| one_world(step.scheme, ground));
         list.part("coupled solve", coupled_solve, |()| {
             let how = if step.scheme.has_springs() {

@@ -116,6 +116,11 @@ impl Releases {
         self.shapes.has_blocks()
     }
 
+    /// Whether some grounds have a scar layer.
+    pub fn has_scars(&self) -> bool {
+        self.grounds.iter().any(|ground| ground.scar.is_some())
+    }
+
     /// What the plan says of each shape; empty for spheres alone.
     pub fn shapes(&self) -> &[String] {
         &self.shapes.lines

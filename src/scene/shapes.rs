@@ -1,7 +1,7 @@
 //! `[[rocks.shapes]]`, `[release] orientation`, and what goes with blocks.
 
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
-use super::{GroundTable, Scene};
+use super::Scene;
 use crate::body::{SHARPEST, ShapeKind, most_corners};
 use crate::random::Distribution;
 use serde::Deserialize;
@@ -161,13 +161,7 @@ impl Scene {
                 return Err(Complaint::about("orientation", remedy).inside("release"));
             }
         }
-        let all_blocks = self.has_blocks()
-            && self.rocks.shapes.iter().all(|shape| shape.kind != ShapeKind::Sphere);
-        let slips = |(_, ground): &(&String, &GroundTable)| ground.slip_friction.is_some();
-        if let Some((name, _)) = self.grounds.iter().find(slips).filter(|_| !all_blocks) {
-            let remedy = "remove it, or let all rocks be blocks of [[rocks.shapes]]: friction that grows with slip is computed for blocks only, as yet";
-            return Err(Complaint::about("slip_friction", remedy).inside(name).inside("grounds"));
-        }
+        self.check_soil_of_worlds()?;
         if !self.has_blocks() {
             return Ok(());
         }
@@ -184,6 +178,24 @@ impl Scene {
             return Err(Complaint::about("together", remedy).inside("release"));
         }
         self.check_grounds_of_blocks()
+    }
+
+    fn check_soil_of_worlds(&self) -> Checked {
+        if !self.release.together {
+            return Ok(());
+        }
+        for (name, ground) in &self.grounds {
+            let soils = [
+                ("slip_friction", ground.slip_friction.is_some()),
+                ("scar", ground.scar.is_some()),
+                ("restitution_half_speed_m_s", ground.restitution_half_speed_m_s.is_some()),
+            ];
+            if let Some((key, _)) = soils.into_iter().find(|(_, given)| *given) {
+                let remedy = "remove it, or together = true: on soft soil rocks are computed one by one only, as yet";
+                return Err(Complaint::about(key, remedy).inside(name).inside("grounds"));
+            }
+        }
+        Ok(())
     }
 
     fn check_grounds_of_blocks(&self) -> Checked {

@@ -270,7 +270,7 @@ impl<'a> Recorder<'a> {
     /// the springs of other contacts hold. Returns its number.
     pub(super) fn begin_impact(&mut self, struck: &Struck, until_s: f64, held_j: f64) -> u32 {
         let times_s = (self.now.time_s, until_s);
-        let lost_j = self.lost_to_mesh_j() - held_j;
+        let lost_j = (self.lost_to_mesh_j() - held_j, self.ledger.soil_j);
         let speed_m_s = self.now.velocity_m_s.norm();
         let (number, is_new) = self.impacts.begin(struck, times_s, speed_m_s, lost_j);
         let is_tree = self.terrain.sheets[struck.sheet as usize].is_tree;
@@ -289,7 +289,7 @@ impl<'a> Recorder<'a> {
         }
         self.impacts.end(self.now.time_s, self.now.velocity_m_s.norm(), holds);
         if !self.impacts.is_any() {
-            self.impacts.book(self.lost_to_mesh_j() - held_j());
+            self.impacts.book((self.lost_to_mesh_j() - held_j(), self.ledger.soil_j));
         }
     }
 
@@ -309,6 +309,6 @@ impl<'a> Recorder<'a> {
     /// Those in contacts with the mesh (J).
     fn lost_to_mesh_j(&self) -> f64 {
         let ledger = &self.ledger;
-        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j
+        ledger.friction_j + ledger.damping_j + ledger.rolling_j + ledger.trees_j + ledger.soil_j
     }
 }

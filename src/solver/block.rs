@@ -15,6 +15,7 @@ use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
 use super::loss::Loss;
 use super::roughness::{Facets, Meeting};
+use super::slip::Slip;
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose, keep_widest, touches};
 use crate::contact::neighbours::Neighbours;
@@ -22,7 +23,6 @@ use crate::flight::block::Tumble;
 use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
 use nalgebra::{Matrix3, Rotation3};
-pub(crate) use slip::Slip;
 use solve::{Contact, Mass, solve};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
@@ -197,7 +197,8 @@ impl Footing {
             .map(|touch| {
                 let (law, touch) = (world.law(touch.triangle), &tilted(touch));
                 let back = if Self::is_struck(world, (block, moving), touch) {
-                    law.restitution * approach(touch)
+                    let speed = approach(touch);
+                    law.restitution_at(speed) * speed
                 } else {
                     0.0
                 };

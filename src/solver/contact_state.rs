@@ -62,6 +62,17 @@ impl Rate {
     };
 }
 
+/// An impact that rebounds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Blow {
+    /// Speed of approach (m/s), to the facet on rough ground.
+    pub(crate) approach_m_s: f64,
+    /// Normal of the surface.
+    pub(crate) n: Vec3,
+    /// Triangle whose ground answers.
+    pub(crate) triangle: u32,
+}
+
 /// A rock in contact.
 #[derive(Debug)]
 pub struct ContactState {
@@ -95,6 +106,8 @@ pub struct ContactState {
     pub(crate) impact: ImpactProgress,
     /// Contacts that are about to be struck anew within an episode (`rigid`).
     pub struck: ContactHistories,
+    /// The blow that has been announced last, until somebody takes it.
+    pub(crate) blow: Option<Blow>,
     /// The facets it meets on rough ground.
     pub(crate) facets: Facets,
     /// What it has done to the stems.
@@ -149,6 +162,7 @@ impl ContactState {
             struck: ContactHistories::default(),
             is_struck: true,
             may_yield: false,
+            blow: None,
             facets: Facets::default(),
             stem_load: StemLoad::default(),
             scratch: DdaScratch::default(),
@@ -167,7 +181,7 @@ impl ContactState {
         self.plane.forget();
         self.impact.forget();
         self.struck.clear();
-        self.is_struck = true;
+        (self.is_struck, self.blow) = (true, None);
         // Nothing of the rock before, not even a guess, may tell.
         self.contacts.iter_mut().for_each(|contact| contact.mode = Mode::default());
         if !self.near.covers(&c) {

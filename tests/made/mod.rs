@@ -60,6 +60,7 @@ pub fn info(releases: usize) -> RunInfo {
         keeps_paths: true,
         keeps_impacts: true,
         has_blocks: false,
+        has_scars: false,
         is_shard: false,
         threads: 2,
         plan: vec![PlanEntry {
@@ -112,6 +113,7 @@ impl RandomStream {
             speed_in_m_s: self.number(30.0),
             speed_out_m_s: self.number(10.0),
             energy_lost_j: self.number(1e5),
+            soil_j: 0.0,
         }
     }
 

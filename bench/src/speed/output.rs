@@ -82,6 +82,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         keeps_paths: false,
         keeps_impacts: false,
         has_blocks: false,
+        has_scars: false,
         is_shard: false,
         threads: 1,
         plan: Vec::new(),

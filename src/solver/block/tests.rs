@@ -68,6 +68,8 @@ impl Case {
             roughness_rad: 0.0,
             roughness_length_m: None,
             slip_friction: None,
+            scar: None,
+            restitution_half_m_s: None,
         };
         let rock = Rock { radius_m: block.radius_m, density_kg_m3: 2700.0 };
         // slower than that an elastic block would lose what is captured

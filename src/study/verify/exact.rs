@@ -28,6 +28,8 @@ const GROUND: Ground = Ground {
     roughness_rad: 0.0,
     roughness_length_m: None,
     slip_friction: None,
+    scar: None,
+    restitution_half_m_s: None,
 };
 const G: f64 = 9.8;
 
