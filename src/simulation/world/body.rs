@@ -143,13 +143,11 @@ impl<'a> WorldBody<'a> {
             self.recorder.pay(&held, 1.0);
             self.began_j.0 += held.sum();
         }
-        self.h = self.h.min(self.onset_s(settings));
+        // an impact must be resolved from its start; what is too slow to rebound, the error control alone finds out
+        if state.histories.iter().any(|history| !history.captured) {
+            self.h = self.h.min(ONSET / self.member.omega(settings.terrain));
+        }
         self.in_contact(settings).announce();
-    }
-
-    /// First step after it touches the mesh (s).
-    pub(super) fn onset_s(&self, settings: &RunSettings) -> f64 {
-        ONSET / self.member.omega(settings.terrain)
     }
 
     pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {

@@ -143,9 +143,11 @@ impl<'a> IslandWindow<'a> {
             let (n, _) = crate::contact::pair::between(&a.c, &b.c);
             (pair_history.n, pair_history.closed) = (n, true);
             pair_history.captured = -n.dot(&(a.v - b.v)) < pair_history.law.capture_m_s;
-            let h = ONSET / pair_history.law.omega;
-            for end in ends {
-                self.bodies[end].h = self.bodies[end].h.min(h);
+            if !pair_history.captured {
+                let h = ONSET / pair_history.law.omega;
+                for end in ends {
+                    self.bodies[end].h = self.bodies[end].h.min(h);
+                }
             }
         }
         for body in self.bodies.iter_mut().filter(|body| body.member.flying) {
