@@ -303,8 +303,7 @@ impl<'a> Fall<'a> {
 
     /// Mechanical energy of the rock in contact (J), weight included.
     fn total_j(&mut self) -> f64 {
-        self.state.motion_j(&self.body)
-            - self.body.mass * self.body.gravity.dot(&self.state.c)
+        self.state.motion_j(&self.body) - self.body.mass * self.body.gravity.dot(&self.state.c)
     }
 
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
