@@ -19,6 +19,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Tallest map (px): beside the numbers of all rocks its words can be read on the first page of A4.
 const TALLEST_PX: f64 = 460.0;
+/// Widest map (px), for the same reason.
+const WIDEST_PX: f64 = 400.0;
 /// Left edge of the key (px).
 const KEY_LEFT_PX: f64 = 6.0;
 /// Narrowest sheet (px): room for the key.
@@ -92,7 +94,7 @@ fn layout(report: &Report) -> Panel {
         Panel::new(frame, Axis::linear(x.0, x.1, names.0), Axis::linear(y.0, y.1, names.1))
     };
     let left = panel(square, x, y).room_left();
-    let widest = WIDTH_PX - left - RIGHT_PX;
+    let widest = (WIDTH_PX - left - RIGHT_PX).min(WIDEST_PX);
     fill_page(&mut x, &mut y, widest, report);
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     let (width, height) = (scale * (x.1 - x.0), scale * (y.1 - y.0));

@@ -130,9 +130,11 @@ fn both<'a>(
     place: &'a AnnualPlace,
     words: &Words,
 ) -> impl Iterator<Item = (&'static str, &'a AnnualFigures)> + use<'a> {
-    let without = if place.with_barriers.is_some() { words.and_without } else { "" };
+    // barriers that change nothing here have no rows of their own
+    let with = place.with_barriers.iter().filter(|with| **with != place.without_barriers);
     let and_with = words.and_with;
-    let with = place.with_barriers.iter().map(move |figures| (and_with, figures));
+    let with: Vec<_> = with.map(|figures| (and_with, figures)).collect();
+    let without = if with.is_empty() { "" } else { words.and_without };
     [(without, &place.without_barriers)].into_iter().chain(with)
 }
 

@@ -32,7 +32,7 @@ pub(super) fn page(report: &Report, drawn: &Shown<'_>) -> String {
     let arrivals: String =
         report.arrivals.iter().map(|table| tables::table(table, words)).collect();
     format!(
-        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{}{view}</p>\n{}{}</header>\n\
+        "<header class=\"site\">\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{}{view}</p>\n{}{}</header>\n\
          <div class=\"front\">\n{map}<section class=\"rocks\">\n{}</section>\n{}\
          <section class=\"answer\">\n{arrivals}</section>\n</div>\n",
         escape(&text.title),

@@ -58,7 +58,7 @@ dt { font-weight: bold; margin-top: 8px; }
 dd { margin: 0 0 4px 0; }
 footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-size: 12px; overflow-wrap: anywhere; }
 @media screen and (min-width: 1240px) {
-  .front, header { margin-left: -150px; margin-right: -150px; }
+  .front, .site { margin-left: -150px; margin-right: -150px; }
   .front { display: flow-root; }
   .front .map, .front .rocks { float: left; clear: left; width: 500px; }
   .front .warnings, .front .answer { margin-left: 532px; }
@@ -75,7 +75,7 @@ footer { margin-top: 40px; padding-top: 8px; border-top: 1px solid #bbb; font-si
   .facts, .note { font-size: 8pt; line-height: 1.3; }
   .note { break-before: avoid; margin: 1mm 0 2mm; }
   .question { font-size: 10pt; margin-top: 1.5mm; }
-  .front { margin-top: 3mm; display: grid; grid-template-columns: 97mm minmax(0, 1fr); column-gap: 5mm; grid-template-rows: auto 1fr; grid-template-areas: 'map warn' 'map rocks' 'answer answer'; }
+  .front { margin-top: 3mm; display: grid; grid-template-columns: 102mm minmax(0, 1fr); column-gap: 5mm; grid-template-rows: auto 1fr; grid-template-areas: 'map warn' 'map rocks' 'answer answer'; }
   .front .warnings { grid-area: warn; margin: 0 0 2mm; padding: 1.5mm 2.5mm; }
   .front .warnings h2 { font-size: 10pt; }
   .front .warnings ul { font-size: 7.5pt; line-height: 1.3; padding-left: 3.5mm; }

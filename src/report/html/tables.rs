@@ -73,6 +73,10 @@ fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
     }
     let sign = format::sign(estimate.is);
     let width = estimate.high - estimate.low;
+    if estimate.value == 0.0 && estimate.high > 0.0 {
+        // none seen: what matters is how many there may be
+        return (format!("{sign}0"), one_sided(estimate, words, |v| format::significant(v, 2)));
+    }
     if width.is_nan() && estimate.value.fract() == 0.0 && estimate.value.abs() < 1e7 {
         // a count, or a number as it was written
         let value = format!("{sign}{}", format::decimal(estimate.value, 0));
@@ -83,8 +87,8 @@ fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
         let leading = math::log10(estimate.value.abs()).floor() - math::log10(0.2 * width).floor();
         (leading as i32 + 1).clamp(3, 5) as usize
     } else {
-        // alone: a maximum is read as it is, a small derivative only for its size
-        if estimate.value.abs() < 0.1 { 3 } else { 4 }
+        // alone: a maximum is read as it is, a small derivative or a bound only for its size
+        if estimate.value.abs() >= 0.1 { 4 } else { 3 }
     };
     let bound = like(estimate.value, digits);
     (format!("{sign}{}", bound(estimate.value)), one_sided(estimate, words, bound))
