@@ -9,8 +9,8 @@ mod measured;
 mod profile;
 
 use super::model::{
-    About, BandPoint, Check, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row,
-    StopShare, Table, Text,
+    BandPoint, Check, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row, StopShare,
+    Table, Text,
 };
 use super::raster::GroundRaster;
 use super::words::{Words, fill};
@@ -306,8 +306,7 @@ fn statistics_table(
             |x: Estimate| if *like == Quantity::Height { x.above_a_mm() } else { x.over(size) };
         (name, cells.map(|cell| cell.map(clean)).collect())
     });
-    let about = About::Rocks;
-    Table { title, note, columns, rows: rows.collect(), about }
+    Table { title, note, columns, rows: rows.collect(), ..Table::default() }
 }
 
 /// Warnings that concern rocks above a speed, where some came so fast.

@@ -197,6 +197,51 @@ fn the_page_is_well_formed_and_fetches_nothing() {
     }
 }
 
+/// Figures are numbered as a reader meets them, in every language and whatever was drawn.
+#[test]
+fn numbers_of_figures_rise_down_the_page() {
+    for (name, report) in inputs() {
+        let drawn = report::drawings(&report);
+        let page = html::page(&report, &drawn);
+        let numbers: Vec<usize> = page
+            .split("<figcaption><b>Figure ")
+            .skip(1)
+            .map(|rest| rest.split('.').next().unwrap().parse().unwrap())
+            .collect();
+        assert_eq!(numbers, (1..=drawn.len()).collect::<Vec<_>>(), "{name}");
+    }
+}
+
+/// Pasted on a dark slide, or seen in a browser that prefers the dark: the paper is white and every word has its own ink.
+#[test]
+fn nothing_is_unreadable_on_a_dark_ground() {
+    for (name, report) in inputs() {
+        let drawn = report::drawings(&report);
+        for (figure, drawing) in &drawn {
+            let place = format!("{} of {name}", figure.file);
+            let (root, rest) = drawing.svg.split_once(">\n<title>").unwrap();
+            let view: Vec<&str> = svg::attribute(root, "viewBox").unwrap().split(' ').collect();
+            let (_, body) = rest.split_once("</title>").unwrap();
+            let paper = body.trim_start().split('>').next().unwrap();
+            let of_paper = |key| svg::attribute(paper, key).unwrap();
+            assert_eq!([of_paper("x"), of_paper("y"), of_paper("fill")], ["0", "0", "#ffffff"]);
+            assert_eq!([of_paper("width"), of_paper("height")], view[2..], "{place}");
+            for (at, _) in body.match_indices("<text ") {
+                let words = body[at..].split("</text>").next().unwrap();
+                let tag = words.split('>').next().unwrap();
+                let spans = words.matches("<tspan font-weight").count();
+                let inked = words.matches("<tspan font-weight").count() > 0
+                    && words.matches(" fill=\"#").count() >= spans;
+                assert!(svg::attribute(tag, "fill").is_some() || inked, "{place}: {words}");
+            }
+        }
+        let page = html::page(&report, &drawn);
+        assert!(
+            page.contains("color-scheme: light") && page.contains("background: #fff; color: #222")
+        );
+    }
+}
+
 /// Figures share one page: an id defined twice would let one figure use the clip of another.
 #[test]
 fn no_id_is_given_twice_on_the_page() {
@@ -322,6 +367,9 @@ fn what_nobody_reaches_has_a_sentence_and_no_figure() {
     let page = html::page(&report, &drawn);
     assert!(page.contains("crosses the line “nobody&#39;s line”"));
     assert!(page.contains("No rock arrives at barrier"));
+    // what a year brings too
+    assert!(files.contains(&"annual_3.svg") && !files.contains(&"annual_2.svg"), "{files:?}");
+    assert!(page.contains("Object “hut”: no rock of the sample comes here, fewer than 0.0040"));
 }
 
 /// The page speaks its language: head, chapters, axes, captions and glossary; and nothing of the English ones is left.

@@ -267,6 +267,7 @@ fn line_table(report: &Report) -> Table {
             row("Rotational energy (J)", Quantity::Rotational),
             row("Height (m)", Quantity::Height),
         ],
+        place: String::new(),
     }
 }
 
