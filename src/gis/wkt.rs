@@ -2,7 +2,7 @@
 
 /// What a description of a coordinate system says.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct System {
+pub(crate) struct CoordinateSystem {
     /// Whether its coordinates are angles.
     pub(crate) is_geographic: bool,
     /// Its EPSG code; programs of ESRI leave it out.
@@ -12,11 +12,15 @@ pub(crate) struct System {
 }
 
 /// Reads WKT 1 or 2.
-pub(crate) fn system(text: &str) -> System {
+pub(crate) fn system(text: &str) -> CoordinateSystem {
     let text = text.trim_start_matches('\u{feff}').trim();
     let head = text.split('[').next().unwrap_or_default().to_uppercase();
     let name = text.split('"').nth(1).unwrap_or_default().to_owned();
-    System { is_geographic: ["GEOGCS", "GEOGCRS"].contains(&head.as_str()), epsg: code(text), name }
+    CoordinateSystem {
+        is_geographic: ["GEOGCS", "GEOGCRS"].contains(&head.as_str()),
+        epsg: code(text),
+        name,
+    }
 }
 
 /// The code of the system itself stands last: those of its parts come before.

@@ -56,7 +56,7 @@ pub fn unstopped(barriers: &[Barrier], rock: &[CrossingRow]) -> Vec<bool> {
 
 /// Rocks that pass one line, 24 bytes each.
 #[derive(Default)]
-struct Seen {
+struct LinePassages {
     behind: BTreeSet<usize>,
     releases: Vec<u32>,
     energies_j: Vec<f64>,
@@ -83,9 +83,9 @@ pub fn residual<E>(
     if barriers.is_empty() || lines.is_empty() {
         return Ok(Vec::new());
     }
-    let mut seen: Vec<Seen> = lines.iter().map(|_| Seen::default()).collect();
+    let mut seen: Vec<LinePassages> = lines.iter().map(|_| LinePassages::default()).collect();
     by_rock(rows, |rock| take(barriers, &lines, rock, &mut seen))?;
-    let said = |(line, seen): (&&LineInfo, Seen)| Residual {
+    let said = |(line, seen): (&&LineInfo, LinePassages)| Residual {
         line: line.name.clone(),
         behind: seen.behind.iter().map(|&which| barriers[which].name.clone()).collect(),
         without: seen.passing(|_| true, weights),
@@ -94,7 +94,12 @@ pub fn residual<E>(
     Ok(lines.iter().zip(seen).map(said).collect())
 }
 
-fn take(barriers: &[Barrier], lines: &[&LineInfo], rock: &[CrossingRow], seen: &mut [Seen]) {
+fn take(
+    barriers: &[Barrier],
+    lines: &[&LineInfo],
+    rock: &[CrossingRow],
+    seen: &mut [LinePassages],
+) {
     let passes = unstopped(barriers, rock);
     for (row, passes) in rock.iter().zip(passes) {
         let Some(at) = lines.iter().position(|line| line.name == row.line) else { continue };
@@ -109,7 +114,7 @@ fn take(barriers: &[Barrier], lines: &[&LineInfo], rock: &[CrossingRow], seen: &
     }
 }
 
-impl Seen {
+impl LinePassages {
     /// What is said of some of them, by their place in the lists.
     fn passing(&self, is_one: impl Fn(usize) -> bool, weights: &Weights) -> Passing {
         let release = |at: usize| self.releases[at] as usize;

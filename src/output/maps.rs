@@ -4,7 +4,7 @@ use super::atomic_file::final_path;
 use crate::error::{Error, Result};
 use crate::file::write_atomic;
 use crate::frequency::Weights;
-use crate::hazard::{Asked, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
+use crate::hazard::{AnnualRequest, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
 use crate::terrain::geotiff::{Image, encode};
 use std::ffi::OsStr;
 use std::fmt::Write as _;
@@ -24,7 +24,7 @@ const NO_DATA: f32 = -9999.0;
 pub(super) fn write(
     dir: &Path,
     maps: &Maps,
-    (asked, releases): (&Asked, usize),
+    (asked, releases): (&AnnualRequest, usize),
     is_part: bool,
 ) -> Result<()> {
     let weights = match &asked.frequency {

@@ -26,7 +26,7 @@ fn escape(text: &str) -> String {
 /// What is drawn, in the order of the page.
 type Figures = [(Heading, Drawing)];
 /// Figures and the language of their captions.
-type Shown<'a> = (&'a Figures, &'a Words);
+type ShownFigures<'a> = (&'a Figures, &'a Words);
 
 /// A chapter: its anchor, what it asks, and its content.
 struct Chapter {
@@ -190,7 +190,7 @@ fn contents(chapters: &[&Chapter]) -> String {
 }
 
 /// The figure of a file, numbered as it stands among all; nothing if it was not drawn.
-fn figure((figures, words): Shown<'_>, file: &str) -> String {
+fn figure((figures, words): ShownFigures<'_>, file: &str) -> String {
     figures
         .iter()
         .position(|(heading, _)| heading.file == file)
@@ -208,7 +208,7 @@ fn numbered((heading, drawing): &(Heading, Drawing), number: usize, words: &Word
     )
 }
 
-fn all(figures: Shown<'_>, files: &[&str]) -> String {
+fn all(figures: ShownFigures<'_>, files: &[&str]) -> String {
     files.iter().map(|file| figure(figures, file)).collect()
 }
 

@@ -11,7 +11,7 @@ use super::format;
 use super::model::Report;
 use super::panel::{FOOT_PX, Panel};
 use super::site;
-use super::svg::path::{Frame, Spot, clipped, thinned};
+use super::svg::path::{PaperFrame, Spot, clipped, thinned};
 use super::words::fill;
 use crate::math;
 use crate::simulation::Stop;
@@ -41,7 +41,7 @@ const MANY: usize = 400;
 pub(super) fn draw(report: &Report) -> Drawing {
     let words = report.words();
     let panel = layout(report);
-    let key = furniture::Key::of(report);
+    let key = furniture::MapLegend::of(report);
     let key_left = panel.frame.left.min(0.3 * WIDTH_PX);
     let height = panel.frame.bottom + FOOT_PX + key.height_px(WIDTH_PX - key_left) + 8.0;
     let fastest = fastest_m_s(report);
@@ -83,8 +83,8 @@ fn layout(report: &Report) -> Panel {
     let (mut x, mut y) = extent(report);
     let names = (report.words().easting, report.words().northing);
     // the labels' width needs the ticks, the ticks need a frame: a square one is near enough
-    let square = Frame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
-    let panel = |frame: Frame, x: Range, y: Range| {
+    let square = PaperFrame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
+    let panel = |frame: PaperFrame, x: Range, y: Range| {
         Panel::new(frame, Axis::linear(x.0, x.1, names.0), Axis::linear(y.0, y.1, names.1))
     };
     let left = panel(square, x, y).room_left();
@@ -94,7 +94,7 @@ fn layout(report: &Report) -> Panel {
     let (width, height) = (scale * (x.1 - x.0), scale * (y.1 - y.0));
     // a narrow map stands in the middle of the page
     let left = left + 0.5 * (widest - width);
-    let frame = Frame { left, top: TOP_PX, right: left + width, bottom: TOP_PX + height };
+    let frame = PaperFrame { left, top: TOP_PX, right: left + width, bottom: TOP_PX + height };
     panel(frame, x, y)
 }
 
@@ -199,8 +199,8 @@ fn ends(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     if is_crowd {
         deposits(canvas, panel, report);
     }
-    for kind in ENDS.into_iter().filter(|kind| !(is_crowd && *kind == Mark::AtRest)) {
-        let ends = report.releases.iter().filter(|fall| Mark::of(&fall.stop) == kind);
+    for kind in ENDS.into_iter().filter(|kind| !(is_crowd && *kind == EndMark::AtRest)) {
+        let ends = report.releases.iter().filter(|fall| EndMark::of(&fall.stop) == kind);
         kind.draw(canvas, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
     }
 }
@@ -231,7 +231,8 @@ fn deposits(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
 fn density_symbol(canvas: &Canvas<'_>, at: Spot) {
     for (class, (_, opacity)) in DEPOSITS.iter().enumerate() {
         let x = at.0 + (class as f64 - 1.5) * 4.0;
-        let frame = Frame { left: x - 2.0, right: x + 2.0, top: at.1 - 3.0, bottom: at.1 + 3.0 };
+        let frame =
+            PaperFrame { left: x - 2.0, right: x + 2.0, top: at.1 - 3.0, bottom: at.1 + 3.0 };
         let colour = if class + 1 == DEPOSITS.len() { DARK_VERMILLION } else { VERMILLION };
         canvas.fill(&frame, colour, *opacity);
     }
@@ -248,7 +249,7 @@ fn apart(panel: &Panel, places: impl Iterator<Item = [f64; 3]>, raster_px: f64) 
 
 /// How an end is shown: form and colour, so that a grey print keeps them apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mark {
+enum EndMark {
     AtRest,
     LeftTerrain,
     TimeUp,
@@ -256,9 +257,10 @@ enum Mark {
 }
 
 /// The ways to end, in the order they are drawn.
-const ENDS: [Mark; 4] = [Mark::AtRest, Mark::LeftTerrain, Mark::TimeUp, Mark::Failed];
+const ENDS: [EndMark; 4] =
+    [EndMark::AtRest, EndMark::LeftTerrain, EndMark::TimeUp, EndMark::Failed];
 
-impl Mark {
+impl EndMark {
     fn of(stop: &Stop) -> Self {
         match stop {
             Stop::AtRest => Self::AtRest,

@@ -1,6 +1,6 @@
 //! Points, polylines and areas in plan view, in map coordinates; valid by construction.
 
-use super::blocks::Block;
+use super::blocks::BlockRow;
 pub use super::geometry::Corner;
 use super::geometry::{meet, minus, twice_area};
 use super::holes::bridged;
@@ -12,21 +12,21 @@ use serde::Deserialize;
 /// A point of release.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(try_from = "Vec<f64>", expecting = "a point [x, y] or [x, y, z]")]
-pub struct Point {
+pub struct ReleasePoint {
     /// Place in plan view (m), map coordinates.
     pub at_m: Corner,
     /// Height of the rock's centre (m), map coordinates; absent = reckoned from the ground below.
     pub height_m: Option<f64>,
 }
 
-impl Point {
+impl ReleasePoint {
     /// The place of a block of a table.
-    pub fn of_block(block: &Block) -> Self {
+    pub fn of_block(block: &BlockRow) -> Self {
         Self { at_m: block.at_m, height_m: block.height_m }
     }
 }
 
-impl TryFrom<Vec<f64>> for Point {
+impl TryFrom<Vec<f64>> for ReleasePoint {
     type Error = Flaw;
 
     fn try_from(numbers: Vec<f64>) -> Result<Self, Flaw> {

@@ -1,7 +1,7 @@
 //! `[[rocks.shapes]]`, `[release] orientation`, and what goes with blocks.
 
-use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
 use super::Scene;
+use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
 use crate::body::{SHARPEST, ShapeKind, most_corners};
 use crate::random::Distribution;
 use serde::Deserialize;

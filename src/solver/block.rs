@@ -14,7 +14,7 @@ mod solve;
 use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
 use super::loss::Loss;
-use super::roughness::{Facets, Meeting};
+use super::roughness::{Meeting, RoughFacets};
 use super::slip::Slip;
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose, keep_widest, touches};
@@ -23,7 +23,7 @@ use crate::flight::block::Tumble;
 use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
 use nalgebra::{Matrix3, Rotation3};
-use solve::{Contact, Mass, solve};
+use solve::{BlockContact, Mass, solve};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
@@ -58,9 +58,9 @@ pub(crate) struct Moving {
 pub(crate) struct Footing {
     pub(crate) near: Neighbours,
     pub(crate) touches: Vec<BlockTouch>,
-    contacts: Vec<Contact>,
+    contacts: Vec<BlockContact>,
     /// The facets it meets on rough ground.
-    pub(crate) facets: Facets,
+    pub(crate) facets: RoughFacets,
     /// How far it has slipped.
     pub(crate) slip: Slip,
     /// Passes over the contacts.
@@ -117,7 +117,7 @@ impl Moving {
     }
 
     /// Takes the impulses of the contacts.
-    fn take(&mut self, contacts: &[Contact], mass_kg: f64) {
+    fn take(&mut self, contacts: &[BlockContact], mass_kg: f64) {
         for contact in contacts {
             self.v += contact.impulse / mass_kg;
             self.momentum += contact.lever.cross(&contact.impulse);
@@ -192,7 +192,7 @@ impl Footing {
             normal: facet.map_or(touch.normal, |turn| turn * touch.normal),
             ..*touch
         };
-        let wanted: Vec<(Contact, f64)> = self
+        let wanted: Vec<(BlockContact, f64)> = self
             .touching(block)
             .map(|touch| {
                 let (law, touch) = (world.law(touch.triangle), &tilted(touch));
@@ -209,7 +209,7 @@ impl Footing {
         let mut thrown = moving.clone();
         let mut try_with = |share: f64| {
             self.contacts.clear();
-            let goal = |(one, back): &(Contact, f64)| one.with_goal(one.n * (back * share));
+            let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
             self.contacts.extend(wanted.iter().map(goal));
             solve(&mass, &mut self.contacts, (v, w), &mut self.sweeps);
             thrown = moving.clone();
@@ -234,7 +234,7 @@ impl Footing {
     /// What friction and restitution of each contact took, together `lost_j`, each at least 0: impulses work with the mean of
     /// the motion before and after.
     fn booked(&self, world: &ContactEnvironment, motion: [(&Vec3, &Vec3); 2], lost_j: f64) -> Loss {
-        let part = |contact: &Contact| {
+        let part = |contact: &BlockContact| {
             let [before, after] = motion.map(|motion| Mass::at(&contact.lever, motion));
             let mean = (before + after) * 0.5;
             let (push, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
@@ -320,10 +320,10 @@ impl Footing {
         (mass, touch): (&Mass, &BlockTouch),
         ahead_m: f64,
         goal: Vec3,
-    ) -> Contact {
+    ) -> BlockContact {
         let law = world.law(touch.triangle);
         let friction = self.slip.friction(world.ground_of(touch.triangle), law, ahead_m);
-        Contact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
+        BlockContact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
     }
 
     /// Whether a contact that touches slides.

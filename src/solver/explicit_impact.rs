@@ -31,7 +31,7 @@ const SHORTEST: f64 = 1e-9;
 
 /// How far a step may go, and how exactly.
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+struct StepBounds {
     /// Stiffest contact (rad/s).
     omega: f64,
     /// Longest step that cannot jump over a feature (s).
@@ -78,7 +78,7 @@ impl ContactState {
         let way = TRAVEL * world.body.radius;
         let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST / omega);
         let allowed = LOCAL * tolerance * self.impact.speed_m_s;
-        let bounds = Bounds { omega, limit, h_max, allowed };
+        let bounds = StepBounds { omega, limit, h_max, allowed };
         let known = self.histories.len();
         let mut accepted = None;
         if known <= 2 {
@@ -105,10 +105,10 @@ impl ContactState {
     fn step_among<const C: usize, const N: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
-        bounds: &Bounds,
+        bounds: &StepBounds,
         done: &mut Advance,
     ) -> Result<Option<Accepted>, StepError> {
-        let Bounds { omega, limit, h_max, allowed } = *bounds;
+        let StepBounds { omega, limit, h_max, allowed } = *bounds;
         let mut flow = Among::<C>::new(world, self, (omega, allowed));
         let y = flow.begin::<N>();
         let mut stages = Stages::<N, SUMS, P>::NONE;
@@ -158,7 +158,7 @@ impl ContactState {
         &mut self,
         world: &ContactEnvironment,
         accepted: &Accepted,
-        bounds: &Bounds,
+        bounds: &StepBounds,
         done: &mut Advance,
     ) {
         let (body, end) = (&world.body, &accepted.end);
@@ -190,7 +190,7 @@ impl ContactState {
 
     /// Flies out of contacts that push no more, if nothing else is in the way there and it takes no longer than `longest` (s);
     /// returns the time that took (s).
-    fn let_go(&mut self, world: &ContactEnvironment, bounds: &Bounds, longest: f64) -> f64 {
+    fn let_go(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
         let dt = LONGEST / bounds.omega;
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {
             return 0.0;

@@ -127,7 +127,7 @@ fn driven(
 /// Sets every force to what its law gives at velocity and spin `at`.
 fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: f64) {
     for contact in contacts {
-        let normal = Normal::of(body, contact, h);
+        let normal = NormalLine::of(body, contact, h);
         contact.normal_force = normal.at(contact.n.dot(v));
         let law = &contact.law;
         let (stick, wound) = contact.trials(body, v, w, h);
@@ -138,12 +138,12 @@ fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: 
 
 /// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Normal {
+pub(crate) struct NormalLine {
     pub(crate) a: f64,
     pub(crate) b: f64,
 }
 
-impl Normal {
+impl NormalLine {
     /// The line of the mode the contact is in: open, pressed, or held exactly at the surface.
     fn of(body: &Body, contact: &StageContact, h: f64) -> Self {
         Self::line(
@@ -209,7 +209,7 @@ fn add(
     contact: &StageContact,
     ((v, w), h): (&(Vec3, Vec3), f64),
 ) {
-    let normal = Normal::of(body, contact, h);
+    let normal = NormalLine::of(body, contact, h);
     let (law, n, r) = (&contact.law, contact.n, body.radius);
     // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
     let q = Matrix3::identity() - n * n.transpose();

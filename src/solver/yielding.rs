@@ -2,7 +2,7 @@
 //! impact's own time until what is struck has taken all it can.
 
 use super::body::Body;
-use super::law::{Action, Place};
+use super::law::{Action, ContactPlace};
 use crate::ground::Law;
 use crate::rock::Vec3;
 
@@ -16,7 +16,7 @@ const BISECTIONS: u32 = 60;
 /// A rock pressed into one contact.
 #[derive(Clone, Copy)]
 struct Pressing {
-    at: Place,
+    at: ContactPlace,
     v: Vec3,
     w: Vec3,
 }
@@ -34,7 +34,7 @@ impl Pressing {
         let acts = Action::of(body, law, (law.p_n, law.c_n), &there.at, (&there.v, &there.w));
         let turning = n.cross(&acts.shear_force) * body.radius - acts.rolling_moment;
         Self {
-            at: Place {
+            at: ContactPlace {
                 n: *n,
                 penetration: self.at.penetration - n.dot(&there.v) * h,
                 shear: self.at.shear + acts.rates[0] * h,
@@ -58,7 +58,7 @@ pub(crate) fn yielding_impact(
     (v, w): (&Vec3, &Vec3),
     limit_j: f64,
 ) -> Option<(Vec3, Vec3)> {
-    let at = Place { n: *n, penetration: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros() };
+    let at = ContactPlace { n: *n, penetration: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros() };
     let mut rock = Pressing { at, v: *v, w: *w };
     let left_j = rock.motion_j(body) - limit_j;
     let step = STEP / law.omega;

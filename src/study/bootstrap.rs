@@ -33,7 +33,7 @@ impl Interval {
 
 /// A percentile under every setting of a ladder, and what is left at the fine end.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ladder {
+pub struct PercentileLadder {
     /// The percentile under each setting.
     pub values: Vec<f64>,
     /// Where the values go.
@@ -118,7 +118,7 @@ impl Paired {
     /// and `k` the order; the interval is that of the whole fit when the rocks are drawn again with replacement.
     ///
     /// All settings keep the same rocks in every draw: what chance does to all of them alike drops out.
-    pub fn ladder(&self, p: f64, relative: &[f64], order: f64, seed: u64) -> Ladder {
+    pub fn ladder(&self, p: f64, relative: &[f64], order: f64, seed: u64) -> PercentileLadder {
         let x: Vec<f64> = relative.iter().map(|fine| math::pow(*fine, order)).collect();
         let values = self.percentiles(p, &vec![1; self.weights.len()]);
         let (limit, slope) = fit(&x, &values);
@@ -129,7 +129,11 @@ impl Paired {
             draws[1].push(slope);
         }
         let [limits, slopes] = draws;
-        Ladder { values, limit: interval(limit, limits), own_error: interval(slope, slopes) }
+        PercentileLadder {
+            values,
+            limit: interval(limit, limits),
+            own_error: interval(slope, slopes),
+        }
     }
 
     /// Percentile `p` under setting `to` minus that under setting 0.

@@ -327,7 +327,7 @@ pub use lattice::triangulate;
 pub(super) use mosaic::Standing;
 
 #[cfg(feature = "cloud")]
-pub(super) use window::distance;
+pub(super) use window::{BoxM, distance};
 
 #[cfg(test)]
 mod tests;

@@ -27,7 +27,6 @@ const NO_SOIL: (&str, &str) = (
     "restitution = 0.35\nslip_friction = { max = 1.3, kappa_per_m = 0.0, beta_per_s = 20.0 }",
 );
 
-
 fn refused(change: &[(&str, &str)]) -> String {
     let mut scene = text();
     for (from, to) in change {

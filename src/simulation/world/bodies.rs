@@ -2,10 +2,10 @@
 
 use super::cached_pairs::CachedPairs;
 use super::prediction::{
-    Meetings, Place, is_busy, meetings_in_passing, meetings_of_islands, place_of,
+    Meetings, PredictedRock, is_busy, meetings_in_passing, meetings_of_islands, place_of,
 };
 use super::window::IslandWindow;
-use super::{PairMaterial, State, TOUCHING, WorldBody, WorldStats, law_between};
+use super::{BodyState, PairMaterial, TOUCHING, WorldBody, WorldStats, law_between};
 use crate::contact::pair::PairHistory;
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
@@ -120,7 +120,7 @@ impl<'a> BodyWorld<'a> {
 
     fn is_under_way(&self) -> bool {
         let mut bodies = self.bodies.iter().flatten();
-        self.now_s < self.settings.longest_s && bodies.any(|body| body.state == State::Moving)
+        self.now_s < self.settings.longest_s && bodies.any(|body| body.state == BodyState::Moving)
     }
 
     /// Goes through the next windows, up to one in which a rock may have met one that it was not compared with; whether
@@ -158,7 +158,7 @@ impl<'a> BodyWorld<'a> {
         let present: Vec<u32> = self.present();
         let dt = end_s - self.now_s;
         let place = |&k: &u32| place_of(self.body(k), self.settings, (self.now_s, dt));
-        let places: Vec<Place> = present.iter().map(place).collect();
+        let places: Vec<PredictedRock> = present.iter().map(place).collect();
         let mut wide = std::mem::take(&mut self.wide);
         let mut meetings = self.meetings(&mut wide, &present, &places, dt);
         self.wide = wide;
@@ -205,14 +205,14 @@ impl<'a> BodyWorld<'a> {
     /// The rocks that are in the world.
     fn present(&self) -> Vec<u32> {
         let count = self.bodies.len() as u32;
-        (0..count).filter(|&k| !matches!(self.body(k).state, State::Gone(_))).collect()
+        (0..count).filter(|&k| !matches!(self.body(k).state, BodyState::Gone(_))).collect()
     }
 
     fn window_length(&self) -> f64 {
         let mut length = LONGEST_S;
         // In the rigid limit nothing happens between the steps: a window is one.
         let way = if self.is_rigid() { TRAVEL } else { WAY };
-        for body in self.bodies.iter().flatten().filter(|body| body.state == State::Moving) {
+        for body in self.bodies.iter().flatten().filter(|body| body.state == BodyState::Moving) {
             let speed = body.velocity_at(self.settings, self.now_s).norm();
             length = length.min(way * body.member.body.radius / speed.max(1e-9));
         }
@@ -224,7 +224,7 @@ impl<'a> BodyWorld<'a> {
         &self,
         wide: &mut CachedPairs,
         present: &[u32],
-        places: &[Place],
+        places: &[PredictedRock],
         dt: f64,
     ) -> Meetings {
         let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
@@ -318,7 +318,7 @@ impl<'a> BodyWorld<'a> {
         let (ids, bodies, pair_histories) = job.into_parts();
         for pair_history in pair_histories.into_iter().filter(PairHistory::is_held) {
             let (a, b) = (ids[pair_history.a as usize], ids[pair_history.b as usize]);
-            let gone = |k: u32| matches!(bodies[k as usize].state, State::Gone(_));
+            let gone = |k: u32| matches!(bodies[k as usize].state, BodyState::Gone(_));
             if !gone(pair_history.a) && !gone(pair_history.b) {
                 self.pair_histories.push(PairHistory { a, b, ..pair_history });
             }

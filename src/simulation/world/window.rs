@@ -2,7 +2,7 @@
 
 mod rigid;
 
-use super::{State, WorldBody, WorldStats};
+use super::{BodyState, WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, meeting_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
@@ -313,11 +313,11 @@ impl<'a> IslandWindow<'a> {
         for list in islands.lists() {
             let quiet = |k: &u32| {
                 let body = &self.bodies[*k as usize];
-                body.state == State::Moving && !body.member.flying && body.calm.rests()
+                body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
             };
             if list.iter().all(quiet) {
                 for k in list {
-                    self.bodies[k as usize].state = State::Asleep;
+                    self.bodies[k as usize].state = BodyState::Asleep;
                 }
             }
         }

@@ -5,14 +5,14 @@ mod rates;
 
 use super::dormand_prince::{Attempt, Stages, growth};
 use super::plane::{Followed, LOCAL, Plane, shared};
-use super::{Effort, Settled};
+use super::{ImpactEffort, Settled};
 use crate::contact::MOST;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::loss::Loss;
-use contacts::Place;
+use contacts::SwitchTime;
 use rates::{ContactRates, W, speed_of};
 use std::f64::consts::TAU;
 
@@ -43,7 +43,7 @@ impl FrozenContact<'_> {
 
 /// Motion after a frozen impact.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Thrown {
+pub(crate) struct FrozenRebound {
     /// Velocity (m/s).
     pub(crate) velocity_m_s: Vec3,
     /// Spin (rad/s).
@@ -55,7 +55,7 @@ pub(crate) struct Thrown {
     /// How it ended.
     pub(crate) settled: Settled,
     /// What it cost.
-    pub(crate) effort: Effort,
+    pub(crate) effort: ImpactEffort,
 }
 
 /// No step is longer, in radians of the stiffest contact …
@@ -83,15 +83,15 @@ pub(crate) fn throw(
     contacts: &[FrozenContact],
     (v, w): (&Vec3, &Vec3),
     tolerance: f64,
-) -> Thrown {
+) -> FrozenRebound {
     let contacts = &contacts[..contacts.len().min(MOST)];
-    let same = Thrown {
+    let same = FrozenRebound {
         velocity_m_s: *v,
         spin_rad_s: *w,
         loss: [Loss::default(); MOST],
         rebounded: [false; MOST],
         settled: Settled::Free,
-        effort: Effort::default(),
+        effort: ImpactEffort::default(),
     };
     if contacts.iter().all(|contact| contact.normal.dot(v) >= 0.0) {
         return same;
@@ -118,8 +118,8 @@ fn alone(
     contact: &FrozenContact,
     (v, w): (&Vec3, &Vec3),
     tolerance: f64,
-    mut end: Thrown,
-) -> Thrown {
+    mut end: FrozenRebound,
+) -> FrozenRebound {
     let body = Body { gravity: Vec3::zeros(), ..*body };
     let (law, n) = (contact.law, &contact.normal);
     let c_n = if contact.captured { law.c_n_captured } else { law.c_n };
@@ -144,11 +144,11 @@ fn alone(
 fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     (body, contacts, tolerance): (&Body, &[FrozenContact], f64),
     (v, w): (&Vec3, &Vec3),
-    mut end: Thrown,
-) -> Thrown {
+    mut end: FrozenRebound,
+) -> FrozenRebound {
     let speed = v.norm();
     let flow = ContactRates::<K>::new(body, contacts, LOCAL * tolerance);
-    let mut run = Run::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
+    let mut run = ImpactRun::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
     end.settled = run.follow(FIRST * math::pow(tolerance, 0.2));
     end.effort = run.effort;
     let start = (v / speed, w * (body.radius / speed));
@@ -176,21 +176,21 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
 }
 
 /// An impact being followed.
-struct Run<const K: usize, const N: usize, const Q: usize, const P: usize> {
+struct ImpactRun<const K: usize, const N: usize, const Q: usize, const P: usize> {
     flow: ContactRates<K>,
     y: [f64; N],
     sums: [f64; Q],
     /// Fastest approach of each contact.
     fastest: [f64; MOST],
-    effort: Effort,
+    effort: ImpactEffort,
 }
 
-impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q, P> {
+impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K, N, Q, P> {
     fn new(flow: ContactRates<K>, v: Vec3, w: Vec3) -> Self {
         let mut y = [0.0; N];
         y[3..6].copy_from_slice(v.as_slice());
         y[6..9].copy_from_slice(w.as_slice());
-        Self { flow, y, sums: [0.0; Q], fastest: [0.0; MOST], effort: Effort::default() }
+        Self { flow, y, sums: [0.0; Q], fastest: [0.0; MOST], effort: ImpactEffort::default() }
     }
 
     /// Steps until nothing pushes and nothing comes nearer.
@@ -239,11 +239,11 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
                 }
             };
             match self.flow.crossing(&self.y, &tried.y, h) {
-                Some(Place::Now) if !turned => {
+                Some(SwitchTime::Now) if !turned => {
                     turned = true;
                     self.flow.rates_of(&self.y, stages.first());
                 }
-                Some(Place::At(share)) => {
+                Some(SwitchTime::At(share)) => {
                     self.effort.rejected += 1;
                     kept = h.max(kept);
                     wish = h * share;

@@ -1,6 +1,6 @@
 //! Two spheres and stacks, whose answers are formulas.
 
-use super::{Row, Verification, timed};
+use super::{Verification, VerificationRow, timed};
 use crate::contact::pair::Strength;
 use crate::error::Result;
 use crate::ground::Ground;
@@ -36,7 +36,7 @@ const G: f64 = 9.8;
 pub(super) fn run(all: &mut Verification) -> Result<()> {
     let near = [[-1.0, 0.0, 20.0], [1.0, 0.0, 20.0]];
     let (falls, seconds) = timed(|| rocks(&near, [1.0, 0.0, 0.0], 0.0, 2.0))?;
-    let row = |quantity, expected: f64, computed: f64, allowed: f64| Row {
+    let row = |quantity, expected: f64, computed: f64, allowed: f64| VerificationRow {
         case: "two equal spheres head-on, e = 0.5",
         scheme: "adaptive",
         quantity,
@@ -66,7 +66,7 @@ fn stack(all: &mut Verification) -> Result<()> {
         ("penetration above (m)", once, 1.0 - (z[1] - z[0])),
     ];
     for (quantity, expected, computed) in pens {
-        all.rows.push(Row {
+        all.rows.push(VerificationRow {
             case: "a stack of two spheres at rest",
             scheme: "adaptive",
             quantity,

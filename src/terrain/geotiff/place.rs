@@ -34,7 +34,7 @@ const FARTHEST_M: f64 = 1e8;
 
 /// Where the cells of an image lie.
 #[derive(Debug)]
-pub(super) struct Place {
+pub(super) struct ImagePlacement {
     /// Map position of the outer corner of the first pixel (m).
     first_m: [f64; 2],
     cell_m: f64,
@@ -45,7 +45,7 @@ pub(super) struct Place {
     nodata: Option<f64>,
 }
 
-impl Place {
+impl ImagePlacement {
     pub(super) fn read<R: Read + Seek>(
         decoder: &mut Decoder<R>,
         file: &Path,

@@ -4,7 +4,7 @@ use super::Grid;
 use crate::math;
 
 /// A box on the map (m): west, south, east, north.
-type BoxM = [f64; 4];
+pub(in crate::terrain) type BoxM = [f64; 4];
 
 /// Share of a coarse cell that must have data (–): less is a hole.
 const ENOUGH: f64 = 0.5;

@@ -1,6 +1,6 @@
 //! Building the index: trees of parry's, packed.
 
-use super::{COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, Node, WIDE};
+use super::{BvhNode, COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, WIDE};
 use crate::rock::Vec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
@@ -28,13 +28,13 @@ const WAITING_TRIANGLES: usize = 1 << 21;
 
 /// A triangle by its number in the input, and where it lies.
 #[derive(Debug, Clone, Copy)]
-struct Placed {
+struct PlacedTriangle {
     /// Three times its centre (m): only the order counts, and what is equal here is told apart by the number.
     centre: [f32; 3],
     triangle: u32,
 }
 
-impl Placed {
+impl PlacedTriangle {
     fn of(triangle: u32, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> Self {
         let centre = corners(triangle).iter().sum::<Vec3>();
         Self { centre: centre.map(|m| m as f32).into(), triangle }
@@ -48,27 +48,27 @@ type Spans = ([f32; 3], [f32; 3]);
 const LOOKED_AT: usize = 1 << 14;
 
 /// Triangles that stand side by side in the index.
-struct Part<'a> {
+struct Run<'a> {
     /// Place of the first one in the index.
     start: u32,
-    triangles: &'a mut [Placed],
+    triangles: &'a mut [PlacedTriangle],
     /// Node and child under which it hangs; none for the root.
     above: Option<(usize, usize)>,
 }
 
-impl Part<'_> {
+impl Run<'_> {
     /// Cut across the middle of the side along which the centres lie widest apart; as many triangles in both, and the same
     /// ones whatever order they come in.
     fn halves(self) -> [Self; 2] {
         let axis = self.widest();
-        let by_place = |a: &Placed, b: &Placed| {
+        let by_place = |a: &PlacedTriangle, b: &PlacedTriangle| {
             a.centre[axis].total_cmp(&b.centre[axis]).then(a.triangle.cmp(&b.triangle))
         };
         let middle = self.triangles.len() / 2;
         self.triangles.select_nth_unstable_by(middle, by_place);
         let (low, high) = self.triangles.split_at_mut(middle);
         let next = self.start + middle as u32;
-        let part = |start, triangles| Part { start, triangles, above: self.above };
+        let part = |start, triangles| Run { start, triangles, above: self.above };
         [part(self.start, low), part(next, high)]
     }
 
@@ -82,7 +82,7 @@ impl Part<'_> {
             }
             (lo, hi)
         };
-        let of_some = |some: &[Placed]| {
+        let of_some = |some: &[PlacedTriangle]| {
             some.iter().fold(nothing(), |all, one| both(all, (one.centre, one.centre)))
         };
         let (lo, hi) = self.triangles.par_chunks(LOOKED_AT).map(of_some).reduce(nothing, both);
@@ -90,9 +90,9 @@ impl Part<'_> {
     }
 }
 
-impl<'a> Part<'a> {
+impl<'a> Run<'a> {
     /// Cut into halves, and those again.
-    fn quarters(self) -> [Part<'a>; 4] {
+    fn quarters(self) -> [Run<'a>; 4] {
         let [low, high] = self.halves();
         let (low, high) = rayon::join(|| low.halves(), || high.halves());
         let ([a, b], [c, d]) = (low, high);
@@ -152,15 +152,15 @@ impl Index {
         if count == 0 {
             return (Self::default(), Vec::new());
         }
-        let mut placed: Vec<Placed> =
-            (0..count as u32).into_par_iter().map(|t| Placed::of(t, &corners)).collect();
+        let mut placed: Vec<PlacedTriangle> =
+            (0..count as u32).into_par_iter().map(|t| PlacedTriangle::of(t, &corners)).collect();
         let mut index = Self::default();
-        let whole = Part { start: 0, triangles: &mut placed, above: None };
+        let whole = Run { start: 0, triangles: &mut placed, above: None };
         let (mut parts, levels) = index.share_out(whole, at_once);
         let mut whole = Packed::NOTHING;
         let beside = (WAITING_TRIANGLES / at_once).max(1);
         while !parts.is_empty() {
-            let some: Vec<Part> = parts.drain(..beside.min(parts.len())).collect();
+            let some: Vec<Run> = parts.drain(..beside.min(parts.len())).collect();
             let above: Vec<_> = some.iter().map(|part| part.above).collect();
             let packed = some.into_par_iter().map(|part| Tree::pack(part, &corners, leaf));
             for ((tree, packed), above) in packed.collect::<Vec<_>>().into_iter().zip(above) {
@@ -177,10 +177,10 @@ impl Index {
     }
 
     /// Cuts what is too large for one tree of parry's into four, and those again; gives the parts and the levels above them.
-    fn share_out<'a>(&mut self, whole: Part<'a>, at_once: usize) -> (Vec<Part<'a>>, usize) {
+    fn share_out<'a>(&mut self, whole: Run<'a>, at_once: usize) -> (Vec<Run<'a>>, usize) {
         let (mut ready, mut open, mut levels) = (Vec::new(), vec![whole], 0);
         loop {
-            let (large, small): (Vec<Part>, Vec<Part>) =
+            let (large, small): (Vec<Run>, Vec<Run>) =
                 open.into_iter().partition(|part| part.triangles.len() > at_once);
             ready.extend(small);
             if large.is_empty() {
@@ -191,14 +191,14 @@ impl Index {
             let first = self.nodes.len();
             for part in &large {
                 let place = self.nodes.len() as u32;
-                self.nodes.push(Node::EMPTY);
+                self.nodes.push(BvhNode::EMPTY);
                 if let Some((node, side)) = part.above {
                     self.nodes[node].child[side] = place;
                 }
             }
-            let quarters: Vec<_> = large.into_par_iter().map(Part::quarters).collect();
+            let quarters: Vec<_> = large.into_par_iter().map(Run::quarters).collect();
             let below = quarters.into_iter().enumerate().flat_map(|(k, quarters)| {
-                let hung = move |(side, part)| Part { above: Some((first + k, side)), ..part };
+                let hung = move |(side, part)| Run { above: Some((first + k, side)), ..part };
                 quarters.into_iter().enumerate().map(hung)
             });
             open = below.collect();
@@ -235,14 +235,14 @@ impl Index {
 
 /// A tree of parry's, packed: places count from its own first node.
 struct Tree {
-    nodes: Vec<Node>,
+    nodes: Vec<BvhNode>,
     leaf: u32,
 }
 
 impl Tree {
     /// Packs a part of the triangles and puts them into the order of the tree.
-    fn pack(part: Part, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync), leaf: u32) -> (Self, Packed) {
-        let Part { start, triangles, .. } = part;
+    fn pack(part: Run, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync), leaf: u32) -> (Self, Packed) {
+        let Run { start, triangles, .. } = part;
         // The tree may depend on the order in which it is given triangles, and selecting leaves an order of its own.
         let mut sorted: Vec<u32> = triangles.iter().map(|placed| placed.triangle).collect();
         sorted.sort_unstable();
@@ -265,7 +265,7 @@ impl Tree {
     /// Packs what is below a node, in the order of the tree; returns how deep it is.
     fn take(&mut self, loose: &[Loose], top: u32, order: &mut Order) -> usize {
         let place = self.nodes.len();
-        self.nodes.push(Node::EMPTY);
+        self.nodes.push(BvhNode::EMPTY);
         let mut depth = 0;
         for (side, child) in widest(loose, top, self.leaf).enumerate() {
             let from = &loose[child as usize];
@@ -405,9 +405,9 @@ mod tests {
         let facets = make::natural_slope(20, 20).facets;
         let corners = |t: u32| facets[t as usize];
         let halves = |triangles: Vec<u32>| {
-            let mut placed: Vec<Placed> =
-                triangles.into_iter().map(|t| Placed::of(t, &corners)).collect();
-            let halves = Part { start: 0, triangles: &mut placed, above: None }.halves();
+            let mut placed: Vec<PlacedTriangle> =
+                triangles.into_iter().map(|t| PlacedTriangle::of(t, &corners)).collect();
+            let halves = Run { start: 0, triangles: &mut placed, above: None }.halves();
             halves.map(|half| {
                 let mut half: Vec<u32> = half.triangles.iter().map(|p| p.triangle).collect();
                 half.sort_unstable();
