@@ -11,7 +11,6 @@ mod passages;
 mod recorder;
 mod rock_in_contact;
 mod settings;
-mod soil;
 mod world;
 mod cells;
 

@@ -1,13 +1,16 @@
 //! The fall itself: leap, touch, step, stop.
 
+mod soil;
+
 use super::block::follow_block;
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
-use super::soil::Soil;
 use super::{Stop, Trajectory};
+use soil::Soil;
+
 use crate::error::Result;
 use crate::flight::{Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
@@ -159,7 +162,7 @@ pub(super) struct Fall<'a> {
     pub(super) body: Body,
     /// Those in force: soil and the speed of impacts change them on the way.
     pub(super) laws: &'a mut [Law],
-    pub(super) soil: Soil<'a>,
+    soil: Soil<'a>,
     pub(super) state: &'a mut ContactState,
     pub(super) recorder: Recorder<'a>,
 }
