@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 pub type Corner = [f64; 2];
 
 /// Coordinates farther out than this (m) are no place on Earth, as in a mesh.
-const FARTHEST_M: f64 = 1e8;
+pub const FARTHEST_M: f64 = 1e8;
 /// Names of columns in a Shapefile are cut off after so many bytes.
 const COLUMN_BYTES: usize = 10;
 

@@ -26,7 +26,7 @@ pub use pressed::PressedPath;
 const SLACK: f64 = 1e-9;
 /// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
 /// rounding of map coordinates, which bends flat edges by 1e-9.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 #[derive(Debug, Clone, Copy)]
 struct NearFace {

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::file::write_atomic;
 use crate::frequency::Weights;
 use crate::hazard::{AnnualRequest, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
-use crate::terrain::geotiff::{Image, encode};
+use crate::terrain::geotiff::{Image, NO_DATA, encode};
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
@@ -15,8 +15,6 @@ use std::path::{Path, PathBuf};
 pub(super) const FOLDER: &str = "maps";
 /// Ending of the file that a resumed run begins from.
 const STATE: &str = "state";
-/// Stands in cells where no rock came.
-const NO_DATA: f32 = -9999.0;
 
 /// Writes all layers; a cell where no rock came holds no data.
 ///

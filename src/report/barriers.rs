@@ -6,6 +6,7 @@ use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{BarrierView, DesignView, Estimate, PlaceView, RockView, kilo};
+use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel};
 use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
@@ -17,8 +18,6 @@ const CURVE_PX: f64 = 160.0;
 /// Between a panel's axis title and the head of the next panel (px).
 const GAP_PX: f64 = 34.0;
 const RIGHT_PX: f64 = WIDTH_PX - 20.0;
-/// From so many rocks on, marks shrink to dots.
-const MANY: usize = 400;
 /// Colours of other places, in the order of the scene; more places share the last.
 const ELSEWHERE: [RGBColor; 4] = [ORANGE, PURPLE, SKY, GREY];
 

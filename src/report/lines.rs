@@ -7,6 +7,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::histogram::{EqualBins, percent_of};
 use super::model::{BandPoint, ReportLine, kilo};
+use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel, align};
 use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
@@ -21,8 +22,6 @@ const GAP_PX: f64 = 34.0;
 /// Room of the key above the heads of the lower panels (px).
 const KEY_PX: f64 = 18.0;
 const RIGHT_PX: f64 = WIDTH_PX - 20.0;
-/// From so many crossings on, marks shrink to dots.
-const MANY: usize = 400;
 /// Heights up to here at least are shown (m): rocks that only roll are not drawn as if they leapt.
 const LEAST_M: f64 = 0.1;
 /// Marked percentiles, the second one dashed.

@@ -12,8 +12,10 @@ const TICK_PX: f64 = 4.0;
 const GAP_PX: f64 = 3.0;
 /// Room of an axis title with its gap (px).
 const TITLE_PX: f64 = NORMAL + 8.0;
+/// From so many marks on, marks shrink to dots.
+pub(super) const MANY: usize = 400;
 /// How far a drawn line may lie from the true one (px): below what a printer shows.
-const TOLERANCE_PX: f64 = 0.15;
+pub(super) const TOLERANCE_PX: f64 = 0.15;
 const FRAME_PEN: Pen = Pen::full(INK, 0.8);
 const GRID_PEN: Pen = Pen::full(PALE, 0.6);
 

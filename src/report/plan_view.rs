@@ -9,6 +9,8 @@ use super::colour::{self, BLUE, DARK_VERMILLION, ORANGE, PURPLE, VERMILLION, WHI
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::Report;
+use super::panel::MANY;
+use super::panel::TOLERANCE_PX;
 use super::panel::{FOOT_PX, Panel};
 use super::site;
 use super::svg::path::{PaperFrame, Spot, clipped, thinned};
@@ -32,10 +34,7 @@ const DEPOSIT_PX: f64 = 3.0;
 const DEPOSITS: [(usize, f64); 4] = [(1, 0.35), (3, 0.55), (10, 0.8), (30, 1.0)];
 /// Steps of the colour scale along a path: finer ones cannot be told apart on a thin line.
 const SPEED_CLASSES: usize = 14;
-const TOLERANCE_PX: f64 = 0.15;
 const TOP_PX: f64 = 10.0;
-/// From so many marks on, marks shrink to dots.
-const MANY: usize = 400;
 
 /// Draws the map.
 pub(super) fn draw(report: &Report) -> Drawing {

@@ -14,9 +14,11 @@ mod solve;
 use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
 use super::loss::Loss;
+use super::rigid::HELD;
 use super::roughness::{Meeting, RoughFacets};
 use super::slip::Slip;
 use crate::body::Block;
+use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, Pose, keep_widest, touches};
 use crate::contact::neighbours::Neighbours;
 use crate::flight::block::Tumble;
@@ -27,8 +29,6 @@ use solve::{BlockContact, Mass, solve};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
-/// Gaps no wider than this still hold the block (–).
-const HELD: f64 = 1e-4;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
 const AHEAD: f64 = 1.0;
 /// No point of the block moves further in one step (–, relative to the balls' radius) …
@@ -37,8 +37,6 @@ const TRAVEL: f64 = 0.3;
 const TURN: f64 = 0.03;
 /// An approach slower than this is none (m/s): rounding.
 const STILL_M_S: f64 = 1e-9;
-/// Most contacts that take part at a time.
-const MOST: usize = 8;
 /// A gain of energy that is rounding (–); it is taken off the motion all the same.
 const ROUNDING: f64 = 1e-12;
 /// Halvings of the restitution where it would gain energy.

@@ -111,7 +111,7 @@ pub(crate) struct Pair<'a> {
 /// Newton steps for a ratio.
 const RATIO_STEPS: u32 = 30;
 /// A force below this part of its cap is held (–).
-const INSIDE: f64 = 1.0 - 1e-9;
+pub(crate) const INSIDE: f64 = 1.0 - 1e-9;
 /// Change of a ratio, relative to it, after which Newton's next would be rounding (–): sweeps over several contacts wait for
 /// each of them to say the same again.
 const NEAR: f64 = 1e-7;

@@ -76,7 +76,7 @@ impl Law {
 /// strike them without end.
 const LEAST_M_S: f64 = 1e-6;
 
-const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
+pub(crate) const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
 /// Shortens `x` to at most `cap`.
 #[inline]

@@ -6,6 +6,7 @@
 //! heading. The sweeps alone decide whether the result holds.
 
 use super::body::Body;
+use super::friction_rolling::INSIDE;
 use super::law::StageContact;
 use crate::rock::Vec3;
 use nalgebra::{Matrix3, SMatrix, SVector};
@@ -16,8 +17,6 @@ const SWEEPS: u32 = 4;
 const JUMPS: u32 = 12;
 /// Change of a force, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-9;
-/// A force below this part of its cap is held (–).
-const INSIDE: f64 = 1.0 - 1e-9;
 /// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
 const HOLD: f64 = 1e7;
 

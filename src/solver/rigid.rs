@@ -6,6 +6,7 @@
 
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
+use super::dda::TRAVEL;
 use super::friction_rolling::{Answers, ContactFrame, Pair, SlipState};
 use super::impact::{FrozenContact, throw};
 use super::law::capture_m_s;
@@ -17,8 +18,6 @@ use crate::contact::{ContactPoint, MOST};
 use crate::ground::Law;
 use crate::rock::Vec3;
 
-/// Longest way in one step (–, relative to R): less than the slack within which features are seen.
-const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
 /// Local error of an impact followed in its own time (–, relative to its speed).

@@ -4,6 +4,7 @@ use super::Settings;
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use super::stage::End;
+use super::tableau::RATIO;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::math;
@@ -14,8 +15,6 @@ pub(crate) const ONSET: f64 = 0.3;
 pub(crate) const TRAVEL: f64 = 0.15;
 /// The step controller's safety factor (–).
 const SAFETY: f64 = 0.9;
-/// Most that a step shrinks or grows at once (–).
-const RATIO: (f64, f64) = (0.2, 4.0);
 /// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
 const SHORTEST: f64 = 1e-9;
 

@@ -9,7 +9,7 @@ use crate::rock::Vec3;
 /// Step (rad of the contact's oscillation).
 const STEP: f64 = 5e-3;
 /// A rock comes to rest along the normal within this (rad), however heavily damped.
-const LASTS: f64 = 20.0;
+const COMES_TO_REST: f64 = 20.0;
 /// Halvings of the step in which it gives way: all the digits there are.
 const BISECTIONS: u32 = 60;
 
@@ -63,7 +63,7 @@ pub(crate) fn yielding_impact(
     let left_j = rock.motion_j(body) - limit_j;
     let step = STEP / law.omega;
     let mut gone = 0.0;
-    while n.dot(&rock.v) < 0.0 && gone < LASTS {
+    while n.dot(&rock.v) < 0.0 && gone < COMES_TO_REST {
         let next = rock.after(body, law, step);
         if next.motion_j(body) <= left_j {
             let (mut low, mut high) = (0.0, step);

@@ -170,6 +170,7 @@ fn interval(value: f64, mut draws: Vec<f64>) -> Interval {
 
 #[cfg(test)]
 mod tests {
+    use super::super::statistic::NEVER;
     use super::*;
 
     /// Values that follow the law exactly give it back, with no spread: every rock moves alike. To rounding.
@@ -201,8 +202,6 @@ mod tests {
         let found = Paired::new(&all).percentiles(0.99, &[1, 1, 1]);
         assert!((found[0] - 3.0).abs() < 1e-12 && (found[1] - 9.0).abs() < 1e-12, "{found:?}");
     }
-
-    const NEVER: f64 = f64::NEG_INFINITY;
 
     /// Nine light rocks of value 1 to 9 and one heavy rock of value 20: the median of all weight is the heavy rock's, by hand;
     /// drawn again stratum by stratum it is always there, so that nothing moves. With equal weights the median is 5.

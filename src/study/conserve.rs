@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// Mechanical energy may rise over a contact by this share of what the rock has (–): the steps refuse more than 1e-10 of
 /// it each, and round.
-const RISE: f64 = 1e-9;
+const ALLOWED_RISE: f64 = 1e-9;
 /// What the numerics may lose or gain of all the energy released (–): at the default tolerance a slow impact is known to a
 /// few per cent, all of them together much better.
 const REMAINDER: f64 = 0.01;
@@ -170,7 +170,7 @@ impl Conservation {
             Bound {
                 law: "largest rise of mechanical energy over one contact, over the rock's energy",
                 found: self.rise.value,
-                bound: RISE,
+                bound: ALLOWED_RISE,
                 release: (self.rise.value > 0.0).then_some(self.rise.release),
             },
             Bound {
@@ -271,7 +271,7 @@ mod tests {
         let good = Conservation { asked: 9, done: 9, released_j: 1.0, ..Conservation::default() };
         assert!(good.holds());
         let one = ReleaseCount { rocks: 1, first: 3 };
-        let rise = Worst { value: 2.0 * RISE, release: 7 };
+        let rise = Worst { value: 2.0 * ALLOWED_RISE, release: 7 };
         let bad = [
             Conservation { failed: one, ..good.clone() },
             Conservation { lost: one, ..good.clone() },

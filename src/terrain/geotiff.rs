@@ -29,6 +29,8 @@ pub(crate) mod tag {
     pub(crate) const GDAL_NODATA: u16 = 42_113;
 }
 
+/// Stands in cells without a value, in GeoTIFF and ASCII grids alike.
+pub const NO_DATA: f32 = -9999.0;
 /// Heights below this (m) are no terrain but a number for "no data" that the file does not declare; the deepest dry place
 /// of the Earth is 430 m below the sea, the deepest sea 11 000 m.
 const LOWEST_M: f64 = -12_000.0;

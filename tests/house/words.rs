@@ -50,3 +50,47 @@ fn no_name_means_two_types() {
     homes.retain(|_, files| files.len() > 1);
     assert!(homes.is_empty(), "{homes:#?}");
 }
+
+/// Constants that may stand twice: a figure's layout in pixels, which is its own affair, and where the parts of a state begin
+/// in the arrays of two integrators.
+fn is_layout(name: &str) -> bool {
+    name.ends_with("_PX") || matches!(name, "WAY" | "SPRINGS")
+}
+
+/// Name and value of the constants of a text, unit tests left out.
+fn constants(text: &str) -> Vec<(String, String)> {
+    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(text);
+    let mut found = Vec::new();
+    for (at, word) in code.match_indices("const ") {
+        let begins = code[..at].rsplit('\n').next().unwrap().trim();
+        let Some((head, rest)) = code[at + word.len()..].split_once('=') else { continue };
+        let Some((name, _)) = head.split_once(": ") else { continue };
+        let is_one = name.chars().all(|c| c.is_uppercase() || c.is_numeric() || c == '_');
+        // a parameter `const N: usize>` of a generic item is none
+        let is_parameter = head.matches('<').count() != head.matches('>').count();
+        if is_one && !is_parameter && (begins.is_empty() || begins.starts_with("pub")) {
+            let value = rest.split(';').next().unwrap();
+            found.push((name.to_owned(), value.split_whitespace().collect()));
+        }
+    }
+    found
+}
+
+/// A constant has one home: changed there, it is changed.
+#[test]
+fn no_constant_stands_twice() {
+    let two = "/// A.\npub(super) const A: f64 = 1e-9;\nfn f<const N: usize>() {}\n    const B: [u8; 2] = [1, 2];\n";
+    assert_eq!(constants(two).len(), 2);
+    let mut homes: BTreeMap<(String, String), Vec<PathBuf>> = BTreeMap::new();
+    let files = sources(Path::new("src"));
+    for file in
+        files.iter().filter(|file| !file.iter().any(|part| part == "tests" || part == "tests.rs"))
+    {
+        for constant in constants(&fs::read_to_string(file).unwrap()) {
+            homes.entry(constant).or_default().push(file.clone());
+        }
+    }
+    assert!(homes.len() > 500, "only {} constants were found", homes.len());
+    homes.retain(|(name, _), files| files.len() > 1 && !is_layout(name));
+    assert!(homes.is_empty(), "{homes:#?}");
+}

@@ -42,7 +42,7 @@ impl PredictedRock {
     /// A ball that holds the rock through `dt` (s) if it goes no further than `deviation_m` (m) off its straight way.
     pub(super) fn swept(&self, deviation_m: f64, dt: f64) -> Ball {
         let half = self.velocity * (0.5 * dt);
-        let radius = self.radius * (1.0 + ROUNDING) + half.norm() + deviation_m;
+        let radius = self.radius * (1.0 + REACH_ROUNDING) + half.norm() + deviation_m;
         Ball { centre: self.centre + half, radius }
     }
 }
@@ -76,7 +76,7 @@ const KICK: f64 = 2.2;
 /// Of a hit within a short window, the share that is allowed for: it takes its time (–).
 const LATE: f64 = 0.5;
 /// Share of the radius by which reaches are larger than they must be: rounding (–).
-const ROUNDING: f64 = 1e-6;
+const REACH_ROUNDING: f64 = 1e-6;
 
 /// How far a hit is handed on within a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,7 +108,7 @@ fn nearest_gap(a: &PredictedRock, b: &PredictedRock, dt: f64) -> f64 {
     let (apart, closing) = (a.centre - b.centre, a.velocity - b.velocity);
     let speed2 = closing.norm_squared();
     let t = if speed2 > 0.0 { (-apart.dot(&closing) / speed2).clamp(0.0, dt) } else { 0.0 };
-    (apart + closing * t).norm() - (a.radius + b.radius) * (1.0 + ROUNDING)
+    (apart + closing * t).norm() - (a.radius + b.radius) * (1.0 + REACH_ROUNDING)
 }
 
 impl Meetings {
@@ -122,7 +122,7 @@ impl Meetings {
         after: impl Fn(usize) -> (Vec3, f64),
         near: impl FnOnce(&[f64]) -> Vec<(u32, u32)>,
     ) -> Vec<usize> {
-        let is_thrown = |k: usize| after(k).1 > self.allowed[k] * (1.0 + ROUNDING);
+        let is_thrown = |k: usize| after(k).1 > self.allowed[k] * (1.0 + REACH_ROUNDING);
         if !(0..places.len()).any(is_thrown) {
             return Vec::new();
         }
@@ -166,7 +166,7 @@ pub(super) fn meetings_of_islands(
         };
         allowed = places.iter().zip(&fastest).map(deviated).collect();
         let reach = |(place, deviated): (&PredictedRock, &f64)| {
-            place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + deviated) * dt
+            place.radius * (1.0 + REACH_ROUNDING) + (place.velocity.norm() + deviated) * dt
         };
         pairs = near(&places.iter().zip(&allowed).map(reach).collect::<Vec<_>>());
         islands = joined(&pairs, places.len());
@@ -194,7 +194,7 @@ pub(super) fn meetings_in_passing(
     let fastest = places.iter().map(PredictedRock::speed).fold(0.0, f64::max);
     let reach = |place: &PredictedRock| {
         let deviated = place.dv_bound.max(place.predicted_dv).max(fastest);
-        place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + deviated) * dt
+        place.radius * (1.0 + REACH_ROUNDING) + (place.velocity.norm() + deviated) * dt
     };
     let mut pairs = near(&places.iter().map(reach).collect::<Vec<_>>());
     if !held.is_empty() {

@@ -12,7 +12,7 @@ use crate::solver::loss::Loss;
 use crate::solver::step_control::{ONSET, StepError};
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
-const ROUNDING: f64 = 1e-11;
+const GAP_ROUNDING: f64 = 1e-11;
 
 /// A time that is nothing (s): the clock cannot tell less after an hour.
 const SOON_S: f64 = 1e-12;
@@ -115,7 +115,7 @@ impl<'a> IslandWindow<'a> {
         let touching = |pair_history: &PairHistory| {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.bodies[k as usize]);
             let apart = a.recorder.now.position_m - b.recorder.now.position_m;
-            apart.norm() <= (a.member.body.radius + b.member.body.radius) * (1.0 + ROUNDING)
+            apart.norm() <= (a.member.body.radius + b.member.body.radius) * (1.0 + GAP_ROUNDING)
         };
         self.meeting_s(pair_history)
             .is_some_and(|t| t - self.now_s <= SOON_S || touching(pair_history))

@@ -6,11 +6,11 @@ use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
+use crate::solver::law::ZERO;
 use crate::solver::law::{Action, ContactPlace};
 use crate::solver::loss::Loss;
 use crate::solver::stage::End;
 
-const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 /// Where the way of the centre begins among the numbers that change; velocity, spin and the springs follow.
 const WAY: usize = 0;
 const V: usize = 3;

@@ -7,7 +7,7 @@ use super::normal_motion::{NormalMotion, Series};
 /// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits.
 const LONGEST: f64 = 0.9;
 /// Steps below this share of the whole are taken as they are (–): rounding.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST_SHARE: f64 = 1e-9;
 
 /// A flow under a force that is known.
 pub(super) trait ForcedFlow<const N: usize, const Q: usize, const K: usize> {
@@ -113,7 +113,7 @@ pub(super) fn run<
             wished
         };
         force.aim(h);
-        let short = h < SHORTEST * span.length;
+        let short = h < SHORTEST_SHARE * span.length;
         let felt = (!short).then_some(span.allowed);
         effort.evaluations += 6;
         match stages.step(&mut Under { law, force: &force, over_allowed2 }, &y, h, felt) {

@@ -16,7 +16,7 @@ const COARSE: f64 = 1e-6;
 /// Local error of one step over the tolerance (–): the handful of an impact's steps then stay within about the tolerance.
 pub(in crate::solver) const LOCAL: f64 = 0.3;
 /// First step at a tolerance of 1 (1/ω): the local error of order 5 is about (h/this)⁵.
-const FIRST: f64 = 3.5;
+pub(super) const FIRST: f64 = 3.5;
 
 /// How impacts of one rock on one ground go: all that does not change from impact to impact.
 #[derive(Debug, Clone, Copy)]

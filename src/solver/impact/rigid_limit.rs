@@ -4,6 +4,7 @@ mod contacts;
 mod rates;
 
 use super::dormand_prince::{Attempt, Stages, growth};
+use super::plane::FIRST;
 use super::plane::{Followed, LOCAL, Plane, shared};
 use super::{ImpactEffort, Settled};
 use crate::contact::MOST;
@@ -59,11 +60,9 @@ pub(crate) struct FrozenRebound {
 }
 
 /// No step is longer, in radians of the stiffest contact …
-const LONGEST: f64 = 0.9;
-/// … and the first one at a tolerance of 1 is this.
-const FIRST: f64 = 3.5;
+const LONGEST_STEP: f64 = 0.9;
 /// A step shorter than this is not cut at a kink (radians).
-const SHORTEST: f64 = 1e-9;
+const SHORTEST_CUT: f64 = 1e-9;
 /// An approach slower than this share of the error allowed is none (–).
 const NOTHING: f64 = 1e-3;
 /// Radians of the softest contact, flights between touches apart, after which an impact is ended: rattling between walls has no other end.
@@ -220,7 +219,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
                 return Settled::Jammed;
             }
             let h = wish.min(self.flow.longest);
-            let felt = (h > SHORTEST).then_some(self.flow.allowed);
+            let felt = (h > SHORTEST_CUT).then_some(self.flow.allowed);
             self.effort.evaluations += 6;
             let tried = match stages.step(&mut self.flow, &self.y, h, felt) {
                 Attempt::Whole(tried) if tried.error2 <= 1.0 => tried,

@@ -1,13 +1,11 @@
 //! The contact of two rocks inside one implicit stage: the law of [`StageContact`](crate::solver::law::StageContact) with a second body.
 
+pub(super) use crate::contact::TOUCH;
 use crate::contact::pair::{Bond, PairHistory, between};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::law::{normal_force, within};
-
-/// A gap between two rocks that counts as a touch (–, relative to the sum of their radii): rounding of the leap.
-pub(super) const TOUCH: f64 = 1e-9;
 
 /// A velocity and a spin.
 pub(super) type Twist = (Vec3, Vec3);

@@ -2,6 +2,7 @@
 
 use super::{Implausible, LOWEST_M, USUAL_NODATA, Window, damaged, tag, translate};
 use crate::error::{Error, Result};
+use crate::gis::FARTHEST_M;
 use crate::terrain::grid::Grid;
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -29,8 +30,6 @@ const METRE: u16 = 9001;
 const USER_DEFINED: u16 = 32_767;
 /// Relative difference of width and height up to which a cell is square (–): digits of a writer.
 const SQUARE: f64 = 1e-6;
-/// Coordinates farther out than this (m) are no place on Earth, as in a mesh.
-const FARTHEST_M: f64 = 1e8;
 
 /// Where the cells of an image lie.
 #[derive(Debug)]

@@ -1,5 +1,6 @@
 //! A forest from a list of trees, standing on a slope.
 
+use super::stems::FOOT_M;
 use super::stems::{Stem, prism, ring};
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
@@ -9,8 +10,6 @@ use crate::terrain::stl::Facet;
 use serde::Deserialize;
 use std::path::Path;
 
-/// How deep a stem's foot stays below the lowest ground under it (m).
-const FOOT_M: f64 = 0.5;
 /// What a list must look like.
 const REMEDY: &str =
     "write comma-separated numbers with decimal points under the header x,y,dbh_m,height_m";

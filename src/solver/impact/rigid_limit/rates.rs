@@ -1,7 +1,7 @@
 //! Rates of a rock among several frozen contacts, and the moments at which contacts open and close.
 
 use super::contacts::{Contacts, SwitchTime};
-use super::{FrozenContact, LONGEST, NOTHING};
+use super::{FrozenContact, LONGEST_STEP, NOTHING};
 use crate::contact::MOST;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
@@ -43,7 +43,7 @@ impl<const K: usize> ContactRates<K> {
             // All of them at penetration zero: those that come nearer press at once.
             pressed: [false; MOST],
             damping: [0.0; MOST],
-            longest: LONGEST / fastest,
+            longest: LONGEST_STEP / fastest,
             allowed,
         }
     }

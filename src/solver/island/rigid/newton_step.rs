@@ -15,7 +15,7 @@ use crate::solver::island::pair_contact::{PairContact, Twist};
 use crate::solver::law::{StageContact, within};
 
 /// Impulse by speed of a spring that stands for a rigid contact, over the largest mass (–).
-const HOLD: f64 = 1e7;
+const HOLD_BY_SPEED: f64 = 1e7;
 /// A jump of more rocks than this costs more than the sweeps that it may save.
 const MOST_ROCKS: usize = 64;
 
@@ -31,7 +31,7 @@ impl RigidIsland {
             return false;
         }
         let heaviest = self.balls.iter().map(|ball| ball.body.mass).fold(0.0, f64::max);
-        let stiffness = HOLD * heaviest;
+        let stiffness = HOLD_BY_SPEED * heaviest;
         self.hand_over(members, stiffness);
         let pair = |ball_contact: &BallContact| {
             ball_contact.bridge(&pair_histories[ball_contact.pair_history], stiffness)
