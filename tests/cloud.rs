@@ -2,6 +2,8 @@
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking")]
 
+mod program;
+
 use las::point::{Classification, Format};
 use las::{Builder, Point, Writer};
 use rockfall::rock::Vec3;
@@ -301,18 +303,7 @@ fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
         );
         let (file, out) = (dir.path().join("scene.toml"), dir.path().join("out"));
         std::fs::write(&file, scene).unwrap();
-        let program = std::process::Command::new(env!("CARGO_BIN_EXE_rockfall"))
-            .args([
-                "run",
-                file.to_str().unwrap(),
-                "--quiet",
-                "--overwrite",
-                "--out",
-                out.to_str().unwrap(),
-            ])
-            .output()
-            .unwrap();
-        assert!(program.status.success(), "{}", String::from_utf8_lossy(&program.stderr));
+        program::run_into(&file, &out);
         let table = std::fs::read_to_string(out.join("releases.csv")).unwrap();
         let column =
             table.lines().next().unwrap().split(',').position(|name| name == "runout_m").unwrap();
