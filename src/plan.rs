@@ -11,10 +11,10 @@ mod slips;
 mod stiffness;
 mod recorders;
 
-pub use annual::Year;
+pub use annual::YearPlan;
 pub use cost::Cost;
 pub use listing::PlanEntry;
-pub use recorders::{EvaluationLine, Footprint, MapGrid, Piece, Recorders};
+pub use recorders::{EvaluationLine, Footprint, LinePiece, MapGrid, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
 
 use crate::contact::pair::Strength;
@@ -144,7 +144,7 @@ pub struct Plan {
     /// Objects that rocks may hit; each has an evaluation line of its name.
     pub objects: Part<Vec<ObjectTable>>,
     /// Sources and their frequency.
-    pub year: Part<Year>,
+    pub year: Part<YearPlan>,
     /// Cells of the maps.
     pub maps: Part<MapGrid>,
     /// Length of the stretches of the profile of speed and height (m).

@@ -11,14 +11,13 @@ mod passages;
 mod recorder;
 mod rock_in_contact;
 mod settings;
-mod soil;
 mod world;
 mod cells;
 
 use crate::body::ShapeKind;
 pub use crate::contact::FeatureKind;
 use crate::math;
-use crate::release::Drawn;
+use crate::release::DrawnShape;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -188,7 +187,7 @@ impl ShapeOf {
         Self { kind: ShapeKind::Sphere, sides: [1.0; 2], attitude: [1.0, 0.0, 0.0, 0.0] };
 
     /// Of a block as it was drawn.
-    pub fn new(drawn: &Drawn) -> Self {
+    pub fn new(drawn: &DrawnShape) -> Self {
         let attitude = form::quaternion(&drawn.attitude);
         Self { kind: drawn.kind, sides: drawn.sides, attitude }
     }

@@ -7,7 +7,7 @@ use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones}
 use crate::solver::Scheme;
 use crate::solver::dda::own_restitution;
 use crate::terrain::Terrain;
-use crate::terrain::features::Count;
+use crate::terrain::features::FeatureCount;
 use crate::terrain::patches::Patched;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
@@ -78,7 +78,7 @@ impl Plan {
             fast_warnings,
         } = self;
         let place = places(places_of_release);
-        let mut list = List::default();
+        let mut list = PlanList::default();
         list.line("scene", title);
         list.line("file", format!("{}, {}", scene_file.display(), fingerprint(scene_hash)));
         list.line("version", format!("rockfall {version}"));
@@ -226,9 +226,9 @@ impl fmt::Display for PlanEntry {
 
 /// The listing as it grows.
 #[derive(Default)]
-struct List(Vec<PlanEntry>);
+struct PlanList(Vec<PlanEntry>);
 
-impl List {
+impl PlanList {
     fn line(&mut self, label: &str, text: impl fmt::Display) {
         self.0.push(PlanEntry { name: label.to_owned(), said: text.to_string() });
     }
@@ -253,8 +253,8 @@ impl List {
     }
 
     /// What of the mesh can never be touched.
-    fn touchable(&mut self, count: &Count) {
-        let Count { edges, flat_edges, corners, flat_corners, saddles } = *count;
+    fn touchable(&mut self, count: &FeatureCount) {
+        let FeatureCount { edges, flat_edges, corners, flat_corners, saddles } = *count;
         self.line(
             "flat edges",
             format!("{flat_edges} of {} left out: the faces beside them touch", edges + flat_edges),

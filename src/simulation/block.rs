@@ -13,12 +13,12 @@ use crate::flight::block::{Tumble, first_touch};
 use crate::flight::top::Top;
 use crate::ground::Law;
 use crate::random::RandomStream;
-use crate::release::{Drawn, Release};
+use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Vec3};
 use crate::solver::block::{Footing, Moving};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::roughness::Facets;
+use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::Scars;
 
 /// One block on its way.
@@ -35,7 +35,7 @@ struct Roll<'a> {
 /// Follows one block from its release to its stop; `laws` are those of the grounds for it.
 pub(super) fn follow_block(
     settings: &RunSettings,
-    (release, drawn): (&Release, &Drawn),
+    (release, drawn): (&Release, &DrawnShape),
     keep: Keep,
     (laws, random): (&[Law], RandomStream),
     (footing, scars): (&mut Footing, &mut Scars),
@@ -49,7 +49,7 @@ pub(super) fn follow_block(
     footing.near.forget();
     footing.raise_stems(settings.terrain, &random);
     (footing.near.tested, footing.sweeps) = (0, 0);
-    footing.facets = Facets::of(random, laws);
+    footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
     let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
     let form = Form { rock: release.rock, block: Some(block) };
@@ -234,7 +234,7 @@ impl Roll<'_> {
         self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
     }
 
-    fn end(mut self, (release, drawn): (&Release, &Drawn), stop: Stop) -> Trajectory {
+    fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
         let start =
             Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);
         self.recorder.end_path();

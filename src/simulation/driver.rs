@@ -1,29 +1,32 @@
 //! The fall itself: leap, touch, step, stop.
 
+mod soil;
+
 use super::block::follow_block;
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
 use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
-use super::soil::Soil;
 use super::{Stop, Trajectory};
+use soil::Soil;
+
 use crate::error::Result;
 use crate::flight::{Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
-use crate::release::{Drawn, Release};
+use crate::release::{DrawnShape, Release};
 use crate::rock::Motion;
 use crate::solver::block::Footing;
 use crate::solver::body::Body;
 use crate::solver::contact_state::ContactState;
 use crate::solver::loss::Loss;
-use crate::solver::roughness::Facets;
+use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::Scars;
 use crate::solver::slip::Slip;
 use crate::solver::{self, Stepper};
-use crate::stopwatch::{Piece, Stopwatches};
+use crate::stopwatch::{Stopwatches, TimedPiece};
 use std::ops::Range;
 
 /// Work space of one thread; nothing of one rock is left for the next.
@@ -77,7 +80,7 @@ pub fn simulate(
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
     scratch.state.raise_stems(settings.terrain, &random);
-    scratch.state.facets = Facets::of(random, &scratch.laws);
+    scratch.state.facets = RoughFacets::of(random, &scratch.laws);
     scratch.slip.begin(&release.grounds);
     let mut fall = Fall {
         settings,
@@ -106,7 +109,7 @@ pub fn simulate(
 /// The same for a block, with scheme `rigid`.
 pub fn simulate_block(
     settings: &RunSettings,
-    (release, drawn): (&Release, &Drawn),
+    (release, drawn): (&Release, &DrawnShape),
     keep: Keep,
     random: RandomStream,
     scratch: &mut Scratch,
@@ -159,7 +162,7 @@ pub(super) struct Fall<'a> {
     pub(super) body: Body,
     /// Those in force: soil and the speed of impacts change them on the way.
     pub(super) laws: &'a mut [Law],
-    pub(super) soil: Soil<'a>,
+    soil: Soil<'a>,
     pub(super) state: &'a mut ContactState,
     pub(super) recorder: Recorder<'a>,
 }
@@ -192,12 +195,12 @@ impl<'a> Fall<'a> {
             &mut self.recorder.effort.triangles,
         );
         let (dt, stop) = self.settings.end_of_flight(&end, now.time_s);
-        self.state.stopwatches.stop(Piece::Leap, begun);
+        self.state.stopwatches.stop(TimedPiece::Leap, begun);
         self.recorder.effort.leaps += 1;
         let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
         self.soil.fly(dt);
-        self.state.stopwatches.stop(Piece::NotesInFlight, begun);
+        self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
         // flights count too: between two plates a rock may fly without end and without getting on in time
         stop.or_else(|| self.settings.over_budget(&self.recorder.effort))
     }
@@ -278,7 +281,7 @@ impl<'a> Fall<'a> {
             let begun = self.state.stopwatches.now();
             self.recorder.step(to, slides);
             self.in_contact().end_impacts();
-            self.state.stopwatches.stop(Piece::NotesInContact, begun);
+            self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if self.state.is_free() {

@@ -21,17 +21,17 @@ use flow::{Among, SUMS};
 /// First step of an impact (rad of its oscillation).
 const FIRST: f64 = 0.3;
 /// Longest step (rad).
-const LONGEST: f64 = 0.9;
+const LONGEST_RAD: f64 = 0.9;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
 const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion).
 const BALANCED: f64 = 0.1;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST_RAD: f64 = 1e-9;
 
 /// How far a step may go, and how exactly.
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+struct StepBounds {
     /// Stiffest contact (rad/s).
     omega: f64,
     /// Longest step that cannot jump over a feature (s).
@@ -76,9 +76,9 @@ impl ContactState {
         let c = self.c;
         self.know(world, &c);
         let way = TRAVEL * world.body.radius;
-        let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST / omega);
+        let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST_RAD / omega);
         let allowed = LOCAL * tolerance * self.impact.speed_m_s;
-        let bounds = Bounds { omega, limit, h_max, allowed };
+        let bounds = StepBounds { omega, limit, h_max, allowed };
         let known = self.histories.len();
         let mut accepted = None;
         if known <= 2 {
@@ -105,10 +105,10 @@ impl ContactState {
     fn step_among<const C: usize, const N: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
-        bounds: &Bounds,
+        bounds: &StepBounds,
         done: &mut Advance,
     ) -> Result<Option<Accepted>, StepError> {
-        let Bounds { omega, limit, h_max, allowed } = *bounds;
+        let StepBounds { omega, limit, h_max, allowed } = *bounds;
         let mut flow = Among::<C>::new(world, self, (omega, allowed));
         let y = flow.begin::<N>();
         let mut stages = Stages::<N, SUMS, P>::NONE;
@@ -122,7 +122,7 @@ impl ContactState {
             flow.begin_try();
             let wished = flow.state.impact.h.min(limit);
             let dt = wished.min(h_max);
-            let is_short = dt * omega < SHORTEST;
+            let is_short = dt * omega < SHORTEST_RAD;
             let attempt = stages.step(&mut flow, &y, dt, (!is_short).then_some(allowed));
             if flow.is_crowded && C < HISTORIES {
                 return Ok(None);
@@ -158,7 +158,7 @@ impl ContactState {
         &mut self,
         world: &ContactEnvironment,
         accepted: &Accepted,
-        bounds: &Bounds,
+        bounds: &StepBounds,
         done: &mut Advance,
     ) {
         let (body, end) = (&world.body, &accepted.end);
@@ -190,8 +190,8 @@ impl ContactState {
 
     /// Flies out of contacts that push no more, if nothing else is in the way there and it takes no longer than `longest` (s);
     /// returns the time that took (s).
-    fn let_go(&mut self, world: &ContactEnvironment, bounds: &Bounds, longest: f64) -> f64 {
-        let dt = LONGEST / bounds.omega;
+    fn let_go(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
+        let dt = LONGEST_RAD / bounds.omega;
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {
             return 0.0;
         }

@@ -60,7 +60,7 @@ pub const LADDERS: [Rungs; 4] = [
 
 /// One case with one scheme at one step or tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct LadderPoint {
     /// Tolerance (m/s) or step (s).
     pub fineness: f64,
     /// Largest error of the case's measures (–); infinite where the run failed.
@@ -77,7 +77,7 @@ pub struct Curve {
     /// The scheme with its ladder.
     pub rungs: Rungs,
     /// From coarse to fine.
-    pub points: Vec<Point>,
+    pub points: Vec<LadderPoint>,
 }
 
 /// One case with every scheme.
@@ -119,7 +119,7 @@ fn curve(case: &Case, terrain: &Terrain, rungs: Rungs) -> Curve {
         let step = case.settings(rungs.scheme, fineness);
         let (journey, seconds) = timed(|| case.follow(terrain, &step, &mut scratch));
         let error = case.error(&measures, &journey);
-        Point { fineness, error, effort: journey.effort, seconds }
+        LadderPoint { fineness, error, effort: journey.effort, seconds }
     };
     Curve { rungs, points: rungs.fineness.iter().map(point).collect() }
 }
@@ -147,7 +147,7 @@ impl Curve {
     /// Order of convergence: the slope of log error over log contact steps, least squares over the rungs where an order
     /// can show; `None` where fewer than three do.
     pub fn order(&self) -> Option<f64> {
-        let shows = |point: &&Point| (ROUNDING..LARGE).contains(&point.error);
+        let shows = |point: &&LadderPoint| (ROUNDING..LARGE).contains(&point.error);
         let logs: Vec<(f64, f64)> = self
             .points
             .iter()
@@ -175,7 +175,7 @@ impl Curve {
     }
 
     /// The cheapest point at most as far off as `error` (–).
-    fn cheapest(&self, error: f64) -> Option<&Point> {
+    fn cheapest(&self, error: f64) -> Option<&LadderPoint> {
         let good = self.points.iter().filter(|point| point.error <= error.max(ROUNDING));
         good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
@@ -198,7 +198,7 @@ impl CaseStudy {
         let (Some(paper), Some(ours)) = (self.curve(PAPER), self.curve(USUAL)) else {
             return Vec::new();
         };
-        let saving = |point: &Point| {
+        let saving = |point: &LadderPoint| {
             let (theirs, our) = (paper.cheapest(point.error)?, ours.cheapest(point.error)?);
             Some(Saving {
                 error: point.error.max(ROUNDING),
@@ -231,7 +231,7 @@ pub fn csv(studies: &[CaseStudy]) -> String {
     );
     for study in studies {
         for curve in &study.curves {
-            for Point { fineness, error, seconds, effort } in &curve.points {
+            for LadderPoint { fineness, error, seconds, effort } in &curve.points {
                 let scheme = curve.rungs.scheme;
                 let Effort { steps, rejected, leaps, sweeps, triangles, unsettled } = effort;
                 let _ = writeln!(

@@ -2,8 +2,8 @@
 
 use super::exact::{CaseStudy, Curve, LADDERS, PAPER, Saving, USUAL};
 use super::exact_figure::order_in_words;
-use super::exact_values::{self, Value};
-use super::order::{self, Ladder};
+use super::exact_values::{self, ExactValue};
+use super::order::{self, OrderLadder};
 use crate::report::format;
 use std::fmt::Write as _;
 
@@ -18,7 +18,11 @@ machine; the counters in `exact.csv` do not. The order is the slope of log error
 ";
 
 /// Writes the page.
-pub(super) fn page(studies: &[CaseStudy], ladders: &[Ladder], values: &[Value]) -> String {
+pub(super) fn page(
+    studies: &[CaseStudy],
+    ladders: &[OrderLadder],
+    values: &[ExactValue],
+) -> String {
     let mut page = String::from(INTRODUCTION);
     page += "## Exact values\n\nErrors are absolute, in the unit of the row; all columns are schemes with springs, so there is one exact value.\n\n";
     page += &exact_values::table(values);

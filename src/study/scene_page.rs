@@ -1,7 +1,7 @@
 //! The page of a scene's errors: sentences, tables, CSV.
 
 use super::bootstrap::Interval;
-use super::scene::{Rung, SceneStudy, Statistic};
+use super::scene::{Rung, SceneStudy, StudyStatistic};
 use crate::report::format::{self, significant};
 use crate::solver::Settings;
 use std::fmt::Write as _;
@@ -55,7 +55,7 @@ fn sentences(page: &mut String, study: &SceneStudy, wish: Option<Wish>) {
 }
 
 /// What dominates, and the cheapest way to a wanted error (half the present one where none is given).
-pub fn sentence(study: &SceneStudy, statistic: &Statistic, wanted: Option<f64>) -> String {
+pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f64>) -> String {
     let subject = &study.subjects[statistic.subject];
     let (name, unit) = (&subject.name, subject.unit);
     let head =

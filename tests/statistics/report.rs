@@ -13,9 +13,11 @@ use rockfall::report::canvas::{Label, Pen, paint};
 use rockfall::report::colour;
 use rockfall::report::figure::WIDTH_PX;
 use rockfall::report::figures::FIGURES;
-use rockfall::report::model::{Estimate, Fall, Is, Path, Point, Quantity, Report, Text};
+use rockfall::report::model::{
+    Estimate, Is, Path, ReleaseEnd, Report, ReportPathPoint, ReportQuantity, Text,
+};
 use rockfall::report::panel::{FOOT_PX, Panel};
-use rockfall::report::svg::path::Frame;
+use rockfall::report::svg::path::PaperFrame;
 use rockfall::report::words::Words;
 use rockfall::report::{self, html};
 use rockfall::scene::Language;
@@ -59,8 +61,8 @@ fn inputs() -> Vec<(&'static str, Report)> {
 }
 
 /// A rock that stays where it is released.
-fn still() -> Fall {
-    Fall {
+fn still() -> ReleaseEnd {
+    ReleaseEnd {
         stop: Stop::AtRest,
         runout_m: 0.0,
         drop_m: 0.0,
@@ -82,7 +84,13 @@ fn one_point() -> Path {
     let state = PathState::Flight;
     Path {
         index: 0,
-        points: vec![Point { time_s: 0.0, place_m, speed_m_s: 0.0, clearance_m: 0.0, state }],
+        points: vec![ReportPathPoint {
+            time_s: 0.0,
+            place_m,
+            speed_m_s: 0.0,
+            clearance_m: 0.0,
+            state,
+        }],
     }
 }
 
@@ -137,7 +145,9 @@ fn left() -> Report {
     report.releases.iter_mut().step_by(2).for_each(|fall| fall.stop = Stop::LeftTerrain);
     let mut report = slope::filled(report);
     report.runout_exceedance.truncate(60);
-    for (quantity, is) in [(Quantity::Runout, Is::AtLeast), (Quantity::ReachAngle, Is::AtMost)] {
+    for (quantity, is) in
+        [(ReportQuantity::Runout, Is::AtLeast), (ReportQuantity::ReachAngle, Is::AtMost)]
+    {
         for quantile in report.quantiles.get_mut(&quantity).into_iter().flatten() {
             let at = &mut quantile.at;
             at.is = is;
@@ -313,7 +323,7 @@ fn a_large_run_gives_a_page_of_less_than_five_megabytes() {
 
 /// What a study of error against cost draws: both axes logarithmic, dashed lines, values beyond the frame.
 fn log_log() -> String {
-    let frame = Frame { left: 70.0, top: 10.0, right: 660.0, bottom: 300.0 };
+    let frame = PaperFrame { left: 70.0, top: 10.0, right: 660.0, bottom: 300.0 };
     let x = Axis::log(3e-6, 0.7, "Step (s)");
     let panel = Panel::new(frame, x, Axis::log(1e-9, 1e-1, "Error (–)"));
     paint("loglog", (WIDTH_PX, 300.0 + FOOT_PX), "Error", |canvas| {
@@ -420,7 +430,7 @@ fn a_page_speaks_the_language_of_its_scene() {
 #[test]
 fn bounds_and_missing_rocks_are_named() {
     let mut report = left();
-    report.headline[0].estimate = report.quantiles[&Quantity::Runout][0].at;
+    report.headline[0].estimate = report.quantiles[&ReportQuantity::Runout][0].at;
     report.headline[1].estimate = Estimate::lacking(52);
     let page = html::page(&report, &report::drawings(&report));
     assert!(page.contains("≥\u{2009}"), "a lower bound has its sign");

@@ -2,7 +2,7 @@
 //!
 //! The rule is that of spheres (`solver::stems`): what a block puts into its contacts with a stem counts against what the stem can
 //! take; when that is what was left of the stem, the stem is gone and the block goes on. A blow that would take more ends there
-//! ([`Contact::yielding`](super::solve::Contact)).
+//! ([`Contact::yielding`](super::solve::BlockContact)).
 
 use super::{Footing, Moving};
 use crate::body::Block;

@@ -5,7 +5,7 @@
 //! ended, what keeps it so if the cone allows. What an impulse `P` has taken is exact at any time, whatever its way:
 //! `W = −(u₀·P + P·G P/2)` with `u₀` the velocity of the contact point before and `G = T M⁻¹ Tᵀ`.
 
-use super::solve::Contact;
+use super::solve::BlockContact;
 use crate::rock::Vec3;
 
 /// Shares of the normal impulse that would stop the contact point without friction, for one of which a step goes (–).
@@ -17,7 +17,7 @@ const PASSES: u32 = 40;
 /// Halvings of the step in which it gives way: all the digits there are.
 const HALVINGS: u32 = 60;
 
-impl Contact {
+impl BlockContact {
     /// What an impulse has taken (J) of a body whose contact point moved by `u` (m/s).
     fn taken_j(&self, u: &Vec3, impulse: &Vec3) -> f64 {
         -(u.dot(impulse) + 0.5 * impulse.dot(&(self.answer * impulse)))

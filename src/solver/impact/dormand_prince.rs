@@ -1,6 +1,7 @@
 //! An explicit embedded Runge–Kutta pair of order 5(4) (Dormand and Prince 1980), on the stack.
 
 use crate::rock::Vec3;
+use crate::solver::tableau::RATIO;
 
 /// Times of its stages (–, relative to the step).
 pub(in crate::solver) const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
@@ -152,8 +153,6 @@ fn mixed<const N: usize, const K: usize>(
 
 /// Safety factor of the next step (–).
 const SAFETY: f64 = 0.85;
-/// Most that a step shrinks or grows at once (–).
-const RATIO: (f64, f64) = (0.2, 4.0);
 
 /// By how much the next step may be longer.
 #[inline]

@@ -1,16 +1,16 @@
 //! Steps through the time of one contact on a plane, with the local error under control.
 
-use super::Effort;
+use super::ImpactEffort;
 use super::dormand_prince::{Attempt, Flow, NODES, Rates, Stages, growth};
 use super::normal_motion::{NormalMotion, Series};
 
 /// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits.
 const LONGEST: f64 = 0.9;
 /// Steps below this share of the whole are taken as they are (–): rounding.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST_SHARE: f64 = 1e-9;
 
 /// A flow under a force that is known.
-pub(super) trait Pressed<const N: usize, const Q: usize, const K: usize> {
+pub(super) trait ForcedFlow<const N: usize, const Q: usize, const K: usize> {
     /// Writes the rates under the force `f` over `to`.
     fn rates(&self, f: f64, y: &[f64; N], to: &mut Rates<N, Q, K>);
     /// Square of an error.
@@ -55,7 +55,7 @@ struct Under<'a, P, const D: usize> {
     over_allowed2: f64,
 }
 
-impl<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
+impl<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
     Flow<N, Q, K> for Under<'_, P, D>
 {
     #[inline]
@@ -84,7 +84,7 @@ pub(super) struct Span {
 
 /// Runs from `y` over the whole span; `D` terms of the force's series. Returns the end and the sums.
 pub(super) fn run<
-    P: Pressed<N, Q, K>,
+    P: ForcedFlow<N, Q, K>,
     const N: usize,
     const Q: usize,
     const K: usize,
@@ -93,7 +93,7 @@ pub(super) fn run<
     law: &P,
     mut y: [f64; N],
     span: &Span,
-    effort: &mut Effort,
+    effort: &mut ImpactEffort,
 ) -> ([f64; N], [f64; Q]) {
     let mut force = Force::<D>::new(span.swing, span.gamma);
     let over_allowed2 = 1.0 / (span.allowed * span.allowed);
@@ -113,7 +113,7 @@ pub(super) fn run<
             wished
         };
         force.aim(h);
-        let short = h < SHORTEST * span.length;
+        let short = h < SHORTEST_SHARE * span.length;
         let felt = (!short).then_some(span.allowed);
         effort.evaluations += 6;
         match stages.step(&mut Under { law, force: &force, over_allowed2 }, &y, h, felt) {

@@ -1,7 +1,7 @@
 //! Steps and tolerances to their ends, and what the printed scheme does without memory.
 
 use super::impacts::{floor, rebound_m_s};
-use super::{Notes, RISE, Way};
+use super::{Notes, RISE, SchemeSetting};
 use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::math;
 use crate::rock::Vec3;
@@ -15,11 +15,11 @@ const SPEED_M_S: f64 = 1.0;
 
 /// An impact at every step from 1e-7 to 1e-2 s (tolerance from 1e-7 to 1e-2 m/s): the fixed step leaves by itself what its
 /// formula says, whatever the step; the others keep the closed form within their tolerance, the rigid map exactly.
-pub(super) fn steps(way: &Way, notes: &mut Notes) {
+pub(super) fn steps(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let omega = (GROUND.normal_stiffness_n_m / SETUP.rock.mass_kg()).sqrt();
     for power in -7..=-2 {
-        let way = &Way { fineness: 10f64.powi(power), ..*way };
+        let way = &SchemeSetting { fineness: 10f64.powi(power), ..*way };
         let unit = way.scheme.fineness_unit();
         let setting = format!("{:e} {unit}", way.fineness);
         let is_fixed = way.scheme.has_fixed_step();
@@ -55,7 +55,7 @@ pub(super) fn steps(way: &Way, notes: &mut Notes) {
 
 /// The fixed step as printed forgets its shear stretch: a rock that rolls down 20° slips at `T/(p_s Δt)`, `T = 2/7 m g sin
 /// 20°`, the faster the shorter the step. With memory it does not slip.
-pub(super) fn memory(way: &Way, notes: &mut Notes) {
+pub(super) fn memory(way: &SchemeSetting, notes: &mut Notes) {
     if !way.scheme.has_fixed_step() {
         return;
     }

@@ -1,6 +1,6 @@
 //! One rock, one plane: stiffness, size, speed, restitution, friction to their ends.
 
-use super::{Notes, Way, sprung};
+use super::{Notes, SchemeSetting, sprung};
 use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::math;
 use crate::rock::{Rock, Vec3};
@@ -23,7 +23,7 @@ fn touching(v: Vec3) -> Setup {
 }
 
 /// Stiffness × radius × speed: the rebound is that of the closed form with gravity, or none where the rock is captured.
-pub(super) fn impact(way: &Way, notes: &mut Notes) {
+pub(super) fn impact(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     for stiffness in [1e3, 1e6, 1e9, 1e12, 1e14] {
         for radius in [1e-3, 0.1, 10.0] {
@@ -34,7 +34,12 @@ pub(super) fn impact(way: &Way, notes: &mut Notes) {
     }
 }
 
-fn one_impact(way: &Way, notes: &mut Notes, floor: &Terrain, [stiffness, radius, speed]: [f64; 3]) {
+fn one_impact(
+    way: &SchemeSetting,
+    notes: &mut Notes,
+    floor: &Terrain,
+    [stiffness, radius, speed]: [f64; 3],
+) {
     let rock = Rock { radius_m: radius, ..ROCK };
     let ground =
         Ground { normal_stiffness_n_m: stiffness, shear_stiffness_n_m: 0.25 * stiffness, ..GROUND };
@@ -103,12 +108,12 @@ pub(super) fn rebound_m_s(journey: &Trajectory, setup: &Setup) -> f64 {
 }
 
 /// The speed (m/s) up to which numerics may capture an impact.
-fn way_capture(way: &Way) -> f64 {
+fn way_capture(way: &SchemeSetting) -> f64 {
     way.scheme.of([0.02, way.fineness, 0.02, 0.02])
 }
 
 /// 100 m/s onto a single layer of triangles, upright and at 0.1°: on its side it stays.
-pub(super) fn thin_sheet(way: &Way, notes: &mut Notes) {
+pub(super) fn thin_sheet(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     for (setting, v) in [
         ("upright", Vec3::new(0.0, 0.0, -100.0)),
@@ -136,7 +141,7 @@ pub(super) fn thin_sheet(way: &Way, notes: &mut Notes) {
 }
 
 /// Starts with a gap of nothing: inwards, outwards, along, at rest, and 1e-17 m too deep.
-pub(super) fn zero_gap(way: &Way, notes: &mut Notes) {
+pub(super) fn zero_gap(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     for (setting, v, gap) in [
         ("inwards", Vec3::new(0.0, 0.0, -1.0), 0.0),
@@ -161,7 +166,7 @@ pub(super) fn zero_gap(way: &Way, notes: &mut Notes) {
 }
 
 /// From behind a sheet, thrown up against it without gravity: the mirror image of the throw from the front, bit for bit.
-pub(super) fn from_behind(way: &Way, notes: &mut Notes) {
+pub(super) fn from_behind(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let front = Setup {
         centre_m: Vec3::new(0.3, 0.2, 1.0),
@@ -180,7 +185,7 @@ pub(super) fn from_behind(way: &Way, notes: &mut Notes) {
 }
 
 /// No rebound with e = 0; with e = 1 the height is kept over ten bounces, as far as the numerics keep it.
-pub(super) fn restitution(way: &Way, notes: &mut Notes) {
+pub(super) fn restitution(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let with = |e: f64| Ground { restitution: Some(e), friction_angle_rad: 0.0, ..GROUND };
     let drop = Setup { centre_m: Vec3::new(0.3, 0.2, 1.5), ..SETUP };
@@ -203,7 +208,7 @@ pub(super) fn restitution(way: &Way, notes: &mut Notes) {
 }
 
 /// e = 0.9 down to rest: finitely many impacts, the time `t_f (1 + e)/(1 − e)`.
-pub(super) fn bounce_to_rest(way: &Way, notes: &mut Notes) {
+pub(super) fn bounce_to_rest(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let ground = Ground { restitution: Some(0.9), ..GROUND };
     let setup = Setup {
@@ -224,7 +229,7 @@ pub(super) fn bounce_to_rest(way: &Way, notes: &mut Notes) {
 }
 
 /// Without friction the spin keeps every bit; with 89° nothing slips: the touched point ends at rest.
-pub(super) fn friction(way: &Way, notes: &mut Notes) {
+pub(super) fn friction(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let with = |degrees: f64| Ground { friction_angle_rad: degrees.to_radians(), ..GROUND };
     let spin = Vec3::new(3.0, -20.0, 4.0);
@@ -238,7 +243,7 @@ pub(super) fn friction(way: &Way, notes: &mut Notes) {
 }
 
 /// Without gravity a rock flies straight, strikes once and never comes back.
-pub(super) fn no_gravity(way: &Way, notes: &mut Notes) {
+pub(super) fn no_gravity(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let setup = Setup {
         gravity_m_s2: 0.0,

@@ -27,7 +27,7 @@ pub enum Verdict {
 
 /// One impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cell {
+pub struct StabilityCell {
     /// Normal stiffness (N/m).
     pub stiffness_n_m: f64,
     /// Step (s) or tolerance (m/s).
@@ -48,7 +48,7 @@ pub struct Map {
     /// Stiffness (N/m), rising.
     pub stiffness_n_m: Vec<f64>,
     /// Row by row: all stiffnesses of the first step, then of the next.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<StabilityCell>,
 }
 
 impl Map {
@@ -87,7 +87,7 @@ fn cell(
     stiffness: f64,
     floor: &Terrain,
     scratch: &mut Scratch,
-) -> Cell {
+) -> StabilityCell {
     let omega = (stiffness / SETUP.rock.mass_kg()).sqrt();
     let ground =
         Ground { normal_stiffness_n_m: stiffness, shear_stiffness_n_m: 0.25 * stiffness, ..GROUND };
@@ -110,5 +110,5 @@ fn cell(
     } else {
         Verdict::Stable
     };
-    Cell { stiffness_n_m: stiffness, fineness, rebound, verdict }
+    StabilityCell { stiffness_n_m: stiffness, fineness, rebound, verdict }
 }

@@ -26,7 +26,7 @@ fn mass() -> (Block, Mass) {
 #[test]
 fn a_central_blow_takes_its_limit_off_the_speed() {
     let (block, mass) = mass();
-    let contact = Contact::new(&mass, (Vec3::x(), -Vec3::x()), (0.0, 0), Vec3::zeros());
+    let contact = BlockContact::new(&mass, (Vec3::x(), -Vec3::x()), (0.0, 0), Vec3::zeros());
     let (u, m) = (Vec3::new(-10.0, 3.0, 0.0), block.mass_kg);
     for share in [1e-6, 0.1, 0.5, 0.9, 0.999] {
         let limit_j = share * 0.5 * m * 100.0;
@@ -51,7 +51,7 @@ proptest! {
         let (_, mass) = mass();
         let n = n.normalize();
         prop_assume!(n.dot(&u) < -0.1);
-        let contact = Contact::new(&mass, (n, lever), (friction, 0), Vec3::zeros());
+        let contact = BlockContact::new(&mass, (n, lever), (friction, 0), Vec3::zeros());
         // all that a blow without friction takes until the point stops along the normal
         let most_j: f64 = 0.5 * n.dot(&u).powi(2) / n.dot(&(contact.answer * n));
         let Some(impulse) = contact.yielding(&u, share * most_j) else {
@@ -69,7 +69,7 @@ proptest! {
     fn enough_friction_ends_the_slip(lever in vector(0.3), aside in -1.0..1.0f64) {
         let (_, mass) = mass();
         let lever = lever - Vec3::x();
-        let contact = Contact::new(&mass, (Vec3::x(), lever), (5.0, 0), Vec3::zeros());
+        let contact = BlockContact::new(&mass, (Vec3::x(), lever), (5.0, 0), Vec3::zeros());
         let u = Vec3::new(-10.0, aside, 0.5);
         let most_j = 50.0 / contact.answer.m11;
         let Some(impulse) = contact.yielding(&u, 0.7 * most_j) else { return Ok(()) };

@@ -1,7 +1,7 @@
 //! Rates of a rock among several frozen contacts, and the moments at which contacts open and close.
 
-use super::contacts::{Contacts, Place};
-use super::{FrozenContact, LONGEST, NOTHING};
+use super::contacts::{Contacts, SwitchTime};
+use super::{FrozenContact, LONGEST_STEP, NOTHING};
 use crate::contact::MOST;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
@@ -43,7 +43,7 @@ impl<const K: usize> ContactRates<K> {
             // All of them at penetration zero: those that come nearer press at once.
             pressed: [false; MOST],
             damping: [0.0; MOST],
-            longest: LONGEST / fastest,
+            longest: LONGEST_STEP / fastest,
             allowed,
         }
     }
@@ -139,7 +139,7 @@ impl<const K: usize> ContactRates<K> {
         y: &[f64; N],
         end: &[f64; N],
         h: f64,
-    ) -> Option<Place> {
+    ) -> Option<SwitchTime> {
         let nothing = self.nothing();
         let mut first: Option<(f64, usize)> = None;
         for k in 0..self.contacts.list().len() {
@@ -156,11 +156,11 @@ impl<const K: usize> ContactRates<K> {
         }
         let (at, k) = first?;
         if at * h > f64::EPSILON {
-            return Some(Place::At(at));
+            return Some(SwitchTime::At(at));
         }
         self.pressed[k] = !self.pressed[k];
         self.share();
-        Some(Place::Now)
+        Some(SwitchTime::Now)
     }
 
     /// Writes the rates of everything over `rates`.

@@ -2,7 +2,7 @@
 //!
 //! Laws and speed change between steps, so all schemes are treated alike.
 
-use super::driver::Fall;
+use super::Fall;
 use crate::contact::history::ContactHistory;
 use crate::rock::Vec3;
 use crate::solver::scar::Scars;
