@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 const FILE: &str = "drawn";
 
-fn geojson(text: &str) -> Result<Layer> {
+fn geojson(text: &str) -> Result<GisLayer> {
     parse_geojson(text.as_bytes(), Path::new(FILE))
 }
 
@@ -27,10 +27,10 @@ const HOLED: &str = "[[[0,0],[9,0],[9,9],[0,9],[0,0]],[[3,3],[3,6],[6,6],[6,3],[
 #[test]
 fn every_geometry_is_read() {
     for (kind, coordinates, shape) in [
-        ("Point", "[1,2,99]", Shape::Points(vec![[1.0, 2.0]])),
-        ("MultiPoint", "[[1,2],[3,4]]", Shape::Points(vec![[1.0, 2.0], [3.0, 4.0]])),
-        ("LineString", "[[1,2],[3,4]]", Shape::Lines(vec![vec![[1.0, 2.0], [3.0, 4.0]]])),
-        ("MultiLineString", "[[[1,2],[3,4]]]", Shape::Lines(vec![vec![[1.0, 2.0], [3.0, 4.0]]])),
+        ("Point", "[1,2,99]", Geometry::Points(vec![[1.0, 2.0]])),
+        ("MultiPoint", "[[1,2],[3,4]]", Geometry::Points(vec![[1.0, 2.0], [3.0, 4.0]])),
+        ("LineString", "[[1,2],[3,4]]", Geometry::Lines(vec![vec![[1.0, 2.0], [3.0, 4.0]]])),
+        ("MultiLineString", "[[[1,2],[3,4]]]", Geometry::Lines(vec![vec![[1.0, 2.0], [3.0, 4.0]]])),
     ] {
         let layer = geojson(&collection(&feature(kind, coordinates))).unwrap();
         assert_eq!(layer.features[0].shape, shape);
@@ -50,7 +50,7 @@ fn every_geometry_is_read() {
         ("Polygon", turned.to_owned()),
     ] {
         let layer = geojson(&collection(&feature(kind, &coordinates))).unwrap();
-        assert_eq!(layer.features[0].shape, Shape::Polygons(vec![expected.clone()]));
+        assert_eq!(layer.features[0].shape, Geometry::Polygons(vec![expected.clone()]));
     }
 }
 
@@ -135,7 +135,10 @@ fn a_shapefile_says_what_the_geojson_says() {
     assert_eq!(layer.features[0].property("name"), drawn.features[0].property("name"));
     assert_eq!(layer.features[0].property("weight"), drawn.features[0].property("weight"));
     // names of columns are cut off after ten bytes
-    assert_eq!(layer.features[0].property("frequency_per_year"), Some(&Value::Number(0.125)));
+    assert_eq!(
+        layer.features[0].property("frequency_per_year"),
+        Some(&PropertyValue::Number(0.125))
+    );
     assert_eq!(layer.epsg, Some(2056));
     // programs of ESRI write no code: the name is kept
     let esri = b"PROJCS[\"CH1903+_LV95\",GEOGCS[\"GCS_CH1903+\"],UNIT[\"Meter\",1.0]]";

@@ -5,7 +5,7 @@ const SAME: f64 = 1e-9;
 
 /// What a description of a coordinate system says.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct System {
+pub(crate) struct CoordinateSystem {
     /// Whether its coordinates are angles.
     pub(crate) is_geographic: bool,
     /// Its EPSG code; programs of ESRI leave it out.
@@ -17,12 +17,12 @@ pub(crate) struct System {
 }
 
 /// Reads WKT 1 or 2.
-pub(crate) fn system(text: &str) -> System {
+pub(crate) fn system(text: &str) -> CoordinateSystem {
     let text = text.trim_start_matches('\u{feff}').trim();
     let head = text.split('[').next().unwrap_or_default().to_uppercase();
     let name = text.split('"').nth(1).unwrap_or_default().to_owned();
     let is_geographic = ["GEOGCS", "GEOGCRS"].contains(&head.as_str());
-    System { is_geographic, epsg: code(text), name, other_unit: other_unit(text) }
+    CoordinateSystem { is_geographic, epsg: code(text), name, other_unit: other_unit(text) }
 }
 
 /// The first `UNIT["foot",0.3048]` or `LENGTHUNIT[...]` that is neither the metre nor an angle.

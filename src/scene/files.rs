@@ -257,7 +257,7 @@ impl Scene {
 }
 
 /// Refuses a drawing in another system than that of `whose`.
-fn one_system(layer: &gis::Layer, epsg: Option<u32>, whose: &str) -> Result<()> {
+fn one_system(layer: &gis::GisLayer, epsg: Option<u32>, whose: &str) -> Result<()> {
     let (Some(code), Some(own)) = (layer.epsg, epsg) else { return Ok(()) };
     if code == own {
         return Ok(());

@@ -8,7 +8,7 @@ mod decoder;
 mod tiles;
 
 use super::facets::Facets;
-use super::grid::distance;
+use super::grid::{BoxM, distance};
 use super::options::{Crop, Options, wider};
 use super::stl::{Format, Soup};
 use crate::error::{Error, Result};
@@ -31,9 +31,6 @@ const CELL_M: f64 = 1.0;
 const AT_ONCE: u64 = 100_000;
 /// Cells to one side of the origin that can be numbered; a cell of a millimetre spans the Earth in fewer.
 const MOST_CELLS: f64 = 1e12;
-
-/// A box on the map (m): west, south, east, north.
-type BoxM = [f64; 4];
 
 /// The ground points of a file, thinned.
 #[derive(Debug, Clone, PartialEq)]

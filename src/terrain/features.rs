@@ -24,7 +24,7 @@ const NEEDLE: f64 = 1e-6;
 const MOST_EDGES: usize = 16;
 /// How many edges and corners can be touched, and how many are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Count {
+pub struct FeatureCount {
     /// Edges that can be touched.
     pub edges: usize,
     /// Flat edges: the faces beside them touch.
@@ -55,7 +55,7 @@ pub struct Features {
     /// Share of the edges that are flat (–, 0..1).
     pub flat_share: f64,
     /// How many are left out.
-    pub count: Count,
+    pub count: FeatureCount,
 }
 
 impl Features {
@@ -184,7 +184,7 @@ impl Features {
         let flat = self.edges.len() - edges;
         let corners = corner.iter().filter(|kept| **kept).count();
         self.flat_share = flat as f64 / self.edges.len().max(1) as f64;
-        self.count = Count {
+        self.count = FeatureCount {
             edges,
             flat_edges: flat,
             corners,

@@ -17,7 +17,7 @@ use super::geotiff;
 use super::grid::{self, Grid};
 use super::make;
 pub use super::options::{Crop, Options};
-use super::options::{Source, wider};
+use super::options::{MeshSource, wider};
 use super::stl::{self, Facet, Format, Soup};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
@@ -29,11 +29,11 @@ pub(super) enum Loaded {
     /// Triangles, in coordinates of the file.
     Mesh(Soup),
     /// Heights, in map coordinates.
-    Grid(Heights),
+    Grid(ElevationModel),
     /// Was one of the others, of which no rock reaches anything.
     Unreached(Format),
     /// Trees, in map coordinates.
-    Trees(make::List),
+    Trees(make::TreeList),
     /// Ground points, in map coordinates.
     #[cfg(feature = "cloud")]
     Cloud(cloud::Cloud),
@@ -44,7 +44,7 @@ pub(super) enum Loaded {
 
 /// An elevation model.
 #[derive(Debug)]
-pub(super) struct Heights {
+pub(super) struct ElevationModel {
     grid: Grid,
     format: Format,
     epsg: Option<u32>,
@@ -54,7 +54,7 @@ pub(super) struct Heights {
     joined: usize,
 }
 
-impl Heights {
+impl ElevationModel {
     fn of(grid: Grid, format: Format, epsg: Option<u32>) -> Loaded {
         Loaded::Grid(Self { grid, format, epsg, notes: Vec::new(), joined: 0 })
     }
@@ -92,12 +92,12 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
                 None
             };
             let geotiff::Raster { grid, epsg } = geotiff::read(path, window, options.epsg)?;
-            Ok(Heights::of(grid, Format::GeoTiff, epsg))
+            Ok(ElevationModel::of(grid, Format::GeoTiff, epsg))
         }
         Some(Format::AsciiGrid) => {
             let grid = Grid::read(path)?;
             grid.check_cells(path, options.epsg)?;
-            Ok(Heights::of(grid, Format::AsciiGrid, None))
+            Ok(ElevationModel::of(grid, Format::AsciiGrid, None))
         }
         Some(Format::Ply) => ply::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Obj) => obj::parse(&whole()?, path).map(Loaded::Mesh),
@@ -167,13 +167,13 @@ fn read_cloud(path: &Path, _: &Options) -> Result<Loaded> {
 
 /// Joins what must be one before it is cropped and cut: tiles of a point cloud. Grids are joined later, cell by cell.
 #[cfg(feature = "cloud")]
-pub(super) fn join_tiles(all: &mut [Loaded], sources: &[Source]) -> Result<()> {
+pub(super) fn join_tiles(all: &mut [Loaded], sources: &[MeshSource]) -> Result<()> {
     cloud_tiles::join(all, sources)
 }
 
 #[cfg(not(feature = "cloud"))]
 #[expect(clippy::unnecessary_wraps, reason = "with clouds it can fail")]
-pub(super) fn join_tiles(_: &mut [Loaded], _: &[Source]) -> Result<()> {
+pub(super) fn join_tiles(_: &mut [Loaded], _: &[MeshSource]) -> Result<()> {
     Ok(())
 }
 

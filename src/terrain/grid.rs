@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
+use crate::gis::FARTHEST_M;
 use crate::rock::Vec3;
 use crate::terrain::facets::{Facet, Facets};
 use lattice::Lattice;
@@ -29,8 +30,6 @@ const SMALLEST_CELL_M: f64 = 1e-3;
 const SMALLEST_CELL_DEG: f64 = 1e-7;
 /// Sides of cells that a slope may have (m).
 const LARGEST_CELL_M: f64 = 1e5;
-/// Coordinates farther out (m) are no place on Earth.
-const FARTHEST_M: f64 = 1e8;
 /// Heights beyond this (m) are no height on Earth.
 const HIGHEST_M: f64 = 1e5;
 
@@ -351,7 +350,7 @@ pub use lattice::triangulate;
 pub(super) use mosaic::Standing;
 
 #[cfg(feature = "cloud")]
-pub(super) use window::distance;
+pub(super) use window::{BoxM, distance};
 
 #[cfg(test)]
 mod tests;

@@ -18,7 +18,7 @@ const SHIFT: f64 = 0.381_966;
 const SLACK: f64 = 1e-4;
 
 /// Ends a chain of points.
-const NONE: u32 = u32::MAX;
+const END_OF_CHAIN: u32 = u32::MAX;
 
 /// Gives every point the number of the first kept point within the tolerance, or keeps it.
 ///
@@ -65,7 +65,7 @@ impl Merger {
         if !self.heads.is_empty() {
             return;
         }
-        self.heads = vec![NONE; self.buckets];
+        self.heads = vec![END_OF_CHAIN; self.buckets];
         for number in 0..self.kept_m.len() as u32 {
             let bucket = self.bucket(self.place(self.kept_m[number as usize]).0);
             self.next.push(std::mem::replace(&mut self.heads[bucket], number));
@@ -129,7 +129,7 @@ impl Merger {
         let mut found = None;
         let mut number = self.heads[self.bucket(cell)];
         // Newer points stand first in a chain, so the last match is the earliest.
-        while number != NONE {
+        while number != END_OF_CHAIN {
             if (self.kept_m[number as usize] - point_m).norm_squared() <= reach_m * reach_m {
                 found = Some(number);
             }

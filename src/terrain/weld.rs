@@ -135,7 +135,7 @@ pub(super) fn join(
     map_origin_m: Vec3,
     tolerance_m: Option<f64>,
 ) -> Result<Joined> {
-    let frame = Frame::around(pieces)?;
+    let frame = CommonBox::around(pieces)?;
     let tolerance_m = tolerance_m.unwrap_or(TOLERANCE_OF_SIZE * frame.size_m);
     if !(tolerance_m >= 0.0 && tolerance_m.is_finite()) {
         return Err(Error::Request(format!(
@@ -208,7 +208,7 @@ impl Piece<'_> {
 }
 
 /// The common box of all pieces.
-struct Frame {
+struct CommonBox {
     /// Centre, rounded to whole metres: coordinates read as `f32` subtract it without rounding.
     centre_m: Vec3,
     /// Longest side.
@@ -216,7 +216,7 @@ struct Frame {
     facets: usize,
 }
 
-impl Frame {
+impl CommonBox {
     fn around(pieces: &[Piece]) -> Result<Self> {
         let nothing = (Vec3::repeat(LARGEST_M), Vec3::repeat(-LARGEST_M));
         let both =
@@ -268,7 +268,7 @@ impl Welded {
     }
 
     /// Merges vertices and keeps every facet that has an area.
-    fn take(&mut self, pieces: &[Piece], frame: &Frame) {
+    fn take(&mut self, pieces: &[Piece], frame: &CommonBox) {
         let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
         for piece in pieces {
             let facets = &piece.soup.facets;

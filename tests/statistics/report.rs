@@ -13,9 +13,11 @@ use rockfall::report::canvas::{Label, Pen, paint};
 use rockfall::report::colour;
 use rockfall::report::figure::WIDTH_PX;
 use rockfall::report::figures::FIGURES;
-use rockfall::report::model::{Estimate, Fall, Is, Path, Point, Quantity, Report, Text};
+use rockfall::report::model::{
+    Estimate, Is, Path, ReleaseEnd, Report, ReportPathPoint, ReportQuantity, Text,
+};
 use rockfall::report::panel::{FOOT_PX, Panel};
-use rockfall::report::svg::path::Frame;
+use rockfall::report::svg::path::PaperFrame;
 use rockfall::report::words::Words;
 use rockfall::report::{self, html};
 use rockfall::scene::Language;
@@ -59,8 +61,8 @@ fn inputs() -> Vec<(&'static str, Report)> {
 }
 
 /// A rock that stays where it is released.
-fn still() -> Fall {
-    Fall {
+fn still() -> ReleaseEnd {
+    ReleaseEnd {
         stop: Stop::AtRest,
         runout_m: 0.0,
         drop_m: 0.0,
@@ -82,7 +84,13 @@ fn one_point() -> Path {
     let state = PathState::Flight;
     Path {
         index: 0,
-        points: vec![Point { time_s: 0.0, place_m, speed_m_s: 0.0, clearance_m: 0.0, state }],
+        points: vec![ReportPathPoint {
+            time_s: 0.0,
+            place_m,
+            speed_m_s: 0.0,
+            clearance_m: 0.0,
+            state,
+        }],
     }
 }
 
@@ -137,7 +145,9 @@ fn left() -> Report {
     report.releases.iter_mut().step_by(2).for_each(|fall| fall.stop = Stop::LeftTerrain);
     let mut report = slope::filled(report);
     report.runout_exceedance.truncate(60);
-    for (quantity, is) in [(Quantity::Runout, Is::AtLeast), (Quantity::ReachAngle, Is::AtMost)] {
+    for (quantity, is) in
+        [(ReportQuantity::Runout, Is::AtLeast), (ReportQuantity::ReachAngle, Is::AtMost)]
+    {
         for quantile in report.quantiles.get_mut(&quantity).into_iter().flatten() {
             let at = &mut quantile.at;
             at.is = is;
@@ -194,6 +204,51 @@ fn the_page_is_well_formed_and_fetches_nothing() {
         assert!(fetched.iter().all(|f| !page.contains(f)), "{name}");
         // not in the whole page: the letters may stand in a packed picture
         assert!(!svg::strip_tags(&page).contains("NaN"), "{name}");
+    }
+}
+
+/// Figures are numbered as a reader meets them, in every language and whatever was drawn.
+#[test]
+fn numbers_of_figures_rise_down_the_page() {
+    for (name, report) in inputs() {
+        let drawn = report::drawings(&report);
+        let page = html::page(&report, &drawn);
+        let numbers: Vec<usize> = page
+            .split("<figcaption><b>Figure ")
+            .skip(1)
+            .map(|rest| rest.split('.').next().unwrap().parse().unwrap())
+            .collect();
+        assert_eq!(numbers, (1..=drawn.len()).collect::<Vec<_>>(), "{name}");
+    }
+}
+
+/// Pasted on a dark slide, or seen in a browser that prefers the dark: the paper is white and every word has its own ink.
+#[test]
+fn nothing_is_unreadable_on_a_dark_ground() {
+    for (name, report) in inputs() {
+        let drawn = report::drawings(&report);
+        for (figure, drawing) in &drawn {
+            let place = format!("{} of {name}", figure.file);
+            let (root, rest) = drawing.svg.split_once(">\n<title>").unwrap();
+            let view: Vec<&str> = svg::attribute(root, "viewBox").unwrap().split(' ').collect();
+            let (_, body) = rest.split_once("</title>").unwrap();
+            let paper = body.trim_start().split('>').next().unwrap();
+            let of_paper = |key| svg::attribute(paper, key).unwrap();
+            assert_eq!([of_paper("x"), of_paper("y"), of_paper("fill")], ["0", "0", "#ffffff"]);
+            assert_eq!([of_paper("width"), of_paper("height")], view[2..], "{place}");
+            for (at, _) in body.match_indices("<text ") {
+                let words = body[at..].split("</text>").next().unwrap();
+                let tag = words.split('>').next().unwrap();
+                let spans = words.matches("<tspan font-weight").count();
+                let inked = words.matches("<tspan font-weight").count() > 0
+                    && words.matches(" fill=\"#").count() >= spans;
+                assert!(svg::attribute(tag, "fill").is_some() || inked, "{place}: {words}");
+            }
+        }
+        let page = html::page(&report, &drawn);
+        assert!(
+            page.contains("color-scheme: light") && page.contains("background: #fff; color: #222")
+        );
     }
 }
 
@@ -268,7 +323,7 @@ fn a_large_run_gives_a_page_of_less_than_five_megabytes() {
 
 /// What a study of error against cost draws: both axes logarithmic, dashed lines, values beyond the frame.
 fn log_log() -> String {
-    let frame = Frame { left: 70.0, top: 10.0, right: 660.0, bottom: 300.0 };
+    let frame = PaperFrame { left: 70.0, top: 10.0, right: 660.0, bottom: 300.0 };
     let x = Axis::log(3e-6, 0.7, "Step (s)");
     let panel = Panel::new(frame, x, Axis::log(1e-9, 1e-1, "Error (–)"));
     paint("loglog", (WIDTH_PX, 300.0 + FOOT_PX), "Error", |canvas| {
@@ -322,6 +377,9 @@ fn what_nobody_reaches_has_a_sentence_and_no_figure() {
     let page = html::page(&report, &drawn);
     assert!(page.contains("crosses the line “nobody&#39;s line”"));
     assert!(page.contains("No rock arrives at barrier"));
+    // what a year brings too
+    assert!(files.contains(&"annual_3.svg") && !files.contains(&"annual_2.svg"), "{files:?}");
+    assert!(page.contains("Object “hut”: no rock of the sample comes here, fewer than 0.0040"));
 }
 
 /// The page speaks its language: head, chapters, axes, captions and glossary; and nothing of the English ones is left.
@@ -372,7 +430,7 @@ fn a_page_speaks_the_language_of_its_scene() {
 #[test]
 fn bounds_and_missing_rocks_are_named() {
     let mut report = left();
-    report.headline[0].estimate = report.quantiles[&Quantity::Runout][0].at;
+    report.headline[0].estimate = report.quantiles[&ReportQuantity::Runout][0].at;
     report.headline[1].estimate = Estimate::lacking(52);
     let page = html::page(&report, &report::drawings(&report));
     assert!(page.contains("≥\u{2009}"), "a lower bound has its sign");

@@ -1,6 +1,6 @@
 //! From what a file holds to triangles: crop, coarsen, cut, and say what was done.
 
-use super::{Crop, Heights, Loaded, Options, wider};
+use super::{Crop, ElevationModel, Loaded, Options, wider};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::terrain::facets::Facets;
@@ -149,7 +149,7 @@ pub(in crate::terrain) fn unreached(file: &Path) -> Error {
     Error::input(file, "crop", "found no cell below the places of release", remedy)
 }
 
-impl Heights {
+impl ElevationModel {
     /// Cropped and coarsened.
     fn used(
         mut self,

@@ -2,6 +2,7 @@
 
 use super::{Implausible, LOWEST_M, USUAL_NODATA, Window, damaged, tag, translate};
 use crate::error::{Error, Result};
+use crate::gis::FARTHEST_M;
 use crate::terrain::grid::Grid;
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -32,12 +33,10 @@ const IN_FEET: [u16; 9] = [5702, 5754, 6130, 6131, 6132, 6360, 8050, 8052, 8228]
 const USER_DEFINED: u16 = 32_767;
 /// Relative difference of width and height up to which a cell is square (–): digits of a writer.
 const SQUARE: f64 = 1e-6;
-/// Coordinates farther out than this (m) are no place on Earth, as in a mesh.
-const FARTHEST_M: f64 = 1e8;
 
 /// Where the cells of an image lie.
 #[derive(Debug)]
-pub(super) struct Place {
+pub(super) struct ImagePlacement {
     /// Map position of the outer corner of the first pixel (m).
     first_m: [f64; 2],
     cell_m: f64,
@@ -48,7 +47,7 @@ pub(super) struct Place {
     nodata: Option<f64>,
 }
 
-impl Place {
+impl ImagePlacement {
     pub(super) fn read<R: Read + Seek>(
         decoder: &mut Decoder<R>,
         file: &Path,

@@ -1,7 +1,7 @@
 //! Building the index: trees of parry's, packed.
 
-use super::parts::{Part, Placed};
-use super::{COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, Node, WIDE};
+use super::runs::{PlacedTriangle, Run};
+use super::{BvhNode, COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, WIDE};
 use crate::rock::Vec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
@@ -78,15 +78,15 @@ impl Index {
         if count == 0 {
             return (Self::default(), Vec::new());
         }
-        let mut placed: Vec<Placed> =
-            (0..count as u32).into_par_iter().map(|t| Placed::of(t, &corners)).collect();
+        let mut placed: Vec<PlacedTriangle> =
+            (0..count as u32).into_par_iter().map(|t| PlacedTriangle::of(t, &corners)).collect();
         let mut index = Self::default();
-        let whole = Part { start: 0, triangles: &mut placed, above: None };
+        let whole = Run { start: 0, triangles: &mut placed, above: None };
         let (mut parts, levels) = index.share_out(whole, at_once);
         let mut whole = Packed::NOTHING;
         let beside = (WAITING_TRIANGLES / at_once).max(1);
         while !parts.is_empty() {
-            let some: Vec<Part> = parts.drain(..beside.min(parts.len())).collect();
+            let some: Vec<Run> = parts.drain(..beside.min(parts.len())).collect();
             let above: Vec<_> = some.iter().map(|part| part.above).collect();
             let packed = some.into_par_iter().map(|part| Tree::pack(part, &corners, leaf));
             for ((tree, packed), above) in packed.collect::<Vec<_>>().into_iter().zip(above) {
@@ -103,10 +103,10 @@ impl Index {
     }
 
     /// Cuts what is too large for one tree of parry's into four, and those again; gives the parts and the levels above them.
-    fn share_out<'a>(&mut self, whole: Part<'a>, at_once: usize) -> (Vec<Part<'a>>, usize) {
+    fn share_out<'a>(&mut self, whole: Run<'a>, at_once: usize) -> (Vec<Run<'a>>, usize) {
         let (mut ready, mut open, mut levels) = (Vec::new(), vec![whole], 0);
         loop {
-            let (large, small): (Vec<Part>, Vec<Part>) =
+            let (large, small): (Vec<Run>, Vec<Run>) =
                 open.into_iter().partition(|part| part.triangles.len() > at_once);
             ready.extend(small);
             if large.is_empty() {
@@ -117,14 +117,14 @@ impl Index {
             let first = self.nodes.len();
             for part in &large {
                 let place = self.nodes.len() as u32;
-                self.nodes.push(Node::EMPTY);
+                self.nodes.push(BvhNode::EMPTY);
                 if let Some((node, side)) = part.above {
                     self.nodes[node].child[side] = place;
                 }
             }
-            let quarters: Vec<_> = large.into_par_iter().map(Part::quarters).collect();
+            let quarters: Vec<_> = large.into_par_iter().map(Run::quarters).collect();
             let below = quarters.into_iter().enumerate().flat_map(|(k, quarters)| {
-                let hung = move |(side, part)| Part { above: Some((first + k, side)), ..part };
+                let hung = move |(side, part)| Run { above: Some((first + k, side)), ..part };
                 quarters.into_iter().enumerate().map(hung)
             });
             open = below.collect();
@@ -161,14 +161,14 @@ impl Index {
 
 /// A tree of parry's, packed: places count from its own first node.
 struct Tree {
-    nodes: Vec<Node>,
+    nodes: Vec<BvhNode>,
     leaf: u32,
 }
 
 impl Tree {
     /// Packs a part of the triangles and puts them into the order of the tree.
-    fn pack(part: Part, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync), leaf: u32) -> (Self, Packed) {
-        let Part { start, triangles, .. } = part;
+    fn pack(part: Run, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync), leaf: u32) -> (Self, Packed) {
+        let Run { start, triangles, .. } = part;
         // The tree may depend on the order in which it is given triangles, and selecting leaves an order of its own.
         let mut sorted: Vec<u32> = triangles.iter().map(|placed| placed.triangle).collect();
         sorted.sort_unstable();
@@ -191,7 +191,7 @@ impl Tree {
     /// Packs what is below a node, in the order of the tree; returns how deep it is.
     fn take(&mut self, loose: &[Loose], top: u32, order: &mut Order) -> usize {
         let place = self.nodes.len();
-        self.nodes.push(Node::EMPTY);
+        self.nodes.push(BvhNode::EMPTY);
         let mut depth = 0;
         for (side, child) in widest(loose, top, self.leaf).enumerate() {
             let from = &loose[child as usize];

@@ -19,7 +19,7 @@ pub(super) fn of(
         return (apart.corners, 0);
     }
     merger.open();
-    let mut numbers = Numbers::of(facets);
+    let mut numbers = PointNumbers::of(facets);
     let mut all = Vec::with_capacity(facets.len());
     all.extend(
         (0..facets.len())
@@ -34,7 +34,7 @@ pub(super) fn of(
 }
 
 /// The numbers of a file's points after merging; a common point is merged once.
-struct Numbers<'a> {
+struct PointNumbers<'a> {
     /// Points of each facet; none where every facet has points of its own.
     corners: &'a [[u32; 3]],
     /// Number of each point, or [`NO_NUMBER`].
@@ -44,7 +44,7 @@ struct Numbers<'a> {
 /// A point that was not asked for yet.
 const NO_NUMBER: u32 = u32::MAX;
 
-impl<'a> Numbers<'a> {
+impl<'a> PointNumbers<'a> {
     fn of(facets: &'a Facets) -> Self {
         match facets {
             Facets::Apart(_) => Self { corners: &[], known: Vec::new() },

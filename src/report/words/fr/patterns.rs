@@ -70,9 +70,14 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("roughness {a}", "rugosité {a}"),
     ("gives way above {a}", "cède au-dessus de {a}"),
     (
-        "friction of blocks grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s",
-        "le frottement des blocs croît avec le glissement jusqu’à {a}, κ {b} 1/m, oublié avec {c} 1/s",
+        "friction grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s",
+        "le frottement croît avec le glissement jusqu’à {a}, κ {b} 1/m, oublié avec {c} 1/s",
     ),
+    (
+        "soil of {a} kN/m² and {b} kg/m³, drags with C = {c}",
+        "terre de {a} kN/m² et {b} kg/m³, freine avec C = {c}",
+    ),
+    ("half of the restitution is left at {a}", "la moitié de la restitution reste à {a}"),
     (
         "{a} ({b} to {c} in nine of ten, {d}) {unit}",
         "{a} ({b} à {c} neuf fois sur dix, {d}) {unit}",
@@ -252,6 +257,10 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     ("Total energy, 95 %", "Énergie totale, 95 %"),
     ("Bounce height, 95 %", "Hauteur de rebond, 95 %"),
     ("Deposits in a cell", "Dépôts dans une cellule"),
+    (
+        "Blocks are shown as balls of their volume.",
+        "Les blocs qui ont une forme sont montrés en boules de leur volume.",
+    ),
     ("Shown are the first {a} of {b} rocks.", "Sont montrés les {a} premiers blocs sur {b}."),
     (
         "Map layers in cells of {x} m, each with its largest value.",
