@@ -66,7 +66,7 @@ impl ThinningCells {
         let cell_of = |v: u32| cell(part.place_m(v), cell_m);
         let all = (0..part.vertices() as u32).into_par_iter().map(cell_of).map(|at| (at, at));
         let (first, last) = all.reduce(|| nothing, both);
-        let size = |k: usize| last[k].abs_diff(first[k]) as u128 + 1;
+        let size = |k: usize| u128::from(last[k].abs_diff(first[k])) + 1;
         Self { cell_m, first, sizes: [size(0), size(1), size(2)] }
     }
 
@@ -166,4 +166,43 @@ fn trees_of(soup: &TriangleSoup) -> Vec<u32> {
         }
     }
     number
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::stl::Soup;
+    use crate::terrain::weld::{Piece, Up, weld};
+    use crate::terrain::{Sheet, Terrain, make};
+    use std::collections::BTreeMap;
+    use std::path::Path;
+
+    /// Vertices of one cube become one in their middle, numbered by x, y and z of the cubes, whatever the words are as long
+    /// as.
+    #[test]
+    fn a_cube_has_one_vertex() {
+        let soup = Soup::from(make::natural_slope(40, 30).facets);
+        let made = Path::new("made");
+        let piece = Piece { file: made, soup: &soup, up: Up::Z, scale: 1.0, sheet: 0 };
+        let sheet = Sheet { path: made.into(), ground: 0, is_tree: false };
+        let terrain = Terrain::new(weld(&[piece], Vec3::zeros(), None).unwrap(), vec![sheet]);
+        let part = TerrainPart::of(&terrain, false);
+        let cell_m = 3.0 * mean_edge_m(&part);
+        let mut cubes: BTreeMap<[i64; 3], Vec<[f64; 3]>> = BTreeMap::new();
+        for v in 0..part.vertices() as u32 {
+            cubes.entry(cell(part.place_m(v), cell_m)).or_default().push(part.place_m(v));
+        }
+        let (found, moved_m) = joined(&part, cell_m);
+        assert!(found.places_m.len() == cubes.len() && cubes.len() * 3 < part.vertices());
+        for (place_m, own) in found.places_m.iter().zip(cubes.values()) {
+            for axis in 0..3 {
+                let middle = own.iter().map(|at| at[axis]).sum::<f64>() / own.len() as f64;
+                assert!((place_m[axis] - middle).abs() < 1e-9);
+            }
+        }
+        assert!(moved_m > 0.0 && moved_m < 3f64.sqrt() * cell_m);
+        let cells = ThinningCells::over(&part, cell_m);
+        let (long, _) = joined_by(&part, cells.sorted(&part, |number| number));
+        assert!(long.places_m == found.places_m && long.triangles == found.triangles);
+    }
 }
