@@ -126,7 +126,7 @@ mod tests {
         let first = facets[0][0];
         let low = corners().fold(first, |low, corner| low.inf(corner));
         let high = corners().fold(first, |high, corner| high.sup(corner));
-        let ground = |t: u32| (t % 9 != 0).then(|| faces[t as usize]);
+        let ground = |t: u32| (!t.is_multiple_of(9)).then(|| faces[t as usize]);
         let floor = Floor::of(ground, faces.len(), (low, high));
         let mut one_by_one =
             Floor { low_m: vec![f32::INFINITY; floor.low_m.len()], ..floor.clone() };
