@@ -7,6 +7,7 @@
 
 use super::solve::BlockContact;
 use crate::rock::Vec3;
+use crate::solver::yielding::BISECTIONS;
 
 /// Shares of the normal impulse that would stop the contact point without friction, for one of which a step goes (–).
 const SHARE: f64 = 2e-3;
@@ -14,8 +15,6 @@ const SHARE: f64 = 2e-3;
 const STEPS: u32 = 20_000;
 /// Passes over the two directions along the surface (–).
 const PASSES: u32 = 40;
-/// Halvings of the step in which it gives way: all the digits there are.
-const HALVINGS: u32 = 60;
 
 impl BlockContact {
     /// What an impulse has taken (J) of a body whose contact point moved by `u` (m/s).
@@ -67,7 +66,7 @@ impl BlockContact {
             let next = self.pushed(u, &impulse, push);
             if self.taken_j(u, &next) >= limit_j {
                 let (mut low, mut high) = (0.0, 1.0);
-                for _ in 0..HALVINGS {
+                for _ in 0..BISECTIONS {
                     let middle = 0.5 * (low + high);
                     let is_over =
                         self.taken_j(u, &(impulse + (next - impulse) * middle)) >= limit_j;
