@@ -197,6 +197,27 @@ fn the_page_is_well_formed_and_fetches_nothing() {
     }
 }
 
+/// The first page holds site, question, map and numbers, before all else.
+#[test]
+fn the_first_page_holds_the_answer() {
+    let report = places::site();
+    let page = html::page(&report, &report::drawings(&report));
+    let parts = [
+        "<h1>",
+        "class=\"question\"",
+        "class=\"front\"",
+        "<figure class=\"map\">",
+        "class=\"rocks\"",
+        "class=\"headline\"",
+        "class=\"warnings\"",
+        "class=\"answer\"",
+        "<nav>",
+        "<h2>1 ",
+    ];
+    let places = parts.map(|part| page.find(part).unwrap());
+    assert!(places.is_sorted(), "{places:?}");
+}
+
 /// Figures are numbered as a reader meets them, in every language and whatever was drawn.
 #[test]
 fn numbers_of_figures_rise_down_the_page() {
@@ -369,7 +390,7 @@ fn what_nobody_reaches_has_a_sentence_and_no_figure() {
     assert!(page.contains("No rock arrives at barrier"));
     // what a year brings too
     assert!(files.contains(&"annual_3.svg") && !files.contains(&"annual_2.svg"), "{files:?}");
-    assert!(page.contains("Object “hut”: no rock of the sample comes here, fewer than 0.0040"));
+    assert!(page.contains("Object “hut”: none of 700 rocks, which know what 350 of equal weight would, comes here: fewer than"));
 }
 
 /// The page speaks its language: head, chapters, axes, captions and glossary; and nothing of the English ones is left.
