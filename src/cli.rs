@@ -1,4 +1,4 @@
-//! The command line: what is asked, what is said, and the exit status. Only this file prints.
+//! The command line: arguments, messages and the exit status. Only this file prints.
 
 mod calibrate;
 mod compare;
