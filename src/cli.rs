@@ -1,4 +1,4 @@
-//! The command line: what is asked, what is said, and the exit status. Only this file prints.
+//! The command line: arguments, messages and the exit status. Only this file prints.
 
 mod calibrate;
 mod compare;
@@ -29,7 +29,7 @@ use terminal::{bar, complain, in_words, say};
 const CHECK_FAILED: u8 = 1;
 /// Exit status when the user's input is wrong.
 const WRONG_INPUT: u8 = 2;
-/// Exit status after Ctrl-C, as shells have it: 128 and the number of the signal. SIGTERM and SIGHUP end the same way.
+/// Exit status after Ctrl-C, as shells report it: 128 plus the number of the signal. SIGTERM and SIGHUP end the same way.
 const INTERRUPTED: u8 = 130;
 
 /// Rockfall hazard on triangle meshes, with the numerical error beside every number.
@@ -46,12 +46,12 @@ enum Command {
     Init(init::InitArgs),
     /// Check and plan a scene, run all releases in parallel, write results and report
     Run(RunArgs),
-    /// Read a scene and its meshes, print mesh health and the plan; run nothing
+    /// Read a scene and its meshes, print mesh health and the plan, without running
     Plan {
         /// Scene file (TOML)
         scene: PathBuf,
     },
-    /// Put the results of all shards of a run together: the same bytes as the run at once
+    /// Join the results of all shards of a run: the same bytes as one undivided run
     Merge {
         /// Folders of the shards, in any order
         #[arg(required = true, value_name = "DIR")]
@@ -63,7 +63,7 @@ enum Command {
         #[arg(long)]
         overwrite: bool,
     },
-    /// Draw figures and page again from the results in a folder; run no rock
+    /// Redraw figures and page from the results in a folder, without running
     Draw {
         /// Folder with the results of a run
         dir: PathBuf,
@@ -76,7 +76,7 @@ enum Command {
         #[arg(long, value_name = "DIR", default_value = "reports/verification")]
         out: PathBuf,
     },
-    /// List the grounds that `like` knows, with their sources
+    /// List the catalogue of grounds for `like = "NAME"`, with their sources
     Grounds,
     /// Fit the ground values named under [calibrate] to measured ends, scored on ends held out
     Calibrate(calibrate::CalibrateArgs),
@@ -86,7 +86,7 @@ enum Command {
     /// Check, convert and make meshes
     #[command(subcommand)]
     Mesh(mesh::MeshCommand),
-    /// Print what a shell needs to complete the program's words
+    /// Print the completion script of a shell
     Completions {
         /// Which shell
         shell: clap_complete::Shell,
@@ -112,7 +112,7 @@ struct RunArgs {
     /// Worker threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = words::threads)]
     threads: Option<usize>,
-    /// One release alone (numbers begin at 0), with its full path; its results go to a folder of its own below those of the scene
+    /// One release alone (numbers begin at 0), with its full path; its results go to a folder of their own inside that of the scene
     #[arg(long, value_name = "I", conflicts_with = "resume")]
     only: Option<usize>,
     /// The K-th of N parts of the releases, K from 1 to N; `rockfall merge` puts them together
@@ -127,7 +127,7 @@ struct RunArgs {
     /// Replace the results in the folder
     #[arg(long)]
     overwrite: bool,
-    /// Run also what takes more memory or disk than the plan allows
+    /// Run without asking even where more than 2 GB of memory or 10 GB of disk are expected
     #[arg(long, short)]
     yes: bool,
     /// Print nothing but errors

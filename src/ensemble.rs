@@ -59,7 +59,7 @@ impl Ensemble {
         self.pool.current_num_threads()
     }
 
-    /// Set it, from a Ctrl-C handler for example, and no chunk follows the one in hand.
+    /// Set it, from a Ctrl-C handler for example, and no chunk follows the current one.
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.stop)
     }

@@ -94,7 +94,7 @@ impl EndCounts {
     }
 }
 
-/// What is said of one quantity.
+/// Statistics of one quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
     /// Rocks with a value: all that did not fail.
@@ -216,7 +216,7 @@ impl Hazard {
     }
 }
 
-/// What is said of a sample whose largest value is known.
+/// Statistics of a sample whose largest value is known.
 fn statistic(sample: &Sample, max: Option<Largest>) -> Statistic {
     let percentiles: BTreeMap<String, Percentile> = PERCENTS
         .iter()

@@ -2,7 +2,7 @@
 //!
 //! A chunk's rows are on the disk before `progress.json` says so, in one stroke; whatever a crash leaves
 //! behind that mark is cut off when the run is resumed. So a resumed run writes the same bytes as an
-//! uninterrupted one, and a crash or a full disk loses at most the chunk in hand.
+//! uninterrupted one, and a crash or a full disk loses at most the current chunk.
 
 mod annual;
 mod calibration;

@@ -89,7 +89,7 @@ pub struct Plan {
     pub count: usize,
     /// How each of them is drawn.
     pub releases: Releases,
-    /// Radius of the smallest, the median and the largest rock to reckon with (m).
+    /// Radius of the smallest, the median and the largest rock for the estimates of the plan (m).
     pub radii_m: [f64; 3],
     /// The meshes.
     pub terrain: Terrain,

@@ -68,7 +68,7 @@ pub fn run(plan: &Plan, options: &RunOptions) -> Result<Results> {
 
 /// The same for a program that may be interrupted and shows how far it is.
 ///
-/// `begin` gets the flag that stops the run after the chunk in hand; `progress` the number of releases on the disk and
+/// `begin` gets the flag that stops the run after the current chunk; `progress` the number of releases on the disk and
 /// of those asked for, which a target precision may raise.
 ///
 /// # Errors

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 pub(super) struct InitArgs {
     /// Terrain: an STL, PLY or OBJ mesh, or an elevation model (.tif, .asc)
     terrain: PathBuf,
-    /// Scene file to write [default: the terrain's name with the ending .toml, in the present folder]
+    /// Scene file to write [default: the terrain's name with the ending .toml, in the current folder]
     scene: Option<PathBuf>,
     /// Replace the scene file if it is there
     #[arg(long)]
@@ -62,7 +62,7 @@ pub(super) fn man(args: &ManArgs) -> Result<ExitCode> {
     Ok(say_bytes(&page))
 }
 
-/// Prints what a shell needs to complete the program's words.
+/// Prints the completion script of a shell.
 pub(super) fn completions(shell: Shell) -> ExitCode {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut CommandLine::command(), "rockfall", &mut script);

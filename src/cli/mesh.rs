@@ -50,9 +50,9 @@ pub(super) enum MeshCommand {
         )]
         origin_m: Option<Vec<f64>>,
     },
-    /// Write one of the made slopes and shapes
+    /// Write a synthetic slope or shape
     Make {
-        /// Which one
+        /// Which slope or shape
         #[arg(value_parser = clap::builder::PossibleValuesParser::new(make::KINDS))]
         kind: String,
         /// STL file to write
@@ -126,7 +126,7 @@ fn slope_source(path: &Path) -> MeshSource {
     MeshSource::stl(Sheet { path: path.to_owned(), ground: 0, is_tree: false })
 }
 
-/// Writes one of the made slopes and shapes.
+/// Writes a synthetic slope or shape.
 fn make_mesh(kind: &str, out: &Path) -> Result<String> {
     let facets = make::made(kind).ok_or_else(|| {
         let known = make::KINDS.join(", ");

@@ -6,8 +6,8 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Ctrl-C or SIGTERM raises the flag: the chunk in hand is finished and written before anything ends.
-/// The second one ends at once: what is on the disk is good whenever a run is cut off.
+/// Ctrl-C or SIGTERM raises the flag: the chunk being computed is finished and written before the run ends.
+/// A second signal ends at once: files on the disk are valid whenever a run is cut off.
 pub(super) fn stop_at(flag: &Arc<AtomicBool>) -> Result<()> {
     for signal in signals() {
         // in this order: the first signal finds the flag down

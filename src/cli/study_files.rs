@@ -24,7 +24,7 @@ pub(crate) struct StudyOptions {
     pub(crate) threads: Option<usize>,
     /// Whether to try coarser meshes too.
     pub(crate) meshes: bool,
-    /// What the cheapest setting shall reach.
+    /// The precision that the cheapest setting must reach.
     pub(crate) within: Option<TargetPrecision>,
 }
 

@@ -91,7 +91,7 @@ pub(super) fn bar(asked: usize, what: &str) -> ProgressBar {
     bar.with_style(style.with_key("rate", rate).with_key("left", left))
 }
 
-/// A time as people say it: two units at most, no digits that nobody reads.
+/// A time as people say it: two units at most, no superfluous digits.
 pub(super) fn in_words(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     if seconds < 9.95 {

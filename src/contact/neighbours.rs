@@ -28,35 +28,48 @@ const SLACK: f64 = 1e-9;
 /// rounding of map coordinates, which bends flat edges by 1e-9.
 pub(super) const SAME: f64 = 1e-6;
 
+/// A face that the foot of a centre within the margin can lie on. The three sides are planes through its edges, so
+/// that the test whether it holds a foot is three dot products.
 #[derive(Debug, Clone, Copy)]
 struct NearFace {
     id: u32,
+    /// First corner (m).
     a: Vec3,
+    /// Unit normal.
     n: Vec3,
+    /// Unit vectors in the plane of the face, out of it across each side.
     out: [Vec3; 3],
     /// `out[k] · x ≤ rim[k]` inside.
     rim: [f64; 3],
 }
 
+/// A convex edge, or one at a border, that the centre can stand outside of.
 #[derive(Debug, Clone, Copy)]
 struct NearEdge {
     id: u32,
     triangle: u32,
+    /// Its first end (m).
     a: Vec3,
+    /// Unit vector towards the other end.
     along: Vec3,
+    /// Its length (m).
     length: f64,
     /// Range of outward face normals in `rays`.
     rays: (u32, u32),
+    /// Whether only one face is on it: then another sheet may run through it.
     at_border: bool,
 }
 
+/// A vertex that stands out from all its edges for some centre within the margin.
 #[derive(Debug, Clone, Copy)]
 struct NearCorner {
     id: u32,
     triangle: u32,
+    /// Where it is (m).
     p: Vec3,
     /// Range of edge directions in `rays`.
     rays: (u32, u32),
+    /// Whether a border of the mesh runs through it.
     at_border: bool,
 }
 
@@ -92,15 +105,22 @@ impl NearFace {
 /// The features a rock can touch while its centre stays within a margin of a place.
 #[derive(Debug)]
 pub struct Neighbours {
+    /// Centre around which it was collected (m); infinite before the first look, so that nothing is covered.
     centre: Vec3,
+    /// How far a rock's centre may be from there (m).
     margin: f64,
+    /// Radius of the rock (m); slacks are relative to it.
     radius: f64,
+    /// Radius, slack and margin together (m): what lies farther from `centre` can touch no rock within the margin.
     reach: f64,
+    /// Features that may touch, kind by kind; the lists keep their memory from look to look.
     faces: Vec<NearFace>,
     edges: Vec<NearEdge>,
     corners: Vec<NearCorner>,
     saddles: Vec<NearSaddle>,
+    /// Work space for what is pressed into around saddles.
     patches: PatchScratch,
+    /// Directions that belong to edges and vertices, one after the other: normals of faces, or edges at a vertex.
     rays: Vec<Vec3>,
     /// All triangles within reach; only looked at when a border or a saddle is near.
     sheets: Vec<u32>,
@@ -168,6 +188,7 @@ impl Neighbours {
         self.saddles.clear();
         self.rays.clear();
         self.sheets.clear();
+        // O(log n + k) in the n triangles of the mesh: the tree is walked once per margin, not once per step
         terrain.index.near(centre, self.reach, |start, count| {
             for t in start..start + count {
                 self.tested += 1;
@@ -218,6 +239,7 @@ impl Neighbours {
     ) {
         touches.clear();
         self.patches.clear();
+        // faces before edges before vertices: on a flat mesh the same point is found on several, and the face keeps it
         for face in &self.faces {
             if let Some(height) = self.height_over(face, centre, reach) {
                 self.merge(face.touch(height), centre, touches);
@@ -277,6 +299,7 @@ impl Neighbours {
         let to = centre - edge.a;
         let s = edge.along.dot(&to);
         let slack = SLACK * self.radius;
+        // beyond the ends a vertex is nearer
         if s < -slack || s > edge.length + slack {
             return None;
         }
@@ -287,6 +310,7 @@ impl Neighbours {
         }
         let distance = distance2.sqrt();
         let rays = &self.rays[edge.rays.0 as usize..edge.rays.1 as usize];
+        // the centre must stand outside of every face on the edge: else its nearest point lies on that face
         if distance <= slack || rays.iter().any(|out| out.dot(&off) < -SLACK * distance) {
             return None;
         }
@@ -313,6 +337,7 @@ impl Neighbours {
         let distance = distance2.sqrt();
         let rays = &self.rays[corner.rays.0 as usize..corner.rays.1 as usize];
         if distance <= SLACK * self.radius
+            // the same for the edges at a vertex: one that leads towards the centre comes nearer
             || rays.iter().any(|along| along.dot(&off) > SLACK * distance)
             || corner.at_border && self.is_covered(terrain, &corner.p, centre, distance)
         {

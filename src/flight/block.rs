@@ -41,8 +41,11 @@ pub struct Tumble<'a> {
 
 /// A moment of the flight.
 struct Moment {
+    /// Centre (m) and attitude.
     pose: Pose,
+    /// Of the centre (m/s).
     velocity: Vec3,
+    /// Angular velocity in the frame of the terrain (rad/s).
     spin: Vec3,
 }
 

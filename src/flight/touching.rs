@@ -1,4 +1,9 @@
 //! When a ball on a parabola first touches one triangle, its own edges and its own corners.
+//!
+//! The distance of the centre from a face's plane is a quadratic in time, the squared distances from an edge's line
+//! and from a corner are quartics: every touch is a root of one of them, with no step of time anywhere. What cannot
+//! touch is left out before a root is sought: by the range of heights, by the sides of the triangle, and by the
+//! normal cone of each edge and corner (`Brim`), which tells from how high over the plane it can be touched at all.
 
 use super::edge_windows::EdgeWindows;
 use super::roots::{first_fall, quadratic};
@@ -30,6 +35,7 @@ pub(super) fn of_triangle(
 ) -> Option<f64> {
     let (ta, tb) = (most(window.0, 0.0), window.1);
     let face = terrain.face(t);
+    // h(t) = h0 + h1 t + h2 t²: gravity acts along −z only, so its part along the normal is −g n_z/2
     let height = Height {
         h0: face.n.dot(&(flight.start - face.a)),
         h1: face.n.dot(&flight.velocity),
@@ -37,9 +43,11 @@ pub(super) fn of_triangle(
     };
     let range = height.range((ta, tb));
     let near = flight.radius * (1.0 + NEAR);
+    // most triangles near a path end here: the ball stays on one side of the plane, farther than its radius
     if range.0 > near || range.1 < -near {
         return None;
     }
+    // every touch found shortens the window for the features after it
     let mut best = tb;
     let mut found = None;
     // The ball may land on either side, whichever side it is on now: the plane goes on beyond the triangle.
@@ -49,6 +57,7 @@ pub(super) fn of_triangle(
     let level = flight.radius * (1.0 - 2.0 * NEAR);
     for (side, above) in [(1.0, range.1), (-1.0, -range.0)] {
         if (above >= level || on_it)
+            // the plane is touched at t; the triangle only if the foot of the centre lies on it then
             && let Some(t) = height.falls_to(side, (flight.radius, on_it), range, (ta, best))
             && face.holds_foot_of(&flight.centre(t), slack)
         {
@@ -166,16 +175,21 @@ fn of_rim(
 
 /// Height of the centre over a plane, a quadratic in time.
 struct Height {
+    /// Height at time 0 (m).
     h0: f64,
+    /// Its rate at time 0 (m/s).
     h1: f64,
+    /// Half its second derivative (m/s²), `−g n_z/2`.
     h2: f64,
 }
 
 impl Height {
+    /// Rate of the height (m/s) at a time (s).
     fn speed(&self, t: f64) -> f64 {
         self.h1 + 2.0 * self.h2 * t
     }
 
+    /// Height (m) at a time (s).
     #[inline]
     fn at(&self, t: f64) -> f64 {
         self.h0 + t * (self.h1 + t * self.h2)
@@ -185,6 +199,7 @@ impl Height {
     #[inline]
     fn range(&self, (ta, tb): (f64, f64)) -> (f64, f64) {
         let (ha, hb) = (self.at(ta), self.at(tb));
+        // without a second derivative the turn is infinite or NaN and lies in no window
         let turn = -0.5 * self.h1 / self.h2;
         let ht = if turn > ta && turn < tb { self.at(turn) } else { ha };
         (least(least(ha, hb), ht), most(most(ha, hb), ht))
@@ -246,6 +261,7 @@ fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f6
     let [a, b] = [corners[k], corners[(k + 1) % 3]].map(|v| terrain.vertices_m[v as usize]);
     let length = (b - a).norm();
     let along = (b - a) / length;
+    // across the edge the problem is plane: a point and a moving centre, again a quartic
     let off = |x: Vec3| x - along * along.dot(&x);
     let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
     let slack = 1e-11 * length;
@@ -277,6 +293,7 @@ fn ball_meets(
     wanted: &impl Fn(f64) -> bool,
 ) -> Option<f64> {
     let r2 = radius * radius;
+    // |x0 + x1 t + x2 t²|² − R² in powers of t
     let gap = x0.norm_squared() - r2;
     let slope = 2.0 * x0.dot(&x1);
     let curve = x1.norm_squared() + 2.0 * x0.dot(&x2);

@@ -29,7 +29,7 @@ struct StretchSums {
     heights_m: Counts,
 }
 
-/// What is said of one quantity in one stretch.
+/// Statistics of one quantity in one stretch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StretchStatistic {
     /// Median over the rocks that were there; its interval as that of every percentile.

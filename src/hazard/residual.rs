@@ -115,7 +115,7 @@ fn take(
 }
 
 impl LinePassages {
-    /// What is said of some of them, by their place in the lists.
+    /// Statistics of some of them, by their place in the lists.
     fn passing(&self, is_one: impl Fn(usize) -> bool, weights: &Weights) -> Passing {
         let release = |at: usize| self.releases[at] as usize;
         let some = || (0..self.releases.len()).filter(|at| is_one(*at));

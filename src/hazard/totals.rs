@@ -184,7 +184,7 @@ impl Totals {
     }
 }
 
-/// Numerical loss of energy that is said, over the energy released (–); the examples stay below half a per cent.
+/// Numerical loss of energy that is reported, over the energy released (–); the examples stay below half a per cent.
 const NUMERICAL: f64 = 0.02;
 /// A rise of energy over one contact is rounding up to this share of what a rock releases on average (–).
 const RISE: f64 = 1e-6;

@@ -115,7 +115,7 @@ pub struct Summary {
     pub bytes: BTreeMap<String, u64>,
     /// What was computed, what was left out and why.
     pub plan: Vec<String>,
-    /// The same, the part apart from what is said of it.
+    /// The same, as pairs of part and text.
     #[serde(default)]
     pub plan_entries: Vec<PlanEntry>,
     /// What went in, as name and value.

@@ -1,4 +1,4 @@
-//! What a run may take of memory and disk, reckoned before it begins.
+//! What a run may take of memory and disk, estimated before it begins.
 
 use super::{Part, Plan};
 use crate::error::{Error, Result};

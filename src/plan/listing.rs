@@ -209,7 +209,7 @@ impl fmt::Display for Plan {
     }
 }
 
-/// One line of the listing: a part of the plan and what is said of it.
+/// One line of the listing: a part of the plan and its text.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlanEntry {
     /// The part.

@@ -85,7 +85,7 @@ impl Distribution {
         }
     }
 
-    /// Smallest, median and largest value to reckon with; where the support has no end,
+    /// Smallest, median and largest value for estimates; where the support has no end,
     /// the value that one draw in a thousand passes.
     pub fn reckoned(&self) -> [f64; 3] {
         let (low, high) = self.support();

@@ -88,7 +88,7 @@ const ENERGIES_J: [f64; 2] = [30e3, 300e3];
 const LAW: &str = "write per_year = … (sizes as [rocks] radius_m has them), or per_year_at_1m3, exponent and volume_m3, or classes";
 
 impl FrequencyTable {
-    /// The sources, their laws and what is asked; none where a key is wrong, which the check has said, and where zones are
+    /// The sources, their laws and what is asked; none where a key is wrong, which the check has reported, and where zones are
     /// sources that were not read yet.
     pub(super) fn compile(&self, zones: Option<&Zones>) -> Option<Frequency> {
         let sources = if self.is_by_zone() {

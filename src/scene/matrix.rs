@@ -65,7 +65,7 @@ pub const MATRICES: [KnownMatrix; 1] = [KnownMatrix {
 }];
 
 impl MatrixEntry {
-    /// The table; none where a key is wrong, which the check has said.
+    /// The table; none where a key is wrong, which the check has reported.
     pub fn table(&self) -> Option<MatrixTable> {
         let Self { table, name, source, energies_j, return_periods_years, levels } = self;
         if let Some(key) = table {

@@ -16,7 +16,7 @@ use serde::Deserialize;
 pub struct ReleasePoint {
     /// Place in plan view (m), map coordinates.
     pub at_m: Corner,
-    /// Height of the rock's centre (m), map coordinates; absent = reckoned from the ground below.
+    /// Height of the rock's centre (m), map coordinates; absent = computed from the ground below.
     pub height_m: Option<f64>,
 }
 

@@ -12,7 +12,7 @@ use serde::Deserialize;
 pub struct Rocks {
     /// Density (kg/m³), positive.
     pub density_kg_m3: f64,
-    /// Radius (m), positive; absent in the file where `[frequency]` has volumes, and then filled in to reckon with.
+    /// Radius (m), positive; absent in the file where `[frequency]` has volumes, and then filled in for the estimates of the plan.
     pub radius_m: Option<Distribution>,
     /// Shapes, drawn by their weights; none = spheres.
     #[serde(default)]
@@ -71,14 +71,14 @@ impl Rocks {
         }
     }
 
-    /// Takes the sizes of sources that have volumes of their own, as a list to reckon with.
+    /// Takes the sizes of sources that have volumes of their own, as a list for the plan to compute with.
     pub(super) fn take_sizes(&mut self, frequency: Option<&Frequency>) {
         if let Some(frequency) = frequency.filter(|one| one.draws_volumes()) {
             self.radius_m = radii_m(frequency);
         }
     }
 
-    /// Radius (m); where sources have volumes of their own it serves to reckon with only.
+    /// Radius (m); where sources have volumes of their own it serves the estimates of the plan only.
     ///
     /// # Panics
     /// Never for a scene that was read: the check asks for a radius, or the sources fill it in.
@@ -107,7 +107,7 @@ impl RockContact {
     }
 }
 
-/// Radii to reckon with (m) where the sources have volumes of their own: ends and middle of every stratum, as often as
+/// Radii for the estimates of the plan (m) where the sources have volumes of their own: ends and middle of every stratum, as often as
 /// it comes.
 fn radii_m(frequency: &Frequency) -> Option<Distribution> {
     let shares = [0.0, 0.5, 1.0];

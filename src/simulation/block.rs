@@ -1,4 +1,9 @@
 //! The recorder of a block: tumble, touch, step, stop. Scheme `rigid` only.
+//!
+//! A block is a convex core with rounded corners. In flight it turns as a free rigid body (Euler's equations, solved
+//! by [`Top`]) while its centre follows a parabola; the first touch is found by conservative advancement, since no
+//! closed form exists for a tumbling body. In contact, velocities are stepped in the rigid limit: impulses that keep
+//! the bodies apart under Coulomb's law (Moreau 1988), without springs.
 
 use super::form::{Form, Turned};
 use super::impacts::Struck;
@@ -23,12 +28,20 @@ use crate::solver::scar::Scars;
 
 /// One block on its way.
 struct Roll<'a> {
+    /// Scheme, terrain, recorders and limits.
     settings: &'a RunSettings<'a>,
+    /// Terrain, mass and laws as the contact solver wants them.
     world: ContactEnvironment<'a>,
+    /// Its shape, mass and moments of inertia.
     block: &'a Block,
+    /// Contacts found at the last look, with the work space of the solver.
     footing: &'a mut Footing,
+    /// What it has dug into soil.
     scars: &'a mut Scars,
+    /// Pose, velocity and angular momentum. Momentum, not spin, is kept: it is constant in flight while the spin
+    /// turns.
     moving: Moving,
+    /// What is written down of its way.
     recorder: Recorder<'a>,
 }
 
@@ -65,6 +78,7 @@ pub(super) fn follow_block(
     roll.end((release, drawn), stop)
 }
 
+/// Attitude and rotational energy `ω·L/2` (J) for the record.
 fn turned(block: &Block, moving: &Moving) -> Turned {
     let rotational_j = 0.5 * moving.spin(block).dot(&moving.momentum);
     Turned { attitude: moving.pose.attitude, rotational_j }
@@ -79,6 +93,7 @@ impl Roll<'_> {
             start: position_m,
             velocity: velocity_m_s,
             gravity: self.settings.gravity_m_s2,
+            // the ball around the block: what it does not touch, the block does not touch
             radius: block.bound_m,
         };
         let top = Top::new(block.inertia_kg_m2, self.moving.pose.attitude, self.moving.momentum);
@@ -100,6 +115,7 @@ impl Roll<'_> {
         let (before_j, lost_before_j) = (self.total_j(), self.recorder.lost_j());
         let stop = self.steps();
         let rise_j = self.total_j() - before_j;
+        // impulses of the rigid limit only take energy: a rise is an error of the solver
         let ledger = &mut self.recorder.ledger;
         ledger.rise_j = ledger.rise_j.max(rise_j);
         let lost_j = self.recorder.lost_j() - lost_before_j;
@@ -107,10 +123,13 @@ impl Roll<'_> {
         stop
     }
 
+    /// Steps through one episode of contact: look for contacts, resolve impacts, then one velocity step, until the
+    /// block flies (`None`) or ends.
     fn steps(&mut self) -> Option<Stop> {
         let block = self.block;
         let mut calm = RestCriterion::from(self.moving.pose.centre);
         loop {
+            // contacts are looked for anew in every step: the block turns, and other corners come near
             let pose = self.moving.pose;
             self.footing.look(&self.world, block, &pose, block.ball_m);
             if self.strike() {
@@ -133,6 +152,7 @@ impl Roll<'_> {
                 velocity_m_s: self.moving.v,
                 spin_rad_s: self.moving.spin(block),
             };
+            // an attitude that is no longer a rotation shows as NaN here, before it can reach a table
             let finite = to.position_m.iter().chain(to.spin_rad_s.iter()).all(|x| x.is_finite());
             if !finite {
                 return Some(Stop::Failed("motion is no longer finite".to_owned()));
@@ -144,6 +164,7 @@ impl Roll<'_> {
             if done.is_free || ends.is_some() {
                 return ends;
             }
+            // the largest radius: a corner must not move either
             calm.note(done.dt, &to, block.bound_m, &self.settings.rest);
             if calm.rests() {
                 return Some(Stop::AtRest);
@@ -154,6 +175,7 @@ impl Roll<'_> {
     /// Resolves the impact of the contacts that touch, if there is one; whether it has thrown the block off.
     fn strike(&mut self) -> bool {
         let (block, now_s) = (self.block, self.recorder.now.time_s);
+        // touching contacts that approach faster than their ground captures: one impact, resolved together
         let struck: Vec<_> = self
             .footing
             .touching(block)
@@ -161,6 +183,7 @@ impl Roll<'_> {
             .copied()
             .collect();
         for touch in &struck {
+            // of the touching point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
             let struck = Struck {
                 point_m: self.moving.pose.centre + touch.lever,
@@ -191,6 +214,7 @@ impl Roll<'_> {
         self.recorder.now.velocity_m_s = self.moving.v;
         self.recorder.now.spin_rad_s = self.moving.spin(block);
         self.recorder.turned = Some(turned(block, &self.moving));
+        // the largest speed may be the one right after an impact
         self.recorder.note_speed();
         self.recorder.end_impacts(|_| false, || 0.0);
         is_free
@@ -234,6 +258,7 @@ impl Roll<'_> {
         self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
     }
 
+    /// The journey, complete, with the energy released and the shape as it was drawn.
     fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
         let start =
             Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);

@@ -87,6 +87,7 @@ impl<'a> Crossings<'a> {
         if self.lines.is_empty() {
             return;
         }
+        // in plan view a parabola is a straight line: two distances to the line of a piece give the share of the way
         let (a, b) = (flat(&at(0.0).motion.position_m), flat(&flight.centre(dt)));
         self.pass(
             (terrain, form),
@@ -110,6 +111,7 @@ impl<'a> Crossings<'a> {
         if self.lines.is_empty() {
             return;
         }
+        // Hermite data of the step as a Bézier curve: the path lies within the hull of these four points
         let third = (to.time_s - from.time_s) / 3.0;
         let hull = [
             from.position_m,
@@ -135,6 +137,7 @@ impl<'a> Crossings<'a> {
         when: impl Fn(&LinePiece) -> Vec<f64>,
         at: impl Fn(f64) -> RockInstant,
     ) {
+        // box of the way in plan view: most steps end here, without a look at any line
         let low = [0, 1].map(|k| hull.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
         let high = [0, 1].map(|k| hull.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
         let is_inside = |[west_south, east_north]: &[Corner; 2]| {
@@ -161,6 +164,7 @@ impl<'a> Crossings<'a> {
                 continue;
             }
             let last = evaluation_line.pieces.len() - 1;
+            // a line may be crossed several times within one step: all are counted, the first is kept
             let mut met: Vec<(f64, f64)> = Vec::new();
             for (k, piece) in evaluation_line.pieces.iter().enumerate() {
                 for s in when(piece) {
@@ -195,6 +199,7 @@ impl<'a> Crossings<'a> {
         (free_m > 0.0).then_some(grown)
     }
 
+    /// Records a crossing, or counts it where the rock has crossed this line before: only the first is kept in full.
     fn note(
         &mut self,
         (terrain, form): (&Terrain, &Form),
@@ -207,6 +212,7 @@ impl<'a> Crossings<'a> {
             return;
         }
         let centre = instant.motion.position_m;
+        // the slope without trees: bounce height is a height above the ground
         let below = terrain.slope_under(centre.x, centre.y, centre.z);
         let (height_m, height_normal_m) = below.map_or((f64::NAN, f64::NAN), |(ground, normal)| {
             let over = centre.z - ground;
@@ -264,6 +270,7 @@ fn enter(
     None
 }
 
+/// The point in plan view.
 fn flat(point: &Vec3) -> Corner {
     [point.x, point.y]
 }

@@ -1,4 +1,9 @@
 //! The fall itself: leap, touch, step, stop.
+//!
+//! A journey alternates between two exact pictures. In flight the centre moves on a parabola, and the next touch is
+//! the smallest root at which it comes within a radius of the mesh: no steps, no air drag. In contact a scheme
+//! integrates translation, spin and springs until no contact is left. An episode of contact closes with an energy
+//! balance: motion before and after, losses booked by cause, and the remainder, which is the error of the numerics.
 
 mod soil;
 
@@ -32,10 +37,15 @@ use std::ops::Range;
 /// Work space of one thread; nothing of one rock is left for the next.
 #[derive(Debug, Default)]
 pub struct Scratch {
+    /// Contacts, springs and neighbours of a sphere; see [`ContactState`].
     state: ContactState,
+    /// The same for a block.
     footing: Footing,
+    /// Scars that the rock has dug.
     scars: Scars,
+    /// How far it has slipped on each ground, where friction grows with slip.
     slip: Slip,
+    /// Contact laws of the grounds for this rock: stiffness, damping, friction.
     laws: Vec<Law>,
     /// Dashpots of the grounds of the rock before: most scenes never change them.
     damping: Vec<Damping>,
@@ -54,6 +64,8 @@ impl Scratch {
         &self.state.stopwatches
     }
 
+    /// Fills in the laws of all grounds for one rock. The damping ratio of a restitution takes a root search, so it is
+    /// kept as long as the restitution of a ground stays the same.
     fn make_laws(&mut self, release: &Release, capture: &Capture) {
         self.damping.truncate(release.grounds.len());
         self.laws.clear();
@@ -96,6 +108,7 @@ pub fn simulate(
         ),
     };
     // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
+    // stop is only set here if the rock is at rest, or fails, where it was released
     let mut stop = if fall.is_pressed() { fall.touch() } else { None };
     let stop = loop {
         stop = stop.or_else(|| fall.fly()).or_else(|| fall.touch());
@@ -157,6 +170,7 @@ pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> K
     Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
+/// One sphere on its way: what it is, where it is, and what is recorded of it.
 pub(super) struct Fall<'a> {
     pub(super) settings: &'a RunSettings<'a>,
     pub(super) body: Body,
@@ -196,6 +210,7 @@ impl<'a> Fall<'a> {
         );
         let (dt, stop) = self.settings.end_of_flight(&end, now.time_s);
         self.state.stopwatches.stop(TimedPiece::Leap, begun);
+        // a flight counts as one leap, however long
         self.recorder.effort.leaps += 1;
         let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
@@ -211,6 +226,7 @@ impl<'a> Fall<'a> {
         let world = self.settings.around(self.body, self.laws);
         self.state.begin(&world, c, v, w);
         self.in_contact().announce();
+        // soil takes speed out of the blow before any spring answers
         let kept = self.answer_blow();
         self.recorder.now.velocity_m_s *= kept;
         let before_j = self.total_j();
@@ -219,7 +235,9 @@ impl<'a> Fall<'a> {
         let world = self.settings.around(self.body, self.laws);
         let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&world) };
         let mut stepper = Stepper::new(self.settings.step, &world, self.state);
+        // from here to the end of the episode time goes by steps
         let stop = self.steps(&mut stepper);
+        // energy balance over the episode: the change of motion and all booked losses add up to the remainder
         let rise_j = self.total_j() - before_j;
         self.recorder.ledger.remainder_j -= rise_j + self.recorder.lost_j() - lost_before_j;
         // A rock that rests presses on its springs: what they hold is not lost.
@@ -247,10 +265,15 @@ impl<'a> Fall<'a> {
         self.state.springs_j(&self.settings.around(self.body, self.laws))
     }
 
+    /// Steps through one episode of contact, until the rock flies (`None`) or ends.
+    ///
+    /// Each step: what the ground changes first, the step of the scheme, what it has struck, then the record. The
+    /// order matters: impacts are noted with the speed before their losses are paid.
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
         let mut calm = RestCriterion::from(self.state.c);
         loop {
             let left = self.settings.longest_s - self.recorder.now.time_s;
+            // the shorter of the time left and of the way after which roughness, soil or slip change the law
             let most = left.min(self.before_step());
             let before = self.state.c;
             let world = self.settings.around(self.body, self.laws);
@@ -267,6 +290,7 @@ impl<'a> Fall<'a> {
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
             let world = self.settings.around(self.body, self.laws);
+            // a stem has given way: stiffness and contacts changed, so the stepper forgets its factors and its step
             if self.state.bend(&world, &mut done.loss) {
                 *stepper = Stepper::new(self.settings.step, &world, self.state);
             }
@@ -277,6 +301,7 @@ impl<'a> Fall<'a> {
                 velocity_m_s: self.state.v,
                 spin_rad_s: self.state.w,
             };
+            // one slipping contact makes the whole step "sliding" on the path
             let slides = self.state.histories.iter().any(|history| history.slides);
             let begun = self.state.stopwatches.now();
             self.recorder.step(to, slides);
@@ -287,6 +312,7 @@ impl<'a> Fall<'a> {
             if self.state.is_free() {
                 return ends;
             }
+            // rest: slow for long enough, and neither faster nor farther at the end than at the start
             calm.note(done.dt, &to, self.body.radius, &self.settings.rest);
             if calm.rests() {
                 return Some(Stop::AtRest);
@@ -309,6 +335,7 @@ impl<'a> Fall<'a> {
         self.state.motion_j(&self.body) - self.body.mass * self.body.gravity.dot(&self.state.c)
     }
 
+    /// The journey, complete, with the energy released: `m g Δz` of the fall and the kinetic energy of the release.
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
         self.recorder.end_path();
         self.recorder.effort.sweeps += self.state.sweeps;

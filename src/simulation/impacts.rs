@@ -1,7 +1,7 @@
 //! The impacts of one rock: one row for every patch that it strikes.
 //!
 //! A rock may strike several patches at once, or one while it is still pressed into another. Each has its own approach, its own
-//! end and its own speed after it. What is lost while several are in hand is shared by the squares of their approach speeds,
+//! end and its own speed after it. What is lost while several are under way is shared by the squares of their approach speeds,
 //! for the energy that each would bring to rest. A patch that opens for an instant and closes again is still the same impact.
 
 use super::{FeatureKind, Impact};
@@ -28,7 +28,7 @@ pub(super) struct Struck {
     pub(super) approach_m_s: f64,
 }
 
-/// An impact in hand, or one that is just over.
+/// An impact under way, or one that is just over.
 #[derive(Debug, Clone, Copy)]
 struct InHand {
     /// Which of the rock's impacts it is, from 1.
@@ -53,7 +53,7 @@ pub(super) struct Impacts {
     hand: Hand,
 }
 
-/// Those in hand, without allocation.
+/// Those under way, without allocation.
 #[derive(Debug, Clone, Copy, Default)]
 struct Hand {
     list: [Option<InHand>; MOST],
@@ -94,7 +94,7 @@ impl Impacts {
         (self.count, self.hand) = (mark.count, mark.hand);
     }
 
-    /// Whether any is in hand.
+    /// Whether any is under way.
     #[inline]
     pub(super) fn is_any(&self) -> bool {
         self.lasting().next().is_some()

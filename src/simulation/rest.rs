@@ -14,7 +14,7 @@ const GROWTH: f64 = 0.01;
 /// How calm one rock has been.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RestCriterion {
-    /// Centre when the half in hand began (m).
+    /// Centre when the current half began (m).
     from_m: Vec3,
     /// How far its surface has turned since (m).
     turned_m: Vec3,

@@ -99,7 +99,7 @@ impl RockInContact<'_, '_> {
         true
     }
 
-    /// Breaks the stems that cannot take the blow in hand, and meets the next facet if it is time for it; returns the longest
+    /// Breaks the stems that cannot take the current blow, and meets the next facet if it is time for it; returns the longest
     /// step (s) in which no stem takes more than it can.
     pub(super) fn before_step(&mut self) -> f64 {
         let longest_s = if self.has_springs {

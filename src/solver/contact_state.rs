@@ -90,13 +90,13 @@ pub struct ContactState {
     pub touches: ContactPoints,
     /// That place, if they were asked for with all slack.
     pub(crate) looked_ahead: Option<Vec3>,
-    /// Rates at the stages of the step in hand; the first is that at its start.
+    /// Rates at the stages of the current step; the first is that at its start.
     pub rates: [StateRates; STAGES],
     /// Whether the first rate belongs to the present state.
     pub fresh: bool,
     /// Energy in the springs of the contacts at the present state (J), if the first rate is fresh.
     pub stored: f64,
-    /// Contacts of the stage in hand.
+    /// Contacts of the current stage.
     pub contacts: [StageContact; MOST],
     /// How many of them.
     pub contact_count: usize,
@@ -114,7 +114,7 @@ pub struct ContactState {
     pub(crate) stem_load: StemLoad,
     /// Whether what is touched may give way: it is asked step by step.
     pub may_yield: bool,
-    /// Whether the blow in hand has been announced (`rigid`).
+    /// Whether the current blow has been announced (`rigid`).
     pub(crate) is_struck: bool,
     /// Work space of the fixed step.
     pub scratch: DdaScratch,

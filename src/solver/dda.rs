@@ -148,7 +148,7 @@ fn add_contact(
 }
 
 /// Solves the step, and solves it again with the contacts that it ran into: a rock that rolls into a fold would
-/// otherwise find itself inside the other flank and be thrown out with energy nobody paid.
+/// otherwise find itself inside the other flank and be thrown out with energy from nowhere.
 ///
 /// Ends with the touches of the step's end.
 fn solve(

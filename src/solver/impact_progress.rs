@@ -14,7 +14,7 @@ pub(crate) struct ImpactProgress {
     pub(super) left: f64,
     /// Energy that the steps have gained (J).
     pub(super) gained: f64,
-    /// Fastest approach to a contact that has come up in the try in hand (m/s).
+    /// Fastest approach to a contact that has come up in the current try (m/s).
     pub(super) tried_m_s: f64,
 }
 

@@ -3,6 +3,8 @@
 //! While only one face touches, geometry is a plane and the normal a constant: the stages of `stage.rs` are the same sums
 //! over fourteen numbers, and there is nothing to iterate. Where each stage ends it is asked whether that face is still
 //! alone; if the features around the rock certify it (`contact::near`), not even that. Most impacts are of this kind.
+//!
+//! The steps are those of `stage.rs`, but for rounding; only their cost differs.
 
 mod trial;
 
@@ -46,11 +48,13 @@ impl ContactState {
         if !is_on_face(world, self) {
             return None;
         }
+        // what lies ahead must be known before the face can be certified as alone
         self.see_ahead(world, h.min(h_max));
         let history = self.histories[0];
         let law = world.law(history.triangle);
         let c_n = if history.captured { law.c_n_captured } else { law.c_n };
         let penetration = self.sunk(world);
+        // state and rates stay in the plane's frame from step to step; they are turned only on the way in and out
         if !self.plane.on {
             self.enter_plane(law, &world.body, (penetration, c_n));
         }
@@ -78,6 +82,7 @@ impl ContactState {
             stored: 0.0,
             solved: 0,
         };
+        // as many steps as the certificate covers
         let halt = trial.run((h_max, world.terrain.is_tree(history.triangle)), done);
         let (press, stored) = (trial.press, trial.stored);
         self.sweeps += trial.solved;
@@ -150,11 +155,13 @@ impl ContactState {
         let history = &mut self.histories[0];
         history.shear = frame.out_along(two(state, SHEAR));
         history.roll = frame.out_local(three(state, ROLL));
+        // forces of the end, for the first guess of what comes next
         history.normal_force = press.normal_force;
         history.slides =
             square(press.shear_force) >= (law.friction * press.normal_force * (1.0 - 1e-9)).powi(2);
         history.closed = press.closed;
         state[WAY..SPEED].fill(0.0);
+        // the rock has lifted off: the episode may be over, and no memory is left
         if !press.closed {
             *on = false;
             self.histories.clear();

@@ -104,7 +104,7 @@ impl PlaneForces {
 /// State and rates of a rock on one plane.
 #[derive(Debug)]
 pub struct PlaneState {
-    /// Whether they are those of the rock in hand.
+    /// Whether they are those of the current rock.
     pub(super) on: bool,
     pub(super) frame: ContactFrame,
     pub(super) state: State,

@@ -1,4 +1,8 @@
 //! One implicit stage: the contact law solved with the geometry at the stage's end.
+//!
+//! The unknowns of a stage are velocity and spin at its end: with `h γ = hh`, `M (v − v_free)/hh` equals the sum of
+//! the contact forces, and these depend on `v` and `ω` through penetration, slip and rolling. The solve is exact for
+//! given normals; the loop around it moves the normals to where the rock ends.
 
 use super::contact_state::{ContactEnvironment, ContactState, StateRates};
 use super::law::{Action, ContactPlace, StageContact};
@@ -23,6 +27,7 @@ impl StageContact {
         w: &Vec3,
         shear_rate: &Vec3,
     ) -> Loss {
+        // friction takes what of the slip does not stretch the spring; what stretches it goes into spring and dashpot
         let slip = world.body.slip(&self.n, v, w);
         let friction = self.shear_force.dot(&(slip - shear_rate));
         let damping = self.shear_force.dot(shear_rate) - self.normal_force * self.n.dot(v);
@@ -88,6 +93,7 @@ impl ContactState {
     ) -> Option<End> {
         let base = self.base(tableau, i, h);
         let hh = tableau.diagonal * h;
+        // free motion: weight acts, contacts do not
         let (vf, wf) = (base.v + world.body.gravity * hh, base.w);
         // Where it would be if it went on as in the stage before.
         let before = &self.rates[i - 1];
@@ -137,6 +143,7 @@ impl ContactState {
         (base, at): (&End, &Vec3),
     ) {
         self.contact_count = self.touches.len();
+        // a memory belongs to one contact at a time; bits mark those given away
         let mut taken = 0;
         for k in 0..self.contact_count {
             let history = self.history_of(world, k, taken, &base.v);
@@ -148,6 +155,7 @@ impl ContactState {
                 shear += rate.shear[history] * (h * a);
                 roll += rate.roll[history] * (h * a);
             }
+            // turned with the normal, keeping its length
             contact.shear = carry(shear, &memory.n, &contact.n);
             contact.roll = roll;
             contact.penetration =
@@ -178,6 +186,7 @@ impl ContactState {
             normal_force: memory.normal_force,
             shear_force: Vec3::zeros(),
             rolling_moment: Vec3::zeros(),
+            // a first guess only: the solver finds the mode anew
             mode: self.contacts[k].mode,
             law,
         }
@@ -192,6 +201,7 @@ impl ContactState {
         (i, hh): (usize, f64),
     ) {
         let rate = &mut self.rates[i];
+        // slopes of the stage, from base to end
         (rate.c, rate.v, rate.w) = (end.v, (end.v - base.v) / hh, (end.w - base.w) / hh);
         rate.loss = Loss::default();
         for k in 0..self.histories.len() {
@@ -213,6 +223,7 @@ impl ContactState {
         let (c, v, w) = (self.c, self.v, self.w);
         let body = &world.body;
         self.look(world, &c, body.radius * (1.0 + TOUCH));
+        // weight, then contact by contact
         self.rates[0] = StateRates { c: v, v: body.gravity, ..StateRates::NONE };
         let mut taken = 0;
         for k in 0..self.touches.len() {
@@ -223,6 +234,7 @@ impl ContactState {
             let (shear_rate, roll_rate) = contact.act_now(world, &v, &w);
             let back = self.histories[history].n;
             let rate = &mut self.rates[0];
+            // Newton and Euler for a sphere: shear acts at the touched point, R below the centre
             rate.v += (contact.n * contact.normal_force - contact.shear_force) / body.mass;
             rate.w += (contact.n.cross(&contact.shear_force) * body.radius
                 - contact.rolling_moment)

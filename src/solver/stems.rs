@@ -111,7 +111,7 @@ impl ContactState {
         }
     }
 
-    /// Breaks the stems that cannot take the blow in hand, in the rigid limit; `note` hears of each, with the touch and the
+    /// Breaks the stems that cannot take the current blow, in the rigid limit; `note` hears of each, with the touch and the
     /// energy it took (J), and whether the rock has just come to it.
     pub(crate) fn break_stems(
         &mut self,

@@ -29,7 +29,7 @@ pub const PERCENTS: [u8; 3] = [50, 95, 99];
 const BLOCKS: usize = 20;
 /// How much longer the edges of the coarser meshes are than the scene's own (–).
 const COARSER: [f64; 2] = [4.0, 2.0];
-/// Order of the mesh's error against the length of its edges that is reckoned with (–): what a triangle leaves out of a
+/// Order of the mesh's error against the length of its edges that is assumed (–): what a triangle leaves out of a
 /// rough surface goes with its length.
 const MESH_ORDER: f64 = 1.0;
 

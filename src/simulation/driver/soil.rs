@@ -15,7 +15,7 @@ const GROWTH_OF_STEP: f64 = 0.02;
 pub(super) struct Soil<'a> {
     scars: &'a mut Scars,
     slip: &'a mut Slip,
-    /// Where it slips fastest since the step in hand began.
+    /// Where it slips fastest since the current step began.
     slips: Option<Slips>,
     /// How long the step before was (s), 0 after a flight.
     last_step_s: f64,

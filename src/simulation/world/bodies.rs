@@ -33,7 +33,7 @@ const SHORTEST_S: f64 = 1e-5;
 const RETURNS: usize = 16;
 /// Windows after which a new moment is kept to go back to.
 const WINDOWS: usize = 64;
-/// The same in the rigid limit, where a window is dear and a moment cheap beside it.
+/// The same in the rigid limit, where a window costs much and a snapshot little.
 const WINDOWS_RIGID: usize = 8;
 
 /// All rocks of a world.

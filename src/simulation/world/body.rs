@@ -1,4 +1,8 @@
 //! One rock of a world: flying, touching, resting, and what is noted down of it.
+//!
+//! A rock of a world has two clocks: its recorder stands at `now`, the last instant that was written down, and its
+//! solver state at the end of the last step. In flight only the recorder counts, because the parabola gives every
+//! later instant in closed form; at a touch the state takes over from it (`land`, `begin`).
 
 use super::{BodyState, WorldBody};
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
@@ -15,6 +19,7 @@ use crate::solver::loss::Loss;
 use crate::solver::step_control::ONSET;
 
 impl<'a> WorldBody<'a> {
+    /// The parabola of its centre from the recorded instant on: `c + v t − g t²/2 z`, the spin constant.
     pub(super) fn flight(&self, settings: &RunSettings) -> Parabola {
         Parabola {
             start: self.recorder.now.position_m,
@@ -26,6 +31,7 @@ impl<'a> WorldBody<'a> {
 
     /// Centre at a time not before its own (m).
     pub(super) fn position_at(&self, settings: &RunSettings, time_s: f64) -> Vec3 {
+        // a rock in contact is moved by the steps of its island only
         if self.member.flying && time_s > self.recorder.now.time_s {
             self.flight(settings).centre(time_s - self.recorder.now.time_s)
         } else {
@@ -50,6 +56,7 @@ impl<'a> WorldBody<'a> {
 
     /// Goes on with what was watched before.
     pub(super) fn watch_on(&mut self, (velocity, off): (Vec3, f64)) {
+        // triangle inequality: what it may be off the older reference is at most the sum of both distances
         let since = (self.off.0 - velocity).norm() + self.off.1;
         self.off = (velocity, off.max(since));
     }
@@ -58,6 +65,7 @@ impl<'a> WorldBody<'a> {
     pub(super) fn wake(&mut self, settings: &RunSettings, now_s: f64) {
         if self.state == BodyState::Asleep {
             self.state = BodyState::Moving;
+            // its path gets the time asleep as one step at rest
             let now = Motion { time_s: now_s, ..self.recorder.now };
             self.recorder.step_as(now, PathState::Sticking);
         }
@@ -72,6 +80,7 @@ impl<'a> WorldBody<'a> {
         let left = settings.longest_s - now_s;
         let flight = self.flight(settings);
         let effort = &mut self.recorder.effort;
+        // one search along the whole parabola up to the time limit, O(log n) in the triangles near its path
         effort.leaps += 1;
         self.lands = Some(
             match time_of_impact_past(
@@ -103,9 +112,11 @@ impl<'a> WorldBody<'a> {
             return;
         }
         let dt = time_s - self.recorder.now.time_s;
+        // rocks of one island meet at common times: those already there have nothing to record
         if dt > 0.0 {
             let flight = self.flight(settings);
             self.recorder.fly(&flight, None, dt);
+            // the event's own time, not the sum of durations: rounding must not separate rocks that meet
             self.recorder.now.time_s = time_s;
         }
         let now = self.recorder.now;
@@ -121,6 +132,7 @@ impl<'a> WorldBody<'a> {
             self.calm = RestCriterion::from(self.recorder.now.position_m);
             self.member.state.histories.clear();
             self.member.state.stored = 0.0;
+            // energy at the start of the episode, against which its largest rise is measured at the end
             self.began_j = (self.total_j(settings), self.given_j());
         }
     }
@@ -136,6 +148,7 @@ impl<'a> WorldBody<'a> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
         let IslandBody { state, body, laws, .. } = &mut *self.member;
         let world = ContactEnvironment { terrain: settings.terrain, body: *body, laws };
+        // looks for the contacts of this place; what was remembered of the episode before is gone
         state.begin(&world, c, v, w);
         // A rock that is pressed in from the start has the energy of its springs, too.
         if settings.step.scheme.has_springs() {
@@ -150,6 +163,8 @@ impl<'a> WorldBody<'a> {
         self.in_contact(settings).announce();
     }
 
+    /// Mechanical energy (J): `m v²/2 + I ω²/2 + m g z`. Springs are not in it; [`Self::end_episode`] adds what they
+    /// hold.
     pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {
         let now = &self.recorder.now;
         let body = &self.member.body;
@@ -176,6 +191,7 @@ impl<'a> WorldBody<'a> {
         if given != Given::default() {
             rock.leave_facet();
         }
+        // stems that the step has overloaded take their share of the energy now
         rock.state.bend(&rock.world, &mut loss);
         let to = self.motion_at(time_s);
         // A rock may be hit and let go within one step: then it flies another way.
@@ -256,10 +272,12 @@ impl<'a> WorldBody<'a> {
         self.recorder.pay(&loss, 1.0);
         self.recorder.ledger.others_j += given.lost;
         self.recorder.ledger.passed_on_j += given.passed_on;
+        // energy balance of the step: what motion, friction, dashpots and other rocks do not account for is numerical
         let change = self.total_j(settings) - before_j + loss.sum() + given.sum();
         self.recorder.ledger.remainder_j -= change;
         self.in_contact(settings).end_impacts();
         self.watch();
+        // hit out of flight: a new episode of contact begins with the energy before the step
         if was_flying {
             self.lands = None;
             self.calm = RestCriterion::from(self.recorder.now.position_m);
@@ -283,6 +301,7 @@ impl<'a> WorldBody<'a> {
         self.recorder.end_impacts(|_| false, || 0.0);
         self.in_contact(settings).leave_facet();
         let rise_j = self.total_j(settings) - self.began_j.0 + given_j + stored.sum();
+        // without numerical error it is 0 or less: contacts only take energy
         self.recorder.ledger.rise_j = self.recorder.ledger.rise_j.max(rise_j);
     }
 
@@ -302,6 +321,7 @@ impl<'a> WorldBody<'a> {
         RockInContact { world, state, recorder: &mut self.recorder, has_springs }
     }
 
+    /// Takes it out of the world; one that has already stopped keeps its reason.
     pub(super) fn leave(&mut self, stop: Stop) {
         if self.state == BodyState::Moving {
             self.state = BodyState::Gone(stop);
@@ -316,6 +336,7 @@ impl<'a> WorldBody<'a> {
         release: &Release,
         now_s: f64,
     ) -> Trajectory {
+        // what still moves when the world ends has run out of time
         let stop = match &self.state {
             BodyState::Moving => Stop::TimeUp,
             BodyState::Asleep => Stop::AtRest,
@@ -335,6 +356,7 @@ impl<'a> WorldBody<'a> {
             *entry = entry.max(0.0);
         }
         let start = release.motion;
+        // energy released: potential energy of the fall and kinetic energy of the release
         let fallen = start.position_m.z - self.recorder.now.position_m.z;
         let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
         self.recorder.effort.triangles += self.member.state.near.tested;

@@ -43,7 +43,7 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     scale: (f64, f64),
     /// Whether there were more contacts than places.
     pub(super) is_crowded: bool,
-    /// Whether the try in hand has met one face only: no patches, nothing that comes or goes.
+    /// Whether the current try has met one face only: no patches, nothing that comes or goes.
     pub(super) is_smooth: bool,
     /// The one face met at the step's start; [`Feature::NONE`] if it was something else.
     face: Option<Feature>,

@@ -1,4 +1,6 @@
 //! The end of an accepted step: memories, bonds, angular momentum.
+//!
+//! Until here a step may be tried again with another length; only this part changes what the island remembers.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -30,13 +32,17 @@ impl Island<'_> {
             done.losses.push(loss);
             let mut given = Given::default();
             for k in 0..tableau.stages {
+                // work through contacts: the power of the stages, summed with the weights of the finer method of the
+                // pair
                 given.add(&member.given[k], dt * tableau.work_weight(k));
             }
             done.given.push(given);
+            // first same as last: the rates at the end are those at the start of the next step
             member.given[0] = member.given[tableau.stages - 1];
         }
         done.broken = self.accept_ties(tableau, dt);
         for member in &mut self.members {
+            // free of the mesh; contacts with rocks are looked at next
             member.flying = member.state.is_free();
         }
         for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
@@ -49,6 +55,9 @@ impl Island<'_> {
         done
     }
 
+    /// Takes over memory and forces of the pairs, and breaks overloaded bonds; how many broke.
+    ///
+    /// Pairs and histories are both in ascending order: one pass over both, O(n).
     fn accept_ties(&mut self, tableau: &Tableau, dt: f64) -> u64 {
         let (last, hh) = (tableau.stages - 1, tableau.diagonal * dt);
         let mut broken = 0;
@@ -84,6 +93,7 @@ impl Island<'_> {
             };
             self.pair_rates[k][0] =
                 if pair_history.is_held() { turned(rate) } else { Vec3::zeros() };
+            // at its cap but for rounding: the contact slips
             pair_history.slides = pair_history.bond.is_none()
                 && pair_history.shear_force.norm()
                     >= pair_history.law.friction * pair_history.normal_force * (1.0 - 1e-9);
@@ -95,6 +105,7 @@ impl Island<'_> {
                     pair_history.law.friction,
                 )
             };
+            // forces jump as a bond lets go: the next step must begin with rates of its own
             if pair_history.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0) {
                 break_bond(pair_history);
                 self.pair_forces[k] = (pair_history.normal_force, pair_history.shear_force);
@@ -116,6 +127,7 @@ impl Island<'_> {
         alone.then(|| self.angular_momentum())
     }
 
+    /// Mass (kg), centre of mass (m) and its velocity (m/s).
     fn centre(&self) -> (f64, Vec3, Vec3) {
         let mut sum = (0.0, Vec3::zeros(), Vec3::zeros());
         for member in &self.members {
@@ -126,6 +138,7 @@ impl Island<'_> {
         (sum.0, sum.1 / sum.0, sum.2 / sum.0)
     }
 
+    /// `Σ m (c − c̄) × (v − v̄) + I ω` about the centre of mass (kg m²/s).
     fn angular_momentum(&self) -> Vec3 {
         let (_, c, v) = self.centre();
         self.members.iter().fold(Vec3::zeros(), |sum, member| {
@@ -147,9 +160,11 @@ impl Island<'_> {
         let mut inertia = Matrix3::zeros();
         for member in &self.members {
             let d = member.state.c - c;
+            // without friction nothing may change spins: the turn then moves centres only
             let (m, own) = (member.body.mass, if spins { member.body.inertia } else { 0.0 });
             inertia += Matrix3::identity() * (own + m * d.norm_squared()) - d * d.transpose() * m;
         }
+        // two rocks without spins have no inertia about their line: the pseudo-inverse turns about the others only
         let Ok(turn) = inertia.pseudo_inverse(1e-9 * inertia.norm()).map(|inverse| inverse * lost)
         else {
             return;

@@ -14,7 +14,7 @@ pub(super) struct ActiveSet {
     pub(super) pairs: Vec<[u32; 2]>,
     /// Rocks whose forces changed in the last sweep.
     pub(super) lately: Vec<bool>,
-    /// Largest change in the sweep in hand and in the two before, relative to what is allowed.
+    /// Largest change in the current sweep and in the two before, relative to what is allowed.
     changes: [f64; 3],
 }
 

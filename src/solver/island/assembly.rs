@@ -1,4 +1,8 @@
 //! An island of rocks that may touch each other, and its adaptive step.
+//!
+//! All rocks of an island that are in contact take one step of a stiffly accurate Runge–Kutta method together. A
+//! stage is a nonlinear system in the six velocities of each rock; its contacts are solved by sweeps and Newton
+//! jumps. The step is accepted if the embedded error is within the tolerance and the island's energy has not risen.
 
 use super::active_set::ActiveSet;
 use super::body::{BodySlot, IslandBody};
@@ -54,6 +58,7 @@ impl<'a> Island<'a> {
         mut members: Vec<BodySlot>,
         pair_histories: Vec<PairHistory>,
     ) -> Self {
+        // a rock alone goes through the solver of one rock: the same numbers as outside a world
         let is_one = members.len() == 1;
         for member in &mut members {
             member.enter_island(is_one);
@@ -96,6 +101,7 @@ impl<'a> Island<'a> {
                 step_control::advance(world, &control, state, h, h_max)
             });
         }
+        // impacts of several rocks are not followed as a whole: one tolerance rules
         let control = &Control {
             tableau,
             tolerance: settings.tolerance_m_s,
@@ -114,6 +120,7 @@ impl<'a> Island<'a> {
         self.members.iter_mut().for_each(|member| member.known = member.state.histories.len());
         let mut rejected = 0;
         let mut trial = IslandTrial { island: self, control, omega };
+        // shortens the step until error, energy and bonds allow it
         let dt = step_control::settle(&mut trial, control, h_max, &mut rejected)?;
         Ok(Done { rejected, ..self.accept(control.tableau, dt) })
     }
@@ -138,10 +145,12 @@ impl<'a> Island<'a> {
 
     /// Whether motion, height and springs of the whole island together hold more at the step's end than at its start.
     fn gains(&self, hh: f64) -> bool {
+        // `unknown`: energy that rounding of the places alone may make, weight and normal forces times a length
         let (mut before, mut after, mut unknown) = (0.0, 0.0, 0.0);
         for IslandBody { state, body, end, .. } in self.members.iter().map(|member| &**member) {
             let motion =
                 0.5 * (body.mass * end.v.norm_squared() + body.inertia * end.w.norm_squared());
+            // height relative to the start of the step: absolute heights would cost digits
             let lifted = -body.mass * body.gravity.dot(&(end.c - state.c));
             before += state.motion_j(body) + state.stored;
             after += motion + lifted + step_control::pressed_j(state, end, hh);
@@ -163,6 +172,7 @@ impl<'a> Island<'a> {
         }
         for pair in &self.pairs {
             let ends = pair.ends.map(|k| (self.members[k].end.v, self.members[k].end.w));
+            // at the end of the stage: the base's penetration less what the normal speed takes of it
             let mut penetration = pair.penetration - hh * pair.speed([&ends[0], &ends[1]]);
             if pair.bond.is_none() {
                 penetration = penetration.max(0.0);
@@ -203,6 +213,7 @@ impl<'a> Island<'a> {
             if a.flying && b.flying && !pair_history.is_held() {
                 continue;
             }
+            // two rocks may close their gap and press in by a part of the smaller radius, no more
             let gap = (a.state.c - b.state.c).norm() - a.body.radius - b.body.radius;
             let room = TRAVEL * a.body.radius.min(b.body.radius) + gap.max(0.0);
             let speed = (a.state.v - b.state.v).norm();
@@ -214,6 +225,7 @@ impl<'a> Island<'a> {
     }
 
     /// One step to its last stage; its error relative to the tolerance, `None` if a stage does not settle.
+    /// All implicit stages in turn; the last one is the step's end, because the tableau is stiffly accurate.
     fn attempt(&mut self, control: &Control, dt: f64) -> Option<f64> {
         let tableau = control.tableau;
         for i in 1..tableau.stages {
@@ -260,11 +272,13 @@ impl<'a> Island<'a> {
             for k in [pair_history.a as usize, pair_history.b as usize] {
                 omegas[k] = omegas[k].max(pair_history.law.omega);
             }
+            // error of the shear stretch (m/s as a rate), times ω to compare with an acceleration
             let sums = rates.iter().zip(weights);
             let drift = sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate * *weight);
             worst2 = worst2.max(drift.norm_squared() * pair_history.law.omega.powi(2));
         }
         for (member, omega) in self.members.iter().zip(&omegas) {
+            // the embedded method's difference in place, velocity and spin, each as an acceleration: ω² x, v̇ and R ẇ
             let mut off = [Vec3::zeros(); 3];
             for (rate, weight) in member.state.rates.iter().zip(weights) {
                 off[0] += rate.c * *weight;
@@ -295,6 +309,7 @@ struct IslandTrial<'i, 'a> {
 }
 
 impl TrialStep for IslandTrial<'_, '_> {
+    /// The island's own next step, which the controller updates.
     fn h(&mut self) -> &mut f64 {
         &mut self.island.h
     }
@@ -303,6 +318,7 @@ impl TrialStep for IslandTrial<'_, '_> {
         self.island.travel_limit()
     }
 
+    /// The stiffest contact at the step's start (rad/s).
     fn omega(&self) -> f64 {
         self.omega
     }
@@ -312,6 +328,7 @@ impl TrialStep for IslandTrial<'_, '_> {
             None => TryOutcome::Unsettled,
             Some(error) if error <= 1.0 => {
                 let hh = self.control.tableau.diagonal * dt;
+                // a step that resolves the springs by far cannot gain more than its error: only coarse ones are asked
                 let gains = dt * self.omega > step_control::RESOLVED && self.island.gains(hh);
                 if gains { TryOutcome::Gains } else { return TryOutcome::Error(error) }
             }

@@ -53,7 +53,7 @@ struct Walk {
     after: Vec<Option<usize>>,
     /// Where in its rows each column waits.
     at: Vec<usize>,
-    /// Where each row stands in the column in hand.
+    /// Where each row stands in the current column.
     slot: Vec<usize>,
 }
 

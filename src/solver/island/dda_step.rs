@@ -1,4 +1,14 @@
 //! Scheme `dda` for an island: the paper's step at a fixed time step, open–close iteration over all contacts.
+//!
+//! For each rock the six unknowns of a step are the displacement and the rotation of its centre, paper Eq. (1). With
+//! the step `Δt` given, inertia and weight alone would move it by the free displacement; contacts add springs and
+//! loads to the system of 6×6 blocks, paper Eq. (4). Which contacts are closed and which of them slip is not known
+//! before the step: the system is solved, each contact is judged at the displacements found, and it is solved again
+//! until no contact changes (open–close iteration).
+//!
+//! Displacements are kept in two parts, `ways[0]` of the free motion and `ways[1]` of the contacts. The velocity at
+//! the end comes from `ways[1]` alone, `v + g Δt + 2 d/Δt` of the constant-acceleration step, so that rounding of the
+//! free motion never enters it.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -23,12 +33,14 @@ impl Island<'_> {
     /// # Errors
     /// [`StepError`] if a rock sank in or its motion is no longer finite.
     pub fn advance_fixed(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
+        // the fixed step, cut only at events and where a rock would pass what has been looked for
         let dt = settings.step_s.min(h_max).min(self.travel_limit());
         let memory = settings.shear_memory;
         let terrain = self.terrain;
         let before: Vec<Loss> =
             self.members.iter_mut().map(|member| member.meet(terrain, (dt, memory))).collect();
         let mut links = self.links(dt, memory);
+        // a system that cannot be factored means a motion that is no number: the rocks end as failed
         let settled = self.solve_fixed(&mut links, (dt, memory)).ok_or(StepError::NotFinite)?;
         let mut done = Done { dt, unsettled: !settled, ..Done::default() };
         for (member, before) in self.members.iter_mut().zip(before) {
@@ -39,6 +51,8 @@ impl Island<'_> {
         Ok(done)
     }
 
+    /// Contacts between rocks that are closed or may close within the step; the slack is a tenth of the smaller
+    /// radius.
     fn links(&self, dt: f64, memory: bool) -> Vec<DdaPairContact> {
         let over = |(k, pair_history): (usize, &crate::contact::pair::PairHistory)| {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
@@ -90,6 +104,7 @@ impl Island<'_> {
             self.sweeps += 1;
             self.solve_once(links, dt)?;
             let mut changed = false;
+            // all contacts stick now: no friction state is left to change, but contacts may still open and close
             for member in &mut self.members {
                 let d = member.way();
                 for joint in &mut member.joints {
@@ -107,12 +122,15 @@ impl Island<'_> {
         Some(false)
     }
 
+    /// One solve of the system with the contact states as they are; `None` if it is singular or no longer finite.
     fn solve_once(&mut self, links: &[DdaPairContact], dt: f64) -> Option<()> {
         let solved = self.global.solve(&mut self.members, links, dt);
         let finite = self.members.iter().all(|m| m.ways[1].iter().all(|x| x.is_finite()));
         (solved && finite).then_some(())
     }
 
+    /// Judges every contact at the displacements found: open, sticking or slipping. The largest change is returned; a
+    /// change of load alone (friction follows the normal force) needs no new factor.
     fn judge(&mut self, links: &mut [DdaPairContact]) -> Change {
         let mut change = Change::None;
         for member in &mut self.members {
@@ -128,6 +146,11 @@ impl Island<'_> {
         change
     }
 
+    /// Writes the state of the contacts between rocks into their memory, and books what each end got from the other
+    /// (J).
+    ///
+    /// # Errors
+    /// [`StepError::SankIn`] if a contact is deeper than the springs are meant for: the step is too long for them.
     fn remember(&mut self, links: &[DdaPairContact], done: &mut Done) -> Result<(), StepError> {
         for pair_history in &mut self.pair_histories {
             pair_history.closed = false;
@@ -164,6 +187,7 @@ impl IslandBody {
         self.ways[0] + self.ways[1]
     }
 
+    /// What all contacts of this rock have in common within the step.
     fn fixed_step(&self, (dt, shear_memory): (f64, bool)) -> StepConstants {
         StepConstants {
             dt,
@@ -188,6 +212,7 @@ impl IslandBody {
         stored
     }
 
+    /// Makes touch `k` a contact of the step, with the memory of the contact that it continues.
     fn add_joint(&mut self, terrain: &Terrain, how: (f64, bool), (k, distance_m): (usize, f64)) {
         let step = self.fixed_step(how);
         let Self { state, body, laws, joints, .. } = self;
@@ -204,6 +229,7 @@ impl IslandBody {
     fn meet_more(&mut self, terrain: &Terrain, how: (f64, bool)) -> bool {
         let d = self.way();
         let way: Vec3 = d.fixed_rows::<3>(0).into();
+        // looked for where the rock would end: what it would run into must push back within the same step
         let end = self.state.c + way;
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         self.state.look_ahead(&world, &end);
@@ -237,9 +263,11 @@ impl IslandBody {
         }
         state.merge_lost(&world);
         state.histories.retain(|history| history.closed);
+        // the rotation needs no update: a sphere looks the same from all sides
         state.c += d.fixed_rows::<3>(0);
         state.v += body.gravity * dt + kick.fixed_rows::<3>(0);
         state.w += kick.fixed_rows::<3>(3);
+        // what springs hold more at the end than at the start is taken from motion, but not lost
         loss.add(&state.stored_j(&world), 1.0);
         loss.add(before, -1.0);
         Ok(loss)

@@ -2,6 +2,10 @@
 //!
 //! The paper's global system of 6×6 blocks, Eq. (4), with the change of friction with the normal force, which makes it
 //! unsymmetric.
+//!
+//! Sweeps over the contacts (Gauss–Seidel) find quickly which contacts press, stick or slip, but converge slowly in
+//! heaps: a push travels one contact a sweep. With those modes held, the stage is smooth, and one linear solve over
+//! all rocks that take part replaces many sweeps. The sweeps then check the modes again.
 
 use super::block_factor::{Below, Blocks, Factor};
 use super::body::{BodySlot, IslandBody};
@@ -17,11 +21,14 @@ const DENSE: usize = 8;
 
 /// One contact, linear around the present motion.
 struct Linear {
+    /// Normal force (N) as a line in the normal speed.
     normal: NormalLine,
+    /// Shear force (N) linearised in slip (m/s) and normal force.
     shear: Answer,
     /// Slip and normal speed there, as far as they come from the ends that are sought.
     slip: Vec3,
     speed: f64,
+    /// Unit normal, from the second body (or the mesh) to the first.
     n: Vec3,
     /// Its ends that are sought: place, sign of the first or second body, lever.
     ends: [Option<(usize, f64, f64)>; 2],
@@ -29,9 +36,11 @@ struct Linear {
 
 /// Six rows for each body of the island.
 struct NewtonSystem {
+    /// `K_kk`: inertia over `h`, and the contacts of rock `k` with mesh and others (kg/s, kg m²/s).
     diagonal: Vec<Mat6>,
     /// Blocks that join two rocks: the one below the diagonal, and the one opposite.
     joined: Vec<(Below, Mat6)>,
+    /// Right side: impulse rates of free motion and of the constant parts of contacts (N, N m), six a rock.
     load: Vec<f64>,
 }
 
@@ -51,6 +60,7 @@ pub(super) fn jump(
             part.then(|| rocks - 1)
         })
         .collect();
+    // rows are numbered over the rocks that take part only; others enter through the load
     let (diagonal, load) = (vec![Mat6::zeros(); rocks], vec![0.0; 6 * rocks]);
     let mut system = NewtonSystem { diagonal, joined: Vec::with_capacity(pairs.len()), load };
     for (member, place) in members.iter().zip(&place) {
@@ -70,6 +80,7 @@ pub(super) fn jump(
 }
 
 impl Linear {
+    /// The contact of two rocks, or their bond. A bond pulls as well as pushes and has no friction cap.
     fn of_pair(pair: &PairContact, members: &[BodySlot], place: &[Option<usize>], h: f64) -> Self {
         let ends = pair.ends.map(|k| &members[k].now);
         let (law, speed, trial) = (&pair.law, pair.speed(ends), pair.trial(ends, h));
@@ -105,6 +116,7 @@ impl Linear {
 }
 
 impl NewtonSystem {
+    /// `M/h` on the diagonal and `M v_free/h` in the load: without contacts the solution is the free motion.
     fn add_inertia(&mut self, k: usize, member: &IslandBody, h: f64) {
         let (m, i) = (member.body.mass / h, member.body.inertia / h);
         for axis in 0..3 {
@@ -116,6 +128,7 @@ impl NewtonSystem {
         }
     }
 
+    /// A contact of rock `k` with the mesh; the mesh is an end that does not move, so only `K_kk` changes.
     fn add_contact_force(&mut self, k: usize, member: &IslandBody, contact: &StageContact, h: f64) {
         let (body, law, (v, w)) = (&member.body, &contact.law, &member.now);
         let normal = NormalLine::line(
@@ -153,6 +166,7 @@ impl NewtonSystem {
         }
     }
 
+    /// The rolling slider: a moment against spin whose cap `c_r R F_N` couples it to the normal speed.
     fn add_rolling(
         &mut self,
         k: usize,
@@ -198,6 +212,8 @@ impl NewtonSystem {
         }
     }
 
+    /// The motions, or `None` if the matrix is singular. Few rocks: dense LU with pivots, O(n³); more: block factors
+    /// in the order of least fill.
     fn solve(mut self) -> Option<Vec<Twist>> {
         self.joined.sort_by_key(|((row, column, _), _)| (*column, *row));
         let x =
@@ -207,6 +223,7 @@ impl NewtonSystem {
         finite.then(|| (0..x.len() / 6).map(|k| (at(6 * k), at(6 * k + 3))).collect())
     }
 
+    /// One dense matrix of 6 rows a rock.
     fn solve_dense(self) -> Option<Vec<f64>> {
         let size = self.load.len();
         let mut matrix = DMatrix::zeros(size, size);
@@ -223,6 +240,7 @@ impl NewtonSystem {
         matrix.lu().solve_mut(&mut load).then(|| load.data.into())
     }
 
+    /// Blocks where rocks touch, and nothing elsewhere.
     fn solve_sparse(self) -> Option<Vec<f64>> {
         let (below, above): (Vec<Below>, Vec<Mat6>) = self.joined.into_iter().unzip();
         let blocks = Blocks { diagonal: &self.diagonal, below: &below, above: Some(&above) };

@@ -54,7 +54,7 @@ pub(super) struct RigidIsland {
     places: Vec<Vec3>,
     /// Smallest capture speed (m/s).
     capture_m_s: f64,
-    /// Length of the step in hand (s).
+    /// Length of the current step (s).
     dt: f64,
     sweeps: u64,
     jumps: u64,

@@ -1,4 +1,9 @@
 //! One implicit stage of an island, and the rates at its start.
+//!
+//! Stage `i` ends at `x_i = x_base + h γ f(x_i)` with `x_base = x + h Σ a_ij f_j` of the stages before. Normals and
+//! penetrations are those at the end of the stage, so geometry and forces depend on each other: forces are solved
+//! with the geometry of a guess, the guess is moved to where they lead, and this is repeated until both agree. On
+//! planes one pass suffices; around corners and between spheres a few.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -16,6 +21,7 @@ impl Island<'_> {
     pub(super) fn stage(&mut self, tableau: &Tableau, i: usize, h: f64) -> Option<()> {
         let hh = tableau.diagonal * h;
         for member in &mut self.members {
+            // the guess goes on with velocity and acceleration of the stage before
             let before = &member.state.rates[i - 1];
             let (ahead_c, ahead_v) = (before.c, before.v);
             member.base = member.state.base(tableau, i, h);
@@ -23,17 +29,20 @@ impl Island<'_> {
             member.free = (member.base.v + member.body.gravity * hh, member.base.w);
             member.look(self.terrain);
         }
+        // without agreement within so many passes the step is too long: it is tried again, shorter
         for _ in 0..PASSES {
             for member in &mut self.members {
                 member.place_contacts(self.terrain, tableau, (i, h));
             }
             self.place_pairs(tableau, (i, h));
+            // sweeps and jumps over all contacts of the island
             if !self.settle(hh) {
                 return None;
             }
             let mut agreed = true;
             for member in &mut self.members {
                 let c = member.base.c + member.now.0 * hh;
+                // every rock must agree: a contact of one decides the forces on its neighbours
                 let allowed = AGREED * member.body.radius;
                 agreed &= (c - member.guess).norm() <= allowed;
                 member.guess = c;
@@ -52,6 +61,7 @@ impl Island<'_> {
         self.pairs.clear();
         for (k, pair_history) in self.pair_histories.iter().enumerate() {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
+            // near pairs join early, with no force yet, so that sweeps see them close
             let slack = 0.1 * a.body.radius.min(b.body.radius);
             let bodies = [&a.body, &b.body];
             let Some(mut pair) =
@@ -60,6 +70,7 @@ impl Island<'_> {
                 continue;
             };
             pair.pair_history = k;
+            // penetration is measured from the base, along the normal of the guess
             let apart = pair.n.dot(&((a.base.c - b.base.c) - (a.guess - b.guess)));
             pair.penetration -= apart;
             if !pair_history.is_held() {
@@ -70,7 +81,9 @@ impl Island<'_> {
                     pair_history.law.c_n
                 };
             }
+            // the remembered stretch is turned with the normal: the spring stays in the tangent plane
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
+            // base of the stretch: as for places, the state and the earlier stages
             let mut shear = pair_history.shear;
             for (rate, a) in self.pair_rates[k].iter().zip(tableau.a[i]) {
                 shear += rate * (h * a);
@@ -81,6 +94,8 @@ impl Island<'_> {
         }
     }
 
+    /// Keeps what stage `i` found: rates of all springs, forces, and the power that each end gets through its contacts
+    /// (W).
     fn store(&mut self, i: usize, hh: f64) {
         for member in &mut self.members {
             member.given[i] = Given::default();
@@ -92,6 +107,7 @@ impl Island<'_> {
         for pair in &self.pairs {
             let pair_history = &self.pair_histories[pair.pair_history];
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
+            // of the stage, as for place and velocity: the slope that leads from its base to its end
             let rate = (pair.stretch(hh) - pair.shear) / hh;
             self.pair_rates[pair.pair_history][i] = carry(rate, &pair.n, &from);
             self.pair_forces[pair.pair_history] = (pair.normal_force, pair.shear_force);
@@ -123,6 +139,7 @@ impl Island<'_> {
             let [a, b] = ends.map(|k| &self.members[k]);
             let touch = TOUCH * (a.body.radius + b.body.radius);
             let at = [&a.state.c, &b.state.c];
+            // pairs that do not touch at the start act nothing
             let Some(mut pair) = PairContact::over(pair_history, [&a.body, &b.body], at, touch)
             else {
                 continue;

@@ -1,4 +1,8 @@
 //! One step on a plane, tried with any length.
+//!
+//! The numbers of a state are way, velocity, spin, shear stretch and rolling stretch, in the frame of two tangents
+//! and the normal: fourteen in all. Normal force and friction follow in closed form (`law::normal_force`,
+//! `Pair::solve`), so a stage takes no iteration but that of the two sliders.
 
 use crate::contact::neighbours::Neighbours;
 use crate::ground::Law;
@@ -28,12 +32,14 @@ pub(super) struct PlaneTrial<'a, 'w> {
     pub(super) limit: f64,
     /// Time within which steps may follow each other without a look around (s): the same whatever is left out.
     pub(super) room_s: f64,
+    /// Tableau and tolerances.
     pub(super) control: &'a Control,
     pub(super) world: &'a ContactEnvironment<'w>,
     pub(super) law: &'a Law,
     pub(super) plane: &'a mut PlaneState,
     /// Normal damping in force (N s/m).
     pub(super) c_n: f64,
+    /// Gravity in the frame of the plane (m/s²).
     pub(super) gravity: Local,
     /// Penetration at `start` (m).
     pub(super) penetration: f64,
@@ -43,15 +49,21 @@ pub(super) struct PlaneTrial<'a, 'w> {
     pub(super) energy_at_end: f64,
     /// How far from `start` what is near is known, squared (m²).
     pub(super) room2: f64,
+    /// Features collected around the rock, which certify the plane.
     pub(super) near: &'a Neighbours,
     /// Centre where the ways are counted from (m).
     pub(super) start: Vec3,
+    /// The face that it is on.
     pub(super) face: u32,
     /// How shear and rolling were when last asked.
     pub(super) mode: SlipState,
+    /// State at the end of the last stage solved.
     pub(super) end: State,
+    /// Forces there (N, N m).
     pub(super) press: PlaneForces,
+    /// What springs hold there (J).
     pub(super) stored: f64,
+    /// Stages solved so far.
     pub(super) solved: u64,
 }
 /// What the stages of a step of one length have in common.
@@ -79,6 +91,7 @@ impl PlaneTrial<'_, '_> {
     fn stage(&mut self, i: usize, dt: f64, by: &Length) {
         let (body, law, tableau) = (&self.world.body, self.law, self.control.tableau);
         let hh = by.hh;
+        // x + h Σ a_ij f_j
         let mut base = self.plane.state;
         for (rate, a) in self.plane.rates.iter().zip(tableau.a[i]) {
             for (base, rate) in base.iter_mut().zip(rate) {
@@ -88,10 +101,12 @@ impl PlaneTrial<'_, '_> {
         let spin = three(&base, SPIN);
         let speed = [0, 1, 2].map(|k| base[SPEED + k] + self.gravity[k] * hh);
         let penetration = self.penetration - base[WAY + 2];
+        // Kelvin–Voigt spring of the stage's end, never pulling; see the law
         let normal_force = normal_force((law.p_n, self.c_n), penetration, speed[2], body.mass, hh);
         let (mut shear_force, mut rolling_moment) = ([0.0; 2], [0.0; 3]);
         if normal_force > 0.0 {
             let (slip, answers) = (slip(body, speed, spin), &by.answers);
+            // trial forces: what springs and dashpots would give if nothing slipped
             let a = [0, 1].map(|k| base[SHEAR + k] * law.p_s + slip[k] * answers.kap);
             let d = [0, 1, 2].map(|k| base[ROLL + k] * law.k_r + spin[k] * answers.kar);
             let caps = (law.friction * normal_force, law.rolling_m * normal_force);
@@ -111,6 +126,7 @@ impl PlaneTrial<'_, '_> {
         for k in 0..3 {
             rate[ROLL + k] = (rolling_moment[k] - law.k_r * base[ROLL + k]) * by.over_r;
         }
+        // stiffly accurate: the last of these ends is that of the step
         for k in 0..SIZE {
             end[k] = base[k] + rate[k] * hh;
         }
@@ -151,6 +167,7 @@ impl PlaneTrial<'_, '_> {
     #[inline]
     fn error(&self, dt: f64) -> f64 {
         let tableau = self.control.tableau;
+        // rates of the stages with the error weights: the embedded method's difference over the step's length
         let mut off = [0.0; SIZE];
         for (rate, weight) in self.plane.rates[..tableau.stages].iter().zip(tableau.error) {
             for (off, rate) in off.iter_mut().zip(rate) {

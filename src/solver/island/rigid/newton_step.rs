@@ -117,7 +117,7 @@ impl RigidIsland {
         self.start_warm();
     }
 
-    /// What weight adds to the velocity in the step in hand.
+    /// What weight adds to the velocity in the current step.
     fn gain(&self, ball: &StepBody) -> Vec3 {
         ball.body.gravity * self.dt
     }

@@ -259,7 +259,7 @@ impl RigidIsland {
 pub(super) struct Leaning {
     of: Vec<One>,
     list: Vec<u32>,
-    /// Number of the sweep in hand.
+    /// Number of the current sweep.
     map: u32,
     /// Square of the changes of the one before.
     square: f64,
@@ -268,7 +268,7 @@ pub(super) struct Leaning {
 /// One contact's part of it.
 #[derive(Debug, Clone, Copy)]
 struct One {
-    /// Impulses before the sweep in hand.
+    /// Impulses before the current sweep.
     start: Impulses,
     /// The direction.
     way: Impulses,
