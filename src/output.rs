@@ -166,10 +166,8 @@ impl Output {
         let releases = open(dir, RELEASES, &of_release, bytes)?;
         let of_path = columns(&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS);
         let paths = info.keeps_paths.then(|| open(dir, PATHS, &of_path, bytes)).transpose()?;
-        let impacts = info
-            .keeps_impacts
-            .then(|| open(dir, IMPACTS, &of_impact, bytes))
-            .transpose()?;
+        let impacts =
+            info.keeps_impacts.then(|| open(dir, IMPACTS, &of_impact, bytes)).transpose()?;
         let of_crossing = columns(&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
         let crossings = (!info.lines.is_empty())
             .then(|| open(dir, CROSSINGS, &of_crossing, bytes))

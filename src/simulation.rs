@@ -5,6 +5,7 @@ mod rest;
 mod stretches;
 mod crossings;
 mod driver;
+mod fall;
 mod form;
 mod impacts;
 mod passages;

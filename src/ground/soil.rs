@@ -134,8 +134,8 @@ mod tests {
                     half2 > 0.0 && y * sine + half2.sqrt() * cosine >= R - depth
                 };
                 let lines = (0..n).flat_map(|i| (0..n).map(move |j| (at(i), at(j))));
-                let counted =
-                    lines.filter(|line| meets(*line)).count() as f64 * (2.0 * R / f64::from(n)).powi(2);
+                let counted = lines.filter(|line| meets(*line)).count() as f64
+                    * (2.0 * R / f64::from(n)).powi(2);
                 let found = cut_area_m2(R, depth, cosine);
                 assert!((found - counted).abs() < 3e-4, "{depth} {cosine}: {found} {counted}");
             }
@@ -159,7 +159,7 @@ mod tests {
         assert!((swept_m3(R, 0.2, 1.0) / square(0.2) - 1.0).abs() < 1e-14);
     }
 
-    /// A ball of 0.5 m and 2700 kg/m³ that falls into soil with C ρ_s = 2.5 · 1700 kg/m³ keeps 0.978204 of its speed after 0.1 m
+    /// A ball of 0.5 m and 2700 kg/m³ that falls into soil with `C ρ_s` = 2.5 · 1700 kg/m³ keeps 0.978204 of its speed after 0.1 m
     /// and 0.921409 after 0.2 m.
     #[test]
     fn a_ball_that_falls_square_keeps_what_the_closed_form_says() {
@@ -188,8 +188,7 @@ mod tests {
     #[test]
     fn a_grazing_rock_sweeps_nothing() {
         let scar = Scar { strength_kn_m2: 5e3, drag: 2.5, soil_density_kg_m3: 1700.0 };
-        let swept =
-            |approach: f64| swept_m3(R, scar.depth_m(1400.0, approach), approach / 20.0);
+        let swept = |approach: f64| swept_m3(R, scar.depth_m(1400.0, approach), approach / 20.0);
         let all = [10.0, 3.0, 1.0, 0.1, 1e-2, 1e-4, 1e-8].map(swept);
         assert!(all.windows(2).all(|pair| pair[1] < pair[0]) && all[6] < 1e-6, "{all:?}");
     }

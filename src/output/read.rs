@@ -263,7 +263,6 @@ fn releases(dir: &Path) -> Result<impl Iterator<Item = Result<Row>> + use<>> {
     table::rows(dir.join(RELEASES), (&Row::COLUMNS, &[&Row::SHAPE_COLUMNS, &Row::SOIL_COLUMNS]))
 }
 
-
 const CROSSING_COLUMNS: table::Columns = (&CrossingRow::COLUMNS, &[&CrossingRow::SHAPE_COLUMNS]);
 
 fn if_there<R: serde::de::DeserializeOwned>(

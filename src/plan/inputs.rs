@@ -67,11 +67,7 @@ fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, Strin
     let mut say = |name: &str, value: Option<&Distribution>, unit: &str| {
         parts.extend(value.map(|value| format!("{name} {}", words(value, unit))));
     };
-    say(
-        "half of the restitution is left at",
-        ground.restitution_half_speed_m_s.as_ref(),
-        " m/s",
-    );
+    say("half of the restitution is left at", ground.restitution_half_speed_m_s.as_ref(), " m/s");
     say("gives way above", ground.breaks_above_j.as_ref(), " J");
     if let Some(known) = ground.like.as_deref().and_then(known_ground) {
         parts.push(format!("like {}", known.name));

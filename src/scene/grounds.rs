@@ -98,7 +98,8 @@ impl GroundTable {
                 .map_err(|complaint| complaint.inside("scar"))?;
         }
         if self.restitution_half_speed_m_s.is_some() && self.restitution.is_none() {
-            let remedy = "write restitution = 0..1 of slow impacts, or remove restitution_half_speed_m_s";
+            let remedy =
+                "write restitution = 0..1 of slow impacts, or remove restitution_half_speed_m_s";
             return Err(Complaint::missing("restitution", remedy));
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! `[[rocks.shapes]]`, `[release] orientation`, and what goes with blocks.
 
-use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
 use super::Scene;
+use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
 use crate::body::{SHARPEST, ShapeKind, most_corners};
 use crate::random::Distribution;
 use serde::Deserialize;
@@ -161,9 +161,8 @@ impl Scene {
                 return Err(Complaint::about("orientation", remedy).inside("release"));
             }
         }
-        self.check_soil_of_worlds()?;
         if !self.has_blocks() {
-            return Ok(());
+            return self.check_soil_of_worlds();
         }
         if self.solver.scheme().has_springs() {
             let remedy = "write scheme = \"rigid\": blocks of [[rocks.shapes]] are computed in the rigid limit only, as yet";

@@ -1,12 +1,11 @@
 //! The fall itself: leap, touch, step, stop.
 
 use super::block::follow_block;
+use super::fall::{Fall, Soil};
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
-use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
-use super::soil::Soil;
 use super::{Stop, Trajectory};
 use crate::error::Result;
 use crate::flight::{Parabola, time_of_impact_past};
@@ -154,17 +153,7 @@ pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> K
     Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
-pub(super) struct Fall<'a> {
-    pub(super) settings: &'a RunSettings<'a>,
-    pub(super) body: Body,
-    /// Those in force: soil and the speed of impacts change them on the way.
-    pub(super) laws: &'a mut [Law],
-    pub(super) soil: Soil<'a>,
-    pub(super) state: &'a mut ContactState,
-    pub(super) recorder: Recorder<'a>,
-}
-
-impl<'a> Fall<'a> {
+impl Fall<'_> {
     /// Whether the rock is in contact with something it is pressed into.
     fn is_pressed(&mut self) -> bool {
         let now = self.recorder.now;
@@ -230,11 +219,6 @@ impl<'a> Fall<'a> {
         stop
     }
 
-    /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
-    fn is_rigid(&self) -> bool {
-        !self.settings.step.scheme.has_springs()
-    }
-
     /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
     fn held(&mut self) -> Loss {
         let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
@@ -294,17 +278,9 @@ impl<'a> Fall<'a> {
         }
     }
 
-    /// The rock and its notes.
-    pub(super) fn in_contact(&mut self) -> RockInContact<'_, 'a> {
-        let has_springs = !self.is_rigid();
-        let Self { settings, body, laws, state, recorder, .. } = self;
-        RockInContact { world: settings.around(*body, laws), state, recorder, has_springs }
-    }
-
     /// Mechanical energy of the rock in contact (J), weight included.
     fn total_j(&mut self) -> f64 {
-        self.state.motion_j(&self.body)
-            - self.body.mass * self.body.gravity.dot(&self.state.c)
+        self.state.motion_j(&self.body) - self.body.mass * self.body.gravity.dot(&self.state.c)
     }
 
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {

@@ -41,6 +41,8 @@ const STILL_M_S: f64 = 1e-9;
 const MOST: usize = 8;
 /// A gain of energy that is rounding (–); it is taken off the motion all the same.
 const ROUNDING: f64 = 1e-12;
+/// Velocities are known to this (–).
+const ROUNDING_OF_SPEED: f64 = 1e-14;
 /// Halvings of the restitution where it would gain energy.
 const HALVINGS: u32 = 30;
 
@@ -205,13 +207,13 @@ impl Footing {
                 (self.contact(world, (&mass, touch), 0.0, Vec3::zeros()), back)
             })
             .collect();
-        let before_j = moving.motion_j(block);
+        let (before_j, rounding_m_s) = (moving.motion_j(block), ROUNDING_OF_SPEED * v.norm());
         let mut thrown = moving.clone();
         let mut try_with = |share: f64| {
             self.contacts.clear();
             let goal = |(one, back): &(Contact, f64)| one.with_goal(one.n * (back * share));
             self.contacts.extend(wanted.iter().map(goal));
-            solve(&mass, &mut self.contacts, (v, w), &mut self.sweeps);
+            solve(&mass, &mut self.contacts, (v, w), rounding_m_s, &mut self.sweeps);
             thrown = moving.clone();
             thrown.take(&self.contacts, block.mass_kg);
             thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
@@ -264,8 +266,9 @@ impl Footing {
         let dt = most_s
             .min(TRAVEL * block.ball_m / fastest.max(f64::MIN_POSITIVE))
             .min(TURN / spin.norm().max(f64::MIN_POSITIVE));
-        let dt = self.closing(world, (block, moving), dt);
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
+        let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
+        let dt = self.closing(world, (block, moving), dt);
         moving.drift(block, 0.5 * dt);
         self.look(world, block, &moving.pose, AHEAD * block.ball_m);
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
@@ -277,7 +280,11 @@ impl Footing {
             let ahead_m = 0.5 * dt * slip_m_s;
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }
-        let settled = solve(&mass, &mut self.contacts, (v + weight, w), &mut self.sweeps);
+        // a goal is a gap, which is known as well as places are, over the time of the step
+        let rounding_m_s =
+            f64::EPSILON * moving.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
+        let free = (v + weight, w);
+        let settled = solve(&mass, &mut self.contacts, free, rounding_m_s, &mut self.sweeps);
         moving.v += weight;
         moving.take(&self.contacts, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives
@@ -376,9 +383,8 @@ fn goal(block: &Block, (start, middle): (&Moving, &Moving), touch: &BlockTouch, 
     n * (out - up) - (turned - n * up)
 }
 
-/// Slows a block that has more energy of motion than it had and its weight gives it (J): what it had with what its weight gave on
-/// the way that is behind it, and what it gives on the way to come, which is slowed too. Moving out of what it was pressed into is
-/// paid by its motion.
+/// Slows a block that has more energy of motion than it had, with what its weight gave on the way behind it, and than its weight gives
+/// it on the way to come (J), which is slowed too. Moving out of what it was pressed into is paid by its motion.
 fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: [f64; 2]) {
     let motion_j = moving.motion_j(block);
     if motion_j > had_j + comes_j && motion_j > 0.0 {

@@ -1,5 +1,6 @@
 use super::*;
 
+mod cases;
 mod slip;
 
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
