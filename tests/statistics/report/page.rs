@@ -1,6 +1,6 @@
 //! The page as a reader meets it: what comes first, how figures are numbered, and that all of it can be read on a dark ground.
 
-use super::{inputs, places, svg};
+use super::{inputs, places, slope, svg};
 use rockfall::report::{self, html};
 
 /// The first page holds site, question, map and numbers, before all else.
@@ -67,4 +67,21 @@ fn nothing_is_unreadable_on_a_dark_ground() {
             page.contains("color-scheme: light") && page.contains("background: #fff; color: #222")
         );
     }
+}
+
+#[test]
+fn what_the_user_wrote_cannot_break_the_page() {
+    let mut report = slope::report(3, 3);
+    let nasty = "</pre></title><script>alert(1)</script> & \"quotes\" 'n' \u{0}\u{b}";
+    report.text.title = nasty.to_owned();
+    report.text.subtitle = nasty.to_owned();
+    report.text.plan = vec![(nasty.to_owned(), nasty.to_owned())];
+    report.text.warnings = vec![nasty.to_owned()];
+    report.text.inputs = vec![(nasty.to_owned(), nasty.to_owned())];
+    report.headline[0].name = nasty.to_owned();
+    report.tables[0].title = nasty.to_owned();
+    let page = html::page(&report, &report::drawings(&report));
+    assert!(!page.contains("<script"));
+    assert!(!page.contains(['\u{0}', '\u{b}']));
+    svg::check_nesting(&page, "nasty text");
 }
