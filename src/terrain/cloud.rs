@@ -14,7 +14,7 @@ use super::stl::{Format, Soup};
 use crate::error::{Error, Result};
 use crate::gis::wkt;
 use crate::rock::Vec3;
-use decoder::guarded;
+use decoder::{guarded, with_room};
 use las::crs::{GeoTiffData, GeoTiffKeyEntry};
 use las::{PointDataBuilder, Reader};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
@@ -59,6 +59,13 @@ pub fn read(path: &Path, options: &Options) -> Result<Cloud> {
 /// # Errors
 /// As [`read`].
 pub fn parse<R>(bytes: R, file: &Path, options: &Options) -> Result<Cloud>
+where
+    R: std::io::Read + std::io::Seek + Send + Sync + 'static,
+{
+    with_room(|| decode(bytes, file, options)).map_err(Error::file("decode", file))?
+}
+
+fn decode<R>(bytes: R, file: &Path, options: &Options) -> Result<Cloud>
 where
     R: std::io::Read + std::io::Seek + Send + Sync + 'static,
 {
