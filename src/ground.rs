@@ -1,7 +1,10 @@
 //! How a ground answers a rock: springs, friction, damping from restitution, rolling friction, roughness.
 
+mod soil;
+
 use crate::math;
 use crate::rock::Rock;
+pub use soil::{Scar, SlipFriction, cut_area_m2, swept_m3};
 use std::f64::consts::{PI, TAU};
 
 /// Ground values in force for one release (a scene may give distributions; these are drawn).
@@ -21,21 +24,12 @@ pub struct Ground {
     pub roughness_rad: f64,
     /// Way over which one tilted facet reaches (m), positive; `None` = the radius of the rock.
     pub roughness_length_m: Option<f64>,
-    /// Friction that grows while a block slips; `None` = Coulomb's.
+    /// Friction that grows while a rock slips; `None` = Coulomb's.
     pub slip_friction: Option<SlipFriction>,
-}
-
-/// Friction that grows with the way slipped `s` (m), as soil is pushed up before a block (Leine et al. 2014, Eqs. 46–47):
-/// `μ(s) = μ_0 + (2/π)(μ_max − μ_0) atan(κ s)`, `s' = |slip|` in contact and `s' = −β s` in flight; `μ_0` is that of the friction
-/// angle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SlipFriction {
-    /// Largest coefficient of friction `μ_max` (–).
-    pub most: f64,
-    /// How fast it grows `κ` (1/m), positive.
-    pub kappa_per_m: f64,
-    /// How fast it is forgotten in flight `β` (1/s), 0 or more.
-    pub beta_per_s: f64,
+    /// Soil that a rock digs into and that drags; `None` = the surface is hard.
+    pub scar: Option<Scar>,
+    /// Normal speed of impact at which half of the restitution is left (m/s), positive; `None` = it stays the same.
+    pub restitution_half_m_s: Option<f64>,
 }
 
 /// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.
@@ -74,8 +68,10 @@ pub struct Law {
     pub rolling_m: f64,
     /// Impacts slower than this do not rebound (m/s).
     pub capture_m_s: f64,
-    /// Normal restitution (–) of the impact map.
+    /// Normal restitution (–) of slow impacts, see [`Self::restitution_at`].
     pub restitution: f64,
+    /// Normal speed (m/s) at which half of it is left; infinite where it stays the same.
+    pub restitution_half_m_s: f64,
     /// Largest random tilt of the normal (rad).
     pub roughness_rad: f64,
     /// Way over which one tilted facet reaches (m).
@@ -109,6 +105,7 @@ impl Law {
         rolling_m: 0.0,
         capture_m_s: 0.0,
         restitution: 0.0,
+        restitution_half_m_s: f64::INFINITY,
         roughness_rad: 0.0,
         roughness_length_m: 0.0,
         omega: 0.0,
@@ -147,6 +144,7 @@ impl Law {
             rolling_m: ground.rolling_friction * radius,
             capture_m_s: capture.own_m_s.unwrap_or_else(|| physical.max(least)),
             restitution: ground.restitution.unwrap_or(1.0),
+            restitution_half_m_s: ground.restitution_half_m_s.unwrap_or(f64::INFINITY),
             roughness_rad: ground.roughness_rad,
             roughness_length_m: ground.roughness_length_m.unwrap_or(radius),
             omega,
@@ -171,6 +169,25 @@ impl Law {
             c_n: self.c_n * (gain * share),
             c_n_captured: self.c_n_captured * (gain * share),
             ..*self
+        }
+    }
+}
+
+impl Law {
+    /// Normal restitution (–) of an impact at a normal speed (m/s): `e/(1 + (v/v_half)²)` (Pfeiffer and Bowen 1989).
+    #[inline]
+    pub fn restitution_at(&self, approach_m_s: f64) -> f64 {
+        let over = approach_m_s / self.restitution_half_m_s;
+        self.restitution / (1.0 + over * over)
+    }
+
+    /// Takes the dashpot of an impact at a normal speed (m/s), until the next one.
+    pub fn struck_at(&mut self, approach_m_s: f64) {
+        if self.restitution_half_m_s.is_finite() {
+            let ratio = damping_ratio(self.restitution_at(approach_m_s));
+            let critical = 2.0 * self.p_n / self.omega;
+            self.c_n = ratio * critical;
+            self.c_n_captured = CAPTURE_DAMPING_RATIO.max(ratio) * critical;
         }
     }
 }

@@ -11,10 +11,10 @@ mod slips;
 mod stiffness;
 mod recorders;
 
-pub use annual::Year;
+pub use annual::YearPlan;
 pub use cost::Cost;
 pub use listing::PlanEntry;
-pub use recorders::{EvaluationLine, Footprint, MapGrid, Piece, Recorders};
+pub use recorders::{EvaluationLine, Footprint, LinePiece, MapGrid, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
 
 use crate::contact::pair::Strength;
@@ -125,6 +125,8 @@ pub struct Plan {
     pub rolling: Part<()>,
     /// Random tilt of contact normals.
     pub roughness: Part<()>,
+    /// What soft soil does, ground by ground.
+    pub soil: Part<Vec<String>>,
     /// Contact between rocks, as their grounds' law.
     pub rock_against_rock: Part<Ground>,
     /// One system of equations for all rocks that touch.
@@ -142,7 +144,7 @@ pub struct Plan {
     /// Objects that rocks may hit; each has an evaluation line of its name.
     pub objects: Part<Vec<ObjectTable>>,
     /// Sources and their frequency.
-    pub year: Part<Year>,
+    pub year: Part<YearPlan>,
     /// Cells of the maps.
     pub maps: Part<MapGrid>,
     /// Length of the stretches of the profile of speed and height (m).
@@ -197,6 +199,7 @@ impl Plan {
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings::in_force(&scene.solver);
+        scene.check_drawings(&terrain)?;
         grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;
@@ -251,12 +254,13 @@ impl Plan {
             ),
             rolling: Part::when(rolls.then_some(()), "no ground has any"),
             roughness: Part::when(is_rough.then_some(()), "no ground has any"),
+            soil: Part::when(grounds::soil(scene), "no ground has any"),
             rock_against_rock: Part::when(between, "releases are independent"),
             coupled_solve: Part::when(
                 between.map(|_| ()),
                 "one rock has 6 unknowns, a dense factor is enough",
             ),
-            bonds: bonds(scene),
+            bonds: grounds::bonds(scene),
             paths: paths(&scene.record),
             impacts: Part::when(
                 scene.record.impacts.unwrap_or(false).then_some(()),
@@ -344,21 +348,6 @@ impl Plan {
         self.step.plane_impacts = false;
         self
     }
-}
-
-fn bonds(scene: &Scene) -> Part<Strength> {
-    let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
-        return Part::LeftOut("releases are independent");
-    };
-    if !scene.solver.scheme().has_springs() {
-        return Part::LeftOut("a bond breaks by its springs, and the rigid limit has none");
-    }
-    let strength =
-        Strength { tensile_pa: contact.tensile_strength_pa, cohesion_pa: contact.cohesion_pa };
-    Part::when(
-        strength.is_some().then_some(strength),
-        "neither tensile_strength_pa nor cohesion_pa is above 0",
-    )
 }
 
 /// Not cut to the number of releases: a run that goes on with more keeps as many paths as one that asked for them at once.

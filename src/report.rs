@@ -60,7 +60,7 @@ use model::Report;
 use raster::GroundRaster;
 use std::fs;
 use std::path::Path;
-use view::mesh::Mesh;
+use view::mesh::ViewMesh;
 use words::{Words, fill};
 
 /// Draws a finished run: `figures/*.svg`, `report.html`, and the ground it was drawn on, below the run's folder.
@@ -75,7 +75,7 @@ pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     if results.summary.maps.is_some() {
         output::write_terrain(&results.dir, terrain, results.summary.site.mesh_origin_m)?;
     }
-    view::write(results, Mesh::of(terrain), Some(&ground))?;
+    view::write(results, ViewMesh::of(terrain), Some(&ground))?;
     draw_all(results, Some(ground))
 }
 

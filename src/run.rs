@@ -8,7 +8,7 @@ pub use options::{RunOptions, Selection};
 
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
-use crate::hazard::{Hazard, Way};
+use crate::hazard::{Hazard, ObservedPath};
 use crate::output::{self, Identity, Mode, Output, Results, RunInfo};
 use crate::plan::Plan;
 use crate::report;
@@ -113,8 +113,8 @@ pub fn run_observed(
 ///
 /// # Errors
 /// A file that cannot be read or understood.
-pub fn read_measured(plan: &Plan) -> Result<Vec<Way>> {
-    plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)
+pub fn read_measured(plan: &Plan) -> Result<Vec<ObservedPath>> {
+    plan.deposits.as_deref().map_or(Ok(Vec::new()), ObservedPath::read)
 }
 
 /// One go at so many releases; a target precision may ask for another with more.
@@ -182,6 +182,7 @@ impl Round<'_> {
             keeps_paths: matches!(options.selection, Selection::Only(_)) || plan.paths.is_kept(),
             keeps_impacts: plan.impacts.is_kept(),
             has_blocks: plan.releases.has_blocks(),
+            has_scars: plan.releases.has_scars(),
             is_shard: matches!(options.selection, Selection::Shard { .. }),
             threads: ensemble.threads(),
             plan: plan.entries_for(releases),

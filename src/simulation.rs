@@ -17,7 +17,7 @@ mod cells;
 use crate::body::ShapeKind;
 pub use crate::contact::FeatureKind;
 use crate::math;
-use crate::release::Drawn;
+use crate::release::DrawnShape;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -93,6 +93,9 @@ pub struct Ledger {
     pub rolling_j: f64,
     /// Everything lost in contacts with trees.
     pub trees_j: f64,
+    /// Drag of soil that gives way.
+    #[serde(default)]
+    pub soil_j: f64,
     /// Lost in contacts with other rocks, half of what each takes; 0 for a rock alone.
     #[serde(default)]
     pub others_j: f64,
@@ -148,6 +151,8 @@ pub struct Impact {
     /// Energy that went into contacts with the mesh (J), ≥ 0; impacts at the same time share it by the squares of their
     /// approach speeds.
     pub energy_lost_j: f64,
+    /// What of it the drag of soil took (J).
+    pub soil_j: f64,
 }
 
 /// Largest values along a journey.
@@ -182,7 +187,7 @@ impl ShapeOf {
         Self { kind: ShapeKind::Sphere, sides: [1.0; 2], attitude: [1.0, 0.0, 0.0, 0.0] };
 
     /// Of a block as it was drawn.
-    pub fn new(drawn: &Drawn) -> Self {
+    pub fn new(drawn: &DrawnShape) -> Self {
         let attitude = form::quaternion(&drawn.attitude);
         Self { kind: drawn.kind, sides: drawn.sides, attitude }
     }

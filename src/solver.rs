@@ -26,6 +26,8 @@ pub mod environment;
 mod springs;
 pub(crate) mod stems;
 pub(crate) mod roughness;
+pub(crate) mod scar;
+pub(crate) mod slip;
 pub(crate) mod yielding;
 
 use contact_state::{ContactEnvironment, ContactState};

@@ -30,6 +30,8 @@ const GROUND: Ground = Ground {
     roughness_rad: 0.0,
     roughness_length_m: None,
     slip_friction: None,
+    scar: None,
+    restitution_half_m_s: None,
 };
 /// Distance of the spheres at the start (m), as in example 3.
 const SPACING_M: f64 = 0.12;

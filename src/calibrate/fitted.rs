@@ -36,6 +36,7 @@ fn value_of(ground: &GroundTable, key: &str) -> Option<String> {
     let value = match key {
         "friction_angle_deg" => Some(&ground.friction_angle_deg),
         "restitution" => ground.restitution.as_ref(),
+        "restitution_half_speed_m_s" => ground.restitution_half_speed_m_s.as_ref(),
         "tangential_ratio" => ground.tangential_ratio.as_ref(),
         "rolling_friction" => ground.rolling_friction.as_ref(),
         _ => ground.roughness_deg.as_ref(),

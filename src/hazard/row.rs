@@ -70,6 +70,9 @@ pub struct Row {
     /// Its shape; none in a scene of spheres, where the file has no such columns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<ShapeOf>,
+    /// Energy lost to the drag of soil (J); none where no ground has a scar layer and the file has no such column.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub soil_j: Option<f64>,
 }
 
 /// [`Stop`] without the reason of a failure.
@@ -189,6 +192,9 @@ impl Row {
     pub const SHAPE_COLUMNS: [&'static str; 7] =
         ["shape", "side_2", "side_3", "start_qw", "start_qx", "start_qy", "start_qz"];
 
+    /// The column that follows them where a ground has a scar layer.
+    pub const SOIL_COLUMNS: [&'static str; 1] = ["soil_j"];
+
     /// The row of one journey; `origin_m` is the map position of the local (0, 0, 0).
     pub fn of(fall: &Trajectory, origin_m: Vec3) -> Self {
         let (start, end, most) = (&fall.start, &fall.end, &fall.extremes);
@@ -224,6 +230,7 @@ impl Row {
             others_j: fall.ledger.others_j,
             passed_on_j: fall.ledger.passed_on_j,
             shape: fall.shape,
+            soil_j: None,
         }
     }
 }

@@ -35,6 +35,9 @@ pub struct LedgerSums {
     pub rolling_j: Sum,
     /// Everything lost in contacts with trees.
     pub trees_j: Sum,
+    /// Drag of soil that gives way.
+    #[serde(default)]
+    pub soil_j: Sum,
     /// Lost in contacts with other rocks.
     #[serde(default)]
     pub others_j: Sum,
@@ -194,6 +197,7 @@ impl LedgerSums {
             damping_j,
             rolling_j,
             trees_j,
+            soil_j,
             others_j,
             passed_on_j,
             remainder_j,
@@ -203,6 +207,7 @@ impl LedgerSums {
         self.damping_j.add(damping_j);
         self.rolling_j.add(rolling_j);
         self.trees_j.add(trees_j);
+        self.soil_j.add(soil_j);
         self.others_j.add(others_j);
         self.passed_on_j.add(passed_on_j);
         self.remainder_j.add(remainder_j);
@@ -215,6 +220,7 @@ impl LedgerSums {
             damping_j,
             rolling_j,
             trees_j,
+            soil_j,
             others_j,
             passed_on_j,
             remainder_j,
@@ -224,6 +230,7 @@ impl LedgerSums {
         self.damping_j.join(damping_j);
         self.rolling_j.join(rolling_j);
         self.trees_j.join(trees_j);
+        self.soil_j.join(soil_j);
         self.others_j.join(others_j);
         self.passed_on_j.join(passed_on_j);
         self.remainder_j.join(remainder_j);
@@ -236,6 +243,7 @@ impl LedgerSums {
             damping_j: self.damping_j.rounded(),
             rolling_j: self.rolling_j.rounded(),
             trees_j: self.trees_j.rounded(),
+            soil_j: self.soil_j.rounded(),
             others_j: self.others_j.rounded(),
             passed_on_j: self.passed_on_j.rounded(),
             remainder_j: self.remainder_j.rounded(),

@@ -22,7 +22,9 @@ impl Output {
         let Some(table) = &mut self.impacts else { return Ok(()) };
         fall.impacts.iter().try_for_each(|impact| {
             let ground = &self.info.ground_of_sheet[usize::from(impact.sheet)];
-            table.write(&ImpactRow::of(fall.index, impact, ground, self.info.origin_m))
+            let row = ImpactRow::of(fall.index, impact, ground, self.info.origin_m);
+            let soil_j = self.info.has_scars.then_some(impact.soil_j);
+            table.write(&ImpactRow { soil_j, ..row })
         })
     }
 

@@ -88,6 +88,7 @@ impl Shard {
         let keeps = |table: &str| self.progress.bytes.contains_key(table);
         let of_releases = identity.of_releases;
         let has_blocks = table::has_columns(&self.dir.join(super::RELEASES), &Row::SHAPE_COLUMNS)?;
+        let has_scars = table::has_columns(&self.dir.join(super::RELEASES), &Row::SOIL_COLUMNS)?;
         Ok(RunInfo {
             title,
             identity: super::Identity { first_release: 0, releases: of_releases, ..identity },
@@ -105,6 +106,7 @@ impl Shard {
             keeps_paths: keeps(PATHS),
             keeps_impacts: keeps(IMPACTS),
             has_blocks,
+            has_scars,
             is_shard: false,
             threads: shards.iter().map(|shard| shard.summary.run.threads).max().unwrap_or(0),
             plan: plan_entries,

@@ -8,8 +8,8 @@ use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
 use crate::hazard::{
-    Asked, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, Quantity, Row, Statistic,
-    Year, by_rock,
+    AnnualRequest, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, Quantity, Row,
+    Statistic, YearSums, by_rock,
 };
 use crate::terrain::geotiff;
 use crate::terrain::grid::Grid;
@@ -143,7 +143,7 @@ impl Results {
     ///
     /// As [`Self::rows`].
     pub fn paths(&self) -> Result<impl Iterator<Item = Result<PathRow>>> {
-        if_there(self.dir.join(PATHS), (&PathRow::COLUMNS, &PathRow::SHAPE_COLUMNS))
+        if_there(self.dir.join(PATHS), (&PathRow::COLUMNS, &[&PathRow::SHAPE_COLUMNS]))
     }
 
     /// Writes the vectors of `maps/`: ends, what stands on the map, and paths where they were kept.
@@ -176,12 +176,12 @@ impl Results {
     ///
     /// As [`Self::rows`].
     pub fn impacts(&self) -> Result<impl Iterator<Item = Result<ImpactRow<'static>>>> {
-        if_there(self.dir.join(IMPACTS), (&ImpactRow::COLUMNS, &[]))
+        if_there(self.dir.join(IMPACTS), (&ImpactRow::COLUMNS, &[&ImpactRow::SOIL_COLUMNS]))
     }
 }
 
 /// Lines without crossings, whose rocks weigh what they stand for.
-pub(super) fn lines(infos: &[LineInfo], asked: &Asked, releases: usize) -> Vec<Line> {
+pub(super) fn lines(infos: &[LineInfo], asked: &AnnualRequest, releases: usize) -> Vec<Line> {
     let weights = asked.frequency.as_ref().map(|one| one.weights(releases));
     infos.iter().map(|info| Line::new(info.clone()).weighing(weights.clone())).collect()
 }
@@ -195,7 +195,7 @@ pub(super) fn crossings(dir: &Path) -> Result<impl Iterator<Item = Result<Crossi
 pub(super) fn recall_lines(
     dir: &Path,
     lines: &mut [Line],
-    mut year: Option<&mut Year>,
+    mut year: Option<&mut YearSums>,
 ) -> Result<()> {
     if lines.is_empty() {
         return Ok(());
@@ -260,17 +260,14 @@ pub(super) fn check_lengths(dir: &Path, written: &BTreeMap<String, u64>) -> Resu
 }
 
 fn releases(dir: &Path) -> Result<impl Iterator<Item = Result<Row>> + use<>> {
-    table::rows(dir.join(RELEASES), (&Row::COLUMNS, &Row::SHAPE_COLUMNS))
+    table::rows(dir.join(RELEASES), (&Row::COLUMNS, &[&Row::SHAPE_COLUMNS, &Row::SOIL_COLUMNS]))
 }
 
-/// Columns of a table, and those that follow where a scene has blocks.
-type Columns = (&'static [&'static str], &'static [&'static str]);
-
-const CROSSING_COLUMNS: Columns = (&CrossingRow::COLUMNS, &CrossingRow::SHAPE_COLUMNS);
+const CROSSING_COLUMNS: table::Columns = (&CrossingRow::COLUMNS, &[&CrossingRow::SHAPE_COLUMNS]);
 
 fn if_there<R: serde::de::DeserializeOwned>(
     path: PathBuf,
-    columns: Columns,
+    columns: table::Columns,
 ) -> Result<impl Iterator<Item = Result<R>>> {
     let there = path.exists().then(|| table::rows(path, columns)).transpose()?;
     Ok(there.into_iter().flatten())

@@ -82,6 +82,9 @@ pub struct ImpactRow<'a> {
     pub speed_out_m_s: f64,
     /// Mechanical energy lost (J).
     pub energy_lost_j: f64,
+    /// What of it the drag of soil took (J); none where no ground has a scar layer and the file has no such column.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub soil_j: Option<f64>,
 }
 
 impl<'a> ImpactRow<'a> {
@@ -99,6 +102,9 @@ impl<'a> ImpactRow<'a> {
         "energy_lost_j",
     ];
 
+    /// The column that follows them where a ground has a scar layer.
+    pub const SOIL_COLUMNS: [&'static str; 1] = crate::hazard::Row::SOIL_COLUMNS;
+
     /// The row of one impact of rock `index` on the named ground.
     pub fn of(index: usize, impact: &Impact, ground: &'a str, origin_m: Vec3) -> Self {
         Self {
@@ -110,6 +116,7 @@ impl<'a> ImpactRow<'a> {
             speed_in_m_s: impact.speed_in_m_s,
             speed_out_m_s: impact.speed_out_m_s,
             energy_lost_j: impact.energy_lost_j,
+            soil_j: None,
         }
     }
 }

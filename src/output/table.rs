@@ -12,12 +12,12 @@ const BUFFER: usize = 1 << 17;
 
 /// A CSV file being written.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct CsvTable {
     path: PathBuf,
     writer: csv::Writer<File>,
 }
 
-impl Table {
+impl CsvTable {
     /// Creates the file, or empties it, and writes the names of the columns.
     pub(super) fn create(path: PathBuf, columns: &[&str]) -> Result<Self> {
         let file = File::create(&path).map_err(Error::file("create", &path))?;
@@ -88,27 +88,49 @@ impl Table {
     }
 }
 
-/// Reads the rows of a CSV file one by one. The columns must be these, in this order, with all of `more` behind them or none.
+/// Columns that a table always has, and groups of further ones that it has all of or none, in this order.
+pub(super) type Columns = (&'static [&'static str], &'static [&'static [&'static str]]);
+
+/// Reads the rows of a CSV file one by one.
 pub(super) fn rows<R: DeserializeOwned>(
     path: PathBuf,
-    (columns, more): (&'static [&'static str], &'static [&'static str]),
+    (columns, groups): Columns,
 ) -> Result<impl Iterator<Item = Result<R>>> {
     let file = File::open(&path).map_err(Error::file("read", &path))?;
     let mut reader =
         csv::ReaderBuilder::new().has_headers(false).buffer_capacity(BUFFER).from_reader(file);
     let mut record = csv::StringRecord::new();
     reader.read_record(&mut record).map_err(|why| in_file(&path, columns, why))?;
-    let all = [columns, more].concat();
-    if record != *columns && record != *all {
-        let found: Vec<&str> = record.iter().collect();
+    let found: Vec<&str> = record.iter().collect();
+    let Some(gaps) = gaps(&found, (columns, groups)) else {
         return Err(Error::input(
             &path,
             "line 1",
             format!("columns \"{}\"", found.join(",")),
             format!("the columns must be \"{}\"", columns.join(",")),
         ));
+    };
+    let all: Vec<String> = found.iter().map(|&column| column.to_owned()).collect();
+    let next = move || {
+        let all: Vec<&str> = all.iter().map(String::as_str).collect();
+        next_row(&mut reader, (&mut record, &gaps), &path, &all).transpose()
+    };
+    Ok(std::iter::from_fn(next))
+}
+
+/// Before which columns of a file a group is missing; none if it has other columns than it should.
+fn gaps(found: &[&str], (columns, groups): Columns) -> Option<Vec<usize>> {
+    let mut rest = found.strip_prefix(columns)?;
+    let mut gaps = Vec::new();
+    for group in groups {
+        match rest.strip_prefix(*group) {
+            Some(after) => rest = after,
+            None => gaps.push(found.len() - rest.len()),
+        }
     }
-    Ok(std::iter::from_fn(move || next_row(&mut reader, &mut record, &path, &all).transpose()))
+    // at the end of a row nothing needs to stand for what is missing
+    gaps.retain(|gap| *gap < found.len());
+    rest.is_empty().then_some(gaps)
 }
 
 /// Whether the rows of a CSV file have these columns too.
@@ -122,12 +144,26 @@ pub(super) fn has_columns(path: &Path, columns: &[&str]) -> Result<bool> {
 /// The next row; none at the end of the file.
 fn next_row<R: DeserializeOwned>(
     reader: &mut csv::Reader<File>,
-    record: &mut csv::StringRecord,
+    (record, gaps): (&mut csv::StringRecord, &[usize]),
     path: &Path,
     columns: &[&str],
 ) -> Result<Option<R>> {
     let more = reader.read_record(record).map_err(|why| in_file(path, columns, why))?;
+    let filled = (!gaps.is_empty()).then(|| filled(record, gaps));
+    let record = filled.as_ref().unwrap_or(record);
     more.then(|| record.deserialize(None).map_err(|why| in_file(path, columns, why))).transpose()
+}
+
+/// A row with an empty field in each gap: that reads as nothing.
+fn filled(record: &csv::StringRecord, gaps: &[usize]) -> csv::StringRecord {
+    let mut all = csv::StringRecord::new();
+    for (index, field) in record.iter().enumerate() {
+        if gaps.contains(&index) {
+            all.push_field("");
+        }
+        all.push_field(field);
+    }
+    all
 }
 
 /// Says in which line and column of which file something is wrong.
@@ -151,13 +187,13 @@ fn in_file(path: &Path, columns: &[&str], why: csv::Error) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use super::Table;
+    use super::CsvTable;
 
     /// A full disk is met when the rows are put on it; the message names the file.
     #[test]
     #[cfg(target_os = "linux")]
     fn a_full_disk_is_an_error_that_names_the_file() {
-        let mut table = Table::create("/dev/full".into(), &["index"]).unwrap();
+        let mut table = CsvTable::create("/dev/full".into(), &["index"]).unwrap();
         table.write(&1).unwrap();
         let said = table.sync().unwrap_err().to_string();
         assert!(said.starts_with("/dev/full: cannot write: No space left"), "{said}");

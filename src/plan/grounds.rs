@@ -1,9 +1,12 @@
 //! What the grounds of a scene ask of the plan: stems that give way, sources of values, grounds without use.
 
+use super::Part;
+use crate::contact::pair::Strength;
 use crate::error::{Error, Result};
-use crate::ground::{Damping, Ground, tangential_restitution};
+use crate::ground::{Damping, Ground, Scar, swept_m3, tangential_restitution};
 use crate::math;
 use crate::release::NO_WIDTH_M;
+use crate::rock::Rock;
 use crate::scene::{GroundTable, Scene, known_ground};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
@@ -123,5 +126,57 @@ pub(super) fn between_rocks(scene: &Scene) -> Option<Ground> {
         roughness_rad: 0.0,
         roughness_length_m: None,
         slip_friction: None,
+        scar: None,
+        restitution_half_m_s: None,
     })
+}
+
+/// Bonds between the rocks of one world.
+pub(super) fn bonds(scene: &Scene) -> Part<Strength> {
+    let Some(contact) = scene.rocks.contact.as_ref().filter(|_| scene.release.together) else {
+        return Part::LeftOut("releases are independent");
+    };
+    if !scene.solver.scheme().has_springs() {
+        return Part::LeftOut("a bond breaks by its springs, and the rigid limit has none");
+    }
+    let strength =
+        Strength { tensile_pa: contact.tensile_strength_pa, cohesion_pa: contact.cohesion_pa };
+    Part::when(
+        strength.is_some().then_some(strength),
+        "neither tensile_strength_pa nor cohesion_pa is above 0",
+    )
+}
+
+/// Speed of the impact by which a scar is described (m/s).
+const SQUARE_M_S: f64 = 10.0;
+
+/// What soft soil does, ground by ground; none where all are hard.
+pub(super) fn soil(scene: &Scene) -> Option<Vec<String>> {
+    let radius_m = scene.rocks.radius_m().quantile(0.5);
+    let median = Rock { radius_m, density_kg_m3: scene.rocks.density_kg_m3 };
+    let mut lines = Vec::new();
+    for (name, ground) in &scene.grounds {
+        let slips = ground.slip_friction.map(|slip| {
+            let least = math::tan(ground.friction_angle_deg.quantile(0.5).to_radians());
+            format!("{name}: friction grows with slip, from {least:.3} to {}", slip.most)
+        });
+        let digs = ground.scar.map(|scar| format!("{name}: {}", dug(&scar, &median)));
+        let falls = ground.restitution_half_speed_m_s.as_ref().map(|half| {
+            let half_m_s = half.quantile(0.5);
+            format!("{name}: half of the restitution is left at {half_m_s:.3} m/s")
+        });
+        lines.extend([slips, digs, falls].into_iter().flatten());
+    }
+    (!lines.is_empty()).then_some(lines)
+}
+
+/// What a scar does to a rock that falls square on the ground.
+fn dug(scar: &Scar, rock: &Rock) -> String {
+    let depth_m = scar.depth_m(rock.mass_kg(), SQUARE_M_S);
+    let swept = swept_m3(rock.radius_m, depth_m, 1.0);
+    let lost = 1.0 - math::exp(-scar.drag_per_m3(rock.mass_kg()) * swept);
+    format!(
+        "the median rock that falls on it at {SQUARE_M_S} m/s digs in {depth_m:.3} m and loses {:.1} % of its speed on the way",
+        100.0 * lost
+    )
 }

@@ -54,13 +54,20 @@ fn ground_row(scene: &Scene, name: &str, ground: &GroundTable) -> (String, Strin
     say("roughness length", ground.roughness_length_m.as_ref(), "m");
     if let Some(soil) = &ground.slip_friction {
         parts.push(format!(
-            "friction of blocks grows with slip to {}, κ {} 1/m, forgotten with {} 1/s",
+            "friction grows with slip to {}, κ {} 1/m, forgotten with {} 1/s",
             soil.most, soil.kappa_per_m, soil.beta_per_s
+        ));
+    }
+    if let Some(scar) = &ground.scar {
+        parts.push(format!(
+            "soil of {} kN/m² and {} kg/m³, drags with C = {}",
+            scar.strength_kn_m2, scar.soil_density_kg_m3, scar.drag
         ));
     }
     let mut say = |name: &str, value: Option<&Distribution>, unit: &str| {
         parts.extend(value.map(|value| format!("{name} {}", words(value, unit))));
     };
+    say("half of the restitution is left at", ground.restitution_half_speed_m_s.as_ref(), " m/s");
     say("gives way above", ground.breaks_above_j.as_ref(), " J");
     if let Some(known) = ground.like.as_deref().and_then(known_ground) {
         parts.push(format!("like {}", known.name));

@@ -125,6 +125,8 @@ pub(super) fn capture_m_s(scene: &Scene, step: &Settings) -> Vec<f64> {
             roughness_rad: 0.0,
             roughness_length_m: None,
             slip_friction: None,
+            scar: None,
+            restitution_half_m_s: None,
         };
         let damping = Damping::of(ground.restitution);
         Law::new(&ground, &damping, &rock, &capture).capture_m_s

@@ -7,7 +7,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{AnnualView, BandPoint, kilo};
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 use crate::math;
 
@@ -71,8 +71,12 @@ fn panel(words: &Words, view: &AnnualView, largest_j: f64, (unit, size): (&str, 
     let most = rates().chain(periods()).fold(0.0, f64::max);
     let from_j = view.curves().flatten().map(|point| point.x).filter(positive);
     let from_j = from_j.fold(f64::INFINITY, f64::min).max(largest_j * math::pow(10.0, -DECADES));
-    let frame =
-        Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom: TOP_PX + HEIGHT_PX };
+    let frame = PaperFrame {
+        left: 0.0,
+        top: TOP_PX,
+        right: WIDTH_PX - RIGHT_PX,
+        bottom: TOP_PX + HEIGHT_PX,
+    };
     let x = Axis::log(
         from_j / size,
         largest_j / size,

@@ -28,13 +28,13 @@ fn escape(text: &str) -> String {
 type Figures = [(Heading, Drawing)];
 /// Figures, the language of their captions, and how many stand on the page so far: they are numbered as a reader meets
 /// them.
-struct Shown<'a> {
+struct NumberedFigures<'a> {
     figures: &'a Figures,
     words: &'a Words,
     count: Cell<usize>,
 }
 
-impl Shown<'_> {
+impl NumberedFigures<'_> {
     /// The figure of a file with the next number; nothing if it was not drawn.
     fn figure(&self, file: &str) -> String {
         let found = self.figures.iter().find(|(heading, _)| heading.file == file);
@@ -60,7 +60,7 @@ struct Chapter {
 pub fn page(report: &Report, figures: &Figures) -> String {
     let chapter = |anchor, title, body| Chapter { anchor, title, body };
     let words = report.words();
-    let drawn = Shown { figures, words, count: Cell::new(0) };
+    let drawn = NumberedFigures { figures, words, count: Cell::new(0) };
     let mut page = head(&report.text.title, words);
     page += &front::page(report, &drawn);
     let chapters = [
@@ -147,7 +147,7 @@ fn contents(chapters: &[&Chapter]) -> String {
 }
 
 /// What chance, steps and mesh do to the numbers.
-fn how_sure(report: &Report, drawn: &Shown<'_>) -> String {
+fn how_sure(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     let words = report.words();
     let study = drawn.figure(super::studied::FIGURE);
     let study = if study.is_empty() { note(words.no_error_study) } else { study };

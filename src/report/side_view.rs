@@ -9,7 +9,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{MapMark, Path, Report};
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::{Frame, Spot};
+use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
 use crate::math;
 use along::FallLine;
@@ -62,7 +62,7 @@ impl View {
         let (along, z) = line.extent(report);
         let x = Axis::linear(along.0, along.1, words.along_fall_line);
         let frame =
-            Frame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + PROFILE_PX.0 };
+            PaperFrame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + PROFILE_PX.0 };
         let mut ground = Panel::new(frame, x, Axis::linear(z.0, z.1, words.elevation_axis));
         ground.frame.left = ground.room_left();
         to_scale(&mut ground);
@@ -115,7 +115,7 @@ impl View {
 /// The name of a mark above the frame, or in it where a neighbour's stands above already.
 pub(super) fn name_above(
     canvas: &Canvas<'_>,
-    frame: &Frame,
+    frame: &PaperFrame,
     (x, name): (f64, &str),
     colour: RGBColor,
 ) {

@@ -3,11 +3,11 @@
 use super::canvas::{Canvas, Label, Pen, SMALL, fitted};
 use super::colour::{GREEN, INK, WHITE};
 use super::format;
-use super::model::{MapMark, Quantity, Report};
+use super::model::{MapMark, Report, ReportQuantity};
 use super::panel::Panel;
-use super::svg::path::{Frame, Spot, clipped};
+use super::svg::path::{PaperFrame, Spot, clipped};
 use crate::math;
-use crate::output::Zone;
+use crate::output::ReleaseZone;
 
 /// Pens of the marks; all lie on a white rim, to be seen over anything.
 const LINE: Pen = Pen::full(INK, 1.5);
@@ -32,9 +32,9 @@ pub(super) fn zones(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
 /// Spots along the outlines of the zones, closer to each other than a word is high: text is written beside them.
 pub(super) fn outline(panel: &Panel, report: &Report) -> Vec<Spot> {
     let zones = std::iter::once(&report.zone).chain(&report.further_zones);
-    let of_zone = |zone: &Zone| -> Vec<Spot> {
+    let of_zone = |zone: &ReleaseZone| -> Vec<Spot> {
         let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
-        if matches!(zone, Zone::Points(_)) {
+        if matches!(zone, ReleaseZone::Points(_)) {
             return spots;
         }
         spots.extend(spots.first().copied());
@@ -50,18 +50,18 @@ pub(super) fn outline(panel: &Panel, report: &Report) -> Vec<Spot> {
     zones.flat_map(of_zone).collect()
 }
 
-fn zone(canvas: &Canvas<'_>, panel: &Panel, zone: &Zone) {
+fn zone(canvas: &Canvas<'_>, panel: &Panel, zone: &ReleaseZone) {
     let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
     match zone {
-        Zone::Points(_) if spots.len() <= MOST_POINTS => {
+        ReleaseZone::Points(_) if spots.len() <= MOST_POINTS => {
             for &spot in spots.iter().filter(|&&spot| panel.frame.holds(spot)) {
                 canvas.disc(spot, 2.6, INK);
                 canvas.disc(spot, 1.6, WHITE);
             }
         }
-        Zone::Points(_) => canvas.dots(&spots, 0.9, INK),
-        Zone::Polygon(_) | Zone::Line(_) => {
-            if matches!(zone, Zone::Polygon(_)) {
+        ReleaseZone::Points(_) => canvas.dots(&spots, 0.9, INK),
+        ReleaseZone::Polygon(_) | ReleaseZone::Line(_) => {
+            if matches!(zone, ReleaseZone::Polygon(_)) {
                 spots.extend(spots.first().copied());
             }
             for part in clipped(&spots, &panel.frame) {
@@ -113,7 +113,7 @@ fn teeth(part: &[Spot]) -> Vec<Vec<Spot>> {
 /// Name of a mark, with height and capacity of a barrier.
 pub(super) fn in_words(mark: &MapMark) -> String {
     let Some((height_m, capacity_j)) = mark.barrier else { return mark.name.clone() };
-    let (unit, size) = Quantity::Total.unit(capacity_j);
+    let (unit, size) = ReportQuantity::Total.unit(capacity_j);
     format!(
         "{}: {}\u{2009}m, {}\u{2009}{unit}",
         mark.name,
@@ -130,7 +130,7 @@ pub(super) fn places(
     report: &Report,
     said: impl Fn(&MapMark) -> String,
 ) -> Vec<Label> {
-    let inner = Frame {
+    let inner = PaperFrame {
         left: panel.frame.left + 3.0,
         right: panel.frame.right - 3.0,
         top: panel.frame.top + 3.0,
@@ -163,7 +163,7 @@ fn length(part: &[Spot]) -> f64 {
 }
 
 /// Whether a mark runs through a room.
-fn crosses(panel: &Panel, mark: &MapMark, room: &Frame) -> bool {
+fn crosses(panel: &Panel, mark: &MapMark, room: &PaperFrame) -> bool {
     on_paper(panel, mark).iter().any(|part| !clipped(part, room).is_empty())
 }
 
@@ -207,9 +207,9 @@ pub(super) fn symbol(canvas: &Canvas<'_>, at: Spot, is_barrier: bool) {
 }
 
 /// A short piece of the zone's outline, for a key.
-pub(super) fn zone_symbol(canvas: &Canvas<'_>, at: Spot, zone: &Zone) {
+pub(super) fn zone_symbol(canvas: &Canvas<'_>, at: Spot, zone: &ReleaseZone) {
     match zone {
-        Zone::Points(_) => {
+        ReleaseZone::Points(_) => {
             canvas.disc(at, 2.6, INK);
             canvas.disc(at, 1.6, WHITE);
         }

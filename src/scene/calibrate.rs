@@ -45,6 +45,8 @@ pub enum VaryKey {
     FrictionAngleDeg,
     /// Normal restitution (–).
     Restitution,
+    /// Normal speed of impact at which half of it is left (m/s).
+    RestitutionHalfSpeedMS,
     /// Shear over normal contact spring (–).
     TangentialRatio,
     /// Rolling friction (–); with a spread, its smallest and most frequent value.
@@ -62,6 +64,7 @@ impl VaryKey {
         match self {
             Self::FrictionAngleDeg => "friction_angle_deg",
             Self::Restitution => "restitution",
+            Self::RestitutionHalfSpeedMS => "restitution_half_speed_m_s",
             Self::TangentialRatio => "tangential_ratio",
             Self::RollingFriction => "rolling_friction",
             Self::RollingFrictionSpread => "rolling_friction_spread",
@@ -73,6 +76,7 @@ impl VaryKey {
         match self {
             Self::FrictionAngleDeg | Self::RoughnessDeg => Allowed::Slope,
             Self::Restitution => Allowed::Share,
+            Self::RestitutionHalfSpeedMS => Allowed::Positive,
             Self::TangentialRatio => TANGENTIAL,
             Self::RollingFriction | Self::RollingFrictionSpread => Allowed::NotNegative,
         }

@@ -2,7 +2,7 @@
 
 use super::catalogue::{CATALOGUE, known_ground};
 use super::check::{Allowed, Checked, Complaint, drawn, number, suggest};
-use crate::ground::SlipFriction;
+use crate::ground::{Scar, SlipFriction};
 use crate::random::Distribution;
 use crate::solver::Scheme;
 use serde::{Deserialize, Deserializer};
@@ -29,9 +29,14 @@ pub struct GroundTable {
     pub roughness_deg: Option<Distribution>,
     /// Way over which one tilted facet of a rough ground reaches (m), positive; absent = the radius of the rock.
     pub roughness_length_m: Option<Distribution>,
-    /// Of blocks: friction that grows with the way slipped, from that of the friction angle; absent = Coulomb's.
+    /// Friction that grows with the way slipped, from that of the friction angle; absent = Coulomb's.
     #[serde(default, deserialize_with = "slip_friction")]
     pub slip_friction: Option<SlipFriction>,
+    /// Soil that a rock digs into and that drags; absent = the surface is hard.
+    #[serde(default, deserialize_with = "scar")]
+    pub scar: Option<Scar>,
+    /// Normal speed of impact at which half of the restitution is left (m/s), positive; absent = it stays the same.
+    pub restitution_half_speed_m_s: Option<Distribution>,
     /// Trees only: energy that a stem takes before it gives way to a rock (J), positive; absent = it stands for good.
     pub breaks_above_j: Option<Distribution>,
 }
@@ -66,18 +71,36 @@ impl GroundTable {
             ("rolling_friction", &self.rolling_friction, Allowed::NotNegative),
             ("roughness_deg", &self.roughness_deg, Allowed::Slope),
             ("roughness_length_m", &self.roughness_length_m, Allowed::Positive),
+            ("restitution_half_speed_m_s", &self.restitution_half_speed_m_s, Allowed::Positive),
             ("breaks_above_j", &self.breaks_above_j, Allowed::Positive),
         ];
+        self.check_soil()?;
+        for (key, value, allowed) in may_be_absent {
+            if let Some(value) = value {
+                drawn(key, value, allowed, "")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_soil(&self) -> Checked {
         if let Some(soil) = &self.slip_friction {
             number("max", soil.most, Allowed::Positive, "")
                 .and_then(|()| number("kappa_per_m", soil.kappa_per_m, Allowed::Positive, ""))
                 .and_then(|()| number("beta_per_s", soil.beta_per_s, Allowed::NotNegative, ""))
                 .map_err(|complaint| complaint.inside("slip_friction"))?;
         }
-        for (key, value, allowed) in may_be_absent {
-            if let Some(value) = value {
-                drawn(key, value, allowed, "")?;
-            }
+        if let Some(soil) = &self.scar {
+            let density = ("soil_density_kg_m3", soil.soil_density_kg_m3);
+            number("strength_kn_m2", soil.strength_kn_m2, STRENGTH, STRENGTHS)
+                .and_then(|()| number("drag", soil.drag, Allowed::NotNegative, ""))
+                .and_then(|()| number(density.0, density.1, Allowed::Between(0.0, 5000.0), ""))
+                .map_err(|complaint| complaint.inside("scar"))?;
+        }
+        if self.restitution_half_speed_m_s.is_some() && self.restitution.is_none() {
+            let remedy =
+                "write restitution = 0..1 of slow impacts, or remove restitution_half_speed_m_s";
+            return Err(Complaint::missing("restitution", remedy));
         }
         Ok(())
     }
@@ -110,6 +133,10 @@ impl GroundTable {
 /// (Mindlin 1949: 0.67 to 1).
 pub(super) const TANGENTIAL: Allowed = Allowed::Between(1e-3, 10.0);
 
+/// Strength of soil under a scar (kN/m²): softer is mud that no depth of a scar holds for.
+const STRENGTH: Allowed = Allowed::Between(100.0, 1e9);
+const STRENGTHS: &str = "in kN/m²; Lu et al. (2019) have 10000 to 25000 on a meadow";
+
 fn stiffness(key: &str, value: &Distribution) -> Checked {
     drawn(key, value, Allowed::Positive, "rock is near 1e9")
 }
@@ -126,5 +153,20 @@ struct SlipTable {
 fn slip_friction<'de, D: Deserializer<'de>>(from: D) -> Result<Option<SlipFriction>, D::Error> {
     SlipTable::deserialize(from).map(|SlipTable { max, kappa_per_m, beta_per_s }| {
         Some(SlipFriction { most: max, kappa_per_m, beta_per_s })
+    })
+}
+
+/// `scar = { strength_kn_m2 = …, drag = …, soil_density_kg_m3 = … }`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table { strength_kn_m2, drag, soil_density_kg_m3 }")]
+struct ScarTable {
+    strength_kn_m2: f64,
+    drag: f64,
+    soil_density_kg_m3: f64,
+}
+
+fn scar<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Scar>, D::Error> {
+    ScarTable::deserialize(from).map(|ScarTable { strength_kn_m2, drag, soil_density_kg_m3 }| {
+        Some(Scar { strength_kn_m2, drag, soil_density_kg_m3 })
     })
 }

@@ -1,7 +1,7 @@
 //! `[[rocks.shapes]]`, `[release] orientation`, and what goes with blocks.
 
+use super::Scene;
 use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
-use super::{GroundTable, Scene};
 use crate::body::{SHARPEST, ShapeKind, most_corners};
 use crate::random::Distribution;
 use serde::Deserialize;
@@ -161,13 +161,7 @@ impl Scene {
                 return Err(Complaint::about("orientation", remedy).inside("release"));
             }
         }
-        let all_blocks = self.has_blocks()
-            && self.rocks.shapes.iter().all(|shape| shape.kind != ShapeKind::Sphere);
-        let slips = |(_, ground): &(&String, &GroundTable)| ground.slip_friction.is_some();
-        if let Some((name, _)) = self.grounds.iter().find(slips).filter(|_| !all_blocks) {
-            let remedy = "remove it, or let all rocks be blocks of [[rocks.shapes]]: friction that grows with slip is computed for blocks only, as yet";
-            return Err(Complaint::about("slip_friction", remedy).inside(name).inside("grounds"));
-        }
+        self.check_soil_of_worlds()?;
         if !self.has_blocks() {
             return Ok(());
         }
@@ -186,26 +180,33 @@ impl Scene {
         self.check_grounds_of_blocks()
     }
 
+    fn check_soil_of_worlds(&self) -> Checked {
+        if !self.release.together {
+            return Ok(());
+        }
+        for (name, ground) in &self.grounds {
+            let soils = [
+                ("slip_friction", ground.slip_friction.is_some()),
+                ("scar", ground.scar.is_some()),
+                ("restitution_half_speed_m_s", ground.restitution_half_speed_m_s.is_some()),
+            ];
+            if let Some((key, _)) = soils.into_iter().find(|(_, given)| *given) {
+                let remedy = "remove it, or together = true: on soft soil rocks are computed one by one only, as yet";
+                return Err(Complaint::about(key, remedy).inside(name).inside("grounds"));
+            }
+        }
+        Ok(())
+    }
+
     fn check_grounds_of_blocks(&self) -> Checked {
         let above_0 =
             |value: &Option<Distribution>| value.as_ref().is_some_and(|v| v.support().1 > 0.0);
         for (name, ground) in &self.grounds {
-            let refused = [
-                (
-                    "rolling_friction",
-                    above_0(&ground.rolling_friction),
-                    "write rolling_friction = 0.0: how a block rolls is its shape, which [[rocks.shapes]] computes",
-                ),
-                (
-                    "breaks_above_j",
-                    ground.breaks_above_j.is_some(),
-                    "remove it: stems that give way are computed for spheres only, as yet",
-                ),
-            ];
-            for (key, wrong, remedy) in refused {
-                if wrong {
-                    return Err(Complaint::about(key, remedy).inside(name).inside("grounds"));
-                }
+            if above_0(&ground.rolling_friction) {
+                let remedy = "write rolling_friction = 0.0: how a block rolls is its shape, which [[rocks.shapes]] computes";
+                return Err(Complaint::about("rolling_friction", remedy)
+                    .inside(name)
+                    .inside("grounds"));
             }
         }
         Ok(())

@@ -7,17 +7,19 @@ use super::rest::RestCriterion;
 use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
+use crate::contact::block::BlockTouch;
 use crate::flight::Parabola;
 use crate::flight::block::{Tumble, first_touch};
 use crate::flight::top::Top;
 use crate::ground::Law;
 use crate::random::RandomStream;
-use crate::release::{Drawn, Release};
+use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Vec3};
 use crate::solver::block::{Footing, Moving};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::roughness::Facets;
+use crate::solver::roughness::RoughFacets;
+use crate::solver::scar::Scars;
 
 /// One block on its way.
 struct Roll<'a> {
@@ -25,6 +27,7 @@ struct Roll<'a> {
     world: ContactEnvironment<'a>,
     block: &'a Block,
     footing: &'a mut Footing,
+    scars: &'a mut Scars,
     moving: Moving,
     recorder: Recorder<'a>,
 }
@@ -32,10 +35,10 @@ struct Roll<'a> {
 /// Follows one block from its release to its stop; `laws` are those of the grounds for it.
 pub(super) fn follow_block(
     settings: &RunSettings,
-    (release, drawn): (&Release, &Drawn),
+    (release, drawn): (&Release, &DrawnShape),
     keep: Keep,
     (laws, random): (&[Law], RandomStream),
-    footing: &mut Footing,
+    (footing, scars): (&mut Footing, &mut Scars),
 ) -> Trajectory {
     let block = &drawn.block;
     let world = ContactEnvironment {
@@ -44,16 +47,16 @@ pub(super) fn follow_block(
         laws,
     };
     footing.near.forget();
-    footing.near.gone.clear();
+    footing.raise_stems(settings.terrain, &random);
     (footing.near.tested, footing.sweeps) = (0, 0);
-    footing.facets = Facets::of(random, laws);
+    footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
     let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
     let form = Form { rock: release.rock, block: Some(block) };
     let turned = turned(block, &moving);
     let start = (release.motion, Some(turned));
     let recorder = Recorder::new(settings.terrain, form, start, (keep, settings.recorders));
-    let mut roll = Roll { settings, world, block, footing, moving, recorder };
+    let mut roll = Roll { settings, world, block, footing, scars, moving, recorder };
     let stop = loop {
         if let Some(stop) = roll.fly().or_else(|| roll.touch()) {
             break stop;
@@ -86,6 +89,7 @@ impl Roll<'_> {
         self.recorder.effort.leaps += 1;
         self.recorder.fly(&path, Some(&top), dt);
         self.footing.slip.fly(dt);
+        self.scars.fly(dt);
         self.moving.pose = tumble.pose(dt);
         self.moving.v = self.recorder.now.velocity_m_s;
         stop.or_else(|| self.settings.over_budget(&self.recorder.effort))
@@ -114,10 +118,15 @@ impl Roll<'_> {
             }
             let left = self.settings.longest_s - self.recorder.now.time_s;
             let most_s = self.settings.step.step_s.min(left);
-            let done = self.footing.step(&self.world, block, &mut self.moving, most_s);
+            let most_s = most_s.min(self.scars.longest_s(self.moving.v.norm()));
+            let mut done = self.footing.step(&self.world, block, &mut self.moving, most_s);
+            self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut done.loss);
             self.recorder.effort.steps += 1;
             self.recorder.effort.unsettled += u64::from(done.unsettled);
             self.recorder.pay(&done.loss, 1.0);
+            if self.scars.are_any() {
+                self.plough(&pose.centre, done.is_free);
+            }
             let to = Motion {
                 time_s: self.recorder.now.time_s + done.dt,
                 position_m: self.moving.pose.centre,
@@ -162,16 +171,61 @@ impl Roll<'_> {
             };
             self.recorder.begin_impact(&struck, now_s, 0.0);
         }
-        let Some(loss) = self.footing.strike(&self.world, block, &mut self.moving) else {
+        if self.scars.are_any() {
+            self.dig(&struck);
+        }
+        let broken_j = self.footing.break_stems(&self.world, block, &mut self.moving);
+        self.recorder.ledger.trees_j += broken_j;
+        let loss = self.footing.strike(&self.world, block, &mut self.moving);
+        if loss.is_none() && broken_j <= 0.0 {
             return false;
-        };
+        }
+        let mut loss = loss.unwrap_or_default();
+        self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut loss);
         self.recorder.pay(&loss, 1.0);
+        let is_free = !self.footing.holds(&self.world, (block, &self.moving), true);
+        if is_free {
+            let kept = self.scars.leave(&self.world.body, &self.moving.v);
+            self.slow(kept);
+        }
         self.recorder.now.velocity_m_s = self.moving.v;
         self.recorder.now.spin_rad_s = self.moving.spin(block);
         self.recorder.turned = Some(turned(block, &self.moving));
         self.recorder.note_speed();
         self.recorder.end_impacts(|_| false, || 0.0);
-        !self.footing.holds(&self.world, (block, &self.moving), true)
+        is_free
+    }
+
+    /// Digs in where the fastest of the contacts that are struck strikes, as fast as the centre comes to it.
+    fn dig(&mut self, struck: &[BlockTouch]) {
+        let block = self.block;
+        let speed = |touch: &&BlockTouch| -touch.normal.dot(&self.moving.at(block, &touch.lever));
+        let fastest = struck.iter().max_by(|one, other| speed(one).total_cmp(&speed(other)));
+        let Some(touch) = fastest else { return };
+        let on = (self.world.ground_of(touch.triangle), touch.normal);
+        let v = &self.moving.v;
+        let speeds = (-touch.normal.dot(v), v.norm());
+        let kept = self.scars.enter(&self.world.body, on, speeds);
+        self.slow(kept);
+    }
+
+    /// Ploughs on from where the step began, and leaves the scar if it is free.
+    fn plough(&mut self, from: &Vec3, is_free: bool) {
+        let normal = self.footing.touching(self.block).next().map(|touch| touch.normal);
+        let way_m = (self.moving.pose.centre - from).norm();
+        let mut kept = self.scars.plough(way_m, normal);
+        if is_free {
+            kept *= self.scars.leave(&self.world.body, &(self.moving.v * kept));
+        }
+        self.slow(kept);
+    }
+
+    /// Takes a share of the speed of the centre; the soil has it.
+    fn slow(&mut self, kept: f64) {
+        let v = self.moving.v;
+        let lost = 0.5 * self.block.mass_kg * v.norm_squared() * (1.0 - kept * kept);
+        self.recorder.ledger.soil_j += lost;
+        self.moving.v = v * kept;
     }
 
     /// Mechanical energy (J), weight included.
@@ -180,7 +234,7 @@ impl Roll<'_> {
         self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
     }
 
-    fn end(mut self, (release, drawn): (&Release, &Drawn), stop: Stop) -> Trajectory {
+    fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
         let start =
             Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);
         self.recorder.end_path();

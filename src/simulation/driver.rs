@@ -1,5 +1,7 @@
 //! The fall itself: leap, touch, step, stop.
 
+mod soil;
+
 use super::block::follow_block;
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
@@ -7,20 +9,24 @@ use super::rest::RestCriterion;
 use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
 use super::{Stop, Trajectory};
+use soil::Soil;
+
 use crate::error::Result;
 use crate::flight::{Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
-use crate::release::{Drawn, Release};
+use crate::release::{DrawnShape, Release};
 use crate::rock::Motion;
 use crate::solver::block::Footing;
 use crate::solver::body::Body;
-use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::contact_state::ContactState;
 use crate::solver::loss::Loss;
-use crate::solver::roughness::Facets;
+use crate::solver::roughness::RoughFacets;
+use crate::solver::scar::Scars;
+use crate::solver::slip::Slip;
 use crate::solver::{self, Stepper};
-use crate::stopwatch::{Piece, Stopwatches};
+use crate::stopwatch::{Stopwatches, TimedPiece};
 use std::ops::Range;
 
 /// Work space of one thread; nothing of one rock is left for the next.
@@ -28,6 +34,8 @@ use std::ops::Range;
 pub struct Scratch {
     state: ContactState,
     footing: Footing,
+    scars: Scars,
+    slip: Slip,
     laws: Vec<Law>,
     /// Dashpots of the grounds of the rock before: most scenes never change them.
     damping: Vec<Damping>,
@@ -56,6 +64,7 @@ impl Scratch {
             }
             self.laws.push(Law::new(ground, &self.damping[k], &release.rock, capture));
         }
+        self.scars.begin(&release.grounds);
     }
 }
 
@@ -71,15 +80,13 @@ pub fn simulate(
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
     scratch.state.raise_stems(settings.terrain, &random);
-    scratch.state.facets = Facets::of(random, &scratch.laws);
-    let world = ContactEnvironment {
-        terrain: settings.terrain,
-        body: Body::new(&release.rock, settings.gravity_m_s2),
-        laws: &scratch.laws,
-    };
+    scratch.state.facets = RoughFacets::of(random, &scratch.laws);
+    scratch.slip.begin(&release.grounds);
     let mut fall = Fall {
         settings,
-        world,
+        body: Body::new(&release.rock, settings.gravity_m_s2),
+        laws: &mut scratch.laws,
+        soil: Soil::new(&mut scratch.scars, &mut scratch.slip),
         state: &mut scratch.state,
         recorder: Recorder::new(
             settings.terrain,
@@ -102,14 +109,14 @@ pub fn simulate(
 /// The same for a block, with scheme `rigid`.
 pub fn simulate_block(
     settings: &RunSettings,
-    (release, drawn): (&Release, &Drawn),
+    (release, drawn): (&Release, &DrawnShape),
     keep: Keep,
     random: RandomStream,
     scratch: &mut Scratch,
 ) -> Trajectory {
     scratch.make_laws(release, &settings.capture());
-    let Scratch { laws, footing, .. } = scratch;
-    follow_block(settings, (release, drawn), keep, (laws, random), footing)
+    let Scratch { laws, footing, scars, .. } = scratch;
+    follow_block(settings, (release, drawn), keep, (laws, random), (footing, scars))
 }
 
 /// Release `index` of a plan, from release to stop; a path is kept for the plan's first releases and for `paths`.
@@ -150,19 +157,23 @@ pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> K
     Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
-struct Fall<'a> {
-    settings: &'a RunSettings<'a>,
-    world: ContactEnvironment<'a>,
-    state: &'a mut ContactState,
-    recorder: Recorder<'a>,
+pub(super) struct Fall<'a> {
+    pub(super) settings: &'a RunSettings<'a>,
+    pub(super) body: Body,
+    /// Those in force: soil and the speed of impacts change them on the way.
+    pub(super) laws: &'a mut [Law],
+    soil: Soil<'a>,
+    pub(super) state: &'a mut ContactState,
+    pub(super) recorder: Recorder<'a>,
 }
 
 impl<'a> Fall<'a> {
     /// Whether the rock is in contact with something it is pressed into.
     fn is_pressed(&mut self) -> bool {
         let now = self.recorder.now;
-        self.state.begin(&self.world, now.position_m, now.velocity_m_s, now.spin_rad_s);
-        self.state.touches.iter().any(|touch| touch.distance_m < self.world.body.radius)
+        let world = self.settings.around(self.body, self.laws);
+        self.state.begin(&world, now.position_m, now.velocity_m_s, now.spin_rad_s);
+        self.state.touches.iter().any(|touch| touch.distance_m < self.body.radius)
     }
 
     /// Leaps to the next touch.
@@ -172,7 +183,7 @@ impl<'a> Fall<'a> {
             start: now.position_m,
             velocity: now.velocity_m_s,
             gravity: self.settings.gravity_m_s2,
-            radius: self.world.body.radius,
+            radius: self.body.radius,
         };
         let left = self.settings.longest_s - now.time_s;
         let begun = self.state.stopwatches.now();
@@ -184,11 +195,12 @@ impl<'a> Fall<'a> {
             &mut self.recorder.effort.triangles,
         );
         let (dt, stop) = self.settings.end_of_flight(&end, now.time_s);
-        self.state.stopwatches.stop(Piece::Leap, begun);
+        self.state.stopwatches.stop(TimedPiece::Leap, begun);
         self.recorder.effort.leaps += 1;
         let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
-        self.state.stopwatches.stop(Piece::NotesInFlight, begun);
+        self.soil.fly(dt);
+        self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
         // flights count too: between two plates a rock may fly without end and without getting on in time
         stop.or_else(|| self.settings.over_budget(&self.recorder.effort))
     }
@@ -196,13 +208,17 @@ impl<'a> Fall<'a> {
     /// Goes on in contact until the rock is free again or stops.
     fn touch(&mut self) -> Option<Stop> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
-        self.state.begin(&self.world, c, v, w);
+        let world = self.settings.around(self.body, self.laws);
+        self.state.begin(&world, c, v, w);
         self.in_contact().announce();
+        let kept = self.answer_blow();
+        self.recorder.now.velocity_m_s *= kept;
         let before_j = self.total_j();
         let lost_before_j = self.recorder.lost_j();
         // those of the look that `begin` has just taken
-        let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&self.world) };
-        let mut stepper = Stepper::new(self.settings.step, &self.world, self.state);
+        let world = self.settings.around(self.body, self.laws);
+        let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&world) };
+        let mut stepper = Stepper::new(self.settings.step, &world, self.state);
         let stop = self.steps(&mut stepper);
         let rise_j = self.total_j() - before_j;
         self.recorder.ledger.remainder_j -= rise_j + self.recorder.lost_j() - lost_before_j;
@@ -225,26 +241,34 @@ impl<'a> Fall<'a> {
     /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
     fn held(&mut self) -> Loss {
         let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
-        if left || self.is_rigid() { Loss::default() } else { self.state.springs_j(&self.world) }
+        if left || self.is_rigid() {
+            return Loss::default();
+        }
+        self.state.springs_j(&self.settings.around(self.body, self.laws))
     }
 
     fn steps(&mut self, stepper: &mut Stepper) -> Option<Stop> {
         let mut calm = RestCriterion::from(self.state.c);
         loop {
             let left = self.settings.longest_s - self.recorder.now.time_s;
-            let most = left.min(self.in_contact().before_step());
-            let mut done = match solver::advance(stepper, &self.world, self.state, most) {
+            let most = left.min(self.before_step());
+            let before = self.state.c;
+            let world = self.settings.around(self.body, self.laws);
+            let mut done = match solver::advance(stepper, &world, self.state, most) {
                 Ok(done) => done,
                 Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
             };
             // before its losses are paid, and with the speed before
             self.in_contact().announce();
+            self.soil_after_step((self.state.c - before).norm(), done.dt);
+            self.answer_blow();
             let effort = &mut self.recorder.effort;
             effort.steps += done.steps;
             effort.rejected += done.rejected;
             effort.unsettled += u64::from(done.unsettled);
-            if self.state.bend(&self.world, &mut done.loss) {
-                *stepper = Stepper::new(self.settings.step, &self.world, self.state);
+            let world = self.settings.around(self.body, self.laws);
+            if self.state.bend(&world, &mut done.loss) {
+                *stepper = Stepper::new(self.settings.step, &world, self.state);
             }
             self.recorder.pay(&done.loss, 1.0);
             let to = Motion {
@@ -257,13 +281,13 @@ impl<'a> Fall<'a> {
             let begun = self.state.stopwatches.now();
             self.recorder.step(to, slides);
             self.in_contact().end_impacts();
-            self.state.stopwatches.stop(Piece::NotesInContact, begun);
+            self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if self.state.is_free() {
                 return ends;
             }
-            calm.note(done.dt, &to, self.world.body.radius, &self.settings.rest);
+            calm.note(done.dt, &to, self.body.radius, &self.settings.rest);
             if calm.rests() {
                 return Some(Stop::AtRest);
             }
@@ -274,16 +298,15 @@ impl<'a> Fall<'a> {
     }
 
     /// The rock and its notes.
-    fn in_contact(&mut self) -> RockInContact<'_, 'a> {
+    pub(super) fn in_contact(&mut self) -> RockInContact<'_, 'a> {
         let has_springs = !self.is_rigid();
-        let Self { world, state, recorder, .. } = self;
-        RockInContact { world: *world, state, recorder, has_springs }
+        let Self { settings, body, laws, state, recorder, .. } = self;
+        RockInContact { world: settings.around(*body, laws), state, recorder, has_springs }
     }
 
     /// Mechanical energy of the rock in contact (J), weight included.
     fn total_j(&mut self) -> f64 {
-        self.state.motion_j(&self.world.body)
-            - self.world.body.mass * self.world.body.gravity.dot(&self.state.c)
+        self.state.motion_j(&self.body) - self.body.mass * self.body.gravity.dot(&self.state.c)
     }
 
     fn end(mut self, release: &Release, stop: Stop) -> Trajectory {
@@ -293,7 +316,7 @@ impl<'a> Fall<'a> {
         let start = release.motion;
         let fallen = start.position_m.z - self.recorder.now.position_m.z;
         let kinetic = start.translational_j(&release.rock) + start.rotational_j(&release.rock);
-        let released_j = self.world.body.mass * self.settings.gravity_m_s2 * fallen + kinetic;
+        let released_j = self.body.mass * self.settings.gravity_m_s2 * fallen + kinetic;
         self.recorder.into_trajectory(release, stop, released_j)
     }
 }

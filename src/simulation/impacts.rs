@@ -57,8 +57,8 @@ pub(super) struct Impacts {
 #[derive(Debug, Clone, Copy, Default)]
 struct Hand {
     list: [Option<InHand>; MOST],
-    /// What had gone into contacts with the mesh when the first of them began (J).
-    began_j: f64,
+    /// What had gone into contacts with the mesh when the first of them began, and what of it into soil (J).
+    began_j: (f64, f64),
 }
 
 impl Hand {
@@ -105,13 +105,13 @@ impl Impacts {
     }
 
     /// Begins one at `now_s` (s) and `speed_m_s`, to end at `until_s` at the latest, or goes on with that of the same patch;
-    /// `lost_j` is what has gone into contacts with the mesh so far. Returns its number, and whether it is a new one.
+    /// `lost_j` is what has gone into contacts with the mesh so far, and what of it into soil. Returns its number, and whether it is a new one.
     pub(super) fn begin(
         &mut self,
         struck: &Struck,
         (now_s, until_s): (f64, f64),
         speed_m_s: f64,
-        lost_j: f64,
+        lost_j: (f64, f64),
     ) -> (u32, bool) {
         if !self.is_any() {
             self.hand.began_j = lost_j;
@@ -141,6 +141,7 @@ impl Impacts {
                 speed_in_m_s: speed_m_s,
                 speed_out_m_s: speed_m_s,
                 energy_lost_j: 0.0,
+                soil_j: 0.0,
             });
         }
         (number, true)
@@ -159,8 +160,8 @@ impl Impacts {
     }
 
     /// Once none is in hand any more, books what they took: `lost_j` has gone into contacts with the mesh so far, springs that
-    /// are still pressed not counted.
-    pub(super) fn book(&mut self, lost_j: f64) {
+    /// are still pressed not counted, and `soil_j` of it into soil.
+    pub(super) fn book(&mut self, (lost_j, soil_j): (f64, f64)) {
         if !self.keeps_rows || self.is_any() {
             return;
         }
@@ -169,9 +170,12 @@ impl Impacts {
             return;
         }
         // never less than nothing: a step may gain what it rounds
-        let taken_j = (lost_j - self.hand.began_j).max(0.0);
+        let taken_j = (lost_j - self.hand.began_j.0).max(0.0);
+        let soil_j = (soil_j - self.hand.began_j.1).clamp(0.0, taken_j);
         for impact in self.hand.list.iter_mut().flatten() {
-            self.rows[impact.number as usize - 1].energy_lost_j += taken_j * impact.weight / whole;
+            let row = &mut self.rows[impact.number as usize - 1];
+            row.energy_lost_j += taken_j * impact.weight / whole;
+            row.soil_j += soil_j * impact.weight / whole;
             impact.weight = 0.0;
         }
     }

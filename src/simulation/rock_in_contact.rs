@@ -6,7 +6,7 @@ use super::recorder::Recorder;
 use crate::contact::history::ContactHistory;
 use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
-use crate::solver::contact_state::{ContactEnvironment, ContactState};
+use crate::solver::contact_state::{Blow, ContactEnvironment, ContactState};
 use crate::solver::roughness::Meeting;
 use std::f64::consts::PI;
 
@@ -22,21 +22,13 @@ pub(super) struct RockInContact<'r, 'a> {
     pub(super) has_springs: bool,
 }
 
-/// The contact that a rock comes to fastest.
-#[derive(Clone, Copy)]
-struct Fastest {
-    approach_m_s: f64,
-    n: Vec3,
-    triangle: u32,
-}
-
 impl RockInContact<'_, '_> {
     /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
     pub(super) fn announce(&mut self) {
         let Some(fastest) = self.fastest_unannounced() else { return };
         let facet = if self.world.law(fastest.triangle).roughness_rad > 0.0 {
             self.leave_facet();
-            let Fastest { n, triangle, .. } = fastest;
+            let Blow { n, triangle, .. } = fastest;
             let at = Meeting { n, triangle, c: self.state.c, v: self.state.v };
             self.state.facets.struck(&self.world, &at)
         } else {
@@ -63,15 +55,19 @@ impl RockInContact<'_, '_> {
                 self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, held_j));
             self.state.struck[k] = history;
         }
+        if rebounds {
+            let approach_m_s = fastest.approach_m_s.max(to_facet_m_s);
+            self.state.blow = Some(Blow { approach_m_s, ..fastest });
+        }
         if let Some(turn) = facet.filter(|_| rebounds) {
             self.state.turn_against(&self.world, turn, until_s);
         }
     }
 
     /// The fastest of the contacts that have begun.
-    fn fastest_unannounced(&self) -> Option<Fastest> {
+    fn fastest_unannounced(&self) -> Option<Blow> {
         let both = self.state.histories.iter().chain(self.state.struck.iter());
-        let begun = both.filter(|history| !history.announced).map(|history| Fastest {
+        let begun = both.filter(|history| !history.announced).map(|history| Blow {
             approach_m_s: -history.n.dot(&self.recorder.now.velocity_m_s),
             n: history.n,
             triangle: history.triangle,
@@ -83,7 +79,7 @@ impl RockInContact<'_, '_> {
     fn announce_one(
         &mut self,
         history: &mut ContactHistory,
-        (fastest, to_facet_m_s): (&Fastest, f64),
+        (fastest, to_facet_m_s): (&Blow, f64),
         (until_s, held_j): (f64, f64),
     ) -> bool {
         if std::mem::replace(&mut history.announced, true) || history.captured {

@@ -2,9 +2,11 @@
 
 use super::{Effort, Stop};
 use crate::flight::FlightEnd;
-use crate::ground::Capture;
+use crate::ground::{Capture, Law};
 use crate::plan::{Plan, Recorders, RestRule};
 use crate::solver::Settings;
+use crate::solver::body::Body;
+use crate::solver::environment::ContactEnvironment;
 use crate::terrain::Terrain;
 
 /// What all rocks of a scene have in common.
@@ -47,6 +49,14 @@ impl<'a> RunSettings<'a> {
             tolerance_m_s: self.step.tolerance_m_s,
             gravity_m_s2: self.gravity_m_s2,
         }
+    }
+
+    /// What a rock meets, with these laws of the grounds.
+    pub(super) fn around<'w>(&self, body: Body, laws: &'w [Law]) -> ContactEnvironment<'w>
+    where
+        'a: 'w,
+    {
+        ContactEnvironment { terrain: self.terrain, body, laws }
     }
 
     /// Whether a rock has had all the work it may have.

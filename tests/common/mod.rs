@@ -48,6 +48,8 @@ pub const GROUND: Ground = Ground {
     roughness_rad: 0.0,
     roughness_length_m: None,
     slip_friction: None,
+    scar: None,
+    restitution_half_m_s: None,
 };
 
 /// A case: one rock on one ground.

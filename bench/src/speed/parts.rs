@@ -225,6 +225,7 @@ fn info(plan: &Plan) -> RunInfo {
         keeps_paths: plan.paths.is_kept(),
         keeps_impacts: plan.impacts.is_kept(),
         has_blocks: plan.releases.has_blocks(),
+        has_scars: plan.releases.has_scars(),
         ..super::output::info(&plan.terrain, &plan.ground_names, plan.count)
     }
 }

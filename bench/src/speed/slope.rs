@@ -26,6 +26,8 @@ pub const GROUND: Ground = Ground {
     roughness_rad: 0.0,
     roughness_length_m: None,
     slip_friction: None,
+    scar: None,
+    restitution_half_m_s: None,
 };
 /// Gravity (m/s²).
 pub const GRAVITY_M_S2: f64 = 9.8;

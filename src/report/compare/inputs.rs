@@ -21,8 +21,12 @@ pub(super) fn differing(a: &Summary, b: &Summary) -> Vec<(String, [String; 2])> 
 }
 
 /// A row for each value of a name that one run has and the other has not: a plan says the same of every ground.
-fn differing_of(name: &str, mine: &[Said], others: &[Said]) -> Vec<(String, [String; 2])> {
-    let of = |all: &[Said]| -> Vec<String> {
+fn differing_of(
+    name: &str,
+    mine: &[SaidOfGround],
+    others: &[SaidOfGround],
+) -> Vec<(String, [String; 2])> {
+    let of = |all: &[SaidOfGround]| -> Vec<String> {
         all.iter().filter(|(known, _)| known == name).map(|(_, value)| value.clone()).collect()
     };
     let (mut own, mut other) = (of(mine), Vec::new());
@@ -38,10 +42,10 @@ fn differing_of(name: &str, mine: &[Said], others: &[Said]) -> Vec<(String, [Str
 }
 
 /// Name and value.
-type Said = (String, String);
+type SaidOfGround = (String, String);
 
 /// All that a run says of what went in, as name and value.
-fn said(run: &Summary) -> Vec<Said> {
+fn said(run: &Summary) -> Vec<SaidOfGround> {
     let row = |name: &str, value: String| (name.to_owned(), value);
     let id = &run.identity;
     let mut rows = vec![

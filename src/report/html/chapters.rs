@@ -1,6 +1,6 @@
 //! The chapters that answer: each picture, and behind it the tables about the same.
 
-use super::{Shown, escape, tables};
+use super::{NumberedFigures, escape, tables};
 use crate::report::format;
 use crate::report::model::{About, Report};
 use crate::report::{annual, barriers, lines};
@@ -26,7 +26,7 @@ fn sentence(words: Option<String>) -> String {
 }
 
 /// Where rocks go.
-pub(super) fn where_to(report: &Report, drawn: &Shown<'_>) -> String {
+pub(super) fn where_to(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     let pictures = drawn.all(&["stops.svg", "runout.svg", "reach_angle.svg"]);
     let measured = drawn.figure("measured.svg").replace("<figure>", SHEET);
     let agreement = tables_of(report, About::Measured, "");
@@ -38,14 +38,14 @@ pub(super) fn where_to(report: &Report, drawn: &Shown<'_>) -> String {
 const SHEET: &str = "<figure class=\"sheet\">";
 
 /// How fast and how high. In print the table fills the page below the ways of single rocks: six histograms take most of one.
-pub(super) fn how_fast(report: &Report, drawn: &Shown<'_>) -> String {
+pub(super) fn how_fast(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     drawn.all(&["side.svg", "profile.svg", "along.svg"])
         + &tables_of(report, About::Rocks, "")
         + &drawn.figure("distributions.svg")
 }
 
 /// Each line: its figure and its table together.
-pub(super) fn at_lines(report: &Report, drawn: &Shown<'_>) -> String {
+pub(super) fn at_lines(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     let mut body = drawn.figure("retention.svg");
     let mut told: BTreeSet<&str> = report.barriers.iter().map(|one| one.name.as_str()).collect();
     for line in report.lines.iter().filter(|line| !line.is_barrier) {
@@ -58,7 +58,7 @@ pub(super) fn at_lines(report: &Report, drawn: &Shown<'_>) -> String {
 }
 
 /// All barriers in one table; each with its figure, what passes its line, and what arrives at it.
-pub(super) fn at_barriers(report: &Report, drawn: &Shown<'_>) -> String {
+pub(super) fn at_barriers(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     let mut body = String::new();
     for (number, barrier) in report.barriers.iter().enumerate() {
         body += &drawn.figure(&format!("barrier_{}.svg", number + 1));
@@ -70,7 +70,7 @@ pub(super) fn at_barriers(report: &Report, drawn: &Shown<'_>) -> String {
 }
 
 /// What a year brings: maps, then each place with its curve and its tables.
-pub(super) fn in_a_year(report: &Report, drawn: &Shown<'_>) -> String {
+pub(super) fn in_a_year(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     let mut body = drawn.figure("maps_year.svg").replace("<figure>", SHEET);
     let mut told = BTreeSet::new();
     for (number, place) in report.annual.iter().enumerate() {

@@ -1,12 +1,12 @@
 //! The first page: site and question, what must be known first, the map, what arrives, and the numbers of all rocks.
 
-use super::{Shown, escape, list, pairs, tables};
+use super::{NumberedFigures, escape, list, pairs, tables};
 use crate::report::format;
 use crate::report::model::Report;
 use crate::report::words::fill;
 
 /// Site and question, the map, what arrives, and what must be known first.
-pub(super) fn page(report: &Report, drawn: &Shown<'_>) -> String {
+pub(super) fn page(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     let text = &report.text;
     let subtitle = match text.subtitle.as_str() {
         "" => String::new(),

@@ -3,16 +3,16 @@
 use super::{escape, note};
 use crate::math;
 use crate::report::format;
-use crate::report::model::{Estimate, Is, Row, Table, energy_unit};
+use crate::report::model::{Estimate, EstimateRow, EstimateTable, Is, energy_unit};
 use crate::report::words::{Words, fill};
 use std::fmt::Write as _;
 
 /// The headline statistics of all rocks.
-pub(super) fn headline(rows: &[Row], words: &Words) -> String {
+pub(super) fn headline(rows: &[EstimateRow], words: &Words) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let row = |row: &Row| {
+    let row = |row: &EstimateRow| {
         let (estimate, unit) = in_short_unit(row);
         let (value, interval) = in_words(&estimate, words);
         format!(
@@ -34,8 +34,8 @@ pub(super) fn headline(rows: &[Row], words: &Words) -> String {
 }
 
 /// Each headline statistic with its interval, in columns for a terminal.
-pub fn plain_headline(rows: &[Row], words: &Words) -> Vec<String> {
-    let said = |row: &Row| {
+pub fn plain_headline(rows: &[EstimateRow], words: &Words) -> Vec<String> {
+    let said = |row: &EstimateRow| {
         let (estimate, unit) = in_short_unit(row);
         let (value, interval) = in_words(&estimate, words);
         let interval = match (estimate.is, interval) {
@@ -49,14 +49,14 @@ pub fn plain_headline(rows: &[Row], words: &Words) -> Vec<String> {
     let name_width = rows.iter().map(|row| wide(&row.name)).max().unwrap_or(0);
     let values: Vec<_> = rows.iter().map(said).collect();
     let value_width = values.iter().map(|(value, _)| wide(value)).max().unwrap_or(0);
-    let line = |(row, (value, interval)): (&Row, &(String, String))| {
+    let line = |(row, (value, interval)): (&EstimateRow, &(String, String))| {
         format!("{:<name_width$}  {value:>value_width$}  {interval}", row.name)
     };
     rows.iter().zip(&values).map(line).collect()
 }
 
 /// Joules as kJ or MJ where that is shorter; other units as they are.
-fn in_short_unit(row: &Row) -> (Estimate, &str) {
+fn in_short_unit(row: &EstimateRow) -> (Estimate, &str) {
     if row.unit != "J" {
         return (row.estimate, &row.unit);
     }
@@ -118,7 +118,7 @@ fn one_sided(estimate: &Estimate, words: &Words, bound: impl Fn(f64) -> String) 
 const LONGEST: usize = 9;
 
 /// A table with its heading and note.
-pub(super) fn table(table: &Table, words: &Words) -> String {
+pub(super) fn table(table: &EstimateTable, words: &Words) -> String {
     // a long one may go on overleaf
     let class = if table.rows.len() > LONGEST { "dense long" } else { "dense" };
     let mut heads = String::new();

@@ -22,6 +22,8 @@ fn ground(p_n: f64, e: f64, rolling_friction: f64) -> Ground {
         roughness_rad: 0.0,
         roughness_length_m: None,
         slip_friction: None,
+        scar: None,
+        restitution_half_m_s: None,
     }
 }
 

@@ -67,9 +67,14 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("roughness {a}", "Rauheit {a}"),
     ("gives way above {a}", "gibt nach über {a}"),
     (
-        "friction of blocks grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s",
-        "Reibung von Blöcken wächst mit dem Gleitweg bis {a}, κ {b} 1/m, vergessen mit {c} 1/s",
+        "friction grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s",
+        "Reibung wächst mit dem Gleitweg bis {a}, κ {b} 1/m, vergessen mit {c} 1/s",
     ),
+    (
+        "soil of {a} kN/m² and {b} kg/m³, drags with C = {c}",
+        "Erdreich von {a} kN/m² und {b} kg/m³, bremst mit C = {c}",
+    ),
+    ("half of the restitution is left at {a}", "die Hälfte des Rückpralls bleibt bei {a}"),
     (
         "{a} ({b} to {c} in nine of ten, {d}) {unit}",
         "{a} ({b} bis {c} in neun von zehn, {d}) {unit}",

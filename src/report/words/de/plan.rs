@@ -34,6 +34,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[rolling friction]", "Rollreibung"),
     ("[rolling stops]", "Rollen endet"),
     ("[roughness]", "Rauheit"),
+    ("[soil]", "Erdreich"),
     ("[rock against rock]", "Block an Block"),
     ("[coupled solve]", "gekoppelte Lösung"),
     ("[bonds]", "Bindungen"),
@@ -220,6 +221,18 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "a facet at every impact, and after every roughness length of sliding or rolling",
         "eine Facette bei jedem Aufprall und nach jeder Rauheitslänge im Gleiten oder Rollen",
+    ),
+    (
+        "{name}: friction grows with slip, from {a} to {b}",
+        "{name}: Reibung wächst mit dem Gleitweg, von {a} bis {b}",
+    ),
+    (
+        "{name}: the median rock that falls on it at {v} m/s digs in {d} m and loses {x} % of its speed on the way",
+        "{name}: der mittlere Block, der mit {v} m/s senkrecht auftrifft, gräbt sich {d} m tief ein und verliert auf dem Weg {x} % seiner Geschwindigkeit",
+    ),
+    (
+        "{name}: half of the restitution is left at {v} m/s",
+        "{name}: die Hälfte des Rückpralls bleibt bei {v} m/s",
     ),
     (
         "one world: {springs}, friction angle {angle}°, restitution of the scheme itself",

@@ -70,9 +70,14 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("roughness {a}", "rugosité {a}"),
     ("gives way above {a}", "cède au-dessus de {a}"),
     (
-        "friction of blocks grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s",
-        "le frottement des blocs croît avec le glissement jusqu’à {a}, κ {b} 1/m, oublié avec {c} 1/s",
+        "friction grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s",
+        "le frottement croît avec le glissement jusqu’à {a}, κ {b} 1/m, oublié avec {c} 1/s",
     ),
+    (
+        "soil of {a} kN/m² and {b} kg/m³, drags with C = {c}",
+        "terre de {a} kN/m² et {b} kg/m³, freine avec C = {c}",
+    ),
+    ("half of the restitution is left at {a}", "la moitié de la restitution reste à {a}"),
     (
         "{a} ({b} to {c} in nine of ten, {d}) {unit}",
         "{a} ({b} à {c} neuf fois sur dix, {d}) {unit}",

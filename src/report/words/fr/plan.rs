@@ -34,6 +34,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[rolling friction]", "frott. de roulement"),
     ("[rolling stops]", "roulement arrêté"),
     ("[roughness]", "rugosité"),
+    ("[soil]", "terre"),
     ("[rock against rock]", "bloc contre bloc"),
     ("[coupled solve]", "résolution couplée"),
     ("[bonds]", "liaisons"),
@@ -226,6 +227,18 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "a facet at every impact, and after every roughness length of sliding or rolling",
         "une facette à chaque choc, et après chaque longueur de rugosité en glissant ou en roulant",
+    ),
+    (
+        "{name}: friction grows with slip, from {a} to {b}",
+        "{name} : le frottement croît avec le glissement, de {a} à {b}",
+    ),
+    (
+        "{name}: the median rock that falls on it at {v} m/s digs in {d} m and loses {x} % of its speed on the way",
+        "{name} : le bloc médian qui y tombe d’aplomb à {v} m/s s’enfonce de {d} m et perd {x} % de sa vitesse en chemin",
+    ),
+    (
+        "{name}: half of the restitution is left at {v} m/s",
+        "{name} : la moitié de la restitution reste à {v} m/s",
     ),
     (
         "one world: {springs}, friction angle {angle}°, restitution of the scheme itself",

@@ -67,9 +67,14 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
     ("roughness {a}", "rugosità {a}"),
     ("gives way above {a}", "cede sopra {a}"),
     (
-        "friction of blocks grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s",
-        "l’attrito dei blocchi cresce con lo scivolamento fino a {a}, κ {b} 1/m, dimenticato con {c} 1/s",
+        "friction grows with slip to {a}, κ {b} 1/m, forgotten with {c} 1/s",
+        "l’attrito cresce con lo scivolamento fino a {a}, κ {b} 1/m, dimenticato con {c} 1/s",
     ),
+    (
+        "soil of {a} kN/m² and {b} kg/m³, drags with C = {c}",
+        "terreno di {a} kN/m² e {b} kg/m³, frena con C = {c}",
+    ),
+    ("half of the restitution is left at {a}", "metà della restituzione resta a {a}"),
     (
         "{a} ({b} to {c} in nine of ten, {d}) {unit}",
         "{a} (da {b} a {c} in nove casi su dieci, {d}) {unit}",

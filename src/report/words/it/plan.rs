@@ -34,6 +34,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[rolling friction]", "attrito volvente"),
     ("[rolling stops]", "rotol. si ferma"),
     ("[roughness]", "rugosità"),
+    ("[soil]", "terreno molle"),
     ("[rock against rock]", "masso su masso"),
     ("[coupled solve]", "soluz. accoppiata"),
     ("[bonds]", "legami"),
@@ -223,6 +224,18 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "a facet at every impact, and after every roughness length of sliding or rolling",
         "una faccetta a ogni urto, e dopo ogni lunghezza di rugosità scivolando o rotolando",
+    ),
+    (
+        "{name}: friction grows with slip, from {a} to {b}",
+        "{name}: l’attrito cresce con lo scorrimento, da {a} a {b}",
+    ),
+    (
+        "{name}: the median rock that falls on it at {v} m/s digs in {d} m and loses {x} % of its speed on the way",
+        "{name}: il blocco mediano che vi cade a piombo a {v} m/s affonda di {d} m e perde lungo la via il {x} % della velocità",
+    ),
+    (
+        "{name}: half of the restitution is left at {v} m/s",
+        "{name}: metà della restituzione resta a {v} m/s",
     ),
     (
         "one world: {springs}, friction angle {angle}°, restitution of the scheme itself",

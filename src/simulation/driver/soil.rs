@@ -1,0 +1,132 @@
+//! A sphere on soil: what its impacts and its slip do to the laws of the grounds, and what soil takes of its speed.
+//!
+//! Laws and speed change between steps, so all schemes are treated alike.
+
+use super::Fall;
+use crate::contact::history::ContactHistory;
+use crate::rock::Vec3;
+use crate::solver::scar::Scars;
+use crate::solver::slip::Slip;
+
+/// Growth of `κ s` within one step, about (–): friction changes between steps.
+const GROWTH_OF_STEP: f64 = 0.02;
+
+/// What a sphere does to soil.
+pub(super) struct Soil<'a> {
+    scars: &'a mut Scars,
+    slip: &'a mut Slip,
+    /// Where it slips fastest since the step in hand began.
+    slips: Option<Slips>,
+    /// How long the step before was (s), 0 after a flight.
+    last_step_s: f64,
+}
+
+/// A contact that slips.
+#[derive(Debug, Clone, Copy)]
+struct Slips {
+    speed_m_s: f64,
+    n: Vec3,
+    ground: u16,
+}
+
+impl<'a> Soil<'a> {
+    /// Of a rock that has not moved yet.
+    pub(super) fn new(scars: &'a mut Scars, slip: &'a mut Slip) -> Self {
+        Self { scars, slip, slips: None, last_step_s: 0.0 }
+    }
+
+    /// Flies for so long (s).
+    pub(super) fn fly(&mut self, flight_s: f64) {
+        self.scars.fly(flight_s);
+        self.slip.fly(flight_s);
+        self.last_step_s = 0.0;
+    }
+}
+
+impl Fall<'_> {
+    /// Gives the ground that has just been struck its dashpot, and lets the rock dig in; returns what it keeps of its speed (–).
+    pub(super) fn answer_blow(&mut self) -> f64 {
+        let Some(blow) = self.state.blow.take() else { return 1.0 };
+        let ground = self.settings.around(self.body, self.laws).ground_of(blow.triangle);
+        let mut kept = 1.0;
+        if self.soil.scars.are_any() {
+            let speeds = (blow.approach_m_s, self.state.v.norm());
+            kept = self.soil.scars.enter(&self.body, (ground, blow.n), speeds);
+            self.slow(kept);
+        }
+        self.laws[usize::from(ground)].struck_at(kept * blow.approach_m_s);
+        kept
+    }
+
+    /// Before a step: what strikes, how friction has grown, and the longest step (s).
+    pub(super) fn before_step(&mut self) -> f64 {
+        let longest_s = self.in_contact().before_step();
+        self.answer_blow();
+        let mut longest_s = longest_s.min(self.soil.scars.longest_s(self.state.v.norm()));
+        if self.soil.slip.is_any() {
+            self.soil.slips = self.fastest_slip();
+            let speed_m_s = self.soil.slips.map_or(0.0, |slips| slips.speed_m_s);
+            let per_s = self.soil.slip.fastest_per_m() * speed_m_s;
+            longest_s = longest_s.min(GROWTH_OF_STEP / per_s);
+            // of the middle of the step
+            self.rub_after(0.5 * speed_m_s * longest_s.min(self.soil.last_step_s));
+        }
+        longest_s
+    }
+
+    /// After a step of `dt` (s) on a way (m): what has been ploughed and slipped, and what it takes to leave.
+    pub(super) fn soil_after_step(&mut self, way_m: f64, dt: f64) {
+        self.soil.last_step_s = dt;
+        if self.soil.scars.are_any() {
+            let normal = self.state.histories.first().map(|history| history.n);
+            let mut kept = self.soil.scars.plough(way_m, normal);
+            if self.state.is_free() {
+                kept *= self.soil.scars.leave(&self.body, &(self.state.v * kept));
+            }
+            self.slow(kept);
+        }
+        if let Some(Slips { speed_m_s, n, ground }) = self.soil.slips.take() {
+            let after_m_s = self.body.slip(&n, &self.state.v, &self.state.w).norm();
+            self.soil.slip.grow(0.5 * (speed_m_s + after_m_s) * dt, Some(ground));
+        }
+    }
+
+    /// Takes a share of the speed; the soil has it.
+    fn slow(&mut self, kept: f64) {
+        if kept >= 1.0 {
+            return;
+        }
+        let (v, w) = (self.state.v, self.state.w);
+        let taken_j = 0.5 * self.body.mass * v.norm_squared() * (1.0 - kept * kept);
+        self.recorder.ledger.soil_j += taken_j;
+        let world = self.settings.around(self.body, self.laws);
+        self.state.redirect(&world, v * kept, w);
+    }
+
+    /// Gives the grounds their friction after all the way slipped and so much more (m).
+    fn rub_after(&mut self, ahead_m: f64) {
+        let mut changes = false;
+        for (ground, law) in self.laws.iter_mut().enumerate() {
+            let friction = self.soil.slip.friction(ground as u16, law, ahead_m);
+            changes |=
+                std::mem::replace(&mut law.friction, friction).to_bits() != friction.to_bits();
+        }
+        if changes {
+            let (v, w) = (self.state.v, self.state.w);
+            let world = self.settings.around(self.body, self.laws);
+            self.state.redirect(&world, v, w);
+        }
+    }
+
+    /// The contact that slips fastest of those that hold the rock.
+    fn fastest_slip(&self) -> Option<Slips> {
+        let world = self.settings.around(self.body, self.laws);
+        let slips = |history: &ContactHistory| {
+            let speed_m_s = self.body.slip(&history.n, &self.state.v, &self.state.w).norm();
+            Slips { speed_m_s, n: history.n, ground: world.ground_of(history.triangle) }
+        };
+        let fastest =
+            |one: Slips, other: Slips| if other.speed_m_s > one.speed_m_s { other } else { one };
+        self.state.histories.iter().map(slips).reduce(fastest)
+    }
+}

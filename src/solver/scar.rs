@@ -1,0 +1,125 @@
+//! The scar that a rock digs into soft soil, and the drag of the soil in it.
+//!
+//! Lu et al. (2019) let a rock sink into the soil to a depth `d` that follows from its normal speed of impact, meet a hard plane
+//! there, and leave; in the soil a drag acts against the velocity, at the centre. Here **the mesh is the hard plane and the soil lies on it,
+//! `d` deep, as long as the scar lasts**: contact, whatever its scheme and the rock's shape, is the same as without soil. What is added are
+//! changes of speed at three instants and along one way, each the closed form of the drag alone, `|v|' = −(C ρ_s A/2m) |v|²`:
+//!
+//! - at the touch: the way in, straight along the velocity from the surface to the depth `d`;
+//! - while contact lasts: the way along the plane, at the depth `d`;
+//! - when contact ends: the way out, straight again, and the scar is left; or, where the speed along the normal is too small to rise
+//!   through the soil against gravity, the hop back to the plane, and the scar goes on.
+//!
+//! Left out of the way in and out: gravity, the time it takes, and where it leads (`d/cos θ` along the surface, some tenths of a metre). Nothing
+//! is moved up or down, so nothing can gain energy: every change takes a share of the speed of the centre. Spin stays. A block cuts the soil as
+//! the ball of equal volume does.
+//!
+//! `d` goes to 0 with the normal speed, and with it all drag: a rock that comes to lie or to roll on gently is in no scar. A further impact in
+//! a scar counts where it digs deeper.
+
+use super::body::Body;
+use crate::ground::{Ground, Scar, cut_area_m2, swept_m3};
+use crate::math;
+use crate::rock::Vec3;
+
+/// Share of the speed that one step along the plane may lose to drag, about (–).
+const LOSS_OF_STEP: f64 = 0.02;
+
+/// The scar that a rock is in.
+#[derive(Debug, Clone, Copy)]
+struct Furrow {
+    depth_m: f64,
+    /// `C ρ_s/(2 m)` (1/m³).
+    drag_per_m3: f64,
+    /// Share of its speed that the rock loses on each metre along the plane (1/m), small.
+    per_m: f64,
+    /// Normal of the plane.
+    normal: Vec3,
+    /// A flight that is longer (s) has left it.
+    longest_s: f64,
+}
+
+/// The scars of one rock.
+#[derive(Debug, Default)]
+pub(crate) struct Scars {
+    layers: Vec<Option<Scar>>,
+    is_any: bool,
+    now: Option<Furrow>,
+}
+
+impl Scars {
+    /// None yet on these grounds; soil that does not drag is none.
+    pub(crate) fn begin(&mut self, grounds: &[Ground]) {
+        let drags = |scar: &Scar| scar.drag * scar.soil_density_kg_m3 > 0.0;
+        self.layers.clear();
+        self.layers.extend(grounds.iter().map(|ground| ground.scar.filter(drags)));
+        (self.is_any, self.now) = (self.layers.iter().any(Option::is_some), None);
+    }
+
+    /// Whether any ground has soil that drags.
+    #[inline]
+    pub(crate) fn are_any(&self) -> bool {
+        self.is_any
+    }
+
+    /// An impact on a ground, on a plane with this normal, with an approach (m/s) of a rock at a speed (m/s): what it keeps of its
+    /// speed on the way in (–).
+    pub(crate) fn enter(
+        &mut self,
+        body: &Body,
+        (ground, normal): (u16, Vec3),
+        (approach_m_s, speed_m_s): (f64, f64),
+    ) -> f64 {
+        let Some(scar) = self.layers.get(usize::from(ground)).copied().flatten() else {
+            return 1.0;
+        };
+        let depth_m = scar.depth_m(body.mass, approach_m_s.max(0.0));
+        if depth_m <= self.now.map_or(0.0, |now| now.depth_m) {
+            self.now = self.now.map(|now| Furrow { normal, ..now });
+            return 1.0;
+        }
+        let drag_per_m3 = scar.drag_per_m3(body.mass);
+        let per_m = drag_per_m3 * cut_area_m2(body.radius, depth_m, 0.0);
+        self.now = Some(Furrow { depth_m, drag_per_m3, per_m, normal, longest_s: 0.0 });
+        let cosine = (approach_m_s / speed_m_s).min(1.0);
+        math::exp(-drag_per_m3 * swept_m3(body.radius, depth_m, cosine))
+    }
+
+    /// What the rock keeps of its speed on a way along the plane (–), in a contact with this normal if any is known.
+    pub(crate) fn plough(&mut self, way_m: f64, normal: Option<Vec3>) -> f64 {
+        let Some(now) = &mut self.now else { return 1.0 };
+        now.normal = normal.unwrap_or(now.normal);
+        math::exp(-now.per_m * way_m)
+    }
+
+    /// The rock's contact ends at a velocity: what it keeps of it (–).
+    pub(crate) fn leave(&mut self, body: &Body, v: &Vec3) -> f64 {
+        let Some(now) = &mut self.now else { return 1.0 };
+        let (speed, up) = (v.norm(), now.normal.dot(v));
+        let pull = -now.normal.dot(&body.gravity);
+        let falls_s = if pull > 0.0 { (2.0 * now.depth_m / pull).sqrt() } else { f64::INFINITY };
+        now.longest_s = falls_s;
+        if up <= 0.0 {
+            return 1.0;
+        }
+        let swept = swept_m3(body.radius, now.depth_m, (up / speed).min(1.0));
+        let kept = math::exp(-now.drag_per_m3 * swept);
+        if (up * kept).powi(2) >= 2.0 * pull * now.depth_m {
+            self.now = None;
+            return kept;
+        }
+        let hop_s = 2.0 * up / pull;
+        now.longest_s += hop_s;
+        math::exp(-now.per_m * speed * hop_s)
+    }
+
+    /// A flight of so long (s): out of the scar, if it takes longer than a hop in it.
+    pub(crate) fn fly(&mut self, flight_s: f64) {
+        self.now.take_if(|now| flight_s > now.longest_s);
+    }
+
+    /// Longest step along the plane (s) at a speed (m/s): drag acts between steps.
+    pub(crate) fn longest_s(&self, speed_m_s: f64) -> f64 {
+        self.now.map_or(f64::INFINITY, |now| LOSS_OF_STEP / (now.per_m * speed_m_s))
+    }
+}

@@ -1,0 +1,57 @@
+//! How far a rock has slipped, and the friction that soil answers with.
+
+use crate::ground::{Ground, Law, SlipFriction};
+use crate::math;
+
+/// How far a rock has slipped.
+#[derive(Debug, Default)]
+pub(crate) struct Slip {
+    way_m: f64,
+    /// On which ground last.
+    on: Option<u16>,
+    /// What the grounds do, and their friction before any slip (–).
+    soils: Vec<Option<(SlipFriction, f64)>>,
+}
+
+impl Slip {
+    /// Nothing has slipped yet on these grounds.
+    pub(crate) fn begin(&mut self, grounds: &[Ground]) {
+        (self.way_m, self.on) = (0.0, None);
+        self.soils.clear();
+        let least = |ground: &Ground| math::tan(ground.friction_angle_rad);
+        let soil = |ground: &Ground| ground.slip_friction.map(|soil| (soil, least(ground)));
+        self.soils.extend(grounds.iter().map(soil));
+    }
+
+    /// Whether the friction of any ground grows.
+    pub(crate) fn is_any(&self) -> bool {
+        self.soils.iter().any(Option::is_some)
+    }
+
+    fn soil(&self, ground: u16) -> Option<&(SlipFriction, f64)> {
+        self.soils.get(usize::from(ground)).and_then(Option::as_ref)
+    }
+
+    /// Coefficient of friction (–) on a ground where the rock will have slipped `ahead_m` (m) further.
+    pub(crate) fn friction(&self, ground: u16, law: &Law, ahead_m: f64) -> f64 {
+        self.soil(ground)
+            .map_or(law.friction, |(soil, least)| soil.at(*least, self.way_m + ahead_m))
+    }
+
+    /// How fast friction grows with slip at most (1/m).
+    pub(crate) fn fastest_per_m(&self) -> f64 {
+        self.soils.iter().flatten().map(|(soil, _)| soil.kappa_per_m).fold(0.0, f64::max)
+    }
+
+    /// Slips further, on a ground if it touches one.
+    pub(crate) fn grow(&mut self, slipped_m: f64, on: Option<u16>) {
+        self.way_m += slipped_m;
+        self.on = on.or(self.on);
+    }
+
+    /// Forgets in a flight of `flight_s` (s) what its last ground forgets.
+    pub(crate) fn fly(&mut self, flight_s: f64) {
+        let soil = self.on.and_then(|ground| self.soil(ground));
+        self.way_m = soil.map_or(0.0, |(soil, _)| soil.left_m(self.way_m, flight_s));
+    }
+}
