@@ -88,6 +88,21 @@ pub struct GisLayer {
     pub features: Vec<GisFeature>,
 }
 
+impl GisLayer {
+    /// West, south, east and north of all features (m).
+    pub fn box_m(&self) -> [f64; 4] {
+        let corners = self.features.iter().flat_map(|feature| match &feature.shape {
+            Geometry::Points(points) => points.clone(),
+            Geometry::Lines(lines) => lines.concat(),
+            Geometry::Polygons(all) => all.iter().flat_map(|one| one.outline_m.clone()).collect(),
+        });
+        let nothing = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        corners.fold(nothing, |[west, south, east, north], [x, y]| {
+            [west.min(x), south.min(y), east.max(x), north.max(y)]
+        })
+    }
+}
+
 impl GisFeature {
     /// A property by name, also where a Shapefile has cut the name off.
     pub fn property(&self, name: &str) -> Option<&PropertyValue> {
@@ -140,8 +155,12 @@ pub fn read(path: &Path) -> Result<GisLayer> {
         shapefile::parse(&bytes, beside("dbf")?.as_deref(), beside("prj")?.as_deref(), path)?
     } else {
         if let Some((_, kind)) = ELSEWHERE.iter().find(|(mark, _)| bytes.starts_with(mark)) {
-            let remedy = format!("write it as GeoJSON: ogr2ogr {} {}", out(path), path.display());
-            return Err(Error::input(path, "start", format!("found {kind}"), remedy));
+            return Err(Error::input(path, "start", format!("found {kind}"), as_geojson(path)));
+        }
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes).trim_ascii_start();
+        if !text.starts_with(b"{") && !text.starts_with(b"[") {
+            let found = "found neither GeoJSON nor a Shapefile (.shp)";
+            return Err(Error::input(path, "start", found, as_geojson(path)));
         }
         geojson::parse(&bytes, path)?
     };
@@ -182,19 +201,30 @@ fn companion(path: &Path, ending: &str) -> Option<PathBuf> {
     both.iter().map(|ending| path.with_extension(ending)).find(|file| file.exists())
 }
 
-/// A file name to convert into.
+/// A file name to convert into: another one than that of the file.
 fn out(path: &Path) -> String {
     let stem = path.file_stem().map_or_else(|| "out".into(), |stem| stem.to_string_lossy());
-    format!("{stem}.geojson")
+    let is_taken = path.extension().is_some_and(|ending| ending == "geojson");
+    if is_taken { format!("{stem}_map.geojson") } else { format!("{stem}.geojson") }
+}
+
+/// What to do about a file of another format.
+fn as_geojson(path: &Path) -> String {
+    format!("write it as GeoJSON: ogr2ogr {} {}", out(path), path.display())
+}
+
+/// The command that brings a file into the system of an EPSG code; `from` is the code of its own system, or empty where the
+/// file names it.
+pub(crate) fn transformed(file: &Path, epsg: Option<u32>, from: &str) -> String {
+    let code = epsg.map_or_else(|| "CODE".to_owned(), |code| code.to_string());
+    let from = if from.is_empty() { String::new() } else { format!("-s_srs EPSG:{from} ") };
+    format!("ogr2ogr {from}-t_srs EPSG:{code} {} {}", out(file), file.display())
 }
 
 /// Why coordinates in degrees are of no use, and the command that makes metres of them.
 fn degrees(file: &Path) -> Error {
-    let remedy = format!(
-        "write it in the map coordinates of the scene: ogr2ogr -t_srs EPSG:CODE {} {}",
-        out(file),
-        file.display()
-    );
+    let remedy =
+        format!("write it in the map coordinates of the scene: {}", transformed(file, None, ""));
     Error::input(file, "coordinate system", "found longitude and latitude", remedy)
 }
 

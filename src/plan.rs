@@ -199,6 +199,7 @@ impl Plan {
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings::in_force(&scene.solver);
+        scene.check_drawings(&terrain)?;
         grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;

@@ -27,7 +27,15 @@ pub fn parse(shp: &[u8], dbf: Option<&[u8]>, prj: Option<&[u8]>, file: &Path) ->
     if system.as_ref().is_some_and(|system| system.is_geographic) {
         return Err(degrees(file));
     }
+    if let Some(unit) = system.as_ref().and_then(|system| system.other_unit.as_ref()) {
+        let remedy = format!("write it in metres: {}", super::transformed(file, None, ""));
+        return Err(Error::input(file, "unit (.prj)", format!("found {unit}"), remedy));
+    }
     let broken = |place: String, found: &str| Error::input(file, place, found, WRITE);
+    if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("shx")) {
+        let remedy = "write the name of the .shp beside it";
+        return Err(Error::input(file, "start", "found the index of a Shapefile", remedy));
+    }
     if !begins_like_shapefile(shp) || shp.len() < HEAD_BYTES {
         return Err(broken("start".to_owned(), "found no Shapefile"));
     }

@@ -144,9 +144,42 @@ fn a_shapefile_says_what_the_geojson_says() {
     let esri = b"PROJCS[\"CH1903+_LV95\",GEOGCS[\"GCS_CH1903+\"],UNIT[\"Meter\",1.0]]";
     let layer = parse_shapefile(&shp, None, Some(esri), Path::new(FILE)).unwrap();
     assert_eq!((layer.epsg, layer.system.as_deref()), (None, Some("CH1903+_LV95")));
+    let feet = b"PROJCS[\"Feet\",GEOGCS[\"G\",UNIT[\"Degree\",0.0174532925199433]],UNIT[\"US survey foot\",0.304800609601219]]";
+    let said = parse_shapefile(&shp, None, Some(feet), Path::new(FILE)).unwrap_err().to_string();
+    assert!(said.contains("found US survey foot; write it in metres: ogr2ogr"), "{said}");
+    let said = parse_shapefile(&shp, None, None, Path::new("drawn.SHX")).unwrap_err().to_string();
+    assert!(said.contains("found the index of a Shapefile; write the name of the .shp"), "{said}");
     let degrees = b"GEOGCS[\"GCS_WGS_1984\",UNIT[\"Degree\",0.017]]";
     let said = parse_shapefile(&shp, None, Some(degrees), Path::new(FILE)).unwrap_err().to_string();
     assert!(said.contains("ogr2ogr -t_srs"), "{said}");
+}
+
+/// What says that a length is in feet is found in every spelling, and angles, scales and metres are not taken for it.
+#[test]
+fn units_of_length_are_told_from_angles() {
+    let unit = |text: &str| wkt::system(text).other_unit;
+    let metres = "PROJCRS[\"a\",BASEGEOGCRS[\"b\",ELLIPSOID[\"c\",6377397.155,299.15,LENGTHUNIT[\"metre\",1]],PRIMEM[\"Greenwich\",0,ANGLEUNIT[\"degree\",0.0174532925199433]]],\
+        CONVERSION[\"d\",PARAMETER[\"k\",0.9996,SCALEUNIT[\"unity\",1]]],CS[Cartesian,2],LENGTHUNIT[\"metre\",1,ID[\"EPSG\",9001]]]";
+    assert_eq!(unit(metres), None);
+    assert_eq!(
+        unit(&metres.replace("\"metre\",1,ID", "\"foot\",0.3048,ID")).as_deref(),
+        Some("foot")
+    );
+    let old = "COMPD_CS[\"a\",PROJCS[\"b\",GEOGCS[\"c\",UNIT[\"grad\",0.01570796]],UNIT[\"Meter\",1.0]],VERT_CS[\"d\",UNIT[\"metre\",1.0]]]";
+    assert_eq!(unit(old), None);
+    let heights =
+        old.replace("UNIT[\"metre\",1.0]", "UNIT[ \"US survey foot\", 0.304800609601219 ]");
+    assert_eq!(unit(&heights.replace("[ ", "[")).as_deref(), Some("US survey foot"));
+}
+
+#[test]
+fn a_file_is_converted_into_another_one() {
+    let command = |name: &str, from: &str| transformed(Path::new(name), Some(2056), from);
+    assert_eq!(command("a/z.shp", ""), "ogr2ogr -t_srs EPSG:2056 z.geojson a/z.shp");
+    assert_eq!(
+        command("z.geojson", "4326"),
+        "ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:2056 z_map.geojson z.geojson"
+    );
 }
 
 #[test]

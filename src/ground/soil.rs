@@ -159,7 +159,7 @@ mod tests {
         assert!((swept_m3(R, 0.2, 1.0) / square(0.2) - 1.0).abs() < 1e-14);
     }
 
-    /// A ball of 0.5 m and 2700 kg/m³ that falls into soil with C ρ_s = 2.5 · 1700 kg/m³ keeps 0.978204 of its speed after 0.1 m
+    /// A ball of 0.5 m and 2700 kg/m³ that falls into soil with `C ρ_s` = 2.5 · 1700 kg/m³ keeps 0.978204 of its speed after 0.1 m
     /// and 0.921409 after 0.2 m.
     #[test]
     fn a_ball_that_falls_square_keeps_what_the_closed_form_says() {

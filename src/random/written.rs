@@ -66,7 +66,7 @@ impl<'de> Visitor<'de> for Reader {
                 }
                 DistributionKey::Normal => found.push(Distribution::normal(&map.next_value()?)),
                 DistributionKey::Lognormal => {
-                    found.push(Distribution::lognormal(&map.next_value()?))
+                    found.push(Distribution::lognormal(&map.next_value()?));
                 }
                 DistributionKey::Triangular => {
                     let Entries(ends) = map.next_value()?;

@@ -20,6 +20,15 @@ const DECADES: f64 = 4.0;
 const WITHOUT: Pen = Pen::full(BLUE, 1.7);
 const WITH: Pen = Pen::full(ORANGE, 1.7).dashed();
 
+/// What there is to say of a place that no rock comes to; none where one does.
+pub(super) fn nobody(words: &Words, view: &AnnualView) -> Option<String> {
+    let what = if view.is_object { words.object } else { words.line };
+    let place = fill(what, &[("name", &words.quoted(&view.name))]);
+    let rate = format::significant(view.most_per_year, 2);
+    let found: [(&str, &dyn std::fmt::Display); 2] = [("place", &place), ("rate", &rate)];
+    (!view.is_met()).then(|| fill(words.nobody_year, &found))
+}
+
 /// Draws the curves of one place.
 pub(super) fn draw(words: &Words, view: &AnnualView, number: usize) -> Drawing {
     let energies = view.curves().flatten().map(|point| point.x);
@@ -40,9 +49,6 @@ pub(super) fn draw(words: &Words, view: &AnnualView, number: usize) -> Drawing {
         }
         panel.axes(canvas);
         key(canvas, &panel, view, words);
-        if largest_j <= 0.0 {
-            panel.nothing(canvas, words.nothing_comes);
-        }
     });
     Drawing { svg, caption: caption(view, words) }
 }

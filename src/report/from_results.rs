@@ -9,8 +9,8 @@ mod measured;
 mod profile;
 
 use super::model::{
-    About, BandPoint, Check, Estimate, EstimateRow, EstimateTable, Is, Path, Quantile, ReleaseEnd,
-    Report, ReportPathPoint, ReportQuantity, StopShare, Text,
+    BandPoint, Check, Estimate, EstimateRow, EstimateTable, Is, Path, Quantile, ReleaseEnd, Report,
+    ReportPathPoint, ReportQuantity, StopShare, Text,
 };
 use super::raster::GroundRaster;
 use super::words::{Words, fill};
@@ -307,8 +307,7 @@ fn statistics_table(
         };
         (name, cells.map(|cell| cell.map(clean)).collect())
     });
-    let about = About::Rocks;
-    EstimateTable { title, note, columns, rows: rows.collect(), about }
+    EstimateTable { title, note, columns, rows: rows.collect(), ..EstimateTable::default() }
 }
 
 /// Warnings that concern rocks above a speed, where some came so fast.

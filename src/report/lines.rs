@@ -14,11 +14,11 @@ use super::words::{Words, fill};
 use crate::hazard::INTENSITY_J;
 
 const TOP_PX: f64 = 26.0;
-const ALONG_PX: f64 = 104.0;
-const CLOUD_PX: f64 = 196.0;
-const CURVE_PX: f64 = 160.0;
+const ALONG_PX: f64 = 84.0;
+const CLOUD_PX: f64 = 172.0;
+const CURVE_PX: f64 = 150.0;
 /// Between a panel's axis title and the head of the next panel (px).
-const GAP_PX: f64 = 34.0;
+const GAP_PX: f64 = 30.0;
 /// Room of the key above the heads of the lower panels (px).
 const KEY_PX: f64 = 18.0;
 const RIGHT_PX: f64 = WIDTH_PX - 20.0;

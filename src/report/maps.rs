@@ -12,6 +12,7 @@ use super::format;
 use super::model::{CellMap, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
+use super::profile::NEEDS;
 use super::raster::GroundRaster;
 use super::site;
 use super::svg::path::{PaperFrame, Spot};
@@ -22,7 +23,7 @@ use plotters::style::RGBColor;
 const TOP_PX: f64 = 24.0;
 /// Height of one line of a key (px).
 const KEY_PX: f64 = 16.0;
-const TALLEST_PX: f64 = 400.0;
+const TALLEST_PX: f64 = 300.0;
 /// Upper ends of the classes of a share of the releases (–).
 const SHARES: [f64; 5] = [0.001, 0.01, 0.1, 0.3, 1.0];
 /// Colours of the Swiss classes: weak, medium, strong.
@@ -134,22 +135,42 @@ pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
             ("strong", &strong),
         ],
     );
-    Drawing { svg, caption }
+    Drawing { svg, caption: caption + &few(report, maps) }
 }
 
-/// Draws energy, height, deposits and the probability of more than a weak intensity.
+/// What a 95th percentile of few rocks is worth; nothing where none is.
+fn few(report: &Report, maps: &CellMap) -> String {
+    let all: usize = maps.intensity_cells.iter().sum();
+    let share = format::percent(maps.few_cells as f64 / all.max(1) as f64, 0);
+    if maps.few_cells == 0 {
+        return String::new();
+    }
+    fill(report.words().maps_few, &[("share", &share), ("needs", &NEEDS)])
+}
+
+/// Draws energy and height beside each other.
 pub(super) fn draw_values(report: &Report, maps: &CellMap) -> Drawing {
     let words = report.words();
     let most_j = maps.energy_j.iter().map(|(_, v)| *v).fold(0.0, f64::max);
     let layers = [
         ClassedMap::of_values(words.map_energy, &maps.energy_j, energy_unit(most_j), &[1.0, 3.0]),
         ClassedMap::of_values(words.map_height, &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
+    ];
+    let ground = report.ground.as_ref();
+    let svg = draw_layers("maps-values", words.map_values_alt, (report, maps, ground), &layers);
+    Drawing { svg, caption: words.map_values_caption.to_owned() + &few(report, maps) }
+}
+
+/// Draws deposits and the probability of more than a weak intensity beside each other.
+pub(super) fn draw_ends(report: &Report, maps: &CellMap) -> Drawing {
+    let words = report.words();
+    let layers = [
         ClassedMap::of_counts(words.map_deposits, &maps.deposits),
         ClassedMap::of_shares(words.map_exceeds, &maps.exceeds),
     ];
     let ground = report.ground.as_ref();
-    let svg = draw_layers("maps-values", words.map_values_alt, (report, maps, ground), &layers);
-    Drawing { svg, caption: words.map_values_caption.to_owned() }
+    let svg = draw_layers("maps-ends", words.map_ends_alt, (report, maps, ground), &layers);
+    Drawing { svg, caption: words.map_ends_caption.to_owned() }
 }
 
 fn draw_layers(

@@ -272,6 +272,8 @@ pub struct EstimateTable {
     pub rows: Vec<(String, Vec<Option<Estimate>>)>,
     /// The chapter it belongs to.
     pub about: About,
+    /// Name of the line, object or barrier it tells of; empty where it tells of several.
+    pub place: String,
 }
 
 /// What a table is about.

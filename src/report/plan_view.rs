@@ -19,8 +19,14 @@ use crate::math;
 use crate::simulation::Stop;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Tallest map (px): with the stop reasons and both captions it fits an A4 page.
-const TALLEST_PX: f64 = 580.0;
+/// Tallest map (px): beside the numbers of all rocks its words can be read on the first page of A4.
+const TALLEST_PX: f64 = 460.0;
+/// Widest map (px), for the same reason.
+const WIDEST_PX: f64 = 400.0;
+/// Left edge of the key (px).
+const KEY_LEFT_PX: f64 = 6.0;
+/// Narrowest sheet (px): room for the key.
+const NARROWEST_PX: f64 = 360.0;
 /// Least height of a map (px): room for the colour bar.
 const LOWEST_PX: f64 = 190.0;
 /// Column right of the map for north arrow and colour bar (px).
@@ -41,11 +47,11 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let words = report.words();
     let panel = layout(report);
     let key = furniture::MapLegend::of(report);
-    let key_left = panel.frame.left.min(0.3 * WIDTH_PX);
-    let height = panel.frame.bottom + FOOT_PX + key.height_px(WIDTH_PX - key_left) + 8.0;
+    let width = (panel.frame.right + RIGHT_PX).clamp(NARROWEST_PX, WIDTH_PX);
+    let height = panel.frame.bottom + FOOT_PX + key.height_px(width - KEY_LEFT_PX) + 8.0;
     let fastest = fastest_m_s(report);
     let mut contours = None;
-    let svg = paint("plan", (WIDTH_PX, height), words.plan_title, |canvas| {
+    let svg = paint("plan", (width, height), words.plan_title, |canvas| {
         let names = site::places(canvas, &panel, report, site::in_words);
         canvas.clip("map", &panel.frame, || {
             if let Some(ground) = &report.ground {
@@ -65,7 +71,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
         }
         panel.axes(canvas);
         furniture::draw(canvas, &panel, (fastest, !report.paths.is_empty()), words);
-        key.draw(canvas, (key_left, panel.frame.bottom + FOOT_PX + 4.0));
+        key.draw(canvas, (KEY_LEFT_PX, panel.frame.bottom + FOOT_PX + 4.0));
     });
     let interval = contours.map_or(String::new(), |c| {
         fill(words.contour_interval, &[("m", &format::plain(c.interval_m))])
@@ -87,12 +93,10 @@ fn layout(report: &Report) -> Panel {
         Panel::new(frame, Axis::linear(x.0, x.1, names.0), Axis::linear(y.0, y.1, names.1))
     };
     let left = panel(square, x, y).room_left();
-    let widest = WIDTH_PX - left - RIGHT_PX;
+    let widest = (WIDTH_PX - left - RIGHT_PX).min(WIDEST_PX);
     fill_page(&mut x, &mut y, widest, report);
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     let (width, height) = (scale * (x.1 - x.0), scale * (y.1 - y.0));
-    // a narrow map stands in the middle of the page
-    let left = left + 0.5 * (widest - width);
     let frame = PaperFrame { left, top: TOP_PX, right: left + width, bottom: TOP_PX + height };
     panel(frame, x, y)
 }

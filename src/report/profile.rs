@@ -19,7 +19,7 @@ const MAXIMUM: Pen = Pen::full(SKY, 1.0);
 const P95: Pen = Pen::full(BLUE, 1.8);
 const MEDIAN: Pen = Pen::full(INK, 1.0).dashed();
 /// Rocks below which there is no P95.
-const NEEDS: usize = 59;
+pub(super) const NEEDS: usize = 59;
 /// Range of an axis at least: rocks that only roll are not drawn as if they leapt (m, m/s).
 const LEAST: f64 = 0.1;
 

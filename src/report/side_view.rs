@@ -18,7 +18,7 @@ use plotters::style::RGBColor;
 /// Room above the profile for the names of lines and barriers (px).
 const TOP_PX: f64 = 24.0;
 /// Least and greatest height of the profile (px).
-const PROFILE_PX: (f64, f64) = (130.0, 480.0);
+const PROFILE_PX: (f64, f64) = (130.0, 350.0);
 const RIGHT_PX: f64 = WIDTH_PX - 16.0;
 const GROUND_FILL: RGBColor = RGBColor(205, 198, 188);
 const GROUND_LINE: RGBColor = RGBColor(94, 78, 62);
@@ -28,7 +28,9 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let line = FallLine::of(report);
     let view = View::of(report, &line);
     let height = view.ground.frame.bottom + FOOT_PX;
-    let svg = paint("side", (WIDTH_PX, height), report.words().side_title, |canvas| {
+    // a steep profile is slender at one scale in both directions
+    let width = view.ground.frame.right + (WIDTH_PX - RIGHT_PX);
+    let svg = paint("side", (width, height), report.words().side_title, |canvas| {
         view.profile(canvas, report, &line);
         view.marks(canvas, report, &line);
     });

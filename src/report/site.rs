@@ -17,6 +17,8 @@ const ZONE: Pen = Pen::full(INK, 1.2).dashed();
 const TOOTH_PX: (f64, f64) = (9.0, 4.0);
 /// More release points than this are told by their key alone.
 const MOST_POINTS: usize = 200;
+/// A shorter end of a line that looks into the frame has no name: it would be read as that of another one (px).
+const LEAST_NAMED_PX: f64 = 16.0;
 /// Gap between a line and its name (px).
 const GAP_PX: f64 = 8.0;
 
@@ -138,23 +140,40 @@ pub(super) fn places(
         let words = fitted(&said(mark), SMALL, 0.6 * panel.frame.width());
         let colour = if mark.barrier.is_some() { super::colour::DARK_GREEN } else { INK };
         let parts = on_paper(panel, mark);
-        let candidates = parts.iter().flat_map(|part| beside(part, &words));
-        let found = candidates.map(|label| label.bold().coloured(colour)).find(|label| {
+        let named = parts.iter().filter(|part| length(part) > LEAST_NAMED_PX);
+        let candidates = named.flat_map(|part| beside(part, &words));
+        let free = candidates.map(|label| label.bold().coloured(colour)).filter(|label| {
             let frame = label.frame();
             inner.contains(&frame) && canvas.is_free(&frame)
-        })?;
+        });
+        // a name on another's line would be read as that one's
+        let others = |label: &Label| {
+            let of_others = report.marks.iter().filter(|other| other.name != mark.name);
+            of_others.filter(|other| crosses(panel, other, &label.frame())).count()
+        };
+        let found = free.min_by_key(others)?;
         canvas.take(found.frame());
         Some(found)
     };
     report.marks.iter().filter_map(place).collect()
 }
 
-/// Places for a name: above and below both ends and the middle.
+fn length(part: &[Spot]) -> f64 {
+    part.windows(2).map(|pair| math::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1)).sum()
+}
+
+/// Whether a mark runs through a room.
+fn crosses(panel: &Panel, mark: &MapMark, room: &PaperFrame) -> bool {
+    on_paper(panel, mark).iter().any(|part| !clipped(part, room).is_empty())
+}
+
+/// Places for a name: above and below both ends and the middle, and beyond both ends.
 fn beside(part: &[Spot], words: &str) -> Vec<Label> {
     let (Some(&first), Some(&last)) = (part.first(), part.last()) else { return Vec::new() };
     let (left, right) = if first.0 <= last.0 { (first, last) } else { (last, first) };
     let middle = part[part.len() / 2];
     let at = |(x, y): Spot, by: f64| Label::new(words, (x, y + by));
+    let beyond = [at((right.0 + 6.0, right.1), 0.0), at((left.0 - 6.0, left.1), 0.0).right()];
     [-GAP_PX, GAP_PX]
         .into_iter()
         .flat_map(|by| {
@@ -166,6 +185,7 @@ fn beside(part: &[Spot], words: &str) -> Vec<Label> {
                 at((middle.0 - 6.0, middle.1), by).right(),
             ]
         })
+        .chain(beyond)
         .collect()
 }
 

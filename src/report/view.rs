@@ -91,6 +91,9 @@ impl Shown {
                 self.releases
             ));
         }
+        if self.rows.iter().any(|row| row.shape.is_some()) {
+            notes.push("Blocks are shown as balls of their volume.".to_owned());
+        }
         notes.extend(self.layers.as_ref().and_then(MapLayers::note));
         notes
     }

@@ -60,7 +60,7 @@ pub(super) fn follow_block(
         laws,
     };
     footing.near.forget();
-    footing.near.gone.clear();
+    footing.raise_stems(settings.terrain, &random);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
@@ -138,7 +138,8 @@ impl Roll<'_> {
             let left = self.settings.longest_s - self.recorder.now.time_s;
             let most_s = self.settings.step.step_s.min(left);
             let most_s = most_s.min(self.scars.longest_s(self.moving.v.norm()));
-            let done = self.footing.step(&self.world, block, &mut self.moving, most_s);
+            let mut done = self.footing.step(&self.world, block, &mut self.moving, most_s);
+            self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut done.loss);
             self.recorder.effort.steps += 1;
             self.recorder.effort.unsettled += u64::from(done.unsettled);
             self.recorder.pay(&done.loss, 1.0);
@@ -196,9 +197,14 @@ impl Roll<'_> {
         if self.scars.are_any() {
             self.dig(&struck);
         }
-        let Some(loss) = self.footing.strike(&self.world, block, &mut self.moving) else {
+        let broken_j = self.footing.break_stems(&self.world, block, &mut self.moving);
+        self.recorder.ledger.trees_j += broken_j;
+        let loss = self.footing.strike(&self.world, block, &mut self.moving);
+        if loss.is_none() && broken_j <= 0.0 {
             return false;
-        };
+        }
+        let mut loss = loss.unwrap_or_default();
+        self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut loss);
         self.recorder.pay(&loss, 1.0);
         let is_free = !self.footing.holds(&self.world, (block, &self.moving), true);
         if is_free {

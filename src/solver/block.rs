@@ -8,8 +8,11 @@
 //! Restitution is Newton's, contact by contact. With friction and several contacts that rule can gain energy (Glocker 2013); where it
 //! would, all restitutions are lowered together until it does not.
 
+mod energy;
 mod slip;
 mod solve;
+mod stems;
+mod yielding;
 
 use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
@@ -17,6 +20,7 @@ use super::loss::Loss;
 use super::rigid::HELD;
 use super::roughness::{Meeting, RoughFacets};
 use super::slip::Slip;
+use super::stem_load::StemLoad;
 use crate::body::Block;
 use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, Pose, keep_widest, touches};
@@ -24,6 +28,7 @@ use crate::contact::neighbours::Neighbours;
 use crate::flight::block::Tumble;
 use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
+use energy::{hold_energy, rising_s};
 use nalgebra::{Matrix3, Rotation3};
 use solve::{BlockContact, Mass, solve};
 
@@ -61,6 +66,8 @@ pub(crate) struct Footing {
     pub(crate) facets: RoughFacets,
     /// How far it has slipped.
     pub(crate) slip: Slip,
+    /// What it has done to the stems.
+    stem_load: StemLoad,
     /// Passes over the contacts.
     pub(crate) sweeps: u64,
 }
@@ -262,8 +269,8 @@ impl Footing {
         let dt = most_s
             .min(TRAVEL * block.ball_m / fastest.max(f64::MIN_POSITIVE))
             .min(TURN / spin.norm().max(f64::MIN_POSITIVE));
-        let dt = self.closing(world, (block, moving), dt);
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
+        let dt = self.closing(world, (block, moving), dt).min(rising_s(world, moving, before_j));
         moving.drift(block, 0.5 * dt);
         self.look(world, block, &moving.pose, AHEAD * block.ball_m);
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
@@ -372,20 +379,6 @@ fn goal(block: &Block, (start, middle): (&Moving, &Moving), touch: &BlockTouch, 
     let out = (-2.0 * gap / dt).min(0.1 * (block.radius_m * 10.0).sqrt());
     let up = n.dot(&turned);
     n * (out - up) - (turned - n * up)
-}
-
-/// Slows a block that has more energy of motion than it had and its weight gives it (J): what it had with what its weight gave on
-/// the way that is behind it, and what it gives on the way to come, which is slowed too. Moving out of what it was pressed into is
-/// paid by its motion.
-fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: [f64; 2]) {
-    let motion_j = moving.motion_j(block);
-    if motion_j > had_j + comes_j && motion_j > 0.0 {
-        // motion k² = had + comes k
-        let root = (comes_j * comes_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
-        let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
-        moving.v *= kept;
-        moving.momentum *= kept;
-    }
 }
 
 #[cfg(test)]

@@ -20,6 +20,7 @@ pub enum Scheme {
 impl Scheme {
     /// The scheme that stands in for an exact solution of the same model where there is no closed form: the fourth-order
     /// one with springs, the rigid limit itself without.
+    #[must_use]
     pub const fn finest(self) -> Self {
         if self.has_springs() { Self::Reference } else { Self::Rigid }
     }

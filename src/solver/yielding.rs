@@ -11,7 +11,7 @@ const STEP: f64 = 5e-3;
 /// A rock comes to rest along the normal within this (rad), however heavily damped.
 const COMES_TO_REST: f64 = 20.0;
 /// Halvings of the step in which it gives way: all the digits there are.
-const BISECTIONS: u32 = 60;
+pub(super) const BISECTIONS: u32 = 60;
 
 /// A rock pressed into one contact.
 #[derive(Clone, Copy)]

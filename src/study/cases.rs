@@ -170,7 +170,7 @@ pub const CASES: [Case; 12] = [
         source: "uniform acceleration; springs: friction grows within a millisecond",
         kind: CaseKind::Smooth,
         facets: || plane(40.0),
-        setup: |has_springs| slippery(lying(40.0, has_springs)),
+        setup: |has_springs| slippery(&lying(40.0, has_springs)),
         exact: Some(|setup, has_springs| {
             let (way, spin) = closed::slipped(setup, angle(40.0), 1.0, has_springs);
             let mut measures = along(setup, angle(40.0), way);
@@ -192,7 +192,7 @@ pub const CASES: [Case; 12] = [
         facets: || plane(0.0),
         setup: |has_springs| Setup {
             velocity_m_s: Vec3::new(0.0, 5.0, 0.0),
-            ..slippery(lying(0.0, has_springs))
+            ..slippery(&lying(0.0, has_springs))
         },
         exact: Some(|setup, has_springs| {
             along(setup, 0.0, closed::skidded(setup, 5.0, 1.0, has_springs).0)

@@ -15,11 +15,14 @@ use crate::error::{Error, Result};
 use crate::gis::wkt;
 use crate::rock::Vec3;
 use decoder::guarded;
+use las::crs::{GeoTiffData, GeoTiffKeyEntry};
 use las::{PointDataBuilder, Reader};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+/// `ProjLinearUnits` and `VerticalUnits` of GeoTIFF's keys; 9001 is the metre.
+const UNIT_KEYS: [u16; 2] = [3076, 4099];
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
 /// Cell of which the lowest point is kept when the scene does not say (m).
@@ -103,13 +106,31 @@ fn system(reader: &Reader, file: &Path, epsg: Option<u32>) -> Result<Option<u32>
     };
     if let Some(text) = header.get_wkt_crs_bytes() {
         let system = wkt::system(String::from_utf8_lossy(text).trim_end_matches('\0'));
+        if let Some(unit) = &system.other_unit {
+            return Err(other_unit(file, unit));
+        }
         return if system.is_geographic { refused() } else { Ok(system.epsg) };
     }
     let Some(keys) = header.get_geotiff_crs().ok().flatten() else { return Ok(None) };
     if keys.get_gt_model_type_geo_key_value() == Some(2) {
         return refused();
     }
+    let is_unit = |entry: &&GeoTiffKeyEntry| UNIT_KEYS.contains(&entry.id);
+    for entry in keys.entries.iter().filter(is_unit) {
+        if let GeoTiffData::U16(unit @ 9002..=9099) = entry.data {
+            return Err(other_unit(file, &format!("EPSG:{unit}")));
+        }
+    }
     Ok(keys.get_projected_crs_geo_key_value().filter(|code| *code != 32_767).map(Into::into))
+}
+
+/// Lengths in another unit than the metre.
+fn other_unit(file: &Path, unit: &str) -> Error {
+    let remedy = format!(
+        "write it in metres: pdal translate {} out.laz reprojection --filters.reprojection.out_srs=EPSG:CODE, and where heights are in feet, assign --filters.assign.value=\"Z = Z * 0.3048\"",
+        file.display()
+    );
+    Error::input(file, "unit", format!("found the unit {unit}, not the metre"), remedy)
 }
 
 /// Keeps the lowest point of each cell.

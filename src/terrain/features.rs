@@ -352,3 +352,36 @@ fn give_corners(owned: &mut [u8], corner: &mut [bool], triangles: &[[u32; 3]]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// What is told to be folded without a root is not flat by the angle either, from blunt to sharp and to slivers.
+        #[test]
+        fn no_flat_edge_is_taken_for_a_fold(
+            length in -2.0..2.0f64, fold in -14.0..0.0f64, at in [-3.0..3.0f64, -3.0..3.0], wide in [-9.0..1.0f64, -9.0..1.0],
+        ) {
+            let [wide, other] = wide.map(|x| 10f64.powf(x));
+            let vertices_m = [
+                Vec3::zeros(),
+                Vec3::new(10f64.powf(length), 0.0, 0.0),
+                Vec3::new(at[0], wide, 0.0),
+                Vec3::new(at[1], -other, other * 10f64.powf(fold)),
+            ];
+            let triangles = [[0, 1, 2], [1, 0, 3]];
+            let mesh = Mesh { vertices_m: &vertices_m, triangles: &triangles };
+            let features = Features::of(&vertices_m, &triangles);
+            let is_folded = is_folded(&mesh.ends_m(0), &[mesh.apex_m(0), mesh.apex_m(3)]);
+            let [one, beside] = [0, 1].map(|t| Face::new(mesh.corners_m(t)));
+            let sine = one.n.dot(&beside.outward(&mesh.ends_m(0))).abs();
+            prop_assert!(!is_folded || sine > FLAT, "sine {sine}");
+            // and nearly everything that is folded is told so
+            let is_blunt = fold < -2.0 || other < 1e-2 || wide < 1e-2;
+            prop_assert!(is_folded || is_blunt);
+            prop_assert_eq!(features.count.flat_edges, usize::from(features.is_flat(0, mesh)));
+        }
+    }
+}

@@ -110,3 +110,34 @@ impl Floor {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::make;
+
+    /// Shares of the triangles give the floor that one after the other gives, and no ground lies under it.
+    #[test]
+    fn shares_change_no_height() {
+        let facets = make::natural_slope(300, 300).facets;
+        let faces: Vec<Face> = facets.iter().map(|&facet| Face::new(facet)).collect();
+        assert!(faces.len() > 2 * LEAST_SHARE);
+        let corners = || facets.iter().flatten();
+        let first = facets[0][0];
+        let low = corners().fold(first, |low, corner| low.inf(corner));
+        let high = corners().fold(first, |high, corner| high.sup(corner));
+        let ground = |t: u32| (!t.is_multiple_of(9)).then(|| faces[t as usize]);
+        let floor = Floor::of(ground, faces.len(), (low, high));
+        let mut one_by_one =
+            Floor { low_m: vec![f32::INFINITY; floor.low_m.len()], ..floor.clone() };
+        let longest = (high - low).xy().max();
+        (0..faces.len() as u32)
+            .filter_map(ground)
+            .for_each(|face| one_by_one.lower_to(&face, WIDER * longest));
+        assert!(floor.low_m == one_by_one.low_m);
+        for face in (0..faces.len() as u32).filter_map(ground) {
+            let middle = face.a + (face.e1 + face.e2) / 3.0;
+            assert!(floor.under(middle.x, middle.y) <= middle.z);
+        }
+    }
+}

@@ -95,7 +95,9 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
             Ok(ElevationModel::of(grid, Format::GeoTiff, epsg))
         }
         Some(Format::AsciiGrid) => {
-            Ok(ElevationModel::of(Grid::read(path)?, Format::AsciiGrid, None))
+            let grid = Grid::read(path)?;
+            grid.check_cells(path, options.epsg)?;
+            Ok(ElevationModel::of(grid, Format::AsciiGrid, None))
         }
         Some(Format::Ply) => ply::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Obj) => obj::parse(&whole()?, path).map(Loaded::Mesh),
@@ -112,9 +114,33 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
                     "write it under [[trees]] file, or as zones, lines, barriers or ground_zones";
                 return Err(wrong(path, "start", "found a drawing or a list of trees", remedy));
             }
+            let is_named_stl = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl"));
+            let length = std::fs::metadata(path).map_err(Error::file("read", path))?.len();
+            if !is_named_stl && !stl::may_be_stl(&head, length) && !stl::is_of_other_kind(&head) {
+                return Err(unknown(path, &head));
+            }
             stl::read(path).map(Loaded::Mesh)
         }
     }
+}
+
+/// Why a file of no format that is read is refused.
+fn unknown(path: &Path, head: &[u8]) -> Error {
+    let name = path.display();
+    let line = head.split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty());
+    let line = String::from_utf8_lossy(line.unwrap_or_default());
+    let mut words = line.split([' ', '\t', ',', ';', '\r']).filter(|word| !word.is_empty());
+    let is_list = words.clone().count() >= 3 && words.all(|word| word.parse::<f64>().is_ok());
+    if is_list {
+        let remedy = format!(
+            "make an elevation model of it: gdal_translate -of GTiff {name} out.tif for points on a grid, gdal_grid for others"
+        );
+        return wrong(path, "start", "found a list of points", &remedy);
+    }
+    let remedy = format!(
+        "write GeoTIFF, ESRI ASCII grid, STL, PLY, OBJ, LAS or LAZ; from what else GDAL reads: gdal_translate -of GTiff {name} out.tif"
+    );
+    wrong(path, "start", "found none of the formats that are read", &remedy)
 }
 
 /// Reads an elevation model: `GeoTIFF` or ESRI ASCII grid.

@@ -101,6 +101,23 @@ impl Grid {
         Vec3::new(x, y, z_m - map_origin_m.z)
     }
 
+    /// Refuses cells of no size that a terrain has, as those of a grid in degrees; `epsg` is the scene's code.
+    pub(super) fn check_cells(&self, file: &Path, epsg: Option<u32>) -> Result<()> {
+        if self.cell_m >= SMALLEST_CELL_M {
+            return Ok(());
+        }
+        let [x, y] = self.corner_m;
+        let is_degrees = x.abs() <= 360.0 && y.abs() <= 90.0;
+        let why = if is_degrees { ", like longitude and latitude" } else { "" };
+        let found = format!("found cells of {} at ({x}, {y}){why}", self.cell_m);
+        let code = epsg.map_or_else(|| "CODE".to_owned(), |code| code.to_string());
+        let remedy = format!(
+            "write it in metres: gdalwarp -s_srs EPSG:4326 -t_srs EPSG:{code} -tr 1 1 -r bilinear {} out.tif",
+            file.display()
+        );
+        Err(Error::input(file, "cellsize", found, remedy))
+    }
+
     /// Whether it can be a slope: cells and heights of this world, and at least one triangle.
     ///
     /// # Errors

@@ -72,3 +72,25 @@ impl Groups {
         sizes
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Groups joined share by share are those joined one after the other, however far the neighbours are in number.
+    #[test]
+    fn shares_change_no_group() {
+        let count = 5 * SHARE as usize / 2;
+        let beside = |thing: u32| {
+            let near = (!thing.is_multiple_of(7) && thing > 0).then(|| thing - 1);
+            let far = (thing.is_multiple_of(1001)).then(|| (thing as usize * 31 % count) as u32);
+            near.into_iter().chain(far)
+        };
+        let mut one_by_one = Groups::of(count);
+        (0..count as u32).for_each(|t| beside(t).for_each(|other| one_by_one.join(t, other)));
+        let mut joined = Groups::joined(count, beside);
+        assert!((0..count as u32).all(|t| joined.lowest(t) == one_by_one.lowest(t)));
+        let sizes = joined.sizes();
+        assert!(sizes == one_by_one.sizes() && sizes.len() > 1000 && sizes.iter().any(|&n| n > 7));
+    }
+}

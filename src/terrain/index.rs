@@ -5,6 +5,7 @@
 //! are renumbered in tree order, so that neighbours in space are neighbours in memory.
 
 mod build;
+mod runs;
 
 pub(super) use build::Sizes;
 

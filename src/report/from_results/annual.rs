@@ -18,6 +18,7 @@ pub(super) fn views(results: &Results) -> Vec<AnnualView> {
         AnnualView {
             name: place.name.clone(),
             is_object: place.is_object,
+            most_per_year: figures.passages.high_95,
             without: band(figures),
             // where no barrier stands before, both are the same curve
             with: place.with_barriers.as_ref().filter(|with| *with != figures).map(band),
@@ -70,6 +71,7 @@ pub(super) fn headline(results: &Results, words: &Words) -> Option<EstimateTable
         note: words.year().head_note.to_owned(),
         columns: [0, 1, 4, 5].map(|column| columns[column].clone()).into(),
         rows,
+        ..EstimateTable::default()
     })
 }
 
@@ -79,7 +81,9 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
     let each = |place: &AnnualPlace| {
         [Some(passages(annual, place, words)), Some(returns(place, words)), risks(place, words)]
     };
-    let places = annual.places.iter().flat_map(each).flatten();
+    // where no rock comes, one sentence says what there is to say
+    let met = annual.places.iter().filter(|place| place.without_barriers.passages.rocks > 0);
+    let places = met.flat_map(each).flatten();
     places.chain(annual.barriers.iter().map(|one| barrier(annual, one, words))).collect()
 }
 
@@ -106,6 +110,7 @@ fn barrier(annual: &Annual, one: &AnnualBarrier, words: &Words) -> EstimateTable
     ];
     EstimateTable {
         about: About::Year,
+        place: name.clone(),
         title: fill(words.barrier_year_title, &[("name", &words.quoted(name))]),
         note: words.barrier_year_note.to_owned(),
         columns: how_often(words),
@@ -125,9 +130,11 @@ fn both<'a>(
     place: &'a AnnualPlace,
     words: &Words,
 ) -> impl Iterator<Item = (&'static str, &'a AnnualFigures)> + use<'a> {
-    let without = if place.with_barriers.is_some() { words.and_without } else { "" };
+    // barriers that change nothing here have no rows of their own
+    let with = place.with_barriers.iter().filter(|with| **with != place.without_barriers);
     let and_with = words.and_with;
-    let with = place.with_barriers.iter().map(move |figures| (and_with, figures));
+    let with: Vec<_> = with.map(|figures| (and_with, figures)).collect();
+    let without = if with.is_empty() { "" } else { words.and_without };
     [(without, &place.without_barriers)].into_iter().chain(with)
 }
 
@@ -150,6 +157,7 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTabl
     }
     EstimateTable {
         about: About::Year,
+        place: place.name.clone(),
         title: named(words.often_title, place, words),
         note: fill(
             words.often_note,
@@ -199,6 +207,7 @@ fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
     let columns = [words.energy_axis, words.col_by_rate, words.col_by_exponent].map(by);
     EstimateTable {
         about: About::Year,
+        place: place.name.clone(),
         title: named(words.returns_title, place, words),
         note: words.returns_note.to_owned(),
         columns: columns.into(),
@@ -226,6 +235,7 @@ fn risks(place: &AnnualPlace, words: &Words) -> Option<EstimateTable> {
     let columns = [words.col_year, words.col_by_rate, words.col_by_exponent].map(by);
     (!rows.is_empty()).then(|| EstimateTable {
         about: About::Year,
+        place: place.name.clone(),
         title: named(words.risk_title, place, words),
         note: words.risk_note.to_owned(),
         columns: columns.into(),

@@ -70,6 +70,7 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateT
         note: words.arrives_note.to_owned(),
         columns: columns.into(),
         rows,
+        ..EstimateTable::default()
     })
 }
 
@@ -132,5 +133,6 @@ fn barriers(results: &Results, words: &Words) -> Option<EstimateTable> {
         note: words.barriers_head_note.to_owned(),
         columns: columns.into(),
         rows: all.iter().map(row).collect(),
+        ..EstimateTable::default()
     })
 }

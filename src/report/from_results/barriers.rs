@@ -131,6 +131,7 @@ fn counts(barriers: &[BarrierSummary], words: &Words) -> EstimateTable {
         note: fill(words.barriers_note, &[("rules", &rules.join(" "))]).trim_end().to_owned(),
         columns: columns.map(str::to_owned).into(),
         rows: barriers.iter().map(|one| (one.barrier.name.clone(), cells(one))).collect(),
+        ..EstimateTable::default()
     }
 }
 
@@ -213,6 +214,7 @@ fn arriving(one: &BarrierSummary, words: &Words) -> EstimateTable {
     let before = one.crossing - one.arriving.count;
     EstimateTable {
         about: About::Barriers,
+        place: one.barrier.name.clone(),
         title: named(words.arriving_title, one, words),
         note: fill(
             words.arriving_note,
@@ -258,6 +260,7 @@ fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>
     };
     EstimateTable {
         about: About::Barriers,
+        place: one.barrier.name.clone(),
         title: named(words.sensitivity_title, one, words),
         note: words.sensitivity_note.to_owned(),
         columns,

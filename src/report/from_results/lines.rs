@@ -214,7 +214,8 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
             TABLED.map(|(quantity, name, like)| (name(words), like, line.sample(quantity), None));
         let title = fill(title, &[("name", &words.quoted(&line.info.name))]);
         let statistics = statistics_table(words, title, note, &rows);
-        (reach.count > 0).then_some(EstimateTable { about: About::Lines, ..statistics })
+        let place = line.info.name.clone();
+        (reach.count > 0).then_some(EstimateTable { about: About::Lines, place, ..statistics })
     };
     shown(results).filter_map(table).collect()
 }

@@ -53,6 +53,7 @@ pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<EstimateTab
             ),
             columns: columns(words),
             rows: vec![(words.this_run.to_owned(), cells(&observed.agreement))],
+            ..EstimateTable::default()
         });
     }
     if let Some(found) = read_calibration(&results.dir)? {
@@ -87,6 +88,7 @@ fn calibration(found: &Calibration, words: &Words) -> EstimateTable {
         ),
         columns: columns(words),
         rows,
+        ..EstimateTable::default()
     }
 }
 
@@ -110,6 +112,7 @@ fn told(found: &Calibration, words: &Words) -> EstimateTable {
         ),
         columns: vec![words.fitted.to_owned()],
         rows: found.told.iter().map(row).collect(),
+        ..EstimateTable::default()
     }
 }
 
@@ -131,6 +134,7 @@ fn spread(found: &Calibration, words: &Words) -> EstimateTable {
         note: words.ends_note.to_owned(),
         columns: [words.measured, words.computed, words.difference].map(str::to_owned).into(),
         rows: found.measures.iter().map(row).collect(),
+        ..EstimateTable::default()
     }
 }
 

@@ -119,9 +119,16 @@ pub struct AnnualView {
     pub with: Option<Vec<BandPoint>>,
     /// Return periods asked for (years).
     pub return_periods_years: Vec<f64>,
+    /// Rocks that come, 95 % upper end (1/year).
+    pub most_per_year: f64,
 }
 
 impl AnnualView {
+    /// Whether any rock comes.
+    pub(in crate::report) fn is_met(&self) -> bool {
+        self.curves().flatten().any(|point| point.x > 0.0)
+    }
+
     /// Its curves.
     pub(in crate::report) fn curves(&self) -> impl Iterator<Item = &Vec<BandPoint>> {
         [&self.without].into_iter().chain(&self.with)
@@ -243,6 +250,8 @@ pub struct CellMap {
     pub exceeds: Vec<(u32, f64)>,
     /// Cells of each class.
     pub intensity_cells: [usize; 3],
+    /// Cells that too few rocks pass for an upper bound of their 95th percentile.
+    pub few_cells: usize,
 }
 
 /// Cells, row by row from the south-west, each with a value.

@@ -43,7 +43,7 @@ pub(crate) struct BlockContact {
     /// Impulse on the rock (N s).
     pub(crate) impulse: Vec3,
     /// `G` (1/kg) and its inverse (kg).
-    answer: Matrix3<f64>,
+    pub(super) answer: Matrix3<f64>,
     inverse: Matrix3<f64>,
 }
 

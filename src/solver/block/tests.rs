@@ -1,6 +1,7 @@
 use super::*;
 
 mod slip;
+mod yielding;
 
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
 use crate::flight::block::first_touch;

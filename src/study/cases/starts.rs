@@ -16,9 +16,9 @@ pub(super) fn lying(degrees: f64, has_springs: bool) -> Setup {
     Setup { centre_m: Vec3::new(0.0, height * sin, height * cos), ..SETUP }
 }
 
-pub(super) fn slippery(setup: Setup) -> Setup {
+pub(super) fn slippery(setup: &Setup) -> Setup {
     let ground = crate::ground::Ground { friction_angle_rad: math::atan(0.2f64), ..setup.ground };
-    Setup { ground, ..setup }
+    Setup { ground, ..*setup }
 }
 
 /// On ground without friction that gives back all of an impact.

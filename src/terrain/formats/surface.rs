@@ -200,8 +200,11 @@ impl ElevationModel {
         (soup.epsg, soup.notes, soup.facets) = (self.epsg, self.notes, facets);
         // a tile whose places all belong to earlier ones has none of its own
         if soup.facets.is_empty() && self.joined == 0 {
-            let remedy = "write a file whose cells have data, three neighbours or more";
-            let found = "found no triangle between cells with data";
+            let remedy =
+                "leave the file out, or write one whose cells have data, three neighbours or more";
+            let (data, all) = (self.grid.values.len() - self.grid.holes(), self.grid.values.len());
+            let found =
+                format!("found data in {data} of {all} cells, and no triangle between them");
             return Err(Error::input(file, "cells", found, remedy));
         }
         Ok(soup)

@@ -108,6 +108,7 @@ fn maps() -> CellMap {
         deposits: layer(|cell| f64::from(1 + cell % 90)),
         exceeds: layer(|cell| 1e-3 * f64::from(1 + cell % 300)),
         intensity_cells: [400, 400, 400],
+        few_cells: 130,
     }
 }
 
@@ -125,6 +126,7 @@ fn year(name: &str, has_barriers: bool) -> AnnualView {
         without: curve(0.03),
         with: has_barriers.then(|| curve(0.003)),
         return_periods_years: vec![30.0, 100.0, 300.0, 1000.0],
+        most_per_year: 0.04,
     }
 }
 
@@ -153,7 +155,11 @@ pub(crate) fn site() -> Report {
         ],
         barriers: vec![net(60), net(0)],
         maps: Some(maps()),
-        annual: vec![year("valley road between the villages", true), year("house", false)],
+        annual: vec![
+            year("valley road between the villages", true),
+            AnnualView { without: Vec::new(), most_per_year: 0.004, ..year("hut", false) },
+            year("house", false),
+        ],
         observed: Some(observed()),
         ..slope::report(700, 60)
     }

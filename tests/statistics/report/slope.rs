@@ -267,6 +267,7 @@ fn line_table(report: &Report) -> EstimateTable {
             row("Rotational energy (J)", ReportQuantity::Rotational),
             row("Height (m)", ReportQuantity::Height),
         ],
+        place: String::new(),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Runs of triangles, cut into halves until one tree can take each.
+//! Triangles by where they lie, halved until a part fits one tree.
 
 use crate::rock::Vec3;
 use rayon::iter::ParallelIterator;
@@ -8,7 +8,7 @@ use rayon::slice::ParallelSlice;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlacedTriangle {
     /// Three times its centre (m): only the order counts, and what is equal here is told apart by the number.
-    pub(super) centre: [f32; 3],
+    centre: [f32; 3],
     pub(super) triangle: u32,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Run<'a> {
 impl Run<'_> {
     /// Cut across the middle of the side along which the centres lie widest apart; as many triangles in both, and the same
     /// ones whatever order they come in.
-    pub(super) fn halves(self) -> [Self; 2] {
+    fn halves(self) -> [Self; 2] {
         let axis = self.widest();
         let by_place = |a: &PlacedTriangle, b: &PlacedTriangle| {
             a.centre[axis].total_cmp(&b.centre[axis]).then(a.triangle.cmp(&b.triangle))
@@ -75,5 +75,30 @@ impl<'a> Run<'a> {
         let (low, high) = rayon::join(|| low.halves(), || high.halves());
         let ([a, b], [c, d]) = (low, high);
         [a, b, c, d]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::make;
+
+    /// The parts do not hang on the order in which triangles come.
+    #[test]
+    fn halves_are_the_same_whatever_the_order() {
+        let facets = make::natural_slope(20, 20).facets;
+        let corners = |t: u32| facets[t as usize];
+        let halves = |triangles: Vec<u32>| {
+            let mut placed: Vec<PlacedTriangle> =
+                triangles.into_iter().map(|t| PlacedTriangle::of(t, &corners)).collect();
+            let halves = Run { start: 0, triangles: &mut placed, above: None }.halves();
+            halves.map(|half| {
+                let mut half: Vec<u32> = half.triangles.iter().map(|p| p.triangle).collect();
+                half.sort_unstable();
+                half
+            })
+        };
+        let all = 0..facets.len() as u32;
+        assert_eq!(halves(all.clone().collect()), halves(all.rev().collect()));
     }
 }
