@@ -10,7 +10,7 @@ mod made;
 mod mesh;
 mod solid;
 
-pub use hull::{Core, Face, Ridge, most_corners};
+pub use hull::{Core, HullFace, Ridge, most_corners};
 pub use made::{box_surface, eota, prism_surface, sphere_points};
 pub use mesh::{BadSurface, Thinned};
 pub use solid::{Solid, Surface};

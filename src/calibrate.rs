@@ -12,16 +12,16 @@ mod site;
 mod worth;
 
 pub use fitted::fitted_scene;
-pub use worth::{Measure, Told};
+pub use worth::{SiteMeasure, Told};
 
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Flaw, Result};
 use crate::hazard::Agreement;
 use crate::random::Distribution;
 use crate::scene::{CalibrateTable, GroundTable, Scene, VaryKey, VaryTable};
-use search::Search;
+use search::ParameterSearch;
 use serde::{Deserialize, Serialize};
-use site::Site;
+use site::CalibrationSite;
 use std::fmt;
 
 /// Most quantities that are fitted at a time.
@@ -29,7 +29,7 @@ const MOST: usize = 6;
 
 /// One trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
+pub struct CalibrationTrial {
     /// The values, in the order of the scene's list.
     pub values: Vec<f64>,
     /// Against the ends that were fitted.
@@ -61,18 +61,18 @@ pub struct Calibration {
     /// Number of trials of each search.
     pub trials: usize,
     /// With the values that would stand there without calibration.
-    pub before: Trial,
+    pub before: CalibrationTrial,
     /// Fitted to all but one part of the ends and scored on that, part by part; none where none was held out.
-    pub held_out: Vec<Trial>,
+    pub held_out: Vec<CalibrationTrial>,
     /// Whether throws of one block were held out together.
     #[serde(default)]
     pub by_block: bool,
     /// Fitted to all ends.
-    pub whole: Trial,
+    pub whole: CalibrationTrial,
     /// How far the ends tell each value.
     pub told: Vec<Told>,
     /// Measured and computed ends of the fit to all, scene by scene.
-    pub measures: Vec<Measure>,
+    pub measures: Vec<SiteMeasure>,
     /// Measured ends, and how many independent ones they are worth: throws of one block are alike.
     pub ends: (usize, f64),
 }
@@ -92,10 +92,10 @@ pub fn calibrate(
     scenes: &[Scene],
     ensemble: &Ensemble,
     releases: usize,
-    tried: &mut dyn FnMut(Ends, &Trial),
+    tried: &mut dyn FnMut(Ends, &CalibrationTrial),
 ) -> Result<Calibration> {
     let (vary, parts) = vary_of(scenes)?;
-    let mut search = Search::new(scenes, vary, ensemble, (releases, parts.max(1)))?;
+    let mut search = ParameterSearch::new(scenes, vary, ensemble, (releases, parts.max(1)))?;
     let before: Vec<f64> = vary.iter().map(|vary| vary.before).collect();
     let before = search.trial(&before, Ends::All)?;
     let mut held_out = Vec::new();
@@ -111,7 +111,7 @@ pub fn calibrate(
         trials,
         before,
         held_out,
-        by_block: search.sites.iter().any(Site::knows_blocks),
+        by_block: search.sites.iter().any(CalibrationSite::knows_blocks),
         whole,
         told,
         measures,
@@ -196,7 +196,12 @@ impl fmt::Display for Calibration {
 }
 
 impl Calibration {
-    fn write_trial(&self, to: &mut fmt::Formatter<'_>, who: &str, trial: &Trial) -> fmt::Result {
+    fn write_trial(
+        &self,
+        to: &mut fmt::Formatter<'_>,
+        who: &str,
+        trial: &CalibrationTrial,
+    ) -> fmt::Result {
         let values = self.names.iter().zip(&trial.values);
         let values: Vec<String> =
             values.map(|(name, value)| format!("{name} = {value:.4}")).collect();

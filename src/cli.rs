@@ -35,7 +35,7 @@ const INTERRUPTED: u8 = 130;
 /// Rockfall hazard on triangle meshes, with the numerical error beside every number.
 #[derive(Debug, Parser)]
 #[command(name = "rockfall", version, about, arg_required_else_help = true)]
-struct Asked {
+struct CommandLine {
     #[command(subcommand)]
     command: Command,
 }
@@ -138,7 +138,7 @@ struct RunArgs {
 /// Reads the command line, does what it asks and answers with the exit status.
 pub(crate) fn main() -> ExitCode {
     signals::outlive_file_limits();
-    let done = match Asked::parse().command {
+    let done = match CommandLine::parse().command {
         Command::Init(args) => init::init(&args),
         Command::Run(args) => run(&args),
         Command::Plan { scene } => plan(&scene),

@@ -12,7 +12,7 @@ mod touching;
 
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-use crate::terrain::index::{Child, Node, WAITING};
+use crate::terrain::index::{BvhNode, Child, WAITING};
 use parabola_box::ParabolaBox;
 use roots::quadratic;
 use wide::f32x4;
@@ -173,7 +173,7 @@ struct Waiting {
 fn wait(
     stack: &mut [Waiting; WAITING],
     mut top: usize,
-    node: &Node,
+    node: &BvhNode,
     (begins, ends): (f32x4, f32x4),
 ) -> usize {
     let bottom = top;

@@ -1,6 +1,6 @@
 //! How often rocks are released, and what a computed rock stands for.
 //!
-//! A source releases rocks of a size and so many a year ([`Law`]). Large rocks are rare and decide the hazard, so sizes
+//! A source releases rocks of a size and so many a year ([`FrequencyLaw`]). Large rocks are rare and decide the hazard, so sizes
 //! are sampled by importance: the volumes of each source are cut into classes, its *strata*, and every stratum gets the
 //! same number of rocks however rare it is. A rock of stratum `j` stands for `f_j / n_j` events a year, where `f_j` is
 //! the stratum's own frequency and `n_j` the number of its rocks. Inside a stratum sizes follow the law itself, so
@@ -12,7 +12,7 @@
 mod law;
 mod weights;
 
-pub use law::{Class, Law, Stratum, power_between};
+pub use law::{Class, FrequencyLaw, Stratum, power_between};
 pub use weights::Weights;
 
 use crate::math;
@@ -25,18 +25,18 @@ const STRATA: usize = 120;
 
 /// A source of rocks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Source {
+pub struct RockSource {
     /// Its name.
     pub name: String,
     /// How often it releases rocks of what size.
-    pub law: Law,
+    pub law: FrequencyLaw,
 }
 
 /// All sources of a scene and their strata; one source or more.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(from = "Written", into = "Written")]
+#[serde(from = "StoredFrequency", into = "StoredFrequency")]
 pub struct Frequency {
-    sources: Vec<Source>,
+    sources: Vec<RockSource>,
     strata: Vec<Stratum>,
     energies_j: Vec<f64>,
     return_periods_years: Vec<f64>,
@@ -44,19 +44,19 @@ pub struct Frequency {
 
 /// What a file holds of it: the strata follow.
 #[derive(Serialize, Deserialize)]
-struct Written {
-    sources: Vec<Source>,
+struct StoredFrequency {
+    sources: Vec<RockSource>,
     energies_j: Vec<f64>,
     return_periods_years: Vec<f64>,
 }
 
-impl From<Written> for Frequency {
-    fn from(written: Written) -> Self {
+impl From<StoredFrequency> for Frequency {
+    fn from(written: StoredFrequency) -> Self {
         Self::new(written.sources, written.energies_j, written.return_periods_years)
     }
 }
 
-impl From<Frequency> for Written {
+impl From<Frequency> for StoredFrequency {
     fn from(one: Frequency) -> Self {
         let Frequency { sources, energies_j, return_periods_years, .. } = one;
         Self { sources, energies_j, return_periods_years }
@@ -66,7 +66,7 @@ impl From<Frequency> for Written {
 impl Frequency {
     /// The strata of some sources; energies (J) and return periods (years) that are asked for, rising.
     pub fn new(
-        sources: Vec<Source>,
+        sources: Vec<RockSource>,
         mut energies_j: Vec<f64>,
         mut return_periods_years: Vec<f64>,
     ) -> Self {
@@ -75,13 +75,13 @@ impl Frequency {
             list.dedup();
         }
         let most = (STRATA / sources.len().max(1)).max(1);
-        let of = |(number, source): (usize, &Source)| source.law.strata(number, most);
+        let of = |(number, source): (usize, &RockSource)| source.law.strata(number, most);
         let strata = sources.iter().enumerate().flat_map(of).collect();
         Self { sources, strata, energies_j, return_periods_years }
     }
 
     /// The sources.
-    pub fn sources(&self) -> &[Source] {
+    pub fn sources(&self) -> &[RockSource] {
         &self.sources
     }
 

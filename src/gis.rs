@@ -16,11 +16,11 @@ use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A point of the map (m).
+/// A point in plan view, in map coordinates: easting and northing (m).
 pub type Corner = [f64; 2];
 
 /// Coordinates farther out than this (m) are no place on Earth, as in a mesh.
-const FARTHEST_M: f64 = 1e8;
+pub const FARTHEST_M: f64 = 1e8;
 /// Names of columns in a Shapefile are cut off after so many bytes.
 const COLUMN_BYTES: usize = 10;
 
@@ -35,7 +35,7 @@ pub struct Polygon {
 
 /// A geometry; several parts of one feature stand together.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
+pub enum Geometry {
     /// Points (m).
     Points(Vec<Corner>),
     /// Lines (m).
@@ -44,7 +44,7 @@ pub enum Shape {
     Polygons(Vec<Polygon>),
 }
 
-impl Shape {
+impl Geometry {
     /// What it is, in the plural.
     pub fn name(&self) -> &'static str {
         match self {
@@ -57,7 +57,7 @@ impl Shape {
 
 /// The value of a property.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Value {
+pub enum PropertyValue {
     /// A finite number.
     Number(f64),
     /// A text.
@@ -66,18 +66,18 @@ pub enum Value {
 
 /// One drawn thing.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Feature {
+pub struct GisFeature {
     /// Where it stands in the file, from 1.
     pub number: usize,
     /// Its geometry.
-    pub shape: Shape,
+    pub shape: Geometry,
     /// Its properties by name; empty ones are left out.
-    pub properties: BTreeMap<String, Value>,
+    pub properties: BTreeMap<String, PropertyValue>,
 }
 
 /// All that a file holds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layer {
+pub struct GisLayer {
     /// The file.
     pub file: PathBuf,
     /// EPSG code of its coordinates, where the file names one.
@@ -85,12 +85,27 @@ pub struct Layer {
     /// Name of its system, where the file has a name and no code.
     pub system: Option<String>,
     /// Its features with a geometry, in file order.
-    pub features: Vec<Feature>,
+    pub features: Vec<GisFeature>,
 }
 
-impl Feature {
+impl GisLayer {
+    /// West, south, east and north of all features (m).
+    pub fn box_m(&self) -> [f64; 4] {
+        let corners = self.features.iter().flat_map(|feature| match &feature.shape {
+            Geometry::Points(points) => points.clone(),
+            Geometry::Lines(lines) => lines.concat(),
+            Geometry::Polygons(all) => all.iter().flat_map(|one| one.outline_m.clone()).collect(),
+        });
+        let nothing = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        corners.fold(nothing, |[west, south, east, north], [x, y]| {
+            [west.min(x), south.min(y), east.max(x), north.max(y)]
+        })
+    }
+}
+
+impl GisFeature {
     /// A property by name, also where a Shapefile has cut the name off.
-    pub fn property(&self, name: &str) -> Option<&Value> {
+    pub fn property(&self, name: &str) -> Option<&PropertyValue> {
         let short = name.get(..COLUMN_BYTES);
         self.properties.get(name).or_else(|| self.properties.get(short?))
     }
@@ -98,8 +113,8 @@ impl Feature {
     /// A property in words.
     pub fn text(&self, name: &str) -> Option<String> {
         self.property(name).map(|value| match value {
-            Value::Number(number) => number.to_string(),
-            Value::Text(text) => text.clone(),
+            PropertyValue::Number(number) => number.to_string(),
+            PropertyValue::Text(text) => text.clone(),
         })
     }
 
@@ -110,8 +125,8 @@ impl Feature {
     pub fn positive(&self, name: &str, file: &Path) -> Result<Option<f64>> {
         let number = match self.property(name) {
             None => return Ok(None),
-            Some(Value::Number(number)) => Some(*number),
-            Some(Value::Text(text)) => text.trim().parse().ok(),
+            Some(PropertyValue::Number(number)) => Some(*number),
+            Some(PropertyValue::Text(text)) => text.trim().parse().ok(),
         };
         if let Some(number) = number.filter(|number| *number > 0.0 && number.is_finite()) {
             return Ok(Some(number));
@@ -130,7 +145,7 @@ impl Feature {
 ///
 /// # Errors
 /// A file that cannot be read or is of another format, coordinates that are no metres of a map, no feature at all.
-pub fn read(path: &Path) -> Result<Layer> {
+pub fn read(path: &Path) -> Result<GisLayer> {
     let bytes = crate::file::read(path, crate::file::LONGEST_TEXT)?;
     let layer = if shapefile::begins_like_shapefile(&bytes) {
         let beside = |ending: &str| {
@@ -140,8 +155,12 @@ pub fn read(path: &Path) -> Result<Layer> {
         shapefile::parse(&bytes, beside("dbf")?.as_deref(), beside("prj")?.as_deref(), path)?
     } else {
         if let Some((_, kind)) = ELSEWHERE.iter().find(|(mark, _)| bytes.starts_with(mark)) {
-            let remedy = format!("write it as GeoJSON: ogr2ogr {} {}", out(path), path.display());
-            return Err(Error::input(path, "start", format!("found {kind}"), remedy));
+            return Err(Error::input(path, "start", format!("found {kind}"), as_geojson(path)));
+        }
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes).trim_ascii_start();
+        if !text.starts_with(b"{") && !text.starts_with(b"[") {
+            let found = "found neither GeoJSON nor a Shapefile (.shp)";
+            return Err(Error::input(path, "start", found, as_geojson(path)));
         }
         geojson::parse(&bytes, path)?
     };
@@ -182,19 +201,30 @@ fn companion(path: &Path, ending: &str) -> Option<PathBuf> {
     both.iter().map(|ending| path.with_extension(ending)).find(|file| file.exists())
 }
 
-/// A file name to convert into.
+/// A file name to convert into: another one than that of the file.
 fn out(path: &Path) -> String {
     let stem = path.file_stem().map_or_else(|| "out".into(), |stem| stem.to_string_lossy());
-    format!("{stem}.geojson")
+    let is_taken = path.extension().is_some_and(|ending| ending == "geojson");
+    if is_taken { format!("{stem}_map.geojson") } else { format!("{stem}.geojson") }
+}
+
+/// What to do about a file of another format.
+fn as_geojson(path: &Path) -> String {
+    format!("write it as GeoJSON: ogr2ogr {} {}", out(path), path.display())
+}
+
+/// The command that brings a file into the system of an EPSG code; `from` is the code of its own system, or empty where the
+/// file names it.
+pub(crate) fn transformed(file: &Path, epsg: Option<u32>, from: &str) -> String {
+    let code = epsg.map_or_else(|| "CODE".to_owned(), |code| code.to_string());
+    let from = if from.is_empty() { String::new() } else { format!("-s_srs EPSG:{from} ") };
+    format!("ogr2ogr {from}-t_srs EPSG:{code} {} {}", out(file), file.display())
 }
 
 /// Why coordinates in degrees are of no use, and the command that makes metres of them.
 fn degrees(file: &Path) -> Error {
-    let remedy = format!(
-        "write it in the map coordinates of the scene: ogr2ogr -t_srs EPSG:CODE {} {}",
-        out(file),
-        file.display()
-    );
+    let remedy =
+        format!("write it in the map coordinates of the scene: {}", transformed(file, None, ""));
     Error::input(file, "coordinate system", "found longitude and latitude", remedy)
 }
 

@@ -25,8 +25,9 @@ mod sum;
 mod totals;
 
 pub use annual::{
-    Above, Annual, AnnualBarrier, AnnualFigures, AnnualPlace, Asked, ExceedancePoint, Matrix,
-    Object, ReturnEnergy, Risk, RiskKind, Saved, Vehicles, Year, YearMap, annual, year_maps,
+    Above, Annual, AnnualBarrier, AnnualFigures, AnnualPlace, AnnualRequest, ExceedancePoint,
+    Matrix, Object, ReturnEnergy, Risk, RiskKind, Saved, Vehicles, YearMap, YearSums, annual,
+    year_maps,
 };
 pub use arrival::Arrival;
 pub use barriers::{Arrivals, AtPlace, Barrier, BarrierSummary, Elsewhere, arrivals, judge};
@@ -34,12 +35,14 @@ pub use design::{Design, Rule};
 pub use difference::{Difference, Reading, Values};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary, by_rock};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
-pub use observed::{Agreement, Spread, Way, Weighted, distances, effective, rank, runouts};
-pub use profile::{OfStretch, Profile, ProfilePoint};
+pub use observed::{
+    Agreement, EndSpread, ObservedPath, Weighted, distances, effective, rank, runouts,
+};
+pub use profile::{Profile, ProfilePoint, StretchStatistic};
 pub use proportion::Proportion;
 pub use quantile::{Open, Percentile, Ranks};
 pub use quantity::Quantity;
-pub use rate::{Rate, share_of};
+pub use rate::{EventRate, share_of};
 pub use residual::{Passing, Residual, residual, unstopped};
 pub use row::{Row, StopKind};
 pub use sample::{Exceedance, Histogram, Mean, Sample};
@@ -60,7 +63,7 @@ pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 /// had done until then; its runout is a lower bound, and so is every percentile of runout that such rocks decide.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Hazard {
-    stops: BTreeMap<StopKind, Ended>,
+    stops: BTreeMap<StopKind, EndCounts>,
     values: [Vec<f64>; Quantity::ALL.len()],
     /// Whether each rock would have gone on, in the order of the values.
     is_open: Vec<bool>,
@@ -76,9 +79,9 @@ pub struct Hazard {
 
 /// Rocks that ended in one way, stratum by stratum.
 #[derive(Debug, Clone, PartialEq, Default)]
-struct Ended(Vec<usize>);
+struct EndCounts(Vec<usize>);
 
-impl Ended {
+impl EndCounts {
     fn add(&mut self, stratum: usize) {
         if self.0.len() <= stratum {
             self.0.resize(stratum + 1, 0);
@@ -147,12 +150,12 @@ impl Hazard {
 
     /// Rocks added so far, failed and never released ones included.
     pub fn rocks(&self) -> usize {
-        self.stops.values().map(Ended::count).sum()
+        self.stops.values().map(EndCounts::count).sum()
     }
 
     /// Rocks that ended so, as a share of all.
     pub fn ended(&self, stop: StopKind) -> Proportion {
-        let count = self.stops.get(&stop).map_or(0, Ended::count);
+        let count = self.stops.get(&stop).map_or(0, EndCounts::count);
         match self.weights() {
             None => Proportion::new(count, self.rocks()),
             Some(weights) => {

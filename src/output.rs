@@ -31,16 +31,16 @@ pub use merge::merge;
 pub use progress::Identity;
 pub use read::{Results, read};
 pub use rows::{ImpactRow, PathRow};
-pub use site::{Site, Zone};
-pub use summary::{Run, Summary};
+pub use site::{ReleaseZone, Site};
+pub use summary::{RunTimes, Summary};
 pub use used::{copy_used, write_drawings, write_ground};
 pub use vector::write_terrain;
 
 use crate::error::{Error, Result};
 use crate::frequency::Weights;
 use crate::hazard::{
-    self, Annual, Asked, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps, Row, Way,
-    Year,
+    self, Annual, AnnualRequest, Barrier, CrossingRow, Hazard, Line, LineInfo, MapFrame, Maps,
+    ObservedPath, Row, YearSums,
 };
 use crate::plan::PlanEntry;
 use crate::rock::Vec3;
@@ -52,7 +52,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use table::Table;
+use table::CsvTable;
 
 const RELEASES: &str = "releases.csv";
 const PATHS: &str = "paths.csv";
@@ -83,9 +83,9 @@ pub struct RunInfo {
     /// Barriers; each on the line of its name.
     pub barriers: Vec<Barrier>,
     /// What is asked of the year: sources, objects, classes of hazard.
-    pub asked: Asked,
+    pub asked: AnnualRequest,
     /// Measured ways to compare with; none if the scene names none.
-    pub observed: Vec<Way>,
+    pub observed: Vec<ObservedPath>,
     /// Whether `paths.csv` is written.
     pub keeps_paths: bool,
     /// Whether `impacts.csv` is written.
@@ -120,14 +120,14 @@ pub struct Output {
     lock: FolderLock,
     dir: PathBuf,
     info: RunInfo,
-    releases: Table,
-    paths: Option<Table>,
-    impacts: Option<Table>,
-    crossings: Option<Table>,
+    releases: CsvTable,
+    paths: Option<CsvTable>,
+    impacts: Option<CsvTable>,
+    crossings: Option<CsvTable>,
     hazard: Hazard,
     lines: Vec<Line>,
     /// What rocks do a year; none without sources, and none of a part of a run.
-    year: Option<Year>,
+    year: Option<YearSums>,
     /// None also when they are complete already.
     maps: Option<Maps>,
     begun: Instant,
@@ -174,7 +174,7 @@ impl Output {
             .transpose()?;
         let mut lines = read::lines(&info.lines, &info.asked, info.identity.releases);
         let is_part = info.is_shard || info.identity.is_part();
-        let year = Year::new(&info.asked, &info.lines, &info.barriers);
+        let year = YearSums::new(&info.asked, &info.lines, &info.barriers);
         let mut year = year.filter(|_| !is_part);
         if found.is_some() {
             read::recall_lines(dir, &mut lines, year.as_mut())?;
@@ -351,7 +351,7 @@ impl Output {
     }
 
     /// The tables that are written, with their names.
-    fn tables(&mut self) -> impl Iterator<Item = (&'static str, &mut Table)> {
+    fn tables(&mut self) -> impl Iterator<Item = (&'static str, &mut CsvTable)> {
         let Self { releases, paths, impacts, crossings, .. } = self;
         let kept = [(PATHS, paths), (IMPACTS, impacts), (CROSSINGS, crossings)].into_iter();
         let kept = kept.filter_map(|(name, table)| Some((name, table.as_mut()?)));
@@ -360,7 +360,7 @@ impl Output {
 
     /// Puts all rows on the disk; the lengths of the tables (bytes).
     fn lengths(&mut self) -> Result<BTreeMap<String, u64>> {
-        let length = |(name, table): (&str, &mut Table)| Ok((name.to_owned(), table.sync()?));
+        let length = |(name, table): (&str, &mut CsvTable)| Ok((name.to_owned(), table.sync()?));
         self.tables().map(length).collect()
     }
 

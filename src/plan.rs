@@ -11,10 +11,10 @@ mod slips;
 mod stiffness;
 mod recorders;
 
-pub use annual::Year;
+pub use annual::YearPlan;
 pub use cost::Cost;
 pub use listing::PlanEntry;
-pub use recorders::{EvaluationLine, Footprint, MapGrid, Piece, Recorders};
+pub use recorders::{EvaluationLine, Footprint, LinePiece, MapGrid, Recorders};
 pub use stiffness::{FastWarning, OwnDissipation};
 
 use crate::contact::pair::Strength;
@@ -144,7 +144,7 @@ pub struct Plan {
     /// Objects that rocks may hit; each has an evaluation line of its name.
     pub objects: Part<Vec<ObjectTable>>,
     /// Sources and their frequency.
-    pub year: Part<Year>,
+    pub year: Part<YearPlan>,
     /// Cells of the maps.
     pub maps: Part<MapGrid>,
     /// Length of the stretches of the profile of speed and height (m).
@@ -199,6 +199,7 @@ impl Plan {
     /// A place of release off the terrain, or contact springs too soft to carry the rocks.
     pub fn compile(scene: &Scene, mut terrain: Terrain) -> Result<Self> {
         let step = settings::in_force(&scene.solver);
+        scene.check_drawings(&terrain)?;
         grounds::check_size(scene, &terrain)?;
         let releases = Releases::compile(scene, &terrain)?;
         terrain.stems = grounds::stems(scene, &terrain)?;

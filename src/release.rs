@@ -10,10 +10,10 @@ use crate::frequency::Frequency;
 use crate::ground::Ground;
 use crate::random::{Distribution, Purpose, RandomStream, stream, unit};
 use crate::rock::{Motion, Rock, Vec3};
-use crate::scene::{Area, Corner, GroundTable, Point, Polyline, Scene, SourceTable, Zones};
+use crate::scene::{Area, Corner, GroundTable, Polyline, ReleasePoint, Scene, SourceTable, Zones};
 use crate::terrain::Terrain;
 use clear::{clear_of, distance_m, is_inside_tree};
-pub use shapes::Drawn;
+pub use shapes::DrawnShape;
 use shapes::Shapes;
 use std::path::PathBuf;
 
@@ -59,7 +59,7 @@ pub struct Lost {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Where {
     /// At these points, one after the other and again from the first.
-    Points(Vec<Point>),
+    Points(Vec<ReleasePoint>),
     /// Uniform along a line.
     Line(Polyline),
     /// Uniform over an area.
@@ -100,7 +100,7 @@ impl Releases {
         let asked = &scene.release;
         let sources = scene.frequency.as_ref().map_or(&[][..], |table| &table.sources[..]);
         let places = if !asked.blocks.is_empty() {
-            vec![Where::Points(asked.blocks.iter().map(Point::of_block).collect())]
+            vec![Where::Points(asked.blocks.iter().map(ReleasePoint::of_block).collect())]
         } else if sources.is_empty() {
             vec![Self::place_asked(scene)?]
         } else {

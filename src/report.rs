@@ -60,7 +60,7 @@ use model::Report;
 use raster::GroundRaster;
 use std::fs;
 use std::path::Path;
-use view::mesh::Mesh;
+use view::mesh::ViewMesh;
 use words::{Words, fill};
 
 /// Draws a finished run: `figures/*.svg`, `report.html`, and the ground it was drawn on, below the run's folder.
@@ -75,7 +75,7 @@ pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     if results.summary.maps.is_some() {
         output::write_terrain(&results.dir, terrain, results.summary.site.mesh_origin_m)?;
     }
-    view::write(results, Mesh::of(terrain), Some(&ground))?;
+    view::write(results, ViewMesh::of(terrain), Some(&ground))?;
     draw_all(results, Some(ground))
 }
 
@@ -189,6 +189,8 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
         drawn.push((heading("maps.svg", words.maps_title), maps::draw(report, cells)));
         let values = maps::draw_values(report, cells);
         drawn.push((heading("maps_values.svg", words.map_values_title), values));
+        let ends = maps::draw_ends(report, cells);
+        drawn.push((heading("maps_ends.svg", words.map_ends_title), ends));
         let of_year = report.year_maps.as_ref().map(|year| maps::draw_year(report, cells, year));
         let of_year = of_year.map(|year| (heading("maps_year.svg", words.year().maps_title), year));
         drawn.extend(of_year);
@@ -199,7 +201,8 @@ pub fn drawings(report: &Report) -> Vec<(Heading, Drawing)> {
             lines::retention(&report.lines, words),
         ));
     }
-    for (number, view) in report.annual.iter().enumerate() {
+    let annual = report.annual.iter().enumerate();
+    for (number, view) in annual.filter(|(_, view)| view.is_met()) {
         let file = format!("annual_{}.svg", number + 1);
         let title = named(words.year_title, &view.name);
         drawn.push((heading(&file, &title), annual::draw(words, view, number + 1)));

@@ -8,7 +8,7 @@ pub use options::{RunOptions, Selection};
 
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
-use crate::hazard::{Hazard, Way};
+use crate::hazard::{Hazard, ObservedPath};
 use crate::output::{self, Identity, Mode, Output, Results, RunInfo};
 use crate::plan::Plan;
 use crate::report;
@@ -113,8 +113,8 @@ pub fn run_observed(
 ///
 /// # Errors
 /// A file that cannot be read or understood.
-pub fn read_measured(plan: &Plan) -> Result<Vec<Way>> {
-    plan.deposits.as_deref().map_or(Ok(Vec::new()), Way::read)
+pub fn read_measured(plan: &Plan) -> Result<Vec<ObservedPath>> {
+    plan.deposits.as_deref().map_or(Ok(Vec::new()), ObservedPath::read)
 }
 
 /// One go at so many releases; a target precision may ask for another with more.

@@ -34,7 +34,7 @@ mod zone_sources;
 mod zones;
 
 pub use barrier::{BarrierTable, DesignTable, Simulation, Standard, Topography};
-pub use blocks::Block;
+pub use blocks::BlockRow;
 pub use calibrate::{CalibrateTable, VaryKey, VaryTable};
 pub use catalogue::{CATALOGUE, KnownGround, catalogue, known_ground};
 pub use drawn::{BarrierEntry, LineEntry};
@@ -45,7 +45,7 @@ pub use grounds::GroundTable;
 pub use matrix::{KnownMatrix, MATRICES, MatrixEntry, MatrixTable};
 pub use meshes::{CropTable, MeshFile, MeshTable};
 pub use object::{ObjectTable, VehiclesTable};
-pub use places::{Area, Corner, Point, Polyline};
+pub use places::{Area, Corner, Polyline, ReleasePoint};
 pub use record::{Language, LineTable, MapsTable, RecordTable, ReportTable};
 pub use release::{MOST_RELEASES, ReleaseTable};
 pub use rewrite::rewritten;
@@ -58,7 +58,7 @@ pub use zones::{Zone, ZonePlace, Zones};
 use crate::error::{Error, Result};
 use crate::random::{Distribution, entries};
 use crate::terrain::health::Health;
-use crate::terrain::{Sheet, Terrain, patches::Patches, read::Source};
+use crate::terrain::{Sheet, Terrain, patches::Patches, read::MeshSource};
 use check::{Allowed, Checked, Complaint, FORMULA, check_names, is_formula, number};
 use places::FARTHEST_M;
 use refusal::Refusal;
@@ -220,10 +220,10 @@ impl Scene {
     }
 
     /// The files of slope and trees, ready for [`Terrain::read`].
-    pub fn mesh_sources(&self) -> Vec<Source> {
+    pub fn mesh_sources(&self) -> Vec<MeshSource> {
         let sources = self.frequency.iter().flat_map(|table| &table.sources);
         let starts = self.release.boxes_m(&sources.cloned().collect::<Vec<_>>());
-        let source = |mesh: &MeshFile, is_tree| Source {
+        let source = |mesh: &MeshFile, is_tree| MeshSource {
             sheet: Sheet {
                 path: mesh.path().to_owned(),
                 // the check has made sure that the ground is known

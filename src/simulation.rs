@@ -5,21 +5,19 @@ mod rest;
 mod stretches;
 mod crossings;
 mod driver;
-mod fall;
 mod form;
 mod impacts;
 mod passages;
 mod recorder;
 mod rock_in_contact;
 mod settings;
-mod soil;
 mod world;
 mod cells;
 
 use crate::body::ShapeKind;
 pub use crate::contact::FeatureKind;
 use crate::math;
-use crate::release::Drawn;
+use crate::release::DrawnShape;
 use crate::rock::{Motion, Rock, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -189,7 +187,7 @@ impl ShapeOf {
         Self { kind: ShapeKind::Sphere, sides: [1.0; 2], attitude: [1.0, 0.0, 0.0, 0.0] };
 
     /// Of a block as it was drawn.
-    pub fn new(drawn: &Drawn) -> Self {
+    pub fn new(drawn: &DrawnShape) -> Self {
         let attitude = form::quaternion(&drawn.attitude);
         Self { kind: drawn.kind, sides: drawn.sides, attitude }
     }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 /// Pieces of a journey that are timed apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Piece {
+pub enum TimedPiece {
     /// Free flight: from take-off to the next touch.
     Leap,
     /// Which features are near, and which of them touch.
@@ -47,7 +47,7 @@ impl Stopwatches {
 
     /// Counts a piece that began at `begun`.
     #[inline]
-    pub fn stop(&mut self, piece: Piece, begun: Option<Instant>) {
+    pub fn stop(&mut self, piece: TimedPiece, begun: Option<Instant>) {
         if let Some(begun) = begun {
             let took = begun.elapsed();
             if took < INTERRUPTED {
@@ -60,14 +60,14 @@ impl Stopwatches {
     }
 
     /// Time of a piece (s), without what one look at the clock adds to each.
-    pub fn seconds(&self, piece: Piece, look_s: f64) -> f64 {
+    pub fn seconds(&self, piece: TimedPiece, look_s: f64) -> f64 {
         let (took, times) = (self.took[piece as usize], self.times[piece as usize]);
         let each = took.as_secs_f64() / times.max(1) as f64;
         self.times(piece) as f64 * (each - look_s).max(0.0)
     }
 
     /// How often a piece was timed.
-    pub fn times(&self, piece: Piece) -> u64 {
+    pub fn times(&self, piece: TimedPiece) -> u64 {
         self.times[piece as usize] + self.interrupted[piece as usize]
     }
 }
@@ -94,17 +94,17 @@ pub fn look_s() -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Piece, Stopwatches};
+    use super::{Stopwatches, TimedPiece};
 
     #[test]
     fn only_running_clocks_count() {
         for (mut stopwatches, times) in [(Stopwatches::default(), 0), (Stopwatches::running(), 3)] {
             for _ in 0..3 {
                 let begun = stopwatches.now();
-                stopwatches.stop(Piece::Leap, begun);
+                stopwatches.stop(TimedPiece::Leap, begun);
             }
-            assert_eq!(stopwatches.times(Piece::Leap), times);
-            assert!(stopwatches.seconds(Piece::Geometry, 0.0) == 0.0);
+            assert_eq!(stopwatches.times(TimedPiece::Leap), times);
+            assert!(stopwatches.seconds(TimedPiece::Geometry, 0.0) == 0.0);
         }
     }
 }

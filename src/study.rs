@@ -33,7 +33,7 @@ use crate::output::write_atomic;
 use conserve::Conservation;
 use exact::CaseStudy;
 use scene::SceneStudy;
-use stability::{Map, Outcome};
+use stability::{CaseOutcome, Map};
 use std::fs;
 use std::path::Path;
 
@@ -45,8 +45,8 @@ pub use scene_page::{Wish, sentence, setting};
 /// When a file or folder cannot be written.
 pub fn write_exact(
     studies: &[CaseStudy],
-    ladders: &[order::Ladder],
-    values: &[exact_values::Value],
+    ladders: &[order::OrderLadder],
+    values: &[exact_values::ExactValue],
     dir: &Path,
 ) -> Result<()> {
     let figures = dir.join("figures");
@@ -80,7 +80,7 @@ pub fn write_scene(study: &SceneStudy, wish: Option<Wish>, dir: &Path) -> Result
 ///
 /// # Errors
 /// When a file or folder cannot be written.
-pub fn write_stability(outcomes: &[Outcome], maps: &[Map], dir: &Path) -> Result<()> {
+pub fn write_stability(outcomes: &[CaseOutcome], maps: &[Map], dir: &Path) -> Result<()> {
     fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     write_atomic(&dir.join("map.svg"), stability_figure::draw(maps).as_bytes())?;
     write_atomic(&dir.join("stability.csv"), stability::csv(outcomes).as_bytes())?;

@@ -32,6 +32,7 @@ use faces::{Face, Mesh};
 use features::Features;
 use floor::Floor;
 use index::Index;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::PathBuf;
 use stems::Stems;
 use weld::Welded;
@@ -94,10 +95,9 @@ impl Terrain {
         drop(order);
         let mesh = Mesh { vertices_m: &vertices_m, triangles: &triangles };
         let features = Features::of_edges(edges, mesh, !is_many);
-        let is_ground = |t: &u32| !sheets[usize::from(sheet_of[*t as usize])].is_tree;
-        let ground = (0..triangles.len() as u32).filter(is_ground);
-        let faces = ground.map(|t| features.faces.at(t, mesh));
-        let floor = Floor::of(faces, triangles.len(), index.bounds());
+        let is_ground = |t: u32| !sheets[usize::from(sheet_of[t as usize])].is_tree;
+        let ground = |t: u32| is_ground(t).then(|| features.faces.at(t, mesh));
+        let floor = Floor::of(ground, triangles.len(), index.bounds());
         Self {
             origin_m,
             vertices_m,
@@ -164,7 +164,7 @@ impl Terrain {
 
     /// Corners of a triangle (m, local).
     pub fn corners_m(&self, triangle: u32) -> [Vec3; 3] {
-        self.triangles[triangle as usize].map(|v| self.vertices_m[v as usize])
+        self.mesh().corners_m(triangle)
     }
 
     /// Height of the highest slope surface above or below the map-plane point (x, y), local coordinates (m); trees
@@ -213,6 +213,6 @@ impl Terrain {
 
 /// A list in another order.
 #[expect(clippy::needless_pass_by_value, reason = "the old list goes at once: it is large")]
-fn in_order<T: Copy>(order: &[u32], list: Vec<T>) -> Vec<T> {
-    order.iter().map(|&k| list[k as usize]).collect()
+fn in_order<T: Copy + Send + Sync>(order: &[u32], list: Vec<T>) -> Vec<T> {
+    order.par_iter().map(|&k| list[k as usize]).collect()
 }

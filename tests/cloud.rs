@@ -2,13 +2,15 @@
 #![cfg(feature = "cloud")]
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test fails by panicking")]
 
+mod program;
+
 use las::point::{Classification, Format};
 use las::{Builder, Point, Writer};
 use rockfall::rock::Vec3;
 use rockfall::terrain::cloud::{self, Cloud};
 use rockfall::terrain::formats::Options;
 use rockfall::terrain::grid::Grid;
-use rockfall::terrain::read::Source;
+use rockfall::terrain::read::MeshSource;
 use rockfall::terrain::stl::write_ascii;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain};
@@ -91,7 +93,7 @@ fn the_surface_is_the_slope() {
     let path = dir.path().join("cloud.laz");
     std::fs::write(&path, written(true)).unwrap();
     let sheet = Sheet { path, ground: 0, is_tree: false };
-    let source = Source { sheet, up: Up::Z, scale: 1.0, options: Some(Options::default()) };
+    let source = MeshSource { sheet, up: Up::Z, scale: 1.0, options: Some(Options::default()) };
     let origin_m = Vec3::new(2_600_000.0, 1_200_000.0, 0.0);
     let (terrain, health) = Terrain::read(std::slice::from_ref(&source), origin_m, None).unwrap();
     assert!(health.files[0].notes[0].contains("6000 points"), "{:?}", health.files[0].notes);
@@ -191,9 +193,9 @@ fn a_header_that_promises_too_much_is_refused_at_once() {
     }
 }
 
-fn source(path: &Path, ground: u16, options: Options) -> Source {
+fn source(path: &Path, ground: u16, options: Options) -> MeshSource {
     let sheet = Sheet { path: path.to_owned(), ground, is_tree: false };
-    Source { sheet, up: Up::Z, scale: 1.0, options: Some(options) }
+    MeshSource { sheet, up: Up::Z, scale: 1.0, options: Some(options) }
 }
 
 /// A cloud in tiles is the whole cloud, triangle for triangle; one far away stays a surface of its own.
@@ -217,7 +219,7 @@ fn tiles_of_a_cloud_are_one_surface() {
     let far = put("far.laz", far);
     let origin_m = Vec3::new(2_600_000.0, 1_200_000.0, 0.0);
     let read = |paths: &[&Path]| {
-        let sources: Vec<Source> =
+        let sources: Vec<MeshSource> =
             paths.iter().map(|path| source(path, 0, Options::default())).collect();
         Terrain::read(&sources, origin_m, None).unwrap()
     };
@@ -272,7 +274,7 @@ fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
     // on a lattice both are cut along the same diagonals
     let source = |name: &str, options| {
         let sheet = Sheet { path: dir.path().join(name), ground: 0, is_tree: false };
-        Source { sheet, up: Up::Z, scale: 1.0, options: Some(options) }
+        MeshSource { sheet, up: Up::Z, scale: 1.0, options: Some(options) }
     };
     let coarse = Options { resample_m: Some(2.0), ..Options::default() };
     let [mesh, cloud] =
@@ -301,18 +303,7 @@ fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
         );
         let (file, out) = (dir.path().join("scene.toml"), dir.path().join("out"));
         std::fs::write(&file, scene).unwrap();
-        let program = std::process::Command::new(env!("CARGO_BIN_EXE_rockfall"))
-            .args([
-                "run",
-                file.to_str().unwrap(),
-                "--quiet",
-                "--overwrite",
-                "--out",
-                out.to_str().unwrap(),
-            ])
-            .output()
-            .unwrap();
-        assert!(program.status.success(), "{}", String::from_utf8_lossy(&program.stderr));
+        program::run_into(&file, &out);
         let table = std::fs::read_to_string(out.join("releases.csv")).unwrap();
         let column =
             table.lines().next().unwrap().split(',').position(|name| name == "runout_m").unwrap();

@@ -11,7 +11,7 @@ use peak_alloc::PeakAlloc;
 use rockfall::rock::Vec3;
 use rockfall::terrain::formats::Options;
 use rockfall::terrain::geotiff::{Image, encode};
-use rockfall::terrain::read::Source;
+use rockfall::terrain::read::MeshSource;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain};
 
@@ -56,7 +56,7 @@ fn takes_at_most(side: u32, most: usize) {
     std::fs::write(&path, encode(&image).unwrap()).unwrap();
     drop(values);
     let sheet = Sheet { path, ground: 0, is_tree: false };
-    let source = Source { sheet, up: Up::Z, scale: 1.0, options: Some(Options::default()) };
+    let source = MeshSource { sheet, up: Up::Z, scale: 1.0, options: Some(Options::default()) };
     MEMORY.reset_peak_usage();
     let before = MEMORY.current_usage();
     let origin_m = Vec3::new(2_600_000.0, 1_200_000.0, 0.0);

@@ -8,7 +8,7 @@ use rockfall::report::canvas::{Canvas, Label, NORMAL, Pen, paint};
 use rockfall::report::colour::{GREY, INK};
 use rockfall::report::figure::WIDTH_PX;
 use rockfall::report::panel::{FOOT_PX, Panel};
-use rockfall::report::svg::path::Frame;
+use rockfall::report::svg::path::PaperFrame;
 use rockfall::solver::Scheme;
 use rockfall::study::exact_figure::{colour, shape};
 use std::fmt::Write as _;
@@ -307,7 +307,7 @@ fn figure(worlds: &[World]) -> String {
 }
 
 fn draw_panel(canvas: &Canvas<'_>, worlds: &[World], (top, title): (f64, &str), value: &Value) {
-    let frame = Frame { left: 74.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
+    let frame = PaperFrame { left: 74.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
     let values = worlds.iter().map(value).filter(|y| y.is_finite());
     let (low, high) =
         values.fold((f64::INFINITY, 0.0), |(a, b), y| (f64::min(a, y), f64::max(b, y)));

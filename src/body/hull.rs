@@ -18,7 +18,7 @@ pub const fn most_corners() -> usize {
 
 /// A face of the core.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Face {
+pub struct HullFace {
     /// Outward unit normal.
     pub normal: Vec3,
     /// Distance of its plane from the origin along the normal.
@@ -44,7 +44,7 @@ pub struct Core {
     /// Edges.
     pub ridges: Vec<Ridge>,
     /// Faces.
-    pub faces: Vec<Face>,
+    pub faces: Vec<HullFace>,
 }
 
 impl Core {
@@ -67,7 +67,7 @@ impl Core {
             return Err(BadSurface::Flat);
         }
         let corners: Vec<Vec3> = kept.iter().map(|&k| points[k]).collect();
-        let faces: Vec<Face> = planes.iter().map(|plane| plane.face(&kept, &corners)).collect();
+        let faces: Vec<HullFace> = planes.iter().map(|plane| plane.face(&kept, &corners)).collect();
         let ridges = ridges(&faces, &corners);
         Ok(Self { corners, ridges, faces })
     }
@@ -85,7 +85,7 @@ impl Core {
     /// squares where more do.
     pub(super) fn inset(&self, way: f64) -> Vec<Vec3> {
         let moved = |k: usize| {
-            let of = |face: &&Face| face.corners.contains(&(k as u8));
+            let of = |face: &&HullFace| face.corners.contains(&(k as u8));
             let normals: Vec<Vec3> = self.faces.iter().filter(of).map(|face| face.normal).collect();
             let mean = normals.iter().sum::<Vec3>().normalize();
             let mut square = Matrix3::identity() * GUIDE;
@@ -108,7 +108,7 @@ impl Core {
             let s = ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
             (p - a - (b - a) * s).norm()
         });
-        let over = |face: &Face| face.normal.dot(p) - face.level;
+        let over = |face: &HullFace| face.normal.dot(p) - face.level;
         let faces = self.faces.iter().filter(|face| over(face) > 0.0 && self.is_over(face, p));
         let outside = self.faces.iter().any(|face| over(face) > 0.0);
         let nearest = corners.chain(ridges).chain(faces.map(over)).fold(f64::INFINITY, f64::min);
@@ -116,7 +116,7 @@ impl Core {
     }
 
     /// Whether the foot of a point lies on a face.
-    pub fn is_over(&self, face: &Face, p: &Vec3) -> bool {
+    pub fn is_over(&self, face: &HullFace, p: &Vec3) -> bool {
         let count = face.corners.len();
         (0..count).all(|k| {
             let [a, b] = [k, (k + 1) % count].map(|k| self.corners[usize::from(face.corners[k])]);
@@ -126,15 +126,15 @@ impl Core {
 }
 
 /// A plane with all points on one side.
-struct Plane {
+struct HullPlane {
     normal: Vec3,
     level: f64,
     /// Bits of the points on it.
     points: u64,
 }
 
-fn supporting(points: &[Vec3], flat: f64) -> Vec<Plane> {
-    let mut planes: Vec<Plane> = Vec::new();
+fn supporting(points: &[Vec3], flat: f64) -> Vec<HullPlane> {
+    let mut planes: Vec<HullPlane> = Vec::new();
     let count = points.len();
     for i in 0..count {
         for j in i + 1..count {
@@ -154,7 +154,7 @@ fn supporting(points: &[Vec3], flat: f64) -> Vec<Plane> {
 }
 
 /// The plane through point `i`, turned outwards, if all points are on one side of it.
-fn plane_through(points: &[Vec3], (i, normal): (usize, Vec3), flat: f64) -> Option<Plane> {
+fn plane_through(points: &[Vec3], (i, normal): (usize, Vec3), flat: f64) -> Option<HullPlane> {
     let level = normal.dot(&points[i]);
     let (mut above, mut below, mut on) = (false, false, 0);
     for (k, p) in points.iter().enumerate() {
@@ -174,12 +174,12 @@ fn plane_through(points: &[Vec3], (i, normal): (usize, Vec3), flat: f64) -> Opti
         return None;
     }
     let side = if above { -1.0 } else { 1.0 };
-    Some(Plane { normal: normal * side, level: level * side, points: on })
+    Some(HullPlane { normal: normal * side, level: level * side, points: on })
 }
 
-impl Plane {
+impl HullPlane {
     /// The face with its corners in turn; `kept` are the points that are corners.
-    fn face(&self, kept: &[usize], corners: &[Vec3]) -> Face {
+    fn face(&self, kept: &[usize], corners: &[Vec3]) -> HullFace {
         let mut own: Vec<u8> = (0..kept.len())
             .filter(|&k| self.points & (1 << kept[k]) != 0)
             .map(|k| k as u8)
@@ -195,11 +195,11 @@ impl Plane {
             };
             angle(one).total_cmp(&angle(other))
         });
-        Face { normal: self.normal, level: self.level, corners: own }
+        HullFace { normal: self.normal, level: self.level, corners: own }
     }
 }
 
-fn ridges(faces: &[Face], corners: &[Vec3]) -> Vec<Ridge> {
+fn ridges(faces: &[HullFace], corners: &[Vec3]) -> Vec<Ridge> {
     let mut ridges: Vec<Ridge> = Vec::new();
     for face in faces {
         let count = face.corners.len();

@@ -1,7 +1,7 @@
 //! The search: grids that narrow round the best values, even points where there are many values.
 
-use super::site::{Computed, Site};
-use super::{Ends, Trial};
+use super::site::{CalibrationSite, Computed};
+use super::{CalibrationTrial, Ends};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
 use crate::hazard::Agreement;
@@ -25,22 +25,22 @@ pub(super) fn trials(values: usize) -> usize {
 }
 
 /// The search over one set of ends after the other.
-pub(super) struct Search<'a> {
-    pub(super) sites: Vec<Site>,
+pub(super) struct ParameterSearch<'a> {
+    pub(super) sites: Vec<CalibrationSite>,
     pub(super) vary: &'a [VaryTable],
     ensemble: &'a Ensemble,
     /// Ends of the values tried so far, site by site: all searches begin with the same points.
     pub(super) known: Vec<(Vec<f64>, Vec<Computed>)>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> ParameterSearch<'a> {
     pub(super) fn new(
         scenes: &[Scene],
         vary: &'a [VaryTable],
         ensemble: &'a Ensemble,
         (releases, parts): (usize, usize),
     ) -> Result<Self> {
-        let sites = scenes.iter().map(|scene| Site::of(scene, releases, parts));
+        let sites = scenes.iter().map(|scene| CalibrationSite::of(scene, releases, parts));
         Ok(Self { sites: sites.collect::<Result<_>>()?, vary, ensemble, known: Vec::new() })
     }
 
@@ -48,11 +48,11 @@ impl<'a> Search<'a> {
     pub(super) fn best(
         &mut self,
         ends: Ends,
-        tried: &mut dyn FnMut(Ends, &Trial),
-    ) -> Result<(Trial, usize)> {
+        tried: &mut dyn FnMut(Ends, &CalibrationTrial),
+    ) -> Result<(CalibrationTrial, usize)> {
         let mut ranges: Vec<[f64; 2]> = self.vary.iter().map(|vary| [vary.from, vary.to]).collect();
         let in_grid = ranges.len() <= MOST_IN_A_GRID;
-        let mut best: Option<Trial> = None;
+        let mut best: Option<CalibrationTrial> = None;
         let mut count = 0;
         for stage in 0..3 {
             let steps = GRID[usize::from(ranges.len() > 2)][stage];
@@ -83,7 +83,7 @@ impl<'a> Search<'a> {
     }
 
     /// Compares all releases with these values with the measured ends.
-    pub(super) fn trial(&mut self, values: &[f64], ends: Ends) -> Result<Trial> {
+    pub(super) fn trial(&mut self, values: &[f64], ends: Ends) -> Result<CalibrationTrial> {
         let place = self.place(values)?;
         let computed = &self.known[place].1;
         let compare = |of: Ends| {
@@ -93,7 +93,7 @@ impl<'a> Search<'a> {
         };
         let apart = if let Ends::Without(part) = ends { Ends::Only(part) } else { Ends::All };
         let found = |of: Ends| compare(of).ok_or_else(|| self.nothing());
-        Ok(Trial {
+        Ok(CalibrationTrial {
             values: values.to_vec(),
             fitted: found(ends)?,
             kept_apart: found(apart)?,

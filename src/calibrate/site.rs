@@ -3,7 +3,7 @@
 use super::{Ends, put_all};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
-use crate::hazard::{Agreement, Row, Way, Weighted, distances, effective, rank, runouts};
+use crate::hazard::{Agreement, ObservedPath, Row, Weighted, distances, effective, rank, runouts};
 use crate::math;
 use crate::plan::Plan;
 use crate::random::{RandomStream, unit};
@@ -17,12 +17,12 @@ use std::path::Path;
 const SAME_PLACE_M: f64 = 0.1;
 
 /// Computed ways with their release numbers.
-pub(super) type Computed = Vec<(usize, Way)>;
+pub(super) type Computed = Vec<(usize, ObservedPath)>;
 
 /// One scene and what was measured on it.
-pub(super) struct Site {
+pub(super) struct CalibrationSite {
     scene: Scene,
-    measured: Vec<Way>,
+    measured: Vec<ObservedPath>,
     /// The block that each measured end belongs to; empty if the file does not tell.
     blocks: Vec<String>,
     /// The part that each measured end is held out with.
@@ -40,11 +40,12 @@ struct OwnPlaces {
     of_release: Vec<Option<usize>>,
 }
 
-impl Site {
+impl CalibrationSite {
     pub(super) fn of(scene: &Scene, releases: usize, parts: usize) -> Result<Self> {
         let (measured, blocks, part) = match scene.calibrate.as_ref().map(|table| &table.deposits) {
             Some(deposits) => {
-                let (measured, blocks) = (Way::read(deposits)?, Way::read_blocks(deposits)?);
+                let (measured, blocks) =
+                    (ObservedPath::read(deposits)?, ObservedPath::read_blocks(deposits)?);
                 let part =
                     parts_of(measured.len(), &blocks, parts).ok_or_else(|| few(deposits, parts))?;
                 (measured, blocks, part)
@@ -79,7 +80,7 @@ impl Site {
         !self.blocks.is_empty()
     }
 
-    pub(super) fn measured(&self) -> &[Way] {
+    pub(super) fn measured(&self) -> &[ObservedPath] {
         &self.measured
     }
 
@@ -100,7 +101,8 @@ impl Site {
         let one =
             |index: usize, scratch: &mut Scratch| simulate_release(&plan, index, None, scratch);
         for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {
-            let way = |fall| Way::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
+            let way =
+                |fall| ObservedPath::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
             computed.extend(falls?.iter().filter_map(way));
         }
         self.terrain = Some(plan.terrain);
@@ -119,7 +121,7 @@ impl Site {
     }
 
     /// Measured ends of some rows.
-    pub(super) fn ends(&self, rows: &[usize]) -> Vec<Way> {
+    pub(super) fn ends(&self, rows: &[usize]) -> Vec<ObservedPath> {
         rows.iter().map(|&row| self.measured[row]).collect()
     }
 
@@ -171,7 +173,7 @@ impl Site {
 
     /// Independent ends that the measured ones are worth.
     pub(super) fn effective(&self) -> f64 {
-        let runouts: Vec<f64> = self.measured.iter().map(Way::runout_m).collect();
+        let runouts: Vec<f64> = self.measured.iter().map(ObservedPath::runout_m).collect();
         effective(&runouts, &self.blocks)
     }
 
@@ -185,7 +187,7 @@ impl Site {
 
 impl OwnPlaces {
     /// None unless every measured end was released from one of the places.
-    fn of(measured: &[Way], places: &[[f64; 2]]) -> Option<Self> {
+    fn of(measured: &[ObservedPath], places: &[[f64; 2]]) -> Option<Self> {
         let is_near = |one: &[f64; 2], other: &[f64; 2]| {
             math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M
         };
@@ -257,7 +259,7 @@ mod tests {
     /// Three ends from one place and one from another, which the scene releases from evenly, and from a third.
     #[test]
     fn ends_are_compared_from_their_own_places() {
-        let way = |x: f64, y: f64| Way { start_m: [x, 0.0], end_m: [x, y] };
+        let way = |x: f64, y: f64| ObservedPath { start_m: [x, 0.0], end_m: [x, y] };
         let measured = [way(0.0, 1.0), way(5.0, 2.0), way(0.05, 3.0), way(0.0, 4.0)];
         let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]];
         let own = OwnPlaces::of(&measured, &places).unwrap();

@@ -1,9 +1,9 @@
 //! What a fit is worth: how far the measured ends tell the values, and how far computed ends lie from them.
 
-use super::search::Search;
-use super::site::{Computed, Site};
+use super::search::ParameterSearch;
+use super::site::{CalibrationSite, Computed};
 use crate::error::Result;
-use crate::hazard::Spread;
+use crate::hazard::EndSpread;
 use crate::random::{Purpose, stream};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -30,7 +30,7 @@ pub struct Told {
 
 /// One figure of the measured ends of a scene beside the computed one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Measure {
+pub struct SiteMeasure {
     /// The scene.
     pub scene: String,
     /// What, with its unit.
@@ -46,9 +46,9 @@ pub struct Measure {
 }
 
 /// Values, figures, and the number of ends with what they are worth.
-type Worth = (Vec<Told>, Vec<Measure>, (usize, f64));
+type Worth = (Vec<Told>, Vec<SiteMeasure>, (usize, f64));
 
-impl Search<'_> {
+impl ParameterSearch<'_> {
     /// What the fit with these values is worth.
     pub(super) fn worth(&mut self, values: &[f64], seed: u64) -> Result<Worth> {
         let place = self.place(values)?;
@@ -95,9 +95,9 @@ impl Search<'_> {
         self.vary.iter().enumerate().map(one).collect()
     }
 
-    fn measures(&self, place: usize, seed: u64) -> Vec<Measure> {
+    fn measures(&self, place: usize, seed: u64) -> Vec<SiteMeasure> {
         let sites = self.sites.iter().zip(&self.known[place].1);
-        let of_site = |(site, computed): (&Site, &Computed)| {
+        let of_site = |(site, computed): (&CalibrationSite, &Computed)| {
             let all: Vec<usize> = (0..site.measured().len()).collect();
             let found = site.figures(computed, &all);
             let again: Vec<_> = (0..REDRAWS)
@@ -110,7 +110,7 @@ impl Search<'_> {
                 let differences = again.iter().map(|figures| figures[at].2 - figures[at].1);
                 let [low_95, high_95] = middle_95(differences.collect());
                 let (scene, what) = (site.title(), what.to_owned());
-                Measure { scene, what, measured, computed, low_95, high_95 }
+                SiteMeasure { scene, what, measured, computed, low_95, high_95 }
             };
             found.into_iter().enumerate().map(one).collect::<Vec<_>>()
         };
@@ -118,10 +118,10 @@ impl Search<'_> {
     }
 }
 
-impl Site {
+impl CalibrationSite {
     /// Figures of some measured ends and of what was computed beside them: what, measured, computed.
     fn figures(&self, computed: &Computed, rows: &[usize]) -> Vec<(&'static str, f64, f64)> {
-        let mut figures = Spread::figures(&self.ends(rows), &self.weighted(computed, rows));
+        let mut figures = EndSpread::figures(&self.ends(rows), &self.weighted(computed, rows));
         if let Some([mean, off]) = self.ranks(computed, rows) {
             figures.push(("mean rank among computed ends of the same place (–)", mean, 0.5));
             figures.push(("largest distance of these ranks from even ones (–)", off, 0.0));
@@ -151,7 +151,7 @@ impl fmt::Display for Told {
     }
 }
 
-impl fmt::Display for Measure {
+impl fmt::Display for SiteMeasure {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { scene, what, measured, computed, low_95, high_95 } = self;
         write!(

@@ -3,7 +3,7 @@
 use super::terminal::{bar, say};
 use super::words::{of_a_trial, threads};
 use clap::Args;
-use rockfall::calibrate::{self, Ends, Trial};
+use rockfall::calibrate::{self, CalibrationTrial, Ends};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::Result;
 use rockfall::output;
@@ -47,7 +47,7 @@ fn fit(
     progress: impl Fn(),
 ) -> Result<String> {
     let ensemble = Ensemble::new(threads)?;
-    let mut trials: Vec<(Ends, Trial)> = Vec::new();
+    let mut trials: Vec<(Ends, CalibrationTrial)> = Vec::new();
     let found = calibrate::calibrate(scenes, &ensemble, releases, &mut |ends, trial| {
         trials.push((ends, trial.clone()));
         progress();

@@ -1,7 +1,7 @@
 //! `rockfall init`, `rockfall completions`, `rockfall man`: the first steps with the program.
 
 use super::terminal::{say, say_bytes};
-use super::{Asked, words};
+use super::{CommandLine, words};
 use clap::{Args, CommandFactory as _};
 use clap_complete::Shell;
 use rockfall::error::{Error, Result};
@@ -48,7 +48,7 @@ pub(super) struct ManArgs {
 
 /// Prints a manual page.
 pub(super) fn man(args: &ManArgs) -> Result<ExitCode> {
-    let mut command = Asked::command();
+    let mut command = CommandLine::command();
     command.build();
     for word in &args.command {
         command = command.find_subcommand(word).cloned().ok_or_else(|| {
@@ -65,6 +65,6 @@ pub(super) fn man(args: &ManArgs) -> Result<ExitCode> {
 /// Prints what a shell needs to complete the program's words.
 pub(super) fn completions(shell: Shell) -> ExitCode {
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Asked::command(), "rockfall", &mut script);
+    clap_complete::generate(shell, &mut CommandLine::command(), "rockfall", &mut script);
     say_bytes(&script)
 }

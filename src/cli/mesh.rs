@@ -7,7 +7,7 @@ use rockfall::error::{Error, Result};
 use rockfall::file;
 use rockfall::rock::Vec3;
 use rockfall::terrain::formats;
-use rockfall::terrain::read::Source;
+use rockfall::terrain::read::MeshSource;
 use rockfall::terrain::stl::write_binary;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain, make};
@@ -75,8 +75,8 @@ pub(super) fn mesh(command: MeshCommand) -> Result<ExitCode> {
 
 /// Health of mesh files as they will be welded, in words.
 fn check(files: &[PathBuf], up: Up) -> Result<String> {
-    let source = |path: &PathBuf| Source { up, ..slope_source(path) };
-    let sources: Vec<Source> = files.iter().map(source).collect();
+    let source = |path: &PathBuf| MeshSource { up, ..slope_source(path) };
+    let sources: Vec<MeshSource> = files.iter().map(source).collect();
     let (_, health) = Terrain::read(&sources, Vec3::zeros(), None)?;
     Ok(health.to_string())
 }
@@ -122,8 +122,8 @@ fn stems((list, slope): (&Path, &Path), out: &Path, origin_m: Option<&[f64]>) ->
 }
 
 /// A mesh file as it stands.
-fn slope_source(path: &Path) -> Source {
-    Source::stl(Sheet { path: path.to_owned(), ground: 0, is_tree: false })
+fn slope_source(path: &Path) -> MeshSource {
+    MeshSource::stl(Sheet { path: path.to_owned(), ground: 0, is_tree: false })
 }
 
 /// Writes one of the made slopes and shapes.

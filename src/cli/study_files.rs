@@ -5,7 +5,7 @@ use rockfall::error::{Error, Result};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use rockfall::study::scene::{Of, PERCENTS, QUANTITIES, SceneStudy};
-use rockfall::study::stability::{self, Map, Outcome};
+use rockfall::study::stability::{self, CaseOutcome, Map};
 use rockfall::study::target_precision::TargetPrecision;
 use rockfall::study::{self, Wish, conserve, exact, exact_values, order, scene};
 use std::cell::Cell;
@@ -46,7 +46,7 @@ pub(crate) fn stability(out: &Path, done: impl Fn(&str)) -> Result<(String, bool
     let mut words: Vec<String> = outcomes
         .iter()
         .filter(|outcome| !outcome.holds())
-        .map(|Outcome { case, setting, scheme, law, found, bound }| {
+        .map(|CaseOutcome { case, setting, scheme, law, found, bound }| {
             format!(
                 "outside its bound: {case}, {setting}, {}: {law}: {found:.2e} > {bound:.2e}",
                 scheme.name()
@@ -133,7 +133,7 @@ pub(crate) fn scene_errors(options: &StudyOptions, done: impl Fn(String)) -> Res
 
 /// The error that an interval allows is half its width.
 fn wish(target: &TargetPrecision, found: &SceneStudy) -> Option<Wish> {
-    let is_it = |statistic: &scene::Statistic| {
+    let is_it = |statistic: &scene::StudyStatistic| {
         let subject = &found.subjects[statistic.subject];
         subject.of == Of::Rock(target.quantity) && statistic.percent == target.percent
     };

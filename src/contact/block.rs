@@ -12,6 +12,7 @@
 //!
 //! Only edges and vertices that stand out of the mesh take part, so most pairs need no test at all.
 
+use super::neighbours::SAME;
 use super::neighbours::{Neighbours, Peak, SharpEdge};
 use super::{ContactPoint, ContactPoints, Feature};
 use crate::body::Block;
@@ -20,9 +21,7 @@ use crate::terrain::Terrain;
 use nalgebra::Rotation3;
 
 /// Tests of directions are inclusive to this (–).
-const SLACK: f64 = 1e-9;
-/// Contacts whose points are closer than this over the balls' radius, with normals within it, are one (–).
-const SAME: f64 = 1e-6;
+const DIRECTION_SLACK: f64 = 1e-9;
 /// Edges closer to parallel than this meet at their ends (–, squared sine).
 const PARALLEL: f64 = 1e-12;
 
@@ -131,11 +130,11 @@ impl Placed<'_> {
             let (p, foot) = (a + (b - a) * s, edge.a + edge.along * t);
             let off = p - foot;
             let distance = off.norm();
-            if distance >= reach || distance <= SLACK * self.block.ball_m {
+            if distance >= reach || distance <= DIRECTION_SLACK * self.block.ball_m {
                 continue;
             }
             let normal = off / distance;
-            if edge.outward.iter().any(|out| out.dot(&normal) < -SLACK)
+            if edge.outward.iter().any(|out| out.dot(&normal) < -DIRECTION_SLACK)
                 || !self.faces_out(&ridge.into, &normal)
                 || edge.at_border && near.is_covered(terrain, &foot, &p, distance)
             {
@@ -154,7 +153,8 @@ impl Placed<'_> {
         found: &mut Vec<BlockTouch>,
     ) {
         let own = self.pose.attitude.inverse_transform_vector(&(peak.p - self.pose.centre));
-        let touches = |normal: &Vec3| peak.edges.iter().all(|edge| edge.dot(normal) <= SLACK);
+        let touches =
+            |normal: &Vec3| peak.edges.iter().all(|edge| edge.dot(normal) <= DIRECTION_SLACK);
         let covered = |p: &Vec3, distance: f64| {
             peak.at_border && near.is_covered(terrain, &peak.p, p, distance)
         };
@@ -163,7 +163,11 @@ impl Placed<'_> {
             let s = (peak.p - a).dot(&(b - a)) / (b - a).norm_squared();
             let p = a + (b - a) * s;
             let distance = (p - peak.p).norm();
-            if s <= 0.0 || s >= 1.0 || distance >= reach || distance <= SLACK * self.block.ball_m {
+            if s <= 0.0
+                || s >= 1.0
+                || distance >= reach
+                || distance <= DIRECTION_SLACK * self.block.ball_m
+            {
                 continue;
             }
             let normal = (p - peak.p) / distance;
@@ -187,7 +191,7 @@ impl Placed<'_> {
     /// Whether the opposite of a direction lies between the normals of the two faces at an edge of the block.
     fn faces_out(&self, into: &[Vec3; 2], normal: &Vec3) -> bool {
         let own = self.pose.attitude.inverse_transform_vector(normal);
-        into.iter().all(|into| into.dot(&own) >= -SLACK)
+        into.iter().all(|into| into.dot(&own) >= -DIRECTION_SLACK)
     }
 }
 

@@ -15,18 +15,18 @@ mod collect;
 pub(crate) use offered::{Peak, SharpEdge};
 
 use super::closest::closest_on;
-use super::patch::Patches;
+use super::patch::PatchScratch;
 use super::{ContactPoint, ContactPoints, Feature};
 use crate::contact::FeatureKind;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
-pub use pressed::Passage;
+pub use pressed::PressedPath;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
 const SLACK: f64 = 1e-9;
 /// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
 /// rounding of map coordinates, which bends flat edges by 1e-9.
-const SAME: f64 = 1e-6;
+pub(super) const SAME: f64 = 1e-6;
 
 #[derive(Debug, Clone, Copy)]
 struct NearFace {
@@ -100,7 +100,7 @@ pub struct Neighbours {
     edges: Vec<NearEdge>,
     corners: Vec<NearCorner>,
     saddles: Vec<NearSaddle>,
-    patches: Patches,
+    patches: PatchScratch,
     rays: Vec<Vec3>,
     /// All triangles within reach; only looked at when a border or a saddle is near.
     sheets: Vec<u32>,
@@ -117,7 +117,7 @@ impl Default for Neighbours {
             edges: Vec::with_capacity(64),
             corners: Vec::with_capacity(64),
             saddles: Vec::with_capacity(64),
-            patches: Patches::with_room(),
+            patches: PatchScratch::with_room(),
             rays: Vec::with_capacity(512),
             sheets: Vec::with_capacity(256),
             ..Self::empty()
@@ -137,7 +137,7 @@ impl Neighbours {
             edges: Vec::new(),
             corners: Vec::new(),
             saddles: Vec::new(),
-            patches: Patches::default(),
+            patches: PatchScratch::default(),
             rays: Vec::new(),
             sheets: Vec::new(),
             gone: Vec::new(),

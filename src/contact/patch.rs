@@ -14,7 +14,7 @@
 //! A patch acts like one point contact: with `p = √(2U/p_N)`, `a = −∇p` and `n̂ = a/|a|`, its force `p_N p a` is that of a
 //! spring of stiffness `p_N |a|²` pressed in by `p/|a|` along `n̂`, with the same energy.
 
-use super::closest::{Part, closest_part};
+use super::closest::{TrianglePart, closest_part};
 use super::{ContactPoint, Feature, FeatureKind};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
@@ -25,7 +25,7 @@ const BALANCED: f64 = 1e-12;
 
 /// One triangle inside the ball, and the sums of the patch that it stands for.
 #[derive(Debug, Clone, Copy)]
-struct Pressed {
+struct PressedTriangle {
     triangle: u32,
     /// Another one of the same patch, or itself.
     parent: u32,
@@ -53,12 +53,12 @@ const VERTEX: u64 = 1 << 63;
 
 /// Work space.
 #[derive(Debug, Default)]
-pub(super) struct Patches {
-    pressed: Vec<Pressed>,
+pub(super) struct PatchScratch {
+    pressed: Vec<PressedTriangle>,
     shared: Vec<Shared>,
 }
 
-impl Patches {
+impl PatchScratch {
     /// With room for what is usually pressed.
     pub(super) fn with_room() -> Self {
         Self { pressed: Vec::with_capacity(128), shared: Vec::with_capacity(1024) }
@@ -126,21 +126,21 @@ impl Patches {
         }
         let (edges, vertices) = (&terrain.features.edges, terrain.triangles[t as usize]);
         let feature = match part {
-            Part::Face => Feature { kind: FeatureKind::Face, id: t },
-            Part::Side(k) => {
+            TrianglePart::Face => Feature { kind: FeatureKind::Face, id: t },
+            TrianglePart::Side(k) => {
                 Feature { kind: FeatureKind::Edge, id: edges.edge_of(3 * t + k as u32) }
             }
-            Part::Corner(k) => Feature { kind: FeatureKind::Vertex, id: vertices[k] },
+            TrianglePart::Corner(k) => Feature { kind: FeatureKind::Vertex, id: vertices[k] },
         };
         let (distance_m, normal) = match part {
-            Part::Face => (height.abs(), if height < 0.0 { -face.n } else { face.n }),
+            TrianglePart::Face => (height.abs(), if height < 0.0 { -face.n } else { face.n }),
             _ => (distance2.sqrt(), off / distance2.sqrt()),
         };
         let place = self.pressed.len() as u32;
         let penetration = radius - distance_m;
         let nearest = ContactPoint { feature, triangle: t, normal, distance_m, gain2: 1.0 };
         let (square, slope) = (penetration * penetration, normal * penetration);
-        self.pressed.push(Pressed { triangle: t, parent: place, square, slope, nearest });
+        self.pressed.push(PressedTriangle { triangle: t, parent: place, square, slope, nearest });
         for k in 0..3 {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
             let side = b - a;
@@ -213,7 +213,7 @@ impl Patches {
     }
 }
 
-impl Pressed {
+impl PressedTriangle {
     /// The point contact that acts like the patch; `None` where it does not press.
     fn touch(&self, radius: f64) -> Option<ContactPoint> {
         let slope2 = self.slope.norm_squared();

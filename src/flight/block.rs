@@ -48,13 +48,13 @@ struct Moment {
 
 /// A part of the block that may touch, and until when it surely does not (s).
 #[derive(Clone, Copy)]
-struct Due {
+struct DuePart {
     time: f64,
-    part: Part,
+    part: BlockPart,
 }
 
 #[derive(Clone, Copy)]
-enum Part {
+enum BlockPart {
     Corner(usize),
     Ridge(usize),
     Face(usize),
@@ -156,17 +156,17 @@ fn advance(
     tumble: &Tumble,
     near: &mut Neighbours,
     (begins, ends): (f64, f64),
-    dues: &mut Vec<Due>,
+    dues: &mut Vec<DuePart>,
 ) -> Option<f64> {
     let core = &tumble.block.core;
     let bend = tumble.bend();
     let (edges, peaks) = (near.sharp_edges().next().is_some(), near.peaks().next().is_some());
-    let due = |part| Due { time: begins, part };
+    let due = |part| DuePart { time: begins, part };
     dues.clear();
-    dues.extend((0..core.corners.len()).map(|k| due(Part::Corner(k))));
-    dues.extend((0..core.ridges.len()).filter(|_| edges).map(|k| due(Part::Ridge(k))));
-    dues.extend((0..core.faces.len()).filter(|_| peaks).map(|k| due(Part::Face(k))));
-    let mut search = Search { terrain, tumble, near, bend, moment: tumble.moment(begins) };
+    dues.extend((0..core.corners.len()).map(|k| due(BlockPart::Corner(k))));
+    dues.extend((0..core.ridges.len()).filter(|_| edges).map(|k| due(BlockPart::Ridge(k))));
+    dues.extend((0..core.faces.len()).filter(|_| peaks).map(|k| due(BlockPart::Face(k))));
+    let mut search = WindowSearch { terrain, tumble, near, bend, moment: tumble.moment(begins) };
     let mut now = begins;
     loop {
         let next = dues.iter_mut().min_by(|one, other| one.time.total_cmp(&other.time))?;
@@ -186,7 +186,7 @@ fn advance(
 }
 
 /// The search of a window at one moment.
-struct Search<'a> {
+struct WindowSearch<'a> {
     terrain: &'a Terrain,
     tumble: &'a Tumble<'a>,
     near: &'a mut Neighbours,
@@ -203,7 +203,7 @@ struct Flying {
     bend: f64,
 }
 
-impl Search<'_> {
+impl WindowSearch<'_> {
     fn flying(&self, k: usize) -> Flying {
         let own = &self.tumble.block.core.corners[k];
         let arm = self.moment.pose.attitude * own;
@@ -233,11 +233,11 @@ impl Search<'_> {
     }
 
     /// How long a part surely touches nothing (s), no longer than `most`.
-    fn safe_step(&mut self, part: Part, most: f64) -> f64 {
+    fn safe_step(&mut self, part: BlockPart, most: f64) -> f64 {
         match part {
-            Part::Corner(k) => self.of_corner(k, most),
-            Part::Ridge(k) => self.of_ridge(k, most),
-            Part::Face(k) => self.of_face(k, most),
+            BlockPart::Corner(k) => self.of_corner(k, most),
+            BlockPart::Ridge(k) => self.of_ridge(k, most),
+            BlockPart::Face(k) => self.of_face(k, most),
         }
     }
 

@@ -4,7 +4,7 @@
 //! roundings of its own size, and the windows that come out are wider by more than that ([`WIDER`]).
 
 use super::Parabola;
-use crate::terrain::index::{Node, above, below};
+use crate::terrain::index::{BvhNode, above, below};
 use wide::f32x4;
 
 /// Boxes are grown by this much more than the radius (–, relative to it): a ball that meets a plate as it enters the
@@ -24,11 +24,11 @@ pub(super) struct ParabolaBox {
     plus: [f32x4; 3],
     /// Reciprocal of the speeds; of the vertical one without gravity only.
     inv: [f32x4; 3],
-    fall: Option<Fall>,
+    fall: Option<HeightOverTime>,
 }
 
 /// Height over time under gravity.
-struct Fall {
+struct HeightOverTime {
     /// Time of the apex, rounded down and up.
     apex_s: [f32x4; 2],
     /// Its height less, and plus, the radius.
@@ -46,7 +46,7 @@ impl ParabolaBox {
         let apex = c.z + 0.5 * v.z * v.z / g;
         // Gravity so weak that the apex is out of every scale bends no flight.
         let bends = g > 0.0 && apex < STANDING;
-        let fall = bends.then(|| Fall {
+        let fall = bends.then(|| HeightOverTime {
             apex_s: [down(v.z / g), up(v.z / g)],
             less: down(apex - r),
             plus: up(apex + r),
@@ -64,7 +64,7 @@ impl ParabolaBox {
     /// Times within `0..limit` between which the centre may be in the boxes grown by the radius: where the windows begin
     /// and where they end; empty if reversed.
     #[inline]
-    pub(super) fn windows(&self, node: &Node, limit: f64) -> (f32x4, f32x4) {
+    pub(super) fn windows(&self, node: &BvhNode, limit: f64) -> (f32x4, f32x4) {
         let mut window = (f32x4::ZERO, f32x4::splat(limit as f32));
         self.clip(node, 0, &mut window);
         self.clip(node, 1, &mut window);
@@ -83,7 +83,7 @@ impl ParabolaBox {
 
     /// Clips the windows to the time between two planes.
     #[inline]
-    fn clip(&self, node: &Node, axis: usize, (begin, end): &mut (f32x4, f32x4)) {
+    fn clip(&self, node: &BvhNode, axis: usize, (begin, end): &mut (f32x4, f32x4)) {
         let one = (node.lo[axis] - self.plus[axis]) * self.inv[axis];
         let other = (node.hi[axis] - self.less[axis]) * self.inv[axis];
         *begin = begin.fast_max(one.fast_min(other));
@@ -91,11 +91,11 @@ impl ParabolaBox {
     }
 }
 
-impl Fall {
+impl HeightOverTime {
     /// Clips the windows to the time above the floors; gives the squares of the times that the fall from the apex takes
     /// to them, negative if they are never reached.
     #[inline]
-    fn clip_to_floor(&self, node: &Node, (begin, end): &mut (f32x4, f32x4)) -> f32x4 {
+    fn clip_to_floor(&self, node: &BvhNode, (begin, end): &mut (f32x4, f32x4)) -> f32x4 {
         let floor2 = (self.plus - node.lo[2]) * self.over[1];
         let floor = floor2.fast_max(f32x4::ZERO).sqrt();
         *begin = begin.fast_max(self.apex_s[0] - floor);
@@ -105,7 +105,7 @@ impl Fall {
 
     /// Above the roof between two times: leaves the window's hull, unless the way up or the way down is out of it already.
     #[inline]
-    fn clip_to_roof(&self, node: &Node, (begin, end): &mut (f32x4, f32x4)) {
+    fn clip_to_roof(&self, node: &BvhNode, (begin, end): &mut (f32x4, f32x4)) {
         let roof2 = (self.less - node.hi[2]) * self.over[0];
         let roof = roof2.fast_max(f32x4::ZERO).sqrt();
         let up = (self.apex_s[1] - roof) * (1.0 + WIDER);

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// How often a source releases rocks of what size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Law {
+pub enum FrequencyLaw {
     /// Events a year; the sizes are those of the scene's rocks.
     Events {
         /// Events a year (1/year), positive.
@@ -49,7 +49,7 @@ pub struct Stratum {
     pub per_year: f64,
 }
 
-impl Law {
+impl FrequencyLaw {
     /// Its strata, at most so many where it may be cut at will; `source` is their source's number.
     pub(super) fn strata(&self, source: usize, most: usize) -> Vec<Stratum> {
         match self {

@@ -1,6 +1,6 @@
 //! GeoJSON (RFC 7946), with the older member `crs` that names a map projection; GDAL and QGIS write it.
 
-use super::{Corner, Feature, Layer, Shape, Value, degrees, place, polygons};
+use super::{Corner, Geometry, GisFeature, GisLayer, PropertyValue, degrees, place, polygons};
 use crate::error::{Error, Result};
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ const WRITE: &str = "write GeoJSON: a FeatureCollection of points, lines or poly
 ///
 /// # Errors
 /// Text that is no GeoJSON, coordinates in degrees, a geometry that cannot be read; with the number of the feature.
-pub fn parse(bytes: &[u8], file: &Path) -> Result<Layer> {
+pub fn parse(bytes: &[u8], file: &Path) -> Result<GisLayer> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let root: Json = serde_json::from_slice(bytes).map_err(|why| {
         let place = format!("line {}", why.line());
@@ -32,20 +32,22 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Layer> {
             continue;
         }
         let shape = shape(&json["geometry"]).map_err(wrong)?;
-        features.push(Feature {
+        features.push(GisFeature {
             number,
             shape,
             properties: properties(json["properties"].as_object()),
         });
     }
-    Ok(Layer { file: file.to_owned(), epsg, system, features })
+    Ok(GisLayer { file: file.to_owned(), epsg, system, features })
 }
 
-fn properties(json: Option<&Map<String, Json>>) -> BTreeMap<String, Value> {
+fn properties(json: Option<&Map<String, Json>>) -> BTreeMap<String, PropertyValue> {
     let value = |json: &Json| match json {
-        Json::Number(number) => number.as_f64().filter(|x| x.is_finite()).map(Value::Number),
-        Json::String(text) => Some(Value::Text(text.clone())),
-        Json::Bool(is) => Some(Value::Text(is.to_string())),
+        Json::Number(number) => {
+            number.as_f64().filter(|x| x.is_finite()).map(PropertyValue::Number)
+        }
+        Json::String(text) => Some(PropertyValue::Text(text.clone())),
+        Json::Bool(is) => Some(PropertyValue::Text(is.to_string())),
         _ => None,
     };
     let all = json.into_iter().flatten();
@@ -63,18 +65,18 @@ fn system(root: &Json, file: &Path) -> Result<(Option<u32>, Option<String>)> {
     Ok(if is_epsg && code.is_some() { (code, None) } else { (None, Some(name.to_owned())) })
 }
 
-fn shape(geometry: &Json) -> std::result::Result<Shape, String> {
+fn shape(geometry: &Json) -> std::result::Result<Geometry, String> {
     let coordinates = &geometry["coordinates"];
     match geometry["type"].as_str() {
-        Some("Point") => Ok(Shape::Points(vec![corner(coordinates)?])),
-        Some("MultiPoint") => Ok(Shape::Points(corners(coordinates)?)),
-        Some("LineString") => Ok(Shape::Lines(vec![corners(coordinates)?])),
-        Some("MultiLineString") => Ok(Shape::Lines(lines(coordinates)?)),
-        Some("Polygon") => Ok(Shape::Polygons(polygons(lines(coordinates)?))),
+        Some("Point") => Ok(Geometry::Points(vec![corner(coordinates)?])),
+        Some("MultiPoint") => Ok(Geometry::Points(corners(coordinates)?)),
+        Some("LineString") => Ok(Geometry::Lines(vec![corners(coordinates)?])),
+        Some("MultiLineString") => Ok(Geometry::Lines(lines(coordinates)?)),
+        Some("Polygon") => Ok(Geometry::Polygons(polygons(lines(coordinates)?))),
         Some("MultiPolygon") => {
             let parts: std::result::Result<Vec<_>, String> =
                 entries(coordinates)?.iter().map(lines).collect();
-            Ok(Shape::Polygons(polygons(parts?.concat())))
+            Ok(Geometry::Polygons(polygons(parts?.concat())))
         }
         _ => Err(format!("found a geometry of type {}", geometry["type"])),
     }

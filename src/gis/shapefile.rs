@@ -3,7 +3,7 @@
 //! Read here in a few lines and not by a library: every count in the file is checked against its bytes before it is
 //! believed.
 
-use super::{Corner, Feature, Layer, Shape, Value, degrees, place, polygons, wkt};
+use super::{Corner, Geometry, GisFeature, GisLayer, PropertyValue, degrees, place, polygons, wkt};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,12 +22,20 @@ pub(super) fn begins_like_shapefile(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// Bytes that are no Shapefile or end too early, coordinates in degrees, a shape other than points, lines and polygons.
-pub fn parse(shp: &[u8], dbf: Option<&[u8]>, prj: Option<&[u8]>, file: &Path) -> Result<Layer> {
+pub fn parse(shp: &[u8], dbf: Option<&[u8]>, prj: Option<&[u8]>, file: &Path) -> Result<GisLayer> {
     let system = prj.map(|text| wkt::system(&String::from_utf8_lossy(text)));
     if system.as_ref().is_some_and(|system| system.is_geographic) {
         return Err(degrees(file));
     }
+    if let Some(unit) = system.as_ref().and_then(|system| system.other_unit.as_ref()) {
+        let remedy = format!("write it in metres: {}", super::transformed(file, None, ""));
+        return Err(Error::input(file, "unit (.prj)", format!("found {unit}"), remedy));
+    }
     let broken = |place: String, found: &str| Error::input(file, place, found, WRITE);
+    if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("shx")) {
+        let remedy = "write the name of the .shp beside it";
+        return Err(Error::input(file, "start", "found the index of a Shapefile", remedy));
+    }
     if !begins_like_shapefile(shp) || shp.len() < HEAD_BYTES {
         return Err(broken("start".to_owned(), "found no Shapefile"));
     }
@@ -54,27 +62,27 @@ pub fn parse(shp: &[u8], dbf: Option<&[u8]>, prj: Option<&[u8]>, file: &Path) ->
         let shape = shape(content).map_err(|found| broken(record(), &found))?;
         if let Some(shape) = shape.filter(|_| !is_deleted) {
             let properties = row.cloned().flatten().unwrap_or_default();
-            features.push(Feature { number, shape, properties });
+            features.push(GisFeature { number, shape, properties });
         }
     }
     let epsg = system.as_ref().and_then(|system| system.epsg);
     let name = system.filter(|_| epsg.is_none()).map(|system| system.name);
-    Ok(Layer { file: file.to_owned(), epsg, system: name, features })
+    Ok(GisLayer { file: file.to_owned(), epsg, system: name, features })
 }
 
 /// The shape of a record; none for a null shape. Z and M variants have the plane coordinates at the same place.
-fn shape(content: &[u8]) -> std::result::Result<Option<Shape>, String> {
+fn shape(content: &[u8]) -> std::result::Result<Option<Geometry>, String> {
     let cut_off = || "found a shape that ends too early".to_owned();
     let kind = le_u32(content, 0).ok_or_else(cut_off)?;
     match kind {
         0 => Ok(None),
-        1 | 11 | 21 => Ok(Some(Shape::Points(vec![corner(content, 4)?]))),
+        1 | 11 | 21 => Ok(Some(Geometry::Points(vec![corner(content, 4)?]))),
         8 | 18 | 28 => {
             let count = le_u32(content, 36).ok_or_else(cut_off)? as usize;
-            Ok(Some(Shape::Points(corners(content, 40, count)?)))
+            Ok(Some(Geometry::Points(corners(content, 40, count)?)))
         }
-        3 | 13 | 23 => Ok(Some(Shape::Lines(parts(content)?))),
-        5 | 15 | 25 => Ok(Some(Shape::Polygons(polygons(parts(content)?)))),
+        3 | 13 | 23 => Ok(Some(Geometry::Lines(parts(content)?))),
+        5 | 15 | 25 => Ok(Some(Geometry::Polygons(polygons(parts(content)?)))),
         other => Err(format!("found a shape of type {other}; points, lines and polygons are read")),
     }
 }
@@ -124,23 +132,27 @@ fn be_u32(bytes: &[u8], at: usize) -> Option<u32> {
 }
 
 /// The properties of a row.
-type Row = BTreeMap<String, Value>;
+type PropertyRow = BTreeMap<String, PropertyValue>;
 
 /// A column: name, type, length in bytes.
-struct Column {
+struct DbfColumn {
     name: String,
     kind: u8,
     bytes: usize,
 }
 
 /// All rows of a dBase table, none for a deleted one; none at all when it is damaged.
-fn table(dbf: &[u8]) -> Option<Vec<Option<Row>>> {
+fn table(dbf: &[u8]) -> Option<Vec<Option<PropertyRow>>> {
     let le_u16 = |at: usize| Some(u16::from_le_bytes(dbf.get(at..at + 2)?.try_into().ok()?));
     let count = le_u32(dbf, 4)? as usize;
     let (head, row_bytes) = (usize::from(le_u16(8)?), usize::from(le_u16(10)?));
     let descriptions = dbf.get(32..head)?.chunks_exact(32).take_while(|field| field[0] != b'\r');
-    let columns: Vec<Column> = descriptions
-        .map(|field| Column { name: text(&field[..11]), kind: field[11], bytes: field[16].into() })
+    let columns: Vec<DbfColumn> = descriptions
+        .map(|field| DbfColumn {
+            name: text(&field[..11]),
+            kind: field[11],
+            bytes: field[16].into(),
+        })
         .collect();
     if row_bytes == 0 || columns.iter().map(|column| column.bytes).sum::<usize>() + 1 > row_bytes {
         return None;
@@ -149,18 +161,20 @@ fn table(dbf: &[u8]) -> Option<Vec<Option<Row>>> {
     (rows.len() == count).then(|| rows.into_iter().map(|bytes| row(&columns, bytes)).collect())
 }
 
-fn row(columns: &[Column], bytes: &[u8]) -> Option<Row> {
+fn row(columns: &[DbfColumn], bytes: &[u8]) -> Option<PropertyRow> {
     let (mark, mut rest) = bytes.split_first()?;
-    let mut row = Row::new();
+    let mut row = PropertyRow::new();
     for column in columns {
         let (field, behind) = rest.split_at_checked(column.bytes)?;
         rest = behind;
         let text = text(field);
         // numbers that do not fit their column are stored as stars
         let value = match column.kind {
-            b'N' | b'F' => text.parse().ok().filter(|x: &f64| x.is_finite()).map(Value::Number),
+            b'N' | b'F' => {
+                text.parse().ok().filter(|x: &f64| x.is_finite()).map(PropertyValue::Number)
+            }
             _ if text.is_empty() => None,
-            _ => Some(Value::Text(text)),
+            _ => Some(PropertyValue::Text(text)),
         };
         row.extend(value.map(|value| (column.name.clone(), value)));
     }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 const FILE: &str = "drawn";
 
-fn geojson(text: &str) -> Result<Layer> {
+fn geojson(text: &str) -> Result<GisLayer> {
     parse_geojson(text.as_bytes(), Path::new(FILE))
 }
 
@@ -27,10 +27,10 @@ const HOLED: &str = "[[[0,0],[9,0],[9,9],[0,9],[0,0]],[[3,3],[3,6],[6,6],[6,3],[
 #[test]
 fn every_geometry_is_read() {
     for (kind, coordinates, shape) in [
-        ("Point", "[1,2,99]", Shape::Points(vec![[1.0, 2.0]])),
-        ("MultiPoint", "[[1,2],[3,4]]", Shape::Points(vec![[1.0, 2.0], [3.0, 4.0]])),
-        ("LineString", "[[1,2],[3,4]]", Shape::Lines(vec![vec![[1.0, 2.0], [3.0, 4.0]]])),
-        ("MultiLineString", "[[[1,2],[3,4]]]", Shape::Lines(vec![vec![[1.0, 2.0], [3.0, 4.0]]])),
+        ("Point", "[1,2,99]", Geometry::Points(vec![[1.0, 2.0]])),
+        ("MultiPoint", "[[1,2],[3,4]]", Geometry::Points(vec![[1.0, 2.0], [3.0, 4.0]])),
+        ("LineString", "[[1,2],[3,4]]", Geometry::Lines(vec![vec![[1.0, 2.0], [3.0, 4.0]]])),
+        ("MultiLineString", "[[[1,2],[3,4]]]", Geometry::Lines(vec![vec![[1.0, 2.0], [3.0, 4.0]]])),
     ] {
         let layer = geojson(&collection(&feature(kind, coordinates))).unwrap();
         assert_eq!(layer.features[0].shape, shape);
@@ -50,7 +50,7 @@ fn every_geometry_is_read() {
         ("Polygon", turned.to_owned()),
     ] {
         let layer = geojson(&collection(&feature(kind, &coordinates))).unwrap();
-        assert_eq!(layer.features[0].shape, Shape::Polygons(vec![expected.clone()]));
+        assert_eq!(layer.features[0].shape, Geometry::Polygons(vec![expected.clone()]));
     }
 }
 
@@ -135,15 +135,51 @@ fn a_shapefile_says_what_the_geojson_says() {
     assert_eq!(layer.features[0].property("name"), drawn.features[0].property("name"));
     assert_eq!(layer.features[0].property("weight"), drawn.features[0].property("weight"));
     // names of columns are cut off after ten bytes
-    assert_eq!(layer.features[0].property("frequency_per_year"), Some(&Value::Number(0.125)));
+    assert_eq!(
+        layer.features[0].property("frequency_per_year"),
+        Some(&PropertyValue::Number(0.125))
+    );
     assert_eq!(layer.epsg, Some(2056));
     // programs of ESRI write no code: the name is kept
     let esri = b"PROJCS[\"CH1903+_LV95\",GEOGCS[\"GCS_CH1903+\"],UNIT[\"Meter\",1.0]]";
     let layer = parse_shapefile(&shp, None, Some(esri), Path::new(FILE)).unwrap();
     assert_eq!((layer.epsg, layer.system.as_deref()), (None, Some("CH1903+_LV95")));
+    let feet = b"PROJCS[\"Feet\",GEOGCS[\"G\",UNIT[\"Degree\",0.0174532925199433]],UNIT[\"US survey foot\",0.304800609601219]]";
+    let said = parse_shapefile(&shp, None, Some(feet), Path::new(FILE)).unwrap_err().to_string();
+    assert!(said.contains("found US survey foot; write it in metres: ogr2ogr"), "{said}");
+    let said = parse_shapefile(&shp, None, None, Path::new("drawn.SHX")).unwrap_err().to_string();
+    assert!(said.contains("found the index of a Shapefile; write the name of the .shp"), "{said}");
     let degrees = b"GEOGCS[\"GCS_WGS_1984\",UNIT[\"Degree\",0.017]]";
     let said = parse_shapefile(&shp, None, Some(degrees), Path::new(FILE)).unwrap_err().to_string();
     assert!(said.contains("ogr2ogr -t_srs"), "{said}");
+}
+
+/// What says that a length is in feet is found in every spelling, and angles, scales and metres are not taken for it.
+#[test]
+fn units_of_length_are_told_from_angles() {
+    let unit = |text: &str| wkt::system(text).other_unit;
+    let metres = "PROJCRS[\"a\",BASEGEOGCRS[\"b\",ELLIPSOID[\"c\",6377397.155,299.15,LENGTHUNIT[\"metre\",1]],PRIMEM[\"Greenwich\",0,ANGLEUNIT[\"degree\",0.0174532925199433]]],\
+        CONVERSION[\"d\",PARAMETER[\"k\",0.9996,SCALEUNIT[\"unity\",1]]],CS[Cartesian,2],LENGTHUNIT[\"metre\",1,ID[\"EPSG\",9001]]]";
+    assert_eq!(unit(metres), None);
+    assert_eq!(
+        unit(&metres.replace("\"metre\",1,ID", "\"foot\",0.3048,ID")).as_deref(),
+        Some("foot")
+    );
+    let old = "COMPD_CS[\"a\",PROJCS[\"b\",GEOGCS[\"c\",UNIT[\"grad\",0.01570796]],UNIT[\"Meter\",1.0]],VERT_CS[\"d\",UNIT[\"metre\",1.0]]]";
+    assert_eq!(unit(old), None);
+    let heights =
+        old.replace("UNIT[\"metre\",1.0]", "UNIT[ \"US survey foot\", 0.304800609601219 ]");
+    assert_eq!(unit(&heights.replace("[ ", "[")).as_deref(), Some("US survey foot"));
+}
+
+#[test]
+fn a_file_is_converted_into_another_one() {
+    let command = |name: &str, from: &str| transformed(Path::new(name), Some(2056), from);
+    assert_eq!(command("a/z.shp", ""), "ogr2ogr -t_srs EPSG:2056 z.geojson a/z.shp");
+    assert_eq!(
+        command("z.geojson", "4326"),
+        "ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:2056 z_map.geojson z.geojson"
+    );
 }
 
 #[test]

@@ -14,7 +14,7 @@ mod strata;
 pub use barriers::AnnualBarrier;
 pub use cells::{YearMap, year_maps};
 pub use curve::{ExceedancePoint, ReturnEnergy};
-pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, Year, annual};
+pub use places::{Above, Annual, AnnualFigures, AnnualPlace, Saved, YearSums, annual};
 pub use risk::{Object, Risk, RiskKind, Vehicles};
 
 use crate::frequency::{Frequency, radius_of_m3};
@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 /// What a scene asks of the year.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Asked {
+pub struct AnnualRequest {
     /// Sources and their laws; none leaves all numbers a year out.
     pub frequency: Option<Frequency>,
     /// Roads, paths and houses; each has an evaluation line of its name.
@@ -36,7 +36,7 @@ pub struct Asked {
     pub largest_m: Vec<f64>,
 }
 
-impl Asked {
+impl AnnualRequest {
     /// Radius of the largest rock of a stratum (m); 0 where nothing says it.
     fn largest_m(&self, stratum: usize) -> f64 {
         let of_law = || {

@@ -235,31 +235,12 @@ fn summary(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hazard::lines::tests::row;
     use std::collections::BTreeMap;
     use std::convert::Infallible;
 
     fn barrier(name: &str, height_m: f64, capacity_j: f64) -> Barrier {
         Barrier { name: name.to_owned(), height_m, capacity_j, design: None, elsewhere: vec![] }
-    }
-
-    fn row(index: usize, line: &str, time_s: f64, height_m: f64, joule: f64) -> CrossingRow {
-        CrossingRow {
-            index,
-            line: line.to_owned(),
-            time_s,
-            along_m: 0.0,
-            height_m,
-            speed_m_s: 1.0,
-            translational_j: joule,
-            rotational_j: 0.0,
-            height_normal_m: height_m,
-            descent_deg: 0.0,
-            mass_kg: 1.0,
-            radius_m: 0.5,
-            times: 1,
-            position_m: [0.0; 3],
-            top_m: None,
-        }
     }
 
     /// By hand: rock 0 is stopped by the upper net and never seen below; rock 1 flies over the upper one and is stopped

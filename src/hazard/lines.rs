@@ -309,3 +309,35 @@ impl Line {
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::CrossingRow;
+
+    /// A crossing of a sphere of 1 kg whose energy is all translational.
+    pub(crate) fn row(
+        index: usize,
+        line: &str,
+        time_s: f64,
+        height_m: f64,
+        total_j: f64,
+    ) -> CrossingRow {
+        CrossingRow {
+            index,
+            line: line.to_owned(),
+            time_s,
+            along_m: 0.0,
+            height_m,
+            speed_m_s: 1.0,
+            translational_j: total_j,
+            rotational_j: 0.0,
+            height_normal_m: height_m,
+            descent_deg: 0.0,
+            mass_kg: 1.0,
+            radius_m: 0.5,
+            times: 1,
+            position_m: [0.0; 3],
+            top_m: None,
+        }
+    }
+}

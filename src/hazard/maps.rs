@@ -48,8 +48,8 @@ impl MapFrame {
 
 /// What is known of one cell.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(from = "Packed", into = "Packed")]
-struct Cell {
+#[serde(from = "PackedCell", into = "PackedCell")]
+struct MapCell {
     passages: u32,
     deposits: u32,
     largest_j: f64,
@@ -57,27 +57,27 @@ struct Cell {
     totals_j: Counts,
     heights_m: Counts,
     /// Rocks with a total energy of at least each of [`INTENSITY_J`].
-    above: [Strata; 2],
+    above: [StratumCounts; 2],
 }
 
 /// A cell on the disk: in the order of its fields, without their names, which would be most of it.
-type Packed = (u32, u32, f64, f64, Counts, Counts, [Strata; 2]);
+type PackedCell = (u32, u32, f64, f64, Counts, Counts, [StratumCounts; 2]);
 
-impl From<Packed> for Cell {
-    fn from(packed: Packed) -> Self {
+impl From<PackedCell> for MapCell {
+    fn from(packed: PackedCell) -> Self {
         let (passages, deposits, largest_j, largest_m, totals_j, heights_m, above) = packed;
         Self { passages, deposits, largest_j, largest_m, totals_j, heights_m, above }
     }
 }
 
-impl From<Cell> for Packed {
-    fn from(cell: Cell) -> Self {
-        let Cell { passages, deposits, largest_j, largest_m, totals_j, heights_m, above } = cell;
+impl From<MapCell> for PackedCell {
+    fn from(cell: MapCell) -> Self {
+        let MapCell { passages, deposits, largest_j, largest_m, totals_j, heights_m, above } = cell;
         (passages, deposits, largest_j, largest_m, totals_j, heights_m, above)
     }
 }
 
-impl Cell {
+impl MapCell {
     fn join(&mut self, other: &Self) {
         self.passages += other.passages;
         self.deposits += other.deposits;
@@ -96,7 +96,7 @@ impl Cell {
     /// less than 95 % of all weight stays below. Of `n` rocks of equal weight at least `n − ⌈0.95 n⌉ + 1` must reach it
     /// then. The largest would grow with the number of releases.
     fn intensity(&self, weights: &Weights) -> f64 {
-        let reaches = |above: &&Strata| {
+        let reaches = |above: &&StratumCounts| {
             if weights.are_equal() {
                 let rank = (0.95 * f64::from(self.passages)).ceil().max(1.0);
                 let needed = (f64::from(self.passages) - rank + 1.0).max(1.0);
@@ -113,9 +113,9 @@ impl Cell {
 
 /// Rocks of each stratum, by rising stratum.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-struct Strata(Vec<(u16, u32)>);
+struct StratumCounts(Vec<(u16, u32)>);
 
-impl Strata {
+impl StratumCounts {
     fn add(&mut self, stratum: u16, count: u32) {
         match self.0.binary_search_by_key(&stratum, |(stratum, _)| *stratum) {
             Ok(at) => self.0[at].1 += count,
@@ -218,7 +218,7 @@ impl Layer {
         }
     }
 
-    fn of(self, cell: &Cell, weights: &Weights) -> f64 {
+    fn of(self, cell: &MapCell, weights: &Weights) -> f64 {
         match self {
             Self::Passages => f64::from(cell.passages),
             Self::Reach if weights.are_equal() => {
@@ -246,12 +246,12 @@ impl Layer {
 pub struct Maps {
     /// Where the cells lie.
     pub frame: MapFrame,
-    cells: BTreeMap<u32, Cell>,
+    cells: BTreeMap<u32, MapCell>,
 }
 
 /// What a resumed run needs of the maps before it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct MapState(Vec<(u32, Cell)>);
+pub struct MapState(Vec<(u32, MapCell)>);
 
 impl Maps {
     /// Goes on from what earlier rocks left.

@@ -2,7 +2,7 @@
 
 mod spread;
 
-pub use spread::{Spread, effective, rank};
+pub use spread::{EndSpread, effective, rank};
 
 use super::row::Row;
 use crate::error::{Error, Result};
@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// A rock's way in plan view, measured or computed (map coordinates).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Way {
+pub struct ObservedPath {
     /// Where it was released (m).
     pub start_m: [f64; 2],
     /// Where it ended (m).
@@ -21,7 +21,7 @@ pub struct Way {
 }
 
 /// A way and what it weighs (–).
-pub type Weighted = (Way, f64);
+pub type Weighted = (ObservedPath, f64);
 
 /// Columns that a file of measured ends must have; it may have more.
 #[derive(Debug, Deserialize)]
@@ -56,7 +56,7 @@ pub struct Agreement {
     pub computed_side_m: f64,
 }
 
-impl Way {
+impl ObservedPath {
     /// Horizontal distance from release to end (m).
     pub fn runout_m(&self) -> f64 {
         let [x, y] = self.vector_m();
@@ -102,12 +102,12 @@ impl Way {
 
 /// The column that tells which throws are of one block.
 #[derive(Debug, Deserialize)]
-struct Thrown {
+struct BlockColumn {
     #[serde(alias = "block_id")]
     block: String,
 }
 
-impl Way {
+impl ObservedPath {
     /// The block of each measured end, from the column `block` or `block_id`; empty where there is none.
     ///
     /// # Errors
@@ -115,7 +115,7 @@ impl Way {
     pub fn read_blocks(path: &Path) -> Result<Vec<String>> {
         let file = file::open(path, LONGEST_TEXT)?;
         let rows = csv::Reader::from_reader(file).into_deserialize();
-        let blocks = rows.map(|row: csv::Result<Thrown>| row.ok().map(|thrown| thrown.block));
+        let blocks = rows.map(|row: csv::Result<BlockColumn>| row.ok().map(|thrown| thrown.block));
         Ok(blocks.collect::<Option<_>>().unwrap_or_default())
     }
 }
@@ -146,13 +146,13 @@ impl Agreement {
     }
 
     /// Compares measured and computed ways; none if either is empty.
-    pub fn of(measured: &[Way], computed: &[Way]) -> Option<Self> {
+    pub fn of(measured: &[ObservedPath], computed: &[ObservedPath]) -> Option<Self> {
         let computed: Vec<Weighted> = computed.iter().map(|way| (*way, 1.0)).collect();
         Self::of_weighted(measured, &computed)
     }
 
     /// The same where computed ways weigh unlike (–): those of weight 0 take no part.
-    pub fn of_weighted(measured: &[Way], computed: &[Weighted]) -> Option<Self> {
+    pub fn of_weighted(measured: &[ObservedPath], computed: &[Weighted]) -> Option<Self> {
         let even: Vec<Weighted> = measured.iter().map(|way| (*way, 1.0)).collect();
         let (one, other) = (runouts(&even), runouts(computed));
         let (n, m) = (one.len() as f64, other.len() as f64);
@@ -172,8 +172,8 @@ impl Agreement {
             ks,
             ks_limit: 1.36 * ((n + m) / (n * m)).sqrt(),
             area_m,
-            measured_side_m: Spread::of(&even, along).across_m(),
-            computed_side_m: Spread::of(computed, along).across_m(),
+            measured_side_m: EndSpread::of(&even, along).across_m(),
+            computed_side_m: EndSpread::of(computed, along).across_m(),
         })
     }
 }
@@ -214,8 +214,9 @@ pub fn distances(one: &[(f64, f64)], other: &[(f64, f64)]) -> (f64, f64) {
 }
 
 /// Unit vector of the mean way.
-fn mean_direction(ways: &[Way]) -> [f64; 2] {
-    let sum = ways.iter().map(Way::vector_m).fold([0.0, 0.0], |s, v| [s[0] + v[0], s[1] + v[1]]);
+fn mean_direction(ways: &[ObservedPath]) -> [f64; 2] {
+    let sum =
+        ways.iter().map(ObservedPath::vector_m).fold([0.0, 0.0], |s, v| [s[0] + v[0], s[1] + v[1]]);
     let length = math::hypot(sum[0], sum[1]).max(f64::MIN_POSITIVE);
     [sum[0] / length, sum[1] / length]
 }
@@ -224,8 +225,8 @@ fn mean_direction(ways: &[Way]) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    fn ways(runouts: &[f64]) -> Vec<Way> {
-        let way = |r: &f64| Way { start_m: [5.0, 5.0], end_m: [5.0, 5.0 + r] };
+    fn ways(runouts: &[f64]) -> Vec<ObservedPath> {
+        let way = |r: &f64| ObservedPath { start_m: [5.0, 5.0], end_m: [5.0, 5.0 + r] };
         runouts.iter().map(way).collect()
     }
 

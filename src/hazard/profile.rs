@@ -15,12 +15,12 @@ pub struct Profile {
     /// Length of a stretch (m); 0 before the first rock.
     step_m: f64,
     /// From the release on.
-    stretches: Vec<Stretch>,
+    stretches: Vec<StretchSums>,
 }
 
 /// What is known of one stretch.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-struct Stretch {
+struct StretchSums {
     fastest_m_s: f64,
     highest_m: f64,
     #[serde(with = "super::classes::in_words")]
@@ -31,7 +31,7 @@ struct Stretch {
 
 /// What is said of one quantity in one stretch.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OfStretch {
+pub struct StretchStatistic {
     /// Median over the rocks that were there; its interval as that of every percentile.
     pub median: Percentile,
     /// 95th percentile.
@@ -48,9 +48,9 @@ pub struct ProfilePoint {
     /// Rocks that were in it.
     pub rocks: usize,
     /// Largest speed of each (m/s).
-    pub speed_m_s: OfStretch,
+    pub speed_m_s: StretchStatistic,
     /// Largest height of each above the ground (m).
-    pub height_m: OfStretch,
+    pub height_m: StretchStatistic,
 }
 
 impl Profile {
@@ -83,7 +83,7 @@ impl Profile {
         }
         self.step_m = other.step_m;
         for (number, one) in other.stretches.iter().enumerate() {
-            let Stretch { fastest_m_s, highest_m, speeds_m_s, heights_m } = one;
+            let StretchSums { fastest_m_s, highest_m, speeds_m_s, heights_m } = one;
             let stretch = self.at(number);
             stretch.fastest_m_s = stretch.fastest_m_s.max(*fastest_m_s);
             stretch.highest_m = stretch.highest_m.max(*highest_m);
@@ -97,13 +97,13 @@ impl Profile {
         let of = |counts: &Counts, largest: f64| {
             let within =
                 |found: Percentile| Percentile { value: found.value.min(largest), ..found };
-            Some(OfStretch {
+            Some(StretchStatistic {
                 median: within(counts.percentile_with_interval(0.50, weights)?),
                 p95: within(counts.percentile_with_interval(0.95, weights)?),
                 largest,
             })
         };
-        let point = |(number, one): (usize, &Stretch)| {
+        let point = |(number, one): (usize, &StretchSums)| {
             Some(ProfilePoint {
                 from_m: number as f64 * self.step_m,
                 rocks: one.speeds_m_s.rocks(),
@@ -114,9 +114,9 @@ impl Profile {
         self.stretches.iter().enumerate().filter_map(point).collect()
     }
 
-    fn at(&mut self, number: usize) -> &mut Stretch {
+    fn at(&mut self, number: usize) -> &mut StretchSums {
         if self.stretches.len() <= number {
-            self.stretches.resize_with(number + 1, Stretch::default);
+            self.stretches.resize_with(number + 1, StretchSums::default);
         }
         &mut self.stretches[number]
     }
@@ -149,7 +149,7 @@ mod tests {
         let points = of(0..200).points(&Weights::equal(200));
         let rocks: Vec<usize> = points.iter().map(|point| point.rocks).collect();
         assert_eq!(rocks, [200, 200, 100, 100]);
-        let OfStretch { median, p95, largest } = &points[0].speed_m_s;
+        let StretchStatistic { median, p95, largest } = &points[0].speed_m_s;
         let near = |found: f64, value: f64| (found / value - 1.0).abs() < 0.026;
         assert!(near(median.value, 50.0) && near(p95.value, 95.0), "{points:?}");
         assert!(near(p95.low_95.unwrap(), 92.0) && near(p95.high_95.unwrap(), 98.0), "{p95:?}");

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// Events a year with their 95 % interval, and what moves them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Rate {
+pub struct EventRate {
     /// Rocks that count.
     pub rocks: usize,
     /// Events a year (1/year).
@@ -25,7 +25,7 @@ pub struct Rate {
     pub by_exponent: Option<f64>,
 }
 
-impl Rate {
+impl EventRate {
     /// Return period `1/λ` (years); none of nothing.
     pub fn return_period_years(&self) -> Option<f64> {
         (self.per_year > 0.0).then(|| 1.0 / self.per_year)
@@ -224,9 +224,9 @@ impl<'a> Running<'a> {
     }
 
     /// All of it; `has_exponent` where a source has one.
-    pub(super) fn rate(&self, limits: &Limits, has_exponent: bool) -> Rate {
+    pub(super) fn rate(&self, limits: &Limits, has_exponent: bool) -> EventRate {
         let [per_year, low_95, high_95] = self.estimate(limits);
-        Rate {
+        EventRate {
             rocks: self.strata.iter().map(|sums| sums.rocks as usize).sum(),
             per_year,
             low_95,

@@ -56,7 +56,7 @@ pub fn unstopped(barriers: &[Barrier], rock: &[CrossingRow]) -> Vec<bool> {
 
 /// Rocks that pass one line, 24 bytes each.
 #[derive(Default)]
-struct Seen {
+struct LinePassages {
     behind: BTreeSet<usize>,
     releases: Vec<u32>,
     energies_j: Vec<f64>,
@@ -83,9 +83,9 @@ pub fn residual<E>(
     if barriers.is_empty() || lines.is_empty() {
         return Ok(Vec::new());
     }
-    let mut seen: Vec<Seen> = lines.iter().map(|_| Seen::default()).collect();
+    let mut seen: Vec<LinePassages> = lines.iter().map(|_| LinePassages::default()).collect();
     by_rock(rows, |rock| take(barriers, &lines, rock, &mut seen))?;
-    let said = |(line, seen): (&&LineInfo, Seen)| Residual {
+    let said = |(line, seen): (&&LineInfo, LinePassages)| Residual {
         line: line.name.clone(),
         behind: seen.behind.iter().map(|&which| barriers[which].name.clone()).collect(),
         without: seen.passing(|_| true, weights),
@@ -94,7 +94,12 @@ pub fn residual<E>(
     Ok(lines.iter().zip(seen).map(said).collect())
 }
 
-fn take(barriers: &[Barrier], lines: &[&LineInfo], rock: &[CrossingRow], seen: &mut [Seen]) {
+fn take(
+    barriers: &[Barrier],
+    lines: &[&LineInfo],
+    rock: &[CrossingRow],
+    seen: &mut [LinePassages],
+) {
     let passes = unstopped(barriers, rock);
     for (row, passes) in rock.iter().zip(passes) {
         let Some(at) = lines.iter().position(|line| line.name == row.line) else { continue };
@@ -109,7 +114,7 @@ fn take(barriers: &[Barrier], lines: &[&LineInfo], rock: &[CrossingRow], seen: &
     }
 }
 
-impl Seen {
+impl LinePassages {
     /// What is said of some of them, by their place in the lists.
     fn passing(&self, is_one: impl Fn(usize) -> bool, weights: &Weights) -> Passing {
         let release = |at: usize| self.releases[at] as usize;
@@ -133,27 +138,8 @@ impl Seen {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hazard::lines::tests::row;
     use std::convert::Infallible;
-
-    fn row(index: usize, line: &str, time_s: f64, total_j: f64) -> CrossingRow {
-        CrossingRow {
-            index,
-            line: line.to_owned(),
-            time_s,
-            along_m: 0.0,
-            height_m: 0.1,
-            speed_m_s: 1.0,
-            translational_j: total_j,
-            rotational_j: 0.0,
-            height_normal_m: 0.1,
-            descent_deg: 0.0,
-            mass_kg: 1.0,
-            radius_m: 0.5,
-            times: 1,
-            position_m: [0.0; 3],
-            top_m: None,
-        }
-    }
 
     /// By hand: the net holds 100 J. Rock 0 passes the path above the net and is stopped by it, rock 1 breaks through,
     /// rock 2 meets the road first and the net behind it, rock 3 never meets the net.
@@ -173,14 +159,14 @@ mod tests {
             of_barrier: false,
         };
         let rows = [
-            row(0, "path", 1.0, 40.0),
-            row(0, "road", 3.0, 60.0),
-            row(0, "net", 2.0, 50.0),
-            row(1, "road", 3.0, 400.0),
-            row(1, "net", 2.0, 500.0),
-            row(2, "road", 1.0, 30.0),
-            row(2, "net", 2.0, 20.0),
-            row(3, "road", 1.0, 10.0),
+            row(0, "path", 1.0, 0.1, 40.0),
+            row(0, "road", 3.0, 0.1, 60.0),
+            row(0, "net", 2.0, 0.1, 50.0),
+            row(1, "road", 3.0, 0.1, 400.0),
+            row(1, "net", 2.0, 0.1, 500.0),
+            row(2, "road", 1.0, 0.1, 30.0),
+            row(2, "net", 2.0, 0.1, 20.0),
+            row(3, "road", 1.0, 0.1, 10.0),
         ];
         let lines = [line("path"), line("road"), line("net")];
         let rows = rows.into_iter().map(Ok::<_, Infallible>);

@@ -8,27 +8,27 @@ use serde::{Deserialize, Serialize};
 /// to the whole one. Here nothing is rounded until [`value`](Self::value) is asked for. The parts never overlap
 /// (Shewchuk 1997, Adaptive precision floating-point arithmetic, theorem 10); there are seldom more than three.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(from = "Written", into = "Written")]
+#[serde(from = "WrittenSum", into = "WrittenSum")]
 pub struct Sum(Vec<f64>);
 
 /// A sum in a file: one number where that is exact.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
-enum Written {
+enum WrittenSum {
     Number(f64),
     Parts(Vec<f64>),
 }
 
-impl From<Written> for Sum {
-    fn from(written: Written) -> Self {
+impl From<WrittenSum> for Sum {
+    fn from(written: WrittenSum) -> Self {
         match written {
-            Written::Number(number) => Self::from(number),
-            Written::Parts(parts) => Self(parts),
+            WrittenSum::Number(number) => Self::from(number),
+            WrittenSum::Parts(parts) => Self(parts),
         }
     }
 }
 
-impl From<Sum> for Written {
+impl From<Sum> for WrittenSum {
     fn from(sum: Sum) -> Self {
         if sum.0.len() > 1 { Self::Parts(sum.0) } else { Self::Number(sum.value()) }
     }

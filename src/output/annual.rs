@@ -1,6 +1,6 @@
 //! `frequency.csv`: how often a year which energy is passed, at every line and object.
 
-use super::table::Table;
+use super::table::CsvTable;
 use crate::error::Result;
 use crate::hazard::{Annual, AnnualFigures, AnnualPlace, ExceedancePoint};
 use serde::Serialize;
@@ -32,7 +32,7 @@ const COLUMNS: [&str; 6] = [
 
 /// Writes all curves, by rising energy.
 pub(super) fn write(dir: &Path, annual: &Annual) -> Result<()> {
-    let mut table = Table::create(dir.join(FREQUENCY), &COLUMNS)?;
+    let mut table = CsvTable::create(dir.join(FREQUENCY), &COLUMNS)?;
     for AnnualPlace { name, without_barriers, with_barriers, .. } in &annual.places {
         let with = with_barriers.iter().map(|figures| ("with", figures));
         for (barriers, figures) in [("without", without_barriers)].into_iter().chain(with) {

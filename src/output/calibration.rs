@@ -1,7 +1,7 @@
 //! What a calibration found: every trial as a row, the result as JSON.
 
 use super::atomic_file::{read_json, write_json};
-use crate::calibrate::{Calibration, Ends, Trial};
+use crate::calibrate::{Calibration, CalibrationTrial, Ends};
 use crate::error::{Error, Result};
 use crate::file::write_atomic;
 use std::fmt::Write as _;
@@ -20,7 +20,7 @@ const RESULT: &str = "calibration.json";
 pub fn write_calibration(
     dir: &Path,
     found: &Calibration,
-    (trials, fitted): (&[(Ends, Trial)], &[Fitted]),
+    (trials, fitted): (&[(Ends, CalibrationTrial)], &[Fitted]),
 ) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     let mut text = format!(

@@ -4,8 +4,8 @@ use super::atomic_file::final_path;
 use crate::error::{Error, Result};
 use crate::file::write_atomic;
 use crate::frequency::Weights;
-use crate::hazard::{Asked, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
-use crate::terrain::geotiff::{Image, encode};
+use crate::hazard::{AnnualRequest, Layer, MapFrame, MapState, Maps, Matrix, year_maps};
+use crate::terrain::geotiff::{Image, NO_DATA, encode};
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
@@ -15,8 +15,6 @@ use std::path::{Path, PathBuf};
 pub(super) const FOLDER: &str = "maps";
 /// Ending of the file that a resumed run begins from.
 const STATE: &str = "state";
-/// Stands in cells where no rock came.
-const NO_DATA: f32 = -9999.0;
 
 /// Writes all layers; a cell where no rock came holds no data.
 ///
@@ -24,7 +22,7 @@ const NO_DATA: f32 = -9999.0;
 pub(super) fn write(
     dir: &Path,
     maps: &Maps,
-    (asked, releases): (&Asked, usize),
+    (asked, releases): (&AnnualRequest, usize),
     is_part: bool,
 ) -> Result<()> {
     let weights = match &asked.frequency {

@@ -1,7 +1,7 @@
 //! Tables and maps of a run, opened anew or where it was interrupted.
 
 use super::progress::{PROGRESS, Progress};
-use super::table::Table;
+use super::table::CsvTable;
 use super::{RunInfo, maps};
 use crate::error::{Error, Result};
 use crate::hazard::{MapState, Maps};
@@ -33,11 +33,11 @@ pub(super) fn open(
     name: &str,
     columns: &[&str],
     bytes: Option<&BTreeMap<String, u64>>,
-) -> Result<Table> {
+) -> Result<CsvTable> {
     let path = dir.join(name);
     match bytes.map(|bytes| bytes.get(name)) {
-        None => Table::create(path, columns),
-        Some(Some(&bytes)) => Table::go_on(path, bytes),
+        None => CsvTable::create(path, columns),
+        Some(Some(&bytes)) => CsvTable::go_on(path, bytes),
         Some(None) => Err(Error::input(
             &dir.join(PROGRESS),
             "bytes",

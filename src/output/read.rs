@@ -8,8 +8,8 @@ use super::vector;
 use super::{CROSSINGS, IMPACTS, PATHS, RELEASES, table};
 use crate::error::{Error, Result};
 use crate::hazard::{
-    Asked, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, Quantity, Row, Statistic,
-    Year, by_rock,
+    AnnualRequest, BarrierSummary, CrossingRow, Hazard, Layer, Line, LineInfo, Quantity, Row,
+    Statistic, YearSums, by_rock,
 };
 use crate::terrain::geotiff;
 use crate::terrain::grid::Grid;
@@ -181,7 +181,7 @@ impl Results {
 }
 
 /// Lines without crossings, whose rocks weigh what they stand for.
-pub(super) fn lines(infos: &[LineInfo], asked: &Asked, releases: usize) -> Vec<Line> {
+pub(super) fn lines(infos: &[LineInfo], asked: &AnnualRequest, releases: usize) -> Vec<Line> {
     let weights = asked.frequency.as_ref().map(|one| one.weights(releases));
     infos.iter().map(|info| Line::new(info.clone()).weighing(weights.clone())).collect()
 }
@@ -195,7 +195,7 @@ pub(super) fn crossings(dir: &Path) -> Result<impl Iterator<Item = Result<Crossi
 pub(super) fn recall_lines(
     dir: &Path,
     lines: &mut [Line],
-    mut year: Option<&mut Year>,
+    mut year: Option<&mut YearSums>,
 ) -> Result<()> {
     if lines.is_empty() {
         return Ok(());

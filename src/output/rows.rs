@@ -103,7 +103,7 @@ impl<'a> ImpactRow<'a> {
     ];
 
     /// The column that follows them where a ground has a scar layer.
-    pub const SOIL_COLUMNS: [&'static str; 1] = ["soil_j"];
+    pub const SOIL_COLUMNS: [&'static str; 1] = crate::hazard::Row::SOIL_COLUMNS;
 
     /// The row of one impact of rock `index` on the named ground.
     pub fn of(index: usize, impact: &Impact, ground: &'a str, origin_m: Vec3) -> Self {

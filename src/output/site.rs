@@ -9,10 +9,10 @@ pub struct Site {
     /// Map position of the mesh files' (0, 0, 0) (m).
     pub mesh_origin_m: [f64; 3],
     /// Where rocks are released.
-    pub release: Zone,
+    pub release: ReleaseZone,
     /// Where further sources release theirs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub further_releases: Vec<Zone>,
+    pub further_releases: Vec<ReleaseZone>,
     /// What the user should know if rocks come so fast.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fast_warnings: Vec<FastWarning>,
@@ -20,7 +20,7 @@ pub struct Site {
 
 impl Site {
     /// Every place where rocks are released.
-    pub fn zones(&self) -> impl Iterator<Item = &Zone> {
+    pub fn zones(&self) -> impl Iterator<Item = &ReleaseZone> {
         std::iter::once(&self.release).chain(&self.further_releases)
     }
 }
@@ -28,7 +28,7 @@ impl Site {
 /// Where rocks are released, in plan view (m).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", content = "corners_m", rename_all = "snake_case")]
-pub enum Zone {
+pub enum ReleaseZone {
     /// From these points.
     Points(Vec<[f64; 2]>),
     /// Along a line.
@@ -37,13 +37,13 @@ pub enum Zone {
     Polygon(Vec<[f64; 2]>),
 }
 
-impl Default for Zone {
+impl Default for ReleaseZone {
     fn default() -> Self {
         Self::Points(Vec::new())
     }
 }
 
-impl Zone {
+impl ReleaseZone {
     /// Its corners or points (m).
     pub fn corners_m(&self) -> &[[f64; 2]] {
         match self {

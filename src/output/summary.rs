@@ -6,8 +6,8 @@ use super::progress::Identity;
 use super::site::Site;
 use crate::error::Result;
 use crate::hazard::{
-    Annual, Asked, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame, Proportion,
-    Quantity, Residual, Statistic, StopKind, Totals, Way,
+    Annual, AnnualRequest, BarrierSummary, Hazard, Largest, Line, LineSummary, MapFrame,
+    ObservedPath, Proportion, Quantity, Residual, Statistic, StopKind, Totals,
 };
 use crate::plan::PlanEntry;
 use crate::scene::Language;
@@ -89,7 +89,7 @@ pub struct Summary {
     pub barriers: Vec<BarrierSummary>,
     /// What was asked of the year: sources, objects, classes of hazard.
     #[serde(default)]
-    pub asked: Asked,
+    pub asked: AnnualRequest,
     /// What a year brings to each line and object; none without sources, and none of a part of a run.
     #[serde(default)]
     pub annual: Option<Annual>,
@@ -101,7 +101,7 @@ pub struct Summary {
     pub site: Site,
     /// Measured ways, if the scene names any.
     #[serde(default)]
-    pub observed: Vec<Way>,
+    pub observed: Vec<ObservedPath>,
     /// Where the maps lie, if there are any.
     #[serde(default)]
     pub maps: Option<MapFrame>,
@@ -137,12 +137,12 @@ pub struct Summary {
     /// What the numbers mean.
     pub definitions: BTreeMap<String, String>,
     /// Clock and machine.
-    pub run: Run,
+    pub run: RunTimes,
 }
 
 /// The only part of the results that differs from one repetition to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Run {
+pub struct RunTimes {
     /// From the opening of the results to the last row on the disk, all sessions of a resumed run together (s).
     pub seconds: f64,
     /// Releases per second of that time, writing included.
@@ -180,7 +180,7 @@ impl Summary {
             warnings: info.warnings,
             mesh_health: info.mesh_health,
             definitions: owned(&DEFINITIONS),
-            run: Run {
+            run: RunTimes {
                 seconds,
                 releases_per_second: info.identity.releases as f64 / seconds,
                 threads: info.threads,

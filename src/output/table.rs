@@ -12,12 +12,12 @@ const BUFFER: usize = 1 << 17;
 
 /// A CSV file being written.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct CsvTable {
     path: PathBuf,
     writer: csv::Writer<File>,
 }
 
-impl Table {
+impl CsvTable {
     /// Creates the file, or empties it, and writes the names of the columns.
     pub(super) fn create(path: PathBuf, columns: &[&str]) -> Result<Self> {
         let file = File::create(&path).map_err(Error::file("create", &path))?;
@@ -187,13 +187,13 @@ fn in_file(path: &Path, columns: &[&str], why: csv::Error) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use super::Table;
+    use super::CsvTable;
 
     /// A full disk is met when the rows are put on it; the message names the file.
     #[test]
     #[cfg(target_os = "linux")]
     fn a_full_disk_is_an_error_that_names_the_file() {
-        let mut table = Table::create("/dev/full".into(), &["index"]).unwrap();
+        let mut table = CsvTable::create("/dev/full".into(), &["index"]).unwrap();
         table.write(&1).unwrap();
         let said = table.sync().unwrap_err().to_string();
         assert!(said.starts_with("/dev/full: cannot write: No space left"), "{said}");

@@ -1,7 +1,7 @@
 //! What a run started from, for a GIS: the ground as it was used, and the places that the scene names.
 
 use super::maps::FOLDER;
-use super::vector::Features;
+use super::vector::GeoJsonFile;
 use crate::error::{Error, Result};
 use crate::file::write_atomic;
 use crate::plan::{Part, Plan};
@@ -36,14 +36,14 @@ pub fn write_drawings(dir: &Path, plan: &Plan) -> Result<()> {
     let folder = dir.join(FOLDER);
     fs::create_dir_all(&folder).map_err(Error::file("create", &folder))?;
     let [_, zones, lines] = FILES.map(|name| folder.join(name));
-    let mut file = Features::create(&zones, plan.epsg)?;
+    let mut file = GeoJsonFile::create(&zones, plan.epsg)?;
     for (geometry, properties) in
         plan.releases.places().iter().flat_map(|place| places(place, &plan.releases))
     {
         file.add(&geometry, &properties)?;
     }
     file.finish()?;
-    let mut file = Features::create(&lines, plan.epsg)?;
+    let mut file = GeoJsonFile::create(&lines, plan.epsg)?;
     let barriers = if let Part::Kept(all) = &plan.barriers { all.as_slice() } else { &[] };
     for line in plan.recorders().lines {
         let corners = line.corners_m(plan.terrain.origin_m);

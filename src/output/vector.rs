@@ -1,6 +1,6 @@
 //! Ends and paths for GIS (GeoJSON) and for `ParaView` (VTK), written from the tables when a run is complete.
 
-use super::site::Zone;
+use super::site::ReleaseZone;
 use super::{PathRow, Summary};
 use crate::error::{Error, Result};
 use crate::hazard::{LineSummary, Row};
@@ -17,7 +17,7 @@ pub(super) fn write_ends(
     epsg: Option<u32>,
     rows: impl Iterator<Item = Result<Row>>,
 ) -> Result<()> {
-    let mut file = Features::create(path, epsg)?;
+    let mut file = GeoJsonFile::create(path, epsg)?;
     for row in rows {
         let row = row?;
         // a failed rock may have no place
@@ -46,7 +46,7 @@ pub(super) fn write_paths(
     epsg: Option<u32>,
     (rows, mut rocks): (impl Iterator<Item = Result<PathRow>>, impl Iterator<Item = Result<Row>>),
 ) -> Result<()> {
-    let mut file = Features::create(path, epsg)?;
+    let mut file = GeoJsonFile::create(path, epsg)?;
     let mut points: Vec<PathRow> = Vec::new();
     let mut write = |points: &mut Vec<PathRow>| -> Result<()> {
         let Some(first) = points.first() else { return Ok(()) };
@@ -125,13 +125,13 @@ pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) ->
             "height_p95_m": p95(at, "height_m"),
         })
     };
-    let mut file = Features::create_if(!lines.is_empty(), folder.join("lines.geojson"), epsg)?;
+    let mut file = GeoJsonFile::create_if(!lines.is_empty(), folder.join("lines.geojson"), epsg)?;
     for at in &lines {
         file.add(&line(&at.info.corners_m), &said(at))?;
     }
     file.finish()?;
     let mut file =
-        Features::create_if(!barriers.is_empty(), folder.join("barriers.geojson"), epsg)?;
+        GeoJsonFile::create_if(!barriers.is_empty(), folder.join("barriers.geojson"), epsg)?;
     for at in &barriers {
         let mut said = said(at);
         if let Some(one) = is_barrier(&at.info.name) {
@@ -145,10 +145,10 @@ pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) ->
         file.add(&line(&at.info.corners_m), &said)?;
     }
     file.finish()?;
-    let zones: Vec<&Zone> =
+    let zones: Vec<&ReleaseZone> =
         summary.site.zones().filter(|zone| !zone.corners_m().is_empty()).collect();
     let mut file =
-        Features::create_if(!zones.is_empty(), folder.join("release_zone.geojson"), epsg)?;
+        GeoJsonFile::create_if(!zones.is_empty(), folder.join("release_zone.geojson"), epsg)?;
     for (number, zone) in zones.iter().enumerate() {
         let said = if zones.len() > 1 {
             json!({ "source": number + 1 })
@@ -160,12 +160,12 @@ pub(super) fn write_site(folder: &Path, epsg: Option<u32>, summary: &Summary) ->
     file.finish()
 }
 
-fn geometry(zone: &Zone) -> Value {
+fn geometry(zone: &ReleaseZone) -> Value {
     let mut corners = zone.corners_m().to_vec();
     match zone {
-        Zone::Points(_) => json!({ "type": "MultiPoint", "coordinates": corners }),
-        Zone::Line(_) => json!({ "type": "LineString", "coordinates": corners }),
-        Zone::Polygon(_) => {
+        ReleaseZone::Points(_) => json!({ "type": "MultiPoint", "coordinates": corners }),
+        ReleaseZone::Line(_) => json!({ "type": "LineString", "coordinates": corners }),
+        ReleaseZone::Polygon(_) => {
             // a ring ends where it begins
             corners.extend(zone.corners_m().first().copied());
             json!({ "type": "Polygon", "coordinates": [corners] })
@@ -177,14 +177,14 @@ fn geometry(zone: &Zone) -> Value {
 ///
 /// RFC 7946 knows longitude and latitude only. The older member `crs` says that these are map coordinates; GDAL and
 /// QGIS read it.
-pub(super) struct Features {
+pub(super) struct GeoJsonFile {
     path: PathBuf,
     /// None: there is nothing to write, and no file.
     file: Option<BufWriter<File>>,
     is_first: bool,
 }
 
-impl Features {
+impl GeoJsonFile {
     pub(super) fn create(path: &Path, epsg: Option<u32>) -> Result<Self> {
         Self::create_if(true, path.to_owned(), epsg)
     }
@@ -240,7 +240,7 @@ pub(super) fn write_vtk(
 }
 
 /// A column of numbers: name, and the value of a row.
-type Column = (&'static str, fn(&PathRow) -> f64);
+type NumberColumn = (&'static str, fn(&PathRow) -> f64);
 
 fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io::Result<()> {
     writeln!(to, "# vtk DataFile Version 3.0")?;
@@ -265,7 +265,7 @@ fn write_grid(to: &mut impl Write, origin_m: Vec3, rows: &[PathRow]) -> std::io:
         writeln!(to, "3")?;
     }
     writeln!(to, "POINT_DATA {}", rows.len())?;
-    let columns: [Column; 4] = [
+    let columns: [NumberColumn; 4] = [
         ("release", |row| row.index as f64),
         ("time_s", |row| row.time_s),
         ("speed_m_s", |row| Vec3::from(row.velocity_m_s).norm()),

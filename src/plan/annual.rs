@@ -17,7 +17,7 @@ const MOST_STRATA: usize = u16::MAX as usize;
 
 /// What is asked of the year.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Year {
+pub struct YearPlan {
     /// Sources, strata, energies and return periods.
     pub frequency: Frequency,
     /// Classes of hazard.
@@ -36,7 +36,7 @@ pub(super) fn year(
     scene: &Scene,
     terrain: &Terrain,
     warnings: &mut Vec<String>,
-) -> Result<Part<Year>> {
+) -> Result<Part<YearPlan>> {
     warnings.extend(of_zones(scene));
     let Some(frequency) = scene.sources() else {
         return Ok(Part::LeftOut(
@@ -70,7 +70,7 @@ pub(super) fn year(
     let largest_m: Vec<f64> =
         frequency.strata().iter().map(|stratum| largest_m(scene, stratum)).collect();
     let most_j = most_j(scene, terrain, &largest_m);
-    Ok(Part::Kept(Year { frequency, matrix, most_j, largest_m }))
+    Ok(Part::Kept(YearPlan { frequency, matrix, most_j, largest_m }))
 }
 
 /// What properties of zones say in vain.
@@ -196,8 +196,8 @@ pub(super) fn words(object: &ObjectTable) -> String {
 }
 
 /// The sources in words, one line each, and how they are sampled.
-pub(super) fn lines(year: &Year, count: usize) -> Vec<String> {
-    let Year { frequency, matrix, most_j: _, largest_m: _ } = year;
+pub(super) fn lines(year: &YearPlan, count: usize) -> Vec<String> {
+    let YearPlan { frequency, matrix, most_j: _, largest_m: _ } = year;
     let mut lines: Vec<String> = frequency
         .sources()
         .iter()

@@ -1,13 +1,13 @@
 //! The plan in words: one line for everything that is computed and everything that is left out.
 
-use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual};
+use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual, settings};
 use crate::ground::Ground;
 use crate::release::{Releases, Where};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
+use crate::solver::Scheme;
 use crate::solver::dda::own_restitution;
-use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
-use crate::terrain::features::Count;
+use crate::terrain::features::FeatureCount;
 use crate::terrain::patches::Patched;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
@@ -78,7 +78,7 @@ impl Plan {
             fast_warnings,
         } = self;
         let place = places(places_of_release);
-        let mut list = List::default();
+        let mut list = PlanList::default();
         list.line("scene", title);
         list.line("file", format!("{}, {}", scene_file.display(), fingerprint(scene_hash)));
         list.line("version", format!("rockfall {version}"));
@@ -97,7 +97,7 @@ impl Plan {
         list.line("gravity", format!("{gravity_m_s2} m/s²"));
         list.line("grounds", format!("{}: {}", ground_names.len(), ground_names.join(", ")));
         list.lines("catalogue", catalogued.iter().cloned());
-        list.line("scheme", scheme(step));
+        list.line("scheme", settings::scheme(step));
         let captures = ground_names.iter().zip(capture_m_s);
         for (name, speed) in captures {
             let whose =
@@ -108,7 +108,7 @@ impl Plan {
             );
         }
         list.lines("tangential answer", tangential.iter().cloned());
-        list.line("impacts on one plane", plane_impacts(step));
+        list.line("impacts on one plane", settings::plane_impacts(step));
         list.lines("own dissipation", self.dissipation());
         list.line("stop rule", format!("at rest after {time_s} s below {speed_m_s} m/s in contact; time up after {longest_s} s; over budget after {} steps and flights", step.scheme.most_work()));
         list.part("trees", trees, |triangles| format!("{triangles} triangles"));
@@ -226,9 +226,9 @@ impl fmt::Display for PlanEntry {
 
 /// The listing as it grows.
 #[derive(Default)]
-struct List(Vec<PlanEntry>);
+struct PlanList(Vec<PlanEntry>);
 
-impl List {
+impl PlanList {
     fn line(&mut self, label: &str, text: impl fmt::Display) {
         self.0.push(PlanEntry { name: label.to_owned(), said: text.to_string() });
     }
@@ -253,8 +253,8 @@ impl List {
     }
 
     /// What of the mesh can never be touched.
-    fn touchable(&mut self, count: &Count) {
-        let Count { edges, flat_edges, corners, flat_corners, saddles } = *count;
+    fn touchable(&mut self, count: &FeatureCount) {
+        let FeatureCount { edges, flat_edges, corners, flat_corners, saddles } = *count;
         self.line(
             "flat edges",
             format!("{flat_edges} of {} left out: the faces beside them touch", edges + flat_edges),
@@ -374,27 +374,4 @@ fn one_world(scheme: Scheme, ground: &Ground) -> String {
 fn map([x, y, z]: [f64; 3], epsg: Option<u32>) -> String {
     let code = epsg.map_or_else(|| "no EPSG code".to_owned(), |code| format!("EPSG:{code}"));
     format!("origin ({x}, {y}, {z}) m subtracted, {code}")
-}
-
-fn plane_impacts(step: &Settings) -> &'static str {
-    match (step.scheme, step.plane_impacts) {
-        (Scheme::Rigid, _) => "in no time: the limit of stiff springs",
-        (Scheme::Dda, _) => "left out: the fixed step knows no other",
-        (_, true) => "followed as a whole, in their own time; all others step by step",
-        (_, false) => "left out: every impact is followed step by step",
-    }
-}
-
-fn scheme(step: &Settings) -> String {
-    let name = step.scheme.name();
-    match step.scheme {
-        Scheme::Adaptive | Scheme::Reference => {
-            format!("{name}, local error {} m/s", step.tolerance_m_s)
-        }
-        Scheme::Rigid => format!("{name}, steps of up to {} s", step.step_s),
-        Scheme::Dda => {
-            let memory = if step.shear_memory { "with" } else { "as printed, without" };
-            format!("{name}, steps of {} s, {memory} shear memory", step.step_s)
-        }
-    }
 }

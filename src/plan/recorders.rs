@@ -13,7 +13,7 @@ pub struct EvaluationLine {
     /// Name in the results.
     pub name: String,
     /// Its straight pieces, one behind the other.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<LinePiece>,
     /// Of an object; none of a line.
     pub footprint: Option<Footprint>,
     low_m: Corner,
@@ -34,7 +34,7 @@ pub enum Footprint {
 
 /// A straight piece of an evaluation line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct LinePiece {
     /// Its start (m, local).
     pub from_m: Corner,
     /// From its start to its end (m).
@@ -43,7 +43,7 @@ pub struct Piece {
     pub along_m: f64,
 }
 
-impl Piece {
+impl LinePiece {
     /// Its length (m), positive.
     pub fn length_m(&self) -> f64 {
         math::hypot(self.way_m[0], self.way_m[1])
@@ -72,7 +72,7 @@ impl EvaluationLine {
         let mut pieces = Vec::new();
         for pair in corners.windows(2) {
             let way_m = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
-            let piece = Piece { from_m: pair[0], way_m, along_m };
+            let piece = LinePiece { from_m: pair[0], way_m, along_m };
             along_m += piece.length_m();
             pieces.push(piece);
         }
@@ -117,7 +117,7 @@ impl EvaluationLine {
     /// Distance in plan view of a point from an object's footprint (m), 0 or less over it; and where along its line or
     /// outline (m) it is nearest.
     pub fn gap_m(&self, footprint: Footprint, at_m: Corner) -> (f64, f64) {
-        let to_piece = |piece: &Piece| {
+        let to_piece = |piece: &LinePiece| {
             let share = piece.share(at_m).clamp(0.0, 1.0);
             let away = [0, 1].map(|k| at_m[k] - piece.from_m[k] - share * piece.way_m[k]);
             (math::hypot(away[0], away[1]), piece.along_m + share * piece.length_m())
@@ -134,7 +134,7 @@ impl EvaluationLine {
 
     /// Whether a point lies inside closed pieces: a ray to the east crosses an odd number of them.
     fn encloses(&self, [x, y]: Corner) -> bool {
-        let crosses = |piece: &&Piece| {
+        let crosses = |piece: &&LinePiece| {
             let ([x0, y0], [dx, dy]) = (piece.from_m, piece.way_m);
             (y0 > y) != (y0 + dy > y) && x < x0 + (y - y0) / dy * dx
         };

@@ -25,3 +25,31 @@ pub(super) fn in_force(solver: &SolverTable) -> Settings {
         capture_speed_m_s: solver.capture_speed_m_s,
     }
 }
+
+/// How an impact on one plane is followed, in words.
+pub(super) fn plane_impacts(step: &Settings) -> &'static str {
+    let followed = if step.plane_impacts {
+        "followed as a whole, in their own time; all others step by step"
+    } else {
+        "left out: every impact is followed step by step"
+    };
+    step.scheme.of([
+        "left out: the fixed step knows no other",
+        followed,
+        followed,
+        "in no time: the limit of stiff springs",
+    ])
+}
+
+/// Scheme and step in force, in words.
+pub(super) fn scheme(step: &Settings) -> String {
+    let name = step.scheme.name();
+    if step.scheme.controls_error() {
+        format!("{name}, local error {} m/s", step.tolerance_m_s)
+    } else if step.scheme.has_fixed_step() {
+        let memory = if step.shear_memory { "with" } else { "as printed, without" };
+        format!("{name}, steps of {} s, {memory} shear memory", step.step_s)
+    } else {
+        format!("{name}, steps of up to {} s", step.step_s)
+    }
+}

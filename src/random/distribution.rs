@@ -1,7 +1,7 @@
 //! Numbers that may be drawn.
 
 use super::normal::Truncated;
-use super::written::{Lognormal, Normal};
+use super::written::{Lognormal, NormalTable};
 use super::{RandomStream, unit};
 use crate::error::Flaw;
 use crate::math;
@@ -18,11 +18,11 @@ pub const LARGEST: f64 = 1e18;
 /// Drawn by the inverse of the cumulative distribution: a bound truncates it exactly, without rejection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Distribution {
-    shape: Shape,
+    shape: DistributionFamily,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Shape {
+enum DistributionFamily {
     Fixed(f64),
     Uniform {
         low: f64,
@@ -51,35 +51,35 @@ impl Distribution {
     /// NaN and infinity are refused.
     pub fn fixed(value: f64) -> Result<Self, Flaw> {
         finite(&[value])?;
-        Ok(Self { shape: Shape::Fixed(value) })
+        Ok(Self { shape: DistributionFamily::Fixed(value) })
     }
 
     /// The number, if it is not drawn at all.
     pub fn as_fixed(&self) -> Option<f64> {
-        if let Shape::Fixed(value) = self.shape { Some(value) } else { None }
+        if let DistributionFamily::Fixed(value) = self.shape { Some(value) } else { None }
     }
 
     /// The family it is drawn from, in one word.
     pub fn family(&self) -> &'static str {
         match self.shape {
-            Shape::Fixed(_) => "fixed",
-            Shape::Uniform { .. } => "uniform",
-            Shape::Normal(_) => "normal",
-            Shape::Lognormal { .. } => "lognormal",
-            Shape::Triangular { .. } => "triangular",
-            Shape::Values(_) => "listed values",
+            DistributionFamily::Fixed(_) => "fixed",
+            DistributionFamily::Uniform { .. } => "uniform",
+            DistributionFamily::Normal(_) => "normal",
+            DistributionFamily::Lognormal { .. } => "lognormal",
+            DistributionFamily::Triangular { .. } => "triangular",
+            DistributionFamily::Values(_) => "listed values",
         }
     }
 
     /// Smallest and largest value it can take; infinite for a normal or lognormal without that bound.
     pub fn support(&self) -> (f64, f64) {
         match &self.shape {
-            Shape::Fixed(value) => (*value, *value),
-            Shape::Uniform { low, high }
-            | Shape::Triangular { low, high, .. }
-            | Shape::Lognormal { low, high, .. } => (*low, *high),
-            Shape::Normal(normal) => (normal.low, normal.high),
-            Shape::Values(values) => values
+            DistributionFamily::Fixed(value) => (*value, *value),
+            DistributionFamily::Uniform { low, high }
+            | DistributionFamily::Triangular { low, high, .. }
+            | DistributionFamily::Lognormal { low, high, .. } => (*low, *high),
+            DistributionFamily::Normal(normal) => (normal.low, normal.high),
+            DistributionFamily::Values(values) => values
                 .iter()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (v, _)| (a.min(*v), b.max(*v))),
         }
@@ -97,12 +97,16 @@ impl Distribution {
     /// The value below which the share `p` (–, in the open interval 0..1) of all draws lies.
     pub fn quantile(&self, p: f64) -> f64 {
         match &self.shape {
-            Shape::Fixed(value) => *value,
-            Shape::Uniform { low, high } => low * (1.0 - p) + high * p,
-            Shape::Normal(normal) => normal.quantile(p),
-            Shape::Lognormal { log, low, high } => math::exp(log.quantile(p)).clamp(*low, *high),
-            Shape::Triangular { low, mode, high } => triangular([*low, *mode, *high], p),
-            Shape::Values(values) => {
+            DistributionFamily::Fixed(value) => *value,
+            DistributionFamily::Uniform { low, high } => low * (1.0 - p) + high * p,
+            DistributionFamily::Normal(normal) => normal.quantile(p),
+            DistributionFamily::Lognormal { log, low, high } => {
+                math::exp(log.quantile(p)).clamp(*low, *high)
+            }
+            DistributionFamily::Triangular { low, mode, high } => {
+                triangular([*low, *mode, *high], p)
+            }
+            DistributionFamily::Values(values) => {
                 let target = p * values[values.len() - 1].1;
                 let index = values.partition_point(|(_, sum)| *sum <= target);
                 values[index.min(values.len() - 1)].0
@@ -127,14 +131,16 @@ impl Distribution {
                 "write the smaller bound first, or the number alone",
             ));
         }
-        Ok(Self { shape: Shape::Uniform { low, high } })
+        Ok(Self { shape: DistributionFamily::Uniform { low, high } })
     }
 
-    pub(super) fn normal(as_written: &Normal) -> Result<Self, Flaw> {
-        let Normal { mean, sd, min, max } = *as_written;
+    pub(super) fn normal(as_written: &NormalTable) -> Result<Self, Flaw> {
+        let NormalTable { mean, sd, min, max } = *as_written;
         finite(&[mean])?;
         positive("sd", sd)?;
-        Ok(Self { shape: Shape::Normal(Truncated::new([mean, sd], bounds(min, max)?)?) })
+        Ok(Self {
+            shape: DistributionFamily::Normal(Truncated::new([mean, sd], bounds(min, max)?)?),
+        })
     }
 
     pub(super) fn lognormal(as_written: &Lognormal) -> Result<Self, Flaw> {
@@ -151,7 +157,7 @@ impl Distribution {
         // the distribution never reaches 0, and a rock of radius 0 is none
         let low = low.max(f64::MIN_POSITIVE);
         let log = Truncated::new([math::ln(median), sigma], [low, high].map(math::ln))?;
-        Ok(Self { shape: Shape::Lognormal { log, low, high } })
+        Ok(Self { shape: DistributionFamily::Lognormal { log, low, high } })
     }
 
     /// Rising to the most frequent of three values and falling from there.
@@ -166,7 +172,7 @@ impl Distribution {
                 "write smallest, most frequent and largest value in this order",
             ));
         }
-        Ok(Self { shape: Shape::Triangular { low, mode, high } })
+        Ok(Self { shape: DistributionFamily::Triangular { low, mode, high } })
     }
 
     /// One of the values, each as often as any other.
@@ -207,7 +213,7 @@ impl Distribution {
             sum += weight;
             (value, sum)
         });
-        Ok(Self { shape: Shape::Values(summed.collect()) })
+        Ok(Self { shape: DistributionFamily::Values(summed.collect()) })
     }
 }
 

@@ -9,7 +9,7 @@ use std::fmt;
 /// The keys a distribution may have.
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum Key {
+enum DistributionKey {
     Uniform,
     Normal,
     Lognormal,
@@ -21,7 +21,7 @@ enum Key {
 /// The table under `normal`; in the unit of the key it stands for.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table { mean = …, sd = …, min = …, max = … }")]
-pub(super) struct Normal {
+pub(super) struct NormalTable {
     pub(super) mean: f64,
     pub(super) sd: f64,
     pub(super) min: Option<f64>,
@@ -60,18 +60,20 @@ impl<'de> Visitor<'de> for Reader {
         let (mut values, mut weights) = (None, None);
         while let Some(key) = map.next_key()? {
             match key {
-                Key::Uniform => {
+                DistributionKey::Uniform => {
                     let Entries(ends) = map.next_value()?;
                     found.push(Distribution::uniform(ends));
                 }
-                Key::Normal => found.push(Distribution::normal(&map.next_value()?)),
-                Key::Lognormal => found.push(Distribution::lognormal(&map.next_value()?)),
-                Key::Triangular => {
+                DistributionKey::Normal => found.push(Distribution::normal(&map.next_value()?)),
+                DistributionKey::Lognormal => {
+                    found.push(Distribution::lognormal(&map.next_value()?));
+                }
+                DistributionKey::Triangular => {
                     let Entries(ends) = map.next_value()?;
                     found.push(Distribution::triangular(ends));
                 }
-                Key::Values => values = Some(map.next_value()?),
-                Key::Weights => weights = Some(map.next_value()?),
+                DistributionKey::Values => values = Some(map.next_value()?),
+                DistributionKey::Weights => weights = Some(map.next_value()?),
             }
         }
         if values.is_some() || weights.is_some() {

@@ -19,7 +19,7 @@ use std::path::Path;
 
 /// A rock's shape, drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
+pub struct DrawnShape {
     /// What it is made from.
     pub kind: ShapeKind,
     /// Second and third side over the first (–); 1 for a scan.
@@ -32,7 +32,7 @@ pub struct Drawn {
 
 /// What a shape of the scene takes of the whole.
 #[derive(Debug, Clone, PartialEq)]
-struct Entry {
+struct ShapeShare {
     table: ShapeTable,
     /// Weights up to and including its own (–).
     sum: f64,
@@ -43,7 +43,7 @@ struct Entry {
 /// The shapes of a scene; empty for spheres alone.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Shapes {
-    entries: Vec<Entry>,
+    entries: Vec<ShapeShare>,
     /// A fixed turn; none if it is drawn.
     turned: Option<Rotation3<f64>>,
     /// What the plan says of each.
@@ -70,7 +70,7 @@ impl Shapes {
             };
             let (made, line) = prepared(table)?.map_err(refuse)?;
             shapes.lines.push(line);
-            shapes.entries.push(Entry { table: table.clone(), sum, made });
+            shapes.entries.push(ShapeShare { table: table.clone(), sum, made });
         }
         Ok(shapes)
     }
@@ -81,7 +81,7 @@ impl Shapes {
     }
 
     /// The block of release `index`, of the size of its rock; none if it is a sphere.
-    pub(super) fn draw(&self, seed: u64, index: usize, rock: &Rock) -> Option<Drawn> {
+    pub(super) fn draw(&self, seed: u64, index: usize, rock: &Rock) -> Option<DrawnShape> {
         let all = self.entries.last()?.sum;
         let mut random = stream(seed, Purpose::Shape, index);
         let pick = all * unit(&mut random);
@@ -101,13 +101,13 @@ impl Shapes {
         };
         let block = Block::new(&made, rock);
         let sides = [sides[1] / sides[0], sides[2] / sides[0]];
-        Some(Drawn { kind: entry.table.kind, sides, block, attitude })
+        Some(DrawnShape { kind: entry.table.kind, sides, block, attitude })
     }
 }
 
 impl Releases {
     /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
-    pub fn block(&self, index: usize, rock: &Rock) -> Option<Drawn> {
+    pub fn block(&self, index: usize, rock: &Rock) -> Option<DrawnShape> {
         self.shapes.draw(self.seed, index, rock)
     }
 

@@ -4,7 +4,7 @@ use super::{Releases, Where};
 use crate::error::{Error, Result};
 use crate::frequency::{Frequency, radius_of_m3};
 use crate::random::{Purpose, stream, unit};
-use crate::scene::{Area, Corner, Point, Polyline, Scene, Zones};
+use crate::scene::{Area, Corner, Polyline, ReleasePoint, Scene, Zones};
 use crate::terrain::Terrain;
 
 impl Releases {
@@ -97,7 +97,7 @@ impl Releases {
 impl Where {
     /// The one place that is given; none where none or several are.
     pub(super) fn one_of(
-        given: (&Option<Vec<Point>>, &Option<Polyline>, &Option<Area>),
+        given: (&Option<Vec<ReleasePoint>>, &Option<Polyline>, &Option<Area>),
     ) -> Option<Self> {
         match given {
             (Some(points), None, None) => Some(Self::Points(points.clone())),

@@ -5,9 +5,9 @@ use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, GREEN, INK, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{Fall, Path, Report, energy_unit};
+use super::model::{Path, ReleaseEnd, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel, align};
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 use crate::math;
 
@@ -21,14 +21,14 @@ const PENS: [Pen; 3] =
 /// A rock that is shown, and why.
 struct Chosen<'a> {
     why: &'static str,
-    fall: &'a Fall,
+    fall: &'a ReleaseEnd,
     path: &'a Path,
 }
 
 /// Of the rocks with a stored path: the one of median runout, the one with most energy, the one that came farthest.
 fn chosen(report: &Report) -> Vec<Chosen<'_>> {
     let with_path = report.paths.iter().filter(|path| path.points.len() > 2);
-    let mut rocks: Vec<(&Fall, &Path)> =
+    let mut rocks: Vec<(&ReleaseEnd, &Path)> =
         with_path.filter_map(|path| Some((report.releases.get(path.index)?, path))).collect();
     rocks.retain(|(fall, _)| {
         fall.runout_m.is_finite() && fall.max_speed_m_s > 0.0 && fall.max_total_j.is_finite()
@@ -123,7 +123,7 @@ fn panels(curves: &[Vec<Vec<(f64, f64)>>; 3], titles: [&str; 3], words: &Words) 
     let x = Axis::from_zero(ways, words.along_axis);
     let mut panels = [0, 1, 2].map(|k| {
         let top = TOP_PX + k as f64 * (PLOT_PX + GAP_PX);
-        let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
+        let frame = PaperFrame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
         let values = curves[k].iter().flatten().map(|p| p.1);
         Panel::new(frame, x.clone(), Axis::from_zero(values, titles[k]))
     });

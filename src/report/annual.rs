@@ -7,7 +7,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{AnnualView, BandPoint, kilo};
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 use crate::math;
 
@@ -19,6 +19,15 @@ const RIGHT_PX: f64 = 84.0;
 const DECADES: f64 = 4.0;
 const WITHOUT: Pen = Pen::full(BLUE, 1.7);
 const WITH: Pen = Pen::full(ORANGE, 1.7).dashed();
+
+/// What there is to say of a place that no rock comes to; none where one does.
+pub(super) fn nobody(words: &Words, view: &AnnualView) -> Option<String> {
+    let what = if view.is_object { words.object } else { words.line };
+    let place = fill(what, &[("name", &words.quoted(&view.name))]);
+    let rate = format::significant(view.most_per_year, 2);
+    let found: [(&str, &dyn std::fmt::Display); 2] = [("place", &place), ("rate", &rate)];
+    (!view.is_met()).then(|| fill(words.nobody_year, &found))
+}
 
 /// Draws the curves of one place.
 pub(super) fn draw(words: &Words, view: &AnnualView, number: usize) -> Drawing {
@@ -40,9 +49,6 @@ pub(super) fn draw(words: &Words, view: &AnnualView, number: usize) -> Drawing {
         }
         panel.axes(canvas);
         key(canvas, &panel, view, words);
-        if largest_j <= 0.0 {
-            panel.nothing(canvas, words.nothing_comes);
-        }
     });
     Drawing { svg, caption: caption(view, words) }
 }
@@ -62,8 +68,12 @@ fn panel(words: &Words, view: &AnnualView, largest_j: f64, (unit, size): (&str, 
     let most = rates().chain(periods()).fold(0.0, f64::max);
     let from_j = view.curves().flatten().map(|point| point.x).filter(positive);
     let from_j = from_j.fold(f64::INFINITY, f64::min).max(largest_j * math::pow(10.0, -DECADES));
-    let frame =
-        Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom: TOP_PX + HEIGHT_PX };
+    let frame = PaperFrame {
+        left: 0.0,
+        top: TOP_PX,
+        right: WIDTH_PX - RIGHT_PX,
+        bottom: TOP_PX + HEIGHT_PX,
+    };
     let x = Axis::log(
         from_j / size,
         largest_j / size,

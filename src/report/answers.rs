@@ -4,7 +4,7 @@ use super::format::{NO_NUMBER, counted, decimal, percent, significant};
 use super::model::energy_unit;
 use super::words::Words;
 use crate::hazard::{
-    AnnualPlace, BarrierSummary, LineSummary, Percentile, Proportion, Rate, Statistic,
+    AnnualPlace, BarrierSummary, EventRate, LineSummary, Percentile, Proportion, Statistic,
 };
 use crate::output::Results;
 use crate::scene::Language;
@@ -26,7 +26,7 @@ pub fn answers(results: &Results) -> Vec<String> {
 fn in_a_year(place: &AnnualPlace) -> Option<String> {
     let without = place.without_barriers.above.last().filter(|_| place.is_object)?;
     let with = place.with_barriers.as_ref().and_then(|figures| figures.above.last());
-    let said = |rate: &Rate| {
+    let said = |rate: &EventRate| {
         let [value, low, high] =
             [rate.per_year, rate.low_95, rate.high_95].map(|one| significant(one, 2));
         format!("{value} times a year ({})", interval(&low, &high))

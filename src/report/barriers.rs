@@ -6,8 +6,9 @@ use super::colour::{BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{BarrierView, DesignView, Estimate, PlaceView, RockView, kilo};
+use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::{Frame, Spot};
+use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
 use plotters::style::RGBColor;
 
@@ -17,8 +18,6 @@ const CURVE_PX: f64 = 160.0;
 /// Between a panel's axis title and the head of the next panel (px).
 const GAP_PX: f64 = 34.0;
 const RIGHT_PX: f64 = WIDTH_PX - 20.0;
-/// From so many rocks on, marks shrink to dots.
-const MANY: usize = 400;
 /// Colours of other places, in the order of the scene; more places share the last.
 const ELSEWHERE: [RGBColor; 4] = [ORANGE, PURPLE, SKY, GREY];
 
@@ -90,7 +89,7 @@ fn cloud_panel(
         rocks.iter().map(|rock| rock.total_j).chain([1.05 * barrier.capacity_j, design_j]);
     let tops = rocks.iter().map(|rock| rock.top_m).filter(|top| top.is_finite());
     let tops = tops.chain([1.05 * barrier.height_m, design_m]);
-    let frame = Frame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + CLOUD_PX };
+    let frame = PaperFrame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + CLOUD_PX };
     let mut panel = Panel::new(
         frame,
         Axis::energies(
@@ -111,8 +110,12 @@ fn draw_cloud(
 ) {
     panel.grid(canvas);
     let edge = panel.at(barrier.capacity_j / size, barrier.height_m);
-    let stopped =
-        Frame { left: panel.frame.left, right: edge.0, top: edge.1, bottom: panel.frame.bottom };
+    let stopped = PaperFrame {
+        left: panel.frame.left,
+        right: edge.0,
+        top: edge.1,
+        bottom: panel.frame.bottom,
+    };
     canvas.fill(&stopped, GREEN, 0.12);
     let spots: Vec<Spot> = rocks
         .iter()
@@ -155,14 +158,14 @@ fn lower_panels(words: &Words, barrier: &BarrierView, top: f64) -> (Panel, Optio
     let (half, bottom) = (0.5 * WIDTH_PX, top + CURVE_PX);
     let has_places = barrier.places.len() > 1;
     let first = if has_places { RIGHT_PX - half + 4.0 } else { RIGHT_PX };
-    let frame = |left: f64, right: f64| Frame { left, top, right, bottom };
+    let frame = |left: f64, right: f64| PaperFrame { left, top, right, bottom };
     let offsets = || barrier.places.iter().map(|place| place.offset_m);
     let reach = offsets().map(f64::abs).fold(1.0, f64::max);
     let (low, high) = offsets().fold((-0.2 * reach, 0.2 * reach), |(low, high), x| {
         (low.min(1.15 * x), high.max(1.15 * x))
     });
     let share = || Axis::linear(0.0, 104.0, words.stopped_axis);
-    let placed = |frame: Frame, x: Axis| {
+    let placed = |frame: PaperFrame, x: Axis| {
         let mut panel = Panel::new(frame, x, share());
         panel.frame.left += panel.room_left();
         panel

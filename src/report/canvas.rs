@@ -6,7 +6,7 @@ pub use label::{Label, bold_width, fitted, text_width};
 
 use super::colour::{self, INK, WHITE};
 use super::format::escape;
-use super::svg::path::{self, Frame, Spot, tenths};
+use super::svg::path::{self, PaperFrame, Spot, tenths};
 use super::svg::{DEPTH, FRAGMENT_MARK, SvgBackend, TENTHS, document};
 use label::TAIL_GAP;
 use plotters::coord::Shift;
@@ -84,7 +84,7 @@ pub struct Canvas<'a> {
     name: &'a str,
     size_px: (f64, f64),
     /// Room that texts have taken.
-    boxes: RefCell<Vec<Frame>>,
+    boxes: RefCell<Vec<PaperFrame>>,
 }
 
 impl<'a> Canvas<'a> {
@@ -117,7 +117,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// What `draw` draws, cut at a frame. `part` tells apart several frames of one figure.
-    pub fn clip(&self, part: &str, frame: &Frame, draw: impl FnOnce()) {
+    pub fn clip(&self, part: &str, frame: &PaperFrame, draw: impl FnOnce()) {
         let id = format!("{}-{part}", self.name);
         let ((x0, y0), (x1, y1)) =
             (tenths((frame.left, frame.top)), tenths((frame.right, frame.bottom)));
@@ -157,14 +157,14 @@ impl<'a> Canvas<'a> {
     }
 
     /// A filled rectangle.
-    pub fn fill(&self, frame: &Frame, fill: RGBColor, opacity: f64) {
+    pub fn fill(&self, frame: &PaperFrame, fill: RGBColor, opacity: f64) {
         let corners = [tenths((frame.left, frame.top)), tenths((frame.right, frame.bottom))];
         self.put(&Rectangle::new(corners, ShapeStyle::from(fill.mix(opacity)).filled()));
     }
 
     /// The outline of a rectangle.
-    pub fn outline(&self, frame: &Frame, pen: Pen) {
-        let Frame { left, top, right, bottom } = *frame;
+    pub fn outline(&self, frame: &PaperFrame, pen: Pen) {
+        let PaperFrame { left, top, right, bottom } = *frame;
         self.line(&[(left, top), (right, top), (right, bottom), (left, bottom), (left, top)], pen);
     }
 
@@ -257,13 +257,13 @@ impl<'a> Canvas<'a> {
     }
 
     /// Keeps room free of later texts.
-    pub fn take(&self, frame: Frame) {
+    pub fn take(&self, frame: PaperFrame) {
         self.boxes.borrow_mut().push(frame);
     }
 
     /// Whether no text stands in a room, nor nearer than 2 px.
-    pub fn is_free(&self, frame: &Frame) -> bool {
-        let near = Frame {
+    pub fn is_free(&self, frame: &PaperFrame) -> bool {
+        let near = PaperFrame {
             left: frame.left - 2.0,
             top: frame.top - 2.0,
             right: frame.right + 2.0,
@@ -315,7 +315,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// A vertical bar whose colour runs through the sequential scale from its lower to its upper end.
-    pub fn colour_bar(&self, frame: &Frame) {
+    pub fn colour_bar(&self, frame: &PaperFrame) {
         let id = format!("{}-scale", self.name);
         let mut stops = String::new();
         for i in 0..=10 {

@@ -51,7 +51,7 @@ impl Field {
                 self.cross_cell(column, row, level, &mut net);
             }
         }
-        let place = |crossing: &Crossing| self.place_of(*crossing, level);
+        let place = |crossing: &GridCrossing| self.place_of(*crossing, level);
         net.chains().iter().map(|chain| chain.iter().map(place).collect()).collect()
     }
 
@@ -64,13 +64,13 @@ impl Field {
         }
         let is_above = z.map(|z| z >= level);
         // edges of the cell: lower, right, upper, left
-        let edges: [Crossing; 4] = [
+        let edges: [GridCrossing; 4] = [
             (row, column, false),
             (row, column + 1, true),
             (row + 1, column, false),
             (row, column, true),
         ];
-        let crossed: Vec<Crossing> =
+        let crossed: Vec<GridCrossing> =
             (0..4).filter(|&i| is_above[i] != is_above[(i + 1) % 4]).map(|i| edges[i]).collect();
         match crossed[..] {
             [a, b] => net.join(a, b),
@@ -89,7 +89,7 @@ impl Field {
         }
     }
 
-    fn place_of(&self, (row, column, is_upright): Crossing, level: f64) -> Spot {
+    fn place_of(&self, (row, column, is_upright): GridCrossing, level: f64) -> Spot {
         let (c, r) = (column as f64, row as f64);
         let from = self.get(column, row);
         let to = if is_upright { self.get(column, row + 1) } else { self.get(column + 1, row) };
@@ -99,16 +99,16 @@ impl Field {
 }
 
 /// Where a line passes an edge of the grid: row, column, and whether the edge runs along the column.
-type Crossing = (usize, usize, bool);
+type GridCrossing = (usize, usize, bool);
 
 /// Line pieces by the crossings they join; each crossing has one or two neighbours.
 #[derive(Default)]
 struct Net {
-    neighbours: BTreeMap<Crossing, [Option<Crossing>; 2]>,
+    neighbours: BTreeMap<GridCrossing, [Option<GridCrossing>; 2]>,
 }
 
 impl Net {
-    fn join(&mut self, a: Crossing, b: Crossing) {
+    fn join(&mut self, a: GridCrossing, b: GridCrossing) {
         for (here, there) in [(a, b), (b, a)] {
             let slots = self.neighbours.entry(here).or_default();
             let free = usize::from(slots[0].is_some());
@@ -117,9 +117,9 @@ impl Net {
     }
 
     /// All lines: open ones from an end, then the closed ones.
-    fn chains(mut self) -> Vec<Vec<Crossing>> {
+    fn chains(mut self) -> Vec<Vec<GridCrossing>> {
         let ends = self.neighbours.iter().filter(|(_, slots)| slots[1].is_none());
-        let mut starts: Vec<Crossing> = ends.map(|(&crossing, _)| crossing).collect();
+        let mut starts: Vec<GridCrossing> = ends.map(|(&crossing, _)| crossing).collect();
         starts.extend(self.neighbours.keys().copied().collect::<Vec<_>>());
         let mut chains = Vec::new();
         for start in starts {
@@ -130,7 +130,7 @@ impl Net {
         chains
     }
 
-    fn follow(&mut self, start: Crossing) -> Vec<Crossing> {
+    fn follow(&mut self, start: GridCrossing) -> Vec<GridCrossing> {
         let mut chain = vec![start];
         let mut here = start;
         while let Some(slots) = self.neighbours.remove(&here) {

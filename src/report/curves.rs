@@ -5,7 +5,7 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, GREY, INK, ORANGE, SKY};
 use super::figure::WIDTH_PX;
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 
 /// What to draw.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +60,7 @@ impl Curves {
         let (x, y) = (range(|p| p.0), range(|p| p.1));
         let (mut x, mut y) = (x, y);
         let top = TOP_PX + if self.names.is_some() { KEY_PX } else { 0.0 };
-        let frame = Frame { left: 60.0, top, right: WIDTH_PX - 16.0, bottom: top + HEIGHT_PX };
+        let frame = PaperFrame { left: 60.0, top, right: WIDTH_PX - 16.0, bottom: top + HEIGHT_PX };
         if self.is_seen_from_the_side() {
             // one scale for both axes
             let scale = f64::min(frame.width() / (x.1 - x.0), frame.height() / (y.1 - y.0));

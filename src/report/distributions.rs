@@ -5,19 +5,19 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, bold_width, fitted, paint
 use super::colour::{GREY, INK};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::histogram::{Histogram, percent_of};
-use super::model::{Quantity, Report, kilo};
+use super::histogram::{EqualBins, percent_of};
+use super::model::{Report, ReportQuantity, kilo};
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 
 /// What is shown, left to right, top to bottom.
-const SHOWN: [Quantity; 6] = [
-    Quantity::Speed,
-    Quantity::Height,
-    Quantity::Translational,
-    Quantity::Rotational,
-    Quantity::Total,
-    Quantity::Impacts,
+const SHOWN: [ReportQuantity; 6] = [
+    ReportQuantity::Speed,
+    ReportQuantity::Height,
+    ReportQuantity::Translational,
+    ReportQuantity::Rotational,
+    ReportQuantity::Total,
+    ReportQuantity::Impacts,
 ];
 const COLUMNS: usize = 2;
 const PLOT_PX: f64 = 112.0;
@@ -39,23 +39,23 @@ pub(super) fn draw(report: &Report) -> Drawing {
         for (i, &quantity) in SHOWN.iter().enumerate() {
             let column = WIDTH_PX / COLUMNS as f64;
             let (left, top) = ((i % COLUMNS) as f64 * column, (i / COLUMNS) as f64 * ROW_PX);
-            let frame = Frame {
+            let frame = PaperFrame {
                 left: left + 52.0,
                 right: left + column - 14.0,
                 top: top + HEAD_PX,
                 bottom: top + HEAD_PX + PLOT_PX,
             };
-            Distribution::of(report, quantity, frame).draw(canvas, 24.0);
+            DistributionPanel::of(report, quantity, frame).draw(canvas, 24.0);
         }
     });
     Drawing { svg, caption: words.distributions_caption.to_owned() }
 }
 
 /// The values of one quantity, ready to be drawn.
-pub(super) struct Distribution<'a> {
+pub(super) struct DistributionPanel<'a> {
     report: &'a Report,
-    quantity: Quantity,
-    bins: Histogram,
+    quantity: ReportQuantity,
+    bins: EqualBins,
     /// Where it is drawn; may be widened before.
     pub(super) panel: Panel,
     /// Largest value and the size of the shown unit (both SI).
@@ -63,8 +63,8 @@ pub(super) struct Distribution<'a> {
     unit_size: f64,
 }
 
-impl<'a> Distribution<'a> {
-    pub(super) fn of(report: &'a Report, quantity: Quantity, frame: Frame) -> Self {
+impl<'a> DistributionPanel<'a> {
+    pub(super) fn of(report: &'a Report, quantity: ReportQuantity, frame: PaperFrame) -> Self {
         let si: Vec<f64> = report.releases.iter().map(|fall| quantity.of(fall)).collect();
         let finite = si.iter().copied().filter(|v| v.is_finite());
         let largest = finite.reduce(f64::max).unwrap_or(0.0);
@@ -72,8 +72,8 @@ impl<'a> Distribution<'a> {
             if quantity.is_energy() { kilo(largest) } else { quantity.unit(largest) };
         let values: Vec<f64> = si.iter().map(|v| v / unit_size).collect();
         let bins = match quantity {
-            _ if quantity.is_energy() => Histogram::of_ratios(&values),
-            _ => Histogram::clipped(&values),
+            _ if quantity.is_energy() => EqualBins::of_ratios(&values),
+            _ => EqualBins::clipped(&values),
         };
         let words = report.words();
         let tallest = percent_of(bins.largest(), si.len());
@@ -96,7 +96,7 @@ impl<'a> Distribution<'a> {
         if self.bins.beyond > 0 {
             words.push(format!("+{} →", format::decimal(self.bins.beyond as f64, 0)));
         }
-        let above = Frame { top: self.panel.frame.top - head_px, ..self.panel.frame };
+        let above = PaperFrame { top: self.panel.frame.top - head_px, ..self.panel.frame };
         head(canvas, &above, self.quantity.name(said), &words.join(" · "));
         if self.bins.counts.is_empty() {
             self.panel.nothing(canvas, if total == 0 { said.no_release } else { said.no_finite });
@@ -120,7 +120,7 @@ impl<'a> Distribution<'a> {
 }
 
 /// Name left and numbers right, in two lines where they do not fit in one.
-fn head(canvas: &Canvas<'_>, frame: &Frame, name: &str, words: &str) {
+fn head(canvas: &Canvas<'_>, frame: &PaperFrame, name: &str, words: &str) {
     let y = frame.top;
     let fits = bold_width(name, NORMAL) + text_width(words, SMALL) + 8.0 < frame.width();
     canvas.text(&Label::new(name, (frame.left, y)).bold().sized(NORMAL));

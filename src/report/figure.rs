@@ -3,7 +3,7 @@
 use super::model::Report;
 use super::words::Words;
 
-/// Width of every figure (px, 1/96 inch): 180 mm, the text width of an A4 page.
+/// Width of figures (px, 1/96 inch): 180 mm, the text width of an A4 page. A slender map has a narrower sheet.
 pub const WIDTH_PX: f64 = 680.0;
 
 /// A drawn figure.

@@ -138,6 +138,14 @@ pub fn escape(text: &str) -> String {
     safe
 }
 
+/// A sentence begins with a capital letter and ends with a full stop.
+pub(super) fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    let whole: String = first.chain(letters).collect();
+    if whole.ends_with(['.', '!', '?', '…']) { whole } else { whole + "." }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,8 +9,8 @@ mod measured;
 mod profile;
 
 use super::model::{
-    About, BandPoint, Check, Estimate, Fall, Is, Path, Point, Quantile, Quantity, Report, Row,
-    StopShare, Table, Text,
+    BandPoint, Check, Estimate, EstimateRow, EstimateTable, Is, Path, Quantile, ReleaseEnd, Report,
+    ReportPathPoint, ReportQuantity, StopShare, Text,
 };
 use super::raster::GroundRaster;
 use super::words::{Words, fill};
@@ -23,15 +23,15 @@ use crate::rock::Vec3;
 use crate::simulation::Stop;
 
 /// Quantities of the tables, with their names in the hazard.
-const TABLED: [(Quantity, hazard::Quantity); 8] = [
-    (Quantity::Runout, hazard::Quantity::Runout),
-    (Quantity::ReachAngle, hazard::Quantity::ReachAngle),
-    (Quantity::Speed, hazard::Quantity::MaxSpeed),
-    (Quantity::Translational, hazard::Quantity::MaxTranslational),
-    (Quantity::Rotational, hazard::Quantity::MaxRotational),
-    (Quantity::Total, hazard::Quantity::MaxTotal),
-    (Quantity::Height, hazard::Quantity::MaxHeight),
-    (Quantity::Impacts, hazard::Quantity::Impacts),
+const TABLED: [(ReportQuantity, hazard::Quantity); 8] = [
+    (ReportQuantity::Runout, hazard::Quantity::Runout),
+    (ReportQuantity::ReachAngle, hazard::Quantity::ReachAngle),
+    (ReportQuantity::Speed, hazard::Quantity::MaxSpeed),
+    (ReportQuantity::Translational, hazard::Quantity::MaxTranslational),
+    (ReportQuantity::Rotational, hazard::Quantity::MaxRotational),
+    (ReportQuantity::Total, hazard::Quantity::MaxTotal),
+    (ReportQuantity::Height, hazard::Quantity::MaxHeight),
+    (ReportQuantity::Impacts, hazard::Quantity::Impacts),
 ];
 
 /// Gathers the report of a finished run.
@@ -42,7 +42,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let hazard = &results.hazard;
     let language = results.summary.language;
     let words = Words::of(language);
-    let releases: Vec<Fall> =
+    let releases: Vec<ReleaseEnd> =
         results.rows()?.map(|row| row.map(|row| fall_of(&row))).collect::<Result<_>>()?;
     let lines = lines::lines(results, ground.as_ref())?;
     let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
@@ -179,8 +179,8 @@ fn stop_of(kind: StopKind) -> Stop {
     }
 }
 
-fn fall_of(row: &hazard::Row) -> Fall {
-    Fall {
+fn fall_of(row: &hazard::Row) -> ReleaseEnd {
+    ReleaseEnd {
         stop: stop_of(row.stop),
         runout_m: row.runout_m,
         drop_m: row.drop_m,
@@ -205,7 +205,7 @@ fn paths_of(results: &Results) -> Result<Vec<Path>> {
             paths.push(Path { index: row.index, points: Vec::new() });
         }
         if let Some(path) = paths.last_mut() {
-            path.points.push(Point {
+            path.points.push(ReportPathPoint {
                 time_s: row.time_s,
                 place_m: row.position_m,
                 speed_m_s: Vec3::from(row.velocity_m_s).norm(),
@@ -234,7 +234,7 @@ fn stop_share(hazard: &Hazard, kind: StopKind) -> StopShare {
 }
 
 /// What an engineer asks first: the middle and the far end of runout, and the design values of the rest.
-pub(super) fn headline(hazard: &Hazard, words: &Words) -> Vec<Row> {
+pub(super) fn headline(hazard: &Hazard, words: &Words) -> Vec<EstimateRow> {
     use hazard::Quantity::{MaxHeight, MaxSpeed, MaxTotal, MaxTranslational, ReachAngle, Runout};
     let asked = [
         (words.runout, Runout, 0.50, "m"),
@@ -250,12 +250,12 @@ pub(super) fn headline(hazard: &Hazard, words: &Words) -> Vec<Row> {
         let percent = format::decimal(100.0 * p, 0);
         let name = fill(words.percentile_of, &[("quantity", &name), ("percent", &percent)]);
         let estimate = percentile_of(&hazard.sample(quantity), p, quantity.open())?;
-        Some(Row { name, estimate, unit: unit.to_owned() })
+        Some(EstimateRow { name, estimate, unit: unit.to_owned() })
     };
     asked.into_iter().filter_map(row).collect()
 }
 
-fn table(hazard: &Hazard, words: &Words) -> Table {
+fn table(hazard: &Hazard, words: &Words) -> EstimateTable {
     let rows =
         TABLED.map(|(here, there)| (here.name(words), here, hazard.sample(there), there.open()));
     let how = if hazard.weights().is_some() { words.woodruff } else { words.order_statistics };
@@ -274,7 +274,7 @@ fn statistics(words: &Words) -> Vec<String> {
 
 /// What a row of a table of statistics is made from: name, the quantity whose unit it has, values, and on which side
 /// true values may lie.
-type StatisticsRow<'a> = (&'a str, Quantity, Sample, Option<Open>);
+type StatisticsRow<'a> = (&'a str, ReportQuantity, Sample, Option<Open>);
 
 /// A table of mean, percentiles and maximum; energies all in one unit.
 fn statistics_table(
@@ -282,7 +282,7 @@ fn statistics_table(
     title: String,
     note: String,
     rows: &[StatisticsRow<'_>],
-) -> Table {
+) -> EstimateTable {
     let columns = statistics(words);
     let largest = |sample: &Sample| sample.values().last().copied().unwrap_or(0.0);
     let energies = rows.iter().filter(|(_, like, ..)| like.is_energy());
@@ -302,12 +302,12 @@ fn statistics_table(
             PERCENTS.map(|percent| percentile_of(sample, f64::from(percent) / 100.0, *open));
         let cells = [mean].into_iter().chain(middle).chain([most]);
         let name = if unit.is_empty() { (*name).to_owned() } else { format!("{name} ({unit})") };
-        let clean =
-            |x: Estimate| if *like == Quantity::Height { x.above_a_mm() } else { x.over(size) };
+        let clean = |x: Estimate| {
+            if *like == ReportQuantity::Height { x.above_a_mm() } else { x.over(size) }
+        };
         (name, cells.map(|cell| cell.map(clean)).collect())
     });
-    let about = About::Rocks;
-    Table { title, note, columns, rows: rows.collect(), about }
+    EstimateTable { title, note, columns, rows: rows.collect(), ..EstimateTable::default() }
 }
 
 /// Warnings that concern rocks above a speed, where some came so fast.

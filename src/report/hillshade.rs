@@ -1,6 +1,6 @@
 //! The shape of the ground as a light grey picture under the lines.
 
-use super::svg::path::{Frame, tenths};
+use super::svg::path::{PaperFrame, tenths};
 use base64::Engine;
 
 /// Grey of the darkest and of the lightest ground: light enough for thin lines.
@@ -26,7 +26,7 @@ fn shade((east, north): (f64, f64)) -> f64 {
 /// An `<image>` that fills `frame` (one grey value a pixel of paper), or nothing when it cannot be packed.
 ///
 /// `slope(x_px, y_px)` is the rise of the ground to the east and to the north per metre at a place on the paper.
-pub(super) fn image(frame: &Frame, slope: impl Fn(f64, f64) -> (f64, f64)) -> String {
+pub(super) fn image(frame: &PaperFrame, slope: impl Fn(f64, f64) -> (f64, f64)) -> String {
     let (width, height) = (frame.width().ceil() as u32, frame.height().ceil() as u32);
     let mut shades = Vec::with_capacity(width as usize * height as usize);
     for row in 0..height {

@@ -12,7 +12,7 @@ const LEAST_BINS: f64 = 8.0;
 
 /// Counts of values in bins of equal width.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Histogram {
+pub(super) struct EqualBins {
     /// Lower end of the first bin, a multiple of the width.
     pub(super) from: f64,
     /// Width of a bin.
@@ -32,7 +32,7 @@ const SHOWN: f64 = 0.995;
 /// A histogram is clipped where the largest value lies farther out than this many times what is shown.
 const FAR: f64 = 1.3;
 
-impl Histogram {
+impl EqualBins {
     /// Bins of round width, about √n of them.
     pub(super) fn of(values: &[f64]) -> Self {
         let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
@@ -160,10 +160,10 @@ mod tests {
             &[2_600_000.0, 2_600_000.1],
         ];
         for values in cases {
-            let bins = Histogram::of(values);
+            let bins = EqualBins::of(values);
             let counted: usize = bins.counts.iter().sum();
             assert_eq!(counted + bins.left_out, values.len(), "{values:?}");
-            for bins in [Histogram::clipped(values), Histogram::of_ratios(values)] {
+            for bins in [EqualBins::clipped(values), EqualBins::of_ratios(values)] {
                 let counted: usize = bins.counts.iter().sum();
                 assert_eq!(counted + bins.left_out + bins.beyond, values.len(), "{values:?}");
             }
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_value_on_a_boundary_counts_above_it() {
         let values: Vec<f64> = (0..80).map(|i| f64::from(i) * 0.1).collect();
-        let bins = Histogram::of(&values);
+        let bins = EqualBins::of(&values);
         assert!(bins.counts.iter().all(|&c| c == bins.counts[0]), "{bins:?}");
     }
 }

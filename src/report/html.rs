@@ -3,18 +3,19 @@
 //! The first page answers: the map, what arrives at lines and barriers, and what must be known before the numbers are
 //! used. Then one chapter a question.
 
+mod chapters;
+mod front;
 mod style;
 mod tables;
 
 pub use tables::plain_headline;
 
-use super::barriers;
 use super::figure::{Drawing, Heading};
 use super::format;
-use super::lines;
-use super::model::{About, Check, Report};
+use super::model::{Check, Report};
 use super::words::{Words, fill};
 use crate::simulation::Stop;
+use std::cell::Cell;
 use std::fmt::Write as _;
 use style::STYLE;
 
@@ -25,8 +26,28 @@ fn escape(text: &str) -> String {
 
 /// What is drawn, in the order of the page.
 type Figures = [(Heading, Drawing)];
-/// Figures and the language of their captions.
-type Shown<'a> = (&'a Figures, &'a Words);
+/// Figures, the language of their captions, and how many stand on the page so far: they are numbered as a reader meets
+/// them.
+struct NumberedFigures<'a> {
+    figures: &'a Figures,
+    words: &'a Words,
+    count: Cell<usize>,
+}
+
+impl NumberedFigures<'_> {
+    /// The figure of a file with the next number; nothing if it was not drawn.
+    fn figure(&self, file: &str) -> String {
+        let found = self.figures.iter().find(|(heading, _)| heading.file == file);
+        found.map_or(String::new(), |figure| {
+            self.count.set(self.count.get() + 1);
+            numbered(figure, self.count.get(), self.words)
+        })
+    }
+
+    fn all(&self, files: &[&str]) -> String {
+        files.iter().map(|file| self.figure(file)).collect()
+    }
+}
 
 /// A chapter: its anchor, what it asks, and its content.
 struct Chapter {
@@ -39,20 +60,21 @@ struct Chapter {
 pub fn page(report: &Report, figures: &Figures) -> String {
     let chapter = |anchor, title, body| Chapter { anchor, title, body };
     let words = report.words();
+    let drawn = NumberedFigures { figures, words, count: Cell::new(0) };
+    let mut page = head(&report.text.title, words);
+    page += &front::page(report, &drawn);
     let chapters = [
-        chapter("where", words.ch_where, where_to(report, figures)),
-        chapter("how", words.ch_how, how_fast(report, figures)),
-        chapter("lines", words.ch_lines, at_lines(report, figures)),
-        chapter("barriers", words.ch_barriers, at_barriers(report, figures)),
-        chapter("year", words.ch_year, in_a_year(report, figures)),
-        chapter("sure", words.ch_sure, how_sure(report, figures)),
+        chapter("where", words.ch_where, chapters::where_to(report, &drawn)),
+        chapter("how", words.ch_how, chapters::how_fast(report, &drawn)),
+        chapter("lines", words.ch_lines, chapters::at_lines(report, &drawn)),
+        chapter("barriers", words.ch_barriers, chapters::at_barriers(report, &drawn)),
+        chapter("year", words.ch_year, chapters::in_a_year(report, &drawn)),
+        chapter("sure", words.ch_sure, how_sure(report, &drawn)),
         chapter("out", words.ch_out, plan(report)),
         chapter("inputs", words.ch_inputs, method(report) + &inputs(report)),
         chapter("words", words.ch_words, glossary(words)),
     ];
     let shown: Vec<&Chapter> = chapters.iter().filter(|one| !one.body.is_empty()).collect();
-    let mut page = head(&report.text.title, words);
-    page += &first_page(report, figures);
     page += &contents(&shown);
     for (number, one) in shown.iter().enumerate() {
         let _ = write!(
@@ -116,71 +138,6 @@ fn note(words: &str) -> String {
     }
 }
 
-/// Site and question, the map, what arrives, and what must be known first.
-fn first_page(report: &Report, figures: &Figures) -> String {
-    let text = &report.text;
-    let subtitle = match text.subtitle.as_str() {
-        "" => String::new(),
-        words => format!("<p class=\"subtitle\">{}</p>\n", escape(words)),
-    };
-    let count = |n: usize| format::decimal(n as f64, 0);
-    let words = report.words();
-    let counted = |n: usize, one, many| format!("{} {}", count(n), format::counted(n, one, many));
-    let facts = format!(
-        "{} · {} · {} {} · rockfall {}",
-        counted(report.releases.len(), words.release_one, words.release_many),
-        counted(report.paths.len(), words.stored_path_one, words.stored_path_many),
-        words.seed,
-        text.seed,
-        text.version
-    );
-    let view = if report.has_view {
-        format!(" · <a href=\"view.html\">{}</a>", escape(words.slope_in_3d))
-    } else {
-        String::new()
-    };
-    format!(
-        "<header>\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{}{view}</p>\n{}{}</header>\n{}{}<section id=\"answer\">\n{}{}</section>\n",
-        escape(&text.title),
-        escape(&facts),
-        pairs(&text.title_block),
-        question(report),
-        warnings(report),
-        figure((figures, words), "plan.svg").replacen("<figure>", "<figure class=\"map\">", 1),
-        report.arrivals.iter().map(|table| tables::table(table, words)).collect::<String>(),
-        tables::headline(&report.headline, words),
-    )
-}
-
-/// What was asked, in one sentence, from what the scene names.
-fn question(report: &Report) -> String {
-    let words = report.words();
-    let names = |is_barrier: bool| -> Vec<String> {
-        let marks = report.marks.iter().filter(|mark| mark.barrier.is_some() == is_barrier);
-        marks.map(|mark| words.quoted(&mark.name)).collect()
-    };
-    let (lines, barriers) = (names(false), names(true));
-    let mut asked = words.question.to_owned();
-    for (text, names) in [(words.question_lines, lines), (words.question_barriers, barriers)] {
-        if !names.is_empty() {
-            asked += &fill(text, &[("names", &names.join(", "))]);
-        }
-    }
-    let mark = if words.code == "fr" { "\u{a0}?" } else { "?" };
-    format!("<p class=\"question\">{}{mark}</p>\n", escape(&asked))
-}
-
-fn warnings(report: &Report) -> String {
-    if report.text.warnings.is_empty() {
-        return String::new();
-    }
-    format!(
-        "<section class=\"warnings\">\n<h2>{}</h2>\n{}</section>\n",
-        escape(report.words().read_first),
-        list(&report.text.warnings)
-    )
-}
-
 fn contents(chapters: &[&Chapter]) -> String {
     let mut items = String::new();
     for one in chapters {
@@ -189,12 +146,12 @@ fn contents(chapters: &[&Chapter]) -> String {
     format!("<nav>\n<ol>\n{items}</ol>\n</nav>\n")
 }
 
-/// The figure of a file, numbered as it stands among all; nothing if it was not drawn.
-fn figure((figures, words): Shown<'_>, file: &str) -> String {
-    figures
-        .iter()
-        .position(|(heading, _)| heading.file == file)
-        .map_or(String::new(), |at| numbered(&figures[at], at + 1, words))
+/// What chance, steps and mesh do to the numbers.
+fn how_sure(report: &Report, drawn: &NumberedFigures<'_>) -> String {
+    let words = report.words();
+    let study = drawn.figure(super::studied::FIGURE);
+    let study = if study.is_empty() { note(words.no_error_study) } else { study };
+    study + &checks(&report.checks, words) + &quality(report)
 }
 
 /// A figure with its number, title and caption.
@@ -206,72 +163,6 @@ fn numbered((heading, drawing): &(Heading, Drawing), number: usize, words: &Word
         escape(&head),
         escape(&drawing.caption)
     )
-}
-
-fn all(figures: Shown<'_>, files: &[&str]) -> String {
-    files.iter().map(|file| figure(figures, file)).collect()
-}
-
-/// All tables about something.
-fn tables_about(report: &Report, about: About) -> String {
-    let shown = report.tables.iter().filter(|table| table.about == about);
-    shown.map(|table| tables::table(table, report.words())).collect()
-}
-
-fn where_to(report: &Report, figures: &Figures) -> String {
-    let files = [
-        "stops.svg",
-        "runout.svg",
-        "reach_angle.svg",
-        "maps.svg",
-        "maps_values.svg",
-        "measured.svg",
-    ];
-    all((figures, report.words()), &files) + &tables_about(report, About::Measured)
-}
-
-fn how_fast(report: &Report, figures: &Figures) -> String {
-    all((figures, report.words()), &["side.svg", "profile.svg", "along.svg", "distributions.svg"])
-        + &tables_about(report, About::Rocks)
-}
-
-fn sentence(words: Option<String>) -> String {
-    words.map_or(String::new(), |words| format!("<p>{}</p>\n", escape(&words)))
-}
-
-fn at_lines(report: &Report, figures: &Figures) -> String {
-    let words = report.words();
-    let own = report.lines.iter().filter(|line| !line.is_barrier);
-    let each = own.map(|line| {
-        figure((figures, words), &format!("line_{}.svg", line.number))
-            + &sentence(lines::nobody(words, line))
-    });
-    figure((figures, words), "retention.svg")
-        + &each.collect::<String>()
-        + &tables_about(report, About::Lines)
-}
-
-fn at_barriers(report: &Report, figures: &Figures) -> String {
-    let words = report.words();
-    let each = report.barriers.iter().enumerate().map(|(number, barrier)| {
-        figure((figures, words), &format!("barrier_{}.svg", number + 1))
-            + &sentence(barriers::nobody(words, barrier))
-    });
-    each.collect::<String>() + &tables_about(report, About::Barriers)
-}
-
-fn in_a_year(report: &Report, figures: &Figures) -> String {
-    let numbers = 1..=report.annual.len();
-    let shown = (figures, report.words());
-    let each = numbers.map(|number| figure(shown, &format!("annual_{number}.svg")));
-    figure(shown, "maps_year.svg") + &each.collect::<String>() + &tables_about(report, About::Year)
-}
-
-fn how_sure(report: &Report, figures: &Figures) -> String {
-    let words = report.words();
-    let study = figure((figures, words), super::studied::FIGURE);
-    let study = if study.is_empty() { note(words.no_error_study) } else { study };
-    study + &checks(&report.checks, words) + &quality(report)
 }
 
 fn checks(checks: &[Check], words: &Words) -> String {

@@ -5,31 +5,30 @@ use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, fitted, paint, text_width
 use super::colour::{BLUE, DARK_GREEN, GREEN, GREY, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::histogram::{Histogram, percent_of};
-use super::model::{BandPoint, Line, kilo};
+use super::histogram::{EqualBins, percent_of};
+use super::model::{BandPoint, ReportLine, kilo};
+use super::panel::MANY;
 use super::panel::{FOOT_PX, Panel, align};
-use super::svg::path::{Frame, Spot};
+use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
 use crate::hazard::INTENSITY_J;
 
 const TOP_PX: f64 = 26.0;
-const ALONG_PX: f64 = 104.0;
-const CLOUD_PX: f64 = 196.0;
-const CURVE_PX: f64 = 160.0;
+const ALONG_PX: f64 = 84.0;
+const CLOUD_PX: f64 = 172.0;
+const CURVE_PX: f64 = 150.0;
 /// Between a panel's axis title and the head of the next panel (px).
-const GAP_PX: f64 = 34.0;
+const GAP_PX: f64 = 30.0;
 /// Room of the key above the heads of the lower panels (px).
 const KEY_PX: f64 = 18.0;
 const RIGHT_PX: f64 = WIDTH_PX - 20.0;
-/// From so many crossings on, marks shrink to dots.
-const MANY: usize = 400;
 /// Heights up to here at least are shown (m): rocks that only roll are not drawn as if they leapt.
 const LEAST_M: f64 = 0.1;
 /// Marked percentiles, the second one dashed.
 const MARKED: [f64; 2] = [0.50, 0.95];
 
 /// What there is to say of a line that no rock crosses; none where one does.
-pub(super) fn nobody(words: &Words, line: &Line) -> Option<String> {
+pub(super) fn nobody(words: &Words, line: &ReportLine) -> Option<String> {
     let what = if line.is_barrier { words.the_line_of_barrier } else { words.the_line };
     let below = format::percent(line.reach.high, usize::from(line.reach.high < 0.1));
     let said = fill(
@@ -45,11 +44,11 @@ pub(super) fn nobody(words: &Words, line: &Line) -> Option<String> {
 }
 
 /// Draws the line's panels: where, how high with how much energy, and the exceedance of both beside each other.
-pub(super) fn draw(words: &Words, line: &Line) -> Drawing {
+pub(super) fn draw(words: &Words, line: &ReportLine) -> Drawing {
     let largest_j = line.crossings.iter().map(|at| at.total_j).fold(0.0, f64::max);
     let (unit, size) = kilo(largest_j);
     let alongs: Vec<f64> = line.crossings.iter().map(|at| at.along_m).collect();
-    let bins = Histogram::of(&alongs);
+    let bins = EqualBins::of(&alongs);
     let (along, cloud) = upper_panels(words, line, &bins, (unit, size));
     let key_px = if line.behind.is_some() { KEY_PX } else { 0.0 };
     let top = cloud.frame.bottom + FOOT_PX + GAP_PX + key_px;
@@ -80,7 +79,7 @@ pub(super) fn draw(words: &Words, line: &Line) -> Drawing {
     Drawing { svg, caption: caption(words, line) }
 }
 
-fn caption(words: &Words, line: &Line) -> String {
+fn caption(words: &Words, line: &ReportLine) -> String {
     let count = |n: usize| format::decimal(n as f64, 0);
     let percent = |share: f64| format::percent(share, 2);
     let behind = line.behind.as_ref().map_or(String::new(), |behind| {
@@ -114,14 +113,18 @@ fn head(canvas: &Canvas<'_>, panel: &Panel, words: &str) {
 
 fn upper_panels(
     words: &Words,
-    line: &Line,
-    bins: &Histogram,
+    line: &ReportLine,
+    bins: &EqualBins,
     (unit, size): (&str, f64),
 ) -> (Panel, Panel) {
     let tallest = percent_of(bins.largest(), line.releases);
     let shares = Axis::from_zero([1.05 * tallest], words.releases_percent);
-    let frame =
-        |top: f64, height: f64| Frame { left: 0.0, top, right: RIGHT_PX, bottom: top + height };
+    let frame = |top: f64, height: f64| PaperFrame {
+        left: 0.0,
+        top,
+        right: RIGHT_PX,
+        bottom: top + height,
+    };
     let mut along = Panel::new(
         frame(TOP_PX, ALONG_PX),
         Axis::linear(0.0, line.length_m, words.line_axis),
@@ -138,11 +141,15 @@ fn upper_panels(
     (along, cloud)
 }
 
-fn lower_panels((words, line): (&Words, &Line), top: f64, (unit, size): (&str, f64)) -> [Panel; 2] {
+fn lower_panels(
+    (words, line): (&Words, &ReportLine),
+    top: f64,
+    (unit, size): (&str, f64),
+) -> [Panel; 2] {
     let least = 0.8 / line.releases.max(10) as f64;
     let panel = |k: usize, x: Axis| {
         let half = 0.5 * WIDTH_PX;
-        let frame = Frame {
+        let frame = PaperFrame {
             left: k as f64 * half,
             top,
             right: RIGHT_PX - (1 - k) as f64 * (half - 4.0),
@@ -161,7 +168,7 @@ fn lower_panels((words, line): (&Words, &Line), top: f64, (unit, size): (&str, f
     ]
 }
 
-fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &Line, size: f64) {
+fn draw_cloud(canvas: &Canvas<'_>, panel: &Panel, line: &ReportLine, size: f64) {
     panel.grid(canvas);
     let spots: Vec<Spot> = line
         .crossings
@@ -272,13 +279,13 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
 }
 
 /// Draws the retention curve over all lines: which share of the releases passes each of them.
-pub(super) fn retention(lines: &[Line], words: &Words) -> Drawing {
+pub(super) fn retention(lines: &[ReportLine], words: &Words) -> Drawing {
     let rows = lines.len() as f64;
     let row_px = 28.0;
     let longest = 0.36 * WIDTH_PX;
     let names: Vec<String> = lines.iter().map(|line| fitted(&line.name, SMALL, longest)).collect();
     let widest = names.iter().map(|name| text_width(name, SMALL)).fold(0.0, f64::max);
-    let frame = Frame {
+    let frame = PaperFrame {
         left: widest + 14.0,
         top: 8.0,
         right: WIDTH_PX - 150.0,
@@ -304,7 +311,12 @@ pub(super) fn retention(lines: &[Line], words: &Words) -> Drawing {
     Drawing { svg, caption: words.retention_caption.to_owned() }
 }
 
-fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name, y): (&Line, &str, f64), words: &Words) {
+fn bar(
+    canvas: &Canvas<'_>,
+    panel: &Panel,
+    (line, name, y): (&ReportLine, &str, f64),
+    words: &Words,
+) {
     let frame = panel.frame;
     let at = |share: f64| panel.at((100.0 * share).clamp(0.0, panel.x.high), 0.0).0;
     let behind = line.behind.as_ref().map(|behind| behind.reach);
@@ -312,7 +324,7 @@ fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, name, y): (&Line, &str, f64), 
     for (reach, colour, top) in rows {
         let Some(reach) = reach else { continue };
         let tall = if behind.is_some() { 7.0 } else { 14.0 };
-        let bar = Frame {
+        let bar = PaperFrame {
             left: frame.left,
             right: at(reach.value),
             top: y + top,

@@ -12,9 +12,10 @@ use super::format;
 use super::model::{CellMap, Report, energy_unit};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
+use super::profile::NEEDS;
 use super::raster::GroundRaster;
 use super::site;
-use super::svg::path::{Frame, Spot};
+use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
 use crate::math;
 use plotters::style::RGBColor;
@@ -22,7 +23,7 @@ use plotters::style::RGBColor;
 const TOP_PX: f64 = 24.0;
 /// Height of one line of a key (px).
 const KEY_PX: f64 = 16.0;
-const TALLEST_PX: f64 = 400.0;
+const TALLEST_PX: f64 = 300.0;
 /// Upper ends of the classes of a share of the releases (–).
 const SHARES: [f64; 5] = [0.001, 0.01, 0.1, 0.3, 1.0];
 /// Colours of the Swiss classes: weak, medium, strong.
@@ -31,13 +32,13 @@ const INTENSITY: [RGBColor; 3] = [SKY, ORANGE, VERMILLION];
 const CLASSES: usize = 5;
 
 /// One map: its cells by class, and what the classes are called.
-struct Layer {
+struct ClassedMap {
     title: String,
     cells: Vec<(u32, usize)>,
     classes: Vec<(String, RGBColor)>,
 }
 
-impl Layer {
+impl ClassedMap {
     /// Shares of the releases in fixed classes.
     fn of_shares(title: &str, values: &[(u32, f64)]) -> Self {
         let class = |value: f64| SHARES.iter().position(|limit| value <= *limit);
@@ -115,8 +116,8 @@ fn shade(class: usize) -> RGBColor {
 pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
     let words = report.words();
     let layers = [
-        Layer::of_shares(words.map_reach, &maps.reach),
-        Layer::of_intensity(words.map_intensity, &maps.intensity),
+        ClassedMap::of_shares(words.map_reach, &maps.reach),
+        ClassedMap::of_intensity(words.map_intensity, &maps.intensity),
     ];
     let ground = report.ground.as_ref();
     let svg = draw_layers("maps", words.maps_alt, (report, maps, ground), &layers);
@@ -134,29 +135,49 @@ pub(super) fn draw(report: &Report, maps: &CellMap) -> Drawing {
             ("strong", &strong),
         ],
     );
-    Drawing { svg, caption }
+    Drawing { svg, caption: caption + &few(report, maps) }
 }
 
-/// Draws energy, height, deposits and the probability of more than a weak intensity.
+/// What a 95th percentile of few rocks is worth; nothing where none is.
+fn few(report: &Report, maps: &CellMap) -> String {
+    let all: usize = maps.intensity_cells.iter().sum();
+    let share = format::percent(maps.few_cells as f64 / all.max(1) as f64, 0);
+    if maps.few_cells == 0 {
+        return String::new();
+    }
+    fill(report.words().maps_few, &[("share", &share), ("needs", &NEEDS)])
+}
+
+/// Draws energy and height beside each other.
 pub(super) fn draw_values(report: &Report, maps: &CellMap) -> Drawing {
     let words = report.words();
     let most_j = maps.energy_j.iter().map(|(_, v)| *v).fold(0.0, f64::max);
     let layers = [
-        Layer::of_values(words.map_energy, &maps.energy_j, energy_unit(most_j), &[1.0, 3.0]),
-        Layer::of_values(words.map_height, &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
-        Layer::of_counts(words.map_deposits, &maps.deposits),
-        Layer::of_shares(words.map_exceeds, &maps.exceeds),
+        ClassedMap::of_values(words.map_energy, &maps.energy_j, energy_unit(most_j), &[1.0, 3.0]),
+        ClassedMap::of_values(words.map_height, &maps.height_m, ("m", 1.0), &[1.0, 2.0, 5.0]),
     ];
     let ground = report.ground.as_ref();
     let svg = draw_layers("maps-values", words.map_values_alt, (report, maps, ground), &layers);
-    Drawing { svg, caption: words.map_values_caption.to_owned() }
+    Drawing { svg, caption: words.map_values_caption.to_owned() + &few(report, maps) }
+}
+
+/// Draws deposits and the probability of more than a weak intensity beside each other.
+pub(super) fn draw_ends(report: &Report, maps: &CellMap) -> Drawing {
+    let words = report.words();
+    let layers = [
+        ClassedMap::of_counts(words.map_deposits, &maps.deposits),
+        ClassedMap::of_shares(words.map_exceeds, &maps.exceeds),
+    ];
+    let ground = report.ground.as_ref();
+    let svg = draw_layers("maps-ends", words.map_ends_alt, (report, maps, ground), &layers);
+    Drawing { svg, caption: words.map_ends_caption.to_owned() }
 }
 
 fn draw_layers(
     name: &str,
     title: &str,
     (report, maps, ground): (&Report, &CellMap, Option<&GroundRaster>),
-    layers: &[Layer],
+    layers: &[ClassedMap],
 ) -> String {
     let (panels, bottom) = panels(report, maps, layers);
     paint(name, (WIDTH_PX, bottom), title, |canvas| {
@@ -185,11 +206,11 @@ fn draw_layers(
 }
 
 /// Equal frames over all cells reached, two beside each other, at equal scale; and the height of the sheet.
-fn panels(report: &Report, maps: &CellMap, layers: &[Layer]) -> (Vec<Panel>, f64) {
+fn panels(report: &Report, maps: &CellMap, layers: &[ClassedMap]) -> (Vec<Panel>, f64) {
     let words = report.words();
     let (mut x, mut y) = maps.extent();
     let half = 0.5 * WIDTH_PX;
-    let square = Frame { left: 0.0, top: 0.0, right: 240.0, bottom: 240.0 };
+    let square = PaperFrame { left: 0.0, top: 0.0, right: 240.0, bottom: 240.0 };
     let axes = |x: (f64, f64), y: (f64, f64)| {
         (Axis::linear(x.0, x.1, words.easting), Axis::linear(y.0, y.1, words.northing))
     };
@@ -210,8 +231,12 @@ fn panels(report: &Report, maps: &CellMap, layers: &[Layer]) -> (Vec<Panel>, f64
     let mut top = TOP_PX;
     for row in layers.chunks(2) {
         for left in [0.0, half].into_iter().take(row.len()) {
-            let frame =
-                Frame { left: left + room, top, right: left + room + widest, bottom: top + height };
+            let frame = PaperFrame {
+                left: left + room,
+                top,
+                right: left + room + widest,
+                bottom: top + height,
+            };
             let (across, up) = axes(x, y);
             panels.push(Panel::new(frame, across, up));
         }
@@ -226,7 +251,7 @@ fn cells(
     canvas: &Canvas<'_>,
     panel: &Panel,
     maps: &CellMap,
-    (layer, class): (&Layer, usize),
+    (layer, class): (&ClassedMap, usize),
     colour: RGBColor,
 ) {
     let mut runs: Vec<(u32, u32)> = Vec::new();
@@ -250,7 +275,7 @@ fn cells(
 }
 
 /// Where each entry of a key stands, from the left end and by line, and how many lines there are.
-fn key_places(layer: &Layer, width_px: f64) -> (Vec<(f64, usize)>, usize) {
+fn key_places(layer: &ClassedMap, width_px: f64) -> (Vec<(f64, usize)>, usize) {
     let (mut x, mut line) = (0.0, 0);
     let mut places = Vec::new();
     for (name, _) in &layer.classes {
@@ -264,12 +289,12 @@ fn key_places(layer: &Layer, width_px: f64) -> (Vec<(f64, usize)>, usize) {
     (places, line + 1)
 }
 
-fn key(canvas: &Canvas<'_>, panel: &Panel, layer: &Layer) {
+fn key(canvas: &Canvas<'_>, panel: &Panel, layer: &ClassedMap) {
     let top = panel.frame.bottom + FOOT_PX + 6.0;
     let (places, _) = key_places(layer, panel.frame.width());
     for ((name, colour), (x, line)) in layer.classes.iter().zip(places) {
         let (x, y) = (panel.frame.left + x, top + (line as f64 + 0.5) * KEY_PX);
-        let patch = Frame { left: x, right: x + 10.0, top: y - 5.0, bottom: y + 5.0 };
+        let patch = PaperFrame { left: x, right: x + 10.0, top: y - 5.0, bottom: y + 5.0 };
         canvas.fill(&patch, *colour, 0.8);
         canvas.outline(&patch, Pen::full(INK, 0.4));
         canvas.text(&Label::new(name.clone(), (x + 13.0, y)));

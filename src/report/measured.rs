@@ -8,9 +8,9 @@ use super::format;
 use super::model::{Observed, Report};
 use super::panel::{FOOT_PX, Panel};
 use super::plan_view::ground;
-use super::svg::path::{Frame, Spot};
+use super::svg::path::{PaperFrame, Spot};
 use super::words::{Words, fill};
-use crate::hazard::{Sample, Way};
+use crate::hazard::{ObservedPath, Sample};
 
 const TOP_PX: f64 = 26.0;
 const CURVE_PX: f64 = 210.0;
@@ -83,16 +83,20 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
 }
 
 fn curve_panel(observed: &Observed, words: &Words) -> Panel {
-    let runouts = observed.measured.iter().chain(&observed.computed).map(Way::runout_m);
-    let frame =
-        Frame { left: LEFT_PX, top: TOP_PX, right: WIDTH_PX - 14.0, bottom: TOP_PX + CURVE_PX };
+    let runouts = observed.measured.iter().chain(&observed.computed).map(ObservedPath::runout_m);
+    let frame = PaperFrame {
+        left: LEFT_PX,
+        top: TOP_PX,
+        right: WIDTH_PX - 14.0,
+        bottom: TOP_PX + CURVE_PX,
+    };
     let x = Axis::from_zero(runouts, words.runout_axis);
     Panel::new(frame, x, Axis::linear(0.0, 1.0, words.share_of_rocks))
 }
 
 /// The empirical distribution as the steps it consists of.
-fn steps(canvas: &Canvas<'_>, panel: &Panel, (ways, pen): (&[Way], Pen), words: &Words) {
-    let sample = Sample::of(ways.iter().map(Way::runout_m));
+fn steps(canvas: &Canvas<'_>, panel: &Panel, (ways, pen): (&[ObservedPath], Pen), words: &Words) {
+    let sample = Sample::of(ways.iter().map(ObservedPath::runout_m));
     let n = sample.values().len() as f64;
     let corners = |(k, x): (usize, &f64)| [(*x, k as f64 / n), (*x, (k + 1) as f64 / n)];
     let line: Vec<(f64, f64)> = sample.values().iter().enumerate().flat_map(corners).collect();
@@ -115,22 +119,22 @@ fn map_panel(observed: &Observed, words: &Words, top: f64) -> Panel {
         (low - 5.0, high + 5.0)
     };
     let (mut x, y) = (range(0), range(1));
-    let panel = |frame: Frame, x: (f64, f64)| {
+    let panel = |frame: PaperFrame, x: (f64, f64)| {
         let across = Axis::linear(x.0, x.1, words.easting);
         Panel::new(frame, across, Axis::linear(y.0, y.1, words.northing))
     };
     // seven digits of a northing need their room
-    let square = Frame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
+    let square = PaperFrame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
     let left = panel(square, x).room_left().max(LEFT_PX);
     let widest = WIDTH_PX - 14.0 - left;
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     let more = 0.5 * (widest / scale - (x.1 - x.0)).max(0.0);
     x = (x.0 - more, x.1 + more);
     let bottom = top + scale * (y.1 - y.0);
-    panel(Frame { left, top, right: left + widest, bottom }, x)
+    panel(PaperFrame { left, top, right: left + widest, bottom }, x)
 }
 
-fn ends(panel: &Panel, ways: &[Way]) -> Vec<Spot> {
+fn ends(panel: &Panel, ways: &[ObservedPath]) -> Vec<Spot> {
     let spots = ways.iter().map(|way| panel.at(way.end_m[0], way.end_m[1]));
     spots.filter(|&spot| panel.frame.holds(spot)).collect()
 }

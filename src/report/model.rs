@@ -3,14 +3,14 @@
 mod places;
 
 pub use places::{
-    AnnualView, BarrierView, Behind, CellMap, DesignView, LevelCells, Line, LinePoint, MapMark,
-    Observed, OfStretch, PlaceView, ProfileStretch, ProfileView, RockView, YearCells,
+    AnnualView, BarrierView, Behind, CellMap, DesignView, LevelCells, LinePoint, MapMark, Observed,
+    PlaceView, ProfileStretch, ProfileView, ReportLine, ReportStretch, RockView, YearCells,
 };
 
 pub use super::bound::Is;
 use super::raster::GroundRaster;
 use super::words::Words;
-use crate::output::Zone;
+use crate::output::ReleaseZone;
 use crate::scene::Language;
 use crate::simulation::{PathState, Stop};
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ pub struct Report {
     /// Words and provenance.
     pub text: Text,
     /// One entry a release, in order; none is left out.
-    pub releases: Vec<Fall>,
+    pub releases: Vec<ReleaseEnd>,
     /// Kept paths.
     pub paths: Vec<Path>,
     /// Height and trees in plan view; `None` leaves the maps without ground.
@@ -31,25 +31,25 @@ pub struct Report {
     /// Share of rocks that run out farther than `x` (m), rising in `x`, with its confidence band.
     pub runout_exceedance: Vec<BandPoint>,
     /// Quantiles of each quantity, each with its confidence interval.
-    pub quantiles: BTreeMap<Quantity, Vec<Quantile>>,
+    pub quantiles: BTreeMap<ReportQuantity, Vec<Quantile>>,
     /// Count and share of each stop reason.
     pub stops: Vec<StopShare>,
     /// Headline numbers.
-    pub headline: Vec<Row>,
+    pub headline: Vec<EstimateRow>,
     /// What arrives at lines and barriers, a row each: the first tables of the page.
-    pub arrivals: Vec<Table>,
+    pub arrivals: Vec<EstimateTable>,
     /// Plausibility: what was looked at, what was found, whether it passes.
     pub checks: Vec<Check>,
     /// Where rocks are released.
-    pub zone: Zone,
+    pub zone: ReleaseZone,
     /// Where further sources release theirs.
-    pub further_zones: Vec<Zone>,
+    pub further_zones: Vec<ReleaseZone>,
     /// Lines and barriers on the map.
     pub marks: Vec<MapMark>,
     /// Further tables: one an evaluation line, for instance.
-    pub tables: Vec<Table>,
+    pub tables: Vec<EstimateTable>,
     /// Evaluation lines, in the order of the scene.
-    pub lines: Vec<Line>,
+    pub lines: Vec<ReportLine>,
     /// What a year brings to each line and object; empty without sources.
     pub annual: Vec<AnnualView>,
     /// Barriers, in the order of the scene.
@@ -110,7 +110,7 @@ pub struct Text {
 
 /// One release and its end.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fall {
+pub struct ReleaseEnd {
     /// Why it ended.
     pub stop: Stop,
     /// Horizontal distance from release to end (m).
@@ -145,12 +145,12 @@ pub struct Path {
     /// Release number, from 0.
     pub index: usize,
     /// Its points, in time order.
-    pub points: Vec<Point>,
+    pub points: Vec<ReportPathPoint>,
 }
 
 /// One instant of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct ReportPathPoint {
     /// Time since release (s).
     pub time_s: f64,
     /// Centre, map coordinates (m).
@@ -250,7 +250,7 @@ pub struct StopShare {
 
 /// One number of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct EstimateRow {
     /// What it is.
     pub name: String,
     /// The number and its interval.
@@ -261,7 +261,7 @@ pub struct Row {
 
 /// A table of estimates: one row a quantity, one column a statistic.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Table {
+pub struct EstimateTable {
     /// Heading.
     pub title: String,
     /// One line below it: counts, conditions. May be empty.
@@ -272,6 +272,8 @@ pub struct Table {
     pub rows: Vec<(String, Vec<Option<Estimate>>)>,
     /// The chapter it belongs to.
     pub about: About,
+    /// Name of the line, object or barrier it tells of; empty where it tells of several.
+    pub place: String,
 }
 
 /// What a table is about.
@@ -292,7 +294,7 @@ pub enum About {
 
 /// What is measured of every release.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Quantity {
+pub enum ReportQuantity {
     /// Horizontal distance from release to end (m).
     Runout,
     /// `atan(drop/runout)` (degrees).
@@ -311,9 +313,9 @@ pub enum Quantity {
     Impacts,
 }
 
-impl Quantity {
+impl ReportQuantity {
     /// Its value for one release, in SI (degrees for the angle).
-    pub fn of(self, fall: &Fall) -> f64 {
+    pub fn of(self, fall: &ReleaseEnd) -> f64 {
         match self {
             Self::Runout => fall.runout_m,
             Self::ReachAngle => fall.reach_angle_deg,

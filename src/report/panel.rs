@@ -3,7 +3,7 @@
 use super::axis::{Axis, Tick};
 use super::canvas::{Canvas, Label, NORMAL, Pen, SMALL, text_width};
 use super::colour::{INK, PALE};
-use super::svg::path::{Frame, Spot, clipped, thinned};
+use super::svg::path::{PaperFrame, Spot, clipped, thinned};
 use plotters::style::RGBColor;
 
 /// Length of a tick (px).
@@ -12,8 +12,10 @@ const TICK_PX: f64 = 4.0;
 const GAP_PX: f64 = 3.0;
 /// Room of an axis title with its gap (px).
 const TITLE_PX: f64 = NORMAL + 8.0;
+/// From so many marks on, marks shrink to dots.
+pub(super) const MANY: usize = 400;
 /// How far a drawn line may lie from the true one (px): below what a printer shows.
-const TOLERANCE_PX: f64 = 0.15;
+pub(super) const TOLERANCE_PX: f64 = 0.15;
 const FRAME_PEN: Pen = Pen::full(INK, 0.8);
 const GRID_PEN: Pen = Pen::full(PALE, 0.6);
 
@@ -24,7 +26,7 @@ pub const FOOT_PX: f64 = TICK_PX + GAP_PX + SMALL + TITLE_PX;
 #[derive(Debug, Clone)]
 pub struct Panel {
     /// Where it stands on the paper.
-    pub frame: Frame,
+    pub frame: PaperFrame,
     /// To the right.
     pub x: Axis,
     /// Upwards.
@@ -44,7 +46,7 @@ pub fn align<const N: usize>(panels: [&mut Panel; N]) {
 
 impl Panel {
     /// A panel by itself.
-    pub fn new(frame: Frame, x: Axis, y: Axis) -> Self {
+    pub fn new(frame: PaperFrame, x: Axis, y: Axis) -> Self {
         Self { frame, x, y, labels_px: 0.0 }
     }
 
@@ -171,7 +173,7 @@ impl Panel {
             let (x, y) = self.at(x, y);
             // 0 on a logarithmic axis lies infinitely far below: the edge of the frame, not a missing bound
             let y = if y.is_nan() { else_y } else { y };
-            let Frame { left, top, right, bottom } = self.frame;
+            let PaperFrame { left, top, right, bottom } = self.frame;
             (x.clamp(left, right), y.clamp(top, bottom))
         };
         let inside = band.iter().filter(|(x, ..)| (self.x.low..=self.x.high).contains(x));
@@ -190,7 +192,7 @@ impl Panel {
         let (left, right) = (self.at(from, self.y.low).0, self.at(to, self.y.low).0);
         // a hair of paper between bars
         let gap = if right - left > 3.0 { 0.4 } else { 0.0 };
-        let bar = Frame {
+        let bar = PaperFrame {
             left: left + gap,
             right: right - gap,
             top: self.frame.bottom - height,
@@ -209,7 +211,7 @@ impl Panel {
 
     /// Grey words in the middle of a frame that has nothing to show.
     pub fn nothing(&self, canvas: &Canvas<'_>, why: &str) {
-        let Frame { left, top, right, bottom } = self.frame;
+        let PaperFrame { left, top, right, bottom } = self.frame;
         let middle = (0.5 * (left + right), 0.5 * (top + bottom));
         canvas.text(&Label::new(why, middle).centred().coloured(super::colour::GREY));
     }

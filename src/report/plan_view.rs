@@ -9,16 +9,24 @@ use super::colour::{self, BLUE, DARK_VERMILLION, ORANGE, PURPLE, VERMILLION, WHI
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::Report;
+use super::panel::MANY;
+use super::panel::TOLERANCE_PX;
 use super::panel::{FOOT_PX, Panel};
 use super::site;
-use super::svg::path::{Frame, Spot, clipped, thinned};
+use super::svg::path::{PaperFrame, Spot, clipped, thinned};
 use super::words::fill;
 use crate::math;
 use crate::simulation::Stop;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Tallest map (px): with the stop reasons and both captions it fits an A4 page.
-const TALLEST_PX: f64 = 580.0;
+/// Tallest map (px): beside the numbers of all rocks its words can be read on the first page of A4.
+const TALLEST_PX: f64 = 460.0;
+/// Widest map (px), for the same reason.
+const WIDEST_PX: f64 = 400.0;
+/// Left edge of the key (px).
+const KEY_LEFT_PX: f64 = 6.0;
+/// Narrowest sheet (px): room for the key.
+const NARROWEST_PX: f64 = 360.0;
 /// Least height of a map (px): room for the colour bar.
 const LOWEST_PX: f64 = 190.0;
 /// Column right of the map for north arrow and colour bar (px).
@@ -32,21 +40,18 @@ const DEPOSIT_PX: f64 = 3.0;
 const DEPOSITS: [(usize, f64); 4] = [(1, 0.35), (3, 0.55), (10, 0.8), (30, 1.0)];
 /// Steps of the colour scale along a path: finer ones cannot be told apart on a thin line.
 const SPEED_CLASSES: usize = 14;
-const TOLERANCE_PX: f64 = 0.15;
 const TOP_PX: f64 = 10.0;
-/// From so many marks on, marks shrink to dots.
-const MANY: usize = 400;
 
 /// Draws the map.
 pub(super) fn draw(report: &Report) -> Drawing {
     let words = report.words();
     let panel = layout(report);
-    let key = furniture::Key::of(report);
-    let key_left = panel.frame.left.min(0.3 * WIDTH_PX);
-    let height = panel.frame.bottom + FOOT_PX + key.height_px(WIDTH_PX - key_left) + 8.0;
+    let key = furniture::MapLegend::of(report);
+    let width = (panel.frame.right + RIGHT_PX).clamp(NARROWEST_PX, WIDTH_PX);
+    let height = panel.frame.bottom + FOOT_PX + key.height_px(width - KEY_LEFT_PX) + 8.0;
     let fastest = fastest_m_s(report);
     let mut contours = None;
-    let svg = paint("plan", (WIDTH_PX, height), words.plan_title, |canvas| {
+    let svg = paint("plan", (width, height), words.plan_title, |canvas| {
         let names = site::places(canvas, &panel, report, site::in_words);
         canvas.clip("map", &panel.frame, || {
             if let Some(ground) = &report.ground {
@@ -66,7 +71,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
         }
         panel.axes(canvas);
         furniture::draw(canvas, &panel, (fastest, !report.paths.is_empty()), words);
-        key.draw(canvas, (key_left, panel.frame.bottom + FOOT_PX + 4.0));
+        key.draw(canvas, (KEY_LEFT_PX, panel.frame.bottom + FOOT_PX + 4.0));
     });
     let interval = contours.map_or(String::new(), |c| {
         fill(words.contour_interval, &[("m", &format::plain(c.interval_m))])
@@ -83,18 +88,16 @@ fn layout(report: &Report) -> Panel {
     let (mut x, mut y) = extent(report);
     let names = (report.words().easting, report.words().northing);
     // the labels' width needs the ticks, the ticks need a frame: a square one is near enough
-    let square = Frame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
-    let panel = |frame: Frame, x: Range, y: Range| {
+    let square = PaperFrame { left: 0.0, top: 0.0, right: 400.0, bottom: 400.0 };
+    let panel = |frame: PaperFrame, x: Range, y: Range| {
         Panel::new(frame, Axis::linear(x.0, x.1, names.0), Axis::linear(y.0, y.1, names.1))
     };
     let left = panel(square, x, y).room_left();
-    let widest = WIDTH_PX - left - RIGHT_PX;
+    let widest = (WIDTH_PX - left - RIGHT_PX).min(WIDEST_PX);
     fill_page(&mut x, &mut y, widest, report);
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     let (width, height) = (scale * (x.1 - x.0), scale * (y.1 - y.0));
-    // a narrow map stands in the middle of the page
-    let left = left + 0.5 * (widest - width);
-    let frame = Frame { left, top: TOP_PX, right: left + width, bottom: TOP_PX + height };
+    let frame = PaperFrame { left, top: TOP_PX, right: left + width, bottom: TOP_PX + height };
     panel(frame, x, y)
 }
 
@@ -199,8 +202,8 @@ fn ends(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     if is_crowd {
         deposits(canvas, panel, report);
     }
-    for kind in ENDS.into_iter().filter(|kind| !(is_crowd && *kind == Mark::AtRest)) {
-        let ends = report.releases.iter().filter(|fall| Mark::of(&fall.stop) == kind);
+    for kind in ENDS.into_iter().filter(|kind| !(is_crowd && *kind == EndMark::AtRest)) {
+        let ends = report.releases.iter().filter(|fall| EndMark::of(&fall.stop) == kind);
         kind.draw(canvas, &apart(panel, ends.map(|fall| fall.end_m), 0.8 * radius), radius);
     }
 }
@@ -231,7 +234,8 @@ fn deposits(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
 fn density_symbol(canvas: &Canvas<'_>, at: Spot) {
     for (class, (_, opacity)) in DEPOSITS.iter().enumerate() {
         let x = at.0 + (class as f64 - 1.5) * 4.0;
-        let frame = Frame { left: x - 2.0, right: x + 2.0, top: at.1 - 3.0, bottom: at.1 + 3.0 };
+        let frame =
+            PaperFrame { left: x - 2.0, right: x + 2.0, top: at.1 - 3.0, bottom: at.1 + 3.0 };
         let colour = if class + 1 == DEPOSITS.len() { DARK_VERMILLION } else { VERMILLION };
         canvas.fill(&frame, colour, *opacity);
     }
@@ -248,7 +252,7 @@ fn apart(panel: &Panel, places: impl Iterator<Item = [f64; 3]>, raster_px: f64) 
 
 /// How an end is shown: form and colour, so that a grey print keeps them apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mark {
+enum EndMark {
     AtRest,
     LeftTerrain,
     TimeUp,
@@ -256,9 +260,10 @@ enum Mark {
 }
 
 /// The ways to end, in the order they are drawn.
-const ENDS: [Mark; 4] = [Mark::AtRest, Mark::LeftTerrain, Mark::TimeUp, Mark::Failed];
+const ENDS: [EndMark; 4] =
+    [EndMark::AtRest, EndMark::LeftTerrain, EndMark::TimeUp, EndMark::Failed];
 
-impl Mark {
+impl EndMark {
     fn of(stop: &Stop) -> Self {
         match stop {
             Stop::AtRest => Self::AtRest,

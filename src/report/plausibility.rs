@@ -23,7 +23,7 @@ const COARSE: f64 = 5.0;
 /// Share of the area of all deposits on which half of them may lie (–).
 const CROWDED: f64 = 0.1;
 /// Rocks at rest from which on their crowding says something.
-const MANY: usize = 400;
+const CROWD: usize = 400;
 /// Rocks from which on a median says something.
 const ENOUGH: usize = 20;
 
@@ -100,7 +100,7 @@ fn hollows(report: &Report, ground: &GroundRaster) -> Option<Check> {
             ("all", &number(all_m2)),
         ],
     );
-    let is_crowded = at_rest.len() >= MANY && half_m2 < CROWDED * all_m2;
+    let is_crowded = at_rest.len() >= CROWD && half_m2 < CROWDED * all_m2;
     let passes = share <= IN_HOLLOWS && !is_crowded;
     if !passes {
         found += words.check_pits;

@@ -5,10 +5,10 @@ use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{BLUE, DARK_GREEN, GREY, INK, SKY};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{OfStretch, ProfileStretch, ProfileView, Report};
+use super::model::{ProfileStretch, ProfileView, Report, ReportStretch};
 use super::panel::{FOOT_PX, Panel, align};
 use super::side_view::name_above;
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 
 /// Room above the first panel for the key and the names of lines and barriers (px).
@@ -19,17 +19,17 @@ const MAXIMUM: Pen = Pen::full(SKY, 1.0);
 const P95: Pen = Pen::full(BLUE, 1.8);
 const MEDIAN: Pen = Pen::full(INK, 1.0).dashed();
 /// Rocks below which there is no P95.
-const NEEDS: usize = 59;
+pub(super) const NEEDS: usize = 59;
 /// Range of an axis at least: rocks that only roll are not drawn as if they leapt (m, m/s).
 const LEAST: f64 = 0.1;
 
 /// What a panel shows.
-type Shown = fn(&ProfileStretch) -> &OfStretch;
+type ProfilePanel = fn(&ProfileStretch) -> &ReportStretch;
 
 /// Draws height above speed over one x axis.
 pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
     let words = report.words();
-    let shown: [(Shown, &str); 2] =
+    let shown: [(ProfilePanel, &str); 2] =
         [(|at| &at.height_m, words.bounce_axis), (|at| &at.speed_m_s, words.speed_axis)];
     let panels = panels(view, shown, words);
     let size = (WIDTH_PX, panels[1].frame.bottom + FOOT_PX);
@@ -53,13 +53,13 @@ pub(super) fn draw(report: &Report, view: &ProfileView) -> Drawing {
     Drawing { svg, caption }
 }
 
-fn panels(view: &ProfileView, shown: [(Shown, &str); 2], words: &Words) -> [Panel; 2] {
+fn panels(view: &ProfileView, shown: [(ProfilePanel, &str); 2], words: &Words) -> [Panel; 2] {
     let end = view.stretches.last().map_or(1.0, |last| last.from_m + view.step_m);
     let mut row = -1.0;
     let mut panels = shown.map(|(of, title)| {
         row += 1.0;
         let top = TOP_PX + row * (PLOT_PX + GAP_PX);
-        let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
+        let frame = PaperFrame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
         let largest = view.stretches.iter().map(|at| of(at).largest).chain([LEAST]);
         let x = Axis::linear(0.0, end, words.profile_axis);
         Panel::new(frame, x, Axis::from_zero(largest, title))
@@ -69,7 +69,7 @@ fn panels(view: &ProfileView, shown: [(Shown, &str); 2], words: &Words) -> [Pane
     panels
 }
 
-fn draw_panel(canvas: &Canvas<'_>, panel: &Panel, view: &ProfileView, of: Shown) {
+fn draw_panel(canvas: &Canvas<'_>, panel: &Panel, view: &ProfileView, of: ProfilePanel) {
     panel.grid(canvas);
     let largest = steps(view, |at| of(at).largest);
     let area: Vec<_> = largest.iter().map(|&(x, y)| (x, 0.0, y)).collect();
@@ -115,7 +115,7 @@ fn marks(canvas: &Canvas<'_>, panels: &[Panel; 2], view: &ProfileView) {
     }
 }
 
-fn key(canvas: &Canvas<'_>, frame: &Frame, words: &Words) {
+fn key(canvas: &Canvas<'_>, frame: &PaperFrame, words: &Words) {
     let (y, mut left) = (frame.top - 30.0, frame.left);
     for (name, pen) in [(words.median, MEDIAN), ("P95", P95), (words.maximum, MAXIMUM)] {
         canvas.line(&[(left, y), (left + 18.0, y)], pen);

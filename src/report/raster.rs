@@ -32,7 +32,7 @@ const MOST_CELLS: usize = 2000;
 
 /// What stands round a raster: the smallest box of some vertices.
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+struct BoundingBox {
     low: [f64; 3],
     high: [f64; 3],
 }
@@ -68,9 +68,9 @@ impl GroundRaster {
         raster
     }
 
-    fn empty_over(bounds: Option<Bounds>, cells: usize) -> Self {
-        let Bounds { low, high } =
-            bounds.unwrap_or(Bounds { low: [0.0; 3], high: [1.0, 1.0, 0.0] });
+    fn empty_over(bounds: Option<BoundingBox>, cells: usize) -> Self {
+        let BoundingBox { low, high } =
+            bounds.unwrap_or(BoundingBox { low: [0.0; 3], high: [1.0, 1.0, 0.0] });
         let longest = (high[0] - low[0]).max(high[1] - low[1]).max(1e-9);
         let cell_m = rounded_up(longest / cells.max(1) as f64);
         let decimals = decimals_for(cell_m);
@@ -172,14 +172,14 @@ fn corners_on_map(terrain: &Terrain, triangle: usize) -> [[f64; 3]; 3] {
     })
 }
 
-fn bounds_of(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Option<Bounds> {
+fn bounds_of(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Option<BoundingBox> {
     triangles.flatten().fold(None, |bounds, p| {
-        let Bounds { mut low, mut high } = bounds.unwrap_or(Bounds { low: p, high: p });
+        let BoundingBox { mut low, mut high } = bounds.unwrap_or(BoundingBox { low: p, high: p });
         for axis in 0..3 {
             low[axis] = low[axis].min(p[axis]);
             high[axis] = high[axis].max(p[axis]);
         }
-        Some(Bounds { low, high })
+        Some(BoundingBox { low, high })
     })
 }
 

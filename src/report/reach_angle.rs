@@ -3,12 +3,12 @@
 use super::axis::Axis;
 use super::canvas::{Canvas, Label, Pen, SMALL, paint, text_width};
 use super::colour::{INK, ORANGE, VERMILLION};
-use super::distributions::Distribution;
+use super::distributions::DistributionPanel;
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::model::{Is, Quantity, Report};
+use super::model::{Is, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 
 /// Where medians of observed events lie (degrees), lowest and highest: low slopes above a meadow, high talus slopes.
@@ -20,7 +20,7 @@ const SHADES: [f64; 2] = [0.16, 0.34];
 
 /// The median; none without rocks.
 pub(super) fn median(report: &Report) -> Option<(f64, Is)> {
-    let known = report.quantiles.get(&Quantity::ReachAngle)?;
+    let known = report.quantiles.get(&ReportQuantity::ReachAngle)?;
     let found = known.iter().find(|q| (q.probability - 0.5).abs() < 1e-9)?;
     found.at.value.is_finite().then_some((found.at.value, found.at.is))
 }
@@ -33,8 +33,9 @@ pub(super) fn is_observed(degrees: f64) -> bool {
 /// Draws the histogram over the bands.
 pub(super) fn draw(report: &Report) -> Drawing {
     let words = report.words();
-    let frame = Frame { left: 56.0, right: WIDTH_PX - 16.0, top: TOP_PX, bottom: TOP_PX + PLOT_PX };
-    let mut angles = Distribution::of(report, Quantity::ReachAngle, frame);
+    let frame =
+        PaperFrame { left: 56.0, right: WIDTH_PX - 16.0, top: TOP_PX, bottom: TOP_PX + PLOT_PX };
+    let mut angles = DistributionPanel::of(report, ReportQuantity::ReachAngle, frame);
     let x = &angles.panel.x;
     // both bands stay in sight
     angles.panel.x = Axis::linear(x.low.min(10.0), x.high.max(50.0), x.title.clone());
@@ -56,7 +57,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
 
 fn shaded(canvas: &Canvas<'_>, panel: &Panel, &(low, high): &(f64, f64), shade: f64) {
     let (left, right) = (panel.at(low, 0.0).0, panel.at(high, 0.0).0);
-    canvas.fill(&Frame { left, right, ..panel.frame }, ORANGE, shade);
+    canvas.fill(&PaperFrame { left, right, ..panel.frame }, ORANGE, shade);
     for x in [left, right] {
         let side = [(x, panel.frame.top), (x, panel.frame.bottom)];
         canvas.line(&side, Pen { opacity: 0.6, ..Pen::full(VERMILLION, 0.7) });
@@ -69,7 +70,7 @@ fn key(canvas: &Canvas<'_>, panel: &Panel, words: &Words) {
     let mut x = panel.frame.left;
     let names = [words.low_slope, words.high_talus];
     for (((low, high), name), shade) in OBSERVED.iter().zip(names).zip(SHADES) {
-        let patch = Frame { left: x, right: x + 16.0, top: y - 5.0, bottom: y + 5.0 };
+        let patch = PaperFrame { left: x, right: x + 16.0, top: y - 5.0, bottom: y + 5.0 };
         canvas.fill(&patch, ORANGE, shade);
         canvas.outline(&patch, Pen::full(INK, 0.4));
         let band = fill(words.band, &[("name", &name), ("low", low), ("high", high)]);

@@ -5,10 +5,10 @@ use super::canvas::{Canvas, Label, Pen, SMALL, paint};
 use super::colour::{BLUE, INK, SKY, VERMILLION};
 use super::figure::{Drawing, WIDTH_PX};
 use super::format;
-use super::histogram::{Histogram, percent_of};
-use super::model::{Fall, Is, Quantile, Quantity, Report};
+use super::histogram::{EqualBins, percent_of};
+use super::model::{Is, Quantile, ReleaseEnd, Report, ReportQuantity};
 use super::panel::{FOOT_PX, Panel, align};
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 use super::words::{Words, fill};
 use crate::simulation::Stop;
 
@@ -23,9 +23,9 @@ const MANY: usize = 100;
 pub(super) fn draw(report: &Report) -> Drawing {
     let words = report.words();
     let runouts: Vec<f64> = report.releases.iter().map(|fall| fall.runout_m).collect();
-    let bins = Histogram::of(&runouts);
+    let bins = EqualBins::of(&runouts);
     let (upper, lower) = panels(report, &bins, runouts.len());
-    let quantiles = report.quantiles.get(&Quantity::Runout).map_or(&[][..], Vec::as_slice);
+    let quantiles = report.quantiles.get(&ReportQuantity::Runout).map_or(&[][..], Vec::as_slice);
     let height = lower.frame.bottom + FOOT_PX;
     let svg = paint("runout", (WIDTH_PX, height), words.runout, |canvas| {
         upper.grid(canvas);
@@ -51,8 +51,9 @@ pub(super) fn draw(report: &Report) -> Drawing {
 
 /// Rocks whose runout is only a lower bound.
 fn open_rocks(report: &Report) -> usize {
-    let is_open =
-        |fall: &&Fall| matches!(fall.stop, Stop::LeftTerrain | Stop::TimeUp | Stop::OverBudget);
+    let is_open = |fall: &&ReleaseEnd| {
+        matches!(fall.stop, Stop::LeftTerrain | Stop::TimeUp | Stop::OverBudget)
+    };
     report.releases.iter().filter(is_open).count()
 }
 
@@ -77,7 +78,7 @@ fn open_end(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
         let at = |dx: f64| Label::new(words.clone(), (x + dx, y + dy)).coloured(BLUE);
         [at(6.0), at(-6.0).right(), at(0.0).centred()]
     });
-    let on_curve = |room: &Frame| {
+    let on_curve = |room: &PaperFrame| {
         let mut spots = report.runout_exceedance.iter().map(|p| panel.at(p.x, p.y.value));
         spots.any(|spot| room.holds(spot))
     };
@@ -90,7 +91,7 @@ fn open_end(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
     }
 }
 
-fn caption(report: &Report, bins: &Histogram) -> String {
+fn caption(report: &Report, bins: &EqualBins) -> String {
     let words = report.words();
     let count = |n: usize| format::decimal(n as f64, 0);
     let said = |n: usize, text: &str| {
@@ -105,7 +106,7 @@ fn caption(report: &Report, bins: &Histogram) -> String {
         + &said(bins.left_out, words.runout_left_out)
 }
 
-fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
+fn panels(report: &Report, bins: &EqualBins, count: usize) -> (Panel, Panel) {
     let words = report.words();
     let mut x = bins.axis(words.runout_axis);
     // bins far from 0 still show how far that is
@@ -114,7 +115,7 @@ fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
     }
     let least = report.runout_exceedance.iter().map(|p| p.y.value).filter(|&y| y > 0.0);
     let y = if count >= MANY {
-        let marked = report.quantiles.get(&Quantity::Runout).into_iter().flatten();
+        let marked = report.quantiles.get(&ReportQuantity::Runout).into_iter().flatten();
         let marked = marked.map(|quantile| 0.999 * (1.0 - quantile.probability));
         let least = least.chain(marked).fold(0.1, f64::min).max(1e-4);
         Axis::log(least, 1.0, words.share_farther)
@@ -125,9 +126,9 @@ fn panels(report: &Report, bins: &Histogram, count: usize) -> (Panel, Panel) {
     let shares = Axis::from_zero([1.05 * tallest], words.releases_percent);
     let (top, bottom) = (TOP_PX, TOP_PX + UPPER_PX);
     let right = WIDTH_PX - 16.0;
-    let mut upper = Panel::new(Frame { left: 0.0, top, right, bottom }, x.clone(), y);
+    let mut upper = Panel::new(PaperFrame { left: 0.0, top, right, bottom }, x.clone(), y);
     let (top, bottom) = (bottom + GAP_PX, bottom + GAP_PX + LOWER_PX);
-    let mut lower = Panel::new(Frame { left: 0.0, top, right, bottom }, x, shares);
+    let mut lower = Panel::new(PaperFrame { left: 0.0, top, right, bottom }, x, shares);
     align([&mut upper, &mut lower]);
     (upper, lower)
 }
@@ -171,7 +172,7 @@ fn mark(canvas: &Canvas<'_>, panel: &Panel, quantiles: &[Quantile]) {
         let at = |dx: f64, dy: f64| Label::new(words.clone(), (x + dx, y + dy)).bold();
         let candidates =
             [at(6.0, -10.0), at(-6.0, -10.0).right(), at(-6.0, 11.0).right(), at(6.0, 11.0)];
-        let inner = Frame { right: panel.frame.right - 5.0, ..panel.frame };
+        let inner = PaperFrame { right: panel.frame.right - 5.0, ..panel.frame };
         let fits = |label: &Label| inner.contains(&label.frame()) && canvas.is_free(&label.frame());
         if let Some(label) = candidates.into_iter().find(fits) {
             canvas.text_on_rim(&label);
@@ -211,7 +212,8 @@ fn values(canvas: &Canvas<'_>, panel: &Panel, report: &Report, quantiles: &[Quan
     ];
     // the corner that the curve leaves free and no other text stands in
     let crowd = |(left, top): (f64, f64)| {
-        let room = Frame { left, top: top - line_px, right: left + widest, bottom: top + tall };
+        let room =
+            PaperFrame { left, top: top - line_px, right: left + widest, bottom: top + tall };
         let on_curve =
             report.runout_exceedance.iter().filter(|p| room.holds(panel.at(p.x, p.y.value)));
         let taken = lines(left, top).iter().filter(|label| !canvas.is_free(&label.frame())).count();

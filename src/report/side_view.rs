@@ -9,7 +9,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{MapMark, Path, Report};
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::{Frame, Spot};
+use super::svg::path::{PaperFrame, Spot};
 use super::words::fill;
 use crate::math;
 use along::FallLine;
@@ -18,7 +18,7 @@ use plotters::style::RGBColor;
 /// Room above the profile for the names of lines and barriers (px).
 const TOP_PX: f64 = 24.0;
 /// Least and greatest height of the profile (px).
-const PROFILE_PX: (f64, f64) = (130.0, 480.0);
+const PROFILE_PX: (f64, f64) = (130.0, 350.0);
 const RIGHT_PX: f64 = WIDTH_PX - 16.0;
 const GROUND_FILL: RGBColor = RGBColor(205, 198, 188);
 const GROUND_LINE: RGBColor = RGBColor(94, 78, 62);
@@ -28,7 +28,9 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let line = FallLine::of(report);
     let view = View::of(report, &line);
     let height = view.ground.frame.bottom + FOOT_PX;
-    let svg = paint("side", (WIDTH_PX, height), report.words().side_title, |canvas| {
+    // a steep profile is slender at one scale in both directions
+    let width = view.ground.frame.right + (WIDTH_PX - RIGHT_PX);
+    let svg = paint("side", (width, height), report.words().side_title, |canvas| {
         view.profile(canvas, report, &line);
         view.marks(canvas, report, &line);
     });
@@ -60,7 +62,7 @@ impl View {
         let (along, z) = line.extent(report);
         let x = Axis::linear(along.0, along.1, words.along_fall_line);
         let frame =
-            Frame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + PROFILE_PX.0 };
+            PaperFrame { left: 0.0, top: TOP_PX, right: RIGHT_PX, bottom: TOP_PX + PROFILE_PX.0 };
         let mut ground = Panel::new(frame, x, Axis::linear(z.0, z.1, words.elevation_axis));
         ground.frame.left = ground.room_left();
         to_scale(&mut ground);
@@ -113,7 +115,7 @@ impl View {
 /// The name of a mark above the frame, or in it where a neighbour's stands above already.
 pub(super) fn name_above(
     canvas: &Canvas<'_>,
-    frame: &Frame,
+    frame: &PaperFrame,
     (x, name): (f64, &str),
     colour: RGBColor,
 ) {

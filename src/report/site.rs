@@ -3,11 +3,11 @@
 use super::canvas::{Canvas, Label, Pen, SMALL, fitted};
 use super::colour::{GREEN, INK, WHITE};
 use super::format;
-use super::model::{MapMark, Quantity, Report};
+use super::model::{MapMark, Report, ReportQuantity};
 use super::panel::Panel;
-use super::svg::path::{Frame, Spot, clipped};
+use super::svg::path::{PaperFrame, Spot, clipped};
 use crate::math;
-use crate::output::Zone;
+use crate::output::ReleaseZone;
 
 /// Pens of the marks; all lie on a white rim, to be seen over anything.
 const LINE: Pen = Pen::full(INK, 1.5);
@@ -17,6 +17,8 @@ const ZONE: Pen = Pen::full(INK, 1.2).dashed();
 const TOOTH_PX: (f64, f64) = (9.0, 4.0);
 /// More release points than this are told by their key alone.
 const MOST_POINTS: usize = 200;
+/// A shorter end of a line that looks into the frame has no name: it would be read as that of another one (px).
+const LEAST_NAMED_PX: f64 = 16.0;
 /// Gap between a line and its name (px).
 const GAP_PX: f64 = 8.0;
 
@@ -30,9 +32,9 @@ pub(super) fn zones(canvas: &Canvas<'_>, panel: &Panel, report: &Report) {
 /// Spots along the outlines of the zones, closer to each other than a word is high: text is written beside them.
 pub(super) fn outline(panel: &Panel, report: &Report) -> Vec<Spot> {
     let zones = std::iter::once(&report.zone).chain(&report.further_zones);
-    let of_zone = |zone: &Zone| -> Vec<Spot> {
+    let of_zone = |zone: &ReleaseZone| -> Vec<Spot> {
         let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
-        if matches!(zone, Zone::Points(_)) {
+        if matches!(zone, ReleaseZone::Points(_)) {
             return spots;
         }
         spots.extend(spots.first().copied());
@@ -48,18 +50,18 @@ pub(super) fn outline(panel: &Panel, report: &Report) -> Vec<Spot> {
     zones.flat_map(of_zone).collect()
 }
 
-fn zone(canvas: &Canvas<'_>, panel: &Panel, zone: &Zone) {
+fn zone(canvas: &Canvas<'_>, panel: &Panel, zone: &ReleaseZone) {
     let mut spots: Vec<Spot> = zone.corners_m().iter().map(|&[x, y]| panel.at(x, y)).collect();
     match zone {
-        Zone::Points(_) if spots.len() <= MOST_POINTS => {
+        ReleaseZone::Points(_) if spots.len() <= MOST_POINTS => {
             for &spot in spots.iter().filter(|&&spot| panel.frame.holds(spot)) {
                 canvas.disc(spot, 2.6, INK);
                 canvas.disc(spot, 1.6, WHITE);
             }
         }
-        Zone::Points(_) => canvas.dots(&spots, 0.9, INK),
-        Zone::Polygon(_) | Zone::Line(_) => {
-            if matches!(zone, Zone::Polygon(_)) {
+        ReleaseZone::Points(_) => canvas.dots(&spots, 0.9, INK),
+        ReleaseZone::Polygon(_) | ReleaseZone::Line(_) => {
+            if matches!(zone, ReleaseZone::Polygon(_)) {
                 spots.extend(spots.first().copied());
             }
             for part in clipped(&spots, &panel.frame) {
@@ -111,7 +113,7 @@ fn teeth(part: &[Spot]) -> Vec<Vec<Spot>> {
 /// Name of a mark, with height and capacity of a barrier.
 pub(super) fn in_words(mark: &MapMark) -> String {
     let Some((height_m, capacity_j)) = mark.barrier else { return mark.name.clone() };
-    let (unit, size) = Quantity::Total.unit(capacity_j);
+    let (unit, size) = ReportQuantity::Total.unit(capacity_j);
     format!(
         "{}: {}\u{2009}m, {}\u{2009}{unit}",
         mark.name,
@@ -128,7 +130,7 @@ pub(super) fn places(
     report: &Report,
     said: impl Fn(&MapMark) -> String,
 ) -> Vec<Label> {
-    let inner = Frame {
+    let inner = PaperFrame {
         left: panel.frame.left + 3.0,
         right: panel.frame.right - 3.0,
         top: panel.frame.top + 3.0,
@@ -138,23 +140,40 @@ pub(super) fn places(
         let words = fitted(&said(mark), SMALL, 0.6 * panel.frame.width());
         let colour = if mark.barrier.is_some() { super::colour::DARK_GREEN } else { INK };
         let parts = on_paper(panel, mark);
-        let candidates = parts.iter().flat_map(|part| beside(part, &words));
-        let found = candidates.map(|label| label.bold().coloured(colour)).find(|label| {
+        let named = parts.iter().filter(|part| length(part) > LEAST_NAMED_PX);
+        let candidates = named.flat_map(|part| beside(part, &words));
+        let free = candidates.map(|label| label.bold().coloured(colour)).filter(|label| {
             let frame = label.frame();
             inner.contains(&frame) && canvas.is_free(&frame)
-        })?;
+        });
+        // a name on another's line would be read as that one's
+        let others = |label: &Label| {
+            let of_others = report.marks.iter().filter(|other| other.name != mark.name);
+            of_others.filter(|other| crosses(panel, other, &label.frame())).count()
+        };
+        let found = free.min_by_key(others)?;
         canvas.take(found.frame());
         Some(found)
     };
     report.marks.iter().filter_map(place).collect()
 }
 
-/// Places for a name: above and below both ends and the middle.
+fn length(part: &[Spot]) -> f64 {
+    part.windows(2).map(|pair| math::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1)).sum()
+}
+
+/// Whether a mark runs through a room.
+fn crosses(panel: &Panel, mark: &MapMark, room: &PaperFrame) -> bool {
+    on_paper(panel, mark).iter().any(|part| !clipped(part, room).is_empty())
+}
+
+/// Places for a name: above and below both ends and the middle, and beyond both ends.
 fn beside(part: &[Spot], words: &str) -> Vec<Label> {
     let (Some(&first), Some(&last)) = (part.first(), part.last()) else { return Vec::new() };
     let (left, right) = if first.0 <= last.0 { (first, last) } else { (last, first) };
     let middle = part[part.len() / 2];
     let at = |(x, y): Spot, by: f64| Label::new(words, (x, y + by));
+    let beyond = [at((right.0 + 6.0, right.1), 0.0), at((left.0 - 6.0, left.1), 0.0).right()];
     [-GAP_PX, GAP_PX]
         .into_iter()
         .flat_map(|by| {
@@ -166,6 +185,7 @@ fn beside(part: &[Spot], words: &str) -> Vec<Label> {
                 at((middle.0 - 6.0, middle.1), by).right(),
             ]
         })
+        .chain(beyond)
         .collect()
 }
 
@@ -187,9 +207,9 @@ pub(super) fn symbol(canvas: &Canvas<'_>, at: Spot, is_barrier: bool) {
 }
 
 /// A short piece of the zone's outline, for a key.
-pub(super) fn zone_symbol(canvas: &Canvas<'_>, at: Spot, zone: &Zone) {
+pub(super) fn zone_symbol(canvas: &Canvas<'_>, at: Spot, zone: &ReleaseZone) {
     match zone {
-        Zone::Points(_) => {
+        ReleaseZone::Points(_) => {
             canvas.disc(at, 2.6, INK);
             canvas.disc(at, 1.6, WHITE);
         }

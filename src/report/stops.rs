@@ -7,7 +7,7 @@ use super::figure::{Drawing, WIDTH_PX};
 use super::format;
 use super::model::{Report, StopShare};
 use super::panel::{FOOT_PX, Panel};
-use super::svg::path::Frame;
+use super::svg::path::PaperFrame;
 use super::words::Words;
 use crate::math;
 use crate::simulation::Stop;
@@ -25,7 +25,7 @@ pub(super) fn draw(report: &Report) -> Drawing {
     let bottom = TOP_PX + lines * LINE_PX;
     let names = report.stops.iter().map(|share| text_width(name(&share.stop, words), SMALL));
     let left = names.fold(94.0, f64::max) + 16.0;
-    let frame = Frame { left, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom };
+    let frame = PaperFrame { left, top: TOP_PX, right: WIDTH_PX - RIGHT_PX, bottom };
     let ends = report.stops.iter().flat_map(|share| [share.share.value, share.share.high]);
     // the axis ends where the longest bar and its interval do
     let most = Axis::from_zero(ends.map(|share| 100.0 * share), "").high.min(100.0);
@@ -63,7 +63,7 @@ fn bar(canvas: &Canvas<'_>, panel: &Panel, (line, share): (usize, &StopShare), w
     let percent = share.share;
     if percent.value > 0.0 {
         let (left, right) = (panel.frame.left, at(percent.value));
-        let bar = Frame { left, right, top: y - 0.5 * BAR_PX, bottom: y + 0.5 * BAR_PX };
+        let bar = PaperFrame { left, right, top: y - 0.5 * BAR_PX, bottom: y + 0.5 * BAR_PX };
         canvas.fill(&bar, SKY, 1.0);
     }
     if percent.low.is_finite() && percent.high.is_finite() {

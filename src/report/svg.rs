@@ -35,7 +35,7 @@ pub(super) const DEPTH: f64 = 0.207;
 const RAISED_SIZE: f64 = 0.72;
 const RAISED_BY: f64 = 0.36;
 
-type Drawn = Result<(), DrawingErrorKind<Infallible>>;
+type DrawResult = Result<(), DrawingErrorKind<Infallible>>;
 
 /// Writes shapes to a string; writing cannot fail.
 #[derive(Debug)]
@@ -95,15 +95,15 @@ impl DrawingBackend for SvgBackend<'_> {
         self.size_tenths
     }
 
-    fn ensure_prepared(&mut self) -> Drawn {
+    fn ensure_prepared(&mut self) -> DrawResult {
         Ok(())
     }
 
-    fn present(&mut self) -> Drawn {
+    fn present(&mut self) -> DrawResult {
         Ok(())
     }
 
-    fn draw_pixel(&mut self, at: BackendCoord, colour: BackendColor) -> Drawn {
+    fn draw_pixel(&mut self, at: BackendCoord, colour: BackendColor) -> DrawResult {
         self.draw_rect(at, (at.0 + 1, at.1 + 1), &colour, true)
     }
 
@@ -112,7 +112,7 @@ impl DrawingBackend for SvgBackend<'_> {
         from: BackendCoord,
         to: BackendCoord,
         style: &S,
-    ) -> Drawn {
+    ) -> DrawResult {
         self.draw_path([from, to], style)
     }
 
@@ -122,7 +122,7 @@ impl DrawingBackend for SvgBackend<'_> {
         b: BackendCoord,
         style: &S,
         fill: bool,
-    ) -> Drawn {
+    ) -> DrawResult {
         let (width, height) = ((b.0 - a.0).abs(), (b.1 - a.1).abs());
         let (x, y) = (a.0.min(b.0), a.1.min(b.1));
         self.put(format_args!(r#"<rect x="{x}" y="{y}" width="{width}" height="{height}""#));
@@ -134,7 +134,7 @@ impl DrawingBackend for SvgBackend<'_> {
         &mut self,
         points: I,
         style: &S,
-    ) -> Drawn {
+    ) -> DrawResult {
         let mut data = String::new();
         path::append_line(&mut data, points);
         if !data.is_empty() {
@@ -150,7 +150,7 @@ impl DrawingBackend for SvgBackend<'_> {
         radius: u32,
         style: &S,
         fill: bool,
-    ) -> Drawn {
+    ) -> DrawResult {
         self.put(format_args!(r#"<circle cx="{}" cy="{}" r="{radius}""#, centre.0, centre.1));
         self.finish_shape(style, fill);
         Ok(())
@@ -160,7 +160,7 @@ impl DrawingBackend for SvgBackend<'_> {
         &mut self,
         corners: I,
         style: &S,
-    ) -> Drawn {
+    ) -> DrawResult {
         let mut data = String::new();
         path::append_line(&mut data, corners);
         if !data.is_empty() {
@@ -170,7 +170,12 @@ impl DrawingBackend for SvgBackend<'_> {
         Ok(())
     }
 
-    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, at: BackendCoord) -> Drawn {
+    fn draw_text<S: BackendTextStyle>(
+        &mut self,
+        text: &str,
+        style: &S,
+        at: BackendCoord,
+    ) -> DrawResult {
         if let Some(fragment) = text.strip_prefix(FRAGMENT_MARK) {
             self.body.push_str(fragment);
             self.body.push('\n');

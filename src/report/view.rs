@@ -27,7 +27,7 @@ use crate::error::{Error, Result};
 use crate::hazard::Row;
 use crate::output::{Results, write_atomic};
 use layers::MapLayers;
-use mesh::Mesh;
+use mesh::ViewMesh;
 use paths::Ways;
 use std::fs;
 use std::path::Path;
@@ -46,7 +46,7 @@ const MOST_ROCKS: usize = 20_000;
 pub struct Shown {
     words: &'static Words,
     title: String,
-    mesh: Mesh,
+    mesh: ViewMesh,
     rows: Vec<Row>,
     ways: Ways,
     walls: Vec<Wall>,
@@ -60,7 +60,7 @@ impl Shown {
     ///
     /// # Errors
     /// A result file that cannot be read.
-    pub fn of(results: &Results, mesh: Mesh, ground: Option<&GroundRaster>) -> Result<Self> {
+    pub fn of(results: &Results, mesh: ViewMesh, ground: Option<&GroundRaster>) -> Result<Self> {
         let rows = results.rows()?.take(MOST_ROCKS).collect::<Result<Vec<Row>>>()?;
         let words = Words::of(results.summary.language);
         let mut walls = walls::of(results, ground);
@@ -91,6 +91,9 @@ impl Shown {
                 self.releases
             ));
         }
+        if self.rows.iter().any(|row| row.shape.is_some()) {
+            notes.push("Blocks are shown as balls of their volume.".to_owned());
+        }
         notes.extend(self.layers.as_ref().and_then(MapLayers::note));
         notes
     }
@@ -100,7 +103,7 @@ impl Shown {
 ///
 /// # Errors
 /// When a result file cannot be read or a file cannot be written.
-pub fn write(results: &Results, mesh: Mesh, ground: Option<&GroundRaster>) -> Result<()> {
+pub fn write(results: &Results, mesh: ViewMesh, ground: Option<&GroundRaster>) -> Result<()> {
     let shown = Shown::of(results, mesh, ground)?;
     write_atomic(&results.dir.join(PAGE), page::page(&shown).as_bytes())?;
     write_atomic(&results.dir.join(GLB), &glb::glb(&shown))
@@ -110,13 +113,13 @@ pub fn write(results: &Results, mesh: Mesh, ground: Option<&GroundRaster>) -> Re
 ///
 /// # Errors
 /// When the page is there but cannot be read, or does not hold a terrain.
-pub fn mesh_in(dir: &Path) -> Result<Option<Mesh>> {
+pub fn mesh_in(dir: &Path) -> Result<Option<ViewMesh>> {
     let path = dir.join(PAGE);
     if !path.exists() {
         return Ok(None);
     }
     let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
-    match page::section(&text, page::TERRAIN).and_then(Mesh::read) {
+    match page::section(&text, page::TERRAIN).and_then(ViewMesh::read) {
         Some(mesh) => Ok(Some(mesh)),
         None => Err(Error::input(
             &path,

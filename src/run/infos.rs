@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::hazard::{Barrier, Elsewhere, LineInfo, MapFrame, Rule};
-use crate::output::{Site, Zone};
+use crate::output::{ReleaseZone, Site};
 use crate::plan::{self, EvaluationLine, Plan};
 use crate::release::Where;
 use crate::scene::{self, Area, BarrierTable, DesignTable, Polyline, ZonePlace};
@@ -19,17 +19,17 @@ pub(super) fn site(plan: &Plan) -> Site {
 }
 
 /// Outlines of a place of release.
-fn zones(place: &Where) -> Vec<Zone> {
-    let line = |line: &Polyline| Zone::Line(line.corners_m().to_vec());
-    let area = |area: &Area| Zone::Polygon(area.corners_m().to_vec());
+fn zones(place: &Where) -> Vec<ReleaseZone> {
+    let line = |line: &Polyline| ReleaseZone::Line(line.corners_m().to_vec());
+    let area = |area: &Area| ReleaseZone::Polygon(area.corners_m().to_vec());
     let drawn = |one: &scene::Zone| match &one.place {
-        ZonePlace::Points(points) => vec![Zone::Points(points.clone())],
+        ZonePlace::Points(points) => vec![ReleaseZone::Points(points.clone())],
         ZonePlace::Lines(lines) => lines.iter().map(line).collect(),
         ZonePlace::Areas(areas) => areas.iter().map(area).collect(),
     };
     match place {
         Where::Points(points) => {
-            vec![Zone::Points(points.iter().map(|point| point.at_m).collect())]
+            vec![ReleaseZone::Points(points.iter().map(|point| point.at_m).collect())]
         }
         Where::Line(one) => vec![line(one)],
         Where::Area(one) => vec![area(one)],

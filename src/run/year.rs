@@ -1,13 +1,13 @@
 //! What a plan asks of the year, as the results need it.
 
-use crate::hazard::{Asked, Matrix, Object, Vehicles};
+use crate::hazard::{AnnualRequest, Matrix, Object, Vehicles};
 use crate::plan::{self, Plan};
 use crate::scene::{MatrixTable, ObjectTable};
 
 /// What is asked of the year.
-pub(super) fn asked(plan: &Plan) -> Asked {
+pub(super) fn asked(plan: &Plan) -> AnnualRequest {
     let plan::Part::Kept(tables) = &plan.objects else {
-        return Asked { objects: Vec::new(), ..asked_of_sources(plan) };
+        return AnnualRequest { objects: Vec::new(), ..asked_of_sources(plan) };
     };
     let object = |table: &ObjectTable| {
         let outline = table.polygon_m.as_ref().map(|area| area.corners_m().to_vec());
@@ -27,11 +27,11 @@ pub(super) fn asked(plan: &Plan) -> Asked {
             }),
         }
     };
-    Asked { objects: tables.iter().map(object).collect(), ..asked_of_sources(plan) }
+    AnnualRequest { objects: tables.iter().map(object).collect(), ..asked_of_sources(plan) }
 }
 
-fn asked_of_sources(plan: &Plan) -> Asked {
-    let plan::Part::Kept(year) = &plan.year else { return Asked::default() };
+fn asked_of_sources(plan: &Plan) -> AnnualRequest {
+    let plan::Part::Kept(year) = &plan.year else { return AnnualRequest::default() };
     let matrix = |table: &MatrixTable| Matrix {
         name: table.name.clone(),
         source: table.source.clone(),
@@ -39,7 +39,7 @@ fn asked_of_sources(plan: &Plan) -> Asked {
         return_periods_years: table.return_periods_years.clone(),
         levels: table.levels.clone(),
     };
-    Asked {
+    AnnualRequest {
         frequency: Some(year.frequency.clone()),
         objects: Vec::new(),
         matrix: year.matrix.as_ref().map(matrix),

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// One block of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Block {
+pub struct BlockRow {
     /// Place in plan view (m), map coordinates.
     pub at_m: [f64; 2],
     /// Height of the centre (m), map coordinates; none if `height_m` of the scene says how high.
@@ -23,7 +23,7 @@ const REMEDY: &str =
     "write numbers under release_x_m, release_y_m (or x_m, y_m), and radius_m or mass_kg if known";
 
 /// Columns of a table by their number.
-struct Columns {
+struct BlockColumns {
     x: usize,
     y: usize,
     z: Option<usize>,
@@ -36,13 +36,13 @@ struct Columns {
 ///
 /// # Errors
 /// A file that cannot be read, a row without these numbers, no row at all.
-pub(super) fn read(path: &Path, has_height: bool, density_kg_m3: f64) -> Result<Vec<Block>> {
+pub(super) fn read(path: &Path, has_height: bool, density_kg_m3: f64) -> Result<Vec<BlockRow>> {
     let wrong =
         |line: u64, found: String| Error::input(path, format!("line {line}"), found, REMEDY);
     let file = file::open(path, LONGEST_TEXT)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let headers = reader.headers().cloned().unwrap_or_default();
-    let columns = Columns::of(&headers, has_height).map_err(|found| wrong(1, found))?;
+    let columns = BlockColumns::of(&headers, has_height).map_err(|found| wrong(1, found))?;
     let mut blocks = Vec::new();
     for row in reader.records() {
         let row = row.map_err(|why| {
@@ -58,7 +58,7 @@ pub(super) fn read(path: &Path, has_height: bool, density_kg_m3: f64) -> Result<
     Ok(blocks)
 }
 
-impl Columns {
+impl BlockColumns {
     fn of(headers: &csv::StringRecord, has_height: bool) -> std::result::Result<Self, String> {
         let at = |name: &str| headers.iter().position(|header| header == name);
         let lacks =
@@ -77,7 +77,7 @@ impl Columns {
         &self,
         row: &csv::StringRecord,
         density_kg_m3: f64,
-    ) -> std::result::Result<Block, String> {
+    ) -> std::result::Result<BlockRow, String> {
         let number = |column: usize| {
             let text = row.get(column).unwrap_or_default();
             let number = text.parse().ok().filter(|number: &f64| number.is_finite());
@@ -95,6 +95,6 @@ impl Columns {
             (None, None) => None,
         };
         let height_m = self.z.map(number).transpose()?;
-        Ok(Block { at_m: [number(self.x)?, number(self.y)?], height_m, radius_m })
+        Ok(BlockRow { at_m: [number(self.x)?, number(self.y)?], height_m, radius_m })
     }
 }

@@ -5,7 +5,7 @@ use crate::random::{Distribution, LARGEST};
 
 /// One step from the top of a scene towards a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Step {
+pub(super) enum TrailStep {
     /// Into the key of a table.
     Key(String),
     /// Into the entry of a list, from 0.
@@ -17,7 +17,7 @@ pub(super) enum Step {
 #[derive(Debug)]
 pub(super) struct Complaint {
     /// From the top of the scene to the value.
-    pub(super) trail: Vec<Step>,
+    pub(super) trail: Vec<TrailStep>,
     /// What was found; `None` = the text as written.
     pub(super) found: Option<String>,
     /// What to write instead.
@@ -27,7 +27,7 @@ pub(super) struct Complaint {
 impl Complaint {
     /// About the value of a key, as written.
     pub(super) fn about(key: &str, remedy: impl Into<String>) -> Self {
-        Self { trail: vec![Step::Key(key.to_owned())], found: None, remedy: remedy.into() }
+        Self { trail: vec![TrailStep::Key(key.to_owned())], found: None, remedy: remedy.into() }
     }
 
     /// About a key that is not there.
@@ -42,15 +42,15 @@ impl Complaint {
 
     /// The same complaint, seen from the table around.
     pub(super) fn inside(self, key: &str) -> Self {
-        self.below(Step::Key(key.to_owned()))
+        self.below(TrailStep::Key(key.to_owned()))
     }
 
     /// The same complaint, seen from the list around; entries count from 0.
     pub(super) fn in_entry(self, index: usize) -> Self {
-        self.below(Step::Entry(index))
+        self.below(TrailStep::Entry(index))
     }
 
-    fn below(mut self, step: Step) -> Self {
+    fn below(mut self, step: TrailStep) -> Self {
         self.trail.insert(0, step);
         self
     }

@@ -6,7 +6,7 @@ use super::places::Polyline;
 use super::record::LineTable;
 use super::refusal::Refusal;
 use crate::error::Result;
-use crate::gis::{self, Feature, Shape};
+use crate::gis::{self, Geometry, GisFeature};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -137,17 +137,17 @@ fn none_beside(points_m: Option<&Polyline>) -> std::result::Result<(), Complaint
 }
 
 /// A line of a file.
-struct Drawn {
+struct DrawnLine {
     name: String,
     line: Polyline,
-    feature: Feature,
+    feature: GisFeature,
 }
 
 /// The lines of a file with their names: the entry's own (numbered if there are several), else those of a property.
-fn drawn(file: &Path, name: Option<&str>, name_from: Option<&str>) -> Result<Vec<Drawn>> {
+fn drawn(file: &Path, name: Option<&str>, name_from: Option<&str>) -> Result<Vec<DrawnLine>> {
     let mut all = Vec::new();
     for feature in gis::read(file)?.features {
-        let Shape::Lines(parts) = &feature.shape else {
+        let Geometry::Lines(parts) = &feature.shape else {
             let found = format!("found {}", feature.shape.name());
             return Err(feature.wrong(
                 file,
@@ -166,7 +166,7 @@ fn drawn(file: &Path, name: Option<&str>, name_from: Option<&str>) -> Result<Vec
             let line = Polyline::try_from(corners.clone())
                 .map_err(|flaw| feature.wrong(file, flaw.found, flaw.remedy))?;
             let name = if part == 0 { own.clone() } else { format!("{own} part {}", part + 1) };
-            all.push(Drawn { name, line, feature: feature.clone() });
+            all.push(DrawnLine { name, line, feature: feature.clone() });
         }
     }
     if name.is_some() && all.len() > 1 {

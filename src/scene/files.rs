@@ -4,9 +4,10 @@ use super::check::{Checked, Complaint};
 use super::refusal::Refusal;
 use super::zones::Zones;
 use super::{MeshFile, Scene};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
 use crate::gis;
+use crate::terrain::Terrain;
 use sha2::{Digest, Sha256};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -107,19 +108,40 @@ impl Scene {
             );
             return Err(Complaint::about(key, remedy).into());
         }
-        let layer = gis::read(file)?;
-        match (layer.epsg, self.epsg) {
-            (Some(code), Some(own)) if code != own => {
-                let found = format!("found EPSG:{code} where the scene has EPSG:{own}");
-                let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-                let remedy = format!(
-                    "write it in the system of the scene: ogr2ogr -t_srs EPSG:{own} {stem}.geojson {}",
-                    file.display()
-                );
-                Err(Error::input(file, "coordinate system", found, remedy).into())
+        one_system(&gis::read(file)?, self.epsg, "the scene").map_err(Into::into)
+    }
+
+    /// Refuses drawings in another system than the terrain's, and drawings of which nothing lies on it: those that name no
+    /// system, or name it in words alone.
+    pub(crate) fn check_drawings(&self, terrain: &Terrain) -> Result<()> {
+        let (low, high) = terrain.index.bounds();
+        let [low, high] = [low, high].map(|corner| corner + terrain.origin_m);
+        let epsg = self.epsg.or(terrain.epsg);
+        for (_, file) in self.drawings() {
+            let layer = gis::read(file)?;
+            one_system(&layer, epsg, "the terrain")?;
+            let [west, south, east, north] = layer.box_m();
+            if west <= high.x && east >= low.x && south <= high.y && north >= low.y {
+                continue;
             }
-            _ => Ok(()),
+            let is_degrees = west >= -180.0 && east <= 180.0 && south >= -90.0 && north <= 90.0;
+            let (kind, digits, from) = match (is_degrees, &layer.system) {
+                (true, _) => (", like longitude and latitude".to_owned(), 5, "4326"),
+                (false, Some(name)) => (format!(" in {name}"), 1, ""),
+                (false, None) => (String::new(), 1, "CODE_OF_THE_DRAWING"),
+            };
+            let found = format!(
+                "found nothing of it on the terrain: it lies at {west:.digits$}..{east:.digits$} east, \
+                 {south:.digits$}..{north:.digits$} north{kind}; the terrain at {:.1}..{:.1} east, {:.1}..{:.1} north",
+                low.x, high.x, low.y, high.y
+            );
+            let remedy = format!(
+                "draw it on the terrain, or write it in the terrain's system: {}",
+                gis::transformed(file, epsg, from)
+            );
+            return Err(Error::input(file, "coordinates", found, remedy));
         }
+        Ok(())
     }
 
     /// Hash over text and files, each followed by its length so that no two scenes run together.
@@ -232,6 +254,20 @@ impl Scene {
         );
         all
     }
+}
+
+/// Refuses a drawing in another system than that of `whose`.
+fn one_system(layer: &gis::GisLayer, epsg: Option<u32>, whose: &str) -> Result<()> {
+    let (Some(code), Some(own)) = (layer.epsg, epsg) else { return Ok(()) };
+    if code == own {
+        return Ok(());
+    }
+    let found = format!("found EPSG:{code} where {whose} has EPSG:{own}");
+    let remedy = format!(
+        "write it in the system of {whose}: {}",
+        gis::transformed(&layer.file, Some(own), "")
+    );
+    Err(Error::input(&layer.file, "coordinate system", found, remedy))
 }
 
 fn unreadable(mesh: &MeshFile, why: &str) -> Complaint {

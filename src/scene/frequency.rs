@@ -2,11 +2,11 @@
 
 use super::check::{Allowed, Checked, Complaint, number, optional};
 use super::matrix::MatrixEntry;
-use super::places::{Area, Point, Polyline};
+use super::places::{Area, Polyline, ReleasePoint};
 use super::sizes::{COUNTABLE, STEEPEST, VOLUMES_M3, are_volumes, positive_list};
 use super::zone_sources::CommonSizes;
 use super::zones::Zones;
-use crate::frequency::{Class, Frequency, Law, Source};
+use crate::frequency::{Class, Frequency, FrequencyLaw, RockSource};
 use crate::random::Entries;
 use serde::{Deserialize, Deserializer};
 
@@ -43,7 +43,7 @@ pub struct SourceTable {
     /// Name in the results.
     pub name: String,
     /// Where: points in map coordinates (m), taken in turn.
-    pub points_m: Option<Vec<Point>>,
+    pub points_m: Option<Vec<ReleasePoint>>,
     /// Where: uniform along a polyline in map coordinates (m).
     pub line_m: Option<Polyline>,
     /// Where: uniform over an area in map coordinates (m).
@@ -104,10 +104,10 @@ impl FrequencyTable {
     }
 
     /// Its own law, or its sources.
-    fn written_sources(&self) -> Option<Vec<Source>> {
-        let own = self.keys().law().ok()?.map(|law| Source { name: "release".to_owned(), law });
+    fn written_sources(&self) -> Option<Vec<RockSource>> {
+        let own = self.keys().law().ok()?.map(|law| RockSource { name: "release".to_owned(), law });
         let named = |table: &SourceTable| {
-            Some(Source { name: table.name.clone(), law: table.keys().law().ok()?? })
+            Some(RockSource { name: table.name.clone(), law: table.keys().law().ok()?? })
         };
         match own {
             Some(source) => Some(vec![source]),
@@ -168,7 +168,7 @@ impl FrequencyTable {
         let mut draws = Vec::new();
         for (index, source) in self.sources.iter().enumerate() {
             let law = source.check().map_err(|wrong| wrong.in_entry(index).inside("sources"))?;
-            draws.push(!matches!(law, Law::Events { .. }));
+            draws.push(!matches!(law, FrequencyLaw::Events { .. }));
         }
         if let Some(index) = draws.iter().position(|one| *one != draws[0]) {
             let remedy = "write per_year alone in all sources, or volumes in all";
@@ -192,7 +192,7 @@ impl FrequencyTable {
 }
 
 impl SourceTable {
-    fn check(&self) -> Result<Law, Complaint> {
+    fn check(&self) -> Result<FrequencyLaw, Complaint> {
         let places = [self.points_m.is_some(), self.line_m.is_some(), self.polygon_m.is_some()];
         if places.iter().filter(|given| **given).count() != 1 {
             let remedy = "write exactly one of points_m, line_m and polygon_m";
@@ -223,20 +223,20 @@ impl SourceTable {
 
 impl LawKeys<'_> {
     /// The law; none where no key of one is written.
-    fn law(&self) -> Result<Option<Law>, Complaint> {
+    fn law(&self) -> Result<Option<FrequencyLaw>, Complaint> {
         let law = self.written()?;
         let key = match &law {
             Some(law) if law.is_countable() => return Ok(Some(law.clone())),
             None => return Ok(None),
-            Some(Law::Events { .. }) => "per_year",
-            Some(Law::PowerLaw { .. }) => "per_year_at_1m3",
-            Some(Law::Classes(_)) => "classes",
+            Some(FrequencyLaw::Events { .. }) => "per_year",
+            Some(FrequencyLaw::PowerLaw { .. }) => "per_year_at_1m3",
+            Some(FrequencyLaw::Classes(_)) => "classes",
         };
         Err(Complaint::about(key, COUNTABLE))
     }
 
     /// The same, whatever its rates are.
-    fn written(&self) -> Result<Option<Law>, Complaint> {
+    fn written(&self) -> Result<Option<FrequencyLaw>, Complaint> {
         let power = [
             ("per_year_at_1m3", self.per_year_at_1m3.is_some()),
             ("exponent", self.exponent.is_some()),
@@ -254,7 +254,7 @@ impl LawKeys<'_> {
         }
         if let Some(per_year) = self.per_year {
             number("per_year", per_year, Allowed::Positive, "")?;
-            return Ok(Some(Law::Events { per_year }));
+            return Ok(Some(FrequencyLaw::Events { per_year }));
         }
         if let Some(classes) = self.classes {
             return classes_law(classes).map(Some);
@@ -274,11 +274,11 @@ impl LawKeys<'_> {
             return Err(Complaint::about("exponent", format!("write at most {STEEPEST}")));
         }
         volumes("volume_m3", volume_m3, false)?;
-        Ok(Some(Law::PowerLaw { per_year_at_1m3, exponent, volume_m3 }))
+        Ok(Some(FrequencyLaw::PowerLaw { per_year_at_1m3, exponent, volume_m3 }))
     }
 }
 
-fn classes_law(classes: &[ClassTable]) -> Result<Law, Complaint> {
+fn classes_law(classes: &[ClassTable]) -> Result<FrequencyLaw, Complaint> {
     if classes.is_empty() {
         return Err(Complaint::about("classes", "write at least one class"));
     }
@@ -288,7 +288,7 @@ fn classes_law(classes: &[ClassTable]) -> Result<Law, Complaint> {
             .map_err(|wrong| wrong.in_entry(index).inside("classes"))?;
     }
     let class = |one: &ClassTable| Class { volume_m3: one.volume_m3, per_year: one.per_year };
-    Ok(Law::Classes(classes.iter().map(class).collect()))
+    Ok(FrequencyLaw::Classes(classes.iter().map(class).collect()))
 }
 
 fn volumes(key: &str, range: [f64; 2], may_be_equal: bool) -> Checked {

@@ -1,7 +1,6 @@
 //! Sides and triangles in plan view.
 
-/// A corner in plan view (m), map coordinates.
-pub type Corner = [f64; 2];
+pub use crate::gis::Corner;
 
 /// Whether two sides have a point in common.
 pub(super) fn meet([a, b]: [Corner; 2], [c, d]: [Corner; 2]) -> bool {

@@ -2,7 +2,7 @@
 
 use super::check::{Checked, Complaint, suggest};
 use super::refusal::Refusal;
-use crate::gis::{self, Shape};
+use crate::gis::{self, Geometry};
 use crate::terrain::patches::Patch;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,7 @@ impl GroundZones {
     ) -> std::result::Result<Vec<Patch>, Refusal> {
         let mut patches = Vec::new();
         for feature in gis::read(file)?.features {
-            let Shape::Polygons(polygons) = &feature.shape else {
+            let Geometry::Polygons(polygons) = &feature.shape else {
                 let found = format!("found {}", feature.shape.name());
                 return Err(feature.wrong(file, found, "write polygons").into());
             };

@@ -1,10 +1,11 @@
 //! Points, polylines and areas in plan view, in map coordinates; valid by construction.
 
-use super::blocks::Block;
+use super::blocks::BlockRow;
 pub use super::geometry::Corner;
 use super::geometry::{meet, minus, twice_area};
 use super::holes::bridged;
 use crate::error::Flaw;
+pub(super) use crate::gis::FARTHEST_M;
 use crate::math;
 use crate::random::Entries;
 use serde::Deserialize;
@@ -12,21 +13,21 @@ use serde::Deserialize;
 /// A point of release.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(try_from = "Vec<f64>", expecting = "a point [x, y] or [x, y, z]")]
-pub struct Point {
+pub struct ReleasePoint {
     /// Place in plan view (m), map coordinates.
     pub at_m: Corner,
     /// Height of the rock's centre (m), map coordinates; absent = reckoned from the ground below.
     pub height_m: Option<f64>,
 }
 
-impl Point {
+impl ReleasePoint {
     /// The place of a block of a table.
-    pub fn of_block(block: &Block) -> Self {
+    pub fn of_block(block: &BlockRow) -> Self {
         Self { at_m: block.at_m, height_m: block.height_m }
     }
 }
 
-impl TryFrom<Vec<f64>> for Point {
+impl TryFrom<Vec<f64>> for ReleasePoint {
     type Error = Flaw;
 
     fn try_from(numbers: Vec<f64>) -> Result<Self, Flaw> {
@@ -172,7 +173,7 @@ impl Area {
         let rings: Vec<&[Corner]> = holes.iter().map(Self::corners_m).collect();
         area.triangles = ears(&bridged(&area.corners_m, &rings)?)?;
         // holes that overlap or lie outside leave another area
-        if (area.area_m2() - rest_m2).abs() > ROUNDING * rest_m2.abs() {
+        if (area.area_m2() - rest_m2).abs() > AREA_ROUNDING * rest_m2.abs() {
             let found = "found a hole that is not inside of its polygon, or meets another one";
             return Err(Flaw::new(found, ORDER));
         }
@@ -208,7 +209,7 @@ impl TryFrom<Vec<Corner>> for Area {
 /// How the corners of a polygon are to be written.
 const ORDER: &str = "write the corners in order around the area";
 /// Relative error of a sum of areas (–).
-const ROUNDING: f64 = 1e-9;
+const AREA_ROUNDING: f64 = 1e-9;
 
 /// Cuts a polygon whose sides do not cross into triangles, ear by ear.
 fn ears(corners_m: &[Corner]) -> Result<Vec<([Corner; 3], f64)>, Flaw> {
@@ -263,9 +264,6 @@ fn first_meeting(corners_m: &[Corner]) -> Option<(usize, usize)> {
     let pairs = (0..n).flat_map(|i| (i + 2..n).map(move |j| (i, j)));
     pairs.filter(|&(i, j)| (j + 1) % n != i).find(|&(i, j)| meet(side(i), side(j)))
 }
-
-/// Coordinates farther out than this (m) are no place on Earth, as in a mesh.
-pub(super) const FARTHEST_M: f64 = 1e8;
 
 pub(super) fn finite(numbers: &[f64]) -> Result<(), Flaw> {
     match numbers.iter().find(|number| !(-FARTHEST_M..=FARTHEST_M).contains(*number)) {

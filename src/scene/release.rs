@@ -1,9 +1,9 @@
 //! `[release]`.
 
-use super::blocks::Block;
+use super::blocks::BlockRow;
 use super::check::{Allowed, Checked, Complaint, drawn};
 use super::frequency::SourceTable;
-use super::places::{Area, Corner, Point, Polyline};
+use super::places::{Area, Corner, Polyline, ReleasePoint};
 use super::shapes::Orientation;
 use super::zones::Zones;
 use crate::random::{Distribution, entries};
@@ -30,7 +30,7 @@ pub struct ReleaseTable {
     /// How rocks with a shape are turned; absent = at random.
     pub orientation: Option<Orientation>,
     /// Where: points in map coordinates (m), cycled through.
-    pub points_m: Option<Vec<Point>>,
+    pub points_m: Option<Vec<ReleasePoint>>,
     /// Where: uniform along a polyline in map coordinates (m).
     pub line_m: Option<Polyline>,
     /// Where: uniform over an area in map coordinates (m).
@@ -39,7 +39,7 @@ pub struct ReleaseTable {
     pub table: Option<PathBuf>,
     /// The blocks of the table, once a scene is read.
     #[serde(skip)]
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<BlockRow>,
     /// Where: points, lines or polygons of a GeoJSON file or Shapefile.
     pub zones: Option<PathBuf>,
     /// What that file holds, once the scene is read.
@@ -113,7 +113,7 @@ impl ReleaseTable {
         if self.points_m.is_some() && points.is_empty() {
             return Err(Complaint::about("points_m", "write at least one point"));
         }
-        let placed = |point: &&Point| point.height_m.is_some();
+        let placed = |point: &&ReleasePoint| point.height_m.is_some();
         match &self.height_m {
             Some(_) if points.iter().any(|point| placed(&point)) => Err(Complaint::about(
                 "height_m",
@@ -133,7 +133,7 @@ impl ReleaseTable {
 
 /// Boxes around each point, a line or an area.
 fn boxes_of(
-    points_m: Option<&[Point]>,
+    points_m: Option<&[ReleasePoint]>,
     line_m: Option<&Polyline>,
     polygon_m: Option<&Area>,
 ) -> Vec<[f64; 4]> {

@@ -1,6 +1,6 @@
 //! A scene file with other ground values, every other letter of it as it was written.
 
-use super::check::Step;
+use super::check::TrailStep;
 use super::source::Lookup;
 use crate::error::{Error, Result};
 use crate::file;
@@ -20,9 +20,9 @@ pub fn rewritten(scene: &Path, values: &[(String, &str, String)]) -> Result<Stri
     let lookup = Lookup::of(scene, &text);
     let mut changes: Vec<(Range<usize>, String)> = Vec::new();
     for (ground, key, value) in values {
-        let table = [Step::Key("grounds".to_owned()), Step::Key(ground.clone())];
+        let table = [TrailStep::Key("grounds".to_owned()), TrailStep::Key(ground.clone())];
         let value_at =
-            |key: &str| lookup.value_at(&[&table[..], &[Step::Key(key.to_owned())]].concat());
+            |key: &str| lookup.value_at(&[&table[..], &[TrailStep::Key(key.to_owned())]].concat());
         let other = value_at(OTHERWISE.1).filter(|_| *key == OTHERWISE.0);
         let change = match (value_at(key), other, lookup.value_at(&table)) {
             (Some(range), ..) => (range, value.clone()),

@@ -201,22 +201,11 @@ impl Scene {
         let above_0 =
             |value: &Option<Distribution>| value.as_ref().is_some_and(|v| v.support().1 > 0.0);
         for (name, ground) in &self.grounds {
-            let refused = [
-                (
-                    "rolling_friction",
-                    above_0(&ground.rolling_friction),
-                    "write rolling_friction = 0.0: how a block rolls is its shape, which [[rocks.shapes]] computes",
-                ),
-                (
-                    "breaks_above_j",
-                    ground.breaks_above_j.is_some(),
-                    "remove it: stems that give way are computed for spheres only, as yet",
-                ),
-            ];
-            for (key, wrong, remedy) in refused {
-                if wrong {
-                    return Err(Complaint::about(key, remedy).inside(name).inside("grounds"));
-                }
+            if above_0(&ground.rolling_friction) {
+                let remedy = "write rolling_friction = 0.0: how a block rolls is its shape, which [[rocks.shapes]] computes";
+                return Err(Complaint::about("rolling_friction", remedy)
+                    .inside(name)
+                    .inside("grounds"));
             }
         }
         Ok(())

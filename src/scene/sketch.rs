@@ -5,7 +5,7 @@ use crate::math;
 use crate::rock::Vec3;
 use crate::terrain::cliffs::{Cliff, main_cliff};
 use crate::terrain::formats::Options;
-use crate::terrain::read::Source;
+use crate::terrain::read::MeshSource;
 use crate::terrain::{Sheet, Terrain};
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ pub fn sketch(terrain_file: &Path, scene_file: &Path) -> Result<String> {
     let is_stl = terrain_file.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"));
     let sheet = Sheet { path: terrain_file.to_owned(), ground: 0, is_tree: false };
     let options = (!is_stl).then(Options::default);
-    let source = Source { options, ..Source::stl(sheet) };
+    let source = MeshSource { options, ..MeshSource::stl(sheet) };
     let (terrain, health) = Terrain::read(&[source], Vec3::zeros(), None)?;
     let cliff = main_cliff(&terrain).ok_or_else(|| {
         let remedy = "write a terrain with a slope, or a scene by hand (docs/scene.md)";

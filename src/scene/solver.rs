@@ -26,31 +26,34 @@ pub struct SolverTable {
     pub rest_time_s: Option<f64>,
 }
 
-/// Shorter steps (s) of `dda` take a thousand rocks' work for one; those of `rigid` gain nothing below a thousand times as
-/// much.
+/// Shortest step of `dda` (s): a shorter one takes a thousand rocks' work for one.
 const SHORTEST_STEP_S: f64 = 1e-9;
+/// Shortest step of `rigid` (s): a shorter one no longer reduces its error.
+const SHORTEST_RIGID_STEP_S: f64 = 1e-6;
 
 impl SolverTable {
     /// The scheme in force.
     pub fn scheme(&self) -> Scheme {
-        self.scheme.unwrap_or(Scheme::Adaptive)
+        self.scheme.unwrap_or_default()
     }
 
     pub(super) fn check(&self) -> Checked {
         self.check_numbers()?;
         let scheme = self.scheme();
-        if scheme == Scheme::Dda && self.step_s.is_none() {
+        if scheme.has_fixed_step() && self.step_s.is_none() {
             let remedy = "write step_s = 1e-5 or another time step: scheme \"dda\" must have one";
             return Err(Complaint::missing("step_s", remedy));
         }
+        // by scheme: dda, adaptive, reference, rigid
         let used = [
-            ("tolerance_m_s", self.tolerance_m_s.is_some(), &[Scheme::Adaptive][..]),
-            ("step_s", self.step_s.is_some(), &[Scheme::Dda, Scheme::Rigid]),
-            ("shear_memory", self.shear_memory.is_some(), &[Scheme::Dda]),
+            ("tolerance_m_s", self.tolerance_m_s.is_some(), [false, true, false, false]),
+            ("step_s", self.step_s.is_some(), [true, false, false, true]),
+            ("shear_memory", self.shear_memory.is_some(), [true, false, false, false]),
         ];
-        for (key, given, schemes) in used {
-            if given && !schemes.contains(&scheme) {
-                let names = schemes.iter().map(|scheme| scheme.name()).collect::<Vec<_>>();
+        for (key, given, is_used) in used {
+            if given && !scheme.of(is_used) {
+                let users = Scheme::ALL.into_iter().filter(|scheme| scheme.of(is_used));
+                let names = users.map(Scheme::name).collect::<Vec<_>>();
                 return Err(Complaint::about(
                     key,
                     format!(
@@ -75,7 +78,8 @@ impl SolverTable {
         ] {
             optional(key, value, allowed, "")?;
         }
-        let shortest_s = if self.scheme() == Scheme::Rigid { 1e-6 } else { SHORTEST_STEP_S };
+        let shortest_s =
+            if self.scheme().has_springs() { SHORTEST_STEP_S } else { SHORTEST_RIGID_STEP_S };
         let too_short = |step_s: &f64| *step_s < shortest_s;
         if self.step_s.as_ref().is_some_and(too_short) {
             return Err(Complaint::about("step_s", format!("write {shortest_s:e} or more")));

@@ -1,7 +1,7 @@
 //! Where in the scene file a value stands: turns complaints and the reader's errors into messages that
 //! name file, table, key and line. Built only when there is something to complain about.
 
-use super::check::{Complaint, Step};
+use super::check::{Complaint, TrailStep};
 use super::wording::{self, Said};
 use crate::error::Error;
 use std::ops::Range;
@@ -14,7 +14,7 @@ pub(super) struct Lookup<'a> {
     file: &'a Path,
     text: &'a str,
     is_toml: bool,
-    nodes: Vec<Node>,
+    nodes: Vec<SourceNode>,
 }
 
 /// Tables that every scene must have.
@@ -24,8 +24,8 @@ const TABLES: [&str; 3] = ["grounds", "rocks", "release"];
 const LISTS: [&str; 6] = ["terrain", "trees", "lines", "barriers", "objects", "ground_zones"];
 
 /// One value of the file.
-struct Node {
-    trail: Vec<Step>,
+struct SourceNode {
+    trail: Vec<TrailStep>,
     /// Bytes of its key; of a list entry the entry itself.
     key: Range<usize>,
     /// Bytes of the value; of a table with a header the header alone.
@@ -46,18 +46,20 @@ impl<'a> Lookup<'a> {
     }
 
     /// Where the value at the end of a trail stands; of a table with a header where the header stands.
-    pub(super) fn value_at(&self, trail: &[Step]) -> Option<Range<usize>> {
+    pub(super) fn value_at(&self, trail: &[TrailStep]) -> Option<Range<usize>> {
         self.node(trail).map(|node| node.value.clone())
     }
 
     /// Where paths of files stand.
     pub(super) fn paths(&self) -> impl Iterator<Item = Range<usize>> {
-        let is_path = |node: &&Node| match &node.trail[..] {
-            [Step::Key(table), Step::Entry(_), Step::Key(key)] => {
+        let is_path = |node: &&SourceNode| match &node.trail[..] {
+            [TrailStep::Key(table), TrailStep::Entry(_), TrailStep::Key(key)] => {
                 ["terrain", "trees"].contains(&table.as_str()) && key == "mesh"
             }
-            [Step::Key(table), Step::Key(key)] => [("calibrate", "deposits"), ("release", "table")]
-                .contains(&(table.as_str(), key.as_str())),
+            [TrailStep::Key(table), TrailStep::Key(key)] => {
+                [("calibrate", "deposits"), ("release", "table")]
+                    .contains(&(table.as_str(), key.as_str()))
+            }
             _ => false,
         };
         self.nodes.iter().filter(is_path).map(|node| node.value.clone())
@@ -82,7 +84,7 @@ impl<'a> Lookup<'a> {
             if trail.is_empty() && TABLES.contains(&key.as_str()) {
                 said.remedy = format!("write the table [{key}]");
             }
-            trail.push(Step::Key(key));
+            trail.push(TrailStep::Key(key));
         }
         let place = if self.is_toml {
             self.place(&trail)
@@ -93,10 +95,10 @@ impl<'a> Lookup<'a> {
     }
 
     /// `[terrain]` where `[[terrain]]` should stand, or `[[rocks]]` where `[rocks]` should.
-    fn wrong_brackets(&self, trail: &[Step], found: &str) -> Option<Said> {
+    fn wrong_brackets(&self, trail: &[TrailStep], found: &str) -> Option<Said> {
         let (name, is_entry) = match trail {
-            [Step::Key(name)] => (name, false),
-            [Step::Key(name), Step::Entry(_)] => (name, true),
+            [TrailStep::Key(name)] => (name, false),
+            [TrailStep::Key(name), TrailStep::Entry(_)] => (name, true),
             _ => return None,
         };
         if name == "grounds" {
@@ -117,12 +119,12 @@ impl<'a> Lookup<'a> {
         }
     }
 
-    fn node(&self, trail: &[Step]) -> Option<&Node> {
+    fn node(&self, trail: &[TrailStep]) -> Option<&SourceNode> {
         self.nodes.iter().find(|node| node.trail == trail)
     }
 
     /// The trail to the smallest value whose key or text holds the span.
-    fn trail_at(&self, span: &Range<usize>) -> Vec<Step> {
+    fn trail_at(&self, span: &Range<usize>) -> Vec<TrailStep> {
         let holds = |range: &Range<usize>| range.start <= span.start && span.end <= range.end;
         let holding = self.nodes.iter().filter_map(|node| {
             [&node.key, &node.value].into_iter().find(|range| holds(range)).map(|r| (r.len(), node))
@@ -133,7 +135,7 @@ impl<'a> Lookup<'a> {
     }
 
     /// "[grounds.scree] `friction_angle_deg` (line 12)".
-    fn place(&self, trail: &[Step]) -> String {
+    fn place(&self, trail: &[TrailStep]) -> String {
         let is_headed = |&n: &usize| self.node(&trail[..n]).is_some_and(|node| node.headed);
         let headed = (1..=trail.len()).rev().find(is_headed).unwrap_or(0);
         let mut parts = Vec::new();
@@ -156,7 +158,7 @@ impl<'a> Lookup<'a> {
     }
 
     /// "found 95", cut short when it is long.
-    fn as_written(&self, trail: &[Step]) -> String {
+    fn as_written(&self, trail: &[TrailStep]) -> String {
         /// Characters of a value that a message repeats.
         const SHOWN: usize = 60;
         let Some(node) = self.node(trail).filter(|node| !node.headed) else {
@@ -171,42 +173,47 @@ impl<'a> Lookup<'a> {
 }
 
 /// `[a.b]`, or `[[a]] #2` for an entry of an array of tables.
-fn header(trail: &[Step]) -> String {
-    if let [before @ .., Step::Entry(index)] = trail {
+fn header(trail: &[TrailStep]) -> String {
+    if let [before @ .., TrailStep::Entry(index)] = trail {
         return format!("[[{}]] #{}", keys(before), index + 1);
     }
-    let is_key = |step: &&Step| matches!(step, Step::Key(_));
+    let is_key = |step: &&TrailStep| matches!(step, TrailStep::Key(_));
     let table = keys(&trail.iter().filter(is_key).cloned().collect::<Vec<_>>());
     match trail.iter().rfind(|step| !is_key(step)) {
-        Some(Step::Entry(index)) => format!("[{table}] of #{}", index + 1),
+        Some(TrailStep::Entry(index)) => format!("[{table}] of #{}", index + 1),
         _ => format!("[{table}]"),
     }
 }
 
 /// `a.b, entry 3`
-fn keys(trail: &[Step]) -> String {
+fn keys(trail: &[TrailStep]) -> String {
     let in_words = trail.iter().map(|step| match step {
-        Step::Key(key) => format!(".{key}"),
-        Step::Entry(index) => format!(", entry {}", index + 1),
+        TrailStep::Key(key) => format!(".{key}"),
+        TrailStep::Entry(index) => format!(", entry {}", index + 1),
     });
     let text: String = in_words.collect();
     text.trim_start_matches(['.', ',', ' ']).to_owned()
 }
 
-fn collect_table(text: &str, trail: &[Step], table: &DeTable<'_>, nodes: &mut Vec<Node>) {
+fn collect_table(
+    text: &str,
+    trail: &[TrailStep],
+    table: &DeTable<'_>,
+    nodes: &mut Vec<SourceNode>,
+) {
     for (key, value) in table {
         let mut trail = trail.to_vec();
-        trail.push(Step::Key(key.get_ref().to_string()));
+        trail.push(TrailStep::Key(key.get_ref().to_string()));
         collect(text, trail, key.span(), value, nodes);
     }
 }
 
 fn collect(
     text: &str,
-    trail: Vec<Step>,
+    trail: Vec<TrailStep>,
     key: Range<usize>,
     value: &Spanned<DeValue<'_>>,
-    nodes: &mut Vec<Node>,
+    nodes: &mut Vec<SourceNode>,
 ) {
     let headed = value.get_ref().is_table() && text[value.span()].starts_with('[');
     match value.get_ref() {
@@ -214,7 +221,7 @@ fn collect(
         DeValue::Array(entries) => {
             for (index, entry) in entries.iter().enumerate() {
                 let mut trail = trail.clone();
-                trail.push(Step::Entry(index));
+                trail.push(TrailStep::Entry(index));
                 collect(text, trail, entry.span(), entry, nodes);
             }
         }
@@ -222,5 +229,5 @@ fn collect(
     }
     // a header stands where its table begins, however its last key was reached
     let key = if headed { value.span() } else { key };
-    nodes.push(Node { trail, key, value: value.span(), headed });
+    nodes.push(SourceNode { trail, key, value: value.span(), headed });
 }

@@ -6,7 +6,7 @@ use super::sizes::{COUNTABLE, STEEPEST, VOLUMES_M3, are_volumes};
 use super::zones::{Zone, Zones};
 use super::{FrequencyTable, Scene};
 use crate::error::{Error, Flaw};
-use crate::frequency::{Class, Frequency, Law, Source, power_between};
+use crate::frequency::{Class, Frequency, FrequencyLaw, RockSource, power_between};
 
 /// What `[frequency]` says of the sizes of all zones that do not say it themselves.
 #[derive(Debug, Clone, Copy, Default)]
@@ -30,7 +30,7 @@ impl Zone {
     /// Its own properties come before what is common to all zones. With an exponent, sizes follow the power law between the
     /// two volumes: `a = f / (V_0^−b − V_1^−b)` where the events a year `f` of all sizes are given. Without one they are even
     /// in the logarithm of the volume; without volumes they are those of the scene's rocks.
-    fn law(&self, common: CommonSizes) -> Result<Law, Flaw> {
+    fn law(&self, common: CommonSizes) -> Result<FrequencyLaw, Flaw> {
         let volumes = self.volume_range(common)?;
         let exponent = self.exponent.or(common.exponent.filter(|_| self.volume_m3.is_none()));
         if exponent.is_some_and(|b| b > STEEPEST) {
@@ -55,16 +55,16 @@ impl Zone {
                 "write it, or exponent in [frequency], or frequency_per_year instead of per_year_at_1m3",
             ),
             (None, Some(per_year_at_1m3), Some(exponent), Some(volume_m3)) => {
-                Ok(Law::PowerLaw { per_year_at_1m3, exponent, volume_m3 })
+                Ok(FrequencyLaw::PowerLaw { per_year_at_1m3, exponent, volume_m3 })
             }
             (Some(per_year), None, Some(exponent), Some(volume_m3)) => {
                 let per_year_at_1m3 = per_year / power_between(volume_m3, exponent);
-                Ok(Law::PowerLaw { per_year_at_1m3, exponent, volume_m3 })
+                Ok(FrequencyLaw::PowerLaw { per_year_at_1m3, exponent, volume_m3 })
             }
             (Some(per_year), None, None, Some(volume_m3)) => {
-                Ok(Law::Classes(vec![Class { volume_m3, per_year }]))
+                Ok(FrequencyLaw::Classes(vec![Class { volume_m3, per_year }]))
             }
-            (Some(per_year), None, None, None) => Ok(Law::Events { per_year }),
+            (Some(per_year), None, None, None) => Ok(FrequencyLaw::Events { per_year }),
         }
     }
 
@@ -106,7 +106,7 @@ impl Zones {
     ///
     /// # Errors
     /// A zone without frequency, or with properties that are no law; zones with volumes beside such without.
-    pub(super) fn sources(&self, common: CommonSizes) -> crate::error::Result<Vec<Source>> {
+    pub(super) fn sources(&self, common: CommonSizes) -> crate::error::Result<Vec<RockSource>> {
         let refused = |zone: &Zone, flaw: Flaw| {
             Error::input(&self.file, format!("feature {}", zone.feature), flaw.found, flaw.remedy)
         };
@@ -116,11 +116,11 @@ impl Zones {
                 let found = format!("found {}", law.in_words());
                 return Err(refused(zone, Flaw::new(found, COUNTABLE)));
             }
-            Ok(Source { name: zone.name.clone(), law })
+            Ok(RockSource { name: zone.name.clone(), law })
         };
-        let sources: Vec<Source> =
+        let sources: Vec<RockSource> =
             self.list().iter().map(source).collect::<crate::error::Result<_>>()?;
-        let draws = |source: &Source| !matches!(source.law, Law::Events { .. });
+        let draws = |source: &RockSource| !matches!(source.law, FrequencyLaw::Events { .. });
         let other = sources.iter().position(|source| draws(source) != draws(&sources[0]));
         match other {
             None => Ok(sources),

@@ -2,7 +2,7 @@
 
 use super::places::{Area, Polyline};
 use crate::error::{Error, Result};
-use crate::gis::{self, Corner, Feature, Layer, Polygon, Shape};
+use crate::gis::{self, Corner, Geometry, GisFeature, GisLayer, Polygon};
 use std::path::{Path, PathBuf};
 
 /// Where in a zone rocks start.
@@ -60,7 +60,7 @@ impl Zones {
     /// A file or feature that cannot be used; weights for some zones and not for others; points beside lines or areas
     /// without weights, which have no common measure.
     pub fn read(file: &Path) -> Result<Self> {
-        let Layer { epsg, system, features, .. } = gis::read(file)?;
+        let GisLayer { epsg, system, features, .. } = gis::read(file)?;
         let list: Vec<Zone> =
             features.iter().map(|feature| zone(feature, file)).collect::<Result<_>>()?;
         let sizes = sizes(&list, file)?;
@@ -148,16 +148,16 @@ fn part(sizes: impl Iterator<Item = f64> + Clone, even: f64) -> (usize, f64) {
     last
 }
 
-fn zone(feature: &Feature, file: &Path) -> Result<Zone> {
+fn zone(feature: &GisFeature, file: &Path) -> Result<Zone> {
     let wrong = |flaw: crate::error::Flaw| feature.wrong(file, flaw.found, flaw.remedy);
     let line = |corners: &Vec<Corner>| Polyline::try_from(corners.clone()).map_err(wrong);
     let area = |Polygon { outline_m, holes_m }: &Polygon| {
         Area::with_holes(outline_m.clone(), holes_m).map_err(wrong)
     };
     let place = match &feature.shape {
-        Shape::Points(points) => ZonePlace::Points(points.clone()),
-        Shape::Lines(lines) => ZonePlace::Lines(lines.iter().map(line).collect::<Result<_>>()?),
-        Shape::Polygons(all) => ZonePlace::Areas(all.iter().map(area).collect::<Result<_>>()?),
+        Geometry::Points(points) => ZonePlace::Points(points.clone()),
+        Geometry::Lines(lines) => ZonePlace::Lines(lines.iter().map(line).collect::<Result<_>>()?),
+        Geometry::Polygons(all) => ZonePlace::Areas(all.iter().map(area).collect::<Result<_>>()?),
     };
     let zone = Zone {
         name: feature.text("name").unwrap_or_else(|| format!("zone {}", feature.number)),

@@ -13,12 +13,12 @@ use crate::flight::block::{Tumble, first_touch};
 use crate::flight::top::Top;
 use crate::ground::Law;
 use crate::random::RandomStream;
-use crate::release::{Drawn, Release};
+use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Vec3};
 use crate::solver::block::{Footing, Moving};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::roughness::Facets;
+use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::Scars;
 
 /// One block on its way.
@@ -35,7 +35,7 @@ struct Roll<'a> {
 /// Follows one block from its release to its stop; `laws` are those of the grounds for it.
 pub(super) fn follow_block(
     settings: &RunSettings,
-    (release, drawn): (&Release, &Drawn),
+    (release, drawn): (&Release, &DrawnShape),
     keep: Keep,
     (laws, random): (&[Law], RandomStream),
     (footing, scars): (&mut Footing, &mut Scars),
@@ -47,9 +47,9 @@ pub(super) fn follow_block(
         laws,
     };
     footing.near.forget();
-    footing.near.gone.clear();
+    footing.raise_stems(settings.terrain, &random);
     (footing.near.tested, footing.sweeps) = (0, 0);
-    footing.facets = Facets::of(random, laws);
+    footing.facets = RoughFacets::of(random, laws);
     footing.slip.begin(&release.grounds);
     let moving = Moving::new(block, (release.motion.position_m, drawn.attitude), &release.motion);
     let form = Form { rock: release.rock, block: Some(block) };
@@ -119,7 +119,8 @@ impl Roll<'_> {
             let left = self.settings.longest_s - self.recorder.now.time_s;
             let most_s = self.settings.step.step_s.min(left);
             let most_s = most_s.min(self.scars.longest_s(self.moving.v.norm()));
-            let done = self.footing.step(&self.world, block, &mut self.moving, most_s);
+            let mut done = self.footing.step(&self.world, block, &mut self.moving, most_s);
+            self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut done.loss);
             self.recorder.effort.steps += 1;
             self.recorder.effort.unsettled += u64::from(done.unsettled);
             self.recorder.pay(&done.loss, 1.0);
@@ -173,9 +174,14 @@ impl Roll<'_> {
         if self.scars.are_any() {
             self.dig(&struck);
         }
-        let Some(loss) = self.footing.strike(&self.world, block, &mut self.moving) else {
+        let broken_j = self.footing.break_stems(&self.world, block, &mut self.moving);
+        self.recorder.ledger.trees_j += broken_j;
+        let loss = self.footing.strike(&self.world, block, &mut self.moving);
+        if loss.is_none() && broken_j <= 0.0 {
             return false;
-        };
+        }
+        let mut loss = loss.unwrap_or_default();
+        self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut loss);
         self.recorder.pay(&loss, 1.0);
         let is_free = !self.footing.holds(&self.world, (block, &self.moving), true);
         if is_free {
@@ -228,7 +234,7 @@ impl Roll<'_> {
         self.moving.motion_j(self.block) - weight.dot(&self.moving.pose.centre)
     }
 
-    fn end(mut self, (release, drawn): (&Release, &Drawn), stop: Stop) -> Trajectory {
+    fn end(mut self, (release, drawn): (&Release, &DrawnShape), stop: Stop) -> Trajectory {
         let start =
             Moving::new(self.block, (release.motion.position_m, drawn.attitude), &release.motion);
         self.recorder.end_path();

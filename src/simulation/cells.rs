@@ -1,6 +1,6 @@
 //! Which cells of the maps a rock passes, with its largest energy and height in each.
 
-use super::form::{Form, Instant, Turned, between};
+use super::form::{Form, RockInstant, Turned, between};
 use super::passages::{Passage, Passages};
 use crate::flight::Parabola;
 use crate::plan::MapGrid;
@@ -39,7 +39,7 @@ impl<'a> CellPassages<'a> {
         (terrain, form): (&Terrain, &Form),
         flight: &Parabola,
         dt: f64,
-        at: impl Fn(f64) -> Instant,
+        at: impl Fn(f64) -> RockInstant,
     ) {
         let Some(cells) = self.cells else { return };
         let from = at(0.0);
@@ -65,7 +65,7 @@ impl<'a> CellPassages<'a> {
         let Some(cells) = self.cells else { return };
         let total_j = |s: f64| {
             let motion = between(from, to, s);
-            let rotational_j = form.rotational_j(&Instant { motion, turned });
+            let rotational_j = form.rotational_j(&RockInstant { motion, turned });
             motion.translational_j(&form.rock) + rotational_j
         };
         walk(cells, [&from.position_m, &to.position_m], |cell, s0, s1| {

@@ -1,9 +1,9 @@
 //! Where a rock passes evaluation lines: exact on the parabola of a flight and on the cubic of a step.
 
-use super::form::{Form, Instant, Turned, between};
+use super::form::{Form, RockInstant, Turned, between};
 use crate::flight::Parabola;
 use crate::math;
-use crate::plan::{EvaluationLine, Footprint, Piece};
+use crate::plan::{EvaluationLine, Footprint, LinePiece};
 use crate::rock::{Motion, Vec3};
 use crate::scene::Corner;
 use crate::terrain::Terrain;
@@ -82,7 +82,7 @@ impl<'a> Crossings<'a> {
         (terrain, form): (&Terrain, &Form),
         flight: &Parabola,
         dt: f64,
-        at: impl Fn(f64) -> Instant,
+        at: impl Fn(f64) -> RockInstant,
     ) {
         if self.lines.is_empty() {
             return;
@@ -122,7 +122,7 @@ impl<'a> Crossings<'a> {
             (terrain, form),
             hull,
             |piece| roots(hull.map(|point| piece.side_m(point))),
-            |s| Instant { motion: between(from, to, s), turned },
+            |s| RockInstant { motion: between(from, to, s), turned },
         );
     }
 
@@ -132,8 +132,8 @@ impl<'a> Crossings<'a> {
         &mut self,
         (terrain, form): (&Terrain, &Form),
         hull: [Corner; 4],
-        when: impl Fn(&Piece) -> Vec<f64>,
-        at: impl Fn(f64) -> Instant,
+        when: impl Fn(&LinePiece) -> Vec<f64>,
+        at: impl Fn(f64) -> RockInstant,
     ) {
         let low = [0, 1].map(|k| hull.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
         let high = [0, 1].map(|k| hull.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
@@ -199,7 +199,7 @@ impl<'a> Crossings<'a> {
         &mut self,
         (terrain, form): (&Terrain, &Form),
         line: usize,
-        (instant, along_m): (Instant, f64),
+        (instant, along_m): (RockInstant, f64),
         times: u32,
     ) {
         if let Some(known) = self.found.iter_mut().find(|crossing| crossing.line == line) {
@@ -216,7 +216,7 @@ impl<'a> Crossings<'a> {
         let over = |(ground, _)| centre.z - ground + form.reach_m(&instant, &Vec3::z());
         let top_m = form.block.map(|_| below.map_or(f64::NAN, over));
         let rotational_j = form.rotational_j(&instant);
-        let Instant { motion, .. } = instant;
+        let RockInstant { motion, .. } = instant;
         self.found.push(Crossing {
             line,
             motion,
@@ -248,7 +248,7 @@ fn enter(
     (evaluation_line, footprint): (&EvaluationLine, Footprint),
     rim_m: f64,
     hull: [Corner; 4],
-    at: impl Fn(f64) -> Instant,
+    at: impl Fn(f64) -> RockInstant,
 ) -> Option<(f64, f64)> {
     let side = |pair: &[Corner]| math::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
     let fastest_m = 3.0 * hull.windows(2).map(side).fold(0.0, f64::max);

@@ -1,28 +1,32 @@
 //! The fall itself: leap, touch, step, stop.
 
+mod soil;
+
 use super::block::follow_block;
-use super::fall::{Fall, Soil};
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
+use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
 use super::{Stop, Trajectory};
+use soil::Soil;
+
 use crate::error::Result;
 use crate::flight::{Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
 use crate::plan::{PATH_STEP_S, Part, Plan};
 use crate::random::{Purpose, RandomStream, stream};
-use crate::release::{Drawn, Release};
+use crate::release::{DrawnShape, Release};
 use crate::rock::Motion;
 use crate::solver::block::Footing;
 use crate::solver::body::Body;
 use crate::solver::contact_state::ContactState;
 use crate::solver::loss::Loss;
-use crate::solver::roughness::Facets;
+use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::Scars;
 use crate::solver::slip::Slip;
 use crate::solver::{self, Stepper};
-use crate::stopwatch::{Piece, Stopwatches};
+use crate::stopwatch::{Stopwatches, TimedPiece};
 use std::ops::Range;
 
 /// Work space of one thread; nothing of one rock is left for the next.
@@ -76,7 +80,7 @@ pub fn simulate(
     scratch.state.near.forget();
     (scratch.state.near.tested, scratch.state.sweeps) = (0, 0);
     scratch.state.raise_stems(settings.terrain, &random);
-    scratch.state.facets = Facets::of(random, &scratch.laws);
+    scratch.state.facets = RoughFacets::of(random, &scratch.laws);
     scratch.slip.begin(&release.grounds);
     let mut fall = Fall {
         settings,
@@ -105,7 +109,7 @@ pub fn simulate(
 /// The same for a block, with scheme `rigid`.
 pub fn simulate_block(
     settings: &RunSettings,
-    (release, drawn): (&Release, &Drawn),
+    (release, drawn): (&Release, &DrawnShape),
     keep: Keep,
     random: RandomStream,
     scratch: &mut Scratch,
@@ -153,7 +157,17 @@ pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> K
     Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
-impl Fall<'_> {
+pub(super) struct Fall<'a> {
+    pub(super) settings: &'a RunSettings<'a>,
+    pub(super) body: Body,
+    /// Those in force: soil and the speed of impacts change them on the way.
+    pub(super) laws: &'a mut [Law],
+    soil: Soil<'a>,
+    pub(super) state: &'a mut ContactState,
+    pub(super) recorder: Recorder<'a>,
+}
+
+impl<'a> Fall<'a> {
     /// Whether the rock is in contact with something it is pressed into.
     fn is_pressed(&mut self) -> bool {
         let now = self.recorder.now;
@@ -181,12 +195,12 @@ impl Fall<'_> {
             &mut self.recorder.effort.triangles,
         );
         let (dt, stop) = self.settings.end_of_flight(&end, now.time_s);
-        self.state.stopwatches.stop(Piece::Leap, begun);
+        self.state.stopwatches.stop(TimedPiece::Leap, begun);
         self.recorder.effort.leaps += 1;
         let begun = self.state.stopwatches.now();
         self.recorder.fly(&flight, None, dt);
         self.soil.fly(dt);
-        self.state.stopwatches.stop(Piece::NotesInFlight, begun);
+        self.state.stopwatches.stop(TimedPiece::NotesInFlight, begun);
         // flights count too: between two plates a rock may fly without end and without getting on in time
         stop.or_else(|| self.settings.over_budget(&self.recorder.effort))
     }
@@ -217,6 +231,11 @@ impl Fall<'_> {
         self.recorder.end_impacts(|_| false, || 0.0);
         self.in_contact().leave_facet();
         stop
+    }
+
+    /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
+    fn is_rigid(&self) -> bool {
+        !self.settings.step.scheme.has_springs()
     }
 
     /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
@@ -262,7 +281,7 @@ impl Fall<'_> {
             let begun = self.state.stopwatches.now();
             self.recorder.step(to, slides);
             self.in_contact().end_impacts();
-            self.state.stopwatches.stop(Piece::NotesInContact, begun);
+            self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if self.state.is_free() {
@@ -276,6 +295,13 @@ impl Fall<'_> {
                 return ends;
             }
         }
+    }
+
+    /// The rock and its notes.
+    pub(super) fn in_contact(&mut self) -> RockInContact<'_, 'a> {
+        let has_springs = !self.is_rigid();
+        let Self { settings, body, laws, state, recorder, .. } = self;
+        RockInContact { world: settings.around(*body, laws), state, recorder, has_springs }
     }
 
     /// Mechanical energy of the rock in contact (J), weight included.

@@ -17,7 +17,7 @@ pub(super) struct Turned {
 
 /// A rock at one instant.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Instant {
+pub(super) struct RockInstant {
     pub(super) motion: Motion,
     /// None for a sphere.
     pub(super) turned: Option<Turned>,
@@ -45,7 +45,7 @@ pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
     [turn.w, turn.i, turn.j, turn.k].map(|x| x * sign)
 }
 
-impl Instant {
+impl RockInstant {
     /// The rock after `t` (s) of a flight that began with `start`; a block turns as `top` does.
     pub(super) fn in_flight(start: &Motion, flight: &Parabola, top: Option<&Top>, t: f64) -> Self {
         let turned = top.map(|top| {
@@ -64,7 +64,7 @@ impl Instant {
 
 impl Form<'_> {
     /// How far the rock reaches from its centre along a unit direction (m).
-    pub(super) fn reach_m(&self, at: &Instant, along: &Vec3) -> f64 {
+    pub(super) fn reach_m(&self, at: &RockInstant, along: &Vec3) -> f64 {
         match (self.block, &at.turned) {
             (Some(block), Some(turned)) => {
                 block.support_m(&turned.attitude.inverse_transform_vector(along))
@@ -74,7 +74,7 @@ impl Form<'_> {
     }
 
     /// How far the lowest point lies below the centre (m).
-    pub(super) fn below_m(&self, at: &Instant) -> f64 {
+    pub(super) fn below_m(&self, at: &RockInstant) -> f64 {
         self.reach_m(at, &-Vec3::z())
     }
 
@@ -84,7 +84,7 @@ impl Form<'_> {
     }
 
     /// Rotational energy (J).
-    pub(super) fn rotational_j(&self, at: &Instant) -> f64 {
+    pub(super) fn rotational_j(&self, at: &RockInstant) -> f64 {
         at.turned.map_or_else(|| at.motion.rotational_j(&self.rock), |turned| turned.rotational_j)
     }
 }

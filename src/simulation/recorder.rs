@@ -2,7 +2,7 @@
 
 use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
-use super::form::{Form, Instant, Turned, between};
+use super::form::{Form, RockInstant, Turned, between};
 use super::impacts::{Impacts, ImpactsMark, Struck};
 use super::stretches::{Stretch, Stretches};
 use super::{Effort, Extremes, Ledger, PathPoint, PathState, Stop, Trajectory};
@@ -51,7 +51,7 @@ const HEIGHT_STEP_S: f64 = 0.1;
 
 /// A moment of a journey, to go back to: lists only grow, so their lengths will do.
 #[derive(Debug)]
-pub(super) struct Mark {
+pub(super) struct RecorderMark {
     now: Motion,
     turned: Option<Turned>,
     extremes: Extremes,
@@ -97,8 +97,8 @@ impl<'a> Recorder<'a> {
     }
 
     /// The present.
-    pub(super) fn mark(&self) -> Mark {
-        Mark {
+    pub(super) fn mark(&self) -> RecorderMark {
+        RecorderMark {
             now: self.now,
             turned: self.turned,
             extremes: self.extremes,
@@ -114,7 +114,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Goes back to `mark`; what was tried in vain was work all the same.
-    pub(super) fn go_back(&mut self, mark: &Mark) {
+    pub(super) fn go_back(&mut self, mark: &RecorderMark) {
         (self.now, self.extremes, self.ledger) = (mark.now, mark.extremes, mark.ledger);
         self.turned = mark.turned;
         self.path.truncate(mark.path);
@@ -141,18 +141,18 @@ impl<'a> Recorder<'a> {
         self.terrain.sheet_of[triangle as usize]
     }
 
-    fn instant(&self) -> Instant {
-        Instant { motion: self.now, turned: self.turned }
+    fn instant(&self) -> RockInstant {
+        RockInstant { motion: self.now, turned: self.turned }
     }
 
-    fn clearance_m(&self, at: &Instant) -> Option<f64> {
+    fn clearance_m(&self, at: &RockInstant) -> Option<f64> {
         let centre = &at.motion.position_m;
         self.terrain
             .ground_under(centre.x, centre.y, centre.z)
             .map(|ground| centre.z - self.form.below_m(at) - ground)
     }
 
-    fn note_height(&mut self, at: &Instant) {
+    fn note_height(&mut self, at: &RockInstant) {
         let centre = &at.motion.position_m;
         let most_m =
             centre.z - self.form.below_m(at) - self.terrain.floor.under(centre.x, centre.y);
@@ -169,12 +169,12 @@ impl<'a> Recorder<'a> {
     /// Goes along a flight for `dt` (s); a block turns as `top` does.
     pub(super) fn fly(&mut self, flight: &Parabola, top: Option<&Top>, dt: f64) {
         let start = self.now;
-        let at = |t: f64| Instant::in_flight(&start, flight, top, t);
+        let at = |t: f64| RockInstant::in_flight(&start, flight, top, t);
         while self.next_point_s <= start.time_s + dt {
             let t = self.next_point_s - start.time_s;
             let instant = at(t);
             let motion = Motion { time_s: self.next_point_s, ..instant.motion };
-            self.point(&Instant { motion, ..instant }, PathState::Flight);
+            self.point(&RockInstant { motion, ..instant }, PathState::Flight);
         }
         let points = (dt / HEIGHT_STEP_S).ceil().min(HEIGHT_POINTS) as u32;
         for k in 1..=points {
@@ -205,7 +205,7 @@ impl<'a> Recorder<'a> {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };
             let motion = between(&from, &to, s.clamp(0.0, 1.0));
             let motion = Motion { time_s: self.next_point_s, ..motion };
-            self.point(&Instant { motion, turned: self.turned }, state);
+            self.point(&RockInstant { motion, turned: self.turned }, state);
         }
         let flies = state == PathState::Flight;
         if flies {
@@ -220,7 +220,7 @@ impl<'a> Recorder<'a> {
         self.note_speed();
     }
 
-    fn point(&mut self, at: &Instant, state: PathState) {
+    fn point(&mut self, at: &RockInstant, state: PathState) {
         let clearance_m = self.clearance_m(at).unwrap_or(f64::NAN);
         let attitude = at.turned.map(|turned| turned.quaternion());
         self.path.push(PathPoint { motion: at.motion, clearance_m, state, attitude });

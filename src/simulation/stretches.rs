@@ -1,6 +1,6 @@
 //! How fast and how high a rock was, stretch by stretch of its distance from its release in plan view.
 
-use super::form::{Form, Instant};
+use super::form::{Form, RockInstant};
 use super::passages::{Passage, Passages};
 use crate::flight::Parabola;
 use crate::math;
@@ -66,7 +66,7 @@ impl Stretches {
         (terrain, form): (&Terrain, &Form),
         flight: &Parabola,
         dt: f64,
-        at: impl Fn(f64) -> Instant,
+        at: impl Fn(f64) -> RockInstant,
     ) {
         let Some(step_m) = self.step_m else { return };
         let height_m = |t: f64, known_m: f64| {

@@ -28,7 +28,7 @@ use crate::release::Release;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::island::{BodySlot, IslandBody};
-use crate::solver::roughness::Facets;
+use crate::solver::roughness::RoughFacets;
 use bodies::BodyWorld;
 pub use statistics::WorldStats;
 use std::ops::Range;
@@ -54,7 +54,7 @@ const KNOWN: usize = 16;
 struct WorldBody<'a> {
     member: BodySlot,
     recorder: Recorder<'a>,
-    state: State,
+    state: BodyState,
     /// When its flight ends (s), and how.
     lands: Option<(f64, Option<Stop>)>,
     /// Whether it is slow and gets no faster.
@@ -73,7 +73,7 @@ struct WorldBody<'a> {
 
 /// Where a rock is in its story.
 #[derive(Debug, Clone, PartialEq)]
-enum State {
+enum BodyState {
     /// Under way.
     Moving,
     /// At rest until something comes near.
@@ -148,7 +148,7 @@ pub fn simulate_world(
             let mut body = body(settings, release, keep(k), &mut damping);
             let random = stream(settings.seed, Purpose::Impacts, k);
             body.member.state.raise_stems(settings.terrain, &random);
-            body.member.state.facets = Facets::of(random, &body.member.laws);
+            body.member.state.facets = RoughFacets::of(random, &body.member.laws);
             Some(Box::new(body))
         })
         .collect();
@@ -180,7 +180,7 @@ fn body<'a>(
             (motion, None),
             (keep, settings.recorders),
         ),
-        state: State::Moving,
+        state: BodyState::Moving,
         lands: None,
         calm: RestCriterion::from(motion.position_m),
         h: f64::INFINITY,

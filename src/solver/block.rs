@@ -8,27 +8,32 @@
 //! Restitution is Newton's, contact by contact. With friction and several contacts that rule can gain energy (Glocker 2013); where it
 //! would, all restitutions are lowered together until it does not.
 
+mod energy;
 mod slip;
 mod solve;
+mod stems;
+mod yielding;
 
 use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
 use super::loss::Loss;
-use super::roughness::{Facets, Meeting};
+use super::rigid::HELD;
+use super::roughness::{Meeting, RoughFacets};
 use super::slip::Slip;
+use super::stem_load::StemLoad;
 use crate::body::Block;
+use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, Pose, keep_widest, touches};
 use crate::contact::neighbours::Neighbours;
 use crate::flight::block::Tumble;
 use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
+use energy::{hold_energy, rising_s};
 use nalgebra::{Matrix3, Rotation3};
-use solve::{Contact, Mass, solve};
+use solve::{BlockContact, Mass, solve};
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
-/// Gaps no wider than this still hold the block (–).
-const HELD: f64 = 1e-4;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
 const AHEAD: f64 = 1.0;
 /// No point of the block moves further in one step (–, relative to the balls' radius) …
@@ -37,8 +42,6 @@ const TRAVEL: f64 = 0.3;
 const TURN: f64 = 0.03;
 /// An approach slower than this is none (m/s): rounding.
 const STILL_M_S: f64 = 1e-9;
-/// Most contacts that take part at a time.
-const MOST: usize = 8;
 /// A gain of energy that is rounding (–); it is taken off the motion all the same.
 const ROUNDING: f64 = 1e-12;
 /// Velocities are known to this (–).
@@ -60,11 +63,13 @@ pub(crate) struct Moving {
 pub(crate) struct Footing {
     pub(crate) near: Neighbours,
     pub(crate) touches: Vec<BlockTouch>,
-    contacts: Vec<Contact>,
+    contacts: Vec<BlockContact>,
     /// The facets it meets on rough ground.
-    pub(crate) facets: Facets,
+    pub(crate) facets: RoughFacets,
     /// How far it has slipped.
     pub(crate) slip: Slip,
+    /// What it has done to the stems.
+    stem_load: StemLoad,
     /// Passes over the contacts.
     pub(crate) sweeps: u64,
 }
@@ -119,7 +124,7 @@ impl Moving {
     }
 
     /// Takes the impulses of the contacts.
-    fn take(&mut self, contacts: &[Contact], mass_kg: f64) {
+    fn take(&mut self, contacts: &[BlockContact], mass_kg: f64) {
         for contact in contacts {
             self.v += contact.impulse / mass_kg;
             self.momentum += contact.lever.cross(&contact.impulse);
@@ -194,7 +199,7 @@ impl Footing {
             normal: facet.map_or(touch.normal, |turn| turn * touch.normal),
             ..*touch
         };
-        let wanted: Vec<(Contact, f64)> = self
+        let wanted: Vec<(BlockContact, f64)> = self
             .touching(block)
             .map(|touch| {
                 let (law, touch) = (world.law(touch.triangle), &tilted(touch));
@@ -211,7 +216,7 @@ impl Footing {
         let mut thrown = moving.clone();
         let mut try_with = |share: f64| {
             self.contacts.clear();
-            let goal = |(one, back): &(Contact, f64)| one.with_goal(one.n * (back * share));
+            let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
             self.contacts.extend(wanted.iter().map(goal));
             solve(&mass, &mut self.contacts, (v, w), rounding_m_s, &mut self.sweeps);
             thrown = moving.clone();
@@ -236,7 +241,7 @@ impl Footing {
     /// What friction and restitution of each contact took, together `lost_j`, each at least 0: impulses work with the mean of
     /// the motion before and after.
     fn booked(&self, world: &ContactEnvironment, motion: [(&Vec3, &Vec3); 2], lost_j: f64) -> Loss {
-        let part = |contact: &Contact| {
+        let part = |contact: &BlockContact| {
             let [before, after] = motion.map(|motion| Mass::at(&contact.lever, motion));
             let mean = (before + after) * 0.5;
             let (push, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
@@ -267,8 +272,7 @@ impl Footing {
             .min(TRAVEL * block.ball_m / fastest.max(f64::MIN_POSITIVE))
             .min(TURN / spin.norm().max(f64::MIN_POSITIVE));
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
-        let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
-        let dt = self.closing(world, (block, moving), dt);
+        let dt = self.closing(world, (block, moving), dt).min(rising_s(world, moving, before_j));
         moving.drift(block, 0.5 * dt);
         self.look(world, block, &moving.pose, AHEAD * block.ball_m);
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
@@ -327,10 +331,10 @@ impl Footing {
         (mass, touch): (&Mass, &BlockTouch),
         ahead_m: f64,
         goal: Vec3,
-    ) -> Contact {
+    ) -> BlockContact {
         let law = world.law(touch.triangle);
         let friction = self.slip.friction(world.ground_of(touch.triangle), law, ahead_m);
-        Contact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
+        BlockContact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
     }
 
     /// Whether a contact that touches slides.
@@ -381,19 +385,6 @@ fn goal(block: &Block, (start, middle): (&Moving, &Moving), touch: &BlockTouch, 
     let out = (-2.0 * gap / dt).min(0.1 * (block.radius_m * 10.0).sqrt());
     let up = n.dot(&turned);
     n * (out - up) - (turned - n * up)
-}
-
-/// Slows a block that has more energy of motion than it had, with what its weight gave on the way behind it, and than its weight gives
-/// it on the way to come (J), which is slowed too. Moving out of what it was pressed into is paid by its motion.
-fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: [f64; 2]) {
-    let motion_j = moving.motion_j(block);
-    if motion_j > had_j + comes_j && motion_j > 0.0 {
-        // motion k² = had + comes k
-        let root = (comes_j * comes_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
-        let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
-        moving.v *= kept;
-        moving.momentum *= kept;
-    }
 }
 
 #[cfg(test)]

@@ -3,24 +3,24 @@
 use super::body::Body;
 use super::dda_system::DdaScratch;
 pub use super::environment::ContactEnvironment;
-use super::friction_rolling::Mode;
+use super::friction_rolling::SlipState;
 use super::impact_progress::ImpactProgress;
 use super::law::StageContact;
 use super::loss::Loss;
 use super::plane_state::PlaneState;
-use super::roughness::{Facets, Tilt};
+use super::roughness::{RoughFacets, Tilt};
 use super::stem_load::StemLoad;
 use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
 use crate::contact::{ContactPoints, MOST, TOUCH};
 use crate::rock::Vec3;
-use crate::stopwatch::{Piece, Stopwatches};
+use crate::stopwatch::{Stopwatches, TimedPiece};
 use nalgebra::Rotation3;
 
 /// Rates of change of a rock in contact.
 #[derive(Debug, Clone, Copy)]
-pub struct Rate {
+pub struct StateRates {
     /// Velocity (m/s).
     pub c: Vec3,
     /// Acceleration (m/s²).
@@ -35,7 +35,7 @@ pub struct Rate {
     pub loss: Loss,
 }
 
-impl Rate {
+impl StateRates {
     /// Takes over another's rates, of the springs the first `histories` only.
     #[inline]
     pub fn take(&mut self, from: &Self, histories: usize) {
@@ -91,7 +91,7 @@ pub struct ContactState {
     /// That place, if they were asked for with all slack.
     pub(crate) looked_ahead: Option<Vec3>,
     /// Rates at the stages of the step in hand; the first is that at its start.
-    pub rates: [Rate; STAGES],
+    pub rates: [StateRates; STAGES],
     /// Whether the first rate belongs to the present state.
     pub fresh: bool,
     /// Energy in the springs of the contacts at the present state (J), if the first rate is fresh.
@@ -109,7 +109,7 @@ pub struct ContactState {
     /// The blow that has been announced last, until somebody takes it.
     pub(crate) blow: Option<Blow>,
     /// The facets it meets on rough ground.
-    pub(crate) facets: Facets,
+    pub(crate) facets: RoughFacets,
     /// What it has done to the stems.
     pub(crate) stem_load: StemLoad,
     /// Whether what is touched may give way: it is asked step by step.
@@ -152,7 +152,7 @@ impl ContactState {
             near: Neighbours::empty(),
             touches: ContactPoints::default(),
             looked_ahead: None,
-            rates: [Rate::NONE; STAGES],
+            rates: [StateRates::NONE; STAGES],
             fresh: false,
             stored: 0.0,
             contacts: [StageContact::NONE; MOST],
@@ -163,7 +163,7 @@ impl ContactState {
             is_struck: true,
             may_yield: false,
             blow: None,
-            facets: Facets::default(),
+            facets: RoughFacets::default(),
             stem_load: StemLoad::default(),
             scratch: DdaScratch::default(),
             sweeps: 0,
@@ -183,7 +183,7 @@ impl ContactState {
         self.struck.clear();
         (self.is_struck, self.blow) = (true, None);
         // Nothing of the rock before, not even a guess, may tell.
-        self.contacts.iter_mut().for_each(|contact| contact.mode = Mode::default());
+        self.contacts.iter_mut().for_each(|contact| contact.mode = SlipState::default());
         if !self.near.covers(&c) {
             let (r, margin) = (world.body.radius, self.way_of_impact(world));
             self.near.collect(world.terrain, &c, r, margin, SLACK * r);
@@ -212,7 +212,7 @@ impl ContactState {
         let r = world.body.radius;
         let begun = self.stopwatches.now();
         self.near.collect(world.terrain, c, r, MARGIN * r, SLACK * r);
-        self.stopwatches.stop(Piece::Geometry, begun);
+        self.stopwatches.stop(TimedPiece::Geometry, begun);
     }
 
     /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
@@ -230,7 +230,7 @@ impl ContactState {
         self.looked_ahead = None;
         let begun = self.stopwatches.now();
         self.near.touches(world.terrain, c, reach, &mut self.touches);
-        self.stopwatches.stop(Piece::Geometry, begun);
+        self.stopwatches.stop(TimedPiece::Geometry, begun);
     }
 
     /// Asks for the touches at `c` that a stage must know.

@@ -15,7 +15,7 @@
 use super::Settings;
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::dda_system::contact::{Contact, Step};
+use super::dda_system::contact::{DdaContact, StepConstants};
 use super::loss::Loss;
 use super::step_control::{Advance, StepError};
 use crate::contact::submatrix::Vec6;
@@ -80,7 +80,7 @@ impl Fixed {
         h_max: f64,
     ) -> Result<Advance, StepError> {
         let dt = self.step_s.min(h_max).min(state.longest_step(world, TRAVEL));
-        let step = Step {
+        let step = StepConstants {
             dt,
             free: free_motion(world, state, dt),
             radius: world.body.radius,
@@ -122,7 +122,7 @@ pub(crate) fn compliance(body: &Body, dt: f64) -> (f64, f64) {
 }
 
 /// Makes the touches of the step's start into contacts.
-fn meet(world: &ContactEnvironment, step: &Step, state: &mut ContactState) {
+fn meet(world: &ContactEnvironment, step: &StepConstants, state: &mut ContactState) {
     (state.scratch.count, state.scratch.taken) = (0, 0);
     for k in 0..state.touches.len() {
         add_contact(world, step, state, (k, state.touches[k].distance_m));
@@ -132,7 +132,7 @@ fn meet(world: &ContactEnvironment, step: &Step, state: &mut ContactState) {
 /// Makes touch `k` of the last look into a contact, its plane being so far from the centre at the step's start (m).
 fn add_contact(
     world: &ContactEnvironment,
-    step: &Step,
+    step: &StepConstants,
     state: &mut ContactState,
     (k, distance_m): (usize, f64),
 ) {
@@ -142,7 +142,7 @@ fn add_contact(
     let law = world.law_of(&state.touches, k);
     let scratch = &mut state.scratch;
     scratch.contacts[scratch.count] =
-        Contact::new(step, &law, &touch, (history, &state.histories[history]));
+        DdaContact::new(step, &law, &touch, (history, &state.histories[history]));
     scratch.count += 1;
     scratch.taken |= 1 << history;
 }
@@ -153,7 +153,7 @@ fn add_contact(
 /// Ends with the touches of the step's end.
 fn solve(
     world: &ContactEnvironment,
-    step: &Step,
+    step: &StepConstants,
     state: &mut ContactState,
 ) -> Option<(Vec6, bool)> {
     loop {
@@ -178,7 +178,7 @@ fn solve(
 
 /// Whether a touch of the step's end took part in it, by itself or as the part of the surface that it came from.
 pub(crate) fn knows(
-    contacts: &[Contact],
+    contacts: &[DdaContact],
     touch: &ContactPoint,
     touches: &[ContactPoint],
     d: &Vec6,

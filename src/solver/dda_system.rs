@@ -6,7 +6,7 @@ pub(crate) mod slider;
 use super::environment::ContactEnvironment;
 use crate::contact::MOST;
 use crate::contact::submatrix::{Mat6, Vec6, inertia};
-use contact::{Contact, Shape, Step};
+use contact::{ContactMatrixTerms, DdaContact, StepConstants};
 use nalgebra::{Cholesky, U6};
 use slider::Change;
 
@@ -18,21 +18,26 @@ pub(crate) const SOLVES: u32 = 40;
 /// Work space of the steps.
 #[derive(Debug)]
 pub struct DdaScratch {
-    pub(super) contacts: [Contact; MOST],
+    pub(super) contacts: [DdaContact; MOST],
     pub(super) count: usize,
     /// Memories that belong to the contacts.
     pub(super) taken: u32,
-    system: System,
+    system: DdaSystem,
 }
 
 impl Default for DdaScratch {
     fn default() -> Self {
-        Self { contacts: [Contact::NONE; MOST], count: 0, taken: 0, system: System::default() }
+        Self {
+            contacts: [DdaContact::NONE; MOST],
+            count: 0,
+            taken: 0,
+            system: DdaSystem::default(),
+        }
     }
 }
 
 impl DdaScratch {
-    pub(super) fn contacts(&self) -> &[Contact] {
+    pub(super) fn contacts(&self) -> &[DdaContact] {
         &self.contacts[..self.count]
     }
 
@@ -42,7 +47,7 @@ impl DdaScratch {
     pub(super) fn settle(
         &mut self,
         world: &ContactEnvironment,
-        step: &Step,
+        step: &StepConstants,
         sweeps: &mut u64,
     ) -> Option<(Vec6, bool)> {
         let contacts = &mut self.contacts[..self.count];
@@ -70,7 +75,7 @@ impl DdaScratch {
     /// Of those that begin apart one at a time changes, the last first, which cannot go round in circles (Murty 1974).
     fn stick(&mut self, inertia: &Mat6, free: &Vec6, sweeps: &mut u64) -> Option<Vec6> {
         let contacts = &mut self.contacts[..self.count];
-        contacts.iter_mut().for_each(Contact::stick);
+        contacts.iter_mut().for_each(DdaContact::stick);
         let mut added = Vec6::zeros();
         for _ in 0..SOLVES {
             *sweeps += 1;
@@ -86,9 +91,9 @@ impl DdaScratch {
 
 /// The matrix of a step; it is made anew only when it has changed.
 #[derive(Debug)]
-pub(super) struct System {
+pub(super) struct DdaSystem {
     inertia: Mat6,
-    shapes: [Shape; MOST],
+    shapes: [ContactMatrixTerms; MOST],
     count: usize,
     /// What the contacts add to the matrix.
     springs: Mat6,
@@ -96,11 +101,11 @@ pub(super) struct System {
     factor: Option<Cholesky<f64, U6>>,
 }
 
-impl Default for System {
+impl Default for DdaSystem {
     fn default() -> Self {
         Self {
             inertia: Mat6::zeros(),
-            shapes: [Shape::NONE; MOST],
+            shapes: [ContactMatrixTerms::NONE; MOST],
             count: 0,
             springs: Mat6::zeros(),
             factor: None,
@@ -108,9 +113,9 @@ impl Default for System {
     }
 }
 
-impl System {
-    fn solve(&mut self, inertia: &Mat6, free: &Vec6, contacts: &[Contact]) -> Option<Vec6> {
-        let shapes = || contacts.iter().map(Contact::shape);
+impl DdaSystem {
+    fn solve(&mut self, inertia: &Mat6, free: &Vec6, contacts: &[DdaContact]) -> Option<Vec6> {
+        let shapes = || contacts.iter().map(DdaContact::shape);
         let same = self.shapes[..self.count].iter().copied().eq(shapes());
         if !same || self.inertia != *inertia {
             self.inertia = *inertia;

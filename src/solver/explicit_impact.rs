@@ -10,7 +10,7 @@ mod flow;
 
 use super::contact_state::{ContactEnvironment, ContactState, longest_step};
 use super::impact::LOCAL;
-use super::impact::dormand_prince::{growth, step};
+use super::impact::dormand_prince::{Attempt, Stages, growth};
 use super::loss::Loss;
 use super::stage::End;
 use super::step_control::{Advance, StepError, TRAVEL};
@@ -21,17 +21,17 @@ use flow::{Among, SUMS};
 /// First step of an impact (rad of its oscillation).
 const FIRST: f64 = 0.3;
 /// Longest step (rad).
-const LONGEST: f64 = 0.9;
+const LONGEST_RAD: f64 = 0.9;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
 const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion).
 const BALANCED: f64 = 0.1;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST_RAD: f64 = 1e-9;
 
 /// How far a step may go, and how exactly.
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
+struct StepBounds {
     /// Stiffest contact (rad/s).
     omega: f64,
     /// Longest step that cannot jump over a feature (s).
@@ -76,9 +76,9 @@ impl ContactState {
         let c = self.c;
         self.know(world, &c);
         let way = TRAVEL * world.body.radius;
-        let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST / omega);
+        let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST_RAD / omega);
         let allowed = LOCAL * tolerance * self.impact.speed_m_s;
-        let bounds = Bounds { omega, limit, h_max, allowed };
+        let bounds = StepBounds { omega, limit, h_max, allowed };
         let known = self.histories.len();
         let mut accepted = None;
         if known <= 2 {
@@ -105,13 +105,14 @@ impl ContactState {
     fn step_among<const C: usize, const N: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
-        bounds: &Bounds,
+        bounds: &StepBounds,
         done: &mut Advance,
     ) -> Result<Option<Accepted>, StepError> {
-        let Bounds { omega, limit, h_max, allowed } = *bounds;
+        let StepBounds { omega, limit, h_max, allowed } = *bounds;
         let mut flow = Among::<C>::new(world, self, (omega, allowed));
         let y = flow.begin::<N>();
-        let first = flow.rates_of::<N, P>(&y);
+        let mut stages = Stages::<N, SUMS, P>::NONE;
+        flow.rates_of(&y, stages.first());
         // what the present place touches is met whatever becomes of the tries
         flow.state.impact.accept_meeting(world.least_impact_m_s());
         let before = flow.stored_j();
@@ -121,17 +122,25 @@ impl ContactState {
             flow.begin_try();
             let wished = flow.state.impact.h.min(limit);
             let dt = wished.min(h_max);
-            let tried = step(&mut flow, &y, &first, dt);
+            let is_short = dt * omega < SHORTEST_RAD;
+            let attempt = stages.step(&mut flow, &y, dt, (!is_short).then_some(allowed));
             if flow.is_crowded && C < HISTORIES {
                 return Ok(None);
             }
-            let is_short = dt * omega < SHORTEST;
-            let cut = tried.cut(dt, allowed).filter(|_| !is_short);
+            done.rejected += 1;
+            let tried = match attempt {
+                Attempt::Whole(tried) => tried,
+                Attempt::Cut(share) => {
+                    flow.state.impact.h = dt * share;
+                    continue;
+                }
+            };
             let error2 = tried.error2 * if flow.is_smooth { 1.0 } else { 1.0 / (KINKED * KINKED) };
-            if cut.is_none() && (error2 <= 1.0 || is_short) {
+            if error2 <= 1.0 || is_short {
                 if !error2.is_finite() {
                     return Err(StepError::NotFinite);
                 }
+                done.rejected -= 1;
                 let least = if dt < wished { wished } else { 0.0 };
                 flow.state.impact.h = (dt * growth(error2)).max(least);
                 let (end, after) = (flow.end(&tried.y), flow.stored_j());
@@ -139,9 +148,8 @@ impl ContactState {
                 let stored = before.zip(after);
                 return Ok(Some(Accepted { end, dt, sums: tried.q, stored }));
             }
-            done.rejected += 1;
             let grown = if error2.is_finite() { growth(error2) } else { 0.2 };
-            flow.state.impact.h = dt * cut.unwrap_or(grown.min(0.9));
+            flow.state.impact.h = dt * grown.min(0.9);
         }
     }
 
@@ -150,7 +158,7 @@ impl ContactState {
         &mut self,
         world: &ContactEnvironment,
         accepted: &Accepted,
-        bounds: &Bounds,
+        bounds: &StepBounds,
         done: &mut Advance,
     ) {
         let (body, end) = (&world.body, &accepted.end);
@@ -182,8 +190,8 @@ impl ContactState {
 
     /// Flies out of contacts that push no more, if nothing else is in the way there and it takes no longer than `longest` (s);
     /// returns the time that took (s).
-    fn let_go(&mut self, world: &ContactEnvironment, bounds: &Bounds, longest: f64) -> f64 {
-        let dt = LONGEST / bounds.omega;
+    fn let_go(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
+        let dt = LONGEST_RAD / bounds.omega;
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {
             return 0.0;
         }

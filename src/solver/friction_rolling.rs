@@ -14,13 +14,13 @@ pub(crate) type Local = [f64; 3];
 
 /// Right-handed unit vectors of a contact: two tangents and the normal from the mesh to the centre.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Frame {
+pub(crate) struct ContactFrame {
     s: Vec3,
     t: Vec3,
     n: Vec3,
 }
 
-impl Frame {
+impl ContactFrame {
     /// The frame of a normal, without a branch and without a root (Duff et al. 2017).
     #[inline]
     pub(crate) fn of(n: &Vec3) -> Self {
@@ -111,7 +111,7 @@ pub(crate) struct Pair<'a> {
 /// Newton steps for a ratio.
 const RATIO_STEPS: u32 = 30;
 /// A force below this part of its cap is held (–).
-const INSIDE: f64 = 1.0 - 1e-9;
+pub(crate) const INSIDE: f64 = 1.0 - 1e-9;
 /// Change of a ratio, relative to it, after which Newton's next would be rounding (–): sweeps over several contacts wait for
 /// each of them to say the same again.
 const NEAR: f64 = 1e-7;
@@ -167,7 +167,7 @@ fn by(ratio: f64, cap: f64) -> f64 {
 
 /// Which of the two are at their caps.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) enum Mode {
+pub(crate) enum SlipState {
     /// Neither.
     #[default]
     Stick,
@@ -183,52 +183,52 @@ impl Pair<'_> {
     /// Force and moment; `mode` is that of a solution nearby and becomes this one's. There is only one solution, so what
     /// agrees with both laws is the one.
     #[inline]
-    pub(crate) fn solve(&self, mode: &mut Mode) -> (Along, Local) {
+    pub(crate) fn solve(&self, mode: &mut SlipState) -> (Along, Local) {
         let cap_m = self.caps.1;
         let found = match *mode {
-            Mode::Stick => None,
-            Mode::Roll(by_cap) => self.rolls(Some(by_cap * cap_m)),
-            Mode::Slide => self.slides(),
-            Mode::Both(by_cap) => self.does_both(Some(by_cap * cap_m)),
+            SlipState::Stick => None,
+            SlipState::Roll(by_cap) => self.rolls(Some(by_cap * cap_m)),
+            SlipState::Slide => self.slides(),
+            SlipState::Both(by_cap) => self.does_both(Some(by_cap * cap_m)),
         };
         let (found, q, rolling_moment) = found.unwrap_or_else(|| self.solve_anew());
         *mode = found;
         (q, rolling_moment)
     }
 
-    fn solve_anew(&self) -> (Mode, Along, Local) {
+    fn solve_anew(&self) -> (SlipState, Along, Local) {
         let (cap_q, cap_m) = self.caps;
         let (q, rolling_moment) = self.both_stick();
         let m_fits = volume2(rolling_moment) <= cap_m * cap_m;
         if m_fits && size2(q) <= cap_q * cap_q {
-            return (Mode::Stick, q, rolling_moment);
+            return (SlipState::Stick, q, rolling_moment);
         }
         let one = if m_fits { None } else { self.rolls(None) };
         one.or_else(|| self.slides()).unwrap_or_else(|| {
             let (ratio, q, rolling_moment) = self.both_slip(None);
-            (Mode::Both(by(ratio, cap_m)), q, rolling_moment)
+            (SlipState::Both(by(ratio, cap_m)), q, rolling_moment)
         })
     }
 
     /// The moment at its cap, if shear then sticks and the moment does not.
     #[inline]
-    fn rolls(&self, ratio: Option<f64>) -> Option<(Mode, Along, Local)> {
+    fn rolls(&self, ratio: Option<f64>) -> Option<(SlipState, Along, Local)> {
         let (ratio, share, rolling_moment) = self.rolling_alone(ratio);
         let q = self.shear_at(rolling_moment);
         let rolls = share * INSIDE <= self.answers.share_m;
-        let mode = Mode::Roll(by(ratio, self.caps.1));
+        let mode = SlipState::Roll(by(ratio, self.caps.1));
         (rolls && size2(q) <= self.caps.0 * self.caps.0).then_some((mode, q, rolling_moment))
     }
 
     /// Shear at its cap, if the moment then sticks and shear does not.
     #[inline]
-    fn slides(&self) -> Option<(Mode, Along, Local)> {
+    fn slides(&self) -> Option<(SlipState, Along, Local)> {
         let (cap_q, cap_m) = self.caps;
         let q = self.sliding_alone();
         let rolling_moment = self.moment_at(q);
         let slides = size2(self.shear_at(rolling_moment)) >= (INSIDE * cap_q).powi(2);
         (slides && volume2(rolling_moment) <= cap_m * cap_m).then_some((
-            Mode::Slide,
+            SlipState::Slide,
             q,
             rolling_moment,
         ))
@@ -236,12 +236,12 @@ impl Pair<'_> {
 
     /// Both at their caps, if neither sticks.
     #[inline]
-    fn does_both(&self, ratio: Option<f64>) -> Option<(Mode, Along, Local)> {
+    fn does_both(&self, ratio: Option<f64>) -> Option<(SlipState, Along, Local)> {
         let (cap_q, cap_m) = self.caps;
         let (ratio, q, rolling_moment) = self.both_slip(ratio);
         let slips = size2(self.shear_at(rolling_moment)) >= cap_q * cap_q
             && ratio <= self.answers.c * self.answers.share_m;
-        slips.then_some((Mode::Both(by(ratio, cap_m)), q, rolling_moment))
+        slips.then_some((SlipState::Both(by(ratio, cap_m)), q, rolling_moment))
     }
 
     /// `q̂` for a moment.
@@ -361,7 +361,7 @@ mod tests {
         fn frames_are_right_handed(n in vector(), x in vector()) {
             prop_assume!(n.norm() > 1e-3);
             for n in [n.normalize(), Vec3::z(), -Vec3::z()] {
-                let frame = Frame::of(&n);
+                let frame = ContactFrame::of(&n);
                 prop_assert!((frame.s.cross(&frame.t) - n).norm() < 1e-14);
                 prop_assert!((frame.out_local(frame.local(&x)) - x).norm() < 1e-14);
             }
@@ -379,7 +379,7 @@ mod tests {
             let d = [d[0] * r, d[1] * r, if spins { d[2] * r } else { 0.0 }];
             let answers = Answers::new((b, e), b, e, (c / r, r));
             let pair = Pair { answers: &answers, a, d, caps: (caps[0], caps[1] * r) };
-            for mode in [Mode::Stick, Mode::Roll(hint), Mode::Slide, Mode::Both(hint)] {
+            for mode in [SlipState::Stick, SlipState::Roll(hint), SlipState::Slide, SlipState::Both(hint)] {
                 let (q, rolling_moment) = pair.solve(&mut { mode });
                 let at_m = cut(pair.shear_at(rolling_moment), pair.caps.0);
                 let at_q = cut_moment(pair.moment_at(q), pair.caps.1);

@@ -54,7 +54,7 @@ pub(crate) use rigid_limit::{FrozenContact, throw};
 
 /// What following an impact has cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Effort {
+pub(crate) struct ImpactEffort {
     /// Steps taken.
     pub(crate) steps: u32,
     /// Steps thrown away.

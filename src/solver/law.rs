@@ -6,7 +6,7 @@
 //! `reference` schemes.
 
 use super::body::Body;
-use super::friction_rolling::{Answers, Frame, Mode, Pair};
+use super::friction_rolling::{Answers, ContactFrame, Pair, SlipState};
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 use crate::ground::Law;
@@ -42,7 +42,7 @@ pub struct StageContact {
     /// Rolling moment `M`; the rock feels `−M` (N m).
     pub rolling_moment: Vec3,
     /// Which of the two are at their caps, as far as is known.
-    pub(crate) mode: Mode,
+    pub(crate) mode: SlipState,
 }
 
 impl Law {
@@ -76,7 +76,7 @@ impl Law {
 /// strike them without end.
 const LEAST_M_S: f64 = 1e-6;
 
-const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
+pub(crate) const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
 /// Shortens `x` to at most `cap`.
 #[inline]
@@ -104,7 +104,7 @@ pub(crate) struct Action {
 
 /// Where a contact is.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place {
+pub(crate) struct ContactPlace {
     /// Unit normal from the mesh to the centre.
     pub(crate) n: Vec3,
     /// Penetration (m).
@@ -122,7 +122,7 @@ impl Action {
         body: &Body,
         law: &Law,
         (p_n, c_n): (f64, f64),
-        at: &Place,
+        at: &ContactPlace,
         (v, w): (&Vec3, &Vec3),
     ) -> Self {
         let pulls = p_n * at.penetration - c_n * at.n.dot(v);
@@ -175,7 +175,7 @@ impl StageContact {
         normal_force: 0.0,
         shear_force: ZERO,
         rolling_moment: ZERO,
-        mode: Mode::Stick,
+        mode: SlipState::Stick,
     };
 
     /// Forces for a base `(v, w)` without this contact's own effect, over a stage of length `h`.
@@ -187,7 +187,7 @@ impl StageContact {
             return;
         }
         let law = &self.law;
-        let frame = Frame::of(&self.n);
+        let frame = ContactFrame::of(&self.n);
         let answers = Answers::of(body, law, h);
         let slip = body.slip(&self.n, v, w);
         let pair = Pair {

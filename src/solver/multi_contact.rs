@@ -6,6 +6,7 @@
 //! heading. The sweeps alone decide whether the result holds.
 
 use super::body::Body;
+use super::friction_rolling::INSIDE;
 use super::law::StageContact;
 use crate::rock::Vec3;
 use nalgebra::{Matrix3, SMatrix, SVector};
@@ -16,8 +17,6 @@ const SWEEPS: u32 = 4;
 const JUMPS: u32 = 12;
 /// Change of a force, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-9;
-/// A force below this part of its cap is held (–).
-const INSIDE: f64 = 1.0 - 1e-9;
 /// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
 const HOLD: f64 = 1e7;
 
@@ -127,7 +126,7 @@ fn driven(
 /// Sets every force to what its law gives at velocity and spin `at`.
 fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: f64) {
     for contact in contacts {
-        let normal = Normal::of(body, contact, h);
+        let normal = NormalLine::of(body, contact, h);
         contact.normal_force = normal.at(contact.n.dot(v));
         let law = &contact.law;
         let (stick, wound) = contact.trials(body, v, w, h);
@@ -138,12 +137,12 @@ fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: 
 
 /// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Normal {
+pub(crate) struct NormalLine {
     pub(crate) a: f64,
     pub(crate) b: f64,
 }
 
-impl Normal {
+impl NormalLine {
     /// The line of the mode the contact is in: open, pressed, or held exactly at the surface.
     fn of(body: &Body, contact: &StageContact, h: f64) -> Self {
         Self::line(
@@ -209,7 +208,7 @@ fn add(
     contact: &StageContact,
     ((v, w), h): (&(Vec3, Vec3), f64),
 ) {
-    let normal = Normal::of(body, contact, h);
+    let normal = NormalLine::of(body, contact, h);
     let (law, n, r) = (&contact.law, contact.n, body.radius);
     // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
     let q = Matrix3::identity() - n * n.transpose();

@@ -4,7 +4,7 @@ use super::contact_state::{ContactEnvironment, ContactState};
 use super::impact::{Followed, Plane, Rebound};
 use super::step_control::Advance;
 use crate::contact::TOUCH;
-use crate::contact::neighbours::Passage;
+use crate::contact::neighbours::PressedPath;
 use crate::contact::{ContactPoint, FeatureKind};
 use crate::math;
 use crate::rock::Vec3;
@@ -52,12 +52,12 @@ const BULGE: f64 = 0.25;
 
 impl ContactState {
     /// Where the centre goes in an impact on the plane with normal `n`.
-    fn passage(&self, n: &Vec3, rebound: &Rebound) -> Passage {
+    fn passage(&self, n: &Vec3, rebound: &Rebound) -> PressedPath {
         let tangent = |x: &Vec3| x - n * n.dot(x);
         let along = tangent(&rebound.shift_m);
         let turned = tangent(&(rebound.velocity_m_s - self.v)).norm();
         let off_m = BULGE * rebound.time_s * turned;
-        Passage {
+        PressedPath {
             start: self.c,
             along,
             into: n * -rebound.deepest_m,

@@ -8,7 +8,7 @@ mod trial;
 
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState, longest_step};
-use super::friction_rolling::{Frame, Mode};
+use super::friction_rolling::{ContactFrame, SlipState};
 use super::loss::Loss;
 use super::plane_state::{
     PlaneForces, PlaneState, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, square, three, two,
@@ -17,7 +17,7 @@ use super::step_control::{Advance, Control, StepError, StepFailure, TRAVEL};
 use crate::contact::FeatureKind;
 use crate::ground::Law;
 use crate::rock::Vec3;
-use trial::Try;
+use trial::PlaneTrial;
 
 /// Features are collected so far ahead of the rock (–, relative to R): half of how far they are known.
 const AHEAD: f64 = 0.17;
@@ -55,7 +55,7 @@ impl ContactState {
             self.enter_plane(law, &world.body, (penetration, c_n));
         }
         let gravity = self.plane.frame.local(&world.body.gravity);
-        let mut trial = Try {
+        let mut trial = PlaneTrial {
             h,
             limit: self.longest_step(world, TRAVEL),
             room_s: longest_step(&world.body, self.v.norm(), TRAVEL * world.body.radius),
@@ -72,7 +72,7 @@ impl ContactState {
             start: self.c,
             face: history.feature.id,
             plane: &mut self.plane,
-            mode: Mode::default(),
+            mode: SlipState::default(),
             end: [0.0; SIZE],
             press: PlaneForces::default(),
             stored: 0.0,
@@ -114,7 +114,7 @@ impl ContactState {
     fn enter_plane(&mut self, law: &Law, body: &Body, (penetration, c_n): (f64, f64)) {
         let (history, plane) = (&self.histories[0], &mut self.plane);
         plane.on = true;
-        plane.frame = Frame::of(&history.n);
+        plane.frame = ContactFrame::of(&history.n);
         let put =
             |to: &mut State, (c, v, w): (&Vec3, &Vec3, &Vec3), (shear, roll): (&Vec3, &Vec3)| {
                 to[WAY..SPEED].copy_from_slice(&plane.frame.local(c));

@@ -1,7 +1,7 @@
 //! A rock on one plane: the fourteen numbers that change along a step, and what presses on it.
 
 use super::body::Body;
-use super::friction_rolling::{Along, Frame, Local, cut, cut_moment};
+use super::friction_rolling::{Along, ContactFrame, Local, cut, cut_moment};
 use super::tableau::STAGES;
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -106,7 +106,7 @@ impl PlaneForces {
 pub struct PlaneState {
     /// Whether they are those of the rock in hand.
     pub(super) on: bool,
-    pub(super) frame: Frame,
+    pub(super) frame: ContactFrame,
     pub(super) state: State,
     pub(super) rates: [State; STAGES],
     /// Power that goes into friction, damping and rolling at each stage (W).
@@ -117,7 +117,7 @@ impl Default for PlaneState {
     fn default() -> Self {
         Self {
             on: false,
-            frame: Frame::of(&Vec3::z()),
+            frame: ContactFrame::of(&Vec3::z()),
             state: [0.0; SIZE],
             rates: [[0.0; SIZE]; STAGES],
             losses: [[0.0; 3]; STAGES],

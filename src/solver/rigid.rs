@@ -6,7 +6,8 @@
 
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
-use super::friction_rolling::{Answers, Frame, Mode, Pair};
+use super::dda::TRAVEL;
+use super::friction_rolling::{Answers, ContactFrame, Pair, SlipState};
 use super::impact::{FrozenContact, throw};
 use super::law::capture_m_s;
 use super::loss::Loss;
@@ -17,8 +18,6 @@ use crate::contact::{ContactPoint, MOST};
 use crate::ground::Law;
 use crate::rock::Vec3;
 
-/// Longest way in one step (–, relative to R): less than the slack within which features are seen.
-const TRAVEL: f64 = 0.09;
 /// Touches no further away than this still hold the rock (–, relative to R).
 pub(crate) const HELD: f64 = 1e-4;
 /// Local error of an impact followed in its own time (–, relative to its speed).
@@ -30,7 +29,7 @@ const SETTLED: f64 = 1e-12;
 
 /// One contact and its impulses.
 #[derive(Debug, Clone, Copy)]
-struct Blow<'w> {
+struct ImpulsiveContact<'w> {
     n: Vec3,
     law: &'w Law,
     triangle: u32,
@@ -43,10 +42,10 @@ struct Blow<'w> {
     /// Rolling impulse (N m s).
     turn: Vec3,
     /// Which of the two are at their caps, as far as is known.
-    mode: Mode,
+    mode: SlipState,
 }
 
-impl Blow<'_> {
+impl ImpulsiveContact<'_> {
     const NONE: Self = Self {
         n: Vec3::new(0.0, 0.0, 0.0),
         law: &Law::NONE,
@@ -55,7 +54,7 @@ impl Blow<'_> {
         normal_force: 0.0,
         shear_force: Vec3::new(0.0, 0.0, 0.0),
         turn: Vec3::new(0.0, 0.0, 0.0),
-        mode: Mode::Stick,
+        mode: SlipState::Stick,
     };
 
     /// Impulses for velocity `v` and spin `w` without this contact's own.
@@ -96,9 +95,9 @@ pub(crate) fn rub(
     n: &Vec3,
     caps: (f64, f64),
     (v, w): (&Vec3, &Vec3),
-    mode: &mut Mode,
+    mode: &mut SlipState,
 ) -> (Vec3, Vec3) {
-    let frame = Frame::of(n);
+    let frame = ContactFrame::of(n);
     let pair = Pair {
         answers: &Answers::rigid(body.radius),
         a: frame.along(&(body.slip(n, v, w) * (2.0 / 7.0 * body.mass))),
@@ -111,7 +110,7 @@ pub(crate) fn rub(
 
 /// The contacts of one impact or step.
 struct Blows<'w> {
-    list: [Blow<'w>; MOST],
+    list: [ImpulsiveContact<'w>; MOST],
     len: usize,
 }
 
@@ -120,9 +119,9 @@ impl<'w> Blows<'w> {
     fn of(
         world: &'w ContactEnvironment,
         state: &ContactState,
-        target: impl Fn(&Blow, f64) -> f64,
+        target: impl Fn(&ImpulsiveContact, f64) -> f64,
     ) -> Self {
-        let mut blows = Self { list: [Blow::NONE; MOST], len: state.touches.len() };
+        let mut blows = Self { list: [ImpulsiveContact::NONE; MOST], len: state.touches.len() };
         for (blow, touch) in blows.list.iter_mut().zip(state.touches.iter()) {
             (blow.n, blow.triangle, blow.law) =
                 (touch.normal, touch.triangle, world.law(touch.triangle));

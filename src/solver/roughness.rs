@@ -22,14 +22,14 @@ const DRAWS: u32 = 1000;
 
 /// The facets that one rock meets.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Facets {
+pub(crate) struct RoughFacets {
     random: Option<RandomStream>,
-    last: Option<Facet>,
+    last: Option<TiltedFacet>,
     pub(super) tilt: Option<Tilt>,
 }
 
 #[derive(Debug, Clone)]
-struct Facet {
+struct TiltedFacet {
     /// Where the rock was (m), and on which ground.
     centre: Vec3,
     ground: u16,
@@ -72,7 +72,7 @@ impl Meeting {
     }
 }
 
-impl Facets {
+impl RoughFacets {
     /// Those of a rock with its own random stream, on grounds with these laws: none where all are smooth.
     pub(crate) fn of(random: RandomStream, laws: &[Law]) -> Self {
         let is_rough = laws.iter().any(|law| law.roughness_rad > 0.0);
@@ -106,7 +106,7 @@ impl Facets {
             facet.turn
         } else {
             let turn = draw(self.random.as_mut()?, at, law.roughness_rad)?;
-            self.last = Some(Facet { centre: at.c, ground, turn });
+            self.last = Some(TiltedFacet { centre: at.c, ground, turn });
             turn
         };
         let fastest = approach(&turn).max(-at.n.dot(&at.v));

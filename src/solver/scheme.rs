@@ -3,12 +3,13 @@
 use super::tableau::{ESDIRK4, TR_BDF2, Tableau};
 
 /// How a step is taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scheme {
     /// The paper's displacement-based step at a fixed time step.
     Dda,
     /// TR-BDF2 with error control; the default.
+    #[default]
     Adaptive,
     /// The same law with the fourth-order tableau and a tight tolerance.
     Reference,
@@ -17,6 +18,13 @@ pub enum Scheme {
 }
 
 impl Scheme {
+    /// The scheme that stands in for an exact solution of the same model where there is no closed form: the fourth-order
+    /// one with springs, the rigid limit itself without.
+    #[must_use]
+    pub const fn finest(self) -> Self {
+        if self.has_springs() { Self::Reference } else { Self::Rigid }
+    }
+
     /// Its name in scene files and results.
     pub const fn name(self) -> &'static str {
         match self {
@@ -49,6 +57,11 @@ impl Scheme {
     /// Whether it keeps the local error of every step to a tolerance.
     pub const fn controls_error(self) -> bool {
         matches!(self, Self::Adaptive | Self::Reference)
+    }
+
+    /// Unit of what refines it: its tolerance where it controls the error, else its step.
+    pub const fn fineness_unit(self) -> &'static str {
+        if self.controls_error() { "m/s" } else { "s" }
     }
 
     /// Order of its error in the step where nothing switches (–). The rigid limit takes geometry and velocities in the

@@ -1,7 +1,7 @@
 //! One implicit stage: the contact law solved with the geometry at the stage's end.
 
-use super::contact_state::{ContactEnvironment, ContactState, Rate};
-use super::law::{Action, Place, StageContact};
+use super::contact_state::{ContactEnvironment, ContactState, StateRates};
+use super::law::{Action, ContactPlace, StageContact};
 use super::loss::Loss;
 use super::multi_contact;
 use super::tableau::Tableau;
@@ -41,8 +41,12 @@ impl StageContact {
         v: &Vec3,
         w: &Vec3,
     ) -> (Vec3, Vec3) {
-        let at =
-            Place { n: self.n, penetration: self.penetration, shear: self.shear, roll: self.roll };
+        let at = ContactPlace {
+            n: self.n,
+            penetration: self.penetration,
+            shear: self.shear,
+            roll: self.roll,
+        };
         let law = &self.law;
         let action = Action::of(&world.body, law, (law.p_n, self.c_n), &at, (v, w));
         self.normal_force = action.normal[0];
@@ -209,7 +213,7 @@ impl ContactState {
         let (c, v, w) = (self.c, self.v, self.w);
         let body = &world.body;
         self.look(world, &c, body.radius * (1.0 + TOUCH));
-        self.rates[0] = Rate { c: v, v: body.gravity, ..Rate::NONE };
+        self.rates[0] = StateRates { c: v, v: body.gravity, ..StateRates::NONE };
         let mut taken = 0;
         for k in 0..self.touches.len() {
             let history = self.history_of(world, k, taken, &v);

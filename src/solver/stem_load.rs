@@ -1,8 +1,12 @@
 //! What one rock has done to the stems.
 
 use crate::contact::history::ContactHistories;
+use crate::random::{Purpose, RandomStream, beside};
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
+
+/// A stem with no more than this left of what it can take (–) gives way: the steps come ever nearer to the end of it.
+const AT_LIMIT: f64 = 1e-6;
 
 /// What one rock has done to the stems; its memory is taken once for all rocks of a thread.
 #[derive(Debug, Clone, Default)]
@@ -16,6 +20,26 @@ pub(crate) struct StemLoad {
 }
 
 impl StemLoad {
+    /// No stem has taken anything; limits are drawn for the rock of this random stream.
+    pub(super) fn begin(&mut self, stems: &Stems, random: &RandomStream) {
+        self.taken.clear();
+        self.taken.reserve(stems.count());
+        self.pressed = None;
+        let mut random = beside(random, Purpose::Stems);
+        self.limits_j.clear();
+        let limits = stems.limits_j.iter();
+        self.limits_j.extend(
+            limits.map(|limit| limit.as_ref().map_or(f64::INFINITY, |l| l.draw(&mut random))),
+        );
+    }
+
+    /// Notes what a stem has taken (J); what it took beyond its limit (J), at most rounding less than that, if it gives way.
+    pub(super) fn yields(&mut self, stems: &Stems, stem: u32, joule: f64) -> Option<f64> {
+        self.take(stem, joule);
+        let left_j = self.left_j(stems, stem);
+        (left_j <= AT_LIMIT * self.limits_j[stems.ground_of(stem)]).then_some(-left_j)
+    }
+
     /// What a stem can still take (J), positive while it stands.
     pub(super) fn left_j(&self, stems: &Stems, stem: u32) -> f64 {
         let taken = self.taken.iter().find(|(known, _)| *known == stem).map_or(0.0, |(_, j)| *j);

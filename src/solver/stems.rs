@@ -11,15 +11,13 @@ use super::yielding::yielding_impact;
 use crate::contact::ContactPoint;
 use crate::contact::TOUCH;
 use crate::contact::history::ContactHistory;
-use crate::random::{Purpose, RandomStream, beside};
+use crate::random::RandomStream;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
 
-/// A stem with no more than this left of what it can take (–) gives way: the steps come ever nearer to the end of it.
-const AT_LIMIT: f64 = 1e-6;
 /// A stem that has more than this times the motion left (–) cannot give way.
-const WITHSTANDS: f64 = 1.1;
+pub(super) const WITHSTANDS: f64 = 1.1;
 
 /// How a stem gives way to a blow in the rigid limit.
 #[derive(Debug, Clone, Copy)]
@@ -38,15 +36,7 @@ impl ContactState {
         gone.clear();
         let Some(stems) = &terrain.stems else { return };
         gone.reserve(stems.count());
-        load.taken.clear();
-        load.taken.reserve(stems.count());
-        load.pressed = None;
-        let mut random = beside(random, Purpose::Stems);
-        load.limits_j.clear();
-        let limits = stems.limits_j.iter();
-        load.limits_j.extend(
-            limits.map(|limit| limit.as_ref().map_or(f64::INFINITY, |l| l.draw(&mut random))),
-        );
+        load.begin(stems, random);
     }
 
     /// Sees whether a stem that is pressed may give way in the next step, and returns the longest step (s) in which it does
@@ -75,33 +65,17 @@ impl ContactState {
         };
         self.stem_load.look(world.terrain, stems, &self.histories);
         let Some(stem) = self.stem_load.pressed else { return false };
-        self.stem_load.take(stem, loss.trees);
-        let left_j = self.stem_load.left_j(stems, stem);
-        if left_j > AT_LIMIT * self.stem_load.limits_j[stems.ground_of(stem)] {
-            return false;
-        }
+        let Some(beyond_j) = self.stem_load.yields(stems, stem, loss.trees) else { return false };
         let normal_force: Vec3 = self
             .histories
             .iter()
             .filter(|history| stems.of_triangle(history.triangle) == Some(stem))
             .map(|history| history.n * history.normal_force.max(f64::MIN_POSITIVE))
             .sum();
-        self.give_back(world, -left_j, &normal_force);
-        loss.trees += left_j;
+        self.v += given_back(world.body.mass, &self.v, beyond_j, &normal_force);
+        loss.trees -= beyond_j;
         self.fell(stems, stem);
         true
-    }
-
-    /// Gives back what the last step took beyond the limit (J), negative for what it left, along the push of the stem.
-    fn give_back(&mut self, world: &ContactEnvironment, joule: f64, normal_force: &Vec3) {
-        let v = self.v;
-        let along =
-            normal_force.try_normalize(0.0).or_else(|| v.try_normalize(0.0)).unwrap_or(Vec3::z());
-        let speed = along.dot(&v);
-        let after = (speed * speed + 2.0 * joule / world.body.mass).max(0.0).sqrt();
-        // a rock that is still on its way in, as nearly always, goes against the push
-        let after = if speed > 0.0 { after } else { -after };
-        self.v += along * (after - speed);
     }
 
     /// How the stem that is struck at `touch` with a velocity and spin gives way, if it cannot take the blow.
@@ -168,4 +142,16 @@ impl ContactState {
         self.plane.forget();
         self.stem_load.pressed = None;
     }
+}
+
+/// Change of the velocity `v` (m/s) of a mass (kg) that gives back what the last step took beyond the limit (J), negative for what
+/// it left, along the push of the stem.
+pub(super) fn given_back(mass_kg: f64, v: &Vec3, joule: f64, normal_force: &Vec3) -> Vec3 {
+    let along =
+        normal_force.try_normalize(0.0).or_else(|| v.try_normalize(0.0)).unwrap_or(Vec3::z());
+    let speed = along.dot(v);
+    let after = (speed * speed + 2.0 * joule / mass_kg).max(0.0).sqrt();
+    // a rock that is still on its way in, as nearly always, goes against the push
+    let after = if speed > 0.0 { after } else { -after };
+    along * (after - speed)
 }

@@ -1,10 +1,11 @@
 //! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
 
+use super::Settings;
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use super::stage::End;
+use super::tableau::RATIO;
 use super::tableau::Tableau;
-use super::{Scheme, Settings};
 use crate::contact::history::carry;
 use crate::math;
 
@@ -14,8 +15,6 @@ pub(crate) const ONSET: f64 = 0.3;
 pub(crate) const TRAVEL: f64 = 0.15;
 /// The step controller's safety factor (–).
 const SAFETY: f64 = 0.9;
-/// Most that a step shrinks or grows at once (–).
-const RATIO: (f64, f64) = (0.2, 4.0);
 /// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
 const SHORTEST: f64 = 1e-9;
 
@@ -81,10 +80,8 @@ impl Control {
     pub fn new(tableau: &'static Tableau, settings: &Settings, world: &ContactEnvironment) -> Self {
         let own = (world.body.gravity.norm() * world.body.radius).sqrt();
         let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
-        let impact = match settings.scheme {
-            Scheme::Reference => IMPACT_OF_REFERENCE,
-            _ => (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1),
-        };
+        let usual = (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1);
+        let impact = settings.scheme.of([usual, usual, IMPACT_OF_REFERENCE, usual]);
         Self {
             tableau,
             tolerance: settings.tolerance_m_s.min(relative),
@@ -136,7 +133,7 @@ pub fn advance(
     }
     let limit = travel_limit(world, state);
     let (omega, known) = (stiffest(world, state), state.histories.len());
-    let mut trial = Try { world, control, state, h, limit, omega, known, end: None };
+    let mut trial = RockTrial { world, control, state, h, limit, omega, known, end: None };
     done.dt = settle(&mut trial, control, h_max, &mut done.rejected)?;
     done.steps = 1;
     if let Some(end) = trial.end {
@@ -147,7 +144,7 @@ pub fn advance(
 
 /// What one try of a step came to.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Outcome {
+pub(crate) enum TryOutcome {
     /// Its local error relative to the tolerance; accepted up to 1.
     Error(f64),
     /// Accurate, but with more energy than before: it has met a kink of the law in an unlucky place, and a shorter one
@@ -175,7 +172,7 @@ impl From<StepFailure> for StepError {
 }
 
 /// A step that can be tried with any length.
-pub(crate) trait Trial {
+pub(crate) trait TrialStep {
     /// The step to try next (s).
     fn h(&mut self) -> &mut f64;
     /// The longest step that cannot jump over a feature (s).
@@ -183,13 +180,13 @@ pub(crate) trait Trial {
     /// Stiffest contact (rad/s).
     fn omega(&self) -> f64;
     /// Tries it with length `dt` (s).
-    fn try_step(&mut self, dt: f64) -> Outcome;
+    fn try_step(&mut self, dt: f64) -> TryOutcome;
 }
 
 /// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
 /// try next.
 pub(crate) fn settle(
-    trial: &mut impl Trial,
+    trial: &mut impl TrialStep,
     control: &Control,
     h_max: f64,
     rejected: &mut u64,
@@ -199,14 +196,14 @@ pub(crate) fn settle(
         let wished = trial.h().min(limit);
         let dt = wished.min(h_max);
         let ratio = match trial.try_step(dt) {
-            Outcome::Error(error) if error <= 1.0 => {
+            TryOutcome::Error(error) if error <= 1.0 => {
                 let least = if dt < wished { wished } else { 0.0 };
                 *trial.h() = grown(control, dt, error).max(least);
                 return Ok(dt);
             }
-            Outcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
-            Outcome::Gains => 0.4,
-            Outcome::Elsewhere => return Err(StepFailure::Elsewhere),
+            TryOutcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
+            TryOutcome::Gains => 0.4,
+            TryOutcome::Elsewhere => return Err(StepFailure::Elsewhere),
             _ => 0.25,
         };
         *rejected += 1;
@@ -218,7 +215,7 @@ pub(crate) fn settle(
 }
 
 /// A step of a rock among any features.
-struct Try<'a, 'w> {
+struct RockTrial<'a, 'w> {
     world: &'a ContactEnvironment<'w>,
     control: &'a Control,
     state: &'a mut ContactState,
@@ -230,7 +227,7 @@ struct Try<'a, 'w> {
     end: Option<End>,
 }
 
-impl Trial for Try<'_, '_> {
+impl TrialStep for RockTrial<'_, '_> {
     fn h(&mut self) -> &mut f64 {
         self.h
     }
@@ -243,19 +240,19 @@ impl Trial for Try<'_, '_> {
         self.omega
     }
 
-    fn try_step(&mut self, dt: f64) -> Outcome {
+    fn try_step(&mut self, dt: f64) -> TryOutcome {
         self.state.histories.truncate(self.known);
         self.state.impact.try_anew();
         let Some((end, error)) = attempt(self.world, self.control, self.state, dt, self.omega)
         else {
-            return Outcome::Unsettled;
+            return TryOutcome::Unsettled;
         };
         self.end = Some(end);
         let hh = self.control.tableau.diagonal * dt;
         if error <= 1.0 && dt * self.omega > RESOLVED && gains(self.world, self.state, &end, hh) {
-            return Outcome::Gains;
+            return TryOutcome::Gains;
         }
-        Outcome::Error(error)
+        TryOutcome::Error(error)
     }
 }
 

@@ -3,6 +3,9 @@
 /// Most stages of a tableau.
 pub const STAGES: usize = 6;
 
+/// Most that the next step shrinks or grows at once (–): one error estimate is trusted no further than this.
+pub(crate) const RATIO: (f64, f64) = (0.2, 4.0);
+
 /// One tableau: every implicit stage has the same diagonal and the last stage is the step's result.
 #[derive(Debug)]
 pub struct Tableau {

@@ -2,21 +2,21 @@
 //! impact's own time until what is struck has taken all it can.
 
 use super::body::Body;
-use super::law::{Action, Place};
+use super::law::{Action, ContactPlace};
 use crate::ground::Law;
 use crate::rock::Vec3;
 
 /// Step (rad of the contact's oscillation).
 const STEP: f64 = 5e-3;
 /// A rock comes to rest along the normal within this (rad), however heavily damped.
-const LASTS: f64 = 20.0;
+const COMES_TO_REST: f64 = 20.0;
 /// Halvings of the step in which it gives way: all the digits there are.
-const BISECTIONS: u32 = 60;
+pub(super) const BISECTIONS: u32 = 60;
 
 /// A rock pressed into one contact.
 #[derive(Clone, Copy)]
 struct Pressing {
-    at: Place,
+    at: ContactPlace,
     v: Vec3,
     w: Vec3,
 }
@@ -34,7 +34,7 @@ impl Pressing {
         let acts = Action::of(body, law, (law.p_n, law.c_n), &there.at, (&there.v, &there.w));
         let turning = n.cross(&acts.shear_force) * body.radius - acts.rolling_moment;
         Self {
-            at: Place {
+            at: ContactPlace {
                 n: *n,
                 penetration: self.at.penetration - n.dot(&there.v) * h,
                 shear: self.at.shear + acts.rates[0] * h,
@@ -58,12 +58,12 @@ pub(crate) fn yielding_impact(
     (v, w): (&Vec3, &Vec3),
     limit_j: f64,
 ) -> Option<(Vec3, Vec3)> {
-    let at = Place { n: *n, penetration: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros() };
+    let at = ContactPlace { n: *n, penetration: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros() };
     let mut rock = Pressing { at, v: *v, w: *w };
     let left_j = rock.motion_j(body) - limit_j;
     let step = STEP / law.omega;
     let mut gone = 0.0;
-    while n.dot(&rock.v) < 0.0 && gone < LASTS {
+    while n.dot(&rock.v) < 0.0 && gone < COMES_TO_REST {
         let next = rock.after(body, law, step);
         if next.motion_j(body) <= left_j {
             let (mut low, mut high) = (0.0, step);

@@ -120,7 +120,7 @@ pub fn terrain(facets: Vec<Facet>) -> Terrain {
 /// Settings of one scheme at one tolerance (m/s) or step (s), whichever it goes by, and the speed below which
 /// impacts do not rebound (m/s).
 pub fn settings(scheme: Scheme, fineness: f64, capture_speed_m_s: Option<f64>) -> Settings {
-    let by_tolerance = goes_by_tolerance(scheme);
+    let by_tolerance = scheme.controls_error();
     Settings {
         scheme,
         tolerance_m_s: if by_tolerance { fineness } else { 0.0 },
@@ -129,9 +129,4 @@ pub fn settings(scheme: Scheme, fineness: f64, capture_speed_m_s: Option<f64>) -
         plane_impacts: true,
         capture_speed_m_s,
     }
-}
-
-/// Whether a scheme is refined by its tolerance (m/s), not by its step (s).
-pub fn goes_by_tolerance(scheme: Scheme) -> bool {
-    scheme.controls_error()
 }

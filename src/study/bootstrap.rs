@@ -33,7 +33,7 @@ impl Interval {
 
 /// A percentile under every setting of a ladder, and what is left at the fine end.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ladder {
+pub struct PercentileLadder {
     /// The percentile under each setting.
     pub values: Vec<f64>,
     /// Where the values go.
@@ -118,7 +118,7 @@ impl Paired {
     /// and `k` the order; the interval is that of the whole fit when the rocks are drawn again with replacement.
     ///
     /// All settings keep the same rocks in every draw: what chance does to all of them alike drops out.
-    pub fn ladder(&self, p: f64, relative: &[f64], order: f64, seed: u64) -> Ladder {
+    pub fn ladder(&self, p: f64, relative: &[f64], order: f64, seed: u64) -> PercentileLadder {
         let x: Vec<f64> = relative.iter().map(|fine| math::pow(*fine, order)).collect();
         let values = self.percentiles(p, &vec![1; self.weights.len()]);
         let (limit, slope) = fit(&x, &values);
@@ -129,7 +129,11 @@ impl Paired {
             draws[1].push(slope);
         }
         let [limits, slopes] = draws;
-        Ladder { values, limit: interval(limit, limits), own_error: interval(slope, slopes) }
+        PercentileLadder {
+            values,
+            limit: interval(limit, limits),
+            own_error: interval(slope, slopes),
+        }
     }
 
     /// Percentile `p` under setting `to` minus that under setting 0.
@@ -166,6 +170,7 @@ fn interval(value: f64, mut draws: Vec<f64>) -> Interval {
 
 #[cfg(test)]
 mod tests {
+    use super::super::statistic::NEVER;
     use super::*;
 
     /// Values that follow the law exactly give it back, with no spread: every rock moves alike. To rounding.
@@ -197,8 +202,6 @@ mod tests {
         let found = Paired::new(&all).percentiles(0.99, &[1, 1, 1]);
         assert!((found[0] - 3.0).abs() < 1e-12 && (found[1] - 9.0).abs() < 1e-12, "{found:?}");
     }
-
-    const NEVER: f64 = f64::NEG_INFINITY;
 
     /// Nine light rocks of value 1 to 9 and one heavy rock of value 20: the median of all weight is the heavy rock's, by hand;
     /// drawn again stratum by stratum it is always there, so that nothing moves. With equal weights the median is 5.

@@ -22,7 +22,7 @@ use starts::{
 
 /// One number of a case: what it should be and how large an error is large.
 #[derive(Debug, Clone, Copy)]
-pub struct Measure {
+pub struct CaseMeasure {
     /// What it is, with its unit.
     pub what: &'static str,
     /// The exact value.
@@ -35,7 +35,7 @@ pub struct Measure {
 
 /// What decides how near a scheme comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum CaseKind {
     /// Contact all the time: after the first steps nothing has to be resolved.
     Smooth,
     /// Contact that ends by itself.
@@ -56,7 +56,7 @@ pub struct Case {
     /// Where the exact solution comes from.
     pub source: &'static str,
     /// What decides the error.
-    pub kind: Kind,
+    pub kind: CaseKind,
     /// Impacts slower than this do not rebound (m/s).
     pub capture_speed_m_s: f64,
     /// The mesh.
@@ -64,7 +64,7 @@ pub struct Case {
     /// Rock, ground and start; with springs or in the rigid limit.
     pub setup: fn(has_springs: bool) -> Setup,
     /// The exact values; none where there is no closed form, only a finer computation.
-    pub exact: Option<fn(&Setup, has_springs: bool) -> Vec<Measure>>,
+    pub exact: Option<fn(&Setup, has_springs: bool) -> Vec<CaseMeasure>>,
 }
 
 impl Case {
@@ -75,7 +75,7 @@ impl Case {
 
     /// Follows its rock with one scheme at one tolerance (m/s) or step (s).
     pub fn follow(&self, terrain: &Terrain, step: &Settings, scratch: &mut Scratch) -> Trajectory {
-        (self.setup)(has_springs(step.scheme)).follow(terrain, step, scratch)
+        (self.setup)(step.scheme.has_springs()).follow(terrain, step, scratch)
     }
 
     /// Settings of a scheme for this case.
@@ -84,23 +84,20 @@ impl Case {
     }
 
     /// What should come out for a scheme. Without a closed form: what the scheme itself gives when it is `finest`.
-    pub fn measures(&self, terrain: &Terrain, scheme: Scheme) -> Vec<Measure> {
-        let has_springs = has_springs(scheme);
+    pub fn measures(&self, terrain: &Terrain, scheme: Scheme) -> Vec<CaseMeasure> {
+        let has_springs = scheme.has_springs();
         if let Some(exact) = self.exact {
             return exact(&(self.setup)(has_springs), has_springs);
         }
-        let finest = if has_springs {
-            self.settings(Scheme::Reference, FINEST_TOLERANCE_M_S)
-        } else {
-            self.settings(Scheme::Rigid, FINEST_STEP_S)
-        };
+        let fineness = if has_springs { FINEST_TOLERANCE_M_S } else { FINEST_STEP_S };
+        let finest = self.settings(scheme.finest(), fineness);
         let end = self.follow(terrain, &finest, &mut Scratch::default()).end.position_m;
         place(end.x, end.y, end.z)
     }
 
     /// Error of a journey: the largest of all measures, relative to their scales (–).
-    pub fn error(&self, measures: &[Measure], journey: &Trajectory) -> f64 {
-        let off = |one: &Measure| ((one.of)(journey) - one.exact).abs() / one.scale;
+    pub fn error(&self, measures: &[CaseMeasure], journey: &Trajectory) -> f64 {
+        let off = |one: &CaseMeasure| ((one.of)(journey) - one.exact).abs() / one.scale;
         // NaN is the largest error of all, and `max` would hide it
         let worst = measures.iter().map(off).fold(0.0, f64::max);
         if measures.iter().any(|one| (one.of)(journey).is_nan()) { f64::INFINITY } else { worst }
@@ -108,36 +105,39 @@ impl Case {
 
     /// The error that a scheme may have (–) and why.
     pub fn allowed(&self, step: &Settings) -> (f64, &'static str) {
-        match (step.scheme, self.kind) {
-            (Scheme::Adaptive, Kind::Smooth) => (
+        let dda = (
+            HALF_OMEGA_RAD_S * self.growth() * step.step_s,
+            "first order: half the contact oscillation per step",
+        );
+        let adaptive = if self.kind == CaseKind::Smooth {
+            (
                 0.5 * step.tolerance_m_s + 1e-9,
                 "only the first steps, which must resolve the springs, are as coarse as the local error allows",
-            ),
-            (Scheme::Adaptive, _) => (
+            )
+        } else {
+            (
                 0.2 * self.growth() * math::pow(step.tolerance_m_s, 2.0 / 3.0),
                 "second order under a third-order local error: tolerance to the power 2/3, times what the motion itself makes of an error",
-            ),
-            (Scheme::Reference, _) => (
-                self.growth() * (10.0 * step.tolerance_m_s + 3e-8),
-                "fourth order, and the nine digits of the exact value",
-            ),
-            (Scheme::Rigid, Kind::Impact | Kind::Stairs) => {
-                (3e-6, "an impact is followed to 2e-5 of its speed a step")
-            }
-            (Scheme::Rigid, _) => (
+            )
+        };
+        let reference = (
+            self.growth() * (10.0 * step.tolerance_m_s + 3e-8),
+            "fourth order, and the nine digits of the exact value",
+        );
+        let rigid = if matches!(self.kind, CaseKind::Impact | CaseKind::Stairs) {
+            (3e-6, "an impact is followed to 2e-5 of its speed a step")
+        } else {
+            (
                 0.2 * step.step_s,
                 "first order where sliding turns into rolling or the rock lifts off",
-            ),
-            (Scheme::Dda, _) => (
-                HALF_OMEGA_RAD_S * self.growth() * step.step_s,
-                "first order: half the contact oscillation per step",
-            ),
-        }
+            )
+        };
+        step.scheme.of([dda, adaptive, reference, rigid])
     }
 
     /// How much the motion multiplies an error: every impact on an edge by about three.
     fn growth(&self) -> f64 {
-        if self.kind == Kind::Stairs { 50.0 } else { 1.0 }
+        if self.kind == CaseKind::Stairs { 50.0 } else { 1.0 }
     }
 }
 
@@ -148,18 +148,13 @@ const FINEST_TOLERANCE_M_S: f64 = 1e-10;
 /// Step (s) of what stands in for an exact solution in the rigid limit.
 const FINEST_STEP_S: f64 = 2e-6;
 
-/// Whether the ground answers with springs; the rigid scheme has their limit.
-pub fn has_springs(scheme: Scheme) -> bool {
-    scheme != Scheme::Rigid
-}
-
 /// All exact cases. To add one: a row.
 pub const CASES: [Case; 12] = [
     Case {
         name: "roll",
         title: "A sphere rolls down 20° from rest, 1 s",
         source: "uniform acceleration 5/7 g sin α; springs: critically damped oscillator",
-        kind: Kind::Smooth,
+        kind: CaseKind::Smooth,
         facets: || plane(20.0),
         setup: |has_springs| lying(20.0, has_springs),
         exact: Some(|setup, has_springs| {
@@ -173,13 +168,13 @@ pub const CASES: [Case; 12] = [
         name: "slip",
         title: "A sphere slips down 40° with friction 0.2 from rest, 1 s",
         source: "uniform acceleration; springs: friction grows within a millisecond",
-        kind: Kind::Smooth,
+        kind: CaseKind::Smooth,
         facets: || plane(40.0),
         setup: |has_springs| slippery(&lying(40.0, has_springs)),
         exact: Some(|setup, has_springs| {
             let (way, spin) = closed::slipped(setup, angle(40.0), 1.0, has_springs);
             let mut measures = along(setup, angle(40.0), way);
-            measures.push(Measure {
+            measures.push(CaseMeasure {
                 what: "spin (rad/s)",
                 exact: -spin,
                 scale: spin,
@@ -193,7 +188,7 @@ pub const CASES: [Case; 12] = [
         name: "skid",
         title: "A sphere pushed with 5 m/s over level ground with friction 0.2: slides, then rolls, 1 s",
         source: "rolls with 5/7 of its speed; springs: gives back what its shear spring holds",
-        kind: Kind::Smooth,
+        kind: CaseKind::Smooth,
         facets: || plane(0.0),
         setup: |has_springs| Setup {
             velocity_m_s: Vec3::new(0.0, 5.0, 0.0),
@@ -208,7 +203,7 @@ pub const CASES: [Case; 12] = [
         name: "bounce",
         title: "A sphere dropped from 1 m with restitution 0.5, two impacts, 1 s",
         source: "springs: closed form of the damped oscillator with gravity (13 digits); rigid: parabolas",
-        kind: Kind::Impact,
+        kind: CaseKind::Impact,
         capture_speed_m_s: 0.05,
         facets: || plane(0.0),
         setup: |_| Setup { centre_m: Vec3::new(0.1, 0.2, 1.5), ..SETUP },
@@ -220,8 +215,13 @@ pub const CASES: [Case; 12] = [
             };
             let time_of = |j: &Trajectory| j.impacts.get(1).map_or(f64::NAN, |hit| hit.time_s);
             vec![
-                Measure { what: "height (m)", exact: z, scale: 1.0, of: |j| j.end.position_m.z },
-                Measure { what: "second impact (s)", exact: second, scale: 1.0, of: time_of },
+                CaseMeasure {
+                    what: "height (m)",
+                    exact: z,
+                    scale: 1.0,
+                    of: |j| j.end.position_m.z,
+                },
+                CaseMeasure { what: "second impact (s)", exact: second, scale: 1.0, of: time_of },
             ]
         }),
     },
@@ -229,7 +229,7 @@ pub const CASES: [Case; 12] = [
         name: "oblique",
         title: "A spinning sphere strikes the ground obliquely, 0.2 s",
         source: "springs: explicit Runge-Kutta steps of the law (9 digits); rigid: the same steps in the limit of stiff springs (11 digits)",
-        kind: Kind::Impact,
+        kind: CaseKind::Impact,
         capture_speed_m_s: 0.01,
         facets: || plane(0.0),
         setup: |_| Setup {
@@ -251,7 +251,7 @@ pub const CASES: [Case; 12] = [
         name: "fold",
         title: "A sphere strikes a blunt valley of 0.02 rad beside its bottom and presses on both sides, e = 1, 0.05 s",
         source: "springs: Runge-Kutta steps of the energy summed over faces and edge, in the plane (10 digits); rigid: parabolas",
-        kind: Kind::Impact,
+        kind: CaseKind::Impact,
         capture_speed_m_s: 0.0,
         facets: || fold(0.02, 4.0),
         setup: |_| Setup {
@@ -272,7 +272,7 @@ pub const CASES: [Case; 12] = [
         name: "rough",
         title: "A sphere of 1 m lands on cells of 0.2 m that are 5 mm uneven, e = 1, 0.1 s",
         source: "springs: Runge-Kutta steps of the energy summed over all triangles, edges and corners (9 digits); rigid: parabolas between touches found by bisection",
-        kind: Kind::Impact,
+        kind: CaseKind::Impact,
         capture_speed_m_s: 0.0,
         facets: || bumpy(12, 0.2, 0.01),
         setup: |_| Setup {
@@ -294,7 +294,7 @@ pub const CASES: [Case; 12] = [
         name: "pivot",
         title: "A sphere tips over an edge from rest at 0.1 rad, friction 30°: rolls, slips, lifts off, 1 s",
         source: "springs: explicit Runge-Kutta steps in polar coordinates; rigid: closed form of slip and lift-off",
-        kind: Kind::Edge,
+        kind: CaseKind::Edge,
         capture_speed_m_s: 0.0,
         facets: roof,
         setup: |has_springs| tipping(30.0, has_springs),
@@ -311,7 +311,7 @@ pub const CASES: [Case; 12] = [
         name: "pivot_rough",
         title: "The same without slip until the very end, friction 89°",
         source: "springs: explicit Runge-Kutta steps in polar coordinates; rigid: energy, lifts off at cos θ = 10/17 cos 0.1",
-        kind: Kind::Edge,
+        kind: CaseKind::Edge,
         capture_speed_m_s: 0.0,
         facets: roof,
         setup: |has_springs| tipping(89.0, has_springs),
@@ -324,7 +324,7 @@ pub const CASES: [Case; 12] = [
         name: "pivot_smooth",
         title: "The same without friction",
         source: "springs: explicit Runge-Kutta steps in polar coordinates; rigid: energy, lifts off at cos θ = 2/3 cos 0.1",
-        kind: Kind::Edge,
+        kind: CaseKind::Edge,
         capture_speed_m_s: 0.0,
         facets: roof,
         setup: |has_springs| tipping(0.0, has_springs),
@@ -337,7 +337,7 @@ pub const CASES: [Case; 12] = [
         name: "groove",
         title: "A sphere rolls down a right-angled groove that falls at 20°, two contacts, 1 s",
         source: "uniform acceleration g sin α/(1 + 4/5); springs: over-damped oscillator",
-        kind: Kind::Smooth,
+        kind: CaseKind::Smooth,
         facets: || tilted(make::v_groove(4.0, angle(45.0)), 20.0),
         setup: in_groove,
         exact: Some(|setup, has_springs| {
@@ -351,7 +351,7 @@ pub const CASES: [Case; 12] = [
         name: "stairs",
         title: "A sphere of 0.2 m hops down stairs: impacts on treads and edges, 2 s",
         source: "no closed form: the same law at a tolerance of 1e-10 m/s (rigid: a step of 2e-6 s)",
-        kind: Kind::Stairs,
+        kind: CaseKind::Stairs,
         capture_speed_m_s: 0.05,
         facets: || make::stairs(20, 0.3, 0.5, 3.0),
         setup: |_| {
@@ -373,7 +373,7 @@ const STILL: Case = Case {
     name: "",
     title: "",
     source: "",
-    kind: Kind::Smooth,
+    kind: CaseKind::Smooth,
     capture_speed_m_s: 0.02,
     facets: Vec::new,
     setup: |_| SETUP,

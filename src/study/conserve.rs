@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// Mechanical energy may rise over a contact by this share of what the rock has (–): the steps refuse more than 1e-10 of
 /// it each, and round.
-const RISE: f64 = 1e-9;
+const ALLOWED_RISE: f64 = 1e-9;
 /// What the numerics may lose or gain of all the energy released (–): at the default tolerance a slow impact is known to a
 /// few per cent, all of them together much better.
 const REMAINDER: f64 = 0.01;
@@ -36,12 +36,12 @@ impl Worst {
 
 /// Releases of one kind: how many, and the first.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Count {
+struct ReleaseCount {
     rocks: usize,
     first: usize,
 }
 
-impl Count {
+impl ReleaseCount {
     fn add(&mut self, is_one: bool, release: usize) {
         if is_one {
             self.first = if self.rocks == 0 { release } else { self.first };
@@ -81,11 +81,11 @@ pub struct Conservation {
     threads: usize,
     /// Where a panic ended the run: releases from the first to the second number.
     panicked: Option<(usize, usize)>,
-    failed: Count,
-    lost: Count,
-    infinite: Count,
-    out_of_time: Count,
-    left: Count,
+    failed: ReleaseCount,
+    lost: ReleaseCount,
+    infinite: ReleaseCount,
+    out_of_time: ReleaseCount,
+    left: ReleaseCount,
     rise: Worst,
     rise_j: Worst,
     remainder: Worst,
@@ -150,7 +150,7 @@ impl Conservation {
 
     /// Every bound with what was found.
     pub fn bounds(&self) -> Vec<Bound> {
-        let count = |law, count: &Count| Bound {
+        let count = |law, count: &ReleaseCount| Bound {
             law,
             found: count.rocks as f64,
             bound: 0.0,
@@ -170,7 +170,7 @@ impl Conservation {
             Bound {
                 law: "largest rise of mechanical energy over one contact, over the rock's energy",
                 found: self.rise.value,
-                bound: RISE,
+                bound: ALLOWED_RISE,
                 release: (self.rise.value > 0.0).then_some(self.rise.release),
             },
             Bound {
@@ -270,8 +270,8 @@ mod tests {
     fn every_bound_can_be_broken() {
         let good = Conservation { asked: 9, done: 9, released_j: 1.0, ..Conservation::default() };
         assert!(good.holds());
-        let one = Count { rocks: 1, first: 3 };
-        let rise = Worst { value: 2.0 * RISE, release: 7 };
+        let one = ReleaseCount { rocks: 1, first: 3 };
+        let rise = Worst { value: 2.0 * ALLOWED_RISE, release: 7 };
         let bad = [
             Conservation { failed: one, ..good.clone() },
             Conservation { lost: one, ..good.clone() },

@@ -1,6 +1,5 @@
 //! Error against run time on the exact cases: every scheme over a ladder of steps or tolerances.
 
-use super::bench::goes_by_tolerance;
 use super::cases::{CASES, Case};
 use super::processor_time::ProcessorTime;
 use crate::math;
@@ -34,15 +33,16 @@ pub struct Rungs {
     pub order: f64,
 }
 
+/// The paper's own scheme, with which others are compared.
+pub const PAPER: Scheme = Scheme::Dda;
+/// The scheme of a scene that names none.
+pub const USUAL: Scheme = Scheme::Adaptive;
+
 /// Every scheme. To add one: a row.
 pub const LADDERS: [Rungs; 4] = [
+    Rungs { scheme: PAPER, fineness: &[1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6], order: 1.0 },
     Rungs {
-        scheme: Scheme::Dda,
-        fineness: &[1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6],
-        order: 1.0,
-    },
-    Rungs {
-        scheme: Scheme::Adaptive,
+        scheme: USUAL,
         fineness: &[1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6],
         order: 2.0,
     },
@@ -60,7 +60,7 @@ pub const LADDERS: [Rungs; 4] = [
 
 /// One case with one scheme at one step or tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct LadderPoint {
     /// Tolerance (m/s) or step (s).
     pub fineness: f64,
     /// Largest error of the case's measures (–); infinite where the run failed.
@@ -77,7 +77,7 @@ pub struct Curve {
     /// The scheme with its ladder.
     pub rungs: Rungs,
     /// From coarse to fine.
-    pub points: Vec<Point>,
+    pub points: Vec<LadderPoint>,
 }
 
 /// One case with every scheme.
@@ -119,7 +119,7 @@ fn curve(case: &Case, terrain: &Terrain, rungs: Rungs) -> Curve {
         let step = case.settings(rungs.scheme, fineness);
         let (journey, seconds) = timed(|| case.follow(terrain, &step, &mut scratch));
         let error = case.error(&measures, &journey);
-        Point { fineness, error, effort: journey.effort, seconds }
+        LadderPoint { fineness, error, effort: journey.effort, seconds }
     };
     Curve { rungs, points: rungs.fineness.iter().map(point).collect() }
 }
@@ -147,7 +147,7 @@ impl Curve {
     /// Order of convergence: the slope of log error over log contact steps, least squares over the rungs where an order
     /// can show; `None` where fewer than three do.
     pub fn order(&self) -> Option<f64> {
-        let shows = |point: &&Point| (ROUNDING..LARGE).contains(&point.error);
+        let shows = |point: &&LadderPoint| (ROUNDING..LARGE).contains(&point.error);
         let logs: Vec<(f64, f64)> = self
             .points
             .iter()
@@ -175,7 +175,7 @@ impl Curve {
     }
 
     /// The cheapest point at most as far off as `error` (–).
-    fn cheapest(&self, error: f64) -> Option<&Point> {
+    fn cheapest(&self, error: f64) -> Option<&LadderPoint> {
         let good = self.points.iter().filter(|point| point.error <= error.max(ROUNDING));
         good.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
@@ -195,11 +195,10 @@ impl CaseStudy {
     /// What the default scheme saves against the paper's at each error that the paper's reaches on its ladder: the
     /// cheapest run of either that is at least as good. None where one of them does not converge.
     pub fn savings(&self) -> Vec<Saving> {
-        let (Some(paper), Some(ours)) = (self.curve(Scheme::Dda), self.curve(Scheme::Adaptive))
-        else {
+        let (Some(paper), Some(ours)) = (self.curve(PAPER), self.curve(USUAL)) else {
             return Vec::new();
         };
-        let saving = |point: &Point| {
+        let saving = |point: &LadderPoint| {
             let (theirs, our) = (paper.cheapest(point.error)?, ours.cheapest(point.error)?);
             Some(Saving {
                 error: point.error.max(ROUNDING),
@@ -222,7 +221,7 @@ impl CaseStudy {
 
 /// Unit and name of what refines a scheme.
 pub fn fineness_column(scheme: Scheme) -> &'static str {
-    if goes_by_tolerance(scheme) { "tolerance_m_s" } else { "step_s" }
+    if scheme.controls_error() { "tolerance_m_s" } else { "step_s" }
 }
 
 /// All points as CSV.
@@ -232,7 +231,7 @@ pub fn csv(studies: &[CaseStudy]) -> String {
     );
     for study in studies {
         for curve in &study.curves {
-            for Point { fineness, error, seconds, effort } in &curve.points {
+            for LadderPoint { fineness, error, seconds, effort } in &curve.points {
                 let scheme = curve.rungs.scheme;
                 let Effort { steps, rejected, leaps, sweeps, triangles, unsettled } = effort;
                 let _ = writeln!(

@@ -7,7 +7,7 @@ use crate::report::colour::{BLUE, GREEN, GREY, ORANGE, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::svg::path::Frame;
+use crate::report::svg::path::PaperFrame;
 use crate::solver::Scheme;
 use plotters::style::RGBColor;
 
@@ -38,7 +38,7 @@ pub(super) fn draw(study: &CaseStudy) -> String {
         (low.min(point.seconds), high.max(point.seconds))
     });
     let frame =
-        Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
+        PaperFrame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
     let x = Axis::log(fast, slow, "Run time (s)");
     let mut panel = Panel::new(frame, x, Axis::log(least, most, "Error of the result (–)"));
     panel.frame.left = panel.room_left();

@@ -1,11 +1,10 @@
 //! The page of the exact cases: orders and savings as tables, then the figures.
 
-use super::exact::{CaseStudy, Curve, LADDERS, Saving};
+use super::exact::{CaseStudy, Curve, LADDERS, PAPER, Saving, USUAL};
 use super::exact_figure::order_in_words;
-use super::exact_values::{self, Value};
-use super::order::{self, Ladder};
+use super::exact_values::{self, ExactValue};
+use super::order::{self, OrderLadder};
 use crate::report::format;
-use crate::solver::Scheme;
 use std::fmt::Write as _;
 
 const INTRODUCTION: &str = "\
@@ -19,7 +18,11 @@ machine; the counters in `exact.csv` do not. The order is the slope of log error
 ";
 
 /// Writes the page.
-pub(super) fn page(studies: &[CaseStudy], ladders: &[Ladder], values: &[Value]) -> String {
+pub(super) fn page(
+    studies: &[CaseStudy],
+    ladders: &[OrderLadder],
+    values: &[ExactValue],
+) -> String {
     let mut page = String::from(INTRODUCTION);
     page += "## Exact values\n\nErrors are absolute, in the unit of the row; all columns are schemes with springs, so there is one exact value.\n\n";
     page += &exact_values::table(values);
@@ -67,7 +70,7 @@ fn reached(curve: &Curve) -> String {
 }
 
 fn savings(page: &mut String, studies: &[CaseStudy]) {
-    let (ours, paper) = (Scheme::Adaptive.name(), Scheme::Dda.name());
+    let (ours, paper) = (USUAL.name(), PAPER.name());
     let _ = writeln!(
         page,
         "## What `{ours}` saves against `{paper}`\n\nAt equal error: the cheapest run of `{paper}` over the cheapest run of `{ours}` that is at least as good. Both leap over free flight, \

@@ -1,6 +1,6 @@
 //! The exact cases in their own units: what is exact, what comes out, how far apart. The table of the README.
 
-use super::cases::{CASES, Case, Measure, has_springs};
+use super::cases::{CASES, Case, CaseMeasure};
 use crate::simulation::Scratch;
 use crate::solver::Scheme;
 use std::fmt::Write as _;
@@ -17,7 +17,7 @@ const STAYS: f64 = 1e-12;
 
 /// One number of one case.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Value {
+pub struct ExactValue {
     /// Name of the case.
     pub case: &'static str,
     /// What happens, in a sentence.
@@ -31,21 +31,21 @@ pub struct Value {
 }
 
 /// Every case with a closed form under every column. The columns all have springs, so one exact value.
-pub fn values() -> Vec<Value> {
+pub fn values() -> Vec<ExactValue> {
     CASES.iter().filter(|case| case.exact.is_some()).flat_map(of_case).collect()
 }
 
-fn of_case(case: &Case) -> Vec<Value> {
+fn of_case(case: &Case) -> Vec<ExactValue> {
     let terrain = case.terrain();
     let mut scratch = Scratch::default();
     let journeys = COLUMNS.map(|(scheme, fineness)| {
         case.follow(&terrain, &case.settings(scheme, fineness), &mut scratch)
     });
-    let start = (case.setup)(has_springs(COLUMNS[0].0)).centre_m;
-    let moves = |measure: &Measure| {
+    let start = (case.setup)(COLUMNS[0].0.has_springs()).centre_m;
+    let moves = |measure: &CaseMeasure| {
         measure.exact.abs() > STAYS && start.iter().all(|at| (at - measure.exact).abs() > STAYS)
     };
-    let value = |measure: Measure| Value {
+    let value = |measure: CaseMeasure| ExactValue {
         case: case.name,
         title: case.title,
         what: measure.what,
@@ -56,14 +56,14 @@ fn of_case(case: &Case) -> Vec<Value> {
 }
 
 /// The table, as it stands in the README. Errors are absolute, in the unit of the row.
-pub fn table(values: &[Value]) -> String {
+pub fn table(values: &[ExactValue]) -> String {
     let mut text = String::from("| exact case | exact | `reference`, 1e-8 m/s |");
     for (scheme, fineness) in COLUMNS {
-        let unit = if super::bench::goes_by_tolerance(scheme) { "m/s" } else { "s" };
-        let _ = write!(text, " error of `{}`, {fineness:e} {unit} |", scheme.name());
+        let (name, unit) = (scheme.name(), scheme.fineness_unit());
+        let _ = write!(text, " error of `{name}`, {fineness:e} {unit} |");
     }
     let _ = writeln!(text, "\n|---|---|---|{}", "---|".repeat(COLUMNS.len()));
-    for Value { title, what, exact, found, .. } in values {
+    for ExactValue { title, what, exact, found, .. } in values {
         let _ = write!(text, "| {title}: {what} | {exact:.10} | {:.10} |", found[0]);
         for found in found {
             let _ = write!(text, " {:.1e} |", (found - exact).abs());

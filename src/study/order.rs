@@ -5,7 +5,7 @@
 //! motion, from well above the contact oscillation to well below it.
 
 use super::bench::{Setup, settings};
-use super::cases::{Case, has_springs, rolling_off_an_edge};
+use super::cases::{Case, rolling_off_an_edge};
 use crate::ground::{Capture, Damping, Law};
 use crate::math;
 use crate::report::axis::Axis;
@@ -13,7 +13,7 @@ use crate::report::canvas::{Label, NORMAL, Pen, SMALL, paint};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::svg::path::Frame;
+use crate::report::svg::path::PaperFrame;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
@@ -32,7 +32,7 @@ const FINEST: usize = 3;
 
 /// One scheme at every number of `STEPS`.
 #[derive(Debug, Clone)]
-pub struct Ladder {
+pub struct OrderLadder {
     /// The scheme.
     pub scheme: Scheme,
     /// Order in theory.
@@ -42,15 +42,15 @@ pub struct Ladder {
 }
 
 /// Runs every scheme at every number of steps.
-pub fn study() -> Vec<Ladder> {
+pub fn study() -> Vec<OrderLadder> {
     Scheme::ALL.map(ladder).into()
 }
 
-fn ladder(scheme: Scheme) -> Ladder {
-    let (case, exact) = rolling_off_an_edge(has_springs(scheme), LASTS_S);
-    let setup = (case.setup)(has_springs(scheme));
+fn ladder(scheme: Scheme) -> OrderLadder {
+    let (case, exact) = rolling_off_an_edge(scheme.has_springs(), LASTS_S);
+    let setup = (case.setup)(scheme.has_springs());
     let error = |steps: u32| (steps, (end(scheme, &case, &setup, steps) - exact).norm());
-    Ladder { scheme, theory: scheme.order(), errors: STEPS.map(error).into() }
+    OrderLadder { scheme, theory: scheme.order(), errors: STEPS.map(error).into() }
 }
 
 /// Where the rock is after [`LASTS_S`] in so many equal steps; NaN where a step fails.
@@ -92,7 +92,7 @@ fn stepper(
     )
 }
 
-impl Ladder {
+impl OrderLadder {
     /// Order of convergence: the slope of log error over log steps, least squares over the finest steps, as far as errors
     /// still fall and have digits.
     pub fn order(&self) -> f64 {
@@ -115,7 +115,7 @@ impl Ladder {
 }
 
 /// The table.
-pub(super) fn table(ladders: &[Ladder]) -> String {
+pub(super) fn table(ladders: &[OrderLadder]) -> String {
     let mut text = String::from(
         "## Order of convergence at fixed steps\n\nA sphere tips over an edge without slip for 0.6 s in equal steps, the normal turning all the time: distance of the \
          centre from the exact place (m). `adaptive` and `reference` with their error control switched off. The order is the slope of log error over log \
@@ -141,7 +141,7 @@ pub(super) fn table(ladders: &[Ladder]) -> String {
 }
 
 /// All errors as CSV.
-pub(super) fn csv(ladders: &[Ladder]) -> String {
+pub(super) fn csv(ladders: &[OrderLadder]) -> String {
     let mut text = String::from("scheme,steps,error_m\n");
     for ladder in ladders {
         for (steps, error) in &ladder.errors {
@@ -157,12 +157,12 @@ const TOP_PX: f64 = 26.0;
 const KEY_PX: f64 = 190.0;
 
 /// Draws error over number of steps.
-pub(super) fn draw(ladders: &[Ladder]) -> String {
+pub(super) fn draw(ladders: &[OrderLadder]) -> String {
     let finite = || ladders.iter().flat_map(|ladder| &ladder.errors).filter(|point| point.1 > 0.0);
     let (least, most) =
         finite().fold((1.0f64, 0.0f64), |(a, b), point| (a.min(point.1), b.max(point.1)));
     let frame =
-        Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
+        PaperFrame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
     let (first, last) = (f64::from(STEPS[0]), f64::from(STEPS[STEPS.len() - 1]));
     let x = Axis::log(first, last, "Equal steps over 0.6 s");
     let mut panel = Panel::new(frame, x, Axis::log(least, most, "Error of the place (m)"));
@@ -207,7 +207,7 @@ mod tests {
             let error = |n: u32| (n, 1e5 * f64::from(n).powf(-order));
             let mut errors: Vec<_> = STEPS.map(error).into();
             errors.push((4000, 1e-12));
-            let ladder = Ladder { scheme: Scheme::Adaptive, theory: order, errors };
+            let ladder = OrderLadder { scheme: Scheme::default(), theory: order, errors };
             assert!((ladder.order() - order).abs() < 1e-9);
         }
     }

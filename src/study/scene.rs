@@ -4,8 +4,7 @@
 //! converge. Their statistics do. All settings get the same releases, so most of what chance does drops out of the
 //! difference; what is left is drawn again and again to say how far it can be trusted.
 
-use super::bench::goes_by_tolerance;
-use super::bootstrap::{Interval, Ladder, Paired};
+use super::bootstrap::{Interval, Paired, PercentileLadder};
 use super::processor_time::Busy;
 use super::weighing::{FEWEST, Weigh};
 use crate::ensemble::Ensemble;
@@ -56,7 +55,7 @@ pub struct Rung {
 
 /// One percentile of one quantity.
 #[derive(Debug, Clone)]
-pub struct Statistic {
+pub struct StudyStatistic {
     /// Which of [`SceneStudy::subjects`].
     pub subject: usize,
     /// Per cent.
@@ -66,14 +65,14 @@ pub struct Statistic {
     /// Half the 95 % interval of the first so many releases, for rising numbers up to all.
     pub sampling: Vec<(usize, f64)>,
     /// Over the ladder.
-    pub ladder: Ladder,
+    pub ladder: PercentileLadder,
     /// Over the meshes, from coarse to the scene's own; `None` where they were not asked for.
-    pub meshes: Option<Ladder>,
+    pub meshes: Option<PercentileLadder>,
 }
 
 /// All releases under the scene's own setting on a coarser mesh.
 #[derive(Debug, Clone)]
-pub struct Mesh {
+pub struct MeshRung {
     /// Length of its edges over the scene's own (–).
     pub times: f64,
     /// Mean length of its edges (m).
@@ -102,11 +101,11 @@ pub struct SceneStudy {
     /// Which of them is the scene's own.
     pub own: usize,
     /// On coarser meshes and the scene's own, from coarse to fine; empty where they were not asked for.
-    pub meshes: Vec<Mesh>,
+    pub meshes: Vec<MeshRung>,
     /// What was looked at.
     pub subjects: Vec<StudyQuantity>,
     /// Each of [`PERCENTS`] for each subject.
-    pub statistics: Vec<Statistic>,
+    pub statistics: Vec<StudyStatistic>,
     /// So many releases of equal weight would know as much (–); none where all weigh the same.
     pub effective_releases: Option<f64>,
 }
@@ -127,15 +126,15 @@ pub struct Offer {
 /// Local error and step are tied by `tolerance ~ step^(p+1)` (p: order of the embedded method); the error of the result
 /// goes with `step^p'`: 2/3 for TR-BDF2, 1 for the fourth-order tableau, 1 for fixed steps.
 fn ladder_of(scheme: Scheme) -> (&'static [f64], f64) {
-    match scheme {
-        Scheme::Adaptive => (&[2.0, 1.0, 0.25, 0.0625, 0.015_625], 2.0 / 3.0),
+    scheme.of([
+        // each halving costs double
+        (&[2.0, 1.0, 0.5][..], 1.0),
+        (&[2.0, 1.0, 0.25, 0.0625, 0.015_625], 2.0 / 3.0),
         // far above the scene's own tolerance the error no longer follows its law, below it a rung costs little more;
         // this one is already at the fine end
-        Scheme::Reference => (&[4096.0, 256.0, 16.0, 1.0], 1.0),
-        Scheme::Rigid => (&[2.0, 1.0, 0.5, 0.25, 0.125], 1.0),
-        // each halving costs double
-        Scheme::Dda => (&[2.0, 1.0, 0.5], 1.0),
-    }
+        (&[4096.0, 256.0, 16.0, 1.0], 1.0),
+        (&[2.0, 1.0, 0.5, 0.25, 0.125], 1.0),
+    ])
 }
 
 /// Runs all releases of a plan under every setting, and on coarser meshes if asked; `done` hears of each, with how much
@@ -191,11 +190,18 @@ pub fn study(
             let Some(found) = weighing.percentile(&all[own], p) else { continue };
             let ladder = paired.ladder(p, relatives, order, plan.seed);
             let sampling = weighing.sampling(&all[own], p);
-            let meshes = with_meshes.then(|| Ladder {
+            let meshes = with_meshes.then(|| PercentileLadder {
                 own_error: on_finest.ladder(p, &times[finest..], MESH_ORDER, plan.seed).own_error,
                 ..on_meshes.ladder(p, &times, MESH_ORDER, plan.seed)
             });
-            statistics.push(Statistic { subject, percent, own: found, sampling, ladder, meshes });
+            statistics.push(StudyStatistic {
+                subject,
+                percent,
+                own: found,
+                sampling,
+                ladder,
+                meshes,
+            });
         }
     }
     Ok(SceneStudy {
@@ -223,7 +229,7 @@ fn meshes(
     subjects: &[StudyQuantity],
     ensemble: &Ensemble,
     (own, done): (&Rung, impl Fn(&Rung, f64)),
-) -> Result<Vec<Mesh>> {
+) -> Result<Vec<MeshRung>> {
     let mut meshes = Vec::new();
     for times in COARSER {
         let coarse = coarser(&plan.terrain, times);
@@ -231,14 +237,14 @@ fn meshes(
         let mut rung = Rung::new(&plan.step, 1.0);
         rung.run(plan, subjects, 0..plan.count, ensemble)?;
         done(&rung, times);
-        meshes.push(Mesh::of(&plan.terrain, times, rung));
+        meshes.push(MeshRung::of(&plan.terrain, times, rung));
         plan.terrain = fine;
     }
-    meshes.push(Mesh::of(&plan.terrain, 1.0, own.clone()));
+    meshes.push(MeshRung::of(&plan.terrain, 1.0, own.clone()));
     Ok(meshes)
 }
 
-impl Mesh {
+impl MeshRung {
     fn of(terrain: &Terrain, times: f64, rung: Rung) -> Self {
         Self { times, edge_m: slope_edge_m(terrain), triangles: terrain.triangles.len(), rung }
     }
@@ -247,7 +253,7 @@ impl Mesh {
 /// The same setting with another tolerance or step.
 fn finer(step: &Settings, relative: f64) -> Settings {
     let mut finer = *step;
-    if goes_by_tolerance(step.scheme) {
+    if step.scheme.controls_error() {
         finer.tolerance_m_s *= relative;
     } else {
         finer.step_s *= relative;
@@ -311,7 +317,7 @@ impl Rung {
     }
 }
 
-impl Statistic {
+impl StudyStatistic {
     /// Half the 95 % interval under the scene's own setting; `None` with too few releases.
     pub fn sampling_error(&self) -> Option<f64> {
         Some(0.5 * (self.own.high_95? - self.own.low_95?))
@@ -325,7 +331,7 @@ impl Statistic {
     }
 
     /// Error of a mesh, signed; nothing where it is not known.
-    pub fn mesh_error_of(&self, mesh: &Mesh) -> Interval {
+    pub fn mesh_error_of(&self, mesh: &MeshRung) -> Interval {
         let times = math::pow(mesh.times, MESH_ORDER);
         let own = self.meshes.as_ref().map(|meshes| meshes.own_error);
         let Interval { value, low, high } =
@@ -350,7 +356,7 @@ impl Statistic {
 impl SceneStudy {
     /// The cheapest of the settings that gives a statistic with a total error of `wanted`, at as many releases as it
     /// needs; `None` where the errors of steps and mesh alone are larger under all of them.
-    pub fn cheapest(&self, statistic: &Statistic, wanted: f64) -> Option<Offer> {
+    pub fn cheapest(&self, statistic: &StudyStatistic, wanted: f64) -> Option<Offer> {
         let sampling = statistic.sampling_error()?;
         let offer = |(rung, setting): (usize, &Rung)| {
             let steps = statistic.step_error(setting.relative, setting.step.scheme).value;

@@ -1,13 +1,13 @@
 //! Both errors of a scene's statistics over run time.
 
-use super::scene::{Of, SceneStudy, Statistic, StudyQuantity};
+use super::scene::{Of, SceneStudy, StudyQuantity, StudyStatistic};
 use crate::hazard::Quantity;
 use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
 use crate::report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::report::figure::WIDTH_PX;
 use crate::report::panel::{FOOT_PX, Panel, align};
-use crate::report::svg::path::Frame;
+use crate::report::svg::path::PaperFrame;
 use crate::report::words::{Words, fill};
 use std::fmt::Display;
 
@@ -19,7 +19,7 @@ const SHOWN: u8 = 95;
 
 /// Draws one panel a quantity.
 pub(super) fn draw(study: &SceneStudy) -> String {
-    let shown: Vec<&Statistic> =
+    let shown: Vec<&StudyStatistic> =
         study.statistics.iter().filter(|statistic| is_shown(study, statistic)).collect();
     let times = shown.iter().flat_map(|statistic| points(study, statistic)).map(|point| point.0);
     let (fast, slow) = times.fold((f64::INFINITY, 0.0_f64), |(a, b), t| (a.min(t), b.max(t)));
@@ -51,7 +51,7 @@ pub(super) fn draw(study: &SceneStudy) -> String {
 }
 
 /// The whole journeys' quantities: those at lines are in the tables.
-fn is_shown(study: &SceneStudy, statistic: &Statistic) -> bool {
+fn is_shown(study: &SceneStudy, statistic: &StudyStatistic) -> bool {
     let is_whole = matches!(study.subjects[statistic.subject].of, Of::Rock(_));
     is_whole && statistic.percent == SHOWN
 }
@@ -71,7 +71,7 @@ fn name(subject: &StudyQuantity, words: &Words) -> String {
 
 fn panel(
     study: &SceneStudy,
-    statistic: &Statistic,
+    statistic: &StudyStatistic,
     row: usize,
     (fast, slow): (f64, f64),
     is_last: bool,
@@ -88,27 +88,27 @@ fn panel(
     let y = Axis::log(least.max(1e-3 * most), most, title);
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
     let title = if is_last { words.error_time } else { "" };
-    let frame = Frame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
+    let frame = PaperFrame { left: 0.0, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
     let mut panel = Panel::new(frame, Axis::log(fast, slow, title), y);
     panel.frame.left = panel.room_left();
     panel
 }
 
 /// Everything that must find room: run time (s) and error.
-fn points(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64)> {
+fn points(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64)> {
     let both = steps(study, statistic).into_iter().chain(meshes(study, statistic));
     let ends = both.flat_map(|(t, error, most)| [(t, error), (t, most)]);
     sampling(study, statistic).into_iter().chain(ends).collect()
 }
 
 /// Sampling error of the first so many releases over the time they take.
-fn sampling(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64)> {
+fn sampling(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64)> {
     let each_s = study.rungs[study.own].seconds / study.releases as f64;
     statistic.sampling.iter().map(|&(n, error)| (each_s * n as f64, error)).collect()
 }
 
 /// Error of the steps and what it is at most, over the time of all releases under each setting.
-fn steps(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64, f64)> {
+fn steps(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64, f64)> {
     let one = |rung: &super::scene::Rung| {
         let error = statistic.step_error(rung.relative, rung.step.scheme);
         (rung.seconds, error.value.abs(), error.at_most())
@@ -117,15 +117,20 @@ fn steps(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64, f64)> {
 }
 
 /// The same of the meshes.
-fn meshes(study: &SceneStudy, statistic: &Statistic) -> Vec<(f64, f64, f64)> {
-    let one = |mesh: &super::scene::Mesh| {
+fn meshes(study: &SceneStudy, statistic: &StudyStatistic) -> Vec<(f64, f64, f64)> {
+    let one = |mesh: &super::scene::MeshRung| {
         let error = statistic.mesh_error_of(mesh);
         (mesh.rung.seconds, error.value.abs(), error.at_most())
     };
     study.meshes.iter().map(one).collect()
 }
 
-fn draw_statistic(canvas: &Canvas<'_>, panel: &Panel, study: &SceneStudy, statistic: &Statistic) {
+fn draw_statistic(
+    canvas: &Canvas<'_>,
+    panel: &Panel,
+    study: &SceneStudy,
+    statistic: &StudyStatistic,
+) {
     let inside = |error: f64| error.max(panel.y.low);
     let sampled = sampling(study, statistic);
     panel.line(canvas, &sampled, Pen::full(BLUE, 1.4));
@@ -149,7 +154,7 @@ fn draw_statistic(canvas: &Canvas<'_>, panel: &Panel, study: &SceneStudy, statis
     let own_mesh = meshes.last().map(|&(t, error, _)| panel.at(t, inside(error)));
     let own_sample = sampled.last().map(|&(t, error)| panel.at(t, error));
     for (x, y) in own_sample.into_iter().chain(own_mesh).chain([own_steps]) {
-        let ring = Frame { left: x - 5.0, right: x + 5.0, top: y - 5.0, bottom: y + 5.0 };
+        let ring = PaperFrame { left: x - 5.0, right: x + 5.0, top: y - 5.0, bottom: y + 5.0 };
         canvas.outline(&ring, Pen::full(INK, 1.0));
     }
 }
@@ -161,7 +166,7 @@ fn key(canvas: &Canvas<'_>, first: Option<&Panel>, with_meshes: bool, words: &Wo
     canvas.text(&Label::new(title, (x, 12.0)).sized(NORMAL).bold());
     let own = words.error_own;
     let own_x = panel.frame.right - text_width(own, SMALL);
-    let ring = Frame { left: own_x - 15.0, right: own_x - 5.0, top: 7.0, bottom: 17.0 };
+    let ring = PaperFrame { left: own_x - 15.0, right: own_x - 5.0, top: 7.0, bottom: 17.0 };
     canvas.outline(&ring, Pen::full(INK, 1.0));
     canvas.text(&Label::new(own, (own_x, 12.0)).coloured(GREY));
     for (shape, (ink, said, is_there)) in [

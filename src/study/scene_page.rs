@@ -1,8 +1,7 @@
 //! The page of a scene's errors: sentences, tables, CSV.
 
-use super::bench::goes_by_tolerance;
 use super::bootstrap::Interval;
-use super::scene::{Rung, SceneStudy, Statistic};
+use super::scene::{Rung, SceneStudy, StudyStatistic};
 use crate::report::format::{self, significant};
 use crate::solver::Settings;
 use std::fmt::Write as _;
@@ -56,7 +55,7 @@ fn sentences(page: &mut String, study: &SceneStudy, wish: Option<Wish>) {
 }
 
 /// What dominates, and the cheapest way to a wanted error (half the present one where none is given).
-pub fn sentence(study: &SceneStudy, statistic: &Statistic, wanted: Option<f64>) -> String {
+pub fn sentence(study: &SceneStudy, statistic: &StudyStatistic, wanted: Option<f64>) -> String {
     let subject = &study.subjects[statistic.subject];
     let (name, unit) = (&subject.name, subject.unit);
     let head =
@@ -118,7 +117,7 @@ fn with_ends(error: &Interval, unit: &str) -> String {
 
 /// A setting in words.
 pub fn setting(step: &Settings) -> String {
-    if goes_by_tolerance(step.scheme) {
+    if step.scheme.controls_error() {
         format!("tolerance {} m/s", step.tolerance_m_s)
     } else {
         format!("step {} s", step.step_s)
@@ -224,7 +223,7 @@ pub(super) fn csv(study: &SceneStudy) -> String {
     for statistic in &study.statistics {
         for (rung, value) in study.rungs.iter().zip(&statistic.ladder.values) {
             let step = &rung.step;
-            let by_tolerance = goes_by_tolerance(step.scheme);
+            let by_tolerance = step.scheme.controls_error();
             let fineness = if by_tolerance { step.tolerance_m_s } else { step.step_s };
             let error = statistic.step_error(rung.relative, step.scheme);
             let sampling =

@@ -14,12 +14,12 @@ use crate::simulation::{Scratch, Stop, Trajectory};
 use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
 
-pub use map::{Cell, Map, Verdict};
+pub use map::{Map, StabilityCell, Verdict};
 pub(super) use page::{csv, page};
 
 /// One number of one case with one scheme, and the bound it must keep.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct CaseOutcome {
     /// The case.
     pub case: &'static str,
     /// The setting within the case; empty where there is only one.
@@ -34,7 +34,7 @@ pub struct Outcome {
     pub bound: f64,
 }
 
-impl Outcome {
+impl CaseOutcome {
     /// Whether the bound is kept; what is no number keeps none.
     pub fn holds(&self) -> bool {
         self.found <= self.bound
@@ -43,7 +43,7 @@ impl Outcome {
 
 /// A scheme at its usual fineness.
 #[derive(Debug, Clone, Copy)]
-pub struct Way {
+pub struct SchemeSetting {
     /// The scheme.
     pub scheme: Scheme,
     /// Tolerance (m/s) or step (s).
@@ -51,18 +51,18 @@ pub struct Way {
 }
 
 /// Every scheme at its usual fineness.
-pub const WAYS: [Way; 4] = [
-    Way { scheme: Scheme::Dda, fineness: 1e-5 },
-    Way { scheme: Scheme::Adaptive, fineness: 0.05 },
-    Way { scheme: Scheme::Reference, fineness: 1e-6 },
-    Way { scheme: Scheme::Rigid, fineness: 0.01 },
+pub const WAYS: [SchemeSetting; 4] = [
+    SchemeSetting { scheme: Scheme::Dda, fineness: 1e-5 },
+    SchemeSetting { scheme: Scheme::Adaptive, fineness: 0.05 },
+    SchemeSetting { scheme: Scheme::Reference, fineness: 1e-6 },
+    SchemeSetting { scheme: Scheme::Rigid, fineness: 0.01 },
 ];
 
 /// A case: all it finds with one scheme.
-type Trial = fn(&Way, &mut Notes);
+type StabilityTrial = fn(&SchemeSetting, &mut Notes);
 
 /// Every case by name. To add one: a function and a row.
-const TRIALS: [(&str, Trial); 28] = [
+const TRIALS: [(&str, StabilityTrial); 28] = [
     ("impact", impacts::impact),
     ("step and tolerance", fineness::steps),
     ("shear memory", fineness::memory),
@@ -98,7 +98,7 @@ const TRIALS: [(&str, Trial); 28] = [
 pub(super) struct Notes {
     case: &'static str,
     scratch: Scratch,
-    outcomes: Vec<Outcome>,
+    outcomes: Vec<CaseOutcome>,
 }
 
 /// Mechanical energy may rise over a contact by this share of what there is (–): rounding of some thousand steps.
@@ -108,13 +108,13 @@ impl Notes {
     /// Notes one number.
     fn hold(
         &mut self,
-        way: &Way,
+        way: &SchemeSetting,
         setting: impl Into<String>,
         law: &'static str,
         found: f64,
         bound: f64,
     ) {
-        self.outcomes.push(Outcome {
+        self.outcomes.push(CaseOutcome {
             case: self.case,
             setting: setting.into(),
             scheme: way.scheme,
@@ -126,14 +126,20 @@ impl Notes {
 
     /// Follows a rock, twice, and holds what must hold of every journey: it does not fail, its end is finite and the same
     /// bits both times, its energy does not rise.
-    fn follow(&mut self, way: &Way, setting: &str, setup: &Setup, terrain: &Terrain) -> Trajectory {
+    fn follow(
+        &mut self,
+        way: &SchemeSetting,
+        setting: &str,
+        setup: &Setup,
+        terrain: &Terrain,
+    ) -> Trajectory {
         self.follow_captured(way, setting, setup, terrain, None)
     }
 
     /// The same with a capture speed (m/s).
     fn follow_captured(
         &mut self,
-        way: &Way,
+        way: &SchemeSetting,
         setting: &str,
         setup: &Setup,
         terrain: &Terrain,
@@ -174,7 +180,7 @@ fn same_bits(a: &Trajectory, b: &Trajectory) -> bool {
 }
 
 /// Runs every case with every scheme; `done` hears of each.
-pub fn study(done: impl Fn(&str)) -> Vec<Outcome> {
+pub fn study(done: impl Fn(&str)) -> Vec<CaseOutcome> {
     let mut notes = Notes::default();
     for (name, trial) in TRIALS {
         notes.case = name;
@@ -187,6 +193,6 @@ pub fn study(done: impl Fn(&str)) -> Vec<Outcome> {
 }
 
 /// Whether the ground answers with springs.
-fn sprung(way: &Way) -> bool {
-    super::cases::has_springs(way.scheme)
+fn sprung(way: &SchemeSetting) -> bool {
+    way.scheme.has_springs()
 }

@@ -1,6 +1,5 @@
 //! The map of stiffness against step: accurate, stable, unstable.
 
-use super::bench::goes_by_tolerance;
 use super::stability::{Map, Verdict};
 use crate::math;
 use crate::report::axis::Axis;
@@ -9,7 +8,7 @@ use crate::report::colour::{GREEN, GREY, INK, ORANGE, PURPLE, WHITE};
 use crate::report::figure::WIDTH_PX;
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::svg::path::Frame;
+use crate::report::svg::path::PaperFrame;
 use plotters::style::RGBColor;
 
 const PLOT_PX: f64 = 170.0;
@@ -47,19 +46,19 @@ pub(super) fn draw(maps: &[Map]) -> String {
 /// Axes in powers of ten, a cell round each.
 fn panel(map: &Map, row: usize) -> Panel {
     let top = TOP_PX + row as f64 * (PLOT_PX + GAP_PX);
-    let name = if goes_by_tolerance(map.scheme) { "Tolerance (m/s)" } else { "Step (s)" };
+    let name = if map.scheme.controls_error() { "Tolerance (m/s)" } else { "Step (s)" };
     let around = |values: &[f64], title: &str| {
         let end = |value: f64| math::log10(value).round();
         Axis::linear(end(values[0]) - 0.5, end(values[values.len() - 1]) + 0.5, title)
     };
-    let frame = Frame { left: LEFT_PX, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
+    let frame = PaperFrame { left: LEFT_PX, top, right: WIDTH_PX - 16.0, bottom: top + PLOT_PX };
     let x = around(&map.stiffness_n_m, "Normal stiffness (N/m)");
     Panel::new(frame, x, around(&map.fineness, name))
 }
 
 /// Labels in the middle of each column and row, titles beyond.
 fn axes(canvas: &Canvas<'_>, panel: &Panel, map: &Map) {
-    let Frame { left, top, right, bottom } = panel.frame;
+    let PaperFrame { left, top, right, bottom } = panel.frame;
     let label = |value: f64| format::power_of_ten(math::log10(value).round() as i32);
     for &stiffness in &map.stiffness_n_m {
         let x = panel.at(math::log10(stiffness).round(), panel.y.low).0;
@@ -80,7 +79,7 @@ fn cells(canvas: &Canvas<'_>, panel: &Panel, map: &Map) {
         let (x, y) = (math::log10(cell.stiffness_n_m).round(), math::log10(cell.fineness).round());
         let (left, bottom) = panel.at(x - 0.5, y - 0.5);
         let (right, top) = panel.at(x + 0.5, y + 0.5);
-        let frame = Frame { left, top, right, bottom };
+        let frame = PaperFrame { left, top, right, bottom };
         canvas.fill(&frame, colour(cell.verdict), 0.75);
         canvas.outline(&frame, Pen::full(WHITE, 0.8));
         let middle = panel.at(x, y);
@@ -96,7 +95,7 @@ fn key(canvas: &Canvas<'_>) {
         (Verdict::Unstable, "unstable"),
     ] {
         canvas.fill(
-            &Frame { left: x, top: 8.0, right: x + 14.0, bottom: 20.0 },
+            &PaperFrame { left: x, top: 8.0, right: x + 14.0, bottom: 20.0 },
             colour(verdict),
             0.75,
         );

@@ -36,7 +36,7 @@ pub enum Of {
 }
 
 /// What has no value because the rock never came there.
-const NEVER: f64 = f64::NEG_INFINITY;
+pub(super) const NEVER: f64 = f64::NEG_INFINITY;
 
 impl StudyQuantity {
     /// Each of [`QUANTITIES`], then height and energy at every line of the plan.

@@ -6,6 +6,7 @@ mod paper;
 
 pub use paper::{EXAMPLES, Example};
 
+use super::exact::{PAPER, USUAL};
 use crate::error::{Error, Result};
 use crate::math;
 use crate::output::write_atomic;
@@ -17,7 +18,7 @@ use std::time::Instant;
 
 /// One line of the table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct VerificationRow {
     /// What was run.
     pub case: &'static str,
     /// With which scheme.
@@ -36,7 +37,7 @@ pub struct Row {
     pub seconds: f64,
 }
 
-impl Row {
+impl VerificationRow {
     /// Whether it is as it should be.
     pub fn holds(&self) -> bool {
         (self.computed - self.expected).abs() <= self.allowed
@@ -47,7 +48,7 @@ impl Row {
 #[derive(Debug, Default)]
 pub struct Verification {
     /// The table.
-    pub rows: Vec<Row>,
+    pub rows: Vec<VerificationRow>,
     figures: Vec<(&'static str, Curves)>,
 }
 
@@ -59,7 +60,7 @@ impl Verification {
     pub fn run() -> Result<Self> {
         let mut all = Self::exact()?;
         for example in EXAMPLES {
-            for scheme in [Scheme::Dda, Scheme::Adaptive] {
+            for scheme in [PAPER, USUAL] {
                 example.run(&mut all, scheme)?;
             }
         }
@@ -98,7 +99,7 @@ impl Verification {
 
     /// Whether every case holds.
     pub fn holds(&self) -> bool {
-        self.rows.iter().all(Row::holds)
+        self.rows.iter().all(VerificationRow::holds)
     }
 
     /// The table in words (Markdown).
@@ -162,8 +163,8 @@ fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
 mod tests {
     use super::*;
 
-    fn row(computed: f64) -> Row {
-        Row {
+    fn row(computed: f64) -> VerificationRow {
+        VerificationRow {
             case: "a case",
             scheme: "adaptive",
             quantity: "a length (m)",

@@ -30,7 +30,7 @@ pub struct Cliff {
 }
 
 /// A triangle of the slope.
-struct Face {
+struct SlopeFace {
     centre: Vec3,
     /// Unit normal, upwards.
     normal: Vec3,
@@ -39,7 +39,7 @@ struct Face {
 
 /// What lies in one cell.
 #[derive(Default)]
-struct Cell {
+struct SteepCell {
     area_m2: f64,
     steep_m2: f64,
     /// Sums over the steep triangles, weighted by area.
@@ -57,7 +57,7 @@ pub fn main_cliff(terrain: &Terrain) -> Option<Cliff> {
     // a cell holds some triangles even of a coarse mesh
     let cell_m = ((high - low).xy().max() / CELLS).max(2.0 * (2.0 * mean_m2).sqrt());
     let cells = gathered(&faces, cosine, cell_m);
-    let worth = |face: &Vec<&Cell>| -> f64 {
+    let worth = |face: &Vec<&SteepCell>| -> f64 {
         face.iter().map(|cell| cell.centre.z - cell.steep_m2 * low.z).sum()
     };
     let connected = connected(&cells);
@@ -76,7 +76,7 @@ pub fn main_cliff(terrain: &Terrain) -> Option<Cliff> {
 }
 
 /// The triangles of the slope; trees are none.
-fn faces(terrain: &Terrain) -> Vec<Face> {
+fn faces(terrain: &Terrain) -> Vec<SlopeFace> {
     let slope = (0..terrain.triangles.len() as u32).filter(|&triangle| !terrain.is_tree(triangle));
     slope
         .map(|triangle| {
@@ -85,13 +85,13 @@ fn faces(terrain: &Terrain) -> Vec<Face> {
             let up = if across.z < 0.0 { -across } else { across };
             // welded triangles have an area
             let normal = up / up.norm();
-            Face { centre: (a + b + c) / 3.0, normal, area_m2: 0.5 * up.norm() }
+            SlopeFace { centre: (a + b + c) / 3.0, normal, area_m2: 0.5 * up.norm() }
         })
         .collect()
 }
 
 /// Cosine of the slope from which on ground counts as steep; none where all of it is level.
-fn steep_from(faces: &[Face]) -> Option<f64> {
+fn steep_from(faces: &[SlopeFace]) -> Option<f64> {
     let mut by_slope: Vec<(f64, f64)> =
         faces.iter().map(|face| (face.normal.z, face.area_m2)).collect();
     by_slope.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -106,9 +106,9 @@ fn steep_from(faces: &[Face]) -> Option<f64> {
 }
 
 /// The triangles in square cells, by column and row.
-fn gathered(faces: &[Face], cosine: f64, cell_m: f64) -> BTreeMap<(i64, i64), Cell> {
-    let mut cells: BTreeMap<(i64, i64), Cell> = BTreeMap::new();
-    for Face { centre, normal, area_m2 } in faces {
+fn gathered(faces: &[SlopeFace], cosine: f64, cell_m: f64) -> BTreeMap<(i64, i64), SteepCell> {
+    let mut cells: BTreeMap<(i64, i64), SteepCell> = BTreeMap::new();
+    for SlopeFace { centre, normal, area_m2 } in faces {
         let number = |at: f64| (at / cell_m).floor() as i64;
         let cell = cells.entry((number(centre.x), number(centre.y))).or_default();
         cell.area_m2 += area_m2;
@@ -125,8 +125,8 @@ fn gathered(faces: &[Face], cosine: f64, cell_m: f64) -> BTreeMap<(i64, i64), Ce
 }
 
 /// Cells that touch, also at a corner, are one face.
-fn connected(cells: &BTreeMap<(i64, i64), Cell>) -> Vec<Vec<&Cell>> {
-    let mut left: BTreeMap<(i64, i64), &Cell> =
+fn connected(cells: &BTreeMap<(i64, i64), SteepCell>) -> Vec<Vec<&SteepCell>> {
+    let mut left: BTreeMap<(i64, i64), &SteepCell> =
         cells.iter().map(|(at, cell)| (*at, cell)).collect();
     let mut faces = Vec::new();
     while let Some((first, cell)) = left.pop_first() {
@@ -146,11 +146,11 @@ fn connected(cells: &BTreeMap<(i64, i64), Cell>) -> Vec<Vec<&Cell>> {
 }
 
 /// Corners along the strike of a face, each the middle of the cells in its stretch.
-fn along_strike(face: &[&Cell], cell_m: f64) -> Vec<[f64; 2]> {
+fn along_strike(face: &[&SteepCell], cell_m: f64) -> Vec<[f64; 2]> {
     let normal: Vec3 = face.iter().map(|cell| cell.normal).sum();
     let level = normal.xy().norm();
     let strike = if level > 0.0 { [-normal.y / level, normal.x / level] } else { [1.0, 0.0] };
-    let middle = |cell: &Cell| [cell.centre.x / cell.steep_m2, cell.centre.y / cell.steep_m2];
+    let middle = |cell: &SteepCell| [cell.centre.x / cell.steep_m2, cell.centre.y / cell.steep_m2];
     let along = |at: [f64; 2]| at[0] * strike[0] + at[1] * strike[1];
     let places = || face.iter().map(|cell| along(middle(cell)));
     let (from, to) = places()
@@ -161,7 +161,7 @@ fn along_strike(face: &[&Cell], cell_m: f64) -> Vec<[f64; 2]> {
         return [-0.5, 0.5].map(|half| [0, 1].map(|k| at[k] + half * cell_m * strike[k])).into();
     }
     let stretches = (((to - from) / cell_m) as usize + 1).clamp(2, MOST_CORNERS);
-    let stretch_of = |cell: &Cell| {
+    let stretch_of = |cell: &SteepCell| {
         let share = (along(middle(cell)) - from) / (to - from);
         ((share * stretches as f64) as usize).min(stretches - 1)
     };

@@ -8,18 +8,21 @@ mod decoder;
 mod tiles;
 
 use super::facets::Facets;
-use super::grid::distance;
+use super::grid::{BoxM, distance};
 use super::options::{Crop, Options, wider};
 use super::stl::{Format, Soup};
 use crate::error::{Error, Result};
 use crate::gis::wkt;
 use crate::rock::Vec3;
 use decoder::guarded;
+use las::crs::{GeoTiffData, GeoTiffKeyEntry};
 use las::{PointDataBuilder, Reader};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+/// `ProjLinearUnits` and `VerticalUnits` of GeoTIFF's keys; 9001 is the metre.
+const UNIT_KEYS: [u16; 2] = [3076, 4099];
 /// ASPRS class of ground.
 const GROUND: u8 = 2;
 /// Cell of which the lowest point is kept when the scene does not say (m).
@@ -28,9 +31,6 @@ const CELL_M: f64 = 1.0;
 const AT_ONCE: u64 = 100_000;
 /// Cells to one side of the origin that can be numbered; a cell of a millimetre spans the Earth in fewer.
 const MOST_CELLS: f64 = 1e12;
-
-/// A box on the map (m): west, south, east, north.
-type BoxM = [f64; 4];
 
 /// The ground points of a file, thinned.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,13 +106,31 @@ fn system(reader: &Reader, file: &Path, epsg: Option<u32>) -> Result<Option<u32>
     };
     if let Some(text) = header.get_wkt_crs_bytes() {
         let system = wkt::system(String::from_utf8_lossy(text).trim_end_matches('\0'));
+        if let Some(unit) = &system.other_unit {
+            return Err(other_unit(file, unit));
+        }
         return if system.is_geographic { refused() } else { Ok(system.epsg) };
     }
     let Some(keys) = header.get_geotiff_crs().ok().flatten() else { return Ok(None) };
     if keys.get_gt_model_type_geo_key_value() == Some(2) {
         return refused();
     }
+    let is_unit = |entry: &&GeoTiffKeyEntry| UNIT_KEYS.contains(&entry.id);
+    for entry in keys.entries.iter().filter(is_unit) {
+        if let GeoTiffData::U16(unit @ 9002..=9099) = entry.data {
+            return Err(other_unit(file, &format!("EPSG:{unit}")));
+        }
+    }
     Ok(keys.get_projected_crs_geo_key_value().filter(|code| *code != 32_767).map(Into::into))
+}
+
+/// Lengths in another unit than the metre.
+fn other_unit(file: &Path, unit: &str) -> Error {
+    let remedy = format!(
+        "write it in metres: pdal translate {} out.laz reprojection --filters.reprojection.out_srs=EPSG:CODE, and where heights are in feet, assign --filters.assign.value=\"Z = Z * 0.3048\"",
+        file.display()
+    );
+    Error::input(file, "unit", format!("found the unit {unit}, not the metre"), remedy)
 }
 
 /// Keeps the lowest point of each cell.
@@ -254,7 +272,7 @@ fn delaunay(points_m: &[Vec3], map_origin_m: Vec3) -> (Facets, f64) {
     settle_ties(&mut triangles, &local);
     triangles.sort_unstable();
     let corners = triangles.iter().map(|corners| corners.map(|k| k as u32)).collect();
-    let facets = Facets::Shared { points: local, corners };
+    let facets = Facets::Shared { points: local, corners, apart_m: 0.0 };
     let edges = facets.iter().flat_map(|[a, b, c]| [b - a, c - b, a - c]);
     let longest_m = edges.map(|edge| edge.xy().norm()).fold(0.0, f64::max);
     (facets, longest_m)

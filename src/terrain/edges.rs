@@ -132,8 +132,14 @@ impl Edges {
     /// The two triangles on an edge inside a sheet.
     #[inline]
     pub fn pair_on(&self, edge: u32) -> Option<[u32; 2]> {
+        self.sides_of_pair(edge).map(|sides| sides.map(|side| side / 3))
+    }
+
+    /// The two sides on an edge inside a sheet.
+    #[inline]
+    pub(super) fn sides_of_pair(&self, edge: u32) -> Option<[u32; 2]> {
         let next = self.next(edge);
-        (next != edge && self.next(next) == edge).then_some([edge / 3, next / 3])
+        (next != edge && self.next(next) == edge).then_some([edge, next])
     }
 
     /// How many triangles lie on the edge of a side.
@@ -150,7 +156,8 @@ impl Edges {
 
     /// The edges with one triangle only.
     pub fn borders(&self) -> Vec<u32> {
-        (0..3 * self.next.len() as u32).filter(|&side| self.is_border(side)).collect()
+        let all = (0..3 * self.next.len() as u32).into_par_iter();
+        all.filter(|&side| self.is_border(side)).collect()
     }
 }
 
@@ -161,7 +168,8 @@ const LONG: usize = 32;
 /// vertex.
 fn sides_by_lower_vertex(triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u32)>) {
     let lower = |[a, b, c]: &[u32; 3]| [*a.min(b), *b.min(c), *c.min(a)];
-    let vertices = triangles.iter().flatten().max().map_or(0, |&highest| highest as usize + 1);
+    let highest = |corners: &[u32; 3]| corners.iter().copied().max().unwrap_or(0);
+    let vertices = triangles.par_iter().map(highest).max().map_or(0, |number| number as usize + 1);
     let (starts, sides) = grouped(triangles.iter().map(lower), triangles.len(), vertices);
     let with_upper = |&side: &u32| (ends(triangles, side)[1], side);
     (starts, sides.par_iter().map(with_upper).collect())

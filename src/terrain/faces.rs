@@ -17,13 +17,24 @@ impl Mesh<'_> {
     /// Corners of a triangle (m).
     #[inline]
     pub fn corners_m(self, triangle: u32) -> [Vec3; 3] {
-        self.triangles[triangle as usize].map(|v| self.vertices_m[v as usize])
+        // written out: as a call of `map` it is left a call in the hot loops
+        let [a, b, c] = self.triangles[triangle as usize];
+        let at = |v: u32| self.vertices_m[v as usize];
+        [at(a), at(b), at(c)]
     }
 
     /// Ends of a side (m), the one with the lower number first.
     #[inline]
     pub fn ends_m(self, side: u32) -> [Vec3; 2] {
-        ends(self.triangles, side).map(|v| self.vertices_m[v as usize])
+        let [a, b] = ends(self.triangles, side);
+        [self.vertices_m[a as usize], self.vertices_m[b as usize]]
+    }
+
+    /// The corner of a side's triangle that is not on the side (m).
+    #[inline]
+    pub(super) fn apex_m(self, side: u32) -> Vec3 {
+        let (corners, k) = (self.triangles[side as usize / 3], side as usize % 3);
+        self.vertices_m[corners[(k + 2) % 3] as usize]
     }
 
     /// The two corners of a triangle that are not `vertex`.

@@ -19,6 +19,8 @@ pub enum Facets {
         points: Vec<Vec3>,
         /// Numbers of the points of each facet.
         corners: Vec<[u32; 3]>,
+        /// No two points are closer (in the file's unit); 0 where that is not known.
+        apart_m: f64,
     },
 }
 
@@ -75,7 +77,11 @@ impl Facets {
     pub fn at(&self, number: usize) -> Facet {
         match self {
             Self::Apart(facets) => facets[number],
-            Self::Shared { points, corners } => corners[number].map(|point| points[point as usize]),
+            Self::Shared { points, corners, .. } => {
+                let [a, b, c] = corners[number];
+                let at = |point: u32| points[point as usize];
+                [at(a), at(b), at(c)]
+            }
         }
     }
 
@@ -93,7 +99,10 @@ impl Facets {
     pub fn push(&mut self, facet: Facet) {
         match self {
             Self::Apart(facets) => facets.push(facet),
-            Self::Shared { points, corners } => add(points, corners, facet),
+            Self::Shared { points, corners, apart_m } => {
+                *apart_m = 0.0;
+                add(points, corners, facet);
+            }
         }
     }
 
@@ -101,7 +110,7 @@ impl Facets {
     pub fn bytes(&self) -> usize {
         match self {
             Self::Apart(facets) => facets.capacity() * size_of::<Facet>(),
-            Self::Shared { points, corners } => {
+            Self::Shared { points, corners, .. } => {
                 points.capacity() * size_of::<Vec3>() + corners.capacity() * size_of::<[u32; 3]>()
             }
         }
@@ -134,7 +143,7 @@ impl Facets {
                 }
                 Ok(Self::Apart(all))
             }
-            Self::Shared { mut points, corners } => {
+            Self::Shared { mut points, corners, mut apart_m } => {
                 let mut all = Vec::with_capacity(corners.len());
                 for (number, whole) in corners.into_iter().enumerate() {
                     let cut = pieces(number, &whole.map(|point| points[point as usize]))?;
@@ -142,10 +151,11 @@ impl Facets {
                         all.push(whole);
                     }
                     for facet in cut {
+                        apart_m = 0.0;
                         add(&mut points, &mut all, facet);
                     }
                 }
-                Ok(Self::Shared { points, corners: all })
+                Ok(Self::Shared { points, corners: all, apart_m })
             }
         }
     }
@@ -164,7 +174,7 @@ mod tests {
     fn shared() -> Facets {
         let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let points = points.map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec();
-        Facets::Shared { points, corners: vec![[0, 1, 2], [0, 2, 3]] }
+        Facets::Shared { points, corners: vec![[0, 1, 2], [0, 2, 3]], apart_m: 1.0 }
     }
 
     /// Both kinds hold the same facets, before and after some are cut and added.

@@ -7,7 +7,7 @@
 
 use super::brims::{Brim, Cone, LEANS};
 use super::edges::{Edges, grouped};
-use super::faces::{Faces, Mesh};
+use super::faces::{Face, Faces, Mesh};
 use crate::rock::Vec3;
 use rayon::iter::{
     IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator,
@@ -16,13 +16,15 @@ use rayon::iter::{
 
 /// Sine of the angle between faces below which an edge is flat (–): rounding of `f64` coordinates, no more.
 const FLAT: f64 = 1e-12;
+/// Sine of an angle above which neither a triangle nor a fold can be the work of rounding (–).
+const FOLDED: f64 = 1e-6;
 /// Sine of the angle between edges below which they say nothing of their corner (–).
 const NEEDLE: f64 = 1e-6;
 /// Corners with more edges are kept as they are: a fan of a thousand would take a billion products.
 const MOST_EDGES: usize = 16;
 /// How many edges and corners can be touched, and how many are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Count {
+pub struct FeatureCount {
     /// Edges that can be touched.
     pub edges: usize,
     /// Flat edges: the faces beside them touch.
@@ -53,7 +55,7 @@ pub struct Features {
     /// Share of the edges that are flat (–, 0..1).
     pub flat_share: f64,
     /// How many are left out.
-    pub count: Count,
+    pub count: FeatureCount,
 }
 
 impl Features {
@@ -182,7 +184,7 @@ impl Features {
         let flat = self.edges.len() - edges;
         let corners = corner.iter().filter(|kept| **kept).count();
         self.flat_share = flat as f64 / self.edges.len().max(1) as f64;
-        self.count = Count {
+        self.count = FeatureCount {
             edges,
             flat_edges: flat,
             corners,
@@ -204,21 +206,25 @@ impl Features {
     /// From where what `owned` says of triangle `t` can be touched.
     fn brim(&self, t: u32, owned: u8, mesh: Mesh) -> Brim {
         let mut brim = Brim::NONE;
+        if owned == 0 {
+            return brim;
+        }
+        let face = self.faces.at(t, mesh);
         for (k, corner) in (0..3).zip(mesh.triangles[t as usize]) {
             if owned & (1 << k) != 0 {
-                brim.add(1 << k, self.edge_cone(3 * t + k, mesh));
+                brim.add(1 << k, self.edge_cone(3 * t + k, &face, mesh));
             }
             if owned & (8 << k) != 0 {
-                brim.add(8 << k, self.corner_cone(corner, t, mesh));
+                brim.add(8 << k, self.corner_cone(corner, &face, mesh));
             }
         }
         brim
     }
 
     /// From where an edge can be touched, seen from the first triangle on it.
-    fn edge_cone(&self, edge: u32, mesh: Mesh) -> Cone {
-        let Some(pair) = self.edges.pair_on(edge) else { return Cone::Anywhere };
-        let [face, beside] = pair.map(|t| self.faces.at(t, mesh));
+    fn edge_cone(&self, edge: u32, face: &Face, mesh: Mesh) -> Cone {
+        let Some([_, beside]) = self.edges.pair_on(edge) else { return Cone::Anywhere };
+        let beside = self.faces.at(beside, mesh);
         if face.is_sliver() || beside.is_sliver() {
             return Cone::Anywhere;
         }
@@ -226,8 +232,7 @@ impl Features {
         Cone::of_edge(&face.n, &face.outward(&ends_m), &beside.outward(&ends_m))
     }
 
-    fn corner_cone(&self, vertex: u32, owner: u32, mesh: Mesh) -> Cone {
-        let face = self.faces.at(owner, mesh);
+    fn corner_cone(&self, vertex: u32, face: &Face, mesh: Mesh) -> Cone {
         let mut along = [Vec3::zeros(); MOST_EDGES];
         let Some(around) = self.edges_along(vertex, mesh, &mut along) else {
             return Cone::Anywhere;
@@ -312,13 +317,28 @@ impl Features {
     }
 
     fn is_flat(&self, edge: u32, mesh: Mesh) -> bool {
-        let Some(pair) = self.edges.pair_on(edge) else { return false };
+        let Some(sides) = self.edges.sides_of_pair(edge) else { return false };
         let ends_m = mesh.ends_m(edge);
-        let [one, other] = pair.map(|t| self.faces.at(t, mesh));
+        if is_folded(&ends_m, &sides.map(|side| mesh.apex_m(side))) {
+            return false;
+        }
+        let [one, other] = sides.map(|side| self.faces.at(side / 3, mesh));
         let [m_one, m_other] = [one, other].map(|face| face.outward(&ends_m));
         // Flat: the other face goes on in the same plane, on the other side of the edge.
         one.n.dot(&m_other).abs() <= FLAT && m_one.dot(&m_other) < 0.0
     }
+}
+
+/// Whether two triangles on an edge, each with its third corner, are folded beyond doubt: told without a root or a division,
+/// which is enough for nearly every edge of a natural slope.
+fn is_folded([a, b]: &[Vec3; 2], [one, other]: &[Vec3; 2]) -> bool {
+    let (along, to, beyond) = (b - a, one - a, other - a);
+    let normal = along.cross(&to);
+    // height of the other corner over the plane: at least this share of its distance from the edge
+    let height = normal.dot(&beyond);
+    let n2 = normal.norm_squared();
+    n2 > FOLDED * FOLDED * along.norm_squared() * to.norm_squared()
+        && height * height > FOLDED * FOLDED * n2 * beyond.norm_squared()
 }
 
 /// Gives corners that are kept to the first triangle on them: bits 3–5.
@@ -329,6 +349,39 @@ fn give_corners(owned: &mut [u8], corner: &mut [bool], triangles: &[[u32; 3]]) {
             if std::mem::take(&mut corner[corners[k] as usize]) {
                 *owned |= 8 << k;
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// What is told to be folded without a root is not flat by the angle either, from blunt to sharp and to slivers.
+        #[test]
+        fn no_flat_edge_is_taken_for_a_fold(
+            length in -2.0..2.0f64, fold in -14.0..0.0f64, at in [-3.0..3.0f64, -3.0..3.0], wide in [-9.0..1.0f64, -9.0..1.0],
+        ) {
+            let [wide, other] = wide.map(|x| 10f64.powf(x));
+            let vertices_m = [
+                Vec3::zeros(),
+                Vec3::new(10f64.powf(length), 0.0, 0.0),
+                Vec3::new(at[0], wide, 0.0),
+                Vec3::new(at[1], -other, other * 10f64.powf(fold)),
+            ];
+            let triangles = [[0, 1, 2], [1, 0, 3]];
+            let mesh = Mesh { vertices_m: &vertices_m, triangles: &triangles };
+            let features = Features::of(&vertices_m, &triangles);
+            let is_folded = is_folded(&mesh.ends_m(0), &[mesh.apex_m(0), mesh.apex_m(3)]);
+            let [one, beside] = [0, 1].map(|t| Face::new(mesh.corners_m(t)));
+            let sine = one.n.dot(&beside.outward(&mesh.ends_m(0))).abs();
+            prop_assert!(!is_folded || sine > FLAT, "sine {sine}");
+            // and nearly everything that is folded is told so
+            let is_blunt = fold < -2.0 || other < 1e-2 || wide < 1e-2;
+            prop_assert!(is_folded || is_blunt);
+            prop_assert_eq!(features.count.flat_edges, usize::from(features.is_flat(0, mesh)));
         }
     }
 }

@@ -3,7 +3,11 @@
 use super::faces::Face;
 use super::index::below;
 use crate::rock::Vec3;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
+/// Shares of the triangles that are looked at beside each other, each with cells of its own, and the fewest triangles in one.
+const SHARES: usize = 16;
+const LEAST_SHARE: usize = 1 << 16;
 /// Cells a triangle, and their least and largest number.
 const CELLS: usize = 4;
 const LEAST_CELLS: usize = 64;
@@ -14,7 +18,7 @@ const WIDER: f64 = 1e-9;
 const UPRIGHT: f64 = 1e-3;
 
 /// Square cells over the map, each with a height (m, local) that no slope triangle in it lies below.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Floor {
     west_m: f64,
     south_m: f64,
@@ -25,9 +29,9 @@ pub struct Floor {
 }
 
 impl Floor {
-    /// Of the faces that are ground, in the box from `lo` to `hi`.
+    /// Of the first `triangles` faces, where they are ground, in the box from `lo` to `hi`.
     pub fn of(
-        ground: impl Iterator<Item = Face>,
+        ground: impl Fn(u32) -> Option<Face> + Sync,
         triangles: usize,
         (lo, hi): (Vec3, Vec3),
     ) -> Self {
@@ -36,13 +40,32 @@ impl Floor {
         let longest = size.max();
         let cell_m = (size.x * size.y / cells as f64).sqrt().max(longest / cells as f64);
         let [columns, rows] = [size.x, size.y].map(|length| (length / cell_m) as usize + 1);
-        let low_m = vec![f32::INFINITY; columns * rows];
-        let mut floor =
-            Self { west_m: lo.x, south_m: lo.y, per_m: 1.0 / cell_m, columns, rows, low_m };
-        for face in ground {
-            floor.lower_to(&face, WIDER * longest);
+        let empty = Self {
+            west_m: lo.x,
+            south_m: lo.y,
+            per_m: 1.0 / cell_m,
+            columns,
+            rows,
+            low_m: vec![f32::INFINITY; columns * rows],
+        };
+        let share = triangles.div_ceil(SHARES).max(LEAST_SHARE);
+        let shares = (0..triangles.div_ceil(share)).into_par_iter().map(|number| {
+            let mut floor = empty.clone();
+            let of_share = number * share..triangles.min((number + 1) * share);
+            for face in of_share.filter_map(|t| ground(t as u32)) {
+                floor.lower_to(&face, WIDER * longest);
+            }
+            floor
+        });
+        shares.reduce(|| empty.clone(), Self::lower)
+    }
+
+    /// The lower one of two, cell by cell.
+    fn lower(mut self, other: Self) -> Self {
+        for (low, other) in self.low_m.iter_mut().zip(other.low_m) {
+            *low = low.min(other);
         }
-        floor
+        self
     }
 
     /// A height that the slope at (x, y) is not below (m); infinite where there is none.
@@ -84,6 +107,37 @@ impl Floor {
                 let known = &mut self.low_m[row * self.columns + column];
                 *known = known.min(below(low - wider));
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::terrain::make;
+
+    /// Shares of the triangles give the floor that one after the other gives, and no ground lies under it.
+    #[test]
+    fn shares_change_no_height() {
+        let facets = make::natural_slope(300, 300).facets;
+        let faces: Vec<Face> = facets.iter().map(|&facet| Face::new(facet)).collect();
+        assert!(faces.len() > 2 * LEAST_SHARE);
+        let corners = || facets.iter().flatten();
+        let first = facets[0][0];
+        let low = corners().fold(first, |low, corner| low.inf(corner));
+        let high = corners().fold(first, |high, corner| high.sup(corner));
+        let ground = |t: u32| (!t.is_multiple_of(9)).then(|| faces[t as usize]);
+        let floor = Floor::of(ground, faces.len(), (low, high));
+        let mut one_by_one =
+            Floor { low_m: vec![f32::INFINITY; floor.low_m.len()], ..floor.clone() };
+        let longest = (high - low).xy().max();
+        (0..faces.len() as u32)
+            .filter_map(ground)
+            .for_each(|face| one_by_one.lower_to(&face, WIDER * longest));
+        assert!(floor.low_m == one_by_one.low_m);
+        for face in (0..faces.len() as u32).filter_map(ground) {
+            let middle = face.a + (face.e1 + face.e2) / 3.0;
+            assert!(floor.under(middle.x, middle.y) <= middle.z);
         }
     }
 }

@@ -17,7 +17,7 @@ use super::geotiff;
 use super::grid::{self, Grid};
 use super::make;
 pub use super::options::{Crop, Options};
-use super::options::{Source, wider};
+use super::options::{MeshSource, wider};
 use super::stl::{self, Facet, Format, Soup};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
@@ -29,11 +29,11 @@ pub(super) enum Loaded {
     /// Triangles, in coordinates of the file.
     Mesh(Soup),
     /// Heights, in map coordinates.
-    Grid(Heights),
+    Grid(ElevationModel),
     /// Was one of the others, of which no rock reaches anything.
     Unreached(Format),
     /// Trees, in map coordinates.
-    Trees(make::List),
+    Trees(make::TreeList),
     /// Ground points, in map coordinates.
     #[cfg(feature = "cloud")]
     Cloud(cloud::Cloud),
@@ -44,7 +44,7 @@ pub(super) enum Loaded {
 
 /// An elevation model.
 #[derive(Debug)]
-pub(super) struct Heights {
+pub(super) struct ElevationModel {
     grid: Grid,
     format: Format,
     epsg: Option<u32>,
@@ -54,7 +54,7 @@ pub(super) struct Heights {
     joined: usize,
 }
 
-impl Heights {
+impl ElevationModel {
     fn of(grid: Grid, format: Format, epsg: Option<u32>) -> Loaded {
         Loaded::Grid(Self { grid, format, epsg, notes: Vec::new(), joined: 0 })
     }
@@ -92,9 +92,13 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
                 None
             };
             let geotiff::Raster { grid, epsg } = geotiff::read(path, window, options.epsg)?;
-            Ok(Heights::of(grid, Format::GeoTiff, epsg))
+            Ok(ElevationModel::of(grid, Format::GeoTiff, epsg))
         }
-        Some(Format::AsciiGrid) => Ok(Heights::of(Grid::read(path)?, Format::AsciiGrid, None)),
+        Some(Format::AsciiGrid) => {
+            let grid = Grid::read(path)?;
+            grid.check_cells(path, options.epsg)?;
+            Ok(ElevationModel::of(grid, Format::AsciiGrid, None))
+        }
         Some(Format::Ply) => ply::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Obj) => obj::parse(&whole()?, path).map(Loaded::Mesh),
         Some(Format::Cloud) => read_cloud(path, options),
@@ -110,9 +114,33 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
                     "write it under [[trees]] file, or as zones, lines, barriers or ground_zones";
                 return Err(wrong(path, "start", "found a drawing or a list of trees", remedy));
             }
+            let is_named_stl = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("stl"));
+            let length = std::fs::metadata(path).map_err(Error::file("read", path))?.len();
+            if !is_named_stl && !stl::may_be_stl(&head, length) && !stl::is_of_other_kind(&head) {
+                return Err(unknown(path, &head));
+            }
             stl::read(path).map(Loaded::Mesh)
         }
     }
+}
+
+/// Why a file of no format that is read is refused.
+fn unknown(path: &Path, head: &[u8]) -> Error {
+    let name = path.display();
+    let line = head.split(|&byte| byte == b'\n').find(|line| !line.trim_ascii().is_empty());
+    let line = String::from_utf8_lossy(line.unwrap_or_default());
+    let mut words = line.split([' ', '\t', ',', ';', '\r']).filter(|word| !word.is_empty());
+    let is_list = words.clone().count() >= 3 && words.all(|word| word.parse::<f64>().is_ok());
+    if is_list {
+        let remedy = format!(
+            "make an elevation model of it: gdal_translate -of GTiff {name} out.tif for points on a grid, gdal_grid for others"
+        );
+        return wrong(path, "start", "found a list of points", &remedy);
+    }
+    let remedy = format!(
+        "write GeoTIFF, ESRI ASCII grid, STL, PLY, OBJ, LAS or LAZ; from what else GDAL reads: gdal_translate -of GTiff {name} out.tif"
+    );
+    wrong(path, "start", "found none of the formats that are read", &remedy)
 }
 
 /// Reads an elevation model: `GeoTIFF` or ESRI ASCII grid.
@@ -139,13 +167,13 @@ fn read_cloud(path: &Path, _: &Options) -> Result<Loaded> {
 
 /// Joins what must be one before it is cropped and cut: tiles of a point cloud. Grids are joined later, cell by cell.
 #[cfg(feature = "cloud")]
-pub(super) fn join_tiles(all: &mut [Loaded], sources: &[Source]) -> Result<()> {
+pub(super) fn join_tiles(all: &mut [Loaded], sources: &[MeshSource]) -> Result<()> {
     cloud_tiles::join(all, sources)
 }
 
 #[cfg(not(feature = "cloud"))]
 #[expect(clippy::unnecessary_wraps, reason = "with clouds it can fail")]
-pub(super) fn join_tiles(_: &mut [Loaded], _: &[Source]) -> Result<()> {
+pub(super) fn join_tiles(_: &mut [Loaded], _: &[MeshSource]) -> Result<()> {
     Ok(())
 }
 

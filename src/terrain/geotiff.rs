@@ -11,8 +11,8 @@ pub use write::{Image, encode};
 
 use crate::error::{Error, Result};
 use crate::terrain::grid::{self, Grid};
-use lzw::Packed;
-use place::Place;
+use lzw::PackedParts;
+use place::ImagePlacement;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
@@ -29,6 +29,8 @@ pub(crate) mod tag {
     pub(crate) const GDAL_NODATA: u16 = 42_113;
 }
 
+/// Stands in cells without a value, in GeoTIFF and ASCII grids alike.
+pub const NO_DATA: f32 = -9999.0;
 /// Heights below this (m) are no terrain but a number for "no data" that the file does not declare; the deepest dry place
 /// of the Earth is 430 m below the sea, the deepest sea 11 000 m.
 const LOWEST_M: f64 = -12_000.0;
@@ -79,7 +81,7 @@ pub fn parse<R: Read + Seek>(
     limits.ifd_value_size = usize::try_from(length).unwrap_or(usize::MAX);
     let mut decoder = Decoder::new(reader).map_err(broken)?.with_limits(limits);
     let (width, height) = decoder.dimensions().map_err(broken)?;
-    let place = Place::read(&mut decoder, file, epsg)?;
+    let place = ImagePlacement::read(&mut decoder, file, epsg)?;
     one_band(&mut decoder, file)?;
     if u64::from(width) * u64::from(height) > most {
         let found = format!("{width} x {height} cells in {length} bytes");
@@ -90,7 +92,7 @@ pub fn parse<R: Read + Seek>(
     if box_m.is_some() && (window[2] < 2 || window[3] < 2) {
         return Err(grid::nothing_there(file, place.outline((width, height))));
     }
-    let mut heights = Heights::over(window, most);
+    let mut heights = WindowHeights::over(window, most);
     heights.fill(&mut decoder, (width, height), &place, file)?;
     let grid = place.grid(heights.window, heights.values);
     Ok(Raster { grid, epsg: place.epsg })
@@ -100,14 +102,14 @@ pub fn parse<R: Read + Seek>(
 type Window = [u32; 4];
 
 /// The heights of a window, the first row of the file first.
-struct Heights {
+struct WindowHeights {
     window: Window,
     values: Vec<Option<f64>>,
     /// More than the file can hold.
     most_cells: u64,
 }
 
-impl Heights {
+impl WindowHeights {
     fn over(window: Window, most_cells: u64) -> Self {
         let [_, _, columns, rows] = window;
         let values = vec![None; columns as usize * rows as usize];
@@ -119,7 +121,7 @@ impl Heights {
         &mut self,
         decoder: &mut Decoder<R>,
         (width, height): (u32, u32),
-        place: &Place,
+        place: &ImagePlacement,
         file: &Path,
     ) -> Result<()> {
         let [first_column, first_row, columns, rows] = self.window;
@@ -138,7 +140,7 @@ impl Heights {
             return Ok(());
         }
         let lengths = chunk_lengths(decoder);
-        let packed = Packed::of(decoder).map_err(|why| damaged(file, &why))?;
+        let packed = PackedParts::of(decoder).map_err(|why| damaged(file, &why))?;
         let across = width.div_ceil(wide);
         for down in first_row / high..=(first_row + rows - 1) / high {
             for along in first_column / wide..=(first_column + columns - 1) / wide {
@@ -168,7 +170,7 @@ impl Heights {
         &mut self,
         decoded: &DecodingResult,
         (corner, [wide, high], row_samples): ([u32; 2], [u32; 2], u32),
-        place: &Place,
+        place: &ImagePlacement,
         file: &Path,
     ) -> Result<()> {
         let value = sample(decoded);

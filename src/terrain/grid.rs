@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_MESH};
+use crate::gis::FARTHEST_M;
 use crate::rock::Vec3;
 use crate::terrain::facets::{Facet, Facets};
 use lattice::Lattice;
@@ -27,10 +28,11 @@ pub struct Grid {
 const SMALLEST_CELL_M: f64 = 1e-3;
 /// Sides of cells that a slope may have (m).
 const LARGEST_CELL_M: f64 = 1e5;
-/// Coordinates farther out (m) are no place on Earth.
-const FARTHEST_M: f64 = 1e8;
 /// Heights beyond this (m) are no height on Earth.
 const HIGHEST_M: f64 = 1e5;
+
+/// Share of a cell (–) that rounding of its place can never reach: 1e-5 of the smallest cell at the farthest place.
+const ROUNDING_OF_CELL: f64 = 1e-3;
 
 /// Number written for "no data".
 const NODATA: f64 = -9999.0;
@@ -77,7 +79,12 @@ impl Grid {
             let z = self.value(column, self.rows - 1 - row_from_south)?;
             Some(self.centre_around(column, row_from_south, map_origin_m, z))
         };
-        Lattice::of(self.columns, self.rows, point).cut(|_, _| true)
+        Lattice::of(self.columns, self.rows, point).cut(self.apart_m(), |_, _| true)
+    }
+
+    /// Cell centres around any origin are farther apart than this (m): by a cell, less what rounding can take.
+    fn apart_m(&self) -> f64 {
+        (1.0 - ROUNDING_OF_CELL) * self.cell_m
     }
 
     /// A cell's centre at the height `z_m` of the map, around `map_origin_m`.
@@ -92,6 +99,23 @@ impl Grid {
         let [x, y] = [(corner_m[0], column), (corner_m[1], row_from_south)]
             .map(|(corner, cells)| corner + (cells as f64 + 0.5) * self.cell_m);
         Vec3::new(x, y, z_m - map_origin_m.z)
+    }
+
+    /// Refuses cells of no size that a terrain has, as those of a grid in degrees; `epsg` is the scene's code.
+    pub(super) fn check_cells(&self, file: &Path, epsg: Option<u32>) -> Result<()> {
+        if self.cell_m >= SMALLEST_CELL_M {
+            return Ok(());
+        }
+        let [x, y] = self.corner_m;
+        let is_degrees = x.abs() <= 360.0 && y.abs() <= 90.0;
+        let why = if is_degrees { ", like longitude and latitude" } else { "" };
+        let found = format!("found cells of {} at ({x}, {y}){why}", self.cell_m);
+        let code = epsg.map_or_else(|| "CODE".to_owned(), |code| code.to_string());
+        let remedy = format!(
+            "write it in metres: gdalwarp -s_srs EPSG:4326 -t_srs EPSG:{code} -tr 1 1 -r bilinear {} out.tif",
+            file.display()
+        );
+        Err(Error::input(file, "cellsize", found, remedy))
     }
 
     /// Whether it can be a slope: cells and heights of this world, and at least one triangle.
@@ -319,7 +343,7 @@ pub use lattice::triangulate;
 pub(super) use mosaic::Standing;
 
 #[cfg(feature = "cloud")]
-pub(super) use window::distance;
+pub(super) use window::{BoxM, distance};
 
 #[cfg(test)]
 mod tests;

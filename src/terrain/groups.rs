@@ -1,5 +1,11 @@
 //! Which of many things hang together.
 
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use rayon::slice::ParallelSliceMut;
+
+/// Things that one thread joins among themselves: of a lattice of triangles, forty rows of a large tile.
+const SHARE: u32 = 1 << 18;
+
 /// Things 0..n in groups that grow together (union–find with path halving; the lowest member stands for its group).
 #[derive(Debug)]
 pub(super) struct Groups {
@@ -10,6 +16,34 @@ impl Groups {
     /// Every thing alone.
     pub(super) fn of(count: usize) -> Self {
         Self { parent: (0..count as u32).collect() }
+    }
+
+    /// Things that are joined with those beside them; shares of near numbers are joined on all threads.
+    pub(super) fn joined<I: Iterator<Item = u32>>(
+        count: usize,
+        beside: impl Fn(u32) -> I + Sync,
+    ) -> Self {
+        let mut groups = Self::of(count);
+        let share_of = |thing: u32| thing / SHARE;
+        groups.parent.par_chunks_mut(SHARE as usize).enumerate().for_each(|(share, parents)| {
+            let share = share as u32;
+            let mut own = Self::of(parents.len());
+            for thing in 0..parents.len() as u32 {
+                let inside =
+                    beside(share * SHARE + thing).filter(|&other| share_of(other) == share);
+                inside.for_each(|other| own.join(thing, other % SHARE));
+            }
+            for (parent, own) in parents.iter_mut().zip(own.parent) {
+                *parent = share * SHARE + own;
+            }
+        });
+        let leaves_its_share =
+            |&thing: &u32| beside(thing).any(|other| share_of(other) != share_of(thing));
+        let seams: Vec<u32> = (0..count as u32).into_par_iter().filter(leaves_its_share).collect();
+        for thing in seams {
+            beside(thing).for_each(|other| groups.join(thing, other));
+        }
+        groups
     }
 
     /// The lowest member of a thing's group.
@@ -36,5 +70,27 @@ impl Groups {
         }
         sizes.retain(|&size| size > 0);
         sizes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Groups joined share by share are those joined one after the other, however far the neighbours are in number.
+    #[test]
+    fn shares_change_no_group() {
+        let count = 5 * SHARE as usize / 2;
+        let beside = |thing: u32| {
+            let near = (!thing.is_multiple_of(7) && thing > 0).then(|| thing - 1);
+            let far = (thing.is_multiple_of(1001)).then(|| (thing as usize * 31 % count) as u32);
+            near.into_iter().chain(far)
+        };
+        let mut one_by_one = Groups::of(count);
+        (0..count as u32).for_each(|t| beside(t).for_each(|other| one_by_one.join(t, other)));
+        let mut joined = Groups::joined(count, beside);
+        assert!((0..count as u32).all(|t| joined.lowest(t) == one_by_one.lowest(t)));
+        let sizes = joined.sizes();
+        assert!(sizes == one_by_one.sizes() && sizes.len() > 1000 && sizes.iter().any(|&n| n > 7));
     }
 }

@@ -95,6 +95,7 @@ impl Health {
     /// Examines a welded terrain; `files` is what there is to say of what it was welded from.
     pub(super) fn with_files(welded: &Welded, files: Vec<FileHealth>) -> Self {
         let edges = &welded.edges;
+        let odd = measure::odd_edges(welded);
         let [low_m, high_m] = measure::box_m(welded);
         Self {
             files,
@@ -107,11 +108,11 @@ impl Health {
             zero_area: welded.zero_area.clone(),
             duplicates: welded.duplicates.clone(),
             needles: measure::needles(welded),
-            non_manifold_edges: measure::edges(welded, |edge| edges.count_on(edge) > 2),
-            border_edges: measure::edges(welded, |edge| edges.is_border(edge)),
+            non_manifold_edges: odd.non_manifold,
+            border_edges: odd.borders,
             border_loops: measure::border_loops(welded),
             t_junctions: measure::t_junctions(welded),
-            flipped_edges: measure::edges(welded, |edge| measure::is_flipped(welded, edge)),
+            flipped_edges: odd.flipped,
             parts: measure::parts(welded),
             low_m,
             high_m,

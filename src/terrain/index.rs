@@ -5,6 +5,7 @@
 //! are renumbered in tree order, so that neighbours in space are neighbours in memory.
 
 mod build;
+mod runs;
 
 pub(super) use build::Sizes;
 
@@ -28,7 +29,7 @@ const WIDE: usize = 4;
 /// Up to four child boxes (m, rounded outwards) and where the children are.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub struct Node {
+pub struct BvhNode {
     /// Lower corners, axis by axis: all four boxes are tested at once.
     pub lo: [f32x4; 3],
     /// Upper corners.
@@ -57,7 +58,7 @@ impl Child {
     }
 }
 
-impl Node {
+impl BvhNode {
     /// Without children: boxes that nothing ever meets.
     const EMPTY: Self = Self {
         lo: [f32x4::new([f32::MAX; WIDE]); 3],
@@ -105,7 +106,7 @@ impl Node {
 /// The packed tree. Triangle numbers are positions in the order that its construction returns.
 #[derive(Debug, Default)]
 pub struct Index {
-    nodes: Vec<Node>,
+    nodes: Vec<BvhNode>,
     lo: Vec3,
     hi: Vec3,
 }
@@ -119,7 +120,7 @@ pub const WAITING: usize = (WIDE - 1) * DEPTH + 1;
 impl Index {
     /// The nodes; the first is the root. Empty when there is no triangle.
     #[inline]
-    pub fn nodes(&self) -> &[Node] {
+    pub fn nodes(&self) -> &[BvhNode] {
         &self.nodes
     }
 

@@ -13,7 +13,7 @@ mod tests;
 mod valley;
 
 pub(super) use forest::begins_like_list;
-pub use forest::{List, plant, read_list};
+pub use forest::{TreeList, plant, read_list};
 pub use shapes::{containers, jittered_plane, ridge, stairs, tetrahedron, v_groove};
 pub use slopes::{Slope, natural_slope, paper_slope, quick_slope};
 pub use stems::{Stem, square_stem, stem};

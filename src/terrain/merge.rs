@@ -18,7 +18,7 @@ const SHIFT: f64 = 0.381_966;
 const SLACK: f64 = 1e-4;
 
 /// Ends a chain of points.
-const NONE: u32 = u32::MAX;
+const END_OF_CHAIN: u32 = u32::MAX;
 
 /// Gives every point the number of the first kept point within the tolerance, or keeps it.
 ///
@@ -28,7 +28,9 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Merger {
     tolerance_m: f64,
     cell_m: f64,
-    /// First kept point of each bucket of cells.
+    /// How many buckets there are once a point is looked for.
+    buckets: usize,
+    /// First kept point of each bucket of cells; none before a point is looked for.
     heads: Vec<u32>,
     /// Next kept point in the same bucket.
     next: Vec<u32>,
@@ -42,19 +44,41 @@ impl Merger {
             (CELL_OF_TOLERANCE * tolerance_m).max(CELL_OF_SIZE * size_m).max(SMALLEST_CELL_M);
         // A closed fan of triangles uses each vertex about six times: one bucket for three uses.
         let buckets = (points / 3).next_power_of_two().max(2);
-        let kept_m = Vec::with_capacity(points / 6 + points / 100);
-        Self { tolerance_m, cell_m, heads: vec![NONE; buckets], next: Vec::new(), kept_m }
+        Self {
+            tolerance_m,
+            cell_m,
+            buckets,
+            heads: Vec::new(),
+            next: Vec::new(),
+            kept_m: Vec::new(),
+        }
     }
 
-    /// The number of the kept point that stands for `point_m`.
+    /// The first points, which are known to be farther apart than the tolerance: each is kept.
+    pub(super) fn keep_apart(&mut self, points_m: Vec<Vec3>) {
+        debug_assert!(self.kept_m.is_empty() && self.heads.is_empty());
+        self.kept_m = points_m;
+    }
+
+    /// Makes room for looking for points, and sorts in those that were kept before.
+    pub(super) fn open(&mut self) {
+        if !self.heads.is_empty() {
+            return;
+        }
+        self.heads = vec![END_OF_CHAIN; self.buckets];
+        for number in 0..self.kept_m.len() as u32 {
+            let bucket = self.bucket(self.place(self.kept_m[number as usize]).0);
+            self.next.push(std::mem::replace(&mut self.heads[bucket], number));
+        }
+    }
+
+    /// The number of the kept point that stands for `point_m`; the buckets must be open.
     pub(super) fn number_of(&mut self, point_m: Vec3) -> u32 {
-        let at = point_m / self.cell_m + Vec3::repeat(SHIFT);
-        let home = at.map(f64::floor);
-        let cell = [home.x as i64, home.y as i64, home.z as i64];
+        let (cell, inside) = self.place(point_m);
         if let Some(number) = self.first_within(cell, point_m, 0.0) {
             return number;
         }
-        let near = self.nearest_neighbour_cells(&(at - home));
+        let near = self.nearest_neighbour_cells(&inside);
         match self.first_around(cell, near, point_m) {
             Some(number) => number,
             None => self.keep(cell, point_m),
@@ -71,6 +95,13 @@ impl Merger {
         // a lattice has a few more points than half its triangles: room for twice as many would stay
         self.kept_m.shrink_to_fit();
         self.kept_m
+    }
+
+    /// The cell of a point, and where it lies in it (0..1).
+    fn place(&self, point_m: Vec3) -> ([i64; 3], Vec3) {
+        let at = point_m / self.cell_m + Vec3::repeat(SHIFT);
+        let home = at.map(f64::floor);
+        ([home.x as i64, home.y as i64, home.z as i64], at - home)
     }
 
     /// For each axis the side (−1, 0, +1) on which the next cell is within the tolerance of a point at `inside`
@@ -98,7 +129,7 @@ impl Merger {
         let mut found = None;
         let mut number = self.heads[self.bucket(cell)];
         // Newer points stand first in a chain, so the last match is the earliest.
-        while number != NONE {
+        while number != END_OF_CHAIN {
             if (self.kept_m[number as usize] - point_m).norm_squared() <= reach_m * reach_m {
                 found = Some(number);
             }

@@ -39,7 +39,7 @@ pub(super) fn wider([west, south, east, north]: [f64; 4], margin_m: f64) -> [f64
 
 /// One file and how it enters the terrain.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Source {
+pub struct MeshSource {
     /// The file, its ground, and whether it is a tree.
     pub sheet: Sheet,
     /// Its up axis.
@@ -50,7 +50,7 @@ pub struct Source {
     pub options: Option<Options>,
 }
 
-impl Source {
+impl MeshSource {
     /// An STL file as it stands: z up, metres.
     pub fn stl(sheet: Sheet) -> Self {
         Self { sheet, up: Up::Z, scale: 1.0, options: None }

@@ -14,13 +14,11 @@ mod tests;
 use super::facets::Facet;
 use super::stl::Soup;
 use crate::error::{Error, Result};
+pub use crate::gis::Corner;
 use crate::math;
 use crate::rock::Vec3;
 use borders::Borders;
 use cut::cut;
-
-/// A point of the map (m).
-pub type Corner = [f64; 2];
 
 /// One zone.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,13 +64,13 @@ pub struct Patched {
 
 /// Lays zones on one file after the other.
 #[derive(Debug)]
-pub(super) struct Layer {
+pub(super) struct ZonePainter {
     borders: Borders,
     /// What has been done so far.
     pub(super) done: Patched,
 }
 
-impl Layer {
+impl ZonePainter {
     pub(super) fn new(patches: &Patches) -> Self {
         let done = Patched { zones: patches.list.len(), is_cut: patches.cut, ..Patched::default() };
         Self { borders: Borders::of(&patches.list), done }

@@ -3,10 +3,10 @@
 use super::formats::surface::{self, starts};
 use super::formats::{self, Loaded};
 use super::health::{FileHealth, Health};
-use super::make::{self, List};
+use super::make::{self, TreeList};
+pub use super::options::MeshSource;
 use super::options::Options;
-pub use super::options::Source;
-use super::patches::{Layer, Patched, Patches};
+use super::patches::{Patched, Patches, ZonePainter};
 use super::stl::{self, Format, Soup};
 use super::weld::{self, Piece, Up, weld};
 use super::{Sheet, Terrain};
@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use std::path::Path;
 
-impl Source {
+impl MeshSource {
     fn load(&self) -> Result<Loaded> {
         let path = &self.sheet.path;
         let Some(options) = &self.options else { return stl::read(path).map(Loaded::Mesh) };
@@ -55,7 +55,7 @@ impl Terrain {
     /// A file that cannot be read or is of no known format, no triangle with an area, coordinates too large for a
     /// binary file, coordinate systems that differ.
     pub fn read(
-        sources: &[Source],
+        sources: &[MeshSource],
         map_origin_m: Vec3,
         tolerance_m: Option<f64>,
     ) -> Result<(Self, Health)> {
@@ -67,7 +67,7 @@ impl Terrain {
     /// # Errors
     /// As [`Terrain::read`].
     pub fn read_patched(
-        sources: &[Source],
+        sources: &[MeshSource],
         map_origin_m: Vec3,
         tolerance_m: Option<f64>,
         patches: &Patches,
@@ -105,7 +105,7 @@ struct Laid {
 
 fn lay(
     patches: &Patches,
-    sources: &[Source],
+    sources: &[MeshSource],
     soups: &mut [Soup],
     map_origin_m: Vec3,
 ) -> Result<Laid> {
@@ -114,7 +114,7 @@ fn lay(
     if patches.is_empty() {
         return Ok(Laid { sheets, sheet_of_facet, patched: None });
     }
-    let mut layer = Layer::new(patches);
+    let mut layer = ZonePainter::new(patches);
     for (number, source) in sources.iter().enumerate().filter(|(_, s)| !s.sheet.is_tree) {
         let placed = |point: Vec3| source.placed(point) + map_origin_m;
         let grounds = layer.lay(&mut soups[number], source.sheet.ground, &placed)?;
@@ -124,7 +124,7 @@ fn lay(
 }
 
 /// The files as they enter the mesh.
-fn pieces<'a>(sources: &'a [Source], soups: &'a [Soup]) -> impl Iterator<Item = Piece<'a>> {
+fn pieces<'a>(sources: &'a [MeshSource], soups: &'a [Soup]) -> impl Iterator<Item = Piece<'a>> {
     (0..).zip(sources.iter().zip(soups)).map(|(sheet, (source, soup))| Piece {
         file: &source.sheet.path,
         soup,
@@ -135,10 +135,15 @@ fn pieces<'a>(sources: &'a [Source], soups: &'a [Soup]) -> impl Iterator<Item = 
 }
 
 /// Lists of trees, with the number of their source.
-type Lists = Vec<(usize, List)>;
+type Lists = Vec<(usize, TreeList)>;
 
 /// Turns lists of trees into stems that stand on the slope.
-fn stand(lists: &Lists, sources: &[Source], soups: &mut [Soup], map_origin_m: Vec3) -> Result<()> {
+fn stand(
+    lists: &Lists,
+    sources: &[MeshSource],
+    soups: &mut [Soup],
+    map_origin_m: Vec3,
+) -> Result<()> {
     if lists.is_empty() {
         return Ok(());
     }
@@ -156,20 +161,20 @@ fn stand(lists: &Lists, sources: &[Source], soups: &mut [Soup], map_origin_m: Ve
 }
 
 /// All files as triangles, and lists of trees apart. What one file may be cropped to depends on the heights of all.
-fn read_soups(sources: &[Source], map_origin_m: Vec3) -> Result<(Vec<Soup>, Lists)> {
-    let mut loaded: Vec<Loaded> = sources.iter().map(Source::load).collect::<Result<_>>()?;
+fn read_soups(sources: &[MeshSource], map_origin_m: Vec3) -> Result<(Vec<Soup>, Lists)> {
+    let mut loaded: Vec<Loaded> = sources.iter().map(MeshSource::load).collect::<Result<_>>()?;
     formats::join_tiles(&mut loaded, sources)?;
     let none = Options::default();
-    let asked = |source: &Source| source.options.clone().unwrap_or_else(|| none.clone());
+    let asked = |source: &MeshSource| source.options.clone().unwrap_or_else(|| none.clone());
     let starts: Vec<_> = sources.iter().map(|source| starts(&asked(source), &loaded)).collect();
-    let used = |((source, loaded), starts): ((&Source, Loaded), &_)| {
+    let used = |((source, loaded), starts): ((&MeshSource, Loaded), &_)| {
         loaded.used(&source.sheet.path, &asked(source), starts)
     };
     let mut used: Vec<Loaded> =
         sources.iter().zip(loaded).zip(&starts).map(used).collect::<Result<_>>()?;
     let files: Vec<&Path> = sources.iter().map(|source| source.sheet.path.as_path()).collect();
     let is_unreached =
-        |(loaded, source): &(&Loaded, &Source)| source.sheet.is_tree || loaded.is_left_out();
+        |(loaded, source): &(&Loaded, &MeshSource)| source.sheet.is_tree || loaded.is_left_out();
     if let Some(first) =
         files.first().filter(|_| used.iter().zip(sources).all(|s| is_unreached(&s)))
     {
@@ -189,7 +194,7 @@ fn read_soups(sources: &[Source], map_origin_m: Vec3) -> Result<(Vec<Soup>, List
 }
 
 /// The EPSG code that the files name: of all the same one, and the scene's if that has one.
-fn one_system(sources: &[Source], soups: &[Soup]) -> Result<Option<u32>> {
+fn one_system(sources: &[MeshSource], soups: &[Soup]) -> Result<Option<u32>> {
     let mut known: Option<(u32, String)> = None;
     for (source, soup) in sources.iter().zip(soups) {
         let Some(code) = soup.epsg else { continue };
@@ -232,7 +237,7 @@ fn sheets_of(sheets: &mut Vec<Sheet>, number: usize, grounds: &[u16]) -> Result<
     Ok(grounds.iter().map(|ground| sheet(ground) as u16).collect())
 }
 
-impl Source {
+impl MeshSource {
     /// A point of the file in metres, z up.
     fn placed(&self, point: Vec3) -> Vec3 {
         self.up.turned(point) * self.scale

@@ -17,13 +17,13 @@ pub(crate) struct Seen<'a> {
 }
 
 /// Squares computed here are right to this (–, relative).
-const ROUNDING: f64 = 1e-9;
+const SQUARE_ROUNDING: f64 = 1e-9;
 
 impl<'a> Seen<'a> {
     /// `None` if the foot of a centre at `height` is more than `beside` (both m) beyond a side.
     #[inline]
     pub(crate) fn of(face: &'a Face, to: Vec3, (height, beside): (f64, f64)) -> Option<Self> {
-        let most2 = beside * beside * (1.0 + ROUNDING);
+        let most2 = beside * beside * (1.0 + SQUARE_ROUNDING);
         let is_out = |beyond: f64, length2: f64| beyond > 0.0 && beyond * beyond > most2 * length2;
         // (side × n) · to, with one cross product for the two sides at the first corner
         let across = face.n.cross(&to);
@@ -48,7 +48,7 @@ impl<'a> Seen<'a> {
     /// Whether the foot is nowhere more than `near` (m) beyond a side.
     #[inline]
     pub(crate) fn is_within(&self, near: f64) -> bool {
-        let near2 = near * near * (1.0 + ROUNDING);
+        let near2 = near * near * (1.0 + SQUARE_ROUNDING);
         (0..3).all(|k| self.beyond[k] <= 0.0 || self.beyond[k].powi(2) <= near2 * self.length2[k])
     }
 
@@ -72,10 +72,10 @@ impl<'a> Seen<'a> {
             let along = self.along(k);
             -along.min(length2 - along)
         };
-        let near2 = near * near * length2 * (1.0 + ROUNDING);
-        let far2 = (reach * reach * (1.0 + ROUNDING) - self.height * self.height) * length2;
+        let near2 = near * near * length2 * (1.0 + SQUARE_ROUNDING);
+        let far2 = (reach * reach * (1.0 + SQUARE_ROUNDING) - self.height * self.height) * length2;
         (beyond >= 0.0 || beyond * beyond <= near2)
-            && beyond * beyond <= far2 * (1.0 + ROUNDING)
+            && beyond * beyond <= far2 * (1.0 + SQUARE_ROUNDING)
             && (past <= 0.0 || past * past <= near2)
     }
 
@@ -84,9 +84,10 @@ impl<'a> Seen<'a> {
     #[inline]
     pub(crate) fn may_press_edge(&self, k: usize, (near, reach): (f64, f64)) -> bool {
         let (beyond, length2) = (self.beyond[k], self.length2[k]);
-        let near2 = near * near * length2 * (1.0 + ROUNDING);
-        let far2 = (reach * reach * (1.0 + ROUNDING) - self.height * self.height) * length2;
-        (beyond <= 0.0 || beyond * beyond <= near2) && beyond * beyond <= far2 * (1.0 + ROUNDING)
+        let near2 = near * near * length2 * (1.0 + SQUARE_ROUNDING);
+        let far2 = (reach * reach * (1.0 + SQUARE_ROUNDING) - self.height * self.height) * length2;
+        (beyond <= 0.0 || beyond * beyond <= near2)
+            && beyond * beyond <= far2 * (1.0 + SQUARE_ROUNDING)
     }
 
     /// Whether the centre, moved by up to `near`, can be behind both sides at corner `k` and no further than `reach` (m)
@@ -97,7 +98,7 @@ impl<'a> Seen<'a> {
         let sides = [(k, self.along(k)), (before, self.length2[before] - self.along(before))];
         sides.into_iter().all(|(side, ahead)| {
             let most = if ahead > 0.0 { near } else { reach };
-            ahead * ahead <= most * most * self.length2[side] * (1.0 + ROUNDING)
+            ahead * ahead <= most * most * self.length2[side] * (1.0 + SQUARE_ROUNDING)
         })
     }
 }

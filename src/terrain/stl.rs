@@ -163,6 +163,16 @@ const OTHER_KINDS: [(&[u8], &str, &str); 12] = [
 /// What to do about a file that is no STL.
 const EXPORT: &str = "export the mesh again as STL, binary or ASCII";
 
+/// Whether a file of so many bytes can be an STL of either kind; `head` is how it begins.
+pub(super) fn may_be_stl(head: &[u8], length: u64) -> bool {
+    ascii::begins_like_text(head) || binary::fits(head, length)
+}
+
+/// Whether it is of a kind that [`neither`] names, or holds nothing.
+pub(super) fn is_of_other_kind(head: &[u8]) -> bool {
+    head.is_empty() || OTHER_KINDS.iter().any(|(start, ..)| head.starts_with(start))
+}
+
 /// Why bytes that are neither kind of STL are refused.
 fn neither(bytes: &[u8], file: &Path) -> Error {
     if bytes.is_empty() {

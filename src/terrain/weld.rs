@@ -7,9 +7,9 @@
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::terrain::edges::{self, Edges};
+use crate::terrain::faces::Mesh;
 use crate::terrain::merge::Merger;
 use crate::terrain::stl::Soup;
-use numbers::Numbers;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::path::Path;
 
@@ -135,7 +135,7 @@ pub(super) fn join(
     map_origin_m: Vec3,
     tolerance_m: Option<f64>,
 ) -> Result<Joined> {
-    let frame = Frame::around(pieces)?;
+    let frame = CommonBox::around(pieces)?;
     let tolerance_m = tolerance_m.unwrap_or(TOLERANCE_OF_SIZE * frame.size_m);
     if !(tolerance_m >= 0.0 && tolerance_m.is_finite()) {
         return Err(Error::Request(format!(
@@ -186,26 +186,29 @@ impl Piece<'_> {
         self.up.turned(point) * self.scale
     }
 
-    fn check(&self) -> Result<()> {
+    fn check_scale(&self) -> Result<()> {
         if !(self.scale > 0.0 && self.scale.is_finite()) {
             let found = format!("{} is not a positive number", self.scale);
             let remedy = "write 1.0 for metres, 0.001 for millimetres";
             return Err(Error::input(self.file, "scale", found, remedy));
         }
+        Ok(())
+    }
+
+    /// Its first facet with a coordinate beyond [`LARGEST_M`].
+    fn too_far(&self) -> Error {
         let far = |&corner: &Vec3| self.placed(corner).amax() > LARGEST_M;
         let facets = &self.soup.facets;
         let is_far = |&number: &usize| facets.at(number).iter().any(far);
-        let Some(number) = (0..facets.len()).into_par_iter().find_first(is_far) else {
-            return Ok(());
-        };
+        let number = (0..facets.len()).find(is_far).unwrap_or(0);
         let found = format!("coordinates beyond {LARGEST_M:e} m, more than around the Earth");
         let remedy = "check the unit and `scale`, or repair the mesh where it was made";
-        Err(Error::input(self.file, format!("triangle {}", number + 1), found, remedy))
+        Error::input(self.file, format!("triangle {}", number + 1), found, remedy)
     }
 }
 
 /// The common box of all pieces.
-struct Frame {
+struct CommonBox {
     /// Centre, rounded to whole metres: coordinates read as `f32` subtract it without rounding.
     centre_m: Vec3,
     /// Longest side.
@@ -213,19 +216,22 @@ struct Frame {
     facets: usize,
 }
 
-impl Frame {
+impl CommonBox {
     fn around(pieces: &[Piece]) -> Result<Self> {
         let nothing = (Vec3::repeat(LARGEST_M), Vec3::repeat(-LARGEST_M));
         let both =
             |one: (Vec3, Vec3), other: (Vec3, Vec3)| (one.0.inf(&other.0), one.1.sup(&other.1));
         let (mut low, mut high) = nothing;
         for piece in pieces {
-            piece.check()?;
+            piece.check_scale()?;
             let box_of = |facet: [Vec3; 3]| {
                 let [a, b, c] = facet.map(|corner| piece.placed(corner));
                 (a.inf(&b).inf(&c), a.sup(&b).sup(&c))
             };
             let of_piece = piece.soup.facets.par_iter().map(box_of).reduce(|| nothing, both);
+            if of_piece.0.min() < -LARGEST_M || of_piece.1.max() > LARGEST_M {
+                return Err(piece.too_far());
+            }
             (low, high) = both((low, high), of_piece);
         }
         let facets = pieces.iter().map(|piece| piece.soup.facets.len()).sum();
@@ -247,7 +253,7 @@ impl Welded {
 
     /// The corners of a triangle, local (m).
     pub fn corners_m(&self, triangle: usize) -> [Vec3; 3] {
-        self.triangles[triangle].map(|v| self.vertices_m[v as usize])
+        Mesh { vertices_m: &self.vertices_m, triangles: &self.triangles }.corners_m(triangle as u32)
     }
 
     /// The two vertices of an edge, the lower number first.
@@ -262,23 +268,16 @@ impl Welded {
     }
 
     /// Merges vertices and keeps every facet that has an area.
-    fn take(&mut self, pieces: &[Piece], frame: &Frame) {
+    fn take(&mut self, pieces: &[Piece], frame: &CommonBox) {
         let mut merger = Merger::new(self.tolerance_m, frame.size_m, 3 * frame.facets);
         for piece in pieces {
             let facets = &piece.soup.facets;
             // `+ 0.0` turns −0.0 into 0.0.
             let local = |corner: Vec3| (piece.placed(corner) - frame.centre_m).map(|x| x + 0.0);
-            let mut numbers = Numbers::of(facets);
-            let mut all = Vec::with_capacity(facets.len());
-            all.extend((0..facets.len()).map(|number| {
-                numbers.of_corners(number, |k| local(facets.at(number)[k]), &mut merger)
-            }));
+            let reach = self.tolerance_m / piece.scale;
+            let (mut all, moved) = numbers::of(facets, reach, &local, &mut merger);
+            self.moved_corners += moved;
             let merged = |number: usize| all[number].map(|v| merger.kept_m()[v as usize]);
-            let moved = (0..facets.len()).into_par_iter().map(|number| {
-                let (merged, corners) = (merged(number), facets.at(number).map(local));
-                (0..3).filter(|&k| merged[k] != corners[k]).count()
-            });
-            self.moved_corners += moved.sum::<usize>();
             let flat = (0..all.len() as u32).into_par_iter();
             let flat: Vec<u32> =
                 flat.filter(|&number| !has_area(&merged(number as usize))).collect();

@@ -50,6 +50,14 @@ pub const USUAL: Asked<'_> = Asked {
     more: "",
 };
 
+/// A rock thrown in [`closed_box`] that loses nothing by restitution.
+pub const IN_THE_BOX: Asked<'_> = Asked {
+    restitution: 1.0,
+    place: "count = 1\npoints_m = [[1.0, 1.0, 1.0]]",
+    velocity: [3.0, 2.0, 1.0],
+    more: "",
+};
+
 pub fn scene(dir: &Path, mesh: &[Facet], asked: &Asked) -> PathBuf {
     write_ascii(&dir.join("mesh.stl"), "mesh", mesh).unwrap();
     let Asked { restitution, place, velocity, more } = asked;

@@ -19,7 +19,7 @@ fn text() -> String {
 fn hard() -> String {
     let soft = ["restitution_half_speed_m_s", "slip_friction", "scar"];
     let is_hard = |line: &&str| soft.iter().all(|key| !line.starts_with(key));
-    text().lines().filter(is_hard).map(|line| format!("{line}\n")).collect()
+    text().lines().filter(is_hard).flat_map(|line| [line, "\n"]).collect()
 }
 
 fn refused(change: &[(&str, &str)]) -> String {
@@ -35,12 +35,10 @@ fn refused(change: &[(&str, &str)]) -> String {
 #[test]
 fn what_blocks_cannot_have_is_refused() {
     let rolling = ("restitution = 0.35", "restitution = 0.35\nrolling_friction = 0.3");
-    let breaks = ("restitution = 0.2\n", "restitution = 0.2\nbreaks_above_j = 1e4\n");
     for (change, key, said) in [
         (("scheme = \"rigid\"", "scheme = \"adaptive\""), "scheme", "rigid"),
         (("orientation = \"random\"", "together = true"), "together", "spheres"),
         (rolling, "rolling_friction", "write rolling_friction = 0.0"),
-        (breaks, "breaks_above_j", "as yet"),
         (("corner_radius = 0.15\n", ""), "corner_radius", "found nothing"),
         (("corner_radius = 0.15", "corner_radius = 0.001"), "corner_radius", "0.01..0.5"),
         (("kind = \"eota111\"", "kind = \"sphere\""), "corner_radius", "no corners"),
@@ -81,6 +79,37 @@ fn shapes_that_are_no_bodies_are_refused() {
     );
     let said = compile(&open);
     assert!(said.contains("paper_ridge.stl") && said.contains("not closed"), "{said}");
+}
+
+/// Stems that give way take no more of a block than they can; those that can take more than any block has stand as those do that
+/// stand for good, to the last bit.
+#[test]
+fn stems_give_way_to_blocks() {
+    let falls = |limit: &str| {
+        let breaks = format!("restitution = 0.2\n{limit}");
+        let text = text().replacen("restitution = 0.2\n", &breaks, 1);
+        let scene = Scene::parse(&text, Path::new(FILE)).unwrap();
+        let (terrain, _) = scene.read_terrain().unwrap();
+        let plan = Plan::compile(&scene, terrain).unwrap();
+        let mut scratch = Scratch::default();
+        let fall = |index| simulate_release(&plan, index, None, &mut scratch).unwrap();
+        (0..40).map(fall).collect::<Vec<_>>()
+    };
+    let (standing, firm) = (falls(""), falls("breaks_above_j = 1e12\n"));
+    for (one, other) in standing.iter().zip(&firm) {
+        assert_eq!((one.end, one.ledger), (other.end, other.ledger));
+    }
+    let (weak, mut hits) = (falls("breaks_above_j = 2.0\n"), 0);
+    for (fall, before) in weak.iter().zip(&standing) {
+        let trees_j = fall.ledger.trees_j;
+        assert_eq!(trees_j > 0.0, before.ledger.trees_j > 0.0, "{trees_j}");
+        assert!(fall.ledger.rise_j <= 1e-9 * fall.released_j, "{:?}", fall.ledger);
+        assert!(fall.energy_balance_error() < 1e-3, "{:?}", fall.ledger);
+        // stem after stem has taken all it can
+        assert!((trees_j / 2.0 - (trees_j / 2.0).round()).abs() < 1e-5, "{trees_j}");
+        hits += usize::from(trees_j > 0.0);
+    }
+    assert!(hits > 3, "{hits}");
 }
 
 /// Every journey ends by itself, its ledger adds up with nothing negative, and no contact gains energy.

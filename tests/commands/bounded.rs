@@ -8,7 +8,7 @@
 
 use crate::{asked, drawn, program};
 
-use asked::{Asked, USUAL, closed_box, p, plate, quad, scene, stops, word};
+use asked::{Asked, IN_THE_BOX, USUAL, closed_box, p, plate, quad, scene, stops, word};
 use program::rockfall;
 use rockfall::terrain::stl::{Facet, write_ascii};
 use std::fs;
@@ -28,12 +28,7 @@ fn rocks_that_never_rest_end_by_time_or_budget() {
     let begun = Instant::now();
     for scheme in ["\"adaptive\"", "\"rigid\"", "\"reference\"", "\"dda\"\nstep_s = 1e-4"] {
         let more = format!("[solver]\nlongest_s = 20.0\nscheme = {scheme}");
-        let asked = Asked {
-            restitution: 1.0,
-            place: "count = 1\npoints_m = [[1.0, 1.0, 1.0]]",
-            velocity: [3.0, 2.0, 1.0],
-            more: &more,
-        };
+        let asked = Asked { more: &more, ..IN_THE_BOX };
         let ends = stops(&scene(dir.path(), &closed_box(), &asked), &[]);
         assert!(["time_up", "over_budget"].contains(&ends[0].as_str()), "{scheme}: {ends:?}");
     }
@@ -62,10 +57,9 @@ fn rocks_that_never_rest_end_by_time_or_budget() {
 fn rocks_that_never_rest_end_when_they_are_told_to() {
     let dir = tempfile::tempdir().unwrap();
     let asked = Asked {
-        restitution: 1.0,
         place: "count = 4000\npoints_m = [[1.0, 1.0, 1.0]]",
-        velocity: [3.0, 2.0, 1.0],
         more: "[solver]\nlongest_s = 1000.0",
+        ..IN_THE_BOX
     };
     let scene = scene(dir.path(), &closed_box(), &asked);
     let out = dir.path().join("out");

@@ -5,7 +5,7 @@ use crate::program;
 
 use program::rockfall;
 use rockfall::calibrate::Calibration;
-use rockfall::hazard::Way;
+use rockfall::hazard::ObservedPath;
 use rockfall::output::read_calibration;
 use rockfall::release::Releases;
 use rockfall::rock::Vec3;
@@ -312,7 +312,8 @@ fn unsorted_lists_have_true_quantiles() {
 /// Which throws are of one block is read where the file tells it.
 #[test]
 fn blocks_of_measured_ends_are_read() {
-    let blocks = Way::read_blocks(Path::new("terrain/tschamut/observed_deposition.csv")).unwrap();
+    let blocks =
+        ObservedPath::read_blocks(Path::new("terrain/tschamut/observed_deposition.csv")).unwrap();
     assert_eq!(blocks.len(), 80);
     assert_eq!(blocks.iter().filter(|block| *block == "1").count(), 29);
 }

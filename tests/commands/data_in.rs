@@ -236,6 +236,21 @@ fn what_does_not_fit_together_is_refused() {
         "swiss.geojson",
         zones(["", ""]).replacen('{', "{\"crs\":{\"properties\":{\"name\":\"EPSG:21781\"}},", 1),
     );
+    let line = "{\"type\":\"Feature\",\"properties\":{\"name\":\"road\"},\"geometry\":{\"type\":\"LineString\",\"coordinates\":[[8.54,47.3],[8.55,47.4]]}}";
+    dir.put("degrees.geojson", line);
+    let away = zones(["\"class\":\"scree\"", "\"class\":\"rock\""]).replace("[26000", "[6000");
+    dir.put("away.geojson", away);
+    dir.put("zones.csv", "WKT,name\n\"POINT (1 2)\",a\n");
+    dir.put("points.xyz", "2600000.5 1200000.5 500.25\n2600001.5 1200000.5 501\n");
+    dir.put("heights.bil", [0u8, 0, 250, 67].repeat(100));
+    let head = |corner: &str, cell: &str| {
+        format!("ncols 3\nnrows 3\n{corner}\ncellsize {cell}\nNODATA_value -9999\n")
+    };
+    dir.put("degrees.asc", head("xllcorner 8.5\nyllcorner 47.3", "0.0002") + &"500 ".repeat(9));
+    dir.put(
+        "void.asc",
+        head("xllcorner 2600000\nyllcorner 1200000", "2") + &"-9999 ".repeat(8) + "5",
+    );
     let table = |table: &str| scene("file = \"dem.tif\"", &format!("\n{table}"));
     for (text, parts) in [
         (
@@ -277,6 +292,49 @@ fn what_does_not_fit_together_is_refused() {
         (
             scene("file = \"dem.tif\"", "zones = \"swiss.geojson\"|"),
             ["found EPSG:21781 where the scene has EPSG:2056", "ogr2ogr -t_srs EPSG:2056"],
+        ),
+        // the scene names no system, the terrain does
+        (
+            scene("file = \"dem.tif\"", "zones = \"swiss.geojson\"|").replace("epsg = 2056", ""),
+            [
+                "found EPSG:21781 where the terrain has EPSG:2056",
+                "ogr2ogr -t_srs EPSG:2056 swiss_map.geojson",
+            ],
+        ),
+        // longitude and latitude, as GeoJSON has them that names no system
+        (
+            table("[[lines]]\nfile = \"degrees.geojson\"\n"),
+            [
+                "8.54000..8.55000 east, 47.30000..47.40000 north, like longitude and latitude",
+                "ogr2ogr -s_srs EPSG:4326 -t_srs EPSG:2056 degrees_map.geojson",
+            ],
+        ),
+        (
+            table("[[ground_zones]]\nfile = \"away.geojson\"\nground_from = \"class\"\n"),
+            ["found nothing of it on the terrain: it lies at 6", "the terrain at 2600001.5.."],
+        ),
+        (
+            scene("file = \"dem.tif\"", "zones = \"zones.csv\"|"),
+            ["found neither GeoJSON nor a Shapefile", "ogr2ogr zones.geojson"],
+        ),
+        (
+            scene("file = \"points.xyz\"", ""),
+            ["found a list of points", "gdal_translate -of GTiff"],
+        ),
+        (
+            scene("file = \"heights.bil\"", ""),
+            ["found none of the formats that are read", "gdal_translate -of GTiff"],
+        ),
+        (
+            scene("file = \"degrees.asc\"", ""),
+            [
+                "found cells of 0.0002 at (8.5, 47.3), like longitude and latitude",
+                "gdalwarp -s_srs EPSG:4326 -t_srs EPSG:2056",
+            ],
+        ),
+        (
+            scene("file = \"void.asc\"", ""),
+            ["found data in 1 of 9 cells, and no triangle", "leave the file out"],
         ),
         (
             table("[[lines]]\nfile = \"good.geojson\"\n"),

@@ -4,7 +4,7 @@
 
 use crate::{asked, program};
 
-use asked::{Asked, USUAL, closed_box, plate, scene, word};
+use asked::{Asked, IN_THE_BOX, USUAL, closed_box, plate, scene, word};
 use program::{command, rockfall};
 use std::fs;
 use std::path::Path;
@@ -106,12 +106,7 @@ fn energy_that_the_numerics_lose_is_warned_of() {
     let dir = tempfile::tempdir().unwrap();
     let run = |scheme: &str| {
         let more = format!("[solver]\nlongest_s = 20.0\nscheme = {scheme}");
-        let asked = Asked {
-            restitution: 1.0,
-            place: "count = 1\npoints_m = [[1.0, 1.0, 1.0]]",
-            velocity: [3.0, 2.0, 1.0],
-            more: &more,
-        };
+        let asked = Asked { more: &more, ..IN_THE_BOX };
         let scene = scene(dir.path(), &closed_box(), &asked);
         let text = fs::read_to_string(&scene).unwrap();
         let smooth = text.replace("friction_angle_deg = 30.0", "friction_angle_deg = 0.0");

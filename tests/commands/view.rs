@@ -7,11 +7,11 @@ use crate::program;
 
 use program::rockfall;
 use rockfall::output;
-use rockfall::report::view::mesh::Mesh;
+use rockfall::report::view::mesh::ViewMesh;
 use rockfall::report::view::pack::Section;
-use rockfall::report::view::{GLB, PAGE, frame::Frame, page};
+use rockfall::report::view::{GLB, PAGE, frame::QuantizedBox, page};
 use rockfall::rock::Vec3;
-use rockfall::terrain::read::Source;
+use rockfall::terrain::read::MeshSource;
 use rockfall::terrain::weld::Up;
 use rockfall::terrain::{Sheet, Terrain};
 use std::path::{Path, PathBuf};
@@ -34,13 +34,13 @@ fn run(dir: &Path, scene: &str, releases: usize) -> PathBuf {
 }
 
 fn terrain(files: &[(&str, bool)], origin_m: Vec3) -> Terrain {
-    let source = |&(file, is_tree): &(&str, bool)| Source {
+    let source = |&(file, is_tree): &(&str, bool)| MeshSource {
         sheet: Sheet { path: file.into(), ground: 0, is_tree },
         up: Up::default(),
         scale: 1.0,
         options: None,
     };
-    let sources: Vec<Source> = files.iter().map(source).collect();
+    let sources: Vec<MeshSource> = files.iter().map(source).collect();
     Terrain::read(&sources, origin_m, None).unwrap().0
 }
 
@@ -55,8 +55,8 @@ fn quick() -> Terrain {
 #[test]
 fn the_terrain_comes_back_to_half_a_quantum() {
     let terrain = quick();
-    let mesh = Mesh::of(&terrain);
-    let read = Mesh::read(&mesh.text()).unwrap();
+    let mesh = ViewMesh::of(&terrain);
+    let read = ViewMesh::read(&mesh.text()).unwrap();
     assert_eq!(read, mesh);
     assert!(read.notes.is_empty());
     let mut order: Vec<u32> = (0..terrain.triangles.len() as u32).collect();
@@ -82,13 +82,13 @@ fn the_terrain_comes_back_to_half_a_quantum() {
 #[test]
 fn a_long_slope_is_as_fine_as_a_short_one() {
     let ends = [[2.6e6, 1.2e6, 0.0], [2.61e6, 1.2e6 + 7.0, 3000.0]];
-    let frame = Frame::round(ends.into_iter());
+    let frame = QuantizedBox::round(ends.into_iter());
     assert!((frame.quantum_m - 0.03).abs() < 1e-12);
     for end in ends {
         let back = frame.place_m(frame.steps(end));
         assert!((0..3).all(|axis| (back[axis] - end[axis]).abs() <= 0.015 + 1e-9), "{back:?}");
     }
-    let nothing = Frame::round([[f64::NAN; 3]].into_iter());
+    let nothing = QuantizedBox::round([[f64::NAN; 3]].into_iter());
     assert_eq!(nothing.steps(nothing.low_m), [0; 3]);
 }
 
@@ -96,10 +96,10 @@ fn a_long_slope_is_as_fine_as_a_short_one() {
 #[test]
 fn too_many_triangles_are_thinned_and_it_is_said() {
     let fine = terrain(&[("terrain/tyrol.stl", false)], Vec3::zeros());
-    let (whole, few) = (Mesh::of(&fine), Mesh::limited(&fine, 3000));
+    let (whole, few) = (ViewMesh::of(&fine), ViewMesh::limited(&fine, 3000));
     assert!(few.triangles.len() <= 3000 && few.triangles.len() > 1000, "{}", few.triangles.len());
     assert!(few.notes[0].contains("of 23\u{2009}542 triangles"), "{:?}", few.notes);
-    let area = |mesh: &Mesh| -> f64 {
+    let area = |mesh: &ViewMesh| -> f64 {
         let corner = |v: u32| Vec3::from(mesh.place_m(v));
         let flat = |[a, b, c]: [u32; 3]| {
             let n = (corner(b) - corner(a)).cross(&(corner(c) - corner(a)));
@@ -110,7 +110,7 @@ fn too_many_triangles_are_thinned_and_it_is_said() {
     // in plan view it covers the same ground but for a rim of half a cell
     assert!((area(&few) / area(&whole) - 1.0).abs() < 0.1, "{} {}", area(&few), area(&whole));
     // of trees whole ones are left out
-    let trees = Mesh::limited(&quick(), 100);
+    let trees = ViewMesh::limited(&quick(), 100);
     assert!(trees.notes.iter().any(|note| note.starts_with("Of the trees one in")));
     assert!(trees.triangles.len() - trees.ground <= 100 && trees.triangles.len() > trees.ground);
 }
@@ -122,13 +122,13 @@ fn a_view_is_small_and_what_it_holds_is_what_was_computed() {
     let out = run(dir.path(), "examples/tyrol.toml", 60);
     let text = std::fs::read_to_string(out.join(PAGE)).unwrap();
     let terrain = page::section(&text, page::TERRAIN).unwrap();
-    let mesh = Mesh::read(terrain).unwrap();
+    let mesh = ViewMesh::read(terrain).unwrap();
     assert!(terrain.len() <= 6 * mesh.triangles.len(), "{} bytes", terrain.len());
     let paths = page::section(&text, "paths").unwrap();
     let section = Section::read(paths).unwrap();
     let coordinates = section.numbers("place");
     assert!(2 * paths.len() <= 3 * coordinates.len(), "{} of {}", paths.len(), coordinates.len());
-    let frame: Frame = serde_json::from_value(section.facts["frame"].clone()).unwrap();
+    let frame: QuantizedBox = serde_json::from_value(section.facts["frame"].clone()).unwrap();
     let (steps, _) = coordinates.as_chunks::<3>();
     let results = output::read(&out).unwrap();
     let mut count = 0;
@@ -186,7 +186,7 @@ fn node_reads_the_same(out: &Path, text: &str) {
         tried += 1;
     }
     assert!(tried > 15, "{said}");
-    let mesh = Mesh::read(page::section(text, page::TERRAIN).unwrap()).unwrap();
+    let mesh = ViewMesh::read(page::section(text, page::TERRAIN).unwrap()).unwrap();
     let corners = mesh.triangles.as_flattened();
     let last = mesh.vertices[*corners.last().unwrap() as usize];
     let place =
@@ -195,7 +195,7 @@ fn node_reads_the_same(out: &Path, text: &str) {
 }
 
 /// Another program's reader finds the same triangles, the same box and the same rocks.
-fn python_reads_the_same(out: &Path, mesh: &Mesh) {
+fn python_reads_the_same(out: &Path, mesh: &ViewMesh) {
     let said =
         Command::new("python3").arg("tests/commands/view/read_glb.py").arg(out.join(GLB)).output();
     let said = match said {
@@ -249,7 +249,7 @@ fn nothing_leaves_the_page_and_no_title_breaks_it() {
     }
     assert!(!text.contains("alert(1)</script>"));
     assert_eq!(text.matches("<script").count(), text.matches("</script>").count());
-    assert!(Mesh::read(page::section(&text, page::TERRAIN).unwrap()).is_some());
+    assert!(ViewMesh::read(page::section(&text, page::TERRAIN).unwrap()).is_some());
     // the report stays without a script, and leads here
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(!report.contains("<script") && report.contains("href=\"view.html\""));

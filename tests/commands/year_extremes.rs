@@ -4,7 +4,7 @@
 
 use crate::program;
 
-use program::rockfall;
+use program::{rockfall, run_into};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,15 +30,7 @@ fn run(dir: &Path, name: &str, scene: &str) -> (PathBuf, Value) {
     let file = dir.join(format!("{name}.toml"));
     fs::write(&file, scene).unwrap();
     let out = dir.join(name);
-    let done = rockfall(&[
-        "run",
-        file.to_str().unwrap(),
-        "--quiet",
-        "--overwrite",
-        "--out",
-        out.to_str().unwrap(),
-    ]);
-    assert!(done.status.success(), "{name}: {}", String::from_utf8_lossy(&done.stderr));
+    run_into(&file, &out);
     let summary = fs::read_to_string(out.join("summary.json")).unwrap();
     (out, serde_json::from_str(&summary).unwrap())
 }

@@ -5,7 +5,7 @@ use crate::drawn;
 use crate::site;
 
 use drawn::{column, rings, shapefile, zones};
-use rockfall::frequency::{Class, Frequency, Law};
+use rockfall::frequency::{Class, Frequency, FrequencyLaw};
 use rockfall::plan::Plan;
 use rockfall::scene::Scene;
 use serde_json::Value;
@@ -90,9 +90,12 @@ fn properties_and_table_make_a_law() {
     );
     let found = sources(&dir, &without_radius(&text));
     // a (0.25^−½ − 4^−½) = 1.5 a = 0.3
-    let common_law =
-        Law::PowerLaw { per_year_at_1m3: 0.3 / 1.5, exponent: 0.5, volume_m3: [0.25, 4.0] };
-    let own = Law::PowerLaw { per_year_at_1m3: 0.2, exponent: 1.0, volume_m3: [0.5, 2.0] };
+    let common_law = FrequencyLaw::PowerLaw {
+        per_year_at_1m3: 0.3 / 1.5,
+        exponent: 0.5,
+        volume_m3: [0.25, 4.0],
+    };
+    let own = FrequencyLaw::PowerLaw { per_year_at_1m3: 0.2, exponent: 1.0, volume_m3: [0.5, 2.0] };
     assert_eq!([&found.sources()[0].law, &found.sources()[1].law], [&common_law, &own]);
     // 0.3 in all, and 0.2 (0.5^−1 − 2^−1)
     assert!((found.per_year() - 0.6).abs() < 1e-12);
@@ -105,8 +108,9 @@ fn properties_and_table_make_a_law() {
         "",
     );
     let found = sources(&dir, &without_radius(&text));
-    let class =
-        |volume_m3: [f64; 2], per_year: f64| Law::Classes(vec![Class { volume_m3, per_year }]);
+    let class = |volume_m3: [f64; 2], per_year: f64| {
+        FrequencyLaw::Classes(vec![Class { volume_m3, per_year }])
+    };
     let laws = [class([1.5; 2], 0.3), class([0.5, 2.0], 0.1)];
     assert_eq!([&found.sources()[0].law, &found.sources()[1].law], [&laws[0], &laws[1]]);
     // one volume beside a common law is one volume

@@ -4,8 +4,8 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rockfall::hazard::{Asked, LineInfo, MapFrame};
-use rockfall::output::{Identity, RunInfo, Site, Zone};
+use rockfall::hazard::{AnnualRequest, LineInfo, MapFrame};
+use rockfall::output::{Identity, ReleaseZone, RunInfo, Site};
 use rockfall::plan::PlanEntry;
 use rockfall::rock::{Motion, Rock, Vec3};
 use rockfall::simulation::{
@@ -32,7 +32,10 @@ pub fn info(releases: usize) -> RunInfo {
         origin_m: Vec3::new(2_600_000.0, 1_200_000.0, 0.0),
         site: Site {
             mesh_origin_m: [2_600_000.0, 1_200_000.0, 0.0],
-            release: Zone::Line(vec![[2_600_000.0, 1_200_000.0], [2_600_010.0, 1_200_000.0]]),
+            release: ReleaseZone::Line(vec![
+                [2_600_000.0, 1_200_000.0],
+                [2_600_010.0, 1_200_000.0],
+            ]),
             further_releases: Vec::new(),
             fast_warnings: vec![],
         },
@@ -55,7 +58,7 @@ pub fn info(releases: usize) -> RunInfo {
         }),
         profile_step_m: 20.0,
         barriers: vec![],
-        asked: Asked::default(),
+        asked: AnnualRequest::default(),
         observed: vec![],
         keeps_paths: true,
         keeps_impacts: true,

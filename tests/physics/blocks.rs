@@ -1,4 +1,9 @@
 //! Blocks on the natural slope of the benchmark: none lost, none that gains energy; and what they cost.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking and prints its counts"
+)]
 
 use crate::common;
 
@@ -10,7 +15,7 @@ use rockfall::body::{
 use rockfall::ground::{Ground, Scar, SlipFriction};
 use rockfall::plan::{Recorders, RestRule};
 use rockfall::random::{Purpose, stream, unit};
-use rockfall::release::{Drawn, Release};
+use rockfall::release::{DrawnShape, Release};
 use rockfall::rock::{Motion, Vec3};
 use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, Trajectory, simulate_block};
 use rockfall::solver::Scheme;
@@ -86,7 +91,7 @@ fn fall(
         spin_rad_s: Vec3::zeros(),
     };
     let release = Release { rock: ROCK, motion, grounds: vec![ground] };
-    let drawn = Drawn { kind, sides: [1.0; 2], block, attitude };
+    let drawn = DrawnShape { kind, sides: [1.0; 2], block, attitude };
     let step = settings(Scheme::Rigid, 0.01, None);
     let course = RunSettings {
         terrain,

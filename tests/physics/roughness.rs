@@ -127,6 +127,12 @@ fn a_sliding_rock_meets_one_facet_after_the_other() {
     }
 }
 
+/// A world with the scheme of a case, on one ground.
+fn world_of(case: &Case, ground: Ground) -> World {
+    let Case { scheme, tolerance_m_s, step_s, .. } = *case;
+    World { scheme, tolerance_m_s, gravity_m_s2: G, ground, step_s, ..WORLD }
+}
+
 /// Rocks of one world that never meet slide over the same facets as each would alone: blows and way are those of rocks alone,
 /// with every scheme. Beside another rock, islands of two, too.
 #[test]
@@ -147,14 +153,7 @@ fn rocks_of_one_world_meet_the_facets_of_rocks_alone() {
         let alone: Vec<_> = (0..rocks)
             .map(|seed| Case { ground, ..case }.run_with(&floor, start(0.0), 2.0, seed))
             .collect();
-        let world = World {
-            scheme: case.scheme,
-            tolerance_m_s: case.tolerance_m_s,
-            gravity_m_s2: G,
-            ground,
-            step_s: case.step_s,
-            ..WORLD
-        };
+        let world = world_of(&case, ground);
         let sphere = |y: f64| {
             let [c, v, w] = start(y);
             (ROCK.radius_m, ROCK.density_kg_m3, c, v, w)
@@ -189,14 +188,7 @@ fn the_only_rock_of_a_world_strikes_what_it_strikes_alone() {
     let [c, v, w] = [[-40.0, 0.0, 0.5], [6.0, 0.0, 0.0], [0.0; 3]];
     for (name, case) in SCHEMES {
         let alone = Case { ground, ..case }.run_with(&floor, [c, v, w], 1.0, 1);
-        let world = World {
-            scheme: case.scheme,
-            tolerance_m_s: case.tolerance_m_s,
-            gravity_m_s2: G,
-            ground,
-            step_s: case.step_s,
-            ..WORLD
-        };
+        let world = world_of(&case, ground);
         let sphere = (ROCK.radius_m, ROCK.density_kg_m3, c, v, w);
         let (together, _) = world.run(&floor, &[sphere], 1.0);
         for (one, other) in alone.impacts.iter().zip(&together[0].impacts).take(4) {

@@ -1,4 +1,5 @@
 //! Soft soil under a sphere: scar layer, restitution that falls with speed, friction that grows with slip. Every scheme.
+#![allow(clippy::print_stdout, reason = "a test prints its table")]
 
 use crate::common;
 
@@ -181,7 +182,7 @@ fn soil_never_gives_energy() {
     }
 }
 
-/// e(v) = e/(1 + (v/v_half)²): half of it is left at v_half.
+/// `e(v) = e/(1 + (v/v_half)²)`: half of it is left at `v_half`.
 #[test]
 fn restitution_falls_with_the_speed_of_the_impact() {
     let flat = plane(0.0);

@@ -287,7 +287,7 @@ fn stems_from_a_list_stand_in_the_slope() {
 /// Height of a slope file (m) and its terrain.
 fn slope_at(file: &str, x: f64, y: f64) -> (f64, Terrain) {
     let sheet = Sheet { path: file.into(), ground: 0, is_tree: false };
-    let source = rockfall::terrain::read::Source::stl(sheet);
+    let source = rockfall::terrain::read::MeshSource::stl(sheet);
     let (terrain, _) = Terrain::read(&[source], Vec3::zeros(), None).unwrap();
     let origin = terrain.origin_m;
     (terrain.ground_below(x - origin.x, y - origin.y).unwrap() + origin.z, terrain)

@@ -18,6 +18,13 @@ pub fn rockfall(args: &[&str]) -> Output {
     command(args).output().expect("the program starts")
 }
 
+/// Runs a scene file into a folder, without a word and over what is there.
+pub fn run_into(scene: &Path, out: &Path) {
+    let [scene, out] = [scene, out].map(|path| path.to_str().expect("a name in UTF-8"));
+    let done = rockfall(&["run", scene, "--quiet", "--overwrite", "--out", out]);
+    assert!(done.status.success(), "{scene}: {}", String::from_utf8_lossy(&done.stderr));
+}
+
 pub fn message<T>(result: rockfall::error::Result<T>) -> String {
     result.err().expect("an error").to_string()
 }

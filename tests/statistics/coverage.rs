@@ -3,8 +3,8 @@
 
 use crate::yearly;
 
-use rockfall::frequency::{Class, Frequency, Law, Source};
-use rockfall::hazard::{Barrier, CrossingRow, Object, Rate, Sample, Vehicles, judge};
+use rockfall::frequency::{Class, Frequency, FrequencyLaw, RockSource};
+use rockfall::hazard::{Barrier, CrossingRow, EventRate, Object, Sample, Vehicles, judge};
 use rockfall::random::{Purpose, stream, unit};
 use std::convert::Infallible;
 use yearly::{REACH, asked, covers, crossings, near, power_law, road, row};
@@ -45,7 +45,7 @@ fn the_closed_case_lies_in_its_interval() {
     }
     // unbiased: the mean of 2000 runs is known to 0.1 %
     near(sum / RUNS as f64, RATE, 4e-3);
-    let exact = Rate {
+    let exact = EventRate {
         rocks: 1,
         per_year: RATE,
         low_95: 0.0,
@@ -81,7 +81,8 @@ fn rare_events_are_covered_too() {
 #[test]
 fn nothing_seen_gives_the_one_sided_bound() {
     const RUNS: u64 = 4000;
-    let events = Source { name: "wall".to_owned(), law: Law::Events { per_year: 0.05 } };
+    let events =
+        RockSource { name: "wall".to_owned(), law: FrequencyLaw::Events { per_year: 0.05 } };
     let found = road(&asked(vec![events]), 600, &[]).without_barriers;
     assert_eq!(found.passages.rocks, 0);
     near(found.passages.high_95, 3.0 * 0.05 / 600.0, 1e-12);
@@ -89,8 +90,8 @@ fn nothing_seen_gives_the_one_sided_bound() {
 
     let class = |volume: f64, per_year: f64| Class { volume_m3: [volume; 2], per_year };
     let rarer = (2..=11).map(|volume| class(f64::from(volume), 0.5));
-    let law = Law::Classes([class(1.0, 1.0)].into_iter().chain(rarer).collect());
-    let asked = asked(vec![Source { name: "wall".to_owned(), law }]);
+    let law = FrequencyLaw::Classes([class(1.0, 1.0)].into_iter().chain(rarer).collect());
+    let asked = asked(vec![RockSource { name: "wall".to_owned(), law }]);
     let found = road(&asked, 1100, &[]).without_barriers.passages;
     near(found.high_95, 3.0 / 100.0, 1e-12);
     let frequency = asked.frequency.clone().unwrap();
@@ -158,8 +159,8 @@ fn weighted_means_and_percentiles_are_covered() {
 fn shares_that_a_net_stops_are_covered() {
     const RUNS: u64 = 1000;
     let class = |volume: f64, per_year: f64| Class { volume_m3: [volume; 2], per_year };
-    let law = Law::Classes(vec![class(0.1, 1.0), class(1.0, 0.3), class(10.0, 0.1)]);
-    let asked = asked(vec![Source { name: "wall".to_owned(), law }]);
+    let law = FrequencyLaw::Classes(vec![class(0.1, 1.0), class(1.0, 0.3), class(10.0, 0.1)]);
+    let asked = asked(vec![RockSource { name: "wall".to_owned(), law }]);
     let weights = asked.frequency.clone().unwrap().weights(900);
     let net = [Barrier {
         name: "net".to_owned(),

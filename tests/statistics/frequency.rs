@@ -3,7 +3,7 @@
 
 use crate::yearly;
 
-use rockfall::frequency::{Class, Frequency, Law, Source, radius_of_m3};
+use rockfall::frequency::{Class, Frequency, FrequencyLaw, RockSource, radius_of_m3};
 use rockfall::hazard::{
     AnnualPlace, Barrier, CrossingRow, MapFrame, MapState, Maps, Object, RiskKind, StopKind,
     Vehicles, year_maps,
@@ -66,8 +66,8 @@ fn maps_carry_the_derivatives_of_the_closed_case() {
     near(value("energy_T100_j_by_log_rate"), by_rate, 0.25);
     near(value("energy_T100_j_by_exponent"), by_exponent, 0.25);
     // without power law nothing changes with an exponent
-    let law = Law::Events { per_year: 0.1 };
-    let plain = self::asked(vec![Source { name: "wall".to_owned(), law }]);
+    let law = FrequencyLaw::Events { per_year: 0.1 };
+    let plain = self::asked(vec![RockSource { name: "wall".to_owned(), law }]);
     let maps = Maps::new(frame, MapState::default());
     assert!(
         year_maps(&maps, &plain, releases).iter().all(|one| !one.file.ends_with("by_exponent"))
@@ -131,7 +131,8 @@ fn sources_add() {
 /// With one stratum the interval of a frequency is that of the proportion, Wilson's, times the events a year.
 #[test]
 fn equal_weights_give_the_interval_of_a_proportion() {
-    let events = Source { name: "wall".to_owned(), law: Law::Events { per_year: 0.05 } };
+    let events =
+        RockSource { name: "wall".to_owned(), law: FrequencyLaw::Events { per_year: 0.05 } };
     let asked = asked(vec![events]);
     for passing in [1, 7, 30, 59, 60] {
         let rows: Vec<CrossingRow> =
@@ -150,8 +151,8 @@ fn equal_weights_give_the_interval_of_a_proportion() {
 /// cannot hold goes on. By hand: of four rocks of 0.01 a year two are stopped, one breaks through, one passes beside.
 #[test]
 fn what_a_barrier_saves_is_the_difference() {
-    let law = Law::Events { per_year: 0.04 };
-    let asked = asked(vec![Source { name: "wall".to_owned(), law }]);
+    let law = FrequencyLaw::Events { per_year: 0.04 };
+    let asked = asked(vec![RockSource { name: "wall".to_owned(), law }]);
     let net = Barrier {
         name: "net".to_owned(),
         height_m: 4.0,
@@ -183,8 +184,8 @@ fn what_a_barrier_saves_is_the_difference() {
 /// 2400 (4 + d)/(24 · 50 000) = 0.0104814 of the time one is in the way.
 #[test]
 fn risks_are_those_found_by_hand() {
-    let law = Law::Events { per_year: 0.06 };
-    let mut asked = asked(vec![Source { name: "wall".to_owned(), law }]);
+    let law = FrequencyLaw::Events { per_year: 0.06 };
+    let mut asked = asked(vec![RockSource { name: "wall".to_owned(), law }]);
     // the scene's rocks are all of 1 m³
     asked.largest_m = vec![radius_of_m3(1.0)];
     let object = Object {
@@ -232,8 +233,8 @@ fn risks_are_those_found_by_hand() {
 /// over; a fifth is stopped by the net above and never arrives. The object behind is spared the risk of what is stopped.
 #[test]
 fn a_barrier_has_its_own_numbers_a_year() {
-    let law = Law::Events { per_year: 0.05 };
-    let mut asked = asked(vec![Source { name: "wall".to_owned(), law }]);
+    let law = FrequencyLaw::Events { per_year: 0.05 };
+    let mut asked = asked(vec![RockSource { name: "wall".to_owned(), law }]);
     asked.objects = vec![house("road")];
     let net = |name: &str, height_m: f64| Barrier {
         name: name.to_owned(),
@@ -300,8 +301,8 @@ fn house(name: &str) -> Object {
 #[test]
 fn traffic_that_nothing_hit_has_a_bound() {
     let class = |volume: f64, per_year: f64| Class { volume_m3: [volume; 2], per_year };
-    let law = Law::Classes(vec![class(2.0, 0.5), class(50.0, 0.01)]);
-    let mut asked = asked(vec![Source { name: "wall".to_owned(), law }]);
+    let law = FrequencyLaw::Classes(vec![class(2.0, 0.5), class(50.0, 0.01)]);
+    let mut asked = asked(vec![RockSource { name: "wall".to_owned(), law }]);
     let vehicles = Vehicles { per_day: 1000.0, speed_km_h: 50.0, length_m: 4.0, own_per_day: None };
     asked.objects = vec![Object {
         vehicles: Some(vehicles),
@@ -319,7 +320,7 @@ fn traffic_that_nothing_hit_has_a_bound() {
     near(hits.rate.high_95, per_m * 3.0 * (4.0 + diameter(2.0)) * 0.5 / 550.0, 1e-12);
     // sizes of the scene: its largest rock is told with what is asked
     asked.frequency = Some(Frequency::new(
-        vec![Source { name: "wall".to_owned(), law: Law::Events { per_year: 0.2 } }],
+        vec![RockSource { name: "wall".to_owned(), law: FrequencyLaw::Events { per_year: 0.2 } }],
         vec![],
         vec![],
     ));

@@ -199,7 +199,11 @@ fn what_cannot_be_used_is_refused_with_the_command_to_type() {
         (Spec { matrix: rotated, ..none() }, ["rotated", "gdalwarp -t_srs EPSG:2056 -tr 1 1 -r bilinear dem.tif out.tif"]),
         (with_key(7, 2), ["longitude and latitude", "gdalwarp"]),
         (with_key(7, 3), ["geocentric", "gdalwarp"]),
-        (Spec { keys: feet, ..spec() }, ["the unit EPSG:9002", "gdalwarp"]),
+        (Spec { keys: feet, ..spec() }, ["the unit EPSG:9002 (foot)", "gdalwarp -t_srs EPSG:CODE"]),
+        (Spec { keys: [spec().keys, vec![4099, 0, 1, 9003]].concat(), ..spec() }, ["EPSG:9003 (US survey foot)", "gdal_calc.py -A dem.tif"]),
+        // GDAL writes the code of the heights' system and no unit
+        (Spec { keys: [spec().keys, vec![4096, 0, 1, 6360]].concat(), ..spec() }, ["found heights in feet (EPSG:6360)", "--calc A*0.3048"]),
+        (Spec { metadata: Some("<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">ft</Item></GDALMetadata>".into()), ..spec() }, ["found heights in ft", "gdal_edit.py -a_srs EPSG:CODE -units m out.tif"]),
         (Spec { scale: vec![2.0, 3.0, 0.0], ..spec() }, ["2 x 3 m, not square", "gdalwarp"]),
         (Spec { tie: [spec().tie, spec().tie].concat(), ..spec() }, ["control points", "gdalwarp"]),
         (none(), ["found none", "-a_srs EPSG:CODE -a_ullr"]),
@@ -208,6 +212,13 @@ fn what_cannot_be_used_is_refused_with_the_command_to_type() {
     ] {
         let said = refusal(&spec);
         assert!(said.starts_with("dem.tif: ") && parts.iter().all(|part| said.contains(part)), "{said}");
+    }
+    for metres in ["m", "metre", ""] {
+        let item =
+            format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{metres}</Item>");
+        let keys = [spec().keys, vec![4096, 0, 1, 5703]].concat();
+        let in_metres = Spec { metadata: Some(item), keys, ..spec() };
+        assert!(read(write(&[(&in_metres, &height)])).is_ok(), "{metres}");
     }
     let infinite = |column: usize, _: usize| if column == 3 { f64::INFINITY } else { 1.0 };
     let said = read(write(&[(&spec(), &infinite)])).unwrap_err().to_string();

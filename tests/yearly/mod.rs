@@ -2,8 +2,10 @@
 
 #![allow(missing_docs, dead_code, unreachable_pub, clippy::unwrap_used)]
 
-use rockfall::frequency::{Frequency, Law, Source, radius_of_m3};
-use rockfall::hazard::{Annual, AnnualPlace, Asked, Barrier, CrossingRow, LineInfo, Rate, annual};
+use rockfall::frequency::{Frequency, FrequencyLaw, RockSource, radius_of_m3};
+use rockfall::hazard::{
+    Annual, AnnualPlace, AnnualRequest, Barrier, CrossingRow, EventRate, LineInfo, annual,
+};
 use rockfall::random::{Purpose, stream, unit};
 use std::convert::Infallible;
 
@@ -12,14 +14,14 @@ pub const SPEED_M_S: f64 = 20.0;
 pub const REACH: f64 = 0.2;
 
 /// N(≥ 1 m³) = 0.1 a year, exponent 0.5, 0.1 to 100 m³.
-pub fn power_law(per_year_at_1m3: f64, exponent: f64) -> Source {
-    let law = Law::PowerLaw { per_year_at_1m3, exponent, volume_m3: [0.1, 100.0] };
-    Source { name: "wall".to_owned(), law }
+pub fn power_law(per_year_at_1m3: f64, exponent: f64) -> RockSource {
+    let law = FrequencyLaw::PowerLaw { per_year_at_1m3, exponent, volume_m3: [0.1, 100.0] };
+    RockSource { name: "wall".to_owned(), law }
 }
 
-pub fn asked(sources: Vec<Source>) -> Asked {
+pub fn asked(sources: Vec<RockSource>) -> AnnualRequest {
     let frequency = Frequency::new(sources, vec![300e3], vec![40.269_295_7, 100.0]);
-    Asked { frequency: Some(frequency), ..Asked::default() }
+    AnnualRequest { frequency: Some(frequency), ..AnnualRequest::default() }
 }
 
 pub fn row(index: usize, line: &str, volume_m3: f64, energy_j: f64) -> CrossingRow {
@@ -47,7 +49,7 @@ pub fn line(name: &str) -> LineInfo {
 }
 
 /// Rocks of a source that reach the line one time in five with 20 m/s.
-pub fn crossings(asked: &Asked, seed: u64, releases: usize) -> Vec<CrossingRow> {
+pub fn crossings(asked: &AnnualRequest, seed: u64, releases: usize) -> Vec<CrossingRow> {
     let frequency = asked.frequency.as_ref().unwrap();
     let one = |index: usize| {
         let mut random = stream(seed, Purpose::Size, index);
@@ -58,16 +60,21 @@ pub fn crossings(asked: &Asked, seed: u64, releases: usize) -> Vec<CrossingRow> 
     (0..releases).filter_map(one).collect()
 }
 
-pub fn year(asked: &Asked, releases: usize, rows: &[CrossingRow], barriers: &[Barrier]) -> Annual {
+pub fn year(
+    asked: &AnnualRequest,
+    releases: usize,
+    rows: &[CrossingRow],
+    barriers: &[Barrier],
+) -> Annual {
     let rows = rows.iter().cloned().map(Ok::<_, Infallible>);
     annual(asked, releases, (&[line("road")], barriers), rows).unwrap().unwrap()
 }
 
-pub fn road(asked: &Asked, releases: usize, rows: &[CrossingRow]) -> AnnualPlace {
+pub fn road(asked: &AnnualRequest, releases: usize, rows: &[CrossingRow]) -> AnnualPlace {
     year(asked, releases, rows, &[]).places.remove(0)
 }
 
-pub fn covers(rate: &Rate, truth: f64) -> bool {
+pub fn covers(rate: &EventRate, truth: f64) -> bool {
     (rate.low_95..=rate.high_95).contains(&truth)
 }
 

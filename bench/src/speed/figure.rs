@@ -7,7 +7,7 @@ use rockfall::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint};
 use rockfall::report::figure::WIDTH_PX;
 use rockfall::report::format::significant;
 use rockfall::report::panel::{FOOT_PX, Panel};
-use rockfall::report::svg::path::Frame;
+use rockfall::report::svg::path::PaperFrame;
 use rockfall::study::exact_figure::{colour, shape};
 
 const PLOT_PX: f64 = 300.0;
@@ -25,7 +25,7 @@ pub(crate) fn draw(study: &SpeedStudy) -> String {
     let (few, many) = range(|rate| rate.triangles as f64);
     let (slow, fast) = range(super::Rate::per_second);
     let frame =
-        Frame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
+        PaperFrame { left: 0.0, top: TOP_PX, right: WIDTH_PX - KEY_PX, bottom: TOP_PX + PLOT_PX };
     // Whole decades: a size may be a little above its own.
     let x = Axis::log(few, many * 0.99, "Triangles");
     let mut panel = Panel::new(frame, x, Axis::log(slow, fast, "Rocks per second and core"));

@@ -2,7 +2,7 @@
 
 use super::slope::Slope;
 use rockfall::error::{Error, Result};
-use rockfall::hazard::Asked;
+use rockfall::hazard::AnnualRequest;
 use rockfall::output::{Identity, Mode, Output, RunInfo, Site};
 use rockfall::report;
 use rockfall::scene::Language;
@@ -76,7 +76,7 @@ pub(super) fn info(terrain: &Terrain, grounds: &[String], rocks: usize) -> RunIn
         lines: Vec::new(),
         maps: None,
         barriers: Vec::new(),
-        asked: Asked::default(),
+        asked: AnnualRequest::default(),
         observed: Vec::new(),
         profile_step_m: 10.0,
         keeps_paths: false,

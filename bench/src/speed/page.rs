@@ -4,7 +4,6 @@ use super::rate::Rate;
 use super::threads::Speedup;
 use super::{PartCost, SpeedStudy};
 use rockfall::report::format::{decimal, percent, significant};
-use rockfall::study::bench::goes_by_tolerance;
 use rockfall::study::bootstrap::Interval;
 use std::fmt::Write as _;
 
@@ -46,7 +45,7 @@ fn machine(page: &mut String, study: &SpeedStudy) {
 
 /// A scheme at its fineness.
 fn name(rate: &Rate) -> String {
-    let unit = if goes_by_tolerance(rate.scheme) { "m/s" } else { "s" };
+    let unit = rate.scheme.fineness_unit();
     let fineness = rate.fineness;
     let words = if fineness < 1e-3 { format!("{fineness:e}") } else { fineness.to_string() };
     format!("`{}` at {words} {unit}", rate.scheme.name())

@@ -3,7 +3,7 @@
 use super::slope::Slope;
 use rockfall::simulation::{Effort, Scratch, Stop, Trajectory};
 use rockfall::solver::{Scheme, Settings};
-use rockfall::stopwatch::{Piece, look_s};
+use rockfall::stopwatch::{TimedPiece, look_s};
 use rockfall::study::bench::settings;
 use rockfall::study::processor_time::ProcessorTime;
 
@@ -140,14 +140,19 @@ fn share_out(rate: &mut Rate, slope: &Slope, step: &Settings) {
     let all_s = clock.seconds();
     let stopwatches = scratch.stopwatches();
     let of = |piece| stopwatches.seconds(piece, look_s);
-    let pieces = [Piece::Leap, Piece::Geometry, Piece::NotesInFlight, Piece::NotesInContact];
+    let pieces = [
+        TimedPiece::Leap,
+        TimedPiece::Geometry,
+        TimedPiece::NotesInFlight,
+        TimedPiece::NotesInContact,
+    ];
     let looks = pieces.iter().map(|&piece| 2 * stopwatches.times(piece)).sum::<u64>() as f64;
-    let (leap, geometry) = (of(Piece::Leap), of(Piece::Geometry));
-    let notes = of(Piece::NotesInFlight) + of(Piece::NotesInContact);
+    let (leap, geometry) = (of(TimedPiece::Leap), of(TimedPiece::Geometry));
+    let notes = of(TimedPiece::NotesInFlight) + of(TimedPiece::NotesInContact);
     // what is left: nothing else is done with a rock but to draw its release
     let algebra = (all_s - looks * look_s - leap - geometry - notes).max(0.0);
     let sum = leap + geometry + algebra + notes;
-    rate.leap_s = leap / stopwatches.times(Piece::Leap).max(1) as f64;
+    rate.leap_s = leap / stopwatches.times(TimedPiece::Leap).max(1) as f64;
     rate.shares = Shares {
         leap: leap / sum,
         geometry: geometry / sum,

@@ -8,7 +8,7 @@ use crate::terrain::Terrain;
 
 /// Where the centre of a rock goes while it is pressed into a plane and comes out again.
 #[derive(Debug, Clone, Copy)]
-pub struct Passage {
+pub struct PressedPath {
     /// Where it touched (m).
     pub start: Vec3,
     /// How far it goes along the plane (m).
@@ -21,7 +21,7 @@ pub struct Passage {
     pub way_m: f64,
 }
 
-impl Passage {
+impl PressedPath {
     /// Least and largest value of a linear function over the rectangle of `along` and `into`.
     fn range(&self, direction: &Vec3, at_start: f64) -> (f64, f64) {
         let (s, d) = (direction.dot(&self.along), direction.dot(&self.into));
@@ -55,7 +55,7 @@ impl Passage {
 
 impl Neighbours {
     /// Whether a rock on its `passage` touches nothing but the plane of `face`, however many triangles that is.
-    pub fn is_plane_on(&self, face: u32, passage: &Passage) -> bool {
+    pub fn is_plane_on(&self, face: u32, passage: &PressedPath) -> bool {
         let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
         let in_plane = |p: &Vec3| own.n.dot(&(p - own.a)).abs() <= SLACK * self.radius;
         let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];

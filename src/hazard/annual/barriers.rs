@@ -3,8 +3,8 @@
 use super::super::arrival::Arrival;
 use super::super::barriers::Barrier;
 use super::super::lines::CrossingRow;
-use super::super::rate::{Rate, Sums};
-use super::strata::{All, Strata, stratum_of};
+use super::super::rate::{EventRate, Sums};
+use super::strata::{All, StratumSums, stratum_of};
 use crate::frequency::Frequency;
 use serde::{Deserialize, Serialize};
 
@@ -14,22 +14,22 @@ pub struct AnnualBarrier {
     /// Its name.
     pub name: String,
     /// Rocks that arrive; those that a barrier before has stopped do not.
-    pub arriving: Rate,
+    pub arriving: EventRate,
     /// Rocks that it stops.
-    pub stopped: Rate,
+    pub stopped: EventRate,
     /// Rocks that reach above its upper edge.
-    pub over: Rate,
+    pub over: EventRate,
     /// Rocks below its edge with more energy than it takes.
-    pub through: Rate,
+    pub through: EventRate,
 }
 
 /// Rocks that meet a barrier, stratum by stratum.
 #[derive(Debug, Default)]
 pub(super) struct Met {
-    arriving: Strata,
-    stopped: Strata,
-    over: Strata,
-    through: Strata,
+    arriving: StratumSums,
+    stopped: StratumSums,
+    over: StratumSums,
+    through: StratumSums,
 }
 
 impl Met {

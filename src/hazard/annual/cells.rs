@@ -4,7 +4,7 @@ use super::super::classes::{Counts, class_of, place_in_class};
 use super::super::maps::Maps;
 use super::super::rate::{Limits, Running, Sums};
 use super::curve::{Ceilings, curve, return_energy};
-use super::{Asked, Matrix};
+use super::{AnnualRequest, Matrix};
 use crate::frequency::{Frequency, Stratum};
 
 /// A map of something a year, where rocks came.
@@ -28,7 +28,7 @@ pub struct YearMap {
 ///
 /// Above an energy inside a class of counts (ratio 1.05) rocks are taken as even in the logarithm over that class; of the
 /// sizes in a stratum (a factor of 2.2 in volume) the derivative by the exponent takes the mean.
-pub fn year_maps(maps: &Maps, asked: &Asked, releases: usize) -> Vec<YearMap> {
+pub fn year_maps(maps: &Maps, asked: &AnnualRequest, releases: usize) -> Vec<YearMap> {
     let Some(frequency) = &asked.frequency else { return Vec::new() };
     let weights = frequency.weights(releases);
     let scores: Vec<Option<f64>> = frequency.strata().iter().map(Stratum::mean_score).collect();

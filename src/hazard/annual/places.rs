@@ -4,12 +4,12 @@ use super::super::barriers::Barrier;
 use super::super::classes::class_of;
 use super::super::lines::{CrossingRow, LineInfo, by_rock};
 use super::super::proportion::Proportion;
-use super::super::rate::{Limits, Rate, Running, Sums, proportion};
-use super::Asked;
+use super::super::rate::{EventRate, Limits, Running, Sums, proportion};
+use super::AnnualRequest;
 use super::barriers::{AnnualBarrier, Met};
 use super::curve::{Ceilings, ExceedancePoint, ReturnEnergy, curve, return_energy};
 use super::risk::{Object, Risk};
-use super::strata::{All, Strata, stratum_of};
+use super::strata::{All, StratumSums, stratum_of};
 use crate::frequency::Frequency;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -53,7 +53,7 @@ pub struct AnnualPlace {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AnnualFigures {
     /// Rocks that pass: of a line those that cross it, of an object those that hit it.
-    pub passages: Rate,
+    pub passages: EventRate,
     /// The same with at least an energy, for each that is asked for.
     pub above: Vec<Above>,
     /// The energy of each return period asked for.
@@ -70,7 +70,7 @@ pub struct Above {
     /// Total energy (J).
     pub energy_j: f64,
     /// How often.
-    pub rate: Rate,
+    pub rate: EventRate,
 }
 
 /// What a barrier keeps away from a place.
@@ -79,7 +79,7 @@ pub struct Saved {
     /// Name of the barrier.
     pub barrier: String,
     /// Passages that do not happen.
-    pub passages: Rate,
+    pub passages: EventRate,
     /// The same with at least an energy.
     pub above: Vec<Above>,
     /// Risks of an object that it takes away.
@@ -89,27 +89,27 @@ pub struct Saved {
 
 /// Passages of one place that have something in common.
 #[derive(Debug, Default)]
-struct Tally {
+struct PassageTally {
     /// All, and above each energy asked for.
-    above: Vec<Strata>,
+    above: Vec<StratumSums>,
     /// Metres of road blocked.
-    blocked: Strata,
+    blocked: StratumSums,
     classes: BTreeMap<(u16, u16), Sums>,
 }
 
 /// One passage.
-struct Passage {
+struct PlacePassage {
     stratum: u16,
     score: f64,
     total_j: f64,
     blocked_m: f64,
 }
 
-impl Tally {
-    fn add(&mut self, passage: &Passage, energies_j: &[f64]) {
-        let Passage { stratum, score, total_j, blocked_m } = *passage;
+impl PassageTally {
+    fn add(&mut self, passage: &PlacePassage, energies_j: &[f64]) {
+        let PlacePassage { stratum, score, total_j, blocked_m } = *passage;
         let one = Sums::one(1.0, score);
-        self.above.resize(energies_j.len() + 1, Strata::default());
+        self.above.resize(energies_j.len() + 1, StratumSums::default());
         for (strata, least_j) in self.above.iter_mut().zip([0.0].iter().chain(energies_j)) {
             if total_j >= *least_j {
                 strata.entry(stratum).or_default().join(&one);
@@ -119,7 +119,7 @@ impl Tally {
         self.classes.entry((class_of(total_j), stratum)).or_default().join(&one);
     }
 
-    fn rate(&self, level: usize, all: &All<'_>) -> Rate {
+    fn rate(&self, level: usize, all: &All<'_>) -> EventRate {
         let energies = all.frequency.energies_j();
         let least_j = level.checked_sub(1).map_or(0.0, |k| energies[k]);
         all.rate(self.above.get(level), &Limits::above(&all.weights, &all.asked.most_j, least_j))
@@ -152,34 +152,34 @@ impl Tally {
 
 /// Sums of one line or object.
 #[derive(Debug)]
-struct Place {
+struct PlaceSums {
     name: String,
     object: Option<Object>,
-    all: Tally,
-    unstopped: Tally,
-    saved: Vec<Tally>,
+    all: PassageTally,
+    unstopped: PassageTally,
+    saved: Vec<PassageTally>,
 }
 
 /// What a year brings, while rocks come in: sums by stratum and class of energy, which do not grow with the rocks.
 #[derive(Debug)]
-pub struct Year {
-    asked: Asked,
+pub struct YearSums {
+    asked: AnnualRequest,
     frequency: Frequency,
     barriers: Vec<Barrier>,
-    places: Vec<Place>,
+    places: Vec<PlaceSums>,
     nets: Vec<Met>,
 }
 
-impl Year {
+impl YearSums {
     /// Without rocks; none without sources.
-    pub fn new(asked: &Asked, lines: &[LineInfo], barriers: &[Barrier]) -> Option<Self> {
+    pub fn new(asked: &AnnualRequest, lines: &[LineInfo], barriers: &[Barrier]) -> Option<Self> {
         let frequency = asked.frequency.clone()?;
         let shown = lines.iter().filter(|line| !line.of_barrier);
         Some(Self {
             asked: asked.clone(),
             frequency,
             barriers: barriers.to_vec(),
-            places: shown.map(|line| Place::of(line, &asked.objects, barriers.len())).collect(),
+            places: shown.map(|line| PlaceSums::of(line, &asked.objects, barriers.len())).collect(),
             nets: barriers.iter().map(|_| Met::default()).collect(),
         })
     }
@@ -223,24 +223,24 @@ impl Year {
 /// # Errors
 /// Passes on what reading a row says.
 pub fn annual<E>(
-    asked: &Asked,
+    asked: &AnnualRequest,
     releases: usize,
     (lines, barriers): (&[LineInfo], &[Barrier]),
     rows: impl Iterator<Item = Result<CrossingRow, E>>,
 ) -> Result<Option<Annual>, E> {
-    let Some(mut year) = Year::new(asked, lines, barriers) else { return Ok(None) };
+    let Some(mut year) = YearSums::new(asked, lines, barriers) else { return Ok(None) };
     by_rock(rows, |rock| year.add(rock))?;
     Ok(Some(year.said(releases)))
 }
 
-impl Place {
+impl PlaceSums {
     fn of(line: &LineInfo, objects: &[Object], barriers: usize) -> Self {
         Self {
             name: line.name.clone(),
             object: objects.iter().find(|object| object.name == line.name).cloned(),
-            all: Tally::default(),
-            unstopped: Tally::default(),
-            saved: (0..barriers).map(|_| Tally::default()).collect(),
+            all: PassageTally::default(),
+            unstopped: PassageTally::default(),
+            saved: (0..barriers).map(|_| PassageTally::default()).collect(),
         }
     }
 
@@ -248,7 +248,7 @@ impl Place {
         let (stratum, score) = stratum_of(frequency, row);
         let blocked_m =
             self.object.as_ref().map_or(0.0, |object| object.blocked_m(2.0 * row.radius_m));
-        let passage = Passage { stratum, score, total_j: row.total_j(), blocked_m };
+        let passage = PlacePassage { stratum, score, total_j: row.total_j(), blocked_m };
         let energies_j = frequency.energies_j();
         self.all.add(&passage, energies_j);
         match stopped {
@@ -260,7 +260,7 @@ impl Place {
     fn said(&self, all: &All<'_>) -> AnnualPlace {
         let rocks = |sums: &Sums| sums.rocks();
         let reach = self.all.above.first().into_iter().flatten();
-        let saved = |(barrier, tally): (&Barrier, &Tally)| Saved {
+        let saved = |(barrier, tally): (&Barrier, &PassageTally)| Saved {
             barrier: barrier.name.clone(),
             passages: tally.rate(0, all),
             above: tally.above(all),

@@ -1,6 +1,6 @@
 //! From hits a year to risk: who is there, and what a hit does.
 
-use super::super::rate::Rate;
+use super::super::rate::EventRate;
 use serde::{Deserialize, Serialize};
 
 /// A road, a path or a house.
@@ -48,7 +48,7 @@ pub struct Risk {
     /// Which.
     pub kind: RiskKind,
     /// Its value a year (1/year).
-    pub rate: Rate,
+    pub rate: EventRate,
 }
 
 /// What is meant.
@@ -87,9 +87,9 @@ impl Object {
     ///
     /// `R = λ P(T:S) V` (form of AGS 2007): a person who is there a share τ of the time has `P(T:S) = τ`; of `n` vehicles a
     /// day of length `l_v` at speed `v`, `n (l_v + d)/(24 h · v)` are in the way of a block of diameter `d`.
-    pub(super) fn risks(&self, hits: &Rate, blocked: &Rate) -> Vec<Risk> {
+    pub(super) fn risks(&self, hits: &EventRate, blocked: &EventRate) -> Vec<Risk> {
         let mut risks = Vec::new();
-        let mut say = |kind, rate: Option<Rate>| {
+        let mut say = |kind, rate: Option<EventRate>| {
             risks.extend(rate.map(|rate| Risk { kind, rate }));
         };
         let person = match &self.vehicles {

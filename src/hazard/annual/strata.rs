@@ -2,18 +2,18 @@
 
 use super::super::barriers::Barrier;
 use super::super::lines::CrossingRow;
-use super::super::rate::{Limits, Rate, Running, Sums};
-use super::Asked;
+use super::super::rate::{EventRate, Limits, Running, Sums};
+use super::AnnualRequest;
 use super::curve::Ceilings;
 use crate::frequency::{Frequency, Weights, volume_m3};
 use std::collections::BTreeMap;
 
 /// Sums over rocks, stratum by stratum.
-pub(super) type Strata = BTreeMap<u16, Sums>;
+pub(super) type StratumSums = BTreeMap<u16, Sums>;
 
 /// What all places share when they are told.
 pub(super) struct All<'a> {
-    pub(super) asked: &'a Asked,
+    pub(super) asked: &'a AnnualRequest,
     pub(super) frequency: &'a Frequency,
     pub(super) weights: Weights,
     pub(super) ceilings: Ceilings,
@@ -23,11 +23,11 @@ pub(super) struct All<'a> {
 
 impl All<'_> {
     /// How often a year rocks do something that every rock might do.
-    pub(super) fn rate_of_any(&self, strata: &Strata) -> Rate {
+    pub(super) fn rate_of_any(&self, strata: &StratumSums) -> EventRate {
         self.rate(Some(strata), &Limits::above(&self.weights, &[], 0.0))
     }
 
-    pub(super) fn rate(&self, strata: Option<&Strata>, limits: &Limits) -> Rate {
+    pub(super) fn rate(&self, strata: Option<&StratumSums>, limits: &Limits) -> EventRate {
         let mut running = Running::new(&self.weights);
         for (stratum, sums) in strata.into_iter().flatten() {
             running.add(*stratum, sums);

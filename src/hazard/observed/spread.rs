@@ -1,20 +1,23 @@
 //! Where ends lie and how they spread, measured beside computed.
 
-use super::{Way, Weighted, mean_direction, runouts};
+use super::{ObservedPath, Weighted, mean_direction, runouts};
 use crate::math;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// Ends of one set of rocks along and across a direction.
 #[derive(Debug)]
-pub struct Spread {
+pub struct EndSpread {
     mean_m: [f64; 2],
     sd_m: [f64; 2],
 }
 
-impl Spread {
+impl EndSpread {
     /// Figures of measured and computed ways: what, of the measured, of the computed.
-    pub fn figures(measured: &[Way], computed: &[Weighted]) -> Vec<(&'static str, f64, f64)> {
+    pub fn figures(
+        measured: &[ObservedPath],
+        computed: &[Weighted],
+    ) -> Vec<(&'static str, f64, f64)> {
         let along = mean_direction(measured);
         let measured: Vec<Weighted> = measured.iter().map(|way| (*way, 1.0)).collect();
         let [one, two] = [&measured, computed].map(|ways| Self::of(ways, along));
@@ -63,9 +66,9 @@ impl Spread {
 }
 
 /// Share of computed runouts below a measured one (–), those equal to it by half; none of none.
-pub fn rank(measured: &Way, computed: &[Way]) -> Option<f64> {
+pub fn rank(measured: &ObservedPath, computed: &[ObservedPath]) -> Option<f64> {
     let own_m = measured.runout_m();
-    let below = |way: &Way| match way.runout_m().total_cmp(&own_m) {
+    let below = |way: &ObservedPath| match way.runout_m().total_cmp(&own_m) {
         Ordering::Less => 1.0,
         Ordering::Equal => 0.5,
         Ordering::Greater => 0.0,
@@ -121,8 +124,8 @@ mod tests {
     /// By hand: ends at 10 and 20 m north, computed 3 m further east and 4 m further north, one of them beyond.
     #[test]
     fn figures_are_those_found_by_hand() {
-        let way = |x: f64, y: f64| Way { start_m: [1.0, 1.0], end_m: [1.0 + x, 1.0 + y] };
-        let figures = Spread::figures(
+        let way = |x: f64, y: f64| ObservedPath { start_m: [1.0, 1.0], end_m: [1.0 + x, 1.0 + y] };
+        let figures = EndSpread::figures(
             &[way(0.0, 10.0), way(0.0, 20.0)],
             &[(way(3.0, 14.0), 1.0), (way(3.0, 24.0), 1.0)],
         );

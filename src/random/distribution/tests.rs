@@ -17,11 +17,11 @@ fn read(text: &str) -> Distribution {
 
 fn refused(text: &str) -> String {
     #[derive(serde::Deserialize, Debug)]
-    struct Holder {
+    struct RefusedHolder {
         #[expect(dead_code, reason = "only its refusal is of interest")]
         x: Distribution,
     }
-    toml::from_str::<Holder>(&format!("x = {text}")).unwrap_err().message().to_owned()
+    toml::from_str::<RefusedHolder>(&format!("x = {text}")).unwrap_err().message().to_owned()
 }
 
 /// Every family with its exact mean and standard deviation.

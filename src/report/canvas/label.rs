@@ -2,7 +2,7 @@
 
 use super::SMALL;
 use crate::report::colour::INK;
-use crate::report::svg::path::{Frame, Spot};
+use crate::report::svg::path::{PaperFrame, Spot};
 use crate::report::svg::{CAP_HEIGHT, DEPTH, TENTHS, metrics};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, TextStyle};
@@ -95,7 +95,7 @@ impl Label {
     }
 
     /// The room it takes (px).
-    pub fn frame(&self) -> Frame {
+    pub fn frame(&self) -> PaperFrame {
         let (width, size) = (self.width_px(), self.size_px);
         let left = match self.anchor.h_pos {
             HPos::Left => self.at.0,
@@ -109,11 +109,11 @@ impl Label {
         };
         let (top, bottom) = (baseline - CAP_HEIGHT * size, baseline + DEPTH * size);
         if matches!(self.turn, FontTransform::None) {
-            return Frame { left, top, right: left + width, bottom };
+            return PaperFrame { left, top, right: left + width, bottom };
         }
         // a quarter turn to the left about its place
         let ((x, y), right) = (self.at, left + width);
-        Frame {
+        PaperFrame {
             left: x + top - y,
             top: y - (right - x),
             right: x + bottom - y,

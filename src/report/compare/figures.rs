@@ -1,8 +1,8 @@
 //! Figures of a comparison: all differences at a glance, and distributions on top of each other.
 
 use super::Comparison;
-use super::populations::{Measure, Population};
-use super::table::{Group, Line};
+use super::populations::{ComparedQuantity, Population};
+use super::table::{ComparedStatistic, Group};
 use crate::hazard::{Quantity, Sample, Values};
 use crate::report::axis::Axis;
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, paint, text_width};
@@ -10,7 +10,7 @@ use crate::report::colour::{BLUE, GREY, INK, PALE, VERMILLION};
 use crate::report::figure::{Drawing, Heading, WIDTH_PX};
 use crate::report::format;
 use crate::report::panel::{FOOT_PX, Panel};
-use crate::report::svg::path::Frame;
+use crate::report::svg::path::PaperFrame;
 use crate::report::words::{Words, fill};
 
 const A_PEN: Pen = Pen::full(BLUE, 1.6);
@@ -54,7 +54,7 @@ pub(super) fn all(comparison: &Comparison) -> Vec<(Heading, Drawing)> {
 
 /// The rows of the first figure: name, change and its interval over the value of A.
 fn rows(groups: &[Group], words: &Words) -> Vec<(String, [f64; 3])> {
-    let relative = |group: &Group, row: &Line| -> Option<(String, [f64; 3])> {
+    let relative = |group: &Group, row: &ComparedStatistic| -> Option<(String, [f64; 3])> {
         let (low, high) = row.difference.interval?;
         let a = row.difference.a;
         let named = match group.name.as_str() {
@@ -77,7 +77,7 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
     let widest = rows.iter().map(|(name, _)| text_width(name, SMALL)).fold(0.0, f64::max);
     let left = widest.min(0.55 * WIDTH_PX) + 16.0;
     let bottom = 8.0 + ROW_PX * rows.len().max(2) as f64;
-    let frame = Frame { left, top: 8.0, right: WIDTH_PX - 14.0, bottom };
+    let frame = PaperFrame { left, top: 8.0, right: WIDTH_PX - 14.0, bottom };
     let reach = rows.iter().flat_map(|(_, values)| values).filter(|x| x.is_finite());
     let reach = reach.fold(0.05_f64, |most, x| most.max(x.abs())).min(MOST_CHANGE);
     let x = Axis::linear(-105.0 * reach, 105.0 * reach, words.say("Change from A to B (% of A)"));
@@ -112,9 +112,10 @@ fn changes(groups: &[Group], words: &Words) -> Drawing {
 }
 
 /// The quantities of a population that are drawn, with the values of both runs.
-fn curves_of([a, b]: &[Population; 2]) -> Vec<(Measure, [&Values; 2])> {
-    let shown =
-        |measure: Measure| !measure.is_count() && measure != Measure::Whole(Quantity::ReachAngle);
+fn curves_of([a, b]: &[Population; 2]) -> Vec<(ComparedQuantity, [&Values; 2])> {
+    let shown = |measure: ComparedQuantity| {
+        !measure.is_count() && measure != ComparedQuantity::Whole(Quantity::ReachAngle)
+    };
     let pairs = a.values.iter().zip(&b.values).filter(|((measure, _), _)| shown(*measure));
     pairs.map(|((measure, one), (_, other))| (*measure, [one, other])).collect()
 }
@@ -122,7 +123,7 @@ fn curves_of([a, b]: &[Population; 2]) -> Vec<(Measure, [&Values; 2])> {
 fn exceedance(
     name: &str,
     pair: &[Population; 2],
-    curves: &[(Measure, [&Values; 2])],
+    curves: &[(ComparedQuantity, [&Values; 2])],
     words: &Words,
 ) -> Drawing {
     let half = 0.5 * WIDTH_PX;
@@ -134,7 +135,7 @@ fn exceedance(
         for (k, (measure, values)) in curves.iter().enumerate() {
             let top = KEY_PX + band * (k / 2) as f64 + HEAD_PX;
             let left = half * (k % 2) as f64;
-            let frame = Frame { left, top, right: left + half - 14.0, bottom: top + CURVE_PX };
+            let frame = PaperFrame { left, top, right: left + half - 14.0, bottom: top + CURVE_PX };
             one_panel(canvas, frame, (*measure, *values), words);
         }
     });
@@ -155,8 +156,8 @@ fn key(canvas: &Canvas<'_>) {
 
 fn one_panel(
     canvas: &Canvas<'_>,
-    frame: Frame,
-    (measure, values): (Measure, [&Values; 2]),
+    frame: PaperFrame,
+    (measure, values): (ComparedQuantity, [&Values; 2]),
     words: &Words,
 ) {
     let (name, unit, size) = measure.words();

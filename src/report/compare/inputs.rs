@@ -11,24 +11,41 @@ pub(super) const PLAN: &str = "Plan: ";
 /// What went in and differs: name, first, second; empty when nothing does.
 pub(super) fn differing(a: &Summary, b: &Summary) -> Vec<(String, [String; 2])> {
     let [mine, others] = [a, b].map(said);
-    let mut rows = Vec::new();
-    for (name, value) in &mine {
-        let other = others.iter().find(|(known, _)| known == name);
-        let other = other.map_or("–", |(_, value)| value.as_str());
-        if other != value {
-            rows.push((name.clone(), [value.clone(), other.to_owned()]));
+    let mut names: Vec<&String> = Vec::new();
+    for (name, _) in mine.iter().chain(&others) {
+        if !names.contains(&name) {
+            names.push(name);
         }
     }
-    for (name, value) in others {
-        if mine.iter().all(|(known, _)| *known != name) {
-            rows.push((name, ["–".to_owned(), value]));
-        }
-    }
-    rows
+    names.into_iter().flat_map(|name| differing_of(name, &mine, &others)).collect()
 }
 
+/// A row for each value of a name that one run has and the other has not: a plan says the same of every ground.
+fn differing_of(
+    name: &str,
+    mine: &[SaidOfGround],
+    others: &[SaidOfGround],
+) -> Vec<(String, [String; 2])> {
+    let of = |all: &[SaidOfGround]| -> Vec<String> {
+        all.iter().filter(|(known, _)| known == name).map(|(_, value)| value.clone()).collect()
+    };
+    let (mut own, mut other) = (of(mine), Vec::new());
+    for value in of(others) {
+        match own.iter().position(|known| *known == value) {
+            Some(at) => drop(own.remove(at)),
+            None => other.push(value),
+        }
+    }
+    let value = |of: &[String], k: usize| of.get(k).cloned().unwrap_or_else(|| "–".to_owned());
+    let rows = 0..own.len().max(other.len());
+    rows.map(|k| (name.to_owned(), [value(&own, k), value(&other, k)])).collect()
+}
+
+/// Name and value.
+type SaidOfGround = (String, String);
+
 /// All that a run says of what went in, as name and value.
-fn said(run: &Summary) -> Vec<(String, String)> {
+fn said(run: &Summary) -> Vec<SaidOfGround> {
     let row = |name: &str, value: String| (name.to_owned(), value);
     let id = &run.identity;
     let mut rows = vec![

@@ -1,7 +1,7 @@
 //! `compare.html`: one page in the style of the report, without a script.
 
 use super::Comparison;
-use super::table::{Group, Line, in_words};
+use super::table::{ComparedStatistic, Group, in_words};
 use crate::report::figure::{Drawing, Heading};
 use crate::report::format::{self, escape};
 use crate::report::html::{figure_section, head, list, section};
@@ -107,7 +107,7 @@ fn table(group: &Group, words: &Words) -> String {
     )
 }
 
-fn table_row(row: &Line, words: &Words) -> String {
+fn table_row(row: &ComparedStatistic, words: &Words) -> String {
     let name = match row.unit {
         "" => row.name_in(words),
         unit => format!("{} ({unit})", row.name_in(words)),

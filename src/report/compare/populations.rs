@@ -16,12 +16,12 @@ pub(super) struct Population {
     /// Shares: name, and the releases that count.
     pub(super) shares: Vec<(String, Vec<usize>)>,
     /// Quantities: what, and its value for each release that has one.
-    pub(super) values: Vec<(Measure, Values)>,
+    pub(super) values: Vec<(ComparedQuantity, Values)>,
 }
 
 /// A quantity that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Measure {
+pub(super) enum ComparedQuantity {
     /// Of a whole way.
     Whole(Quantity),
     /// Total energy (J).
@@ -34,7 +34,7 @@ pub(super) enum Measure {
     Speed,
 }
 
-impl Measure {
+impl ComparedQuantity {
     /// Name, unit and its size in SI.
     pub(super) fn words(self) -> (&'static str, &'static str, f64) {
         match self {
@@ -139,7 +139,7 @@ fn all(run: &Results, range: &Range<usize>) -> Result<Population> {
         name: "All releases".to_owned(),
         among: range.len(),
         shares: StopKind::ALL.map(|stop| (ended(stop).to_owned(), Vec::new())).into(),
-        values: WHOLE.map(|quantity| (Measure::Whole(quantity), Values::new())).into(),
+        values: WHOLE.map(|quantity| (ComparedQuantity::Whole(quantity), Values::new())).into(),
     };
     for row in run.rows()? {
         let row: Row = row?;
@@ -198,9 +198,9 @@ fn crossing(name: &str, rows: &[CrossingRow], among: usize) -> Population {
         among,
         shares: vec![("Cross it".to_owned(), own().map(|row| row.index).collect())],
         values: vec![
-            (Measure::Energy, values(CrossingRow::total_j)),
-            (Measure::Height, values(|row| row.height_m)),
-            (Measure::Speed, values(|row| row.speed_m_s)),
+            (ComparedQuantity::Energy, values(CrossingRow::total_j)),
+            (ComparedQuantity::Height, values(|row| row.height_m)),
+            (ComparedQuantity::Speed, values(|row| row.speed_m_s)),
         ],
     }
 }
@@ -228,8 +228,8 @@ fn arriving(
         among,
         shares,
         values: vec![
-            (Measure::Energy, values(|rock| rock.total_j)),
-            (Measure::Top, values(|rock| rock.top_m)),
+            (ComparedQuantity::Energy, values(|rock| rock.total_j)),
+            (ComparedQuantity::Top, values(|rock| rock.top_m)),
         ],
     }
 }

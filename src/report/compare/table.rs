@@ -1,6 +1,6 @@
 //! Statistics of both runs and their differences, row by row.
 
-use super::populations::{Measure, Population};
+use super::populations::{ComparedQuantity, Population};
 use crate::hazard::{Difference, Reading, Values};
 use crate::math;
 use crate::report::format;
@@ -16,12 +16,12 @@ const PERCENTS: [u8; 4] = [50, 90, 95, 99];
 pub(super) struct Group {
     /// Heading.
     pub(super) name: String,
-    pub(super) rows: Vec<Line>,
+    pub(super) rows: Vec<ComparedStatistic>,
 }
 
 /// One statistic.
 #[derive(Debug, Clone)]
-pub(super) struct Line {
+pub(super) struct ComparedStatistic {
     pub(super) name: String,
     pub(super) unit: &'static str,
     /// Rocks that it is of, in each run.
@@ -32,7 +32,7 @@ pub(super) struct Line {
     pub(super) is_headline: bool,
 }
 
-impl Line {
+impl ComparedStatistic {
     /// Its name in another language: what, and which statistic of it.
     pub(super) fn name_in(&self, words: &Words) -> String {
         match self.name.rsplit_once(", ") {
@@ -49,7 +49,7 @@ pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> G
     let mut rows = Vec::new();
     for ((name, one), (_, other)) in a.shares.iter().zip(&b.shares) {
         let difference = Difference::of_shares((one, a.among), (other, b.among), paired);
-        rows.push(Line {
+        rows.push(ComparedStatistic {
             name: name.clone(),
             unit: "%",
             rocks: [one.len(), other.len()],
@@ -61,7 +61,7 @@ pub(super) fn group([a, b]: &[Population; 2], paired: bool, same_run: bool) -> G
         rows.extend(
             of_measure(*measure, [one, other], paired)
                 .into_iter()
-                .map(|row| Line { difference: settled(row.difference), ..row }),
+                .map(|row| ComparedStatistic { difference: settled(row.difference), ..row }),
         );
     }
     // what neither run has seen is no news
@@ -79,12 +79,16 @@ fn scaled(one: Difference, size: f64) -> Difference {
 }
 
 /// Mean and percentiles of one quantity.
-fn of_measure(measure: Measure, values: [&Values; 2], paired: bool) -> Vec<Line> {
+fn of_measure(
+    measure: ComparedQuantity,
+    values: [&Values; 2],
+    paired: bool,
+) -> Vec<ComparedStatistic> {
     let (name, unit, size) = measure.words();
     let row = |what: String, is_headline: bool, read: &dyn Fn(&Values) -> Option<Reading>| {
         let [a, b] = values.map(read);
         let (a, b) = (a?.times(1.0 / size), b?.times(1.0 / size));
-        Some(Line {
+        Some(ComparedStatistic {
             name: format!("{name}, {what}"),
             unit,
             rocks: [a.rocks, b.rocks],
@@ -127,7 +131,8 @@ pub(super) fn csv(groups: &[Group], paired: bool) -> String {
 pub(super) fn headline(groups: &[Group]) -> Vec<String> {
     let mut lines = Vec::new();
     for group in groups {
-        let rows: Vec<&Line> = group.rows.iter().filter(|row| row.is_headline).collect();
+        let rows: Vec<&ComparedStatistic> =
+            group.rows.iter().filter(|row| row.is_headline).collect();
         if rows.is_empty() {
             continue;
         }

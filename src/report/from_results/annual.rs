@@ -1,12 +1,12 @@
 //! What a year brings, from the summary: tables and curves. Every title says that its numbers are a year.
 
 use super::super::format;
-use super::super::model::{About, AnnualView, BandPoint, Estimate, Table};
+use super::super::model::{About, AnnualView, BandPoint, Estimate, EstimateTable};
 use super::super::words::{Words, fill};
 use super::estimate;
 use crate::hazard::{
-    Annual, AnnualBarrier, AnnualFigures, AnnualPlace, ExceedancePoint, Rate, ReturnEnergy, Risk,
-    RiskKind,
+    Annual, AnnualBarrier, AnnualFigures, AnnualPlace, EventRate, ExceedancePoint, ReturnEnergy,
+    Risk, RiskKind,
 };
 use crate::output::Results;
 
@@ -18,6 +18,7 @@ pub(super) fn views(results: &Results) -> Vec<AnnualView> {
         AnnualView {
             name: place.name.clone(),
             is_object: place.is_object,
+            most_per_year: figures.passages.high_95,
             without: band(figures),
             // where no barrier stands before, both are the same curve
             with: place.with_barriers.as_ref().filter(|with| *with != figures).map(band),
@@ -38,7 +39,7 @@ fn band(figures: &AnnualFigures) -> Vec<BandPoint> {
 
 /// The first table of the page: how often a year rocks come to each object and line with the largest energy asked for,
 /// without barriers and with them.
-pub(super) fn headline(results: &Results, words: &Words) -> Option<Table> {
+pub(super) fn headline(results: &Results, words: &Words) -> Option<EstimateTable> {
     let annual = results.summary.annual.as_ref()?;
     // what a barrier meets is told of the barrier
     let is_barrier = |place: &&AnnualPlace| {
@@ -64,22 +65,25 @@ pub(super) fn headline(results: &Results, words: &Words) -> Option<Table> {
         .flat_map(|place| both(place, words).filter_map(move |one| row(place, one)))
         .collect();
     let columns = how_often(words);
-    (!rows.is_empty()).then(|| Table {
+    (!rows.is_empty()).then(|| EstimateTable {
         about: About::Year,
         title: words.year().head_title.to_owned(),
         note: words.year().head_note.to_owned(),
         columns: [0, 1, 4, 5].map(|column| columns[column].clone()).into(),
         rows,
+        ..EstimateTable::default()
     })
 }
 
 /// Three tables a place: how often, with what energy, at what risk; and one a barrier.
-pub(super) fn tables(results: &Results, words: &Words) -> Vec<Table> {
+pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
     let Some(annual) = &results.summary.annual else { return Vec::new() };
     let each = |place: &AnnualPlace| {
         [Some(passages(annual, place, words)), Some(returns(place, words)), risks(place, words)]
     };
-    let places = annual.places.iter().flat_map(each).flatten();
+    // where no rock comes, one sentence says what there is to say
+    let met = annual.places.iter().filter(|place| place.without_barriers.passages.rocks > 0);
+    let places = met.flat_map(each).flatten();
     places.chain(annual.barriers.iter().map(|one| barrier(annual, one, words))).collect()
 }
 
@@ -96,7 +100,7 @@ fn how_often(words: &Words) -> Vec<String> {
     ]
 }
 
-fn barrier(annual: &Annual, one: &AnnualBarrier, words: &Words) -> Table {
+fn barrier(annual: &Annual, one: &AnnualBarrier, words: &Words) -> EstimateTable {
     let AnnualBarrier { name, arriving, stopped, over, through } = one;
     let rows = [
         (words.rocks_arrive, arriving),
@@ -104,8 +108,9 @@ fn barrier(annual: &Annual, one: &AnnualBarrier, words: &Words) -> Table {
         (words.go_over, over),
         (words.break_through, through),
     ];
-    Table {
+    EstimateTable {
         about: About::Year,
+        place: name.clone(),
         title: fill(words.barrier_year_title, &[("name", &words.quoted(name))]),
         note: words.barrier_year_note.to_owned(),
         columns: how_often(words),
@@ -125,17 +130,19 @@ fn both<'a>(
     place: &'a AnnualPlace,
     words: &Words,
 ) -> impl Iterator<Item = (&'static str, &'a AnnualFigures)> + use<'a> {
-    let without = if place.with_barriers.is_some() { words.and_without } else { "" };
+    // barriers that change nothing here have no rows of their own
+    let with = place.with_barriers.iter().filter(|with| **with != place.without_barriers);
     let and_with = words.and_with;
-    let with = place.with_barriers.iter().map(move |figures| (and_with, figures));
+    let with: Vec<_> = with.map(|figures| (and_with, figures)).collect();
+    let without = if with.is_empty() { "" } else { words.and_without };
     [(without, &place.without_barriers)].into_iter().chain(with)
 }
 
-fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> Table {
+fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> EstimateTable {
     let all = if place.is_object { words.hits } else { words.passages };
     let or_more = |joule: f64| fill(words.or_more, &[("energy", &format::plain(joule / 1e3))]);
     let mut rows = Vec::new();
-    let mut say = |name: String, rate: &Rate| rows.push((name, cells(rate, annual)));
+    let mut say = |name: String, rate: &EventRate| rows.push((name, cells(rate, annual)));
     for (which, figures) in both(place, words) {
         say(format!("{all}{which}"), &figures.passages);
         for above in &figures.above {
@@ -148,8 +155,9 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> Table {
             say(or_more(above.energy_j), &above.rate);
         }
     }
-    Table {
+    EstimateTable {
         about: About::Year,
+        place: place.name.clone(),
         title: named(words.often_title, place, words),
         note: fill(
             words.often_note,
@@ -164,11 +172,11 @@ fn passages(annual: &Annual, place: &AnnualPlace, words: &Words) -> Table {
     }
 }
 
-fn of(rate: &Rate, map: impl Fn(f64) -> f64) -> Estimate {
+fn of(rate: &EventRate, map: impl Fn(f64) -> f64) -> Estimate {
     estimate(map(rate.per_year), Some(map(rate.low_95)), Some(map(rate.high_95)))
 }
 
-fn cells(rate: &Rate, annual: &Annual) -> Vec<Option<Estimate>> {
+fn cells(rate: &EventRate, annual: &Annual) -> Vec<Option<Estimate>> {
     let period = |per_year: f64| if per_year > 0.0 { 1.0 / per_year } else { f64::NAN };
     let years = Estimate::new(period(rate.per_year), period(rate.high_95), period(rate.low_95));
     vec![
@@ -181,7 +189,7 @@ fn cells(rate: &Rate, annual: &Annual) -> Vec<Option<Estimate>> {
     ]
 }
 
-fn returns(place: &AnnualPlace, words: &Words) -> Table {
+fn returns(place: &AnnualPlace, words: &Words) -> EstimateTable {
     let row = |(which, one): (&str, &ReturnEnergy)| {
         let kilo = |joule: f64| joule / 1e3;
         let energy = match one.energy_j {
@@ -197,8 +205,9 @@ fn returns(place: &AnnualPlace, words: &Words) -> Table {
         .flat_map(|(which, figures)| figures.returns.iter().map(move |r| (which, r)));
     let by = |text: &str| fill(text, &[("unit", &"kJ")]);
     let columns = [words.energy_axis, words.col_by_rate, words.col_by_exponent].map(by);
-    Table {
+    EstimateTable {
         about: About::Year,
+        place: place.name.clone(),
         title: named(words.returns_title, place, words),
         note: words.returns_note.to_owned(),
         columns: columns.into(),
@@ -206,7 +215,7 @@ fn returns(place: &AnnualPlace, words: &Words) -> Table {
     }
 }
 
-fn risks(place: &AnnualPlace, words: &Words) -> Option<Table> {
+fn risks(place: &AnnualPlace, words: &Words) -> Option<EstimateTable> {
     let row = |which: &str, risk: &Risk| {
         let Risk { kind, rate } = risk;
         let slope = |slope: f64| estimate(slope, None, None);
@@ -224,8 +233,9 @@ fn risks(place: &AnnualPlace, words: &Words) -> Option<Table> {
     }
     let by = |text: &str| fill(text, &[("unit", &"1/a")]);
     let columns = [words.col_year, words.col_by_rate, words.col_by_exponent].map(by);
-    (!rows.is_empty()).then(|| Table {
+    (!rows.is_empty()).then(|| EstimateTable {
         about: About::Year,
+        place: place.name.clone(),
         title: named(words.risk_title, place, words),
         note: words.risk_note.to_owned(),
         columns: columns.into(),

@@ -1,7 +1,7 @@
 //! The first tables of the page: what arrives at each line, and at each barrier.
 
 use super::super::format;
-use super::super::model::{About, Estimate, Quantity, Table};
+use super::super::model::{About, Estimate, EstimateTable, ReportQuantity};
 use super::super::words::{Words, fill};
 use super::lines::{of_share, shown};
 use super::{of_percentile, percentile_of};
@@ -12,7 +12,7 @@ use crate::output::Results;
 const P: f64 = 0.95;
 
 /// One table over the lines in this order, one over the barriers; each where there are some.
-pub(super) fn tables(results: &Results, words: &Words, order: &[String]) -> Vec<Table> {
+pub(super) fn tables(results: &Results, words: &Words, order: &[String]) -> Vec<EstimateTable> {
     [lines(results, words, order), barriers(results, words)].into_iter().flatten().collect()
 }
 
@@ -22,14 +22,14 @@ fn of(statistic: &Statistic) -> Option<Estimate> {
 
 /// A unit of energy for a whole table.
 fn energy_unit(estimates: impl Iterator<Item = f64>) -> (&'static str, f64) {
-    Quantity::Total.unit(estimates.filter(|value| value.is_finite()).fold(0.0, f64::max))
+    ReportQuantity::Total.unit(estimates.filter(|value| value.is_finite()).fold(0.0, f64::max))
 }
 
 fn percent(share: Estimate) -> Estimate {
     share.over(0.01)
 }
 
-fn lines(results: &Results, words: &Words, order: &[String]) -> Option<Table> {
+fn lines(results: &Results, words: &Words, order: &[String]) -> Option<EstimateTable> {
     let releases = results.hazard.rocks();
     let is_barrier =
         |name: &str| results.summary.barriers.iter().any(|one| one.barrier.name == name);
@@ -64,12 +64,13 @@ fn lines(results: &Results, words: &Words, order: &[String]) -> Option<Table> {
         words.col_height_vertical.to_owned(),
         words.col_height_normal.to_owned(),
     ];
-    (!rows.is_empty()).then(|| Table {
+    (!rows.is_empty()).then(|| EstimateTable {
         about: About::Lines,
         title: words.arrives_title.to_owned(),
         note: words.arrives_note.to_owned(),
         columns: columns.into(),
         rows,
+        ..EstimateTable::default()
     })
 }
 
@@ -85,7 +86,7 @@ fn behind(at: &Residual, words: &Words, size: f64) -> (String, Vec<Option<Estima
     (name, cells)
 }
 
-fn barriers(results: &Results, words: &Words) -> Option<Table> {
+fn barriers(results: &Results, words: &Words) -> Option<EstimateTable> {
     let all = &results.summary.barriers;
     let design = |one: &BarrierSummary| one.design_values.as_ref().map(|design| design.energy_j);
     let energies = all.iter().flat_map(|one| {
@@ -126,11 +127,12 @@ fn barriers(results: &Results, words: &Words) -> Option<Table> {
         fill(words.col_design_energy, &[("unit", &unit)]),
         words.col_design_height.to_owned(),
     ];
-    (!all.is_empty()).then(|| Table {
+    (!all.is_empty()).then(|| EstimateTable {
         about: About::Barriers,
         title: words.barriers_head_title.to_owned(),
         note: words.barriers_head_note.to_owned(),
         columns: columns.into(),
         rows: all.iter().map(row).collect(),
+        ..EstimateTable::default()
     })
 }

@@ -2,7 +2,7 @@
 
 use super::super::format;
 use super::super::model::{
-    About, BarrierView, DesignView, Estimate, PlaceView, Quantity, RockView, Table,
+    About, BarrierView, DesignView, Estimate, EstimateTable, PlaceView, ReportQuantity, RockView,
 };
 use super::super::raster::GroundRaster;
 use super::super::words::{Words, fill};
@@ -98,7 +98,7 @@ pub(super) fn tables(
     results: &Results,
     words: &Words,
     ground: Option<&GroundRaster>,
-) -> Vec<Table> {
+) -> Vec<EstimateTable> {
     let barriers = &results.summary.barriers;
     if barriers.is_empty() {
         return Vec::new();
@@ -111,7 +111,7 @@ pub(super) fn tables(
     [counts(barriers, words)].into_iter().chain(each).collect()
 }
 
-fn counts(barriers: &[BarrierSummary], words: &Words) -> Table {
+fn counts(barriers: &[BarrierSummary], words: &Words) -> EstimateTable {
     let design_energy = fill(words.col_design_energy, &[("unit", &"kJ")]);
     let columns = [
         words.col_height,
@@ -125,12 +125,13 @@ fn counts(barriers: &[BarrierSummary], words: &Words) -> Table {
         &design_energy,
     ];
     let rules: Vec<String> = barriers.iter().filter_map(|one| in_words(one, words)).collect();
-    Table {
+    EstimateTable {
         about: About::Barriers,
         title: words.barriers_title.to_owned(),
         note: fill(words.barriers_note, &[("rules", &rules.join(" "))]).trim_end().to_owned(),
         columns: columns.map(str::to_owned).into(),
         rows: barriers.iter().map(|one| (one.barrier.name.clone(), cells(one))).collect(),
+        ..EstimateTable::default()
     }
 }
 
@@ -198,8 +199,8 @@ fn factors(what: &str, list: &BTreeMap<String, f64>, words: &Words) -> String {
 }
 
 /// The population that is left for a barrier by those before it.
-fn arriving(one: &BarrierSummary, words: &Words) -> Table {
-    let row = |name: &str, like: Quantity, of: &Statistic| {
+fn arriving(one: &BarrierSummary, words: &Words) -> EstimateTable {
+    let row = |name: &str, like: ReportQuantity, of: &Statistic| {
         let most = of.max.map(|most| most.value);
         let (unit, size) = like.unit(most.unwrap_or(0.0));
         let mean = of.mean.map(|mean| estimate(mean.value, mean.low_95, mean.high_95));
@@ -211,8 +212,9 @@ fn arriving(one: &BarrierSummary, words: &Words) -> Table {
         (format!("{name} ({unit})"), cells.map(|cell| cell.map(|x| x.over(size))).collect())
     };
     let before = one.crossing - one.arriving.count;
-    Table {
+    EstimateTable {
         about: About::Barriers,
+        place: one.barrier.name.clone(),
         title: named(words.arriving_title, one, words),
         note: fill(
             words.arriving_note,
@@ -220,8 +222,8 @@ fn arriving(one: &BarrierSummary, words: &Words) -> Table {
         ),
         columns: statistics(words),
         rows: vec![
-            row(words.total, Quantity::Total, &one.energy_j),
-            row(words.top, Quantity::Height, &one.top_m),
+            row(words.total, ReportQuantity::Total, &one.energy_j),
+            row(words.top, ReportQuantity::Height, &one.top_m),
         ],
     }
 }
@@ -231,7 +233,7 @@ fn named(text: &str, one: &BarrierSummary, words: &Words) -> String {
     fill(text, &[("name", &words.quoted(&one.barrier.name))])
 }
 
-fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>) -> Table {
+fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>) -> EstimateTable {
     let heights = one.by_place.first().into_iter().flat_map(|own| &own.by_height);
     let stopped =
         heights.map(|(m, _)| fill(words.col_stopped_at, &[("m", &format::significant(*m, 3))]));
@@ -256,8 +258,9 @@ fn sensitivity(one: &BarrierSummary, words: &Words, left_is_uphill: Option<bool>
         }
         (name, cells)
     };
-    Table {
+    EstimateTable {
         about: About::Barriers,
+        place: one.barrier.name.clone(),
         title: named(words.sensitivity_title, one, words),
         note: words.sensitivity_note.to_owned(),
         columns,

@@ -2,7 +2,8 @@
 
 use super::super::format;
 use super::super::model::{
-    About, BandPoint, Behind, Estimate, Line, LinePoint, MapMark, Quantile, Quantity, Table,
+    About, BandPoint, Behind, Estimate, EstimateTable, LinePoint, MapMark, Quantile, ReportLine,
+    ReportQuantity,
 };
 use super::super::raster::GroundRaster;
 use super::super::words::{Words, fill};
@@ -15,17 +16,17 @@ use crate::hazard::{
 use crate::output::Results;
 
 /// A row: what it is of, its name, and the quantity of a release with the same unit.
-type Tabled = (LineQuantity, fn(&Words) -> &'static str, Quantity);
+type Tabled = (LineQuantity, fn(&Words) -> &'static str, ReportQuantity);
 
 /// Quantities of a line's table: name, and the quantity of a release with the same unit.
 const TABLED: [Tabled; 7] = [
-    (LineQuantity::Speed, |words| words.speed, Quantity::Speed),
-    (LineQuantity::Translational, |words| words.translational, Quantity::Translational),
-    (LineQuantity::Rotational, |words| words.rotational, Quantity::Rotational),
-    (LineQuantity::Total, |words| words.total, Quantity::Total),
-    (LineQuantity::Height, |words| words.height_vertical, Quantity::Height),
-    (LineQuantity::HeightNormal, |words| words.height_normal, Quantity::Height),
-    (LineQuantity::Descent, |words| words.descent, Quantity::ReachAngle),
+    (LineQuantity::Speed, |words| words.speed, ReportQuantity::Speed),
+    (LineQuantity::Translational, |words| words.translational, ReportQuantity::Translational),
+    (LineQuantity::Rotational, |words| words.rotational, ReportQuantity::Rotational),
+    (LineQuantity::Total, |words| words.total, ReportQuantity::Total),
+    (LineQuantity::Height, |words| words.height_vertical, ReportQuantity::Height),
+    (LineQuantity::HeightNormal, |words| words.height_normal, ReportQuantity::Height),
+    (LineQuantity::Descent, |words| words.descent, ReportQuantity::ReachAngle),
 ];
 /// Points of a curve of exceedance: more than there are pixels.
 const POINTS: usize = 400;
@@ -58,12 +59,12 @@ pub(super) fn marks(results: &Results) -> Vec<MapMark> {
 }
 
 /// All lines with their first crossings, in downslope order.
-pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<Vec<Line>> {
+pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<Vec<ReportLine>> {
     let releases = results.hazard.rocks();
     let elevation = |corners: &[[f64; 2]]| ground.map_or(f64::NAN, |g| mean_height(g, corners));
-    let mut lines: Vec<Line> = shown(results)
+    let mut lines: Vec<ReportLine> = shown(results)
         .filter(|(_, line)| !is_object(results, &line.info.name))
-        .map(|(number, line)| Line {
+        .map(|(number, line)| ReportLine {
             number,
             is_barrier: barrier_on(results, &line.info.name).is_some(),
             elevation_m: elevation(&line.info.corners_m),
@@ -83,13 +84,14 @@ pub(super) fn lines(results: &Results, ground: Option<&GroundRaster>) -> Result<
         line.height_exceedance = exceedance(all().map(height), &weights);
     }
     // stable: lines without ground keep the order of the scene, behind the others
-    let key =
-        |line: &Line| if line.elevation_m.is_nan() { f64::NEG_INFINITY } else { line.elevation_m };
+    let key = |line: &ReportLine| {
+        if line.elevation_m.is_nan() { f64::NEG_INFINITY } else { line.elevation_m }
+    };
     lines.sort_by(|a, b| key(b).total_cmp(&key(a)));
     Ok(lines)
 }
 
-fn take(barriers: &[Barrier], rock: &[CrossingRow], lines: &mut [Line]) {
+fn take(barriers: &[Barrier], rock: &[CrossingRow], lines: &mut [ReportLine]) {
     let passes = hazard::unstopped(barriers, rock);
     for (row, passes) in rock.iter().zip(passes) {
         if let Some(line) = lines.iter_mut().find(|line| line.name == row.line) {
@@ -114,7 +116,7 @@ fn height(at: &LinePoint) -> (usize, f64) {
     (at.release, if at.height_m < 0.0 { 0.0 } else { at.height_m })
 }
 
-fn behind(line: &Line, at: &Residual, weights: &Weights) -> Behind {
+fn behind(line: &ReportLine, at: &Residual, weights: &Weights) -> Behind {
     let passing = || line.crossings.iter().filter(|at| at.passes);
     Behind {
         barriers: at.behind.clone(),
@@ -157,9 +159,9 @@ pub(super) fn of_share(share: &Proportion) -> Estimate {
     estimate(share.share, Some(share.low_95), Some(share.high_95))
 }
 
-fn empty(line: &hazard::Line, releases: usize) -> Line {
+fn empty(line: &hazard::Line, releases: usize) -> ReportLine {
     let (energy, height) = (line.sample(LineQuantity::Total), line.sample(LineQuantity::Height));
-    Line {
+    ReportLine {
         name: line.info.name.clone(),
         number: 0,
         is_barrier: false,
@@ -187,7 +189,7 @@ fn quantiles(sample: &Sample) -> Vec<Quantile> {
 }
 
 /// One table a line that rocks cross.
-pub(super) fn tables(results: &Results, words: &Words) -> Vec<Table> {
+pub(super) fn tables(results: &Results, words: &Words) -> Vec<EstimateTable> {
     let releases = results.hazard.rocks();
     let table = |(_, line): (usize, &hazard::Line)| {
         let reach = line.reach(releases);
@@ -212,7 +214,8 @@ pub(super) fn tables(results: &Results, words: &Words) -> Vec<Table> {
             TABLED.map(|(quantity, name, like)| (name(words), like, line.sample(quantity), None));
         let title = fill(title, &[("name", &words.quoted(&line.info.name))]);
         let statistics = statistics_table(words, title, note, &rows);
-        (reach.count > 0).then_some(Table { about: About::Lines, ..statistics })
+        let place = line.info.name.clone();
+        (reach.count > 0).then_some(EstimateTable { about: About::Lines, place, ..statistics })
     };
     shown(results).filter_map(table).collect()
 }

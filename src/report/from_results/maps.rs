@@ -1,6 +1,7 @@
 //! The maps of the report, read back from their grids.
 
 use super::super::model::{CellMap, LevelCells, YearCells};
+use super::super::profile::NEEDS;
 use crate::error::Result;
 use crate::hazard::{Layer, Matrix};
 use crate::math;
@@ -18,6 +19,9 @@ pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
     let intensity = read(Layer::Intensity)?;
     let of_class = |class: u8| intensity.iter().filter(|(_, found)| *found as u8 == class).count();
     let intensity_cells = [1, 2, 3].map(of_class);
+    let passages = read(Layer::Passages)?;
+    let needs = NEEDS as f64;
+    let few_cells = passages.iter().filter(|(_, rocks)| *rocks > 0.0 && *rocks < needs).count();
     let times = frame.columns.max(frame.rows).div_ceil(MOST_DRAWN);
     let drawn = |cells: Vec<(u32, f64)>| coarser(cells, frame.columns, times);
     Ok(Some(CellMap {
@@ -27,6 +31,7 @@ pub(super) fn maps(results: &Results) -> Result<Option<CellMap>> {
         columns: frame.columns.div_ceil(times),
         reach: drawn(read(Layer::Reach)?),
         intensity_cells,
+        few_cells,
         intensity: drawn(intensity),
         energy_j: drawn(read(Layer::EnergyP95)?),
         height_m: drawn(read(Layer::HeightP95)?),

@@ -1,12 +1,12 @@
 //! Measured ends and calibration, gathered from summary, releases and `calibration.json`.
 
 use super::super::format;
-use super::super::model::{About, Estimate, Observed, Table};
+use super::super::model::{About, Estimate, EstimateTable, Observed};
 use super::super::words::{Words, fill};
 use super::estimate;
-use crate::calibrate::{Calibration, Measure, Told, Trial};
+use crate::calibrate::{Calibration, CalibrationTrial, SiteMeasure, Told};
 use crate::error::Result;
-use crate::hazard::{Agreement, Way};
+use crate::hazard::{Agreement, ObservedPath};
 use crate::output::{Results, read_calibration};
 
 /// Columns of both tables.
@@ -31,17 +31,17 @@ pub(super) fn observed(results: &Results) -> Result<Option<Observed>> {
     }
     let mut computed = Vec::new();
     for row in results.rows()? {
-        computed.extend(Way::of(&row?));
+        computed.extend(ObservedPath::of(&row?));
     }
     let agreement = Agreement::of(&measured, &computed);
     Ok(agreement.map(|agreement| Observed { measured, computed, agreement }))
 }
 
 /// How well this run and the calibration agree with what was measured.
-pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<Table>> {
+pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<EstimateTable>> {
     let mut tables = Vec::new();
     if let Some(observed) = observed(results)? {
-        tables.push(Table {
+        tables.push(EstimateTable {
             about: About::Measured,
             title: words.agreement_title.to_owned(),
             note: fill(
@@ -53,6 +53,7 @@ pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<Table>> {
             ),
             columns: columns(words),
             rows: vec![(words.this_run.to_owned(), cells(&observed.agreement))],
+            ..EstimateTable::default()
         });
     }
     if let Some(found) = read_calibration(&results.dir)? {
@@ -62,8 +63,8 @@ pub(super) fn tables(results: &Results, words: &Words) -> Result<Vec<Table>> {
     Ok(tables)
 }
 
-fn calibration(found: &Calibration, words: &Words) -> Table {
-    let row = |who: &str, trial: &Trial, of: &Agreement| {
+fn calibration(found: &Calibration, words: &Words) -> EstimateTable {
+    let row = |who: &str, trial: &CalibrationTrial, of: &Agreement| {
         let values = found.names.iter().zip(&trial.values);
         let values: Vec<String> =
             values.map(|(name, value)| format!("{name} = {value:.3}")).collect();
@@ -78,7 +79,7 @@ fn calibration(found: &Calibration, words: &Words) -> Table {
         rows.push(row(&named(words.held_out), trial, &trial.kept_apart));
     }
     rows.push(row(words.fitted_all, &found.whole, &found.whole.all));
-    Table {
+    EstimateTable {
         about: About::Measured,
         title: words.calibration_title.to_owned(),
         note: fill(
@@ -87,11 +88,12 @@ fn calibration(found: &Calibration, words: &Words) -> Table {
         ),
         columns: columns(words),
         rows,
+        ..EstimateTable::default()
     }
 }
 
 /// How far the measured ends tell each value.
-fn told(found: &Calibration, words: &Words) -> Table {
+fn told(found: &Calibration, words: &Words) -> EstimateTable {
     let row = |told: &Told| {
         let value = estimate(told.value, Some(told.low_95), Some(told.high_95));
         let name = if told.is_told {
@@ -101,7 +103,7 @@ fn told(found: &Calibration, words: &Words) -> Table {
         };
         (name, vec![Some(value)])
     };
-    Table {
+    EstimateTable {
         about: About::Measured,
         title: words.told_title.to_owned(),
         note: fill(
@@ -110,12 +112,13 @@ fn told(found: &Calibration, words: &Words) -> Table {
         ),
         columns: vec![words.fitted.to_owned()],
         rows: found.told.iter().map(row).collect(),
+        ..EstimateTable::default()
     }
 }
 
 /// Where the ends of the fit lie and how they spread.
-fn spread(found: &Calibration, words: &Words) -> Table {
-    let row = |measure: &Measure| {
+fn spread(found: &Calibration, words: &Words) -> EstimateTable {
+    let row = |measure: &SiteMeasure| {
         let difference = estimate(
             measure.computed - measure.measured,
             Some(measure.low_95),
@@ -125,12 +128,13 @@ fn spread(found: &Calibration, words: &Words) -> Table {
         let cells = vec![plain(measure.measured), plain(measure.computed), Some(difference)];
         (format!("{}: {}", measure.scene, measure.what), cells)
     };
-    Table {
+    EstimateTable {
         about: About::Measured,
         title: words.ends_title.to_owned(),
         note: words.ends_note.to_owned(),
         columns: [words.measured, words.computed, words.difference].map(str::to_owned).into(),
         rows: found.measures.iter().map(row).collect(),
+        ..EstimateTable::default()
     }
 }
 

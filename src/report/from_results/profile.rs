@@ -1,6 +1,6 @@
 //! Speed and height by distance from the release, and where lines and barriers stand among them.
 
-use super::super::model::{Fall, MapMark, OfStretch, ProfileStretch, ProfileView};
+use super::super::model::{MapMark, ProfileStretch, ProfileView, ReleaseEnd, ReportStretch};
 use super::{lines, of_percentile};
 use crate::error::Result;
 use crate::frequency::Weights;
@@ -10,14 +10,14 @@ use crate::output::Results;
 use std::collections::BTreeMap;
 
 /// The profile of a run; none of results that hold none.
-pub(super) fn view(results: &Results, releases: &[Fall]) -> Result<Option<ProfileView>> {
+pub(super) fn view(results: &Results, releases: &[ReleaseEnd]) -> Result<Option<ProfileView>> {
     let profile = &results.hazard.totals.profile;
     if profile.is_empty() {
         return Ok(None);
     }
     let weights = results.hazard.weights();
     let weights = weights.unwrap_or_else(|| Weights::equal(results.hazard.rocks()));
-    let of = |found: &hazard::OfStretch, rocks: usize| OfStretch {
+    let of = |found: &hazard::StretchStatistic, rocks: usize| ReportStretch {
         median: found.median.value,
         p95: of_percentile(&found.p95, (rocks, None)),
         largest: found.largest,
@@ -35,7 +35,7 @@ pub(super) fn view(results: &Results, releases: &[Fall]) -> Result<Option<Profil
 }
 
 /// Lines and barriers that rocks cross, at the median distance at which they do.
-fn marks(results: &Results, releases: &[Fall]) -> Result<Vec<(f64, MapMark)>> {
+fn marks(results: &Results, releases: &[ReleaseEnd]) -> Result<Vec<(f64, MapMark)>> {
     let first = results.summary.identity.first_release;
     let mut distances: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     for row in results.crossings()? {

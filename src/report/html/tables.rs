@@ -3,16 +3,16 @@
 use super::{escape, note};
 use crate::math;
 use crate::report::format;
-use crate::report::model::{Estimate, Is, Row, Table, energy_unit};
+use crate::report::model::{Estimate, EstimateRow, EstimateTable, Is, energy_unit};
 use crate::report::words::{Words, fill};
 use std::fmt::Write as _;
 
 /// The headline statistics of all rocks.
-pub(super) fn headline(rows: &[Row], words: &Words) -> String {
+pub(super) fn headline(rows: &[EstimateRow], words: &Words) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let row = |row: &Row| {
+    let row = |row: &EstimateRow| {
         let (estimate, unit) = in_short_unit(row);
         let (value, interval) = in_words(&estimate, words);
         format!(
@@ -23,7 +23,7 @@ pub(super) fn headline(rows: &[Row], words: &Words) -> String {
     };
     let rows: String = rows.iter().map(row).collect();
     format!(
-        "<table>\n<thead><tr><th>{}</th><th class=\"number\">{}</th><th class=\"number\">{}</th><th>{}</th></tr></thead>\n\
+        "<table class=\"headline\">\n<thead><tr><th>{}</th><th class=\"number\">{}</th><th class=\"number\">{}</th><th>{}</th></tr></thead>\n\
          <tbody>\n{rows}</tbody>\n</table>\n{}",
         escape(words.all_rocks),
         escape(words.value),
@@ -34,8 +34,8 @@ pub(super) fn headline(rows: &[Row], words: &Words) -> String {
 }
 
 /// Each headline statistic with its interval, in columns for a terminal.
-pub fn plain_headline(rows: &[Row], words: &Words) -> Vec<String> {
-    let said = |row: &Row| {
+pub fn plain_headline(rows: &[EstimateRow], words: &Words) -> Vec<String> {
+    let said = |row: &EstimateRow| {
         let (estimate, unit) = in_short_unit(row);
         let (value, interval) = in_words(&estimate, words);
         let interval = match (estimate.is, interval) {
@@ -49,14 +49,14 @@ pub fn plain_headline(rows: &[Row], words: &Words) -> Vec<String> {
     let name_width = rows.iter().map(|row| wide(&row.name)).max().unwrap_or(0);
     let values: Vec<_> = rows.iter().map(said).collect();
     let value_width = values.iter().map(|(value, _)| wide(value)).max().unwrap_or(0);
-    let line = |(row, (value, interval)): (&Row, &(String, String))| {
+    let line = |(row, (value, interval)): (&EstimateRow, &(String, String))| {
         format!("{:<name_width$}  {value:>value_width$}  {interval}", row.name)
     };
     rows.iter().zip(&values).map(line).collect()
 }
 
 /// Joules as kJ or MJ where that is shorter; other units as they are.
-fn in_short_unit(row: &Row) -> (Estimate, &str) {
+fn in_short_unit(row: &EstimateRow) -> (Estimate, &str) {
     if row.unit != "J" {
         return (row.estimate, &row.unit);
     }
@@ -73,6 +73,10 @@ fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
     }
     let sign = format::sign(estimate.is);
     let width = estimate.high - estimate.low;
+    if estimate.value == 0.0 && estimate.high > 0.0 {
+        // none seen: what matters is how many there may be
+        return (format!("{sign}0"), one_sided(estimate, words, |v| format::significant(v, 2)));
+    }
     if width.is_nan() && estimate.value.fract() == 0.0 && estimate.value.abs() < 1e7 {
         // a count, or a number as it was written
         let value = format!("{sign}{}", format::decimal(estimate.value, 0));
@@ -83,7 +87,8 @@ fn in_words(estimate: &Estimate, words: &Words) -> (String, String) {
         let leading = math::log10(estimate.value.abs()).floor() - math::log10(0.2 * width).floor();
         (leading as i32 + 1).clamp(3, 5) as usize
     } else {
-        4
+        // alone: a maximum is read as it is, a small derivative or a bound only for its size
+        if estimate.value.abs() >= 0.1 { 4 } else { 3 }
     };
     let bound = like(estimate.value, digits);
     (format!("{sign}{}", bound(estimate.value)), one_sided(estimate, words, bound))
@@ -109,8 +114,13 @@ fn one_sided(estimate: &Estimate, words: &Words, bound: impl Fn(f64) -> String) 
     words.interval(&bound(estimate.low), &bound(estimate.high))
 }
 
+/// Rows up to which a table stays on one printed page.
+const LONGEST: usize = 9;
+
 /// A table with its heading and note.
-pub(super) fn table(table: &Table, words: &Words) -> String {
+pub(super) fn table(table: &EstimateTable, words: &Words) -> String {
+    // a long one may go on overleaf
+    let class = if table.rows.len() > LONGEST { "dense long" } else { "dense" };
     let mut heads = String::new();
     for column in &table.columns {
         let _ = write!(heads, "<th class=\"number\">{}</th>", escape(column));
@@ -124,7 +134,7 @@ pub(super) fn table(table: &Table, words: &Words) -> String {
         rows.push_str("</tr>\n");
     }
     format!(
-        "<h3>{}</h3>\n<div class=\"wide\"><table class=\"dense\">\n<thead><tr><th></th>{heads}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n{}",
+        "<h3>{}</h3>\n<div class=\"wide\"><table class=\"{class}\">\n<thead><tr><th></th>{heads}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n{}",
         escape(&table.title),
         note(&table.note)
     )

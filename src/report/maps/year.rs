@@ -5,7 +5,7 @@ use super::super::figure::Drawing;
 use super::super::format;
 use super::super::model::{CellMap, LevelCells, Report, YearCells, energy_unit};
 use super::super::words::fill;
-use super::{Layer, draw_layers};
+use super::{ClassedMap, draw_layers};
 use plotters::style::RGBColor;
 
 /// Limits of the classes of a change with the exponent over the frequency itself (–).
@@ -22,7 +22,7 @@ pub(in crate::report) fn draw(report: &Report, maps: &CellMap, year: &YearCells)
     let energy_title = fill(said.map_energy, &[("years", years)]);
     let mut layers = vec![
         periods(fill(said.map_period, &[("energy", energy)]), year),
-        Layer::of_values(&energy_title, &year.energies_j, energy_unit(most_j), &[1.0, 3.0]),
+        ClassedMap::of_values(&energy_title, &year.energies_j, energy_unit(most_j), &[1.0, 3.0]),
     ];
     let mut exponent = "";
     if let Some(slopes) = &year.by_exponent {
@@ -53,7 +53,7 @@ fn short(name: &str) -> String {
 }
 
 /// Frequencies in classes between the return periods asked for, from seldom to often.
-fn periods(title: String, year: &YearCells) -> Layer {
+fn periods(title: String, year: &YearCells) -> ClassedMap {
     let periods = &year.return_periods_years;
     let class = |per_year: f64| periods.iter().filter(|years| per_year >= 1.0 / **years).count();
     let plain = |k: usize| format::plain(periods[k]);
@@ -64,14 +64,14 @@ fn periods(title: String, year: &YearCells) -> Layer {
         k => format!("{}–{}", plain(last - k - 1), plain(last - k)),
     };
     let shade = |k: usize| colour::sequential(k as f64 / last.max(1) as f64);
-    Layer {
+    ClassedMap {
         title,
         cells: year.frequencies.iter().map(|&(cell, value)| (cell, class(value))).collect(),
         classes: (0..=last).filter(|_| last > 0).map(|k| (name(k), shade(k))).collect(),
     }
 }
 
-fn of_slopes(title: &str, values: &[(u32, f64)]) -> Layer {
+fn of_slopes(title: &str, values: &[(u32, f64)]) -> ClassedMap {
     let class = |value: f64| SLOPES.iter().filter(|limit| value >= **limit).count();
     let sign = |value: f64| format::plain(value).replace('-', "−");
     let name = |k: usize| match k {
@@ -79,20 +79,20 @@ fn of_slopes(title: &str, values: &[(u32, f64)]) -> Layer {
         k if k == SLOPES.len() => format!("≥ {}", sign(SLOPES[k - 1])),
         k => format!("{} … {}", sign(SLOPES[k - 1]), sign(SLOPES[k])),
     };
-    Layer {
+    ClassedMap {
         title: title.to_owned(),
         cells: values.iter().map(|&(cell, value)| (cell, class(value))).collect(),
         classes: SLOPE_COLOURS.iter().enumerate().map(|(k, c)| (name(k), *c)).collect(),
     }
 }
 
-fn of_levels(title: String, values: &[(u32, f64)]) -> Layer {
+fn of_levels(title: String, values: &[(u32, f64)]) -> ClassedMap {
     let mut levels: Vec<u8> = values.iter().map(|(_, level)| *level as u8).collect();
     levels.sort_unstable();
     levels.dedup();
     let class = |level: f64| levels.iter().filter(|other| f64::from(**other) < level).count();
     let shade = |k: usize| colour::sequential(k as f64 / (levels.len().max(2) - 1) as f64);
-    Layer {
+    ClassedMap {
         title,
         cells: values.iter().map(|&(cell, level)| (cell, class(level))).collect(),
         classes: levels

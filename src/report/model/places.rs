@@ -1,7 +1,7 @@
 //! Lines, barriers, maps and measured ends: what belongs to a place.
 
 use super::{BandPoint, Estimate, Quantile};
-use crate::hazard::{Agreement, Way};
+use crate::hazard::{Agreement, ObservedPath};
 
 /// Speed and height of all rocks by distance from their release.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,14 +20,14 @@ pub struct ProfileStretch {
     /// Where it begins (m).
     pub from_m: f64,
     /// Largest bounce height of each rock in it (m).
-    pub height_m: OfStretch,
+    pub height_m: ReportStretch,
     /// Largest speed of each rock in it (m/s).
-    pub speed_m_s: OfStretch,
+    pub speed_m_s: ReportStretch,
 }
 
 /// What is shown of a quantity in a stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OfStretch {
+pub struct ReportStretch {
     /// Median over the rocks that come so far.
     pub median: f64,
     /// Their 95th percentile; none of too few.
@@ -119,9 +119,16 @@ pub struct AnnualView {
     pub with: Option<Vec<BandPoint>>,
     /// Return periods asked for (years).
     pub return_periods_years: Vec<f64>,
+    /// Rocks that come, 95 % upper end (1/year).
+    pub most_per_year: f64,
 }
 
 impl AnnualView {
+    /// Whether any rock comes.
+    pub(in crate::report) fn is_met(&self) -> bool {
+        self.curves().flatten().any(|point| point.x > 0.0)
+    }
+
     /// Its curves.
     pub(in crate::report) fn curves(&self) -> impl Iterator<Item = &Vec<BandPoint>> {
         [&self.without].into_iter().chain(&self.with)
@@ -130,7 +137,7 @@ impl AnnualView {
 
 /// One evaluation line.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
+pub struct ReportLine {
     /// Its name.
     pub name: String,
     /// Its number in the scene, from 1: that of its figure's file.
@@ -161,7 +168,7 @@ pub struct Line {
     pub behind: Option<Behind>,
 }
 
-impl Line {
+impl ReportLine {
     /// Whether a rock crosses it.
     pub(in crate::report) fn is_met(&self) -> bool {
         !self.crossings.is_empty()
@@ -211,9 +218,9 @@ pub struct LinePoint {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
     /// Measured ways.
-    pub measured: Vec<Way>,
+    pub measured: Vec<ObservedPath>,
     /// Computed ways, failed rocks left out.
-    pub computed: Vec<Way>,
+    pub computed: Vec<ObservedPath>,
     /// How well they agree.
     pub agreement: Agreement,
 }
@@ -243,6 +250,8 @@ pub struct CellMap {
     pub exceeds: Vec<(u32, f64)>,
     /// Cells of each class.
     pub intensity_cells: [usize; 3],
+    /// Cells that too few rocks pass for an upper bound of their 95th percentile.
+    pub few_cells: usize,
 }
 
 /// Cells, row by row from the south-west, each with a value.

@@ -1,7 +1,7 @@
 //! What a map carries beside itself: north arrow, scale bar, colour bar and the key of its marks.
 
-use super::{Mark, RIGHT_PX};
-use crate::output::Zone;
+use super::{EndMark, RIGHT_PX};
+use crate::output::ReleaseZone;
 use crate::report::axis::{Axis, nice_step};
 use crate::report::canvas::{Canvas, Label, NORMAL, Pen, SMALL, text_width};
 use crate::report::colour::{GREEN, INK, WHITE};
@@ -9,7 +9,7 @@ use crate::report::format;
 use crate::report::model::Report;
 use crate::report::panel::{FOOT_PX, Panel};
 use crate::report::site;
-use crate::report::svg::path::Frame;
+use crate::report::svg::path::PaperFrame;
 use crate::report::words::{Words, fill};
 
 const LINE_PX: f64 = 17.0;
@@ -40,7 +40,7 @@ fn north_arrow(canvas: &Canvas<'_>, (x, top): (f64, f64), north: &str) {
 fn colour_bar(canvas: &Canvas<'_>, panel: &Panel, (left, fastest): (f64, f64), title: &str) {
     let top = panel.frame.top + 58.0;
     let bottom = panel.frame.bottom.min(top + 260.0);
-    let bar = Frame { left, top, right: left + 12.0, bottom };
+    let bar = PaperFrame { left, top, right: left + 12.0, bottom };
     canvas.colour_bar(&bar);
     let scale = Axis::linear(0.0, fastest, "");
     let count = (bar.height() / 30.0).clamp(2.0, 6.0) as usize;
@@ -70,7 +70,7 @@ fn scale_bar(canvas: &Canvas<'_>, panel: &Panel) {
     let left = right - length;
     for (from, to, fill) in [(left, left + 0.5 * length, INK), (left + 0.5 * length, right, WHITE)]
     {
-        let half = Frame { left: from, top: y - 2.5, right: to, bottom: y + 2.5 };
+        let half = PaperFrame { left: from, top: y - 2.5, right: to, bottom: y + 2.5 };
         canvas.fill(&half, fill, 1.0);
         canvas.outline(&half, Pen::full(INK, 0.6));
     }
@@ -78,20 +78,20 @@ fn scale_bar(canvas: &Canvas<'_>, panel: &Panel) {
 }
 
 /// The marks on the map and what they mean.
-pub(super) struct Key {
+pub(super) struct MapLegend {
     entries: Vec<(Symbol, String)>,
 }
 
 enum Symbol {
-    Mark(Mark),
+    Mark(EndMark),
     Density,
-    Zone(Zone),
+    Zone(ReleaseZone),
     Line,
     Barrier,
     Tree,
 }
 
-impl Key {
+impl MapLegend {
     /// Names only what the map shows.
     pub(super) fn of(report: &Report) -> Self {
         let words = report.words();
@@ -104,16 +104,16 @@ impl Key {
             ));
         }
         let names = [
-            (Mark::AtRest, words.at_rest),
-            (Mark::LeftTerrain, words.left_terrain),
-            (Mark::TimeUp, words.time_up),
-            (Mark::Failed, words.failed),
+            (EndMark::AtRest, words.at_rest),
+            (EndMark::LeftTerrain, words.left_terrain),
+            (EndMark::TimeUp, words.time_up),
+            (EndMark::Failed, words.failed),
         ];
         for (mark, name) in names {
-            let count = report.releases.iter().filter(|f| Mark::of(&f.stop) == mark).count();
+            let count = report.releases.iter().filter(|f| EndMark::of(&f.stop) == mark).count();
             if count > 0 {
                 let text = format!("{name} ({})", format::decimal(count as f64, 0));
-                let is_density = mark == Mark::AtRest && count > super::MANY;
+                let is_density = mark == EndMark::AtRest && count > super::MANY;
                 entries.push((if is_density { Symbol::Density } else { Symbol::Mark(mark) }, text));
             }
         }

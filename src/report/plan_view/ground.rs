@@ -9,7 +9,7 @@ use crate::report::format;
 use crate::report::hillshade;
 use crate::report::panel::Panel;
 use crate::report::raster::GroundRaster;
-use crate::report::svg::path::{Frame, Spot, clipped, thinned};
+use crate::report::svg::path::{PaperFrame, Spot, clipped, thinned};
 use plotters::style::RGBColor;
 use std::collections::BTreeMap;
 
@@ -197,7 +197,7 @@ fn label_lines(
                 .min(frame.bottom - at.1);
             let nearest = labels.iter().map(|(p, ..)| math::hypot(p.0 - at.0, p.1 - at.1));
             let half = 0.5 * text_width(text, LABEL_PX);
-            let room = Frame {
+            let room = PaperFrame {
                 left: at.0 - half,
                 right: at.0 + half,
                 top: at.1 - half,

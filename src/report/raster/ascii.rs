@@ -3,13 +3,11 @@
 use super::GroundRaster;
 use crate::error::{Error, Result};
 use crate::output::{write_atomic, write_ground};
-use crate::terrain::geotiff::Image;
+use crate::terrain::geotiff::{Image, NO_DATA};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-/// Stands where there is no ground.
-const NO_DATA: f64 = -9999.0;
 /// File names below the result folder.
 const GROUND: &str = "maps/ground.asc";
 const TREES: &str = "maps/trees.asc";
@@ -22,8 +20,9 @@ impl GroundRaster {
     pub fn write(&self, dir: &Path) -> Result<()> {
         let maps = dir.join("maps");
         fs::create_dir_all(&maps).map_err(Error::file("create", &maps))?;
-        let height =
-            |i: usize| if self.height_m[i].is_finite() { self.height_m[i] } else { NO_DATA };
+        let height = |i: usize| {
+            if self.height_m[i].is_finite() { self.height_m[i] } else { f64::from(NO_DATA) }
+        };
         let tree = |i: usize| f64::from(u8::from(self.trees[i]));
         self.write_grid(&dir.join(GROUND), height)?;
         self.write_grid(&dir.join(TREES), tree)
@@ -34,7 +33,7 @@ impl GroundRaster {
     /// # Errors
     /// When the file or the folder cannot be written.
     pub fn write_tif(&self, dir: &Path, epsg: Option<u32>) -> Result<()> {
-        let height = |&z: &f64| if z.is_finite() { z as f32 } else { NO_DATA as f32 };
+        let height = |&z: &f64| if z.is_finite() { z as f32 } else { NO_DATA };
         let rows = self.height_m.chunks(self.columns).rev();
         let values: Vec<f32> = rows.flatten().map(height).collect();
         let north_m = self.south_m + self.rows() as f64 * self.cell_m;
@@ -46,7 +45,7 @@ impl GroundRaster {
                 columns: self.columns as u32,
                 rows: self.rows() as u32,
                 epsg,
-                nodata: NO_DATA as f32,
+                nodata: NO_DATA,
                 said: None,
                 values: &values,
             },

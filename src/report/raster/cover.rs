@@ -7,11 +7,11 @@ use crate::math;
 const LARGEST_STEM_M2: f64 = 10.0;
 
 /// West, south and cell edge (m).
-type Grid = (f64, f64, f64);
+type RasterGrid = (f64, f64, f64);
 
 /// Calls `touch(column, row, z)` for each cell centre under a triangle in plan view; a vertical triangle has none.
 pub(super) fn for_each_centre(
-    (west, south, cell): Grid,
+    (west, south, cell): RasterGrid,
     (columns, rows): (usize, usize),
     corners: [[f64; 3]; 3],
     mut touch: impl FnMut(usize, usize, f64),
@@ -46,7 +46,7 @@ pub(super) fn for_each_centre(
 
 /// Cells that something stands in, however small it is.
 pub(super) struct Cover {
-    grid: Grid,
+    grid: RasterGrid,
     size: (usize, usize),
     is_covered: Vec<bool>,
 }

@@ -7,14 +7,14 @@ use super::{RAISED_SIZE, lowered};
 
 /// A family of fonts with the same widths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Face {
+pub enum FontFamily {
     /// Helvetica, Arial, Liberation Sans.
     Helvetica,
     /// `DejaVu` Sans, Verdana's width.
     DejaVu,
 }
 
-impl Face {
+impl FontFamily {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Helvetica, Self::DejaVu];
 }
@@ -64,25 +64,25 @@ pub fn bold_width_em(text: &str) -> f64 {
 }
 
 fn widest(text: &str, is_bold: bool) -> f64 {
-    Face::ALL.into_iter().map(|face| width_em_in(face, text, is_bold)).fold(0.0, f64::max)
+    FontFamily::ALL.into_iter().map(|face| width_em_in(face, text, is_bold)).fold(0.0, f64::max)
 }
 
 /// Width of a text over the font size, in one face.
-pub fn width_em_in(face: Face, text: &str, is_bold: bool) -> f64 {
+pub fn width_em_in(face: FontFamily, text: &str, is_bold: bool) -> f64 {
     text.chars().map(|c| char_em(face, c, is_bold)).sum()
 }
 
-fn char_em(face: Face, c: char, is_bold: bool) -> f64 {
+fn char_em(face: FontFamily, c: char, is_bold: bool) -> f64 {
     if let Some(plain) = lowered(c) {
         return RAISED_SIZE * char_em(face, plain, is_bold);
     }
     let table = match (face, is_bold) {
-        (Face::Helvetica, false) => &HELVETICA,
-        (Face::Helvetica, true) => &HELVETICA_BOLD,
-        (Face::DejaVu, false) => &DEJAVU,
-        (Face::DejaVu, true) => &DEJAVU_BOLD,
+        (FontFamily::Helvetica, false) => &HELVETICA,
+        (FontFamily::Helvetica, true) => &HELVETICA_BOLD,
+        (FontFamily::DejaVu, false) => &DEJAVU,
+        (FontFamily::DejaVu, true) => &DEJAVU_BOLD,
     };
-    let is_dejavu = face == Face::DejaVu;
+    let is_dejavu = face == FontFamily::DejaVu;
     let thousandths = match c {
         ' '..='~' => table[c as usize - 32],
         '\u{2009}' => 200,
@@ -127,9 +127,9 @@ mod tests {
     /// The widths printed in the metrics file of Helvetica: T 611, i 222, c 500, k 500.
     #[test]
     fn a_word_is_as_wide_as_its_letters() {
-        assert!((width_em_in(Face::Helvetica, "Tick", false) - 1.833).abs() < 1e-12);
+        assert!((width_em_in(FontFamily::Helvetica, "Tick", false) - 1.833).abs() < 1e-12);
         assert!(width_em("10⁻⁵") < width_em("10-5") + 0.3);
-        assert!(width_em("Tick") >= width_em_in(Face::DejaVu, "Tick", false));
+        assert!(width_em("Tick") >= width_em_in(FontFamily::DejaVu, "Tick", false));
         assert!(bold_width_em("Tick") > width_em("Tick"));
     }
 }

@@ -8,7 +8,7 @@ pub type Spot = (f64, f64);
 
 /// A rectangle on paper (px, y downwards).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct PaperFrame {
     /// Left edge.
     pub left: f64,
     /// Upper edge.
@@ -19,7 +19,7 @@ pub struct Frame {
     pub bottom: f64,
 }
 
-impl Frame {
+impl PaperFrame {
     /// Width (px).
     pub fn width(&self) -> f64 {
         self.right - self.left
@@ -99,7 +99,7 @@ fn append_pair(data: &mut String, command: char, x: i32, y: i32) {
 }
 
 /// The parts of a line inside a frame; points that are not finite end a part.
-pub fn clipped(line: &[Spot], frame: &Frame) -> Vec<Vec<Spot>> {
+pub fn clipped(line: &[Spot], frame: &PaperFrame) -> Vec<Vec<Spot>> {
     let mut parts: Vec<Vec<Spot>> = Vec::new();
     for pair in line.windows(2) {
         let Some((a, b)) = clipped_segment(pair[0], pair[1], frame) else { continue };
@@ -113,7 +113,7 @@ pub fn clipped(line: &[Spot], frame: &Frame) -> Vec<Vec<Spot>> {
 }
 
 /// The part of a segment inside a frame (Liang & Barsky 1984).
-fn clipped_segment(a: Spot, b: Spot, frame: &Frame) -> Option<(Spot, Spot)> {
+fn clipped_segment(a: Spot, b: Spot, frame: &PaperFrame) -> Option<(Spot, Spot)> {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     if !(a.0 + a.1 + dx + dy).is_finite() {
         return None;
@@ -182,7 +182,7 @@ pub fn distance_to_segment(p: Spot, a: Spot, b: Spot) -> f64 {
 mod tests {
     use super::*;
 
-    const FRAME: Frame = Frame { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
+    const FRAME: PaperFrame = PaperFrame { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
 
     #[test]
     fn a_path_is_written_short() {

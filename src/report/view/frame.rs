@@ -11,14 +11,14 @@ const MOST_STEPS: f64 = 4e9;
 
 /// Where a box lies and how finely it is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Frame {
+pub struct QuantizedBox {
     /// Lowest corner, map coordinates (m).
     pub low_m: [f64; 3],
     /// Length of a step (m), positive.
     pub quantum_m: f64,
 }
 
-impl Frame {
+impl QuantizedBox {
     /// The frame of the finite ones of some places.
     pub fn round(places: impl Iterator<Item = [f64; 3]>) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

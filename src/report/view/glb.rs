@@ -8,7 +8,7 @@
 mod parts;
 
 use super::Shown;
-use super::mesh::Mesh;
+use super::mesh::ViewMesh;
 use parts::{Bin, ball, colour_of};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -24,7 +24,7 @@ const LINE: usize = 4;
 const PATH: usize = 5;
 
 /// The scene being put together.
-struct Scene<'a> {
+struct GltfScene<'a> {
     shown: &'a Shown,
     /// Map position of the scene's (0, 0, 0) (m): 32-bit numbers hold no map coordinates.
     origin_m: [f64; 3],
@@ -42,7 +42,7 @@ pub fn glb(shown: &Shown) -> Vec<u8> {
         (true, Some(first)) => first.place_m,
         _ => shown.mesh.frame.low_m,
     };
-    let mut scene = Scene {
+    let mut scene = GltfScene {
         shown,
         origin_m,
         bin: Bin::default(),
@@ -58,7 +58,7 @@ pub fn glb(shown: &Shown) -> Vec<u8> {
     scene.written()
 }
 
-impl Scene<'_> {
+impl GltfScene<'_> {
     fn local(&self, place_m: [f64; 3]) -> [f32; 3] {
         std::array::from_fn(|axis| (place_m[axis] - self.origin_m[axis]) as f32)
     }
@@ -73,7 +73,7 @@ impl Scene<'_> {
     }
 
     fn terrain(&mut self) {
-        let mesh: &Mesh = &self.shown.mesh;
+        let mesh: &ViewMesh = &self.shown.mesh;
         let places: Vec<[f32; 3]> =
             (0..mesh.vertices.len() as u32).map(|v| self.local(mesh.place_m(v))).collect();
         if mesh.triangles.is_empty() {

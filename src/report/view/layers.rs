@@ -26,7 +26,7 @@ const SHOWN: [(hazard::Layer, &str, &str, f64); 4] = [
 
 /// A layer: the class of every cell, rows from north to south; 0 where no rock came.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Layer {
+struct ViewLayer {
     name: &'static str,
     unit: &'static str,
     /// A cell of class k has at least the limit k − 2, counted from 0, and less than the next.
@@ -41,7 +41,7 @@ pub(super) struct MapLayers {
     frame: MapFrame,
     /// Every so many cells are one, of which the largest value counts.
     every: usize,
-    layers: Vec<Layer>,
+    layers: Vec<ViewLayer>,
 }
 
 impl MapLayers {
@@ -58,7 +58,7 @@ impl MapLayers {
                 |value: f64| limits.iter().filter(|limit| value / size >= **limit).count() as u32;
             let class = |value: &f64| if *value > 0.0 { 1 + above(*value) } else { 0 };
             let classes = values.iter().map(class).collect();
-            layers.push(Layer { name, unit, limits, classes });
+            layers.push(ViewLayer { name, unit, limits, classes });
         }
         Ok(Some(Self { frame, every, layers }))
     }

@@ -1,8 +1,8 @@
 //! The terrain as a view shows it: whole-number vertices in order of first use.
 
-use super::frame::Frame;
+use super::frame::QuantizedBox;
 use super::pack::Section;
-use super::part::Part;
+use super::part::TerrainPart;
 use super::thin;
 use crate::terrain::Terrain;
 use serde::{Deserialize, Serialize};
@@ -13,9 +13,9 @@ pub const MOST_TRIANGLES: usize = 400_000;
 
 /// A mesh of ground and trees.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Mesh {
+pub struct ViewMesh {
     /// Where it lies.
-    pub frame: Frame,
+    pub frame: QuantizedBox,
     /// Vertices in steps of the frame, numbered in the order in which triangles first use them.
     pub vertices: Vec<[u32; 3]>,
     /// Corners of the triangles: ground first, then trees.
@@ -29,12 +29,12 @@ pub struct Mesh {
 /// What a section of a mesh says besides its columns.
 #[derive(Serialize, Deserialize)]
 struct Facts {
-    frame: Frame,
+    frame: QuantizedBox,
     ground: usize,
     notes: Vec<String>,
 }
 
-impl Mesh {
+impl ViewMesh {
     /// The mesh of a terrain, thinned where it has more than [`MOST_TRIANGLES`].
     pub fn of(terrain: &Terrain) -> Self {
         Self::limited(terrain, MOST_TRIANGLES)
@@ -43,10 +43,10 @@ impl Mesh {
     /// The same with another limit.
     pub fn limited(terrain: &Terrain, most: usize) -> Self {
         let mut notes = Vec::new();
-        let ground = thin::ground(&Part::of(terrain, false), most, &mut notes);
-        let trees = thin::trees(Part::of(terrain, true).soup(), most, &mut notes);
+        let ground = thin::ground(&TerrainPart::of(terrain, false), most, &mut notes);
+        let trees = thin::trees(TerrainPart::of(terrain, true).soup(), most, &mut notes);
         let places = || ground.places_m.iter().chain(&trees.places_m).copied();
-        let frame = Frame::round(places());
+        let frame = QuantizedBox::round(places());
         let shift = ground.places_m.len() as u32;
         let shifted = trees.triangles.iter().map(|corners| corners.map(|v| v + shift));
         let triangles: Vec<[u32; 3]> = ground.triangles.iter().copied().chain(shifted).collect();

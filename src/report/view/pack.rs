@@ -18,7 +18,7 @@ use std::io::{Read, Write};
 
 /// One column: `count` items of `parts` numbers each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Column {
+pub struct PackedColumn {
     /// Its name.
     pub name: String,
     /// Number of items.
@@ -33,7 +33,7 @@ pub struct Column {
 
 #[derive(Serialize, Deserialize)]
 struct Head {
-    columns: Vec<Column>,
+    columns: Vec<PackedColumn>,
     facts: serde_json::Value,
 }
 
@@ -42,7 +42,7 @@ struct Head {
 pub struct Section {
     /// What must be known besides the columns.
     pub facts: serde_json::Value,
-    columns: Vec<(Column, Vec<u32>)>,
+    columns: Vec<(PackedColumn, Vec<u32>)>,
 }
 
 impl Section {
@@ -56,7 +56,8 @@ impl Section {
         let most = numbers.iter().copied().max().unwrap_or(0);
         let bytes = (1..4).find(|bytes| most >> (8 * bytes) == 0).unwrap_or(4);
         let count = numbers.len() / parts;
-        self.columns.push((Column { name: name.to_owned(), count, parts, bytes, order }, numbers));
+        self.columns
+            .push((PackedColumn { name: name.to_owned(), count, parts, bytes, order }, numbers));
     }
 
     /// The numbers of a column, item by item; none of that name gives none.
@@ -120,8 +121,8 @@ fn unfolded(folded: u32) -> u32 {
     (folded >> 1) ^ (folded & 1).wrapping_neg()
 }
 
-fn append_planes(column: &Column, numbers: &[u32], raw: &mut Vec<u8>) {
-    let Column { parts, bytes, order, .. } = *column;
+fn append_planes(column: &PackedColumn, numbers: &[u32], raw: &mut Vec<u8>) {
+    let PackedColumn { parts, bytes, order, .. } = *column;
     for part in 0..parts {
         let mut before = [0, 0];
         let coded: Vec<u32> = numbers[part.min(numbers.len())..]
@@ -139,8 +140,8 @@ fn append_planes(column: &Column, numbers: &[u32], raw: &mut Vec<u8>) {
     }
 }
 
-fn take_planes(column: &Column, planes: &mut &[u8]) -> Option<Vec<u32>> {
-    let Column { count, parts, bytes, order, .. } = *column;
+fn take_planes(column: &PackedColumn, planes: &mut &[u8]) -> Option<Vec<u32>> {
+    let PackedColumn { count, parts, bytes, order, .. } = *column;
     if !(1..=4).contains(&bytes) {
         return None;
     }

@@ -4,7 +4,7 @@ use crate::terrain::Terrain;
 
 /// Triangles with their own corners, map coordinates (m).
 #[derive(Debug, Clone, Default)]
-pub(super) struct Soup {
+pub(super) struct TriangleSoup {
     pub(super) places_m: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
 }
@@ -12,7 +12,7 @@ pub(super) struct Soup {
 /// Ground or trees of a terrain in the order of their files: neighbours of a grid stand side by side there. Large terrains
 /// are looked at where they are: a copy would not fit beside them.
 #[derive(Debug)]
-pub(super) struct Part<'a> {
+pub(super) struct TerrainPart<'a> {
     terrain: &'a Terrain,
     /// Its triangles.
     order: Vec<u32>,
@@ -22,7 +22,7 @@ pub(super) struct Part<'a> {
     used: Vec<u32>,
 }
 
-impl<'a> Part<'a> {
+impl<'a> TerrainPart<'a> {
     pub(super) fn of(terrain: &'a Terrain, trees: bool) -> Self {
         let own = |t: &u32| terrain.is_tree(*t) == trees;
         let mut order: Vec<u32> = (0..terrain.triangles.len() as u32).filter(own).collect();
@@ -63,8 +63,8 @@ impl<'a> Part<'a> {
     }
 
     /// A copy of its own.
-    pub(super) fn soup(&self) -> Soup {
+    pub(super) fn soup(&self) -> TriangleSoup {
         let places_m = (0..self.used.len() as u32).map(|vertex| self.place_m(vertex)).collect();
-        Soup { places_m, triangles: self.triangles().collect() }
+        TriangleSoup { places_m, triangles: self.triangles().collect() }
     }
 }

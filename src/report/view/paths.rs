@@ -1,6 +1,6 @@
 //! Kept paths, in whole numbers.
 
-use super::frame::{Frame, is_finite};
+use super::frame::{QuantizedBox, is_finite};
 use super::pack::Section;
 use crate::error::Result;
 use crate::hazard::Row;
@@ -19,7 +19,7 @@ const ENERGY_STEPS: f64 = 100.0;
 
 /// One instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Instant {
+pub(super) struct PathInstant {
     pub(super) time_s: f64,
     pub(super) place_m: [f64; 3],
     pub(super) total_j: f64,
@@ -27,16 +27,16 @@ pub(super) struct Instant {
 
 /// One path.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Way {
+pub(super) struct ViewPath {
     pub(super) release: usize,
     pub(super) radius_m: f64,
-    pub(super) instants: Vec<Instant>,
+    pub(super) instants: Vec<PathInstant>,
 }
 
 /// All that are shown.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Ways {
-    pub(super) ways: Vec<Way>,
+    pub(super) ways: Vec<ViewPath>,
     /// Every so many points are shown.
     every: usize,
 }
@@ -44,7 +44,7 @@ pub(super) struct Ways {
 impl Ways {
     /// The kept paths of a run; `rows` tell mass and radius.
     pub(super) fn of(results: &Results, rows: &[Row]) -> Result<Self> {
-        let mut ways: Vec<Way> = Vec::new();
+        let mut ways: Vec<ViewPath> = Vec::new();
         let first = rows.first().map_or(0, |row| row.index);
         for row in results.paths()? {
             let row = row?;
@@ -53,7 +53,7 @@ impl Ways {
             };
             if ways.last().is_none_or(|way| way.release != row.index) {
                 let (release, radius_m) = (row.index, rock.radius_m);
-                ways.push(Way { release, radius_m, instants: Vec::new() });
+                ways.push(ViewPath { release, radius_m, instants: Vec::new() });
             }
             let Some(way) = ways.last_mut() else { break };
             let is_ahead = way.instants.last().is_none_or(|last| row.time_s > last.time_s);
@@ -87,18 +87,19 @@ impl Ways {
     /// A column `turn` (four parts, a unit quaternion) may join when rocks have a shape that shows how they turn.
     pub(super) fn text(&self) -> String {
         let instants = || self.ways.iter().flat_map(|way| &way.instants);
-        let frame = Frame::round(instants().map(|instant| instant.place_m));
+        let frame = QuantizedBox::round(instants().map(|instant| instant.place_m));
         let mut section = Section::new(json!({
             "frame": frame, "ticks_per_s": TICKS_PER_S, "energy_steps": ENERGY_STEPS
         }));
-        let each = |of: fn(&Way) -> usize| self.ways.iter().map(|way| of(way) as u32).collect();
+        let each =
+            |of: fn(&ViewPath) -> usize| self.ways.iter().map(|way| of(way) as u32).collect();
         section.add("release", 1, 1, each(|way| way.release));
         section.add("points", 1, 0, each(|way| way.instants.len()));
         let steps = instants().flat_map(|instant| frame.steps(instant.place_m)).collect();
         section.add("place", 3, 2, steps);
-        let ticks = |instant: &Instant| (instant.time_s * TICKS_PER_S).round() as u32;
+        let ticks = |instant: &PathInstant| (instant.time_s * TICKS_PER_S).round() as u32;
         section.add("time", 1, 2, instants().map(ticks).collect());
-        let energy = |instant: &Instant| {
+        let energy = |instant: &PathInstant| {
             (ENERGY_STEPS * math::log10(1.0 + instant.total_j.max(0.0))).round() as u32
         };
         section.add("energy", 1, 1, instants().map(energy).collect());
@@ -106,16 +107,16 @@ impl Ways {
     }
 }
 
-fn instant(row: &PathRow, rock: &Row) -> Instant {
+fn instant(row: &PathRow, rock: &Row) -> PathInstant {
     let speed = Vec3::from(row.velocity_m_s).norm();
     // I = 2/5 m R²
     let rim = rock.radius_m * Vec3::from(row.spin_rad_s).norm();
     let total_j = rock.mass_kg * (0.5 * speed * speed + 0.2 * rim * rim);
-    Instant { time_s: row.time_s, place_m: row.position_m, total_j }
+    PathInstant { time_s: row.time_s, place_m: row.position_m, total_j }
 }
 
 /// Keeps every so many instants, and the last.
-fn thin(instants: &mut Vec<Instant>, every: usize) {
+fn thin(instants: &mut Vec<PathInstant>, every: usize) {
     let last = instants.len().saturating_sub(1);
     let mut k = 0;
     instants.retain(|_| {

@@ -1,7 +1,7 @@
 //! Rows of the rocks, in whole numbers.
 
 use super::Shown;
-use super::frame::{Frame, is_finite};
+use super::frame::{QuantizedBox, is_finite};
 use super::pack::Section;
 use crate::hazard::{Row, StopKind};
 use serde_json::json;
@@ -28,7 +28,7 @@ const NUMBERS: [Number; 7] = [
 /// Packed as text: place of the end, reason, and what a click shows.
 pub(super) fn text(shown: &Shown) -> String {
     let rows = &shown.rows;
-    let frame = Frame::round(rows.iter().map(|row| row.end_m));
+    let frame = QuantizedBox::round(rows.iter().map(|row| row.end_m));
     let mut section = Section::new(
         json!({ "frame": frame, "first": shown.first_release, "all": shown.releases }),
     );

@@ -1,6 +1,6 @@
 //! Terrain too fine for a page, drawn coarser.
 
-use super::part::{Part, Soup};
+use super::part::{TerrainPart, TriangleSoup};
 use crate::report::format;
 use crate::rock::Vec3;
 use rayon::slice::ParallelSliceMut;
@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 const LONGER: f64 = 1.2;
 
 /// Ground of at most so many triangles: vertices that share a cell become one, in their middle.
-pub(super) fn ground(part: &Part, most: usize, notes: &mut Vec<String>) -> Soup {
+pub(super) fn ground(part: &TerrainPart, most: usize, notes: &mut Vec<String>) -> TriangleSoup {
     let all = part.len();
     if all <= most {
         return part.soup();
@@ -31,14 +31,14 @@ pub(super) fn ground(part: &Part, most: usize, notes: &mut Vec<String>) -> Soup 
     }
 }
 
-fn mean_edge_m(part: &Part) -> f64 {
+fn mean_edge_m(part: &TerrainPart) -> f64 {
     let length = |a: [f64; 3], b: [f64; 3]| (Vec3::from(b) - Vec3::from(a)).norm();
     let sides = part.triangles().map(|[a, b, _]| length(part.place_m(a), part.place_m(b)));
     (sides.sum::<f64>() / part.len() as f64).max(1e-9)
 }
 
 /// The part with one vertex a cell, and the longest way that one moved (m).
-fn joined(part: &Part, cell_m: f64) -> (Soup, f64) {
+fn joined(part: &TerrainPart, cell_m: f64) -> (TriangleSoup, f64) {
     let at = |v: u32| part.place_m(v);
     let cell = |v: u32| at(v).map(|x| (x / cell_m).floor() as i64);
     let mut order: Vec<u32> = (0..part.vertices() as u32).collect();
@@ -64,11 +64,11 @@ fn joined(part: &Part, cell_m: f64) -> (Soup, f64) {
         (key[0] < key[1] && key[1] < key[2] && seen.insert(key)).then_some(corners)
     };
     let triangles = part.triangles().filter_map(left).collect();
-    (Soup { places_m, triangles }, moved_m)
+    (TriangleSoup { places_m, triangles }, moved_m)
 }
 
 /// Whole trees, evenly chosen, of at most so many triangles.
-pub(super) fn trees(soup: Soup, most: usize, notes: &mut Vec<String>) -> Soup {
+pub(super) fn trees(soup: TriangleSoup, most: usize, notes: &mut Vec<String>) -> TriangleSoup {
     let all = soup.triangles.len();
     if all <= most {
         return soup;
@@ -78,11 +78,11 @@ pub(super) fn trees(soup: Soup, most: usize, notes: &mut Vec<String>) -> Soup {
     let kept = |corners: &&[u32; 3]| tree_of[corners[0] as usize].is_multiple_of(every);
     let triangles: Vec<[u32; 3]> = soup.triangles.iter().filter(kept).take(most).copied().collect();
     notes.push(format!("Of the trees one in {every} is drawn. The rocks fell among all."));
-    Soup { triangles, ..soup }
+    TriangleSoup { triangles, ..soup }
 }
 
 /// Number of the connected piece that each vertex belongs to, from 0 in order of the vertices.
-fn trees_of(soup: &Soup) -> Vec<u32> {
+fn trees_of(soup: &TriangleSoup) -> Vec<u32> {
     let mut root: Vec<u32> = (0..soup.places_m.len() as u32).collect();
     let find = |root: &mut Vec<u32>, mut v: u32| {
         while root[v as usize] != v {

@@ -1,11 +1,17 @@
 //! All rocks of a world, and the windows of time they go through.
+//!
+//! Rocks of a world meet each other seldom. Time is cut into windows so short that the fastest rock moves a tenth of
+//! its radius; in each window rocks that may meet form islands, which are computed apart from each other and in
+//! parallel. The prediction of who may meet whom assumes a bound on how far a rock is thrown by what it hits. Where a
+//! rock was thrown farther, the world goes back to the snapshot before and takes the larger bound: the result does
+//! not depend on the guess, only the run time does.
 
 use super::cached_pairs::CachedPairs;
 use super::prediction::{
-    Meetings, Place, is_busy, meetings_in_passing, meetings_of_islands, place_of,
+    Meetings, PredictedRock, is_busy, meetings_in_passing, meetings_of_islands, place_of,
 };
 use super::window::IslandWindow;
-use super::{PairMaterial, State, TOUCHING, WorldBody, WorldStats, law_between};
+use super::{BodyState, PairMaterial, TOUCHING, WorldBody, WorldStats, law_between};
 use crate::contact::pair::PairHistory;
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::release::Release;
@@ -32,19 +38,26 @@ const WINDOWS_RIGID: usize = 8;
 
 /// All rocks of a world.
 pub(super) struct BodyWorld<'a> {
+    /// Scheme, terrain, recorders and limits, the same for all rocks.
     settings: &'a RunSettings<'a>,
+    /// What contacts between two rocks are made of: springs, friction, and the damping of their restitution.
     answer: (Ground, Damping),
+    /// Impacts slower than this rule says do not rebound.
     capture: Capture,
+    /// The rocks by number; `None` while an island computes them.
     pub(super) bodies: Vec<Option<Box<WorldBody<'a>>>>,
     /// Contacts and bonds, in the order of the numbers of their rocks.
     pub(super) pair_histories: Vec<PairHistory>,
     /// Who was near whom when that was asked last.
     wide: CachedPairs,
+    /// Start of the next window (s).
     pub(super) now_s: f64,
+    /// What the world has cost so far, counted.
     pub(super) statistics: WorldStats,
 }
 
 impl<'a> BodyWorld<'a> {
+    /// A world at time 0, with no contacts and no bonds.
     pub(super) fn new(
         settings: &'a RunSettings<'a>,
         answer: &PairMaterial,
@@ -62,20 +75,24 @@ impl<'a> BodyWorld<'a> {
         }
     }
 
+    /// Rock `k`.
     #[expect(clippy::expect_used, reason = "bodies are away only while their island is computed")]
     pub(super) fn body(&self, k: u32) -> &WorldBody<'a> {
         self.bodies[k as usize].as_ref().expect("a body is at home between windows")
     }
 
+    /// Whether contacts have no springs: the limit of infinite stiffness.
     pub(super) fn is_rigid(&self) -> bool {
         !self.settings.step.scheme.has_springs()
     }
 
+    /// The contact law of two rocks: two springs in series on their reduced mass `m_a m_b/(m_a + m_b)`.
     pub(super) fn law(&self, a: u32, b: u32) -> Law {
         let [a, b] = [a, b].map(|k| &self.body(k).member.body);
         law_between(a, b, &self.answer, &self.capture)
     }
 
+    /// Adds a pair, at its place in the order of numbers: a binary search in O(log n), a shift in O(n).
     pub(super) fn tie(&mut self, pair_history: PairHistory) {
         let place = self
             .pair_histories
@@ -118,9 +135,10 @@ impl<'a> BodyWorld<'a> {
         true
     }
 
+    /// Whether a rock still moves and time is left.
     fn is_under_way(&self) -> bool {
         let mut bodies = self.bodies.iter().flatten();
-        self.now_s < self.settings.longest_s && bodies.any(|body| body.state == State::Moving)
+        self.now_s < self.settings.longest_s && bodies.any(|body| body.state == BodyState::Moving)
     }
 
     /// Goes through the next windows, up to one in which a rock may have met one that it was not compared with; whether
@@ -130,6 +148,7 @@ impl<'a> BodyWorld<'a> {
         stop: &AtomicBool,
         see: &mut impl FnMut(f64, &WorldStats),
     ) -> Option<bool> {
+        // the flag is read between windows only: an island that has begun is finished
         for _ in 0..if self.is_rigid() { WINDOWS_RIGID } else { WINDOWS } {
             if !self.is_under_way() {
                 break;
@@ -150,6 +169,7 @@ impl<'a> BodyWorld<'a> {
     /// one of another island.
     fn window(&mut self) -> bool {
         let length = self.window_length();
+        // the last window ends with the time limit of the scene
         let end_s = (self.now_s + length).min(self.settings.longest_s);
         let (settings, now_s) = (self.settings, self.now_s);
         self.bodies.iter_mut().flatten().for_each(|body| {
@@ -158,12 +178,14 @@ impl<'a> BodyWorld<'a> {
         let present: Vec<u32> = self.present();
         let dt = end_s - self.now_s;
         let place = |&k: &u32| place_of(self.body(k), self.settings, (self.now_s, dt));
-        let places: Vec<Place> = present.iter().map(place).collect();
+        let places: Vec<PredictedRock> = present.iter().map(place).collect();
         let mut wide = std::mem::take(&mut self.wide);
+        // broad phase: pairs whose swept balls overlap, O(n log n) in the number of rocks
         let mut meetings = self.meetings(&mut wide, &present, &places, dt);
         self.wide = wide;
         let jobs = self.jobs(&present, &mut meetings, end_s);
         let done: Vec<IslandWindow> = jobs
+            // the order of the results is that of the jobs, not of the threads: sums come out with the same bits
             .into_par_iter()
             .map(|mut job| {
                 job.run();
@@ -178,6 +200,7 @@ impl<'a> BodyWorld<'a> {
             self.statistics.add(&job.statistics);
             self.take_back(job);
         }
+        // islands give back in any order of pairs; the order of numbers makes the next window independent of it
         self.pair_histories.sort_unstable_by_key(|pair_history| (pair_history.a, pair_history.b));
         self.now_s = end_s;
         self.statistics.windows += 1;
@@ -185,6 +208,7 @@ impl<'a> BodyWorld<'a> {
             let body = self.body(present[k]);
             (body.position_at(self.settings, end_s), body.off.1)
         };
+        // rocks that left the tube in which they were looked for, checked against all others at their true places
         let deviated = meetings.missed(&places, dt, after, |deviation_m| {
             overlapping(
                 &places
@@ -205,14 +229,16 @@ impl<'a> BodyWorld<'a> {
     /// The rocks that are in the world.
     fn present(&self) -> Vec<u32> {
         let count = self.bodies.len() as u32;
-        (0..count).filter(|&k| !matches!(self.body(k).state, State::Gone(_))).collect()
+        (0..count).filter(|&k| !matches!(self.body(k).state, BodyState::Gone(_))).collect()
     }
 
+    /// Length of the next window (s): the way of the fastest rock over its radius, between two bounds.
     fn window_length(&self) -> f64 {
+        // 1e-9 m/s keeps a rock that stands still from dividing by nothing; the longest window decides then
         let mut length = LONGEST_S;
         // In the rigid limit nothing happens between the steps: a window is one.
         let way = if self.is_rigid() { TRAVEL } else { WAY };
-        for body in self.bodies.iter().flatten().filter(|body| body.state == State::Moving) {
+        for body in self.bodies.iter().flatten().filter(|body| body.state == BodyState::Moving) {
             let speed = body.velocity_at(self.settings, self.now_s).norm();
             length = length.min(way * body.member.body.radius / speed.max(1e-9));
         }
@@ -224,9 +250,10 @@ impl<'a> BodyWorld<'a> {
         &self,
         wide: &mut CachedPairs,
         present: &[u32],
-        places: &[Place],
+        places: &[PredictedRock],
         dt: f64,
     ) -> Meetings {
+        // held and bonded pairs stay together in one island however small the window
         let at = |k: u32| present.binary_search(&k).unwrap_or_default() as u32;
         let held: Vec<(u32, u32)> = self
             .pair_histories
@@ -256,8 +283,10 @@ impl<'a> BodyWorld<'a> {
         meetings: &mut Meetings,
         end_s: f64,
     ) -> Vec<IslandWindow<'a>> {
+        // an island in which nothing moves, lands or meets is left as it is: its rocks sleep or fly through
         let mut lists = meetings.islands.lists();
         lists.retain(|list| is_busy(list.iter().map(|&k| self.body(present[k as usize])), end_s));
+        // for each rock: the island it is in, and its place there
         let mut part = vec![(usize::MAX, 0); present.len()];
         for (number, list) in lists.iter().enumerate() {
             for (&k, place) in list.iter().zip(0..) {
@@ -265,6 +294,7 @@ impl<'a> BodyWorld<'a> {
             }
         }
         let mut pair_histories: Vec<Vec<PairHistory>> = lists.iter().map(|_| Vec::new()).collect();
+        // both lists of pairs rise: one pass over both finds what is known of each pair
         let mut known = 0;
         for &(a, b) in &meetings.pairs {
             let (number, place) = part[a as usize];
@@ -301,6 +331,7 @@ impl<'a> BodyWorld<'a> {
         }
         let mut jobs = Vec::with_capacity(lists.len());
         for (list, pair_histories) in lists.into_iter().zip(pair_histories) {
+            // rocks move by pointer into the island: nothing is copied
             let ids: Vec<u32> = list.iter().map(|&k| present[k as usize]).collect();
             let bodies = ids.iter().filter_map(|&k| self.bodies[k as usize].take()).collect();
             jobs.push(IslandWindow::new(
@@ -314,11 +345,13 @@ impl<'a> BodyWorld<'a> {
         jobs
     }
 
+    /// Puts rocks and held pairs of an island back; pairs that have let go, and those of rocks that left, are
+    /// forgotten.
     fn take_back(&mut self, job: IslandWindow<'a>) {
         let (ids, bodies, pair_histories) = job.into_parts();
         for pair_history in pair_histories.into_iter().filter(PairHistory::is_held) {
             let (a, b) = (ids[pair_history.a as usize], ids[pair_history.b as usize]);
-            let gone = |k: u32| matches!(bodies[k as usize].state, State::Gone(_));
+            let gone = |k: u32| matches!(bodies[k as usize].state, BodyState::Gone(_));
             if !gone(pair_history.a) && !gone(pair_history.b) {
                 self.pair_histories.push(PairHistory { a, b, ..pair_history });
             }

@@ -1,6 +1,6 @@
 //! One rock of a world: flying, touching, resting, and what is noted down of it.
 
-use super::{State, WorldBody};
+use super::{BodyState, WorldBody};
 use crate::flight::{FlightEnd, Parabola, time_of_impact_past};
 use crate::release::Release;
 use crate::rock::{Motion, Vec3};
@@ -56,8 +56,8 @@ impl<'a> WorldBody<'a> {
 
     /// Brings a rock that slept to the present; one that flies without knowing where looks ahead.
     pub(super) fn wake(&mut self, settings: &RunSettings, now_s: f64) {
-        if self.state == State::Asleep {
-            self.state = State::Moving;
+        if self.state == BodyState::Asleep {
+            self.state = BodyState::Moving;
             let now = Motion { time_s: now_s, ..self.recorder.now };
             self.recorder.step_as(now, PathState::Sticking);
         }
@@ -99,7 +99,7 @@ impl<'a> WorldBody<'a> {
 
     /// Goes along the parabola; nothing for a rock in contact.
     pub(super) fn fly_to(&mut self, settings: &RunSettings, time_s: f64) {
-        if matches!(self.state, State::Gone(_)) || !self.member.flying {
+        if matches!(self.state, BodyState::Gone(_)) || !self.member.flying {
             return;
         }
         let dt = time_s - self.recorder.now.time_s;
@@ -143,13 +143,11 @@ impl<'a> WorldBody<'a> {
             self.recorder.pay(&held, 1.0);
             self.began_j.0 += held.sum();
         }
-        self.h = self.h.min(self.onset_s(settings));
+        // an impact must be resolved from its start; what is too slow to rebound, the error control alone finds out
+        if state.histories.iter().any(|history| !history.captured) {
+            self.h = self.h.min(ONSET / self.member.omega(settings.terrain));
+        }
         self.in_contact(settings).announce();
-    }
-
-    /// First step after it touches the mesh (s).
-    pub(super) fn onset_s(&self, settings: &RunSettings) -> f64 {
-        ONSET / self.member.omega(settings.terrain)
     }
 
     pub(super) fn total_j(&self, settings: &RunSettings) -> f64 {
@@ -168,7 +166,7 @@ impl<'a> WorldBody<'a> {
         (mut loss, given): (Loss, Given),
         slides: bool,
     ) {
-        if matches!(self.state, State::Gone(_)) {
+        if matches!(self.state, BodyState::Gone(_)) {
             return;
         }
         let was_flying = self.lands.is_some();
@@ -200,7 +198,7 @@ impl<'a> WorldBody<'a> {
         given: (Loss, Given),
         slides: bool,
     ) {
-        if matches!(self.state, State::Gone(_)) {
+        if matches!(self.state, BodyState::Gone(_)) {
             return;
         }
         let to = self.motion_at(time_s);
@@ -219,7 +217,7 @@ impl<'a> WorldBody<'a> {
 
     /// Notes an impact on the mesh in the step that ends at `time_s` (s).
     pub(super) fn hit(&mut self, hit: &Hit, time_s: f64) {
-        if self.state == State::Moving {
+        if self.state == BodyState::Moving {
             let struck = Struck {
                 point_m: hit.point_m,
                 normal: hit.normal,
@@ -305,8 +303,8 @@ impl<'a> WorldBody<'a> {
     }
 
     pub(super) fn leave(&mut self, stop: Stop) {
-        if self.state == State::Moving {
-            self.state = State::Gone(stop);
+        if self.state == BodyState::Moving {
+            self.state = BodyState::Gone(stop);
         }
     }
 
@@ -319,9 +317,9 @@ impl<'a> WorldBody<'a> {
         now_s: f64,
     ) -> Trajectory {
         let stop = match &self.state {
-            State::Moving => Stop::TimeUp,
-            State::Asleep => Stop::AtRest,
-            State::Gone(stop) => stop.clone(),
+            BodyState::Moving => Stop::TimeUp,
+            BodyState::Asleep => Stop::AtRest,
+            BodyState::Gone(stop) => stop.clone(),
         };
         if stop == Stop::TimeUp {
             self.fly_to(settings, now_s);

@@ -1,6 +1,6 @@
 //! Who is near whom, asked several times with growing reaches: the answer to a somewhat larger question serves all.
 
-use super::prediction::Place;
+use super::prediction::PredictedRock;
 use crate::rock::Vec3;
 use crate::solver::island::broad_phase::{Ball, overlapping};
 
@@ -21,7 +21,11 @@ pub(super) struct CachedPairs {
 
 impl CachedPairs {
     /// Pairs that overlap or touch if each rock may be anywhere within so far of its centre (m), in ascending order.
-    pub(super) fn overlapping(&mut self, places: &[Place], reaches: &[f64]) -> Vec<(u32, u32)> {
+    pub(super) fn overlapping(
+        &mut self,
+        places: &[PredictedRock],
+        reaches: &[f64],
+    ) -> Vec<(u32, u32)> {
         let fits = |(k, asked): (usize, &f64)| {
             let room = self.reaches[k] - asked;
             let off = places[k].centre - self.centres[k];
@@ -35,8 +39,10 @@ impl CachedPairs {
             self.reaches = ways
                 .map(|(place, reach)| reach + SPARE * (reach - place.radius) + SKIN * place.radius)
                 .collect();
-            let ball =
-                |(place, reach): (&Place, &f64)| Ball { centre: place.centre, radius: *reach };
+            let ball = |(place, reach): (&PredictedRock, &f64)| Ball {
+                centre: place.centre,
+                radius: *reach,
+            };
             let balls: Vec<Ball> = places.iter().zip(&self.reaches).map(ball).collect();
             self.pairs = overlapping(&balls);
         }

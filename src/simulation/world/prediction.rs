@@ -1,6 +1,6 @@
 //! Islands within a window: who may meet whom before its end.
 
-use super::{State, WorldBody};
+use super::{BodyState, WorldBody};
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
 use crate::simulation::settings::RunSettings;
@@ -18,7 +18,7 @@ const LONG_HANDED_ON: usize = 4;
 
 /// A rock at a window's start.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct PredictedRock {
     /// Centre (m).
     pub(super) centre: Vec3,
     /// Velocity (m/s).
@@ -33,7 +33,7 @@ pub(super) struct Place {
     predicted_dv: f64,
 }
 
-impl Place {
+impl PredictedRock {
     /// Largest speed of its own (m/s).
     fn speed(&self) -> f64 {
         self.velocity.norm() + self.dv_bound
@@ -42,21 +42,25 @@ impl Place {
     /// A ball that holds the rock through `dt` (s) if it goes no further than `deviation_m` (m) off its straight way.
     pub(super) fn swept(&self, deviation_m: f64, dt: f64) -> Ball {
         let half = self.velocity * (0.5 * dt);
-        let radius = self.radius * (1.0 + ROUNDING) + half.norm() + deviation_m;
+        let radius = self.radius * (1.0 + REACH_ROUNDING) + half.norm() + deviation_m;
         Ball { centre: self.centre + half, radius }
     }
 }
 
 /// Where a rock is at `now_s` and what it may do within `dt` (s) if no other hits it.
-pub(super) fn place_of(body: &WorldBody, settings: &RunSettings, (now_s, dt): (f64, f64)) -> Place {
-    let sleeps = body.state == State::Asleep;
+pub(super) fn place_of(
+    body: &WorldBody,
+    settings: &RunSettings,
+    (now_s, dt): (f64, f64),
+) -> PredictedRock {
+    let sleeps = body.state == BodyState::Asleep;
     let velocity = if sleeps { Vec3::zeros() } else { body.velocity_at(settings, now_s) };
     let speed = velocity.norm();
     let lands = body.lands.as_ref().is_some_and(|(time_s, _)| *time_s <= now_s + dt);
     let near_mesh = !body.member.flying && body.member.is_near_mesh(speed * dt);
     let turned = if lands || near_mesh { 2.0 * speed } else { 0.0 };
     let dv_bound = body.pressed_m_s + settings.gravity_m_s2 * dt + turned;
-    Place {
+    PredictedRock {
         centre: body.position_at(settings, now_s),
         velocity,
         radius: body.member.body.radius,
@@ -72,11 +76,11 @@ const KICK: f64 = 2.2;
 /// Of a hit within a short window, the share that is allowed for: it takes its time (–).
 const LATE: f64 = 0.5;
 /// Share of the radius by which reaches are larger than they must be: rounding (–).
-const ROUNDING: f64 = 1e-6;
+const REACH_ROUNDING: f64 = 1e-6;
 
 /// How far a hit is handed on within a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Spread {
+pub(super) enum HitSpread {
     /// To all of an island.
     Island,
     /// To the next few rocks: the window is not much longer than a contact.
@@ -87,7 +91,7 @@ pub(super) enum Spread {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ahead {
     pub(super) dt: f64,
-    pub(super) spread: Spread,
+    pub(super) spread: HitSpread,
 }
 
 /// Who may meet whom in a window.
@@ -100,11 +104,11 @@ pub(super) struct Meetings {
 }
 
 /// Nearest that two rocks come to each other within `dt` (s) on straight ways, less their radii (m).
-fn nearest_gap(a: &Place, b: &Place, dt: f64) -> f64 {
+fn nearest_gap(a: &PredictedRock, b: &PredictedRock, dt: f64) -> f64 {
     let (apart, closing) = (a.centre - b.centre, a.velocity - b.velocity);
     let speed2 = closing.norm_squared();
     let t = if speed2 > 0.0 { (-apart.dot(&closing) / speed2).clamp(0.0, dt) } else { 0.0 };
-    (apart + closing * t).norm() - (a.radius + b.radius) * (1.0 + ROUNDING)
+    (apart + closing * t).norm() - (a.radius + b.radius) * (1.0 + REACH_ROUNDING)
 }
 
 impl Meetings {
@@ -113,17 +117,17 @@ impl Meetings {
     /// change of its velocity (m/s), `near` the pairs that can come into question, given how far each may deviate from its flight (m).
     pub(super) fn missed(
         &self,
-        places: &[Place],
+        places: &[PredictedRock],
         dt: f64,
         after: impl Fn(usize) -> (Vec3, f64),
         near: impl FnOnce(&[f64]) -> Vec<(u32, u32)>,
     ) -> Vec<usize> {
-        let is_thrown = |k: usize| after(k).1 > self.allowed[k] * (1.0 + ROUNDING);
+        let is_thrown = |k: usize| after(k).1 > self.allowed[k] * (1.0 + REACH_ROUNDING);
         if !(0..places.len()).any(is_thrown) {
             return Vec::new();
         }
         // Off its straight way by no more than half of what it is off at the end and of what it could be.
-        let deviation_m = |(k, place): (usize, &Place)| {
+        let deviation_m = |(k, place): (usize, &PredictedRock)| {
             let (end, off) = after(k);
             let straight = place.centre + place.velocity * dt;
             0.5 * ((end - straight).norm() + off.max(place.dv_bound) * dt)
@@ -148,7 +152,7 @@ impl Meetings {
 /// Pairs that may touch and the islands they form, where any rock of an island may be hit by its fastest: `near` gives the
 /// pairs that overlap if each rock may be anywhere within so far of its centre (m).
 pub(super) fn meetings_of_islands(
-    places: &[Place],
+    places: &[PredictedRock],
     dt: f64,
     mut near: impl FnMut(&[f64]) -> Vec<(u32, u32)>,
 ) -> Meetings {
@@ -156,13 +160,13 @@ pub(super) fn meetings_of_islands(
     let (mut pairs, mut islands) = (Vec::new(), Partition::alone(places.len()));
     let mut allowed = Vec::new();
     for _ in 0..PASSES {
-        let deviated = |(place, speed): (&Place, &f64)| {
+        let deviated = |(place, speed): (&PredictedRock, &f64)| {
             let own = place.velocity.norm();
             speed.max(own + place.predicted_dv) - own
         };
         allowed = places.iter().zip(&fastest).map(deviated).collect();
-        let reach = |(place, deviated): (&Place, &f64)| {
-            place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + deviated) * dt
+        let reach = |(place, deviated): (&PredictedRock, &f64)| {
+            place.radius * (1.0 + REACH_ROUNDING) + (place.velocity.norm() + deviated) * dt
         };
         pairs = near(&places.iter().zip(&allowed).map(reach).collect::<Vec<_>>());
         islands = joined(&pairs, places.len());
@@ -182,15 +186,15 @@ pub(super) fn meetings_of_islands(
 /// relative to the other brings them together, and a hit is handed on to the next few. `held` are pairs that touch or are
 /// bonded, in ascending order; `near` as for [`meetings_of_islands`].
 pub(super) fn meetings_in_passing(
-    places: &[Place],
+    places: &[PredictedRock],
     dt: f64,
     held: &[(u32, u32)],
     near: impl FnOnce(&[f64]) -> Vec<(u32, u32)>,
 ) -> Meetings {
-    let fastest = places.iter().map(Place::speed).fold(0.0, f64::max);
-    let reach = |place: &Place| {
+    let fastest = places.iter().map(PredictedRock::speed).fold(0.0, f64::max);
+    let reach = |place: &PredictedRock| {
         let deviated = place.dv_bound.max(place.predicted_dv).max(fastest);
-        place.radius * (1.0 + ROUNDING) + (place.velocity.norm() + deviated) * dt
+        place.radius * (1.0 + REACH_ROUNDING) + (place.velocity.norm() + deviated) * dt
     };
     let mut pairs = near(&places.iter().map(reach).collect::<Vec<_>>());
     if !held.is_empty() {
@@ -219,12 +223,12 @@ fn joined(pairs: &[(u32, u32)], count: usize) -> Partition {
 /// The same among rocks that `pair_histories` join.
 pub(super) fn meeting_ties(
     pair_histories: &[PairHistory],
-    places: &[Place],
+    places: &[PredictedRock],
     ahead: Ahead,
 ) -> Meetings {
     match ahead.spread {
-        Spread::Neighbours => meetings_of_neighbours(pair_histories, places, ahead.dt),
-        Spread::Island => meetings_of_islands(places, ahead.dt, |reaches| {
+        HitSpread::Neighbours => meetings_of_neighbours(pair_histories, places, ahead.dt),
+        HitSpread::Island => meetings_of_islands(places, ahead.dt, |reaches| {
             let meets = |pair_history: &&PairHistory| {
                 let [a, b] = [pair_history.a, pair_history.b].map(|k| k as usize);
                 let reach = reaches[a] + reaches[b];
@@ -242,7 +246,11 @@ pub(super) fn meeting_ties(
 
 /// Pairs that may touch and the islands they form in a window not much longer than a contact: rocks go straight on but
 /// for hits, which are handed on to the next few.
-fn meetings_of_neighbours(pair_histories: &[PairHistory], places: &[Place], dt: f64) -> Meetings {
+fn meetings_of_neighbours(
+    pair_histories: &[PairHistory],
+    places: &[PredictedRock],
+    dt: f64,
+) -> Meetings {
     let gaps: Vec<f64> = pair_histories
         .iter()
         .map(|pair_history| {
@@ -260,7 +268,7 @@ fn meetings_of_neighbours(pair_histories: &[PairHistory], places: &[Place], dt: 
 
 /// The same, given the nearest that each pair comes to each other on straight ways (m).
 fn meetings_by_gaps(
-    places: &[Place],
+    places: &[PredictedRock],
     dt: f64,
     (pairs, gaps): (&[(u32, u32)], &[f64]),
     (handed_on, late): (usize, f64),
@@ -298,6 +306,6 @@ pub(super) fn is_busy<'r, 'a: 'r>(
     let alone = bodies.len() == 1;
     bodies.any(|body| {
         let flies_on = body.member.flying && body.lands.as_ref().is_some_and(|(t, _)| *t > end_s);
-        body.state == State::Moving && !(alone && flies_on)
+        body.state == BodyState::Moving && !(alone && flies_on)
     })
 }

@@ -2,9 +2,9 @@
 //! into another island that knew nothing of it.
 
 use super::bodies::BodyWorld;
-use super::{State, Stop, WorldBody};
+use super::{BodyState, Stop, WorldBody};
 use crate::contact::pair::PairHistory;
-use crate::simulation::recorder::Mark;
+use crate::simulation::recorder::RecorderMark;
 use crate::simulation::rest::RestCriterion;
 use crate::solver::island::Memory;
 
@@ -18,8 +18,8 @@ pub(super) struct Snapshot {
 /// One rock of it.
 pub(super) struct Kept {
     memory: Memory,
-    mark: Mark,
-    state: State,
+    mark: RecorderMark,
+    state: BodyState,
     lands: Option<(f64, Option<Stop>)>,
     calm: RestCriterion,
     h: f64,
@@ -60,7 +60,8 @@ impl BodyWorld<'_> {
     /// Keeps the present.
     pub(super) fn snapshot(&self) -> Snapshot {
         // What is gone does not come back.
-        let kept = |body: &WorldBody| (!matches!(body.state, State::Gone(_))).then(|| body.keep());
+        let kept =
+            |body: &WorldBody| (!matches!(body.state, BodyState::Gone(_))).then(|| body.keep());
         Snapshot {
             bodies: self.bodies.iter().map(|body| body.as_deref().and_then(kept)).collect(),
             pair_histories: self.pair_histories.clone(),

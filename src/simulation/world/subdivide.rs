@@ -2,7 +2,9 @@
 //! own.
 
 use super::WorldBody;
-use super::prediction::{Ahead, Meetings, Place, Spread, is_busy, meeting_ties, place_of};
+use super::prediction::{
+    Ahead, HitSpread, Meetings, PredictedRock, is_busy, meeting_ties, place_of,
+};
 use super::snapshot::Kept;
 use super::window::IslandWindow;
 use crate::contact::pair::PairHistory;
@@ -79,13 +81,13 @@ impl IslandWindow<'_> {
         None
     }
 
-    fn places(&self, dt: f64) -> Vec<Place> {
+    fn places(&self, dt: f64) -> Vec<PredictedRock> {
         let place = |body: &WorldBody| place_of(body, self.settings, (self.now_s, dt));
         self.bodies.iter().map(|body| place(body)).collect()
     }
 
-    fn meetings(&self, places: &[Place], (dt, stiffest): (f64, f64)) -> Meetings {
-        let spread = if dt * stiffest > FAR { Spread::Island } else { Spread::Neighbours };
+    fn meetings(&self, places: &[PredictedRock], (dt, stiffest): (f64, f64)) -> Meetings {
+        let spread = if dt * stiffest > FAR { HitSpread::Island } else { HitSpread::Neighbours };
         meeting_ties(&self.pair_histories, places, Ahead { dt, spread })
     }
 

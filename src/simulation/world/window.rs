@@ -1,8 +1,16 @@
 //! One island through one window: leap, meet, step, rest.
+//!
+//! An island is a set of rocks that may touch each other before the window ends, joined through pairs that are near
+//! or bonded. Islands of one window share nothing, so they run in parallel and give the same bytes on any number of
+//! threads. Inside an island all rocks in contact take the same step, because their springs form one system of
+//! equations; rocks in flight follow exact parabolas and join when they touch.
+//!
+//! Time runs event by event: all fly to the next touch (`fly_to`), contacts that are due begin (`begin_contacts`),
+//! the contact system is stepped until the next event (`steps`), and so on to the end of the window.
 
 mod rigid;
 
-use super::{State, WorldBody, WorldStats};
+use super::{BodyState, WorldBody, WorldStats};
 use crate::contact::pair::{PairHistory, meeting_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
@@ -12,7 +20,7 @@ use crate::solver::loss::Loss;
 use crate::solver::step_control::{ONSET, StepError};
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
-const ROUNDING: f64 = 1e-11;
+const GAP_ROUNDING: f64 = 1e-11;
 
 /// A time that is nothing (s): the clock cannot tell less after an hour.
 const SOON_S: f64 = 1e-12;
@@ -25,20 +33,28 @@ type Going<'a> = fn(&mut WorldBody<'a>, &RunSettings, f64, (Loss, Given), bool);
 
 /// One island and its window.
 pub(super) struct IslandWindow<'a> {
+    /// Scheme, tolerances, terrain and recorders, the same for all islands.
     pub(super) settings: &'a RunSettings<'a>,
+    /// Numbers of its rocks in the world, rising.
     pub(super) ids: Vec<u32>,
+    /// Its rocks, in the order of `ids`.
     pub(super) bodies: Bodies<'a>,
+    /// Pairs that may touch, with what a held contact remembers; their ends count places in `bodies`.
     pub(super) pair_histories: Vec<PairHistory>,
+    /// Time to which all rocks in contact have been taken (s).
     pub(super) now_s: f64,
+    /// End of the window (s); nothing of the island is computed beyond it.
     pub(super) end_s: f64,
     /// Whether it goes back by itself where a rock was deviated further than was allowed for.
     pub(super) goes_back: bool,
     /// Whether a rock was deviated so far that it may have met one of another island.
     pub(super) missed: bool,
+    /// What the island cost, counted.
     pub(super) statistics: WorldStats,
 }
 
 impl<'a> IslandWindow<'a> {
+    /// The island at the start `now_s` of its window, before anything has moved.
     pub(super) fn new(
         settings: &'a RunSettings<'a>,
         ids: Vec<u32>,
@@ -59,12 +75,14 @@ impl<'a> IslandWindow<'a> {
         }
     }
 
+    /// Gives rocks and pairs back to the world.
     pub(super) fn into_parts(self) -> (Vec<u32>, Bodies<'a>, Vec<PairHistory>) {
         (self.ids, self.bodies, self.pair_histories)
     }
 
     /// Takes all of the island to the end of the window together.
     pub(super) fn run_whole(&mut self) {
+        // a sleeping rock in a busy island may be pushed, so it takes part from the start
         for body in &mut self.bodies {
             body.wake(self.settings, self.now_s);
         }
@@ -86,6 +104,8 @@ impl<'a> IslandWindow<'a> {
     pub(super) fn next_event_s(&self) -> f64 {
         let flying = self.bodies.iter().filter(|body| body.member.flying);
         let landings = flying.filter_map(|body| body.lands.as_ref().map(|(time_s, _)| *time_s));
+        // both kinds of events are closed forms: the landing was found when the flight began, the meeting is a
+        // quadratic
         let first = landings.fold(f64::INFINITY, f64::min);
         self.pair_histories
             .iter()
@@ -96,6 +116,7 @@ impl<'a> IslandWindow<'a> {
     /// When two flying rocks meet (s).
     fn meeting_s(&self, pair_history: &PairHistory) -> Option<f64> {
         let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.bodies[k as usize]);
+        // a pair with an end in contact is watched by the stepper, which sees the gap in every step
         if !a.member.flying || !b.member.flying || pair_history.is_held() {
             return None;
         }
@@ -106,6 +127,7 @@ impl<'a> IslandWindow<'a> {
             );
             (c, v, body.member.body.radius)
         };
+        // gravity acts on both alike and drops out: the relative path of two flying rocks is a straight line
         let ((c_a, v_a, r_a), (c_b, v_b, r_b)) = (at(a), at(b));
         meeting_s(&(c_a - c_b), &(v_a - v_b), r_a + r_b).map(|t| self.now_s + t)
     }
@@ -115,9 +137,11 @@ impl<'a> IslandWindow<'a> {
         let touching = |pair_history: &PairHistory| {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.bodies[k as usize]);
             let apart = a.recorder.now.position_m - b.recorder.now.position_m;
-            apart.norm() <= (a.member.body.radius + b.member.body.radius) * (1.0 + ROUNDING)
+            apart.norm() <= (a.member.body.radius + b.member.body.radius) * (1.0 + GAP_ROUNDING)
         };
         self.meeting_s(pair_history)
+            // a root just ahead of the clock, or a gap that rounding has left open: without the second test the same
+            // event would be found again and again
             .is_some_and(|t| t - self.now_s <= SOON_S || touching(pair_history))
     }
 
@@ -140,12 +164,17 @@ impl<'a> IslandWindow<'a> {
             }
             let [a, b] = ends.map(|end| &self.bodies[end].member.state);
             let pair_history = &mut self.pair_histories[k];
+            // the normal points from b to a; a negative normal speed approaches
             let (n, _) = crate::contact::pair::between(&a.c, &b.c);
             (pair_history.n, pair_history.closed) = (n, true);
+            // below the capture speed a rebound would be smaller than the errors of the steps: dashpot of full damping
             pair_history.captured = -n.dot(&(a.v - b.v)) < pair_history.law.capture_m_s;
-            let h = ONSET / pair_history.law.omega;
-            for end in ends {
-                self.bodies[end].h = self.bodies[end].h.min(h);
+            if !pair_history.captured {
+                // the first step of an impact resolves the onset of its spring, whatever step the island had before
+                let h = ONSET / pair_history.law.omega;
+                for end in ends {
+                    self.bodies[end].h = self.bodies[end].h.min(h);
+                }
             }
         }
         for body in self.bodies.iter_mut().filter(|body| body.member.flying) {
@@ -165,9 +194,12 @@ impl<'a> IslandWindow<'a> {
         let mut island = self.cluster();
         let mut goes_on = true;
         while self.now_s < until_s {
+            // no step passes the next event, the end of the window, or the end of a facet of rough ground
             let room = (until_s - self.now_s).min(self.before_step(&mut island));
             let spent = (island.sweeps, island.jumps);
             let step = self.settings.step;
+            // three drivers of one system: error control, the fixed step of the paper, velocity stepping without
+            // springs
             let tried = if step.scheme.controls_error() {
                 island.advance(step, room)
             } else if step.scheme.has_springs() {
@@ -184,6 +216,7 @@ impl<'a> IslandWindow<'a> {
                 }
             };
             let left_s = until_s - self.now_s;
+            // the last step ends exactly at the event: a remainder of rounding would make an empty step of its own
             self.now_s = if done.dt >= left_s { until_s } else { self.now_s + done.dt };
             let all_fly = self.note(&mut island, &done, (spent, WorldBody::step));
             if all_fly {
@@ -203,6 +236,7 @@ impl<'a> IslandWindow<'a> {
 
     /// Makes the rocks of the island ready for a step in contact; returns the longest that it may be (s).
     fn before_step(&mut self, island: &mut Island<'a>) -> f64 {
+        // most scenes have neither stems nor rough ground: nothing to do before a step
         let mut longest_s = f64::INFINITY;
         let has_stems = self.settings.terrain.stems.is_some();
         for (body, member) in self.bodies.iter_mut().zip(&mut island.members) {
@@ -222,6 +256,7 @@ impl<'a> IslandWindow<'a> {
 
     /// The island as the solver sees it.
     fn cluster(&mut self) -> Island<'a> {
+        // the stiffest of the rocks in contact decides the step of all
         let h = self.bodies.iter().filter(|body| !body.member.flying).map(|body| body.h);
         let h = h.fold(f64::INFINITY, f64::min);
         let members = self.bodies.iter_mut().map(|body| body.member.lend()).collect();
@@ -231,6 +266,8 @@ impl<'a> IslandWindow<'a> {
         island
     }
 
+    /// Takes rocks and pairs back from the solver, with the step that each may begin with next time, and the speed
+    /// (m/s) `F/(m ω)` that its pressed springs could give it: how far it might be thrown when a neighbour lets go.
     fn dissolve(&mut self, island: Island<'a>) {
         self.pair_histories = island.pair_histories;
         for (body, member) in self.bodies.iter_mut().zip(island.members) {
@@ -257,6 +294,7 @@ impl<'a> IslandWindow<'a> {
     ) -> bool {
         let (sweeps, jumps) = (island.sweeps - swept, island.jumps - jumped);
         let rocks = self.bodies.len() as u64;
+        // the island pays once for a step, whatever the number of its rocks
         self.statistics.add(&WorldStats {
             steps: 1,
             rock_steps: rocks,
@@ -269,6 +307,7 @@ impl<'a> IslandWindow<'a> {
         });
         // Only the rigid limit lists hits.
         let mut hits = done.hits.iter().peekable();
+        // a contact between two rocks that slips makes both paths "sliding"
         let mut slides = vec![false; self.bodies.len()];
         for pair_history in island
             .pair_histories
@@ -283,6 +322,7 @@ impl<'a> IslandWindow<'a> {
                 body.hit(hit, self.now_s);
             }
             let effort = &mut body.recorder.effort;
+            // each rock is charged the steps of its island: work of one rock cannot be told apart in one system
             effort.steps += 1;
             effort.rejected += done.rejected;
             effort.sweeps += sweeps + jumps;
@@ -295,6 +335,7 @@ impl<'a> IslandWindow<'a> {
         island.members.iter().all(|member| member.flying)
     }
 
+    /// Ends all rocks of the island: the step that failed is that of all, and no rock may go on from a guess.
     fn fail(&mut self, stuck: StepError) {
         for body in &mut self.bodies {
             body.leave(Stop::Failed(stuck.to_string()));
@@ -303,6 +344,7 @@ impl<'a> IslandWindow<'a> {
 
     /// Puts to sleep what has been quiet for long enough together with all that it touches.
     fn fall_asleep(&mut self) {
+        // rocks that hold each other fall asleep together or not at all: one that still moves would pull on the others
         let mut islands = Partition::alone(self.bodies.len());
         for pair_history in self.pair_histories.iter().filter(|pair_history| pair_history.is_held())
         {
@@ -311,11 +353,11 @@ impl<'a> IslandWindow<'a> {
         for list in islands.lists() {
             let quiet = |k: &u32| {
                 let body = &self.bodies[*k as usize];
-                body.state == State::Moving && !body.member.flying && body.calm.rests()
+                body.state == BodyState::Moving && !body.member.flying && body.calm.rests()
             };
             if list.iter().all(quiet) {
                 for k in list {
-                    self.bodies[k as usize].state = State::Asleep;
+                    self.bodies[k as usize].state = BodyState::Asleep;
                 }
             }
         }

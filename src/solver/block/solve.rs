@@ -29,7 +29,7 @@ pub(crate) struct Mass {
 
 /// One contact, and its impulse.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Contact {
+pub(crate) struct BlockContact {
     /// Unit normal from the ground into the rock.
     pub(crate) n: Vec3,
     /// From the centre of mass to the contact point (m).
@@ -43,7 +43,7 @@ pub(crate) struct Contact {
     /// Impulse on the rock (N s).
     pub(crate) impulse: Vec3,
     /// `G` (1/kg) and its inverse (kg).
-    answer: Matrix3<f64>,
+    pub(super) answer: Matrix3<f64>,
     inverse: Matrix3<f64>,
 }
 
@@ -54,12 +54,12 @@ impl Mass {
         v + w.cross(lever)
     }
 
-    fn change(&self, contact: &Contact, impulse: &Vec3) -> (Vec3, Vec3) {
+    fn change(&self, contact: &BlockContact, impulse: &Vec3) -> (Vec3, Vec3) {
         (impulse / self.mass, self.inverse * contact.lever.cross(impulse))
     }
 }
 
-impl Contact {
+impl BlockContact {
     pub(crate) fn new(
         mass: &Mass,
         (n, lever): (Vec3, Vec3),
@@ -129,7 +129,7 @@ fn within(x: Vec3, cap: f64) -> Vec3 {
 /// sweeps then shift impulse between them without end, and the body does not feel it. Goals are known to `rounding_m_s` (m/s) only.
 pub(crate) fn solve(
     mass: &Mass,
-    contacts: &mut [Contact],
+    contacts: &mut [BlockContact],
     (mut v, mut w): (Vec3, Vec3),
     rounding_m_s: f64,
     sweeps: &mut u64,

@@ -2,6 +2,7 @@ use super::*;
 
 mod cases;
 mod slip;
+mod yielding;
 
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
 use crate::flight::block::first_touch;
@@ -47,7 +48,7 @@ fn block(surface: &Surface, ball_m: f64) -> Block {
 }
 
 /// One block on a mesh, followed without notes.
-struct Case {
+struct BlockRun {
     terrain: Terrain,
     block: Block,
     law: Law,
@@ -58,7 +59,7 @@ struct Case {
     steps: usize,
 }
 
-impl Case {
+impl BlockRun {
     fn new(terrain: Terrain, block: Block, (friction, e): (f64, f64)) -> Self {
         let ground = Ground {
             normal_stiffness_n_m: 1e9,
@@ -154,7 +155,8 @@ fn tilted(angle: f64) -> Rotation3<f64> {
 #[test]
 fn a_cube_rests_without_creeping() {
     let angle = 20_f64.to_radians();
-    let mut case = Case::new(slope(angle, 10.0), block(&box_surface([1.0; 3]), 0.05), (1.0, 0.4));
+    let mut case =
+        BlockRun::new(slope(angle, 10.0), block(&box_surface([1.0; 3]), 0.05), (1.0, 0.4));
     let mut moving = case.start(tilted(angle), still(axes(angle).1 * 0.5));
     let start = moving.pose.centre;
     case.follow(&mut moving, 100.0, |_, _| ());
@@ -166,7 +168,8 @@ fn a_cube_rests_without_creeping() {
 #[test]
 fn a_cube_slides_as_a_point_does() {
     let angle = 40_f64.to_radians();
-    let mut case = Case::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.4));
+    let mut case =
+        BlockRun::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.4));
     let (along, up) = axes(angle);
     let mut moving = case.start(tilted(angle), still(up * 0.5));
     case.follow(&mut moving, 4.0, |_, _| ());
@@ -183,7 +186,8 @@ fn a_cube_slides_as_a_point_does() {
 fn a_cube_tips_about_its_lower_edge() {
     let angle = 50_f64.to_radians();
     let ball = 0.01;
-    let mut case = Case::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), ball), (1.3, 0.0));
+    let mut case =
+        BlockRun::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), ball), (1.3, 0.0));
     let mut moving = case.start(tilted(angle), still(axes(angle).1 * 0.5));
     case.follow(&mut moving, 0.02, |_, _| ());
     let sharp = 0.75 * G * (sin(angle) - cos(angle));
@@ -200,7 +204,7 @@ fn a_cube_tips_about_its_lower_edge() {
 fn a_tilted_box_is_thrown_by_its_corners() {
     for ball in [0.002, 0.02] {
         let mut case =
-            Case::new(slope(0.0, 50.0), block(&box_surface([2.0, 0.2, 0.2]), ball), (0.0, 0.5));
+            BlockRun::new(slope(0.0, 50.0), block(&box_surface([2.0, 0.2, 0.2]), ball), (0.0, 0.5));
         let angle = 30_f64.to_radians();
         let attitude = tilted(angle);
         let low = attitude * Vec3::new(1.0 - ball, 0.1 - ball, -0.1 + ball);
@@ -251,7 +255,7 @@ fn a_slap_takes_what_it_must() {
     {
         let ball = 0.001;
         let mut case =
-            Case::new(slope(0.0, 50.0), block(&prism_on_its_side(sides), ball), (10.0, 0.0));
+            BlockRun::new(slope(0.0, 50.0), block(&prism_on_its_side(sides), ball), (10.0, 0.0));
         let corners = &case.block.core.corners;
         let low = corners.iter().map(|p| p.z).fold(f64::MAX, f64::min);
         let half = corners.iter().filter(|p| p.z < low + 1e-6).map(|p| p.x).fold(0.0, f64::max);
@@ -279,7 +283,7 @@ fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
     {
         let (angle, ball) = (degrees.to_radians(), 0.01);
         let mut case =
-            Case::new(slope(angle, 200.0), block(&prism_on_its_side(6), ball), (1.0, 0.0));
+            BlockRun::new(slope(angle, 200.0), block(&prism_on_its_side(6), ball), (1.0, 0.0));
         let (along, up) = axes(angle);
         let (height, spin) = (0.75_f64.sqrt(), Vec3::y() * 1.7);
         let arm = up * height - along * 0.5;
@@ -313,7 +317,7 @@ fn a_hexagonal_prism_rolls_into_its_limit_cycle() {
 #[test]
 fn a_frictionless_elastic_box_keeps_what_it_should() {
     let mut case =
-        Case::new(slope(0.0, 1e5), block(&box_surface([3.0, 2.0, 1.0]), 0.1), (0.0, 1.0));
+        BlockRun::new(slope(0.0, 1e5), block(&box_surface([3.0, 2.0, 1.0]), 0.1), (0.0, 1.0));
     let start = [Vec3::z() * 5.0, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.3, -2.0, 1.0)];
     let mut moving = case.start(Rotation3::identity(), start);
     let (before, about) = (case.energy_j(&moving), moving.momentum.z);
@@ -345,7 +349,7 @@ fn edges_and_faces_meet_edges_and_peaks() {
     {
         let body = block(&box_surface(sides), 0.05);
         let height = body.support_m(&(attitude.inverse() * -Vec3::z()));
-        let mut case = Case::new(mesh, body.clone(), (0.5, 0.0));
+        let mut case = BlockRun::new(mesh, body.clone(), (0.5, 0.0));
         let above =
             case.start(attitude, [Vec3::z() * (height + 0.3), Vec3::zeros(), Vec3::zeros()]);
         let path = Parabola {

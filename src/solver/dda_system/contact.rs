@@ -1,6 +1,6 @@
 //! One contact inside a fixed step: its submatrices, and the judgement of its state.
 
-use super::slider::{Change, Slider, along};
+use super::slider::{Change, DdaSlider, along};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, SAME_GRIP, carry};
 use crate::contact::submatrix::{
@@ -15,7 +15,7 @@ use crate::solver::loss::Loss;
 
 /// What is the same for all contacts of a step.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Step {
+pub(crate) struct StepConstants {
     /// Length (s).
     pub dt: f64,
     /// Displacement and rotation without contacts.
@@ -30,7 +30,7 @@ pub(crate) struct Step {
 
 /// What of a contact the matrix is made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Shape {
+pub(crate) struct ContactMatrixTerms {
     v: Vec3,
     p1: Vec3,
     normal: f64,
@@ -38,7 +38,7 @@ pub(crate) struct Shape {
     roll: f64,
 }
 
-impl Shape {
+impl ContactMatrixTerms {
     /// No contact.
     pub(crate) const NONE: Self = Self {
         v: Vec3::new(0.0, 0.0, 0.0),
@@ -59,7 +59,7 @@ impl Shape {
 
 /// One contact of a step.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Contact {
+pub(crate) struct DdaContact {
     /// Its memory.
     pub history: usize,
     /// Where on the mesh.
@@ -84,12 +84,12 @@ pub(crate) struct Contact {
     pub normal_force: f64,
     /// Not open.
     pub presses: bool,
-    pub shear: Slider,
-    pub roll: Slider,
+    pub shear: DdaSlider,
+    pub roll: DdaSlider,
     shear_memory: bool,
 }
 
-impl Contact {
+impl DdaContact {
     /// No contact.
     pub(crate) const NONE: Self = Self {
         history: 0,
@@ -106,14 +106,14 @@ impl Contact {
         push_before: 0.0,
         normal_force: 0.0,
         presses: false,
-        shear: Slider::NONE,
-        roll: Slider::NONE,
+        shear: DdaSlider::NONE,
+        roll: DdaSlider::NONE,
         shear_memory: true,
     };
 
     /// The contact of a touch and its memory (number `k`), in the state in which it was left or will likely be.
     pub(crate) fn new(
-        step: &Step,
+        step: &StepConstants,
         law: &Law,
         touch: &ContactPoint,
         (k, history): (usize, &ContactHistory),
@@ -135,13 +135,13 @@ impl Contact {
             tan_phi: law.friction,
             rolling_m: law.rolling_m,
             push_before: history.normal_force,
-            shear: Slider { spring: law.p_s, compliance: step.compliance.0, ..Slider::NONE },
-            roll: Slider {
+            shear: DdaSlider { spring: law.p_s, compliance: step.compliance.0, ..DdaSlider::NONE },
+            roll: DdaSlider {
                 stretch: history.roll,
                 spring: law.k_r,
                 damper: law.c_r / step.dt,
                 compliance: step.compliance.1,
-                ..Slider::NONE
+                ..DdaSlider::NONE
             },
             shear_memory: step.shear_memory,
             ..Self::NONE
@@ -203,11 +203,11 @@ impl Contact {
     }
 
     /// Its springs and dashpots in force.
-    pub(crate) fn shape(&self) -> Shape {
-        let of = |slider: &Slider, acts: bool| {
+    pub(crate) fn shape(&self) -> ContactMatrixTerms {
+        let of = |slider: &DdaSlider, acts: bool| {
             if acts && !slider.slides { slider.spring + slider.damper } else { 0.0 }
         };
-        Shape {
+        ContactMatrixTerms {
             v: self.v,
             p1: self.p1,
             normal: if self.presses { self.p_n + self.damper } else { 0.0 },

@@ -18,7 +18,7 @@ pub(crate) enum Change {
 
 /// A spring beside a dashpot, in series with a slider: shear (m, N) or rolling (rad, N m).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Slider {
+pub(crate) struct DdaSlider {
     /// Stretch at the step's start.
     pub stretch: Vec3,
     /// Stiffness.
@@ -33,7 +33,7 @@ pub(crate) struct Slider {
     pub friction: Vec3,
 }
 
-impl Slider {
+impl DdaSlider {
     /// None.
     pub(crate) const NONE: Self = Self {
         stretch: Vec3::new(0.0, 0.0, 0.0),

@@ -6,11 +6,11 @@ use crate::contact::{ContactPoint, Feature};
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
-use crate::solver::law::{Action, Place};
+use crate::solver::law::ZERO;
+use crate::solver::law::{Action, ContactPlace};
 use crate::solver::loss::Loss;
 use crate::solver::stage::End;
 
-const ZERO: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 /// Where the way of the centre begins among the numbers that change; velocity, spin and the springs follow.
 const WAY: usize = 0;
 const V: usize = 3;
@@ -22,11 +22,11 @@ pub(super) const SUMS: usize = 6;
 
 /// A contact at the state last asked for.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pressed {
+pub(super) struct PressedContact {
     /// Place of its memory.
     pub(super) place: usize,
     pub(super) touch: ContactPoint,
-    pub(super) at: Place,
+    pub(super) at: ContactPlace,
     pub(super) is_tree: bool,
     /// Normal stiffness (N/m).
     pub(super) p_n: f64,
@@ -47,15 +47,15 @@ pub(super) struct Among<'a, 'w, const C: usize> {
     pub(super) is_smooth: bool,
     /// The one face met at the step's start; [`Feature::NONE`] if it was something else.
     face: Option<Feature>,
-    list: [Pressed; C],
+    list: [PressedContact; C],
     len: usize,
 }
 
-impl Pressed {
+impl PressedContact {
     const NONE: Self = Self {
         place: 0,
         touch: ContactPoint::NONE,
-        at: Place { n: ZERO, penetration: 0.0, shear: ZERO, roll: ZERO },
+        at: ContactPlace { n: ZERO, penetration: 0.0, shear: ZERO, roll: ZERO },
         is_tree: false,
         p_n: 0.0,
         normal_force: 0.0,
@@ -69,7 +69,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         state: &'a mut ContactState,
         scale: (f64, f64),
     ) -> Self {
-        let list = [Pressed::NONE; C];
+        let list = [PressedContact::NONE; C];
         Self { world, state, scale, is_crowded: false, is_smooth: true, face: None, list, len: 0 }
     }
 
@@ -99,7 +99,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Contacts at the state last asked for.
-    pub(super) fn pressed(&self) -> &[Pressed] {
+    pub(super) fn pressed(&self) -> &[PressedContact] {
         &self.list[..self.len]
     }
 
@@ -122,7 +122,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         let histories = &mut self.state.histories;
         histories.iter_mut().for_each(|history| history.closed = false);
         for contact in &self.list[..self.len] {
-            let Pressed { place, touch, at, normal_force, slides, .. } = *contact;
+            let PressedContact { place, touch, at, normal_force, slides, .. } = *contact;
             let history = &mut histories[place];
             (history.feature, history.triangle) = (touch.feature, touch.triangle);
             (history.n, history.shear, history.roll) = (at.n, at.shear, at.roll);
@@ -136,15 +136,16 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         End { c: self.state.c + three(y, WAY), v: three(y, V), w: three(y, W) }
     }
 
-    /// Rates at `y`; its contacts are those of the rock's state then.
+    /// Writes the rates at `y` over `rates`; its contacts are those of the rock's state then.
     pub(super) fn rates_of<const N: usize, const P: usize>(
         &mut self,
         y: &[f64; N],
-    ) -> Rates<N, SUMS, P> {
+        rates: &mut Rates<N, SUMS, P>,
+    ) {
         let Self { world, state, .. } = self;
         let body = &world.body;
         let (by_mass, by_inertia) = (1.0 / body.mass, 1.0 / body.inertia);
-        let mut rates = Rates::<N, SUMS, P>::NONE;
+        *rates = Rates::NONE;
         let (c, v, w) = (state.c + three(y, WAY), three(y, V), three(y, W));
         state.look(world, &c, body.radius * (1.0 + TOUCH));
         let (mut dv, mut dw, mut taken) = (body.gravity, Vec3::zeros(), 0);
@@ -170,7 +171,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             let gain = touch.gain2.sqrt();
             let share = gain * world.dashpot_share(&state.touches, k);
             let p_n = law.p_n * touch.gain2;
-            let at = Place {
+            let at = ContactPlace {
                 n,
                 penetration: (body.radius - touch.distance_m).max(0.0),
                 shear: carry(three(y, SPRINGS + 3 * place), &memory.n, &n),
@@ -209,20 +210,20 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             rates.kinks[3 * place + 1] = [action.asked2[0] * by_mass * by_mass, cap * by_mass];
             rates.kinks[3 * place + 2] = [action.asked2[1] * turn * turn, most * turn];
             let slides = action.asked2[0] >= (cap * (1.0 - 1e-9)).powi(2);
-            self.list[self.len] = Pressed { place, touch, at, is_tree, p_n, normal_force, slides };
+            self.list[self.len] =
+                PressedContact { place, touch, at, is_tree, p_n, normal_force, slides };
             self.len += 1;
         }
         put(&mut rates.y, WAY, &v);
         put(&mut rates.y, V, &dv);
         put(&mut rates.y, W, &dw);
-        rates
     }
 }
 
 impl<const C: usize, const N: usize, const P: usize> Flow<N, SUMS, P> for Among<'_, '_, C> {
     #[inline]
-    fn rates(&mut self, _node: usize, y: &[f64; N]) -> Rates<N, SUMS, P> {
-        self.rates_of(y)
+    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, SUMS, P>) {
+        self.rates_of(y, to);
     }
 
     /// A spring that nothing presses on any more holds nothing: how it relaxes does not matter.

@@ -1,6 +1,7 @@
 //! An explicit embedded Runge–Kutta pair of order 5(4) (Dormand and Prince 1980), on the stack.
 
 use crate::rock::Vec3;
+use crate::solver::tableau::RATIO;
 
 /// Times of its stages (–, relative to the step).
 pub(in crate::solver) const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
@@ -52,48 +53,83 @@ impl<const N: usize, const Q: usize, const P: usize> Rates<N, Q, P> {
 
 /// Something that changes.
 pub(in crate::solver) trait Flow<const N: usize, const Q: usize, const P: usize> {
-    /// Rates at the time of stage `node`.
-    fn rates(&mut self, node: usize, y: &[f64; N]) -> Rates<N, Q, P>;
+    /// Writes the rates at the time of stage `node` over `to`.
+    fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>);
     /// Square of a local error over the one allowed.
     fn size2(&self, off: &[f64; N]) -> f64;
 }
 
 /// A step tried.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::solver) struct Tried<const N: usize, const Q: usize, const P: usize> {
+pub(in crate::solver) struct Tried<const N: usize, const Q: usize> {
     pub(in crate::solver) y: [f64; N],
     pub(in crate::solver) q: [f64; Q],
-    /// Rates at its end.
-    pub(in crate::solver) last: Rates<N, Q, P>,
     /// Square of its local error over the one allowed.
     pub(in crate::solver) error2: f64,
-    /// What the elements ask for, squared, and their caps, at every stage.
-    kinks: [[[f64; 2]; P]; 7],
 }
 
-/// Tries a step of length `h` from `y`, where the rates are `first`.
-#[inline]
-pub(in crate::solver) fn step<const N: usize, const Q: usize, const P: usize>(
-    flow: &mut impl Flow<N, Q, P>,
-    y: &[f64; N],
-    first: &Rates<N, Q, P>,
-    h: f64,
-) -> Tried<N, Q, P> {
-    let k1 = first;
-    let k2 = flow.rates(1, &mixed(y, h, [&k1.y], A2));
-    let k3 = flow.rates(2, &mixed(y, h, [&k1.y, &k2.y], A3));
-    let k4 = flow.rates(3, &mixed(y, h, [&k1.y, &k2.y, &k3.y], A4));
-    let k5 = flow.rates(4, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y], A5));
-    let k6 = flow.rates(5, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y, &k5.y], A6));
-    let end = mixed(y, h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y], B);
-    let k7 = flow.rates(5, &end);
-    let off = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], E);
-    Tried {
-        y: end,
-        q: mixed(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q], B),
-        last: k7,
-        error2: flow.size2(&off),
-        kinks: [k1.kinks, k2.kinks, k3.kinks, k4.kinks, k5.kinks, k6.kinks, k7.kinks],
+/// What comes of trying a step.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::solver) enum Attempt<const N: usize, const Q: usize> {
+    /// It holds no kink that is felt.
+    Whole(Tried<N, Q>),
+    /// It should end after this share of it (–): an element begins to slip, to stick or to open there.
+    Cut(f64),
+}
+
+/// The stages of a step, the first at its start: kept from step to step, so that none is copied.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::solver) struct Stages<const N: usize, const Q: usize, const P: usize>(
+    [Rates<N, Q, P>; 7],
+);
+
+/// Stages up to the one at four fifths of the step: a kink among them is found before the others are asked for.
+const EARLY: usize = 4;
+
+impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
+    /// None yet.
+    pub(in crate::solver) const NONE: Self = Self([Rates::NONE; 7]);
+
+    /// Rates at the step's start.
+    pub(in crate::solver) fn first(&mut self) -> &mut Rates<N, Q, P> {
+        &mut self.0[0]
+    }
+
+    /// The step's end is the start of the next.
+    pub(in crate::solver) fn pass(&mut self) {
+        self.0[0] = self.0[6];
+    }
+
+    /// Tries a step of length `h` from `y`, at whose rates the first stage stands; `felt` is the error allowed, from which a
+    /// kink is told, `None` if none is looked for.
+    #[inline]
+    pub(in crate::solver) fn step(
+        &mut self,
+        flow: &mut impl Flow<N, Q, P>,
+        y: &[f64; N],
+        h: f64,
+        felt: Option<f64>,
+    ) -> Attempt<N, Q> {
+        let [k1, k2, k3, k4, ..] = &mut self.0;
+        flow.rates(1, &mixed(y, h, [&k1.y], A2), k2);
+        flow.rates(2, &mixed(y, h, [&k1.y, &k2.y], A3), k3);
+        flow.rates(3, &mixed(y, h, [&k1.y, &k2.y, &k3.y], A4), k4);
+        if let Some(cut) = felt.and_then(|allowed| self.cut(EARLY, h, allowed)) {
+            return Attempt::Cut(cut);
+        }
+        let [k1, k2, k3, k4, k5, k6, k7] = &mut self.0;
+        flow.rates(4, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y], A5), k5);
+        flow.rates(5, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y, &k5.y], A6), k6);
+        let end = mixed(y, h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y], B);
+        flow.rates(5, &end, k7);
+        let off = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], E);
+        let tried = Tried {
+            y: end,
+            q: mixed(&[0.0; Q], h, [&k1.q, &k3.q, &k4.q, &k5.q, &k6.q], B),
+            error2: flow.size2(&off),
+        };
+        let cut = felt.and_then(|allowed| self.cut(self.0.len(), h, allowed));
+        cut.map_or(Attempt::Whole(tried), Attempt::Cut)
     }
 }
 
@@ -117,8 +153,6 @@ fn mixed<const N: usize, const K: usize>(
 
 /// Safety factor of the next step (–).
 const SAFETY: f64 = 0.85;
-/// Most that a step shrinks or grows at once (–).
-const RATIO: (f64, f64) = (0.2, 4.0);
 
 /// By how much the next step may be longer.
 #[inline]
@@ -136,17 +170,16 @@ const PAST: f64 = 1.01;
 /// may not see it.
 const FELT: f64 = 20.0;
 
-impl<const N: usize, const Q: usize, const P: usize> Tried<N, Q, P> {
+impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
     /// At which share of the step of length `h` it should end instead (–), because an element begins to slip, to stick or to
-    /// open there, and not little beyond it.
+    /// open there, and not little beyond it; by the first `known` stages.
     #[inline]
-    pub(in crate::solver) fn cut(&self, h: f64, allowed: f64) -> Option<f64> {
+    fn cut(&self, known: usize, h: f64, allowed: f64) -> Option<f64> {
         let slips = |[asked2, cap]: [f64; 2]| asked2 > cap * cap;
-        let first = self.kinks[0].map(slips);
         let mut cut: Option<f64> = None;
-        for (k, first) in first.into_iter().enumerate() {
-            if self.kinks[1..].iter().any(|kinks| slips(kinks[k]) != first) {
-                let (at, beyond) = self.kink(k);
+        for (k, first) in self.0[0].kinks.into_iter().map(slips).enumerate() {
+            if self.0[1..known].iter().any(|stage| slips(stage.kinks[k]) != first) {
+                let (at, beyond) = self.kink(k, known);
                 let is_felt = at > AT_AN_END.0 && at < AT_AN_END.1 && beyond * h > FELT * allowed;
                 if is_felt && cut.is_none_or(|cut| at < cut) {
                     cut = Some(at);
@@ -156,15 +189,15 @@ impl<const N: usize, const Q: usize, const P: usize> Tried<N, Q, P> {
         cut.map(|at| at * PAST)
     }
 
-    /// Where in the step element `k` first crosses its cap, and how far beyond it gets.
-    fn kink(&self, k: usize) -> (f64, f64) {
-        let over = |stage: usize| {
-            let [asked2, cap] = self.kinks[stage][k];
+    /// Where in the step element `k` first crosses its cap, and how far beyond it gets, by the first `known` stages.
+    fn kink(&self, k: usize, known: usize) -> (f64, f64) {
+        let over = |stage: &Rates<N, Q, P>| {
+            let [asked2, cap] = stage.kinks[k];
             asked2.sqrt() - cap
         };
-        let first = over(0);
+        let first = over(&self.0[0]);
         let (mut before, mut at, mut found, mut beyond) = (first, 0.0, None, 0.0f64);
-        for (stage, node) in NODES.into_iter().chain([1.0]).enumerate().skip(1) {
+        for (stage, node) in self.0[..known].iter().zip(NODES.into_iter().chain([1.0])).skip(1) {
             let here = over(stage);
             if (here > 0.0) != (first > 0.0) {
                 beyond = beyond.max(here.abs());

@@ -1,18 +1,18 @@
 //! Steps through the time of one contact on a plane, with the local error under control.
 
-use super::Effort;
-use super::dormand_prince::{Flow, NODES, Rates, growth, step};
+use super::ImpactEffort;
+use super::dormand_prince::{Attempt, Flow, NODES, Rates, Stages, growth};
 use super::normal_motion::{NormalMotion, Series};
 
 /// No step is longer (1/ω, times the shorter of 1 and `1/2ζ`): as far as the series below gives all its digits.
 const LONGEST: f64 = 0.9;
 /// Steps below this share of the whole are taken as they are (–): rounding.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST_SHARE: f64 = 1e-9;
 
 /// A flow under a force that is known.
-pub(super) trait Pressed<const N: usize, const Q: usize, const K: usize> {
-    /// Rates under the force `f`.
-    fn rates(&self, f: f64, y: &[f64; N]) -> Rates<N, Q, K>;
+pub(super) trait ForcedFlow<const N: usize, const Q: usize, const K: usize> {
+    /// Writes the rates under the force `f` over `to`.
+    fn rates(&self, f: f64, y: &[f64; N], to: &mut Rates<N, Q, K>);
     /// Square of an error.
     fn size2(&self, off: &[f64; N]) -> f64;
 }
@@ -55,12 +55,12 @@ struct Under<'a, P, const D: usize> {
     over_allowed2: f64,
 }
 
-impl<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
+impl<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize, const D: usize>
     Flow<N, Q, K> for Under<'_, P, D>
 {
     #[inline]
-    fn rates(&mut self, node: usize, y: &[f64; N]) -> Rates<N, Q, K> {
-        self.law.rates(self.force.nodes[node], y)
+    fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, Q, K>) {
+        self.law.rates(self.force.nodes[node], y, to);
     }
 
     #[inline]
@@ -84,7 +84,7 @@ pub(super) struct Span {
 
 /// Runs from `y` over the whole span; `D` terms of the force's series. Returns the end and the sums.
 pub(super) fn run<
-    P: Pressed<N, Q, K>,
+    P: ForcedFlow<N, Q, K>,
     const N: usize,
     const Q: usize,
     const K: usize,
@@ -93,13 +93,14 @@ pub(super) fn run<
     law: &P,
     mut y: [f64; N],
     span: &Span,
-    effort: &mut Effort,
+    effort: &mut ImpactEffort,
 ) -> ([f64; N], [f64; Q]) {
     let mut force = Force::<D>::new(span.swing, span.gamma);
     let over_allowed2 = 1.0 / (span.allowed * span.allowed);
     let longest = LONGEST / (2.0 * span.swing.zeta).max(1.0);
     let (mut sum, mut t, mut wish) = ([0.0; Q], 0.0, span.first);
-    let mut rates = law.rates(force.now[0], &y);
+    let mut stages = Stages::NONE;
+    law.rates(force.now[0], &y, stages.first());
     let mut kept = 0.0;
     while t < span.length {
         let left = span.length - t;
@@ -112,25 +113,33 @@ pub(super) fn run<
             wished
         };
         force.aim(h);
-        let tried = step(&mut Under { law, force: &force, over_allowed2 }, &y, &rates, h);
+        let short = h < SHORTEST_SHARE * span.length;
+        let felt = (!short).then_some(span.allowed);
         effort.evaluations += 6;
-        let kink = tried.cut(h, span.allowed);
-        let short = h < SHORTEST * span.length;
-        if (tried.error2 <= 1.0 && kink.is_none()) || short {
-            (y, rates) = (tried.y, tried.last);
-            for (sum, q) in sum.iter_mut().zip(tried.q) {
-                *sum += q;
+        match stages.step(&mut Under { law, force: &force, over_allowed2 }, &y, h, felt) {
+            Attempt::Whole(tried) if tried.error2 <= 1.0 || short => {
+                y = tried.y;
+                stages.pass();
+                for (sum, q) in sum.iter_mut().zip(tried.q) {
+                    *sum += q;
+                }
+                force.pass(h);
+                t = if h >= left { span.length } else { t + h };
+                wish = f64::max(h * growth(tried.error2), kept);
+                kept = 0.0;
+                effort.steps += 1;
             }
-            force.pass(h);
-            t = if h >= left { span.length } else { t + h };
-            wish = f64::max(h * growth(tried.error2), kept);
-            kept = 0.0;
-            effort.steps += 1;
-        } else {
-            effort.rejected += 1;
-            // Beyond a kink the law is as smooth as before it.
-            kept = if kink.is_some() { h.max(kept) } else { 0.0 };
-            wish = h * kink.unwrap_or_else(|| growth(tried.error2).min(0.7));
+            Attempt::Whole(tried) => {
+                effort.rejected += 1;
+                kept = 0.0;
+                wish = h * growth(tried.error2).min(0.7);
+            }
+            Attempt::Cut(share) => {
+                effort.rejected += 1;
+                // Beyond a kink the law is as smooth as before it.
+                kept = h.max(kept);
+                wish = h * share;
+            }
         }
     }
     (y, sum)

@@ -1,14 +1,14 @@
 //! An impact on one plane, with gravity.
 
-use super::Effort;
-use super::integrate::{Pressed, Span, run};
+use super::ImpactEffort;
+use super::integrate::{ForcedFlow, Span, run};
 use super::normal_motion::{Exit, NormalMotion};
-use super::sliders::{Both, Element, Shear};
+use super::sliders::{Both, Shear, SliderElement};
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::friction_rolling::{Along, Frame, Local};
+use crate::solver::friction_rolling::{Along, ContactFrame, Local};
 use crate::solver::loss::Loss;
 
 /// From this tolerance on a shorter series of the force is accurate enough (–).
@@ -16,7 +16,7 @@ const COARSE: f64 = 1e-6;
 /// Local error of one step over the tolerance (–): the handful of an impact's steps then stay within about the tolerance.
 pub(in crate::solver) const LOCAL: f64 = 0.3;
 /// First step at a tolerance of 1 (1/ω): the local error of order 5 is about (h/this)⁵.
-const FIRST: f64 = 3.5;
+pub(super) const FIRST: f64 = 3.5;
 
 /// How impacts of one rock on one ground go: all that does not change from impact to impact.
 #[derive(Debug, Clone, Copy)]
@@ -25,8 +25,8 @@ pub(crate) struct Plane {
     /// `√(p_N/m)` (rad/s).
     omega: f64,
     swing: NormalMotion,
-    shear: Element,
-    rolling: Element,
+    shear: SliderElement,
+    rolling: SliderElement,
     tolerance: f64,
     first: f64,
 }
@@ -56,7 +56,7 @@ pub(crate) struct Rebound {
     /// Energy lost by kind (J), each ≥ 0: together exactly the energy before less that after, height included.
     pub(crate) loss: Loss,
     /// What it cost.
-    pub(crate) effort: Effort,
+    pub(crate) effort: ImpactEffort,
 }
 
 /// Motion along the plane and spin, with their losses, in units of mass, radius, approach speed and `1/ω`.
@@ -94,8 +94,8 @@ impl Plane {
             body: *body,
             omega: (p_n / body.mass).sqrt(),
             swing: NormalMotion::new(0.5 * c_n / momentum),
-            shear: Element::shear(body, law, p_n),
-            rolling: Element::rolling(body, law, p_n),
+            shear: SliderElement::shear(body, law, p_n),
+            rolling: SliderElement::rolling(body, law, p_n),
             tolerance,
             first: FIRST * math::pow(tolerance, 0.2),
         }
@@ -104,13 +104,13 @@ impl Plane {
     /// Follows a rock that has just touched the plane with unit normal `n`, with velocity `v` (m/s), `n·v < 0`, and spin `w`
     /// (rad/s).
     pub(crate) fn follow(&self, n: &Vec3, v: &Vec3, w: &Vec3) -> Followed {
-        let frame = Frame::of(n);
+        let frame = ContactFrame::of(n);
         let [vx, vy, vn] = frame.local(v);
         let speed = -vn;
         let (over, over_force) = (1.0 / speed, 1.0 / (self.omega * speed));
         let [gx, gy, gn] = frame.local(&self.body.gravity).map(|g| g * over_force);
         let Some(exit) = self.swing.exit(-gn) else { return Followed::Stays };
-        let mut effort = Effort::default();
+        let mut effort = ImpactEffort::default();
         let start = Start {
             v: [vx * over, vy * over],
             w: frame.local(w).map(|w| w * (over * self.body.radius)),
@@ -144,7 +144,7 @@ impl Plane {
 
     /// Everything but the normal motion, until the rock is out.
     #[inline]
-    fn along(&self, start: &Start, exit: &Exit, effort: &mut Effort) -> Along2 {
+    fn along(&self, start: &Start, exit: &Exit, effort: &mut ImpactEffort) -> Along2 {
         let mut end = if self.rolling.is_on() {
             self.rolls(start, exit.lift, effort)
         } else if self.shear.is_on() {
@@ -174,7 +174,7 @@ impl Plane {
     }
 
     /// Shear alone: slip and spring decide, velocity and spin follow from the impulse.
-    fn shears(&self, start: &Start, t: f64, effort: &mut Effort) -> Along2 {
+    fn shears(&self, start: &Start, t: f64, effort: &mut ImpactEffort) -> Along2 {
         let turns = self.turns();
         let flow = Shear { element: self.shear, lightness: 1.0 + turns, gravity: start.gravity };
         let u = [start.v[0] - start.w[1], start.v[1] + start.w[0]];
@@ -199,7 +199,7 @@ impl Plane {
     }
 
     /// Shear and rolling.
-    fn rolls(&self, start: &Start, t: f64, effort: &mut Effort) -> Along2 {
+    fn rolls(&self, start: &Start, t: f64, effort: &mut ImpactEffort) -> Along2 {
         let flow = Both {
             shear: self.shear,
             rolling: self.rolling,
@@ -218,13 +218,13 @@ impl Plane {
     }
 
     #[inline]
-    fn run<P: Pressed<N, Q, K>, const N: usize, const Q: usize, const K: usize>(
+    fn run<P: ForcedFlow<N, Q, K>, const N: usize, const Q: usize, const K: usize>(
         &self,
         flow: &P,
         begin: [f64; N],
         start: &Start,
         t: f64,
-        effort: &mut Effort,
+        effort: &mut ImpactEffort,
     ) -> ([f64; N], [f64; Q]) {
         let span = self.span(start, t);
         if start.allowed >= COARSE {

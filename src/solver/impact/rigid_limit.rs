@@ -3,16 +3,17 @@
 mod contacts;
 mod rates;
 
-use super::dormand_prince::{growth, step};
+use super::dormand_prince::{Attempt, Stages, growth};
+use super::plane::FIRST;
 use super::plane::{Followed, LOCAL, Plane, shared};
-use super::{Effort, Settled};
+use super::{ImpactEffort, Settled};
 use crate::contact::MOST;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::loss::Loss;
-use contacts::Place;
+use contacts::SwitchTime;
 use rates::{ContactRates, W, speed_of};
 use std::f64::consts::TAU;
 
@@ -43,7 +44,7 @@ impl FrozenContact<'_> {
 
 /// Motion after a frozen impact.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Thrown {
+pub(crate) struct FrozenRebound {
     /// Velocity (m/s).
     pub(crate) velocity_m_s: Vec3,
     /// Spin (rad/s).
@@ -55,15 +56,13 @@ pub(crate) struct Thrown {
     /// How it ended.
     pub(crate) settled: Settled,
     /// What it cost.
-    pub(crate) effort: Effort,
+    pub(crate) effort: ImpactEffort,
 }
 
 /// No step is longer, in radians of the stiffest contact …
-const LONGEST: f64 = 0.9;
-/// … and the first one at a tolerance of 1 is this.
-const FIRST: f64 = 3.5;
+const LONGEST_STEP: f64 = 0.9;
 /// A step shorter than this is not cut at a kink (radians).
-const SHORTEST: f64 = 1e-9;
+const SHORTEST_CUT: f64 = 1e-9;
 /// An approach slower than this share of the error allowed is none (–).
 const NOTHING: f64 = 1e-3;
 /// Radians of the softest contact, flights between touches apart, after which an impact is ended: rattling between walls has no other end.
@@ -83,15 +82,15 @@ pub(crate) fn throw(
     contacts: &[FrozenContact],
     (v, w): (&Vec3, &Vec3),
     tolerance: f64,
-) -> Thrown {
+) -> FrozenRebound {
     let contacts = &contacts[..contacts.len().min(MOST)];
-    let same = Thrown {
+    let same = FrozenRebound {
         velocity_m_s: *v,
         spin_rad_s: *w,
         loss: [Loss::default(); MOST],
         rebounded: [false; MOST],
         settled: Settled::Free,
-        effort: Effort::default(),
+        effort: ImpactEffort::default(),
     };
     if contacts.iter().all(|contact| contact.normal.dot(v) >= 0.0) {
         return same;
@@ -118,8 +117,8 @@ fn alone(
     contact: &FrozenContact,
     (v, w): (&Vec3, &Vec3),
     tolerance: f64,
-    mut end: Thrown,
-) -> Thrown {
+    mut end: FrozenRebound,
+) -> FrozenRebound {
     let body = Body { gravity: Vec3::zeros(), ..*body };
     let (law, n) = (contact.law, &contact.normal);
     let c_n = if contact.captured { law.c_n_captured } else { law.c_n };
@@ -144,11 +143,11 @@ fn alone(
 fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     (body, contacts, tolerance): (&Body, &[FrozenContact], f64),
     (v, w): (&Vec3, &Vec3),
-    mut end: Thrown,
-) -> Thrown {
+    mut end: FrozenRebound,
+) -> FrozenRebound {
     let speed = v.norm();
     let flow = ContactRates::<K>::new(body, contacts, LOCAL * tolerance);
-    let mut run = Run::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
+    let mut run = ImpactRun::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
     end.settled = run.follow(FIRST * math::pow(tolerance, 0.2));
     end.effort = run.effort;
     let start = (v / speed, w * (body.radius / speed));
@@ -176,21 +175,21 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
 }
 
 /// An impact being followed.
-struct Run<const K: usize, const N: usize, const Q: usize, const P: usize> {
+struct ImpactRun<const K: usize, const N: usize, const Q: usize, const P: usize> {
     flow: ContactRates<K>,
     y: [f64; N],
     sums: [f64; Q],
     /// Fastest approach of each contact.
     fastest: [f64; MOST],
-    effort: Effort,
+    effort: ImpactEffort,
 }
 
-impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q, P> {
+impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K, N, Q, P> {
     fn new(flow: ContactRates<K>, v: Vec3, w: Vec3) -> Self {
         let mut y = [0.0; N];
         y[3..6].copy_from_slice(v.as_slice());
         y[6..9].copy_from_slice(w.as_slice());
-        Self { flow, y, sums: [0.0; Q], fastest: [0.0; MOST], effort: Effort::default() }
+        Self { flow, y, sums: [0.0; Q], fastest: [0.0; MOST], effort: ImpactEffort::default() }
     }
 
     /// Steps until nothing pushes and nothing comes nearer.
@@ -201,7 +200,8 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
         // Whether the contacts have been changed without a step: once is enough.
         let mut turned = false;
         self.flow.press(&mut self.y);
-        let mut rates = self.flow.rates_of::<N, Q, P>(&self.y);
+        let mut stages = Stages::<N, Q, P>::NONE;
+        self.flow.rates_of(&self.y, stages.first());
         loop {
             self.note();
             if time > most || self.effort.steps + self.effort.rejected > MOST_STEPS {
@@ -212,29 +212,37 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
                 // Exact and free of cost: not counted.
                 self.flow.drift(&mut self.y, wait);
                 self.effort.steps += 1;
-                rates = self.flow.rates_of(&self.y);
+                self.flow.rates_of(&self.y, stages.first());
                 continue;
             }
             if quiet.stays(self.place(), time, QUIET * self.flow.allowed) > TAU / softest {
                 return Settled::Jammed;
             }
             let h = wish.min(self.flow.longest);
-            let tried = step(&mut self.flow, &self.y, &rates, h);
+            let felt = (h > SHORTEST_CUT).then_some(self.flow.allowed);
             self.effort.evaluations += 6;
-            let kink = tried.cut(h, self.flow.allowed).filter(|_| h > SHORTEST);
-            if tried.error2 > 1.0 || kink.is_some() {
-                self.effort.rejected += 1;
-                // Beyond a kink the law is as smooth as before it.
-                kept = if kink.is_some() { h.max(kept) } else { 0.0 };
-                wish = h * kink.unwrap_or_else(|| growth(tried.error2).min(0.7));
-                continue;
-            }
-            match self.flow.crossing(&self.y, &tried.y, h) {
-                Some(Place::Now) if !turned => {
-                    turned = true;
-                    rates = self.flow.rates_of(&self.y);
+            let tried = match stages.step(&mut self.flow, &self.y, h, felt) {
+                Attempt::Whole(tried) if tried.error2 <= 1.0 => tried,
+                Attempt::Whole(tried) => {
+                    self.effort.rejected += 1;
+                    kept = 0.0;
+                    wish = h * growth(tried.error2).min(0.7);
+                    continue;
                 }
-                Some(Place::At(share)) => {
+                Attempt::Cut(share) => {
+                    self.effort.rejected += 1;
+                    // Beyond a kink the law is as smooth as before it.
+                    kept = h.max(kept);
+                    wish = h * share;
+                    continue;
+                }
+            };
+            match self.flow.crossing(&self.y, &tried.y, h) {
+                Some(SwitchTime::Now) if !turned => {
+                    turned = true;
+                    self.flow.rates_of(&self.y, stages.first());
+                }
+                Some(SwitchTime::At(share)) => {
                     self.effort.rejected += 1;
                     kept = h.max(kept);
                     wish = h * share;
@@ -249,8 +257,11 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Run<K, N, Q
                     self.effort.steps += 1;
                     wish = f64::max(h * growth(tried.error2), kept);
                     kept = 0.0;
-                    let changed = self.flow.press(&mut self.y);
-                    rates = if changed { self.flow.rates_of(&self.y) } else { tried.last };
+                    if self.flow.press(&mut self.y) {
+                        self.flow.rates_of(&self.y, stages.first());
+                    } else {
+                        stages.pass();
+                    }
                 }
             }
         }

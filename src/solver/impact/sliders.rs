@@ -5,13 +5,13 @@
 //! `u + s − p`, the dashpot moves by `p − s`.
 
 use super::dormand_prince::Rates;
-use super::integrate::Pressed;
+use super::integrate::ForcedFlow;
 use crate::ground::Law;
 use crate::solver::body::Body;
 
 /// A slider in series with spring and dashpot.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Element {
+pub(super) struct SliderElement {
     /// Damping `c` (–); 0 = left out.
     pub(super) damping: f64,
     /// `k/c` (–).
@@ -20,7 +20,7 @@ pub(super) struct Element {
     pub(super) cap: f64,
 }
 
-impl Element {
+impl SliderElement {
     fn new(stiffness: f64, damping: f64, limit: f64) -> Self {
         if damping > 0.0 && limit > 0.0 {
             Self { damping, rate: stiffness / damping, cap: limit / damping }
@@ -62,7 +62,7 @@ impl Element {
 /// Shear alone: slip and spring.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Shear {
-    pub(super) element: Element,
+    pub(super) element: SliderElement,
     /// Mass over that of the contact point along the surface, `1 + m R²/I` (–).
     pub(super) lightness: f64,
     /// Gravity along the surface.
@@ -70,17 +70,17 @@ pub(super) struct Shear {
 }
 
 /// Slip, spring `s`; summed up: what slipping takes, slip.
-impl Pressed<4, 3, 1> for Shear {
+impl ForcedFlow<4, 3, 1> for Shear {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 4]) -> Rates<4, 3, 1> {
-        let Element { damping, rate, .. } = self.element;
+    fn rates(&self, f: f64, y: &[f64; 4], to: &mut Rates<4, 3, 1>) {
+        let SliderElement { damping, rate, .. } = self.element;
         let asked = [y[0] + y[2], y[1] + y[3]];
         let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
         let (share, slips, cap) = self.element.share(asked2, f);
         let p = asked.map(|x| x * share);
         let normal_force = self.lightness * damping;
         let g = self.gravity;
-        Rates {
+        *to = Rates {
             y: [
                 g[0] - normal_force * p[0],
                 g[1] - normal_force * p[1],
@@ -89,7 +89,7 @@ impl Pressed<4, 3, 1> for Shear {
             ],
             q: [damping * cap * slips, y[0], y[1]],
             kinks: [[asked2, cap]],
-        }
+        };
     }
 
     #[inline]
@@ -103,8 +103,8 @@ impl Pressed<4, 3, 1> for Shear {
 /// Shear and rolling.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Both {
-    pub(super) shear: Element,
-    pub(super) rolling: Element,
+    pub(super) shear: SliderElement,
+    pub(super) rolling: SliderElement,
     /// `m R²/I` (–).
     pub(super) turns: f64,
     /// Gravity along the surface.
@@ -112,9 +112,9 @@ pub(super) struct Both {
 }
 
 /// Velocity, spin, springs; summed up: what slipping takes, way, work of rolling and of shear.
-impl Pressed<10, 5, 2> for Both {
+impl ForcedFlow<10, 5, 2> for Both {
     #[inline]
-    fn rates(&self, f: f64, y: &[f64; 10]) -> Rates<10, 5, 2> {
+    fn rates(&self, f: f64, y: &[f64; 10], to: &mut Rates<10, 5, 2>) {
         let (shear, rolling) = (self.shear, self.rolling);
         let slip = [y[0] - y[3], y[1] + y[2]];
         let asked = [slip[0] + y[5], slip[1] + y[6]];
@@ -127,7 +127,7 @@ impl Pressed<10, 5, 2> for Both {
         let m = wound.map(|x| x * share);
         let (c, turn, g) = (shear.damping, self.turns * shear.damping, self.gravity);
         let stop = self.turns * rolling.damping;
-        Rates {
+        *to = Rates {
             y: [
                 g[0] - c * p[0],
                 g[1] - c * p[1],
@@ -148,13 +148,13 @@ impl Pressed<10, 5, 2> for Both {
                 c * (p[0] * slip[0] + p[1] * slip[1]),
             ],
             kinks: [[asked2, cap], [wound2, most]],
-        }
+        };
     }
 
     #[inline]
     fn size2(&self, off: &[f64; 10]) -> f64 {
         let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
-        let over = |element: &Element| {
+        let over = |element: &SliderElement| {
             if element.is_on() { 1.0 / (element.rate * element.rate) } else { 0.0 }
         };
         square(&off[..5])

@@ -10,7 +10,7 @@ use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::step_control::{self, Control, ONSET, Outcome, StepError, TRAVEL, Trial};
+use crate::solver::step_control::{self, Control, ONSET, StepError, TRAVEL, TrialStep, TryOutcome};
 use crate::solver::tableau::{STAGES, TR_BDF2, Tableau};
 use crate::terrain::Terrain;
 
@@ -113,7 +113,7 @@ impl<'a> Island<'a> {
         }
         self.members.iter_mut().for_each(|member| member.known = member.state.histories.len());
         let mut rejected = 0;
-        let mut trial = Try { island: self, control, omega };
+        let mut trial = IslandTrial { island: self, control, omega };
         let dt = step_control::settle(&mut trial, control, h_max, &mut rejected)?;
         Ok(Done { rejected, ..self.accept(control.tableau, dt) })
     }
@@ -288,13 +288,13 @@ impl<'a> Island<'a> {
 }
 
 /// A step of the island, tried with any length.
-struct Try<'i, 'a> {
+struct IslandTrial<'i, 'a> {
     island: &'i mut Island<'a>,
     control: &'i Control,
     omega: f64,
 }
 
-impl Trial for Try<'_, '_> {
+impl TrialStep for IslandTrial<'_, '_> {
     fn h(&mut self) -> &mut f64 {
         &mut self.island.h
     }
@@ -307,15 +307,15 @@ impl Trial for Try<'_, '_> {
         self.omega
     }
 
-    fn try_step(&mut self, dt: f64) -> Outcome {
+    fn try_step(&mut self, dt: f64) -> TryOutcome {
         let outcome = match self.island.attempt(self.control, dt) {
-            None => Outcome::Unsettled,
+            None => TryOutcome::Unsettled,
             Some(error) if error <= 1.0 => {
                 let hh = self.control.tableau.diagonal * dt;
                 let gains = dt * self.omega > step_control::RESOLVED && self.island.gains(hh);
-                if gains { Outcome::Gains } else { return Outcome::Error(error) }
+                if gains { TryOutcome::Gains } else { return TryOutcome::Error(error) }
             }
-            Some(error) => Outcome::Error(error),
+            Some(error) => TryOutcome::Error(error),
         };
         // Memories that came up in a step deviated away go with it.
         for member in self.island.members.iter_mut().map(|slot| &mut **slot) {

@@ -1,7 +1,7 @@
 //! One rock of an island.
 
 use super::outcome::{Done, Given};
-use super::pair_contact::Motion;
+use super::pair_contact::Twist;
 use crate::contact::Feature;
 use crate::contact::history::ContactHistory;
 use crate::contact::submatrix::Vec6;
@@ -9,10 +9,10 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::dda_system::contact::Contact;
+use crate::solver::dda_system::contact::DdaContact;
 use crate::solver::impact_progress::ImpactProgress;
 use crate::solver::law::StageContact;
-use crate::solver::roughness::Facets;
+use crate::solver::roughness::RoughFacets;
 use crate::solver::stage::End;
 use crate::solver::stem_load::StemLoad;
 use crate::solver::step_control::{Advance, StepError};
@@ -38,9 +38,9 @@ pub struct IslandBody {
     pub(super) base: End,
     pub(super) guess: Vec3,
     /// Velocity and spin at the stage's end without contact forces …
-    pub(super) free: Motion,
+    pub(super) free: Twist,
     /// … and with them.
-    pub(super) now: Motion,
+    pub(super) now: Twist,
     pub(super) end: End,
     /// Forces of the last solution, to start the next from.
     pub(super) kept: Vec<(Feature, f64, Vec3, Vec3)>,
@@ -48,7 +48,7 @@ pub struct IslandBody {
     pub(super) given: [Given; STAGES],
     pub(super) known: usize,
     /// Contacts with the mesh in a fixed step.
-    pub(super) joints: Vec<Contact>,
+    pub(super) joints: Vec<DdaContact>,
     /// Displacement in a fixed step: free, and what contacts add.
     pub(super) ways: [Vec6; 2],
 }
@@ -59,7 +59,7 @@ pub struct Memory {
     motion: (Vec3, Vec3, Vec3),
     histories: Vec<ContactHistory>,
     impact: ImpactProgress,
-    facets: Facets,
+    facets: RoughFacets,
     stems: (StemLoad, Vec<u32>),
     flying: bool,
 }

@@ -13,7 +13,7 @@ pub struct Ball {
 }
 
 /// One ball in its cell: the octave of the cell, the cell, the ball's number.
-type Entry = (i32, [i64; 3], u32);
+type CellEntry = (i32, [i64; 3], u32);
 
 /// Of the columns of cells around one, those that come after it; of its own, the cells from it upwards. Two balls see each
 /// other once that way.
@@ -25,7 +25,7 @@ const AHEAD: [[i64; 2]; 5] = [[0, 0], [0, 1], [1, -1], [1, 0], [1, 1]];
 /// with its neighbours there and in coarser grids: the work is near-linear in the number of balls, whatever their sizes.
 pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
     let grids = Grids::of(balls);
-    let mut entries: Vec<Entry> =
+    let mut entries: Vec<CellEntry> =
         balls.iter().zip(0..).map(|(ball, k)| entry(ball, grids.level(ball), k)).collect();
     entries.sort_unstable();
     let mut levels: Vec<i32> = entries.iter().map(|entry| entry.0).collect();
@@ -83,7 +83,7 @@ impl Grids {
     }
 }
 
-fn entry(ball: &Ball, level: i32, k: u32) -> Entry {
+fn entry(ball: &Ball, level: i32, k: u32) -> CellEntry {
     let cell = 2.0f64.powi(level);
     let [x, y, z]: [f64; 3] = (ball.centre / cell).into();
     (level, [x.floor() as i64, y.floor() as i64, z.floor() as i64], k)
@@ -91,7 +91,7 @@ fn entry(ball: &Ball, level: i32, k: u32) -> Entry {
 
 /// Calls `see` with every two balls in cells of the same size next to each other. Balls are gone through in the order of
 /// their cells, and so are the first of each column beside them: nothing need be searched.
-fn visit_own(entries: &[Entry], see: &mut impl FnMut(u32, u32)) {
+fn visit_own(entries: &[CellEntry], see: &mut impl FnMut(u32, u32)) {
     let mut first = [0; AHEAD.len()];
     for (place, &(level, [x, y, z], k)) in entries.iter().enumerate() {
         for (first, [dx, dy]) in first.iter_mut().zip(AHEAD) {
@@ -107,7 +107,7 @@ fn visit_own(entries: &[Entry], see: &mut impl FnMut(u32, u32)) {
 }
 
 /// Calls `see` with all balls in the 27 cells around `home`; the three above each other are one stretch of the list.
-fn visit_coarser(entries: &[Entry], (level, home): (i32, [i64; 3]), mut see: impl FnMut(u32)) {
+fn visit_coarser(entries: &[CellEntry], (level, home): (i32, [i64; 3]), mut see: impl FnMut(u32)) {
     for x in home[0] - 1..=home[0] + 1 {
         for y in home[1] - 1..=home[1] + 1 {
             let first = (level, [x, y, home[2] - 1], 0);

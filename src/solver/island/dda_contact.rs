@@ -11,7 +11,7 @@ use crate::contact::submatrix::{
 };
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::dda_system::slider::{Change, Slider};
+use crate::solver::dda_system::slider::{Change, DdaSlider};
 
 /// One contact of two rocks in a step.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,7 @@ pub(super) struct DdaPairContact {
     captured: bool,
     normal_force: f64,
     pub(super) presses: bool,
-    shear: Slider,
+    shear: DdaSlider,
     memory: bool,
     push_before: f64,
 }
@@ -61,12 +61,12 @@ impl DdaPairContact {
         };
         // A new pair knows no normal yet, and from the opposite of `n` there is no shortest turn.
         let from = if pair_history.is_held() { &pair_history.n } else { &n };
-        let shear = Slider {
+        let shear = DdaSlider {
             stretch: if memory { carry(pair_history.shear, from, &n) } else { Vec3::zeros() },
             spring: law.p_s,
             damper: if memory { law.c_s / dt } else { 0.0 },
             compliance: bodies.iter().map(|body| compliance(body)).sum(),
-            ..Slider::NONE
+            ..DdaSlider::NONE
         };
         Some(Self {
             pair_history: k,

@@ -10,7 +10,7 @@ use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::dda::{DEEPEST, compliance, free_motion, knows};
-use crate::solver::dda_system::contact::{Contact, Step};
+use crate::solver::dda_system::contact::{DdaContact, StepConstants};
 use crate::solver::dda_system::slider::Change;
 use crate::solver::dda_system::{ROUNDS, SOLVES};
 use crate::solver::loss::Loss;
@@ -83,7 +83,7 @@ impl Island<'_> {
             }
         }
         for member in &mut self.members {
-            member.joints.iter_mut().for_each(Contact::stick);
+            member.joints.iter_mut().for_each(DdaContact::stick);
         }
         links.iter_mut().for_each(DdaPairContact::stick);
         for _ in 0..SOLVES {
@@ -164,8 +164,8 @@ impl IslandBody {
         self.ways[0] + self.ways[1]
     }
 
-    fn fixed_step(&self, (dt, shear_memory): (f64, bool)) -> Step {
-        Step {
+    fn fixed_step(&self, (dt, shear_memory): (f64, bool)) -> StepConstants {
+        StepConstants {
             dt,
             free: self.ways[0],
             radius: self.body.radius,
@@ -197,7 +197,7 @@ impl IslandBody {
         let history = state.history_of(&world, k, taken, &v);
         let touch = ContactPoint { distance_m, ..state.touches[k] };
         let law = world.law_of(&state.touches, k);
-        joints.push(Contact::new(&step, &law, &touch, (history, &state.histories[history])));
+        joints.push(DdaContact::new(&step, &law, &touch, (history, &state.histories[history])));
     }
 
     /// Adds the contacts that the step ran into; whether there are any.

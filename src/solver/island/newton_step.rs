@@ -5,11 +5,11 @@
 
 use super::block_factor::{Below, Blocks, Factor};
 use super::body::{BodySlot, IslandBody};
-use super::pair_contact::{Motion, PairContact};
+use super::pair_contact::{PairContact, Twist};
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
 use crate::rock::Vec3;
 use crate::solver::law::StageContact;
-use crate::solver::multi_contact::{Answer, Normal, Slider};
+use crate::solver::multi_contact::{Answer, NormalLine, Slider};
 use nalgebra::{DMatrix, DVector, Matrix3};
 
 /// Most rocks for which a dense matrix is as cheap; it looks for its pivots everywhere.
@@ -17,7 +17,7 @@ const DENSE: usize = 8;
 
 /// One contact, linear around the present motion.
 struct Linear {
-    normal: Normal,
+    normal: NormalLine,
     shear: Answer,
     /// Slip and normal speed there, as far as they come from the ends that are sought.
     slip: Vec3,
@@ -28,7 +28,7 @@ struct Linear {
 }
 
 /// Six rows for each body of the island.
-struct System {
+struct NewtonSystem {
     diagonal: Vec<Mat6>,
     /// Blocks that join two rocks: the one below the diagonal, and the one opposite.
     joined: Vec<(Below, Mat6)>,
@@ -42,7 +42,7 @@ pub(super) fn jump(
     pairs: &[PairContact],
     takes_part: &[bool],
     h: f64,
-) -> Option<Vec<Option<Motion>>> {
+) -> Option<Vec<Option<Twist>>> {
     let mut rocks = 0;
     let place: Vec<Option<usize>> = takes_part
         .iter()
@@ -52,7 +52,7 @@ pub(super) fn jump(
         })
         .collect();
     let (diagonal, load) = (vec![Mat6::zeros(); rocks], vec![0.0; 6 * rocks]);
-    let mut system = System { diagonal, joined: Vec::with_capacity(pairs.len()), load };
+    let mut system = NewtonSystem { diagonal, joined: Vec::with_capacity(pairs.len()), load };
     for (member, place) in members.iter().zip(&place) {
         let Some(k) = *place else { continue };
         system.add_inertia(k, member, h);
@@ -74,11 +74,15 @@ impl Linear {
         let ends = pair.ends.map(|k| &members[k].now);
         let (law, speed, trial) = (&pair.law, pair.speed(ends), pair.trial(ends, h));
         let (normal, cap) = if pair.bond.is_some() {
-            (Normal { a: law.p_n * pair.penetration, b: law.p_n * h + pair.c_n }, f64::INFINITY)
+            (NormalLine { a: law.p_n * pair.penetration, b: law.p_n * h + pair.c_n }, f64::INFINITY)
         } else {
             let springs = (law.p_n, pair.c_n);
-            let normal =
-                Normal::line(springs, (pair.penetration, pair.normal_force), 1.0 / pair.inv_m, h);
+            let normal = NormalLine::line(
+                springs,
+                (pair.penetration, pair.normal_force),
+                1.0 / pair.inv_m,
+                h,
+            );
             (normal, law.friction)
         };
         let (normal_force, held) =
@@ -88,7 +92,7 @@ impl Linear {
         let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
         let own = pair.speed(sought);
         Self {
-            normal: Normal { a: normal.a - normal.b * (speed - own), ..normal },
+            normal: NormalLine { a: normal.a - normal.b * (speed - own), ..normal },
             shear: slider.at(trial, normal_force),
             slip: pair.slip(sought),
             speed: own,
@@ -100,7 +104,7 @@ impl Linear {
     }
 }
 
-impl System {
+impl NewtonSystem {
     fn add_inertia(&mut self, k: usize, member: &IslandBody, h: f64) {
         let (m, i) = (member.body.mass / h, member.body.inertia / h);
         for axis in 0..3 {
@@ -114,7 +118,7 @@ impl System {
 
     fn add_contact_force(&mut self, k: usize, member: &IslandBody, contact: &StageContact, h: f64) {
         let (body, law, (v, w)) = (&member.body, &contact.law, &member.now);
-        let normal = Normal::line(
+        let normal = NormalLine::line(
             (law.p_n, contact.c_n),
             (contact.penetration, contact.normal_force),
             body.mass,
@@ -153,7 +157,7 @@ impl System {
         &mut self,
         k: usize,
         roll: &Answer,
-        normal: &Normal,
+        normal: &NormalLine,
         (n, speed, w): (&Vec3, f64, &Vec3),
     ) {
         let constant = roll.force - roll.jacobian * w + roll.along * (normal.b * speed);
@@ -194,7 +198,7 @@ impl System {
         }
     }
 
-    fn solve(mut self) -> Option<Vec<Motion>> {
+    fn solve(mut self) -> Option<Vec<Twist>> {
         self.joined.sort_by_key(|((row, column, _), _)| (*column, *row));
         let x =
             if self.diagonal.len() <= DENSE { self.solve_dense()? } else { self.solve_sparse()? };

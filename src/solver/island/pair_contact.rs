@@ -1,16 +1,14 @@
 //! The contact of two rocks inside one implicit stage: the law of [`StageContact`](crate::solver::law::StageContact) with a second body.
 
+pub(super) use crate::contact::TOUCH;
 use crate::contact::pair::{Bond, PairHistory, between};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::law::{normal_force, within};
 
-/// A gap between two rocks that counts as a touch (–, relative to the sum of their radii): rounding of the leap.
-pub(super) const TOUCH: f64 = 1e-9;
-
 /// A velocity and a spin.
-pub(super) type Motion = (Vec3, Vec3);
+pub(super) type Twist = (Vec3, Vec3);
 
 /// One contact of two rocks: its state at the stage's base and the forces that are sought.
 #[derive(Debug, Clone, Copy)]
@@ -91,23 +89,23 @@ impl PairContact {
 
     /// Normal speed apart (m/s).
     #[inline]
-    pub(super) fn speed(&self, [a, b]: [&Motion; 2]) -> f64 {
+    pub(super) fn speed(&self, [a, b]: [&Twist; 2]) -> f64 {
         self.n.dot(&(a.0 - b.0))
     }
 
     /// Slip of the first rock over the second at the touched point (m/s).
-    pub(super) fn slip(&self, [a, b]: [&Motion; 2]) -> Vec3 {
+    pub(super) fn slip(&self, [a, b]: [&Twist; 2]) -> Vec3 {
         let u = a.0 - b.0;
         u - self.n * self.n.dot(&u) + self.n.cross(&(a.1 * self.levers[0] + b.1 * self.levers[1]))
     }
 
     /// What the shear spring would hold if it did not slide (N).
-    pub(super) fn trial(&self, ends: [&Motion; 2], h: f64) -> Vec3 {
+    pub(super) fn trial(&self, ends: [&Twist; 2], h: f64) -> Vec3 {
         self.shear * self.law.p_s + self.slip(ends) * self.law.shear_over(h)
     }
 
     /// Forces for motions without this contact's own effect, over a stage of length `h`.
-    pub(super) fn solve(&mut self, ends: [&Motion; 2], h: f64) {
+    pub(super) fn solve(&mut self, ends: [&Twist; 2], h: f64) {
         let (springs, vn) = ((self.law.p_n, self.c_n), self.speed(ends));
         if self.bond.is_none() {
             self.normal_force = normal_force(springs, self.penetration, vn, 1.0 / self.inv_m, h);
@@ -128,7 +126,7 @@ impl PairContact {
     }
 
     /// Forces at the present state, for the explicit first stage; gives the rate of the shear spring.
-    pub(super) fn act_now(&mut self, ends: [&Motion; 2]) -> Vec3 {
+    pub(super) fn act_now(&mut self, ends: [&Twist; 2]) -> Vec3 {
         let (penetration, vn) = (self.penetration, self.speed(ends));
         let held = self.shear * self.law.p_s;
         let stick = held + self.slip(ends) * self.law.c_s;
@@ -143,14 +141,14 @@ impl PairContact {
     }
 
     /// Force and moment on end `k` (N, N m).
-    pub(super) fn load(&self, k: usize) -> Motion {
+    pub(super) fn load(&self, k: usize) -> Twist {
         let force = self.n * self.normal_force - self.shear_force;
         let torque = self.n.cross(&self.shear_force) * self.levers[k];
         (if k == 0 { force } else { -force }, torque)
     }
 
     /// Adds `times` the effect over `h` on end `k` to its motion.
-    pub(super) fn act(&self, k: usize, body: &Body, times_h: f64, (v, w): &mut Motion) {
+    pub(super) fn act(&self, k: usize, body: &Body, times_h: f64, (v, w): &mut Twist) {
         let (force, torque) = self.load(k);
         *v += force * (times_h / body.mass);
         *w += torque * (times_h / body.inertia);

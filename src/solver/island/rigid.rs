@@ -22,8 +22,8 @@ use crate::solver::loss::Loss;
 use crate::solver::rigid::{HELD, remember};
 use crate::solver::step_control::StepError;
 use crate::terrain::Terrain;
-use contacts::{Ball, BallContact, GroundContact};
-use impacts::{Due, Scene};
+use contacts::{BallContact, GroundContact, StepBody};
+use impacts::{ImpactScene, PendingImpact};
 use std::collections::BinaryHeap;
 use sweeps::{ContactQueue, Leaning};
 
@@ -34,13 +34,13 @@ pub const TRAVEL: f64 = 0.2;
 /// Work space of the rigid steps of an island.
 #[derive(Debug, Default)]
 pub(super) struct RigidIsland {
-    balls: Vec<Ball>,
+    balls: Vec<StepBody>,
     ground_contacts: Vec<GroundContact>,
     ball_contacts: Vec<BallContact>,
     losses: Vec<Loss>,
     given: Vec<Given>,
     hits: Vec<Hit>,
-    due: BinaryHeap<Due>,
+    due: BinaryHeap<PendingImpact>,
     /// Which pairs had a blow.
     struck: Vec<bool>,
     /// Ties or contacts of every rock: where its list begins, and the lists.
@@ -75,10 +75,10 @@ impl RigidIsland {
         self.begin(members, pair_histories);
         let dt = self.step_s(longest, h_max);
         let settled = self.sustain(terrain, (members, pair_histories), dt);
-        let mut scene = Scene { terrain, members, pair_histories };
+        let mut scene = ImpactScene { terrain, members, pair_histories };
         let struck = self.strike(&mut scene, dt);
         self.part(&mut scene);
-        let finite = self.balls.iter().all(Ball::is_finite);
+        let finite = self.balls.iter().all(StepBody::is_finite);
         self.take_over(terrain, (members, pair_histories), dt);
         let done = Done {
             dt,
@@ -188,7 +188,7 @@ impl PairHistory {
     }
 }
 
-impl Ball {
+impl StepBody {
     fn is_finite(&self) -> bool {
         self.c.iter().chain(self.v.iter()).chain(self.w.iter()).all(|x| x.is_finite())
     }
@@ -200,7 +200,7 @@ impl RigidIsland {
         self.balls.clear();
         let ball = |member: &BodySlot| {
             let state = &member.state;
-            Ball::new(&member.body, (state.c, state.v, state.w))
+            StepBody::new(&member.body, (state.c, state.v, state.w))
         };
         self.balls.extend(members.iter().map(ball));
         self.losses.clear();
@@ -219,7 +219,7 @@ impl RigidIsland {
 
     /// Length of the step (s): the time left in equal parts.
     fn step_s(&self, longest: f64, h_max: f64) -> f64 {
-        let way = |ball: &Ball| {
+        let way = |ball: &StepBody| {
             let speed = ball.v.norm() + ball.body.gravity.norm() * h_max;
             TRAVEL * ball.body.radius / speed.max(f64::MIN_POSITIVE)
         };
@@ -230,7 +230,7 @@ impl RigidIsland {
 
 impl IslandBody {
     /// Takes over the end of a step in an island.
-    fn land_on(&mut self, terrain: &Terrain, ball: &Ball) {
+    fn land_on(&mut self, terrain: &Terrain, ball: &StepBody) {
         self.flew = self.flying;
         self.was_touched = ball.pushed || ball.moved;
         let Self { state, body, laws, .. } = self;

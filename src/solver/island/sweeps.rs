@@ -9,9 +9,9 @@ use super::active_set::SETTLED_AT_ONCE;
 use super::assembly::Island;
 use super::body::IslandBody;
 use super::newton_step::jump;
-use super::pair_contact::Motion;
+use super::pair_contact::Twist;
 use crate::solver::law::within;
-use crate::solver::multi_contact::Normal;
+use crate::solver::multi_contact::NormalLine;
 
 /// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most. A jump
 /// costs as much as some hundred contacts.
@@ -158,7 +158,7 @@ impl Island<'_> {
             return;
         }
         let before = (pair.normal_force, pair.shear_force);
-        let mut motions: [Motion; 2] = ends.map(|end| self.members[end].now);
+        let mut motions: [Twist; 2] = ends.map(|end| self.members[end].now);
         if pair.acts() {
             for k in 0..2 {
                 pair.act(k, &self.members[ends[k]].body, -h, &mut motions[k]);
@@ -185,7 +185,7 @@ impl Island<'_> {
     }
 
     /// Sets every force of rocks that jumped to what its law gives at their new motions.
-    fn act_on(&mut self, motions: &[Option<Motion>], h: f64) {
+    fn act_on(&mut self, motions: &[Option<Twist>], h: f64) {
         for (member, motion) in self.members.iter_mut().zip(motions) {
             let Some((v, w)) = motion else { continue };
             let IslandBody { state, body, now, .. } = &mut **member;
@@ -193,7 +193,7 @@ impl Island<'_> {
             for contact in &mut state.contacts[..state.contact_count] {
                 let law = contact.law;
                 let springs = (law.p_n, contact.c_n);
-                let line = Normal::line(
+                let line = NormalLine::line(
                     springs,
                     (contact.penetration, contact.normal_force),
                     body.mass,
@@ -217,7 +217,8 @@ impl Island<'_> {
             } else {
                 let springs = (law.p_n, pair.c_n);
                 let pressed = (pair.penetration, pair.normal_force);
-                pair.normal_force = Normal::line(springs, pressed, 1.0 / pair.inv_m, h).at(speed);
+                pair.normal_force =
+                    NormalLine::line(springs, pressed, 1.0 / pair.inv_m, h).at(speed);
                 pair.shear_force = within(stick, law.friction * pair.normal_force);
             }
         }

@@ -5,7 +5,7 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::contact_state::ContactEnvironment;
-use crate::solver::friction_rolling::{Answers, Local, Mode, Pair};
+use crate::solver::friction_rolling::{Answers, Local, Pair, SlipState};
 use crate::solver::law::normal_force;
 use crate::solver::loss::Loss;
 use crate::solver::plane_state::{
@@ -13,15 +13,15 @@ use crate::solver::plane_state::{
     square, stored_j, three, two,
 };
 use crate::solver::step_control::{
-    Advance, Control, ONSET, Outcome, PLACE_ROUNDING, RESOLVED, ROUNDING, StepFailure, Trial,
-    settle,
+    Advance, Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepFailure, TrialStep,
+    TryOutcome, settle,
 };
 
 /// An impact is over after about so many radians of its contact (–): up to there its steps are taken in one go.
 const IMPACT: f64 = 3.5;
 
 /// A step being tried.
-pub(super) struct Try<'a, 'w> {
+pub(super) struct PlaneTrial<'a, 'w> {
     /// The step to try next (s).
     pub(super) h: &'a mut f64,
     /// The longest step that cannot jump over a feature (s).
@@ -48,7 +48,7 @@ pub(super) struct Try<'a, 'w> {
     pub(super) start: Vec3,
     pub(super) face: u32,
     /// How shear and rolling were when last asked.
-    pub(super) mode: Mode,
+    pub(super) mode: SlipState,
     pub(super) end: State,
     pub(super) press: PlaneForces,
     pub(super) stored: f64,
@@ -73,7 +73,7 @@ impl Length {
     }
 }
 
-impl Try<'_, '_> {
+impl PlaneTrial<'_, '_> {
     /// Solves implicit stage `i` of a step of length `dt`.
     #[inline]
     fn stage(&mut self, i: usize, dt: f64, by: &Length) {
@@ -124,23 +124,27 @@ impl Try<'_, '_> {
 
     /// What speaks against the stage's end, if anything: the rock must stay over the face and touch nothing else.
     #[inline]
-    fn objection(&self, dt: f64) -> Option<Outcome> {
+    fn objection(&self, dt: f64) -> Option<TryOutcome> {
         if square(three(&self.end, WAY)) > self.room2 {
-            return Some(Outcome::Elsewhere);
+            return Some(TryOutcome::Elsewhere);
         }
         if self.near.plane() == Some(self.face) {
             return None;
         }
         let centre = self.start + self.plane.frame.out_local(three(&self.end, WAY));
         if !self.near.is_over(self.face, &centre) {
-            return Some(Outcome::Elsewhere);
+            return Some(TryOutcome::Elsewhere);
         }
         let reach = self.world.body.radius;
         if self.near.is_alone(self.world.terrain, self.face, (&centre, reach)) {
             return None;
         }
         // It runs into something: what it meets must be resolved from the start, so come close first.
-        Some(if dt * self.law.omega > ONSET { Outcome::Unsettled } else { Outcome::Elsewhere })
+        Some(if dt * self.law.omega > ONSET {
+            TryOutcome::Unsettled
+        } else {
+            TryOutcome::Elsewhere
+        })
     }
 
     /// Local error relative to the tolerance.
@@ -233,7 +237,7 @@ impl Try<'_, '_> {
     }
 }
 
-impl Trial for Try<'_, '_> {
+impl TrialStep for PlaneTrial<'_, '_> {
     fn h(&mut self) -> &mut f64 {
         self.h
     }
@@ -246,7 +250,7 @@ impl Trial for Try<'_, '_> {
         self.law.omega
     }
 
-    fn try_step(&mut self, dt: f64) -> Outcome {
+    fn try_step(&mut self, dt: f64) -> TryOutcome {
         let by = Length::new(&self.world.body, self.law, self.control.tableau.diagonal * dt);
         for i in 1..self.control.tableau.stages {
             self.stage(i, dt, &by);
@@ -256,7 +260,7 @@ impl Trial for Try<'_, '_> {
         }
         let error = self.error(dt);
         if error > 1.0 || error.is_nan() {
-            return Outcome::Error(error);
+            return TryOutcome::Error(error);
         }
         let penetration = (self.penetration - self.end[WAY + 2]).max(0.0);
         self.press.closed = self.press.normal_force > 0.0 || penetration > 0.0;
@@ -264,8 +268,8 @@ impl Trial for Try<'_, '_> {
             if self.press.closed { stored_j(self.law, penetration, &self.end) } else { 0.0 };
         self.energy_at_end = self.end_j();
         if dt * self.law.omega > RESOLVED && self.gains() {
-            return Outcome::Gains;
+            return TryOutcome::Gains;
         }
-        Outcome::Error(error)
+        TryOutcome::Error(error)
     }
 }

@@ -11,7 +11,7 @@ use crate::study::bench::{GRAVITY_M_S2, Setup};
 const STEPS_PER_RADIAN: f64 = 40.0;
 
 /// Distance and angle (from the upright) of the centre, their rates, spin and stretch of the shear spring.
-type State = [f64; 6];
+type PivotState = [f64; 6];
 
 /// Where the centre is (x, z; m) after `t` (s), from rest at `angle_rad` and static penetration above an edge along y.
 pub(super) fn on_springs(setup: &Setup, angle_rad: f64, t: f64) -> (f64, f64) {
@@ -20,7 +20,7 @@ pub(super) fn on_springs(setup: &Setup, angle_rad: f64, t: f64) -> (f64, f64) {
     let omega = (setup.ground.normal_stiffness_n_m / setup.rock.mass_kg()).sqrt();
     let steps = (t * omega * STEPS_PER_RADIAN).ceil();
     let h = t / steps;
-    let law = Law::of(setup);
+    let law = PivotLaw::of(setup);
     for _ in 0..steps as usize {
         let k1 = law.rate(&state);
         let k2 = law.rate(&after(&state, &k1, 0.5 * h));
@@ -33,11 +33,11 @@ pub(super) fn on_springs(setup: &Setup, angle_rad: f64, t: f64) -> (f64, f64) {
     (state[0] * math::sin(state[1]), state[0] * math::cos(state[1]))
 }
 
-fn after(state: &State, rate: &State, h: f64) -> State {
+fn after(state: &PivotState, rate: &PivotState, h: f64) -> PivotState {
     std::array::from_fn(|i| state[i] + h * rate[i])
 }
 
-struct Law {
+struct PivotLaw {
     mass: f64,
     radius: f64,
     inertia: f64,
@@ -47,7 +47,7 @@ struct Law {
     damp: [f64; 2],
 }
 
-impl Law {
+impl PivotLaw {
     fn of(setup: &Setup) -> Self {
         let (mass, ground) = (setup.rock.mass_kg(), &setup.ground);
         let ratio = Damping::of(ground.restitution).ratio;
@@ -67,7 +67,7 @@ impl Law {
     }
 
     /// `F = max(0, p_N pen + c_N pen')`, `q = p_s ξ + c_s u` cut at `μ F`, `ξ' = (q − p_s ξ)/c_s`; the lever is R.
-    fn rate(&self, &[r, angle, r_rate, turn, spin, stretch]: &State) -> State {
+    fn rate(&self, &[r, angle, r_rate, turn, spin, stretch]: &PivotState) -> PivotState {
         let depth = self.radius - r;
         let push = (self.stiff[0] * depth - self.damp[0] * r_rate).max(0.0);
         let push = if depth > 0.0 { push } else { 0.0 };

@@ -2,7 +2,7 @@
 
 use super::meshes::angle;
 use super::pivot::{self, Lift};
-use super::{CASES, Case, Measure, STILL};
+use super::{CASES, Case, CaseMeasure, STILL};
 use crate::math;
 use crate::rock::Vec3;
 use crate::study::bench::{SETUP, Setup};
@@ -52,7 +52,7 @@ pub(in crate::study) fn rolling_off_an_edge(has_springs: bool, t: f64) -> (Case,
     (case, Vec3::new(x, setup.centre_m.y, z))
 }
 
-pub(super) fn tipped(setup: &Setup, rigid: &Lift, has_springs: bool) -> Vec<Measure> {
+pub(super) fn tipped(setup: &Setup, rigid: &Lift, has_springs: bool) -> Vec<CaseMeasure> {
     let (x, z) = if has_springs {
         pivot::on_springs(setup, TIPPED_RAD, setup.longest_s)
     } else {
@@ -80,16 +80,16 @@ pub(super) fn rigid_bounce_m() -> f64 {
 }
 
 /// The end of a way (m) down a plane that falls in +y.
-pub(super) fn along(setup: &Setup, angle_rad: f64, way_m: f64) -> Vec<Measure> {
+pub(super) fn along(setup: &Setup, angle_rad: f64, way_m: f64) -> Vec<CaseMeasure> {
     let end = setup.centre_m + Vec3::new(0.0, math::cos(angle_rad), -math::sin(angle_rad)) * way_m;
     place(end.x, end.y, end.z)
 }
 
 /// The centre at the end (m).
-pub(super) fn place(x: f64, y: f64, z: f64) -> Vec<Measure> {
+pub(super) fn place(x: f64, y: f64, z: f64) -> Vec<CaseMeasure> {
     vec![
-        Measure { what: "x (m)", exact: x, scale: 1.0, of: |journey| journey.end.position_m.x },
-        Measure { what: "y (m)", exact: y, scale: 1.0, of: |journey| journey.end.position_m.y },
-        Measure { what: "z (m)", exact: z, scale: 1.0, of: |journey| journey.end.position_m.z },
+        CaseMeasure { what: "x (m)", exact: x, scale: 1.0, of: |journey| journey.end.position_m.x },
+        CaseMeasure { what: "y (m)", exact: y, scale: 1.0, of: |journey| journey.end.position_m.y },
+        CaseMeasure { what: "z (m)", exact: z, scale: 1.0, of: |journey| journey.end.position_m.z },
     ]
 }

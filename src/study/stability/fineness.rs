@@ -1,16 +1,13 @@
 //! Steps and tolerances to their ends, and what the printed scheme does without memory.
 
 use super::impacts::{floor, rebound_m_s};
-use super::{Notes, RISE, Way};
+use super::{Notes, RISE, SchemeSetting};
 use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::math;
 use crate::rock::Vec3;
 use crate::simulation::{Scratch, Stop};
-use crate::solver::Scheme;
 use crate::solver::dda::own_restitution;
-use crate::study::bench::{
-    GRAVITY_M_S2, GROUND, SETUP, Setup, goes_by_tolerance, settings, terrain,
-};
+use crate::study::bench::{GRAVITY_M_S2, GROUND, SETUP, Setup, settings, terrain};
 use crate::terrain::make;
 
 /// Speed of the impacts (m/s): at the longest step still less than a tenth of the radius a step.
@@ -18,12 +15,12 @@ const SPEED_M_S: f64 = 1.0;
 
 /// An impact at every step from 1e-7 to 1e-2 s (tolerance from 1e-7 to 1e-2 m/s): the fixed step leaves by itself what its
 /// formula says, whatever the step; the others keep the closed form within their tolerance, the rigid map exactly.
-pub(super) fn steps(way: &Way, notes: &mut Notes) {
+pub(super) fn steps(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let omega = (GROUND.normal_stiffness_n_m / SETUP.rock.mass_kg()).sqrt();
     for power in -7..=-2 {
-        let way = &Way { fineness: 10f64.powi(power), ..*way };
-        let unit = if goes_by_tolerance(way.scheme) { "m/s" } else { "s" };
+        let way = &SchemeSetting { fineness: 10f64.powi(power), ..*way };
+        let unit = way.scheme.fineness_unit();
         let setting = format!("{:e} {unit}", way.fineness);
         let is_fixed = way.scheme.has_fixed_step();
         // no dashpot: what is lost, the step itself loses
@@ -38,36 +35,27 @@ pub(super) fn steps(way: &Way, notes: &mut Notes) {
         };
         let journey = notes.follow_captured(way, &setting, &setup, &floor, Some(0.02));
         let rebound = rebound_m_s(&journey, &setup) / SPEED_M_S;
-        let exact = || {
+        let closed_form = {
             let impact = normal_impact(SPEED_M_S, omega, damping_ratio(0.5), GRAVITY_M_S2);
             impact.rebound_m_s.unwrap_or(0.0) / SPEED_M_S
         };
-        let (law, exact, bound) = match way.scheme {
-            Scheme::Dda => {
-                let own = own_restitution(way.fineness * omega);
-                ("rebound over speed is what the step leaves", own, 1e-9)
-            }
-            Scheme::Rigid => ("rebound over speed is e", 0.5, 1e-9),
-            // h³ ~ tolerance^(3/4): the rock lifts off within a step, where the law has a kink
-            Scheme::Reference => (
-                "rebound over speed is that of the closed form",
-                exact(),
-                4.0 * math::pow(way.fineness, 0.75),
-            ),
+        let resolved = "rebound over speed is that of the closed form";
+        let own = own_restitution(way.fineness * omega);
+        let (law, exact, bound) = way.scheme.of([
+            ("rebound over speed is what the step leaves", own, 1e-9),
             // as the exact cases have it: second order under a third-order local error
-            Scheme::Adaptive => (
-                "rebound over speed is that of the closed form",
-                exact(),
-                0.5 * math::pow(way.fineness, 2.0 / 3.0),
-            ),
-        };
+            (resolved, closed_form, 0.5 * math::pow(way.fineness, 2.0 / 3.0)),
+            // h³ ~ tolerance^(3/4): the rock lifts off within a step, where the law has a kink
+            (resolved, closed_form, 4.0 * math::pow(way.fineness, 0.75)),
+            ("rebound over speed is e", 0.5, 1e-9),
+        ]);
         notes.hold(way, &setting, law, (rebound - exact).abs(), bound);
     }
 }
 
 /// The fixed step as printed forgets its shear stretch: a rock that rolls down 20° slips at `T/(p_s Δt)`, `T = 2/7 m g sin
 /// 20°`, the faster the shorter the step. With memory it does not slip.
-pub(super) fn memory(way: &Way, notes: &mut Notes) {
+pub(super) fn memory(way: &SchemeSetting, notes: &mut Notes) {
     if !way.scheme.has_fixed_step() {
         return;
     }

@@ -1,7 +1,7 @@
 //! What is no plane: folds, noise, triangles far smaller than the rock. Energy is watched at the end of every step.
 
 use super::impacts::rebound_m_s;
-use super::{Notes, Way, sprung};
+use super::{Notes, SchemeSetting, sprung};
 use crate::flight::{FlightEnd, Parabola, time_of_impact};
 use crate::ground::{Capture, Damping, Ground, Law, damping_ratio, normal_impact};
 use crate::math;
@@ -9,7 +9,7 @@ use crate::rock::{Rock, Vec3};
 use crate::simulation::Stop;
 use crate::solver::body::Body;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
-use crate::solver::{Scheme, Stepper, advance};
+use crate::solver::{Stepper, advance};
 use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, settings, terrain};
 use crate::study::cases::meshes::{bumpy, fold};
 use crate::terrain::Terrain;
@@ -45,7 +45,7 @@ impl Watched<'_> {
     }
 
     /// Goes on from a touch until the rock is free or `left_s` is over; the largest rise (J). `None` if a step fails.
-    fn episode(&mut self, way: &Way, left_s: &mut f64) -> Option<f64> {
+    fn episode(&mut self, way: &SchemeSetting, left_s: &mut f64) -> Option<f64> {
         let step = settings(way.scheme, way.fineness, None);
         let mut stepper = Stepper::new(&step, &self.world, &mut self.state);
         let (mut least, mut rise) = (self.energy_j(), 0.0f64);
@@ -63,7 +63,12 @@ impl Watched<'_> {
 }
 
 /// Follows a rock from touch to touch; nothing where a step fails.
-fn watch(way: &Way, setup: &Setup, terrain: &Terrain, capture_m_s: Option<f64>) -> Option<Energy> {
+fn watch(
+    way: &SchemeSetting,
+    setup: &Setup,
+    terrain: &Terrain,
+    capture_m_s: Option<f64>,
+) -> Option<Energy> {
     let capture =
         Capture { own_m_s: capture_m_s, tolerance_m_s: 0.0, gravity_m_s2: setup.gravity_m_s2 };
     let damping = Damping::of(setup.ground.restitution);
@@ -99,18 +104,19 @@ fn watch(way: &Way, setup: &Setup, terrain: &Terrain, capture_m_s: Option<f64>) 
 }
 
 /// What energy may change by where nothing takes any (–): the schemes' own accuracy, and for the fixed step what it damps.
-fn allowed(way: &Way, omega: f64) -> f64 {
-    match way.scheme {
-        Scheme::Reference => 1e-6,
-        Scheme::Adaptive => 2e-3,
-        Scheme::Rigid => 1e-12,
-        // keeps exp(−π ω Δt/4) of the speed
-        Scheme::Dda => 1.0 - math::exp(-std::f64::consts::PI * omega * way.fineness) + 1e-3,
-    }
+fn allowed(way: &SchemeSetting, omega: f64) -> f64 {
+    // the fixed step keeps exp(−π ω Δt/4) of the speed
+    let damped = 1.0 - math::exp(-std::f64::consts::PI * omega * way.fineness) + 1e-3;
+    way.scheme.of([damped, 2e-3, 1e-6, 1e-12])
 }
 
 /// Holds that nothing is lost and nothing gained.
-fn conserve(way: &Way, notes: &mut Notes, setting: &str, (setup, terrain): (&Setup, &Terrain)) {
+fn conserve(
+    way: &SchemeSetting,
+    notes: &mut Notes,
+    setting: &str,
+    (setup, terrain): (&Setup, &Terrain),
+) {
     let omega = (setup.ground.normal_stiffness_n_m / setup.rock.mass_kg()).sqrt();
     let energy = watch(way, setup, terrain, Some(0.0));
     let (change, rise) =
@@ -132,7 +138,7 @@ fn elastic_ground(stiffness: f64) -> Ground {
 }
 
 /// e = 1 without friction on valleys from the bluntest to the sharpest, beside the bottom and in it.
-pub(super) fn elastic(way: &Way, notes: &mut Notes) {
+pub(super) fn elastic(way: &SchemeSetting, notes: &mut Notes) {
     for angle in [1e-6, 1e-3, 0.02, 0.2, 0.6, 2.0] {
         let valley = terrain(fold(angle, 4.0));
         for (stiffness, radius, speed) in [(1e9, 0.5, 10.0), (1e7, 0.05, 5.0), (1e12, 1.0, 50.0)] {
@@ -156,11 +162,11 @@ pub(super) fn elastic(way: &Way, notes: &mut Notes) {
 }
 
 /// e = 1 without friction on noisy ground, from a tenth to fifty times the cells.
-pub(super) fn noisy(way: &Way, notes: &mut Notes) {
+pub(super) fn noisy(way: &SchemeSetting, notes: &mut Notes) {
     for (cell, cells, noise) in [(10.0, 4, 0.2), (1.0, 6, 0.05), (0.1, 40, 0.01), (0.02, 140, 1e-3)]
     {
         // a fixed step would look at ten thousand triangles a thousand times
-        if way.scheme == Scheme::Dda && cell < 0.1 {
+        if way.scheme.has_fixed_step() && cell < 0.1 {
             continue;
         }
         let ground = terrain(bumpy(cells, cell, noise));
@@ -181,7 +187,7 @@ pub(super) fn noisy(way: &Way, notes: &mut Notes) {
 
 /// e = 0.5 on noise that the rock does not see: it rebounds as from a plane. The rigid limit strikes one corner alone, and
 /// rebounds from that.
-pub(super) fn larger_than_cells(way: &Way, notes: &mut Notes) {
+pub(super) fn larger_than_cells(way: &SchemeSetting, notes: &mut Notes) {
     for noise in [1e-3, 5e-3] {
         let ground = terrain(bumpy(40, 0.1, noise));
         let rock = Rock { radius_m: 1.5, ..ROCK };
@@ -207,7 +213,7 @@ pub(super) fn larger_than_cells(way: &Way, notes: &mut Notes) {
 }
 
 /// A rock thrown along noisy ground, rubbing, hopping, rolling: no step of an episode gains.
-pub(super) fn slides(way: &Way, notes: &mut Notes) {
+pub(super) fn slides(way: &SchemeSetting, notes: &mut Notes) {
     let ground = terrain(bumpy(60, 0.1, 1e-3));
     let setup = Setup {
         centre_m: Vec3::new(-1.5, 0.01, 0.501),

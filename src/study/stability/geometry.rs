@@ -1,6 +1,6 @@
 //! Meshes that are awkward: edges, corners, walls, slivers, seams, far away.
 
-use super::{Notes, Way, sprung};
+use super::{Notes, SchemeSetting, sprung};
 use crate::math;
 use crate::rock::{Rock, Vec3};
 use crate::simulation::Stop;
@@ -23,7 +23,7 @@ fn dropped() -> Setup {
 }
 
 /// Dropped exactly onto an edge and onto a corner: it goes down a flank, and no energy comes from nowhere.
-pub(super) fn edge_and_corner(way: &Way, notes: &mut Notes) {
+pub(super) fn edge_and_corner(way: &SchemeSetting, notes: &mut Notes) {
     let above = Setup { centre_m: Vec3::new(0.0, 0.0, 1.0), longest_s: 0.6, ..SETUP };
     let roof = terrain(make::ridge(4.0, 1.0));
     let end = notes.follow(way, "edge", &above, &roof).end.position_m;
@@ -53,7 +53,7 @@ fn level(has_corner: bool) -> Vec<Facet> {
 
 /// Between upright walls that press it from both sides by `s`: friction `2 μ p_N s` holds it, or it slides with
 /// `g − 2 μ p_N s/m`. Springs only: for the rigid limit it must not be thrown out.
-pub(super) fn parallel_walls(way: &Way, notes: &mut Notes) {
+pub(super) fn parallel_walls(way: &SchemeSetting, notes: &mut Notes) {
     for (setting, s) in [("slides", 1e-5), ("stays", 2e-5)] {
         let half = SETUP.rock.radius_m - s;
         let wall = |x: f64| square(Vec3::new(x, -5.0, -5.0), Vec3::y() * 10.0, Vec3::z() * 10.0);
@@ -80,7 +80,7 @@ pub(super) fn parallel_walls(way: &Way, notes: &mut Notes) {
 }
 
 /// At rest on the two borders of a groove narrower than itself: `sin a` = half width/R.
-pub(super) fn narrow_groove(way: &Way, notes: &mut Notes) {
+pub(super) fn narrow_groove(way: &SchemeSetting, notes: &mut Notes) {
     let half = 0.3;
     let plate =
         |x: f64, out: f64| square(Vec3::new(x, -5.0, 0.0), Vec3::x() * out, Vec3::y() * 10.0);
@@ -101,7 +101,7 @@ pub(super) fn narrow_groove(way: &Way, notes: &mut Notes) {
 }
 
 /// Triangles without area, slivers, doubles: the same journey as without them.
-pub(super) fn degenerate(way: &Way, notes: &mut Notes) {
+pub(super) fn degenerate(way: &SchemeSetting, notes: &mut Notes) {
     let clean = make::jittered_plane(10.0, 6, 0.0);
     let mut dirty = clean.clone();
     let [a, b, c] = clean[20];
@@ -115,7 +115,7 @@ pub(super) fn degenerate(way: &Way, notes: &mut Notes) {
 }
 
 /// All triangles the other way round: the same bits.
-pub(super) fn flipped(way: &Way, notes: &mut Notes) {
+pub(super) fn flipped(way: &SchemeSetting, notes: &mut Notes) {
     let facets = make::natural_slope(30, 40).facets;
     let setup = Setup { centre_m: Vec3::new(150.0, 150.0, 130.0), longest_s: 8.0, ..SETUP };
     let inside_out = facets.iter().map(|&[a, b, c]| [c, b, a]).collect();
@@ -127,7 +127,7 @@ pub(super) fn flipped(way: &Way, notes: &mut Notes) {
 }
 
 /// Two sheets that run through each other at 10°: a rock rolls into the wedge between them and stays above both.
-pub(super) fn conflicting_sheets(way: &Way, notes: &mut Notes) {
+pub(super) fn conflicting_sheets(way: &SchemeSetting, notes: &mut Notes) {
     let tilt = 10f64.to_radians();
     let both = [make::jittered_plane(8.0, 3, 0.0), make::jittered_plane(8.0, 3, tilt)].concat();
     let setup = Setup {
@@ -142,7 +142,7 @@ pub(super) fn conflicting_sheets(way: &Way, notes: &mut Notes) {
 }
 
 /// A thousand kilometres away: the same journey, as far as coordinates there have digits.
-pub(super) fn offset(way: &Way, notes: &mut Notes) {
+pub(super) fn offset(way: &SchemeSetting, notes: &mut Notes) {
     let here = make::jittered_plane(10.0, 6, 0.2);
     let far = Vec3::new(1e6, -1e6, 1e3);
     let there = here.iter().map(|facet| facet.map(|corner| corner + far)).collect();
@@ -155,7 +155,7 @@ pub(super) fn offset(way: &Way, notes: &mut Notes) {
 }
 
 /// A boulder of 10 m on triangles of 0.1 m.
-pub(super) fn small_triangles(way: &Way, notes: &mut Notes) {
+pub(super) fn small_triangles(way: &SchemeSetting, notes: &mut Notes) {
     let ground = terrain(make::jittered_plane(12.0, 200, 0.0));
     let rock = Rock { radius_m: 10.0, ..ROCK };
     let mut setup = Setup { rock, centre_m: Vec3::new(0.1, 0.2, 10.5), longest_s: 0.5, ..SETUP };
@@ -172,7 +172,7 @@ pub(super) fn small_triangles(way: &Way, notes: &mut Notes) {
 }
 
 /// A single triangle: hit and left behind, or missed.
-pub(super) fn one_triangle(way: &Way, notes: &mut Notes) {
+pub(super) fn one_triangle(way: &SchemeSetting, notes: &mut Notes) {
     let facet = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
     let lone = terrain(vec![facet]);
     let setup = Setup {

@@ -1,11 +1,10 @@
 //! One rock, one plane: stiffness, size, speed, restitution, friction to their ends.
 
-use super::{Notes, Way, sprung};
+use super::{Notes, SchemeSetting, sprung};
 use crate::ground::{Ground, damping_ratio, normal_impact};
 use crate::math;
 use crate::rock::{Rock, Vec3};
 use crate::simulation::Trajectory;
-use crate::solver::Scheme;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK, SETUP, Setup, terrain};
 use crate::terrain::Terrain;
 use crate::terrain::make;
@@ -24,7 +23,7 @@ fn touching(v: Vec3) -> Setup {
 }
 
 /// Stiffness × radius × speed: the rebound is that of the closed form with gravity, or none where the rock is captured.
-pub(super) fn impact(way: &Way, notes: &mut Notes) {
+pub(super) fn impact(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     for stiffness in [1e3, 1e6, 1e9, 1e12, 1e14] {
         for radius in [1e-3, 0.1, 10.0] {
@@ -35,7 +34,12 @@ pub(super) fn impact(way: &Way, notes: &mut Notes) {
     }
 }
 
-fn one_impact(way: &Way, notes: &mut Notes, floor: &Terrain, [stiffness, radius, speed]: [f64; 3]) {
+fn one_impact(
+    way: &SchemeSetting,
+    notes: &mut Notes,
+    floor: &Terrain,
+    [stiffness, radius, speed]: [f64; 3],
+) {
     let rock = Rock { radius_m: radius, ..ROCK };
     let ground =
         Ground { normal_stiffness_n_m: stiffness, shear_stiffness_n_m: 0.25 * stiffness, ..GROUND };
@@ -68,26 +72,23 @@ fn one_impact(way: &Way, notes: &mut Notes, floor: &Terrain, [stiffness, radius,
     }
     let rebound = rebound_m_s(&journey, &setup) / speed;
     let phase = way.fineness * omega;
-    if way.scheme == Scheme::Dda && phase > RESOLVED {
+    if way.scheme.has_fixed_step() && phase > RESOLVED {
         notes.hold(way, &setting, "rebound over speed, at most 1", rebound, 1.0);
         return;
     }
     let exact = normal_impact(speed, omega, damping_ratio(0.5), GRAVITY_M_S2).rebound_m_s;
-    let (law, off, allowed) = match (way.scheme, exact) {
-        (Scheme::Rigid, None) => ("captured: no rebound", rebound, 0.0),
-        (Scheme::Rigid, _) if speed < 0.02 => ("captured: no rebound", rebound, 0.0),
-        (Scheme::Rigid, _) => ("rebound over speed is e", (rebound - 0.5).abs(), 1e-9),
+    let (law, off, allowed) = match exact {
+        None if !sprung(way) => ("captured: no rebound", rebound, 0.0),
+        Some(_) if !sprung(way) && speed < 0.02 => ("captured: no rebound", rebound, 0.0),
+        Some(_) if !sprung(way) => ("rebound over speed is e", (rebound - 0.5).abs(), 1e-9),
         // captured: the springs may still swing it
-        (_, None) => ("captured: no more than the rebound of e", rebound, 0.5),
-        (_, Some(_)) if speed <= way_capture(way) => {
+        None => ("captured: no more than the rebound of e", rebound, 0.5),
+        Some(_) if speed <= way_capture(way) => {
             ("captured: no more than the rebound of e", rebound, 0.5)
         }
-        (_, Some(out)) => {
-            let fine = match way.scheme {
-                Scheme::Dda => phase,
-                Scheme::Adaptive => 2.0 * way.fineness / speed,
-                _ => 100.0 * way.fineness / speed,
-            };
+        Some(out) => {
+            let relative = way.fineness / speed;
+            let fine = way.scheme.of([phase, 2.0 * relative, 100.0 * relative, 0.0]);
             let off = (rebound - out / speed).abs();
             ("rebound over speed is that of the closed form", off, fine + 1e-3)
         }
@@ -107,12 +108,12 @@ pub(super) fn rebound_m_s(journey: &Trajectory, setup: &Setup) -> f64 {
 }
 
 /// The speed (m/s) up to which numerics may capture an impact.
-fn way_capture(way: &Way) -> f64 {
-    if way.scheme == Scheme::Adaptive { way.fineness } else { 0.02 }
+fn way_capture(way: &SchemeSetting) -> f64 {
+    way.scheme.of([0.02, way.fineness, 0.02, 0.02])
 }
 
 /// 100 m/s onto a single layer of triangles, upright and at 0.1°: on its side it stays.
-pub(super) fn thin_sheet(way: &Way, notes: &mut Notes) {
+pub(super) fn thin_sheet(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     for (setting, v) in [
         ("upright", Vec3::new(0.0, 0.0, -100.0)),
@@ -140,7 +141,7 @@ pub(super) fn thin_sheet(way: &Way, notes: &mut Notes) {
 }
 
 /// Starts with a gap of nothing: inwards, outwards, along, at rest, and 1e-17 m too deep.
-pub(super) fn zero_gap(way: &Way, notes: &mut Notes) {
+pub(super) fn zero_gap(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     for (setting, v, gap) in [
         ("inwards", Vec3::new(0.0, 0.0, -1.0), 0.0),
@@ -165,7 +166,7 @@ pub(super) fn zero_gap(way: &Way, notes: &mut Notes) {
 }
 
 /// From behind a sheet, thrown up against it without gravity: the mirror image of the throw from the front, bit for bit.
-pub(super) fn from_behind(way: &Way, notes: &mut Notes) {
+pub(super) fn from_behind(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let front = Setup {
         centre_m: Vec3::new(0.3, 0.2, 1.0),
@@ -184,7 +185,7 @@ pub(super) fn from_behind(way: &Way, notes: &mut Notes) {
 }
 
 /// No rebound with e = 0; with e = 1 the height is kept over ten bounces, as far as the numerics keep it.
-pub(super) fn restitution(way: &Way, notes: &mut Notes) {
+pub(super) fn restitution(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let with = |e: f64| Ground { restitution: Some(e), friction_angle_rad: 0.0, ..GROUND };
     let drop = Setup { centre_m: Vec3::new(0.3, 0.2, 1.5), ..SETUP };
@@ -201,18 +202,13 @@ pub(super) fn restitution(way: &Way, notes: &mut Notes) {
         - 0.5)
         .max(0.0);
     let law = "change of height over ten bounces from 1 m (m)";
-    match way.scheme {
-        // keeps exp(−π ω Δt/4) of the speed in each of ten bounces: 0.0066 of it, twice that of the height
-        Scheme::Dda => notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 0.15),
-        Scheme::Adaptive => {
-            notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 10.0 * 4.0 * way.fineness / 4.4);
-        }
-        _ => notes.hold(way, "e = 1", law, (kept - 1.0).abs(), 1e-3),
-    }
+    // the fixed step keeps exp(−π ω Δt/4) of the speed in each of ten bounces: 0.0066 of it, twice that of the height
+    let bound = way.scheme.of([0.15, 10.0 * 4.0 * way.fineness / 4.4, 1e-3, 1e-3]);
+    notes.hold(way, "e = 1", law, (kept - 1.0).abs(), bound);
 }
 
 /// e = 0.9 down to rest: finitely many impacts, the time `t_f (1 + e)/(1 − e)`.
-pub(super) fn bounce_to_rest(way: &Way, notes: &mut Notes) {
+pub(super) fn bounce_to_rest(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let ground = Ground { restitution: Some(0.9), ..GROUND };
     let setup = Setup {
@@ -227,17 +223,13 @@ pub(super) fn bounce_to_rest(way: &Way, notes: &mut Notes) {
     let (e, time) = (0.9, journey.end.time_s - setup.rest_time_s);
     let off = (time / (falls * (1.0 + e) / (1.0 - e)) - 1.0).abs();
     // the time to rest is 1/(1 − e) times the error of e: a hundredth of e is a tenth of it
-    let bound = match way.scheme {
-        Scheme::Dda => 0.06,
-        // a dozen steps of each impact: twice the local error over the first speed of 4.4 m/s
-        Scheme::Adaptive => 10.0 * 2.0 * way.fineness / 4.4,
-        _ => 0.02,
-    };
+    // adaptive: a dozen steps of each impact, twice the local error over the first speed of 4.4 m/s
+    let bound = way.scheme.of([0.06, 10.0 * 2.0 * way.fineness / 4.4, 0.02, 0.02]);
     notes.hold(way, "", "time to rest, relative to t_f (1 + e)/(1 − e)", off, bound);
 }
 
 /// Without friction the spin keeps every bit; with 89° nothing slips: the touched point ends at rest.
-pub(super) fn friction(way: &Way, notes: &mut Notes) {
+pub(super) fn friction(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let with = |degrees: f64| Ground { friction_angle_rad: degrees.to_radians(), ..GROUND };
     let spin = Vec3::new(3.0, -20.0, 4.0);
@@ -251,7 +243,7 @@ pub(super) fn friction(way: &Way, notes: &mut Notes) {
 }
 
 /// Without gravity a rock flies straight, strikes once and never comes back.
-pub(super) fn no_gravity(way: &Way, notes: &mut Notes) {
+pub(super) fn no_gravity(way: &SchemeSetting, notes: &mut Notes) {
     let floor = floor();
     let setup = Setup {
         gravity_m_s2: 0.0,
@@ -263,6 +255,6 @@ pub(super) fn no_gravity(way: &Way, notes: &mut Notes) {
     let journey = notes.follow(way, "", &setup, &floor);
     let off = (journey.end.velocity_m_s.z - 2.0).abs();
     // the errors of a dozen steps add up to about twice the local error of 0.05 m/s
-    let bound = if way.scheme == Scheme::Rigid { 1e-12 } else { 0.1 };
+    let bound = if sprung(way) { 0.1 } else { 1e-12 };
     notes.hold(way, "", "leaves with e v (m/s)", off, bound);
 }

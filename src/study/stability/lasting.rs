@@ -1,6 +1,6 @@
 //! What shows only after long, or among many.
 
-use super::{Notes, RISE, Way, sprung};
+use super::{Notes, RISE, SchemeSetting, sprung};
 use crate::ground::Ground;
 use crate::math;
 use crate::random::{Purpose, stream, unit};
@@ -11,7 +11,7 @@ use crate::terrain::make;
 
 /// On a slope that friction and rolling friction hold: no creep, and as good as no cost. A top spinning on the spot slows
 /// down and stays where it is.
-pub(super) fn rest(way: &Way, notes: &mut Notes) {
+pub(super) fn rest(way: &SchemeSetting, notes: &mut Notes) {
     let angle = 20f64.to_radians();
     let slope = terrain(make::jittered_plane(10.0, 6, angle));
     let ground = Ground { rolling_friction: 0.5, ..GROUND };
@@ -64,7 +64,7 @@ pub(super) fn rest(way: &Way, notes: &mut Notes) {
 
 /// Rocks of all sizes down a rough slope of 10 000 triangles: none fails, none is lost, no energy rises, and the ledger
 /// accounts for all of it.
-pub(super) fn random_releases(way: &Way, notes: &mut Notes) {
+pub(super) fn random_releases(way: &SchemeSetting, notes: &mut Notes) {
     let slope = terrain(make::natural_slope(61, 82).facets);
     let rocks = if way.scheme.has_fixed_step() { 2 } else { 100 };
     let step = settings(way.scheme, way.fineness, None);

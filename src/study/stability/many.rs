@@ -1,6 +1,6 @@
 //! Rocks that touch each other: mass ratios, one centre for two. The rigid scheme knows rocks alone.
 
-use super::{Notes, RISE, Way, is_finite, same_bits};
+use super::{Notes, RISE, SchemeSetting, is_finite, same_bits};
 use crate::contact::pair::Strength;
 use crate::math;
 use crate::plan::{Recorders, RestRule};
@@ -9,7 +9,6 @@ use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{
     Keep, Observer, PairMaterial, RunSettings, Stop, Trajectory, simulate_world,
 };
-use crate::solver::Scheme;
 use crate::study::bench::{GRAVITY_M_S2, GROUND, settings, terrain};
 use crate::terrain::{Terrain, make};
 use std::sync::atomic::AtomicBool;
@@ -21,7 +20,7 @@ type Sphere = (f64, f64, f64);
 
 /// Spheres above each other at x = 0.3 m, y = 0.2 m.
 fn together(
-    way: &Way,
+    way: &SchemeSetting,
     on: &Terrain,
     spheres: &[Sphere],
     (gravity_m_s2, longest_s): (f64, f64),
@@ -52,7 +51,7 @@ fn together(
 
 /// The same twice: holds what must hold of every journey.
 fn follow(
-    (way, notes, setting): (&Way, &mut Notes, &str),
+    (way, notes, setting): (&SchemeSetting, &mut Notes, &str),
     on: &Terrain,
     spheres: &[Sphere],
     forces: (f64, f64),
@@ -71,7 +70,7 @@ fn follow(
 const RIGID_OVERLAP: f64 = 2e-5;
 
 /// One on the other: the springs are pressed by `(m₁ + m₂) g/p_N` and `m₂ g/p_N`, whatever the ratio of the masses.
-pub(super) fn stack(way: &Way, notes: &mut Notes) {
+pub(super) fn stack(way: &SchemeSetting, notes: &mut Notes) {
     let is_rigid = !way.scheme.has_springs();
     let floor = terrain(make::jittered_plane(40.0, 8, 0.0));
     let mass = |density_kg_m3| Rock { radius_m: RADIUS_M, density_kg_m3 }.mass_kg();
@@ -101,7 +100,7 @@ pub(super) fn stack(way: &Way, notes: &mut Notes) {
 }
 
 /// Head-on without gravity: both leave as momentum and restitution say.
-pub(super) fn head_on(way: &Way, notes: &mut Notes) {
+pub(super) fn head_on(way: &SchemeSetting, notes: &mut Notes) {
     let space = terrain(far());
     for ratio in [1e-9, 1e-3, 1.0, 1e3, 1e9] {
         let setting = format!("struck over striking mass {ratio:.0e}");
@@ -116,12 +115,8 @@ pub(super) fn head_on(way: &Way, notes: &mut Notes) {
         let off = (v[0] - expected[0]).abs().max((v[1] - expected[1]).abs());
         // the light one's oscillation decides: a dozen steps at the local error, or ω Δt of the fixed step
         let light = m * n / (m + n);
-        let bound = match way.scheme {
-            Scheme::Dda => way.fineness * (GROUND.normal_stiffness_n_m / light).sqrt(),
-            Scheme::Reference => 100.0 * way.fineness,
-            Scheme::Rigid => 1e-9,
-            Scheme::Adaptive => 3.0 * way.fineness,
-        };
+        let phase = way.fineness * (GROUND.normal_stiffness_n_m / light).sqrt();
+        let bound = way.scheme.of([phase, 3.0 * way.fineness, 100.0 * way.fineness, 1e-9]);
         // where a step does not resolve the impact, restitution is anything between none and all
         notes.hold(
             way,
@@ -140,7 +135,7 @@ pub(super) fn head_on(way: &Way, notes: &mut Notes) {
 
 /// Two spheres about one centre: no force has a direction, and nothing may come of nothing. (A scene that starts so is
 /// refused.) In flight they stay together.
-pub(super) fn coincident(way: &Way, notes: &mut Notes) {
+pub(super) fn coincident(way: &SchemeSetting, notes: &mut Notes) {
     let space = terrain(far());
     let spheres = [(2700.0, 0.0, 1.0), (2700.0, 0.0, -1.0)];
     let falls = follow((way, notes, ""), &space, &spheres, (0.0, 0.1));

@@ -27,7 +27,7 @@ pub enum Verdict {
 
 /// One impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cell {
+pub struct StabilityCell {
     /// Normal stiffness (N/m).
     pub stiffness_n_m: f64,
     /// Step (s) or tolerance (m/s).
@@ -48,7 +48,7 @@ pub struct Map {
     /// Stiffness (N/m), rising.
     pub stiffness_n_m: Vec<f64>,
     /// Row by row: all stiffnesses of the first step, then of the next.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<StabilityCell>,
 }
 
 impl Map {
@@ -58,13 +58,13 @@ impl Map {
             range.map(|power| 10f64.powi(power)).collect()
         };
         let floor = terrain(make::jittered_plane(50.0, 1, 0.0));
-        [
-            (Scheme::Dda, powers(-7..=-2)),
-            (Scheme::Adaptive, powers(-6..=0)),
-            (Scheme::Reference, powers(-8..=-2)),
-        ]
-        .map(|(scheme, fineness)| Self::of(scheme, fineness, powers(6..=14), &floor))
-        .into()
+        let sprung = Scheme::ALL.into_iter().filter(|scheme| scheme.has_springs());
+        sprung
+            .map(|scheme| {
+                let (from, to) = scheme.of([(-7, -2), (-6, 0), (-8, -2), (0, 0)]);
+                Self::of(scheme, powers(from..=to), powers(6..=14), &floor)
+            })
+            .collect()
     }
 
     fn of(scheme: Scheme, fineness: Vec<f64>, stiffness_n_m: Vec<f64>, floor: &Terrain) -> Self {
@@ -87,7 +87,7 @@ fn cell(
     stiffness: f64,
     floor: &Terrain,
     scratch: &mut Scratch,
-) -> Cell {
+) -> StabilityCell {
     let omega = (stiffness / SETUP.rock.mass_kg()).sqrt();
     let ground =
         Ground { normal_stiffness_n_m: stiffness, shear_stiffness_n_m: 0.25 * stiffness, ..GROUND };
@@ -110,5 +110,5 @@ fn cell(
     } else {
         Verdict::Stable
     };
-    Cell { stiffness_n_m: stiffness, fineness, rebound, verdict }
+    StabilityCell { stiffness_n_m: stiffness, fineness, rebound, verdict }
 }

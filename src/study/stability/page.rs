@@ -1,7 +1,6 @@
 //! The page of the stiff and extreme cases.
 
-use super::{Outcome, WAYS};
-use crate::study::bench::goes_by_tolerance;
+use super::{CaseOutcome, WAYS};
 use std::fmt::Write as _;
 
 const INTRODUCTION: &str = "\
@@ -15,10 +14,10 @@ scene.
 ";
 
 /// Writes the page.
-pub(in crate::study) fn page(outcomes: &[Outcome]) -> String {
+pub(in crate::study) fn page(outcomes: &[CaseOutcome]) -> String {
     let mut page = String::from(INTRODUCTION);
     for way in WAYS {
-        let unit = if goes_by_tolerance(way.scheme) { "m/s" } else { "s" };
+        let unit = way.scheme.fineness_unit();
         let _ = writeln!(page, "- `{}` at {} {unit}", way.scheme.name(), way.fineness);
     }
     page += "\n![Stiffness against step](map.svg)\n\n| case |";
@@ -58,15 +57,15 @@ pub(in crate::study) fn page(outcomes: &[Outcome]) -> String {
 }
 
 /// How much of its bound a number uses (–).
-fn use_of(outcome: &Outcome) -> f64 {
+fn use_of(outcome: &CaseOutcome) -> f64 {
     if !outcome.holds() {
         return f64::INFINITY;
     }
     if outcome.bound > 0.0 { outcome.found / outcome.bound } else { 0.0 }
 }
 
-fn broken(page: &mut String, outcomes: &[Outcome]) {
-    let broken: Vec<&Outcome> = outcomes.iter().filter(|outcome| !outcome.holds()).collect();
+fn broken(page: &mut String, outcomes: &[CaseOutcome]) {
+    let broken: Vec<&CaseOutcome> = outcomes.iter().filter(|outcome| !outcome.holds()).collect();
     if broken.is_empty() {
         let _ = writeln!(page, "\nAll {} bounds are kept.", outcomes.len());
         return;
@@ -75,7 +74,7 @@ fn broken(page: &mut String, outcomes: &[Outcome]) {
         page,
         "\n## Outside their bounds\n\n| case | setting | scheme | what | found | bound |\n|---|---|---|---|---|---|"
     );
-    for Outcome { case, setting, scheme, law, found, bound } in broken {
+    for CaseOutcome { case, setting, scheme, law, found, bound } in broken {
         let _ = writeln!(
             page,
             "| {case} | {setting} | {} | {law} | {found:.2e} | {bound:.2e} |",
@@ -85,10 +84,10 @@ fn broken(page: &mut String, outcomes: &[Outcome]) {
 }
 
 /// All numbers as CSV.
-pub(in crate::study) fn csv(outcomes: &[Outcome]) -> String {
+pub(in crate::study) fn csv(outcomes: &[CaseOutcome]) -> String {
     let mut text = String::from("case,setting,scheme,law,found,bound,holds\n");
     for outcome in outcomes {
-        let Outcome { case, setting, scheme, law, found, bound } = outcome;
+        let CaseOutcome { case, setting, scheme, law, found, bound } = outcome;
         let _ = writeln!(
             text,
             "{case},\"{setting}\",{},\"{law}\",{found:.3e},{bound:.3e},{}",

@@ -8,10 +8,10 @@ use crate::terrain::Terrain;
 pub(super) const STEP_S: f64 = 1e-5;
 
 /// A line in a figure.
-pub(super) type Line = Vec<(f64, f64)>;
+pub(super) type FigureLine = Vec<(f64, f64)>;
 
 /// The mesh as seen along y, without the walls that face the viewer; nothing of a large one.
-pub(super) fn outline(terrain: &Terrain) -> Vec<Line> {
+pub(super) fn outline(terrain: &Terrain) -> Vec<FigureLine> {
     const MOST_TRIANGLES: usize = 100;
     if terrain.triangles.len() > MOST_TRIANGLES {
         return Vec::new();
@@ -49,7 +49,11 @@ pub(super) fn heights(title: &str, path: &[PathPoint]) -> Curves {
 }
 
 /// Spheres at a step as seen along the edge; at step 0 the whole way of the centres, and the spheres at its end.
-pub(super) fn side(title: &str, (falls, ground): (&[Trajectory], &[Line]), step: usize) -> Curves {
+pub(super) fn side(
+    title: &str,
+    (falls, ground): (&[Trajectory], &[FigureLine]),
+    step: usize,
+) -> Curves {
     let mut curves = Curves::new(title, "Across (m)", "Height (m)");
     curves.ground = ground.to_vec();
     for fall in falls {

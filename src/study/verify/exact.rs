@@ -1,14 +1,15 @@
 //! Two spheres and stacks, whose answers are formulas.
 
-use super::{Row, Verification, timed};
+use super::{Verification, VerificationRow, timed};
 use crate::contact::pair::Strength;
 use crate::error::Result;
-use crate::ground::Ground;
 use crate::plan::{Recorders, RestRule};
 use crate::release::Release;
-use crate::rock::{Motion, Rock, Vec3};
+use crate::rock::{Motion, Vec3};
 use crate::simulation::{Keep, Observer, PairMaterial, RunSettings, Trajectory, simulate_world};
-use crate::solver::{Scheme, Settings};
+use crate::solver::Settings;
+use crate::study::bench::{GRAVITY_M_S2, GROUND, ROCK};
+use crate::study::exact::USUAL;
 use crate::terrain::make::jittered_plane;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
@@ -16,26 +17,10 @@ use crate::terrain::{Sheet, Terrain};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-const ROCK: Rock = Rock { radius_m: 0.5, density_kg_m3: 2700.0 };
-/// Table 1 with a restitution of 0.5.
-const GROUND: Ground = Ground {
-    normal_stiffness_n_m: 1e9,
-    shear_stiffness_n_m: 0.25e9,
-    friction_angle_rad: std::f64::consts::FRAC_PI_6,
-    restitution: Some(0.5),
-    rolling_friction: 0.0,
-    roughness_rad: 0.0,
-    roughness_length_m: None,
-    slip_friction: None,
-    scar: None,
-    restitution_half_m_s: None,
-};
-const G: f64 = 9.8;
-
 pub(super) fn run(all: &mut Verification) -> Result<()> {
     let near = [[-1.0, 0.0, 20.0], [1.0, 0.0, 20.0]];
     let (falls, seconds) = timed(|| rocks(&near, [1.0, 0.0, 0.0], 0.0, 2.0))?;
-    let row = |quantity, expected: f64, computed: f64, allowed: f64| Row {
+    let row = |quantity, expected: f64, computed: f64, allowed: f64| VerificationRow {
         case: "two equal spheres head-on, e = 0.5",
         scheme: "adaptive",
         quantity,
@@ -57,15 +42,15 @@ pub(super) fn run(all: &mut Verification) -> Result<()> {
 /// `(m1 + m2) g/p_N` below, `m2 g/p_N` above.
 fn stack(all: &mut Verification) -> Result<()> {
     let places = [[0.3, 0.2, 0.5], [0.3, 0.2, 1.5]];
-    let (falls, seconds) = timed(|| rocks(&places, [0.0; 3], G, 3.0))?;
+    let (falls, seconds) = timed(|| rocks(&places, [0.0; 3], GRAVITY_M_S2, 3.0))?;
     let z = [0, 1].map(|k| falls[k].end.position_m.z);
-    let once = ROCK.mass_kg() * G / GROUND.normal_stiffness_n_m;
+    let once = ROCK.mass_kg() * GRAVITY_M_S2 / GROUND.normal_stiffness_n_m;
     let pens = [
         ("penetration below (m)", 2.0 * once, 0.5 - z[0]),
         ("penetration above (m)", once, 1.0 - (z[1] - z[0])),
     ];
     for (quantity, expected, computed) in pens {
-        all.rows.push(Row {
+        all.rows.push(VerificationRow {
             case: "a stack of two spheres at rest",
             scheme: "adaptive",
             quantity,
@@ -89,7 +74,7 @@ fn rocks(
 ) -> Result<Vec<Trajectory>> {
     let terrain = terrain(if gravity_m_s2 > 0.0 { jittered_plane(40.0, 8, 0.0) } else { far() })?;
     let step = Settings {
-        scheme: Scheme::Adaptive,
+        scheme: USUAL,
         tolerance_m_s: 1e-4,
         step_s: f64::INFINITY,
         shear_memory: true,

@@ -1,7 +1,7 @@
 //! The paper's four examples, with its scheme, step and Table 1.
 
-use super::draw::{Line, STEP_S, heights, outline, side, speeds};
-use super::{Row, Verification, timed};
+use super::draw::{FigureLine, STEP_S, heights, outline, side, speeds};
+use super::{Verification, VerificationRow, timed};
 use crate::error::{Error, Result};
 use crate::math;
 use crate::plan::Plan;
@@ -89,8 +89,8 @@ impl Example {
 fn rows_of(
     case: &'static str,
     seconds: f64,
-) -> impl Fn(&'static str, f64, &'static str, f64, f64) -> Row {
-    move |quantity, expected, source, computed, allowed| Row {
+) -> impl Fn(&'static str, f64, &'static str, f64, f64) -> VerificationRow {
+    move |quantity, expected, source, computed, allowed| VerificationRow {
         case,
         scheme: "",
         quantity,
@@ -291,7 +291,7 @@ fn rockfall(all: &mut Verification, text: &str) -> Result<()> {
 }
 
 /// Runs an example on its meshes as made; results in map coordinates, paths at `path_step_s`.
-fn example(text: &str, path_step_s: f64) -> Result<(Vec<Trajectory>, Vec<Line>)> {
+fn example(text: &str, path_step_s: f64) -> Result<(Vec<Trajectory>, Vec<FigureLine>)> {
     let mut scene = Scene::parse(text, Path::new("examples/paper/example.toml"))?;
     scene.record.path_step_s = Some(path_step_s);
     let plan = Plan::compile(&scene, made_terrain(&scene)?)?;

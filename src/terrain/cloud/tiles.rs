@@ -3,8 +3,9 @@
 //! The cells that thin a cloud lie on one lattice for all files. So the lowest point of each cell of all tiles together is
 //! the one that a single file of all points would keep, and the surface is that of the single file.
 
-use super::{BoxM, Cloud};
+use super::Cloud;
 use crate::rock::Vec3;
+use crate::terrain::grid::BoxM;
 use std::collections::BTreeMap;
 
 /// Tiles farther apart than this (in cells) are clouds of their own.

@@ -3,13 +3,13 @@
 use super::Loaded;
 use crate::error::{Error, Result};
 use crate::terrain::groups::Groups;
-use crate::terrain::options::Source;
+use crate::terrain::options::MeshSource;
 
 /// Joins the clouds that touch into the first of them.
 ///
 /// # Errors
 /// Tiles that touch with different grounds or options.
-pub(super) fn join(all: &mut [Loaded], sources: &[Source]) -> Result<()> {
+pub(super) fn join(all: &mut [Loaded], sources: &[MeshSource]) -> Result<()> {
     let mut groups = Groups::of(all.len());
     for one in 0..all.len() {
         for other in one + 1..all.len() {
@@ -36,7 +36,7 @@ pub(super) fn join(all: &mut [Loaded], sources: &[Source]) -> Result<()> {
 }
 
 /// Refuses tiles that touch and are not meant alike.
-fn alike(one: &Source, other: &Source) -> Result<()> {
+fn alike(one: &MeshSource, other: &MeshSource) -> Result<()> {
     let what = if one.sheet.ground != other.sheet.ground {
         "ground"
     } else if one.options != other.options {

@@ -19,7 +19,7 @@ enum Coding {
 
 /// A type of number.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+enum NumberKind {
     I8,
     U8,
     I16,
@@ -30,7 +30,7 @@ enum Kind {
     F64,
 }
 
-impl Kind {
+impl NumberKind {
     fn named(word: &str) -> Option<Self> {
         Some(match word {
             "char" | "int8" => Self::I8,
@@ -74,12 +74,12 @@ impl Kind {
 #[derive(Debug, Clone, PartialEq)]
 struct Property {
     name: String,
-    count: Option<Kind>,
-    kind: Kind,
+    count: Option<NumberKind>,
+    kind: NumberKind,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-struct Element {
+struct PlyElement {
     name: String,
     count: usize,
     properties: Vec<Property>,
@@ -91,7 +91,7 @@ struct Element {
 /// Bytes that are no PLY, a file cut off, a number that is not finite, a face with an unknown corner, or no face.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<Soup> {
     let (coding, elements, body) = header(bytes, file)?;
-    let mut numbers = Numbers { coding, bytes, at: body, file };
+    let mut numbers = PlyNumbers { coding, bytes, at: body, file };
     let (mut corners, mut soup) = (Vec::new(), Soup::of_format(Format::Ply));
     for element in &elements {
         match element.name.as_str() {
@@ -109,8 +109,8 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Soup> {
 }
 
 /// Coding, elements, and where the numbers begin.
-fn header(bytes: &[u8], file: &Path) -> Result<(Coding, Vec<Element>, usize)> {
-    let (mut coding, mut elements, mut at) = (None, Vec::<Element>::new(), 0);
+fn header(bytes: &[u8], file: &Path) -> Result<(Coding, Vec<PlyElement>, usize)> {
+    let (mut coding, mut elements, mut at) = (None, Vec::<PlyElement>::new(), 0);
     for number in 1.. {
         let Some(length) = bytes[at..].iter().position(|&byte| byte == b'\n') else {
             return Err(wrong(file, "header", "found no `end_header`", CUT_OFF));
@@ -134,7 +134,7 @@ fn header(bytes: &[u8], file: &Path) -> Result<(Coding, Vec<Element>, usize)> {
             }
             ["element", name, count] => {
                 let count = count.parse().map_err(|_| refused())?;
-                elements.push(Element { name: name.to_owned(), count, properties: Vec::new() });
+                elements.push(PlyElement { name: name.to_owned(), count, properties: Vec::new() });
             }
             ["property", ref rest @ ..] => {
                 let property = property(rest).ok_or_else(refused)?;
@@ -162,23 +162,23 @@ fn property(words: &[&str]) -> Option<Property> {
     match *words {
         ["list", count, kind, name] => Some(Property {
             name: name.to_owned(),
-            count: Some(Kind::named(count)?),
-            kind: Kind::named(kind)?,
+            count: Some(NumberKind::named(count)?),
+            kind: NumberKind::named(kind)?,
         }),
         [kind, name] => {
-            Some(Property { name: name.to_owned(), count: None, kind: Kind::named(kind)? })
+            Some(Property { name: name.to_owned(), count: None, kind: NumberKind::named(kind)? })
         }
         _ => None,
     }
 }
 
-fn vertices(element: &Element, numbers: &mut Numbers, soup: &mut Soup) -> Result<Vec<Vec3>> {
+fn vertices(element: &PlyElement, numbers: &mut PlyNumbers, soup: &mut Soup) -> Result<Vec<Vec3>> {
     let axis = |name: &str| element.properties.iter().position(|property| property.name == name);
     let (Some(x), Some(y), Some(z)) = (axis("x"), axis("y"), axis("z")) else {
         let remedy = "write the properties x, y and z of every vertex";
         return Err(wrong(numbers.file, "element vertex", "found no x, y, z", remedy));
     };
-    let narrow = element.properties[x].kind != Kind::F64;
+    let narrow = element.properties[x].kind != NumberKind::F64;
     soup.is_single = numbers.coding != Coding::Text && narrow;
     let mut corners = Vec::new();
     for number in 1..=element.count {
@@ -201,8 +201,8 @@ fn vertices(element: &Element, numbers: &mut Numbers, soup: &mut Soup) -> Result
 }
 
 fn faces(
-    element: &Element,
-    numbers: &mut Numbers,
+    element: &PlyElement,
+    numbers: &mut PlyNumbers,
     corners: &[Vec3],
     soup: &mut Soup,
 ) -> Result<()> {
@@ -236,16 +236,16 @@ fn faces(
 }
 
 /// The numbers behind the header, one after the other.
-struct Numbers<'a> {
+struct PlyNumbers<'a> {
     coding: Coding,
     bytes: &'a [u8],
     at: usize,
     file: &'a Path,
 }
 
-impl Numbers<'_> {
+impl PlyNumbers<'_> {
     /// One row of an element; `take` gets the number of the property and the value, list entries one by one.
-    fn row(&mut self, element: &Element, mut take: impl FnMut(usize, f64)) -> Result<()> {
+    fn row(&mut self, element: &PlyElement, mut take: impl FnMut(usize, f64)) -> Result<()> {
         for (number, property) in element.properties.iter().enumerate() {
             let count = match property.count {
                 None => 1.0,
@@ -259,7 +259,7 @@ impl Numbers<'_> {
         Ok(())
     }
 
-    fn next(&mut self, kind: Kind, element: &Element) -> Result<f64> {
+    fn next(&mut self, kind: NumberKind, element: &PlyElement) -> Result<f64> {
         let cut_off = || {
             let place = format!("element {}", element.name);
             wrong(self.file, place, "found the end of the file", CUT_OFF)

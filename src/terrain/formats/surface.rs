@@ -1,6 +1,6 @@
 //! From what a file holds to triangles: crop, coarsen, cut, and say what was done.
 
-use super::{Crop, Heights, Loaded, Options, wider};
+use super::{Crop, ElevationModel, Loaded, Options, wider};
 use crate::error::{Error, Result};
 use crate::rock::Vec3;
 use crate::terrain::facets::Facets;
@@ -149,7 +149,7 @@ pub(in crate::terrain) fn unreached(file: &Path) -> Error {
     Error::input(file, "crop", "found no cell below the places of release", remedy)
 }
 
-impl Heights {
+impl ElevationModel {
     /// Cropped and coarsened.
     fn used(
         mut self,
@@ -200,8 +200,11 @@ impl Heights {
         (soup.epsg, soup.notes, soup.facets) = (self.epsg, self.notes, facets);
         // a tile whose places all belong to earlier ones has none of its own
         if soup.facets.is_empty() && self.joined == 0 {
-            let remedy = "write a file whose cells have data, three neighbours or more";
-            let found = "found no triangle between cells with data";
+            let remedy =
+                "leave the file out, or write one whose cells have data, three neighbours or more";
+            let (data, all) = (self.grid.values.len() - self.grid.holes(), self.grid.values.len());
+            let found =
+                format!("found data in {data} of {all} cells, and no triangle between them");
             return Err(Error::input(file, "cells", found, remedy));
         }
         Ok(soup)

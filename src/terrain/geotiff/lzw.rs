@@ -18,7 +18,7 @@ const FLOATING_POINT: u16 = 3;
 
 /// Where the packed parts of an image stand, and what is in them.
 #[derive(Debug)]
-pub(super) struct Packed {
+pub(super) struct PackedParts {
     offsets: Vec<u64>,
     lengths: Vec<u64>,
     is_tiled: bool,
@@ -30,7 +30,7 @@ pub(super) struct Packed {
     big_endian: bool,
 }
 
-impl Packed {
+impl PackedParts {
     /// What must be known of an image that is packed so; none of another one.
     pub(super) fn of<R: Read + Seek>(decoder: &mut Decoder<R>) -> TiffResult<Option<Self>> {
         let mut number = |tag| decoder.find_tag_unsigned::<u16>(tag);

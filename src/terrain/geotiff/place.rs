@@ -2,6 +2,7 @@
 
 use super::{Implausible, LOWEST_M, USUAL_NODATA, Window, damaged, tag, translate};
 use crate::error::{Error, Result};
+use crate::gis::FARTHEST_M;
 use crate::terrain::grid::Grid;
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -14,6 +15,7 @@ mod key {
     pub(super) const RASTER_TYPE: u16 = 1025;
     pub(super) const PROJECTED: u16 = 3072;
     pub(super) const LINEAR_UNITS: u16 = 3076;
+    pub(super) const VERTICAL: u16 = 4096;
     pub(super) const VERTICAL_UNITS: u16 = 4099;
 }
 
@@ -25,16 +27,16 @@ const GEOCENTRIC: u16 = 3;
 const PIXEL_IS_POINT: u16 = 2;
 /// EPSG code of the metre.
 const METRE: u16 = 9001;
+/// Vertical systems with heights in feet (EPSG registry, v10): GDAL writes their code and no unit.
+const IN_FEET: [u16; 9] = [5702, 5754, 6130, 6131, 6132, 6360, 8050, 8052, 8228];
 /// "Defined by the user": no EPSG code.
 const USER_DEFINED: u16 = 32_767;
 /// Relative difference of width and height up to which a cell is square (–): digits of a writer.
 const SQUARE: f64 = 1e-6;
-/// Coordinates farther out than this (m) are no place on Earth, as in a mesh.
-const FARTHEST_M: f64 = 1e8;
 
 /// Where the cells of an image lie.
 #[derive(Debug)]
-pub(super) struct Place {
+pub(super) struct ImagePlacement {
     /// Map position of the outer corner of the first pixel (m).
     first_m: [f64; 2],
     cell_m: f64,
@@ -45,7 +47,7 @@ pub(super) struct Place {
     nodata: Option<f64>,
 }
 
-impl Place {
+impl ImagePlacement {
     pub(super) fn read<R: Read + Seek>(
         decoder: &mut Decoder<R>,
         file: &Path,
@@ -178,10 +180,23 @@ fn transform<R: Read + Seek>(
     }
 }
 
-/// Refuses heights that are stored times a scale or plus an offset.
+/// The unit that GDAL's metadata name, if it is not the metre.
+fn unit_of_heights(metadata: &str) -> Option<&str> {
+    let (_, rest) = metadata.split_once("role=\"unittype\"")?;
+    let (_, rest) = rest.split_once('>')?;
+    let unit = rest.split('<').next()?.trim();
+    let is_metre =
+        ["", "m", "metre", "metres", "meter", "meters"].contains(&unit.to_lowercase().as_str());
+    (!is_metre).then_some(unit)
+}
+
+/// Refuses heights that are stored in another unit, times a scale or plus an offset.
 fn unscaled<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path) -> Result<()> {
     let tag = Tag::from_u16_exhaustive(tag::GDAL_METADATA);
     let text = decoder.find_tag(tag).ok().flatten().and_then(|value| value.into_string().ok());
+    if let Some(unit) = text.as_deref().and_then(unit_of_heights) {
+        return Err(heights_in_feet(file, format!("found heights in {unit}")));
+    }
     let scaled =
         |text: &String| ["role=\"scale\"", "role=\"offset\""].iter().any(|w| text.contains(w));
     if !text.as_ref().is_some_and(scaled) {
@@ -253,14 +268,39 @@ impl GeoKeys {
             if let Some(unit) =
                 self.get(key).filter(|unit| ![0, METRE, USER_DEFINED].contains(unit))
             {
-                return refused(
-                    name,
-                    format!("found the unit EPSG:{unit}, not metres (EPSG:{METRE})"),
+                let said = match unit {
+                    9002 => " (foot)",
+                    9003 => " (US survey foot)",
+                    _ => "",
+                };
+                let found = format!("found the unit EPSG:{unit}{said}, not metres (EPSG:{METRE})");
+                if key == key::VERTICAL_UNITS {
+                    return Err(heights_in_feet(file, found));
+                }
+                // its own code is that of a system in feet
+                let remedy = format!(
+                    "{} with the code of a system in metres; heights in feet are left in feet by it",
+                    self::warp(file, None)
                 );
+                return Err(Error::input(file, name, found, remedy));
             }
         }
-        Ok(())
+        match self.get(key::VERTICAL) {
+            Some(code) if IN_FEET.contains(&code) => {
+                Err(heights_in_feet(file, format!("found heights in feet (EPSG:{code})")))
+            }
+            _ => Ok(()),
+        }
     }
+}
+
+/// Heights in another unit are refused; `found` says in which.
+fn heights_in_feet(file: &Path, found: String) -> Error {
+    let remedy = format!(
+        "write them in metres: gdal_calc.py -A {} --outfile out.tif --calc A*0.3048, then gdal_edit.py -a_srs EPSG:CODE -units m out.tif with the code of the map alone",
+        file.display()
+    );
+    Error::input(file, "heights", found, remedy)
 }
 
 /// The command that makes a north-up grid of square cells in metres.

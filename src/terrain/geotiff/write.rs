@@ -1,6 +1,7 @@
 //! Writing GeoTIFF.
 
 use super::tag;
+use super::tag::GDAL_METADATA;
 use std::io::Cursor;
 use tiff::TiffResult;
 use tiff::encoder::colortype::Gray32Float;
@@ -28,9 +29,6 @@ pub struct Image<'a> {
     /// Row by row, the northern row first.
     pub values: &'a [f32],
 }
-
-/// Tag of GDAL's words about bands.
-const GDAL_METADATA: u16 = 42_112;
 
 /// One deflated band of 32-bit floats with the keys of OGC 19-008r4 (GeoTIFF 1.1): pixel is area, projected system by
 /// its EPSG code where one is given.

@@ -2,6 +2,7 @@
 
 use crate::rock::Vec3;
 use crate::terrain::facets::{Facet, Facets};
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
 /// Numbers of the corners of a cell: south-west, south-east, north-east, north-west.
 pub(super) type Around = [u32; 4];
@@ -19,12 +20,11 @@ impl Lattice {
     pub(super) fn of(
         columns: usize,
         rows: usize,
-        point: impl Fn(usize, usize) -> Option<Vec3>,
+        point: impl Fn(usize, usize) -> Option<Vec3> + Sync,
     ) -> Self {
         let none = Vec3::repeat(f64::NAN);
-        let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
-        let mut points = Vec::with_capacity(columns * rows);
-        points.extend(places.map(|(column, row)| point(column, row).unwrap_or(none)));
+        let place = |at: usize| point(at % columns, at / columns).unwrap_or(none);
+        let points = (0..columns * rows).into_par_iter().map(place).collect();
         Self { columns, rows, points }
     }
 
@@ -33,19 +33,30 @@ impl Lattice {
         !self.points[point as usize].z.is_nan()
     }
 
-    /// The facets of all cells that are `wanted`.
-    pub(super) fn cut(self, wanted: impl Fn(&Self, &Around) -> bool) -> Facets {
+    /// The facets of all cells that are `wanted`; no two points are closer than `apart_m` (m).
+    pub(super) fn cut(
+        self,
+        apart_m: f64,
+        wanted: impl Fn(&Self, &Around) -> bool + Sync,
+    ) -> Facets {
         let (own, wanted) = (&self, &wanted);
         let halves = |row: usize| {
             let of_cell = move |column: usize| own.halves(column, row, wanted);
-            (0..self.columns.saturating_sub(1)).flat_map(of_cell)
+            (0..own.columns.saturating_sub(1)).flat_map(of_cell)
         };
-        let rows = 0..self.rows.saturating_sub(1);
-        // Counted first: millions of facets are not moved about while the list grows.
-        let count = rows.clone().map(|row| halves(row).count()).sum();
-        let mut corners = Vec::with_capacity(count);
-        rows.for_each(|row| corners.extend(halves(row)));
-        Facets::Shared { points: self.points, corners }
+        let rows = (0..own.rows.saturating_sub(1)).into_par_iter();
+        // Counted first: every row then knows its place.
+        let counts: Vec<usize> = rows.map(|row| halves(row).count()).collect();
+        let mut corners = vec![[0; 3]; counts.iter().sum()];
+        let mut free = &mut corners[..];
+        let places: Vec<&mut [[u32; 3]]> = counts
+            .into_iter()
+            .map(|count| free.split_off_mut(..count).unwrap_or_default())
+            .collect();
+        places.into_par_iter().enumerate().for_each(|(row, places)| {
+            places.iter_mut().zip(halves(row)).for_each(|(place, half)| *place = half);
+        });
+        Facets::Shared { points: self.points, corners, apart_m }
     }
 
     /// The facets of one cell.
@@ -74,9 +85,9 @@ impl Lattice {
 pub fn triangulate(
     columns: usize,
     rows: usize,
-    point: impl Fn(usize, usize) -> Option<Vec3>,
+    point: impl Fn(usize, usize) -> Option<Vec3> + Sync,
 ) -> Vec<Facet> {
-    Lattice::of(columns, rows, point).cut(|_, _| true).iter().collect()
+    Lattice::of(columns, rows, point).cut(0.0, |_, _| true).iter().collect()
 }
 
 /// Which corners of a cell make its facets, from the heights at all four; no number where there is no point.

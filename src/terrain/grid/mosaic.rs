@@ -10,7 +10,7 @@ use crate::rock::Vec3;
 use crate::terrain::facets::Facets;
 
 /// Difference of two cells (–, relative), and of two lattices (in cells), below which they are the same: digits of a writer.
-const SAME: f64 = 1e-6;
+const EQUAL: f64 = 1e-6;
 
 /// How two grids stand to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,12 +42,12 @@ impl Grid {
             );
         let common = [0, 1].map(|k| high[k] - low[k]);
         let cell_m = self.cell_m.max(other.cell_m);
-        if common.iter().any(|&m| m < -(1.0 + SAME) * cell_m) {
+        if common.iter().any(|&m| m < -(1.0 + EQUAL) * cell_m) {
             return Standing::Apart;
         }
         let steps = [0, 1].map(|k| (other.corner_m[k] - self.corner_m[k]) / self.cell_m);
-        let on_lattice = steps.iter().all(|step| (step - step.round()).abs() <= SAME);
-        if on_lattice && (self.cell_m - other.cell_m).abs() <= SAME * self.cell_m {
+        let on_lattice = steps.iter().all(|step| (step - step.round()).abs() <= EQUAL);
+        if on_lattice && (self.cell_m - other.cell_m).abs() <= EQUAL * self.cell_m {
             return Standing::Joined(steps.map(|step| step.round() as i64));
         }
         if common.iter().all(|&m| m > 0.0) { Standing::Double(common) } else { Standing::Gap }
@@ -97,7 +97,7 @@ impl Grid {
             let at = inner(point as usize % columns, point as usize / columns);
             own(at).is_some() && first(at).is_none()
         };
-        lattice.cut(|lattice, around| {
+        lattice.cut(self.apart_m(), |lattice, around| {
             around.iter().find(|&&point| lattice.has(point)).is_some_and(|&point| is_own(point))
         })
     }

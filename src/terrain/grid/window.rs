@@ -4,12 +4,12 @@ use super::Grid;
 use crate::math;
 
 /// A box on the map (m): west, south, east, north.
-type BoxM = [f64; 4];
+pub(in crate::terrain) type BoxM = [f64; 4];
 
 /// Share of a coarse cell that must have data (–): less is a hole.
 const ENOUGH: f64 = 0.5;
 /// A remainder of a cell below this share (–) is rounding.
-const ROUNDING: f64 = 1e-9;
+const REMAINDER: f64 = 1e-9;
 
 impl Grid {
     /// Cells without data.
@@ -49,7 +49,7 @@ impl Grid {
     #[must_use]
     pub fn resampled(&self, cell_m: f64) -> Self {
         let ratio = cell_m / self.cell_m;
-        let whole = |count: usize| (count as f64 / ratio + ROUNDING).floor() as usize;
+        let whole = |count: usize| (count as f64 / ratio + REMAINDER).floor() as usize;
         let (columns, rows) = (whole(self.columns), whole(self.rows));
         let mut values = Vec::with_capacity(columns * rows);
         for row in (0..rows).rev() {
@@ -65,8 +65,10 @@ impl Grid {
     /// Mean over a span of columns and one of rows from the south, both in cells.
     fn mean(&self, [columns, rows]: [[f64; 2]; 2]) -> Option<f64> {
         let cells = |[low, high]: [f64; 2], count: usize| {
-            let (low, high) =
-                ((low + ROUNDING).floor() as usize, ((high - ROUNDING).ceil() as usize).min(count));
+            let (low, high) = (
+                (low + REMAINDER).floor() as usize,
+                ((high - REMAINDER).ceil() as usize).min(count),
+            );
             low..high
         };
         let share =

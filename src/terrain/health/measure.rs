@@ -6,11 +6,16 @@ use crate::terrain::groups::Groups;
 use crate::terrain::stl::{Spacing, area_vector};
 use crate::terrain::t_junctions;
 use crate::terrain::weld::{Piece, Tally, Welded};
-use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use rayon::iter::{
+    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator,
+};
 
 /// Longest edge over height (–) above which a triangle counts as a needle: a quarter of a millimetre on 2.5 m. Such a
 /// triangle is kept; its normal is known to about 1e-12.
 const NEEDLE: f64 = 1e4;
+
+/// Triangles whose areas are found beside each other before they are added up.
+const AT_ONCE: usize = 1 << 18;
 
 /// Shares at which the edge lengths are given.
 const QUANTILES: [f64; 5] = [0.0, 0.05, 0.5, 0.95, 1.0];
@@ -49,30 +54,51 @@ pub(super) fn box_m(welded: &Welded) -> [[f64; 3]; 2] {
     [low, high].map(|corner| welded.on_map(corner).into())
 }
 
-/// The edges that fulfil a condition, located at their middle, by the numbers of their ends.
-pub(super) fn edges(welded: &Welded, condition: impl Fn(u32) -> bool + Sync) -> Tally {
-    let mut found: Vec<[u32; 2]> = welded
-        .edges
-        .par_all()
-        .filter(|&edge| condition(edge))
-        .map(|edge| welded.ends(edge))
-        .collect();
-    found.sort_unstable();
-    let mut tally = Tally::default();
-    for ends in found {
-        let [a, b] = ends.map(|v| welded.vertices_m[v as usize]);
-        tally.add(welded.on_map((a + b) / 2.0));
-    }
-    tally
+/// Edges that are not shared by two triangles wound alike.
+#[derive(Debug, Default)]
+pub(super) struct OddEdges {
+    /// Of one triangle.
+    pub(super) borders: Tally,
+    /// Of three or more.
+    pub(super) non_manifold: Tally,
+    /// Of two that both run along it the same way.
+    pub(super) flipped: Tally,
 }
 
-/// Whether an edge has two triangles that both run along it the same way.
-pub(super) fn is_flipped(welded: &Welded, edge: u32) -> bool {
+/// What is odd about an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Odd {
+    Border,
+    NonManifold,
+    Flipped,
+}
+
+/// The odd edges, located at their middle, by the numbers of their ends.
+pub(super) fn odd_edges(welded: &Welded) -> OddEdges {
+    let with_ends = |edge: u32| odd(welded, edge).map(|odd| (welded.ends(edge), odd));
+    let mut found: Vec<([u32; 2], Odd)> = welded.edges.par_all().filter_map(with_ends).collect();
+    found.sort_unstable();
+    let mut tallies = OddEdges::default();
+    for (ends, odd) in found {
+        let [a, b] = ends.map(|v| welded.vertices_m[v as usize]);
+        let tally = match odd {
+            Odd::Border => &mut tallies.borders,
+            Odd::NonManifold => &mut tallies.non_manifold,
+            Odd::Flipped => &mut tallies.flipped,
+        };
+        tally.add(welded.on_map((a + b) / 2.0));
+    }
+    tallies
+}
+
+fn odd(welded: &Welded, edge: u32) -> Option<Odd> {
     let from = |side: u32| welded.triangles[side as usize / 3][side as usize % 3];
     let mut sides = welded.edges.sides_on(edge);
     match (sides.next(), sides.next(), sides.next()) {
-        (Some(one), Some(other), None) => from(one) == from(other),
-        _ => false,
+        (_, None, _) => Some(Odd::Border),
+        (_, _, Some(_)) => Some(Odd::NonManifold),
+        (Some(one), Some(other), None) => (from(one) == from(other)).then_some(Odd::Flipped),
+        (None, ..) => None,
     }
 }
 
@@ -95,13 +121,17 @@ pub(super) fn needles(welded: &Welded) -> Tally {
 
 /// Connected runs of border edges.
 pub(super) fn border_loops(welded: &Welded) -> usize {
-    let borders = welded.edges.borders();
-    let mut groups = Groups::of(welded.vertices_m.len());
-    for &edge in &borders {
-        let [a, b] = welded.ends(edge);
-        groups.join(a, b);
+    let ends: Vec<[u32; 2]> =
+        welded.edges.borders().into_iter().map(|edge| welded.ends(edge)).collect();
+    let mut on_border: Vec<u32> = ends.iter().flatten().copied().collect();
+    on_border.sort_unstable();
+    on_border.dedup();
+    let place = |vertex: u32| on_border.partition_point(|&other| other < vertex) as u32;
+    let mut groups = Groups::of(on_border.len());
+    for [a, b] in ends {
+        groups.join(place(a), place(b));
     }
-    groups.sizes().into_iter().filter(|&vertices| vertices > 1).count()
+    groups.sizes().len()
 }
 
 /// Border vertices on the inside of a border edge, each once.
@@ -117,12 +147,13 @@ pub(super) fn t_junctions(welded: &Welded) -> Tally {
 
 /// Triangles of each edge-connected part, the largest first.
 pub(super) fn parts(welded: &Welded) -> Vec<usize> {
-    let mut groups = Groups::of(welded.triangles.len());
-    for side in 0..3 * welded.triangles.len() as u32 {
-        for other in welded.edges.sides_on(side).skip(1).take_while(|&other| other > side) {
-            groups.join(side / 3, other / 3);
-        }
-    }
+    let beside = |t: u32| {
+        let later = move |side: u32| {
+            welded.edges.sides_on(side).skip(1).take_while(move |&other| other > side)
+        };
+        (3 * t..3 * t + 3).flat_map(later).map(|side| side / 3)
+    };
+    let mut groups = Groups::joined(welded.triangles.len(), beside);
     let mut sizes = groups.sizes();
     sizes.sort_unstable_by(|a, b| b.cmp(a));
     sizes
@@ -130,7 +161,17 @@ pub(super) fn parts(welded: &Welded) -> Vec<usize> {
 
 /// Surface of all triangles (m²).
 pub(super) fn area_m2(welded: &Welded) -> f64 {
-    (0..welded.triangles.len()).map(|t| 0.5 * area_vector(&welded.corners_m(t)).norm()).sum()
+    let mut areas = vec![0.0; AT_ONCE.min(welded.triangles.len())];
+    let mut sum = 0.0;
+    // added up one after the other: the same sum on any number of threads
+    for first in (0..welded.triangles.len()).step_by(AT_ONCE) {
+        let some = &mut areas[..AT_ONCE.min(welded.triangles.len() - first)];
+        some.par_iter_mut().enumerate().for_each(|(k, area)| {
+            *area = 0.5 * area_vector(&welded.corners_m(first + k)).norm();
+        });
+        sum = some.iter().fold(sum, |sum, area| sum + area);
+    }
+    sum
 }
 
 /// Edge lengths (m) at [`QUANTILES`], by the nearest rank.
@@ -155,6 +196,9 @@ fn select(values: &mut [f64], first: usize, (ranks, found): (&[usize], &mut [f64
     let before = ranks.partition_point(|&other| other < rank);
     let behind = ranks.partition_point(|&other| other <= rank);
     found[before..behind].fill(at);
-    select(low, first, (&ranks[..before], &mut found[..before]));
-    select(high, rank + 1, (&ranks[behind..], &mut found[behind..]));
+    let (found_low, found_high) = found.split_at_mut(behind);
+    rayon::join(
+        || select(low, first, (&ranks[..before], &mut found_low[..before])),
+        || select(high, rank + 1, (&ranks[behind..], found_high)),
+    );
 }

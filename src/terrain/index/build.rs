@@ -1,6 +1,7 @@
 //! Building the index: trees of parry's, packed.
 
-use super::{COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, Node, WIDE};
+use super::runs::{PlacedTriangle, Run};
+use super::{BvhNode, COUNT_SHIFT, Child, DEPTH, Index, LEAF, LEAF_BIT, MOST_IN_LEAF, WIDE};
 use crate::rock::Vec3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
@@ -18,64 +19,12 @@ pub(in crate::terrain) struct Sizes {
 impl Sizes {
     /// For the fastest rocks.
     pub(in crate::terrain) const FAST: Self = Self { leaf: LEAF, at_once: 1 << 19 };
-    /// For the least memory.
-    pub(in crate::terrain) const SMALL: Self = Self { leaf: MOST_IN_LEAF, at_once: 1 << 17 };
+    /// For the least memory and the shortest building: halving a part costs less than the same levels of a tree of parry's.
+    pub(in crate::terrain) const SMALL: Self = Self { leaf: MOST_IN_LEAF, at_once: 1 << 13 };
 }
 
-/// Trees of parry's that are built beside each other, at most: each takes its memory.
-const BESIDE: usize = 4;
-
-/// Triangles that stand side by side in the index, by their numbers in the input.
-struct Part<'a> {
-    /// Place of the first one in the index.
-    start: u32,
-    triangles: &'a mut [u32],
-    /// Node and child under which it hangs; none for the root.
-    above: Option<(usize, usize)>,
-}
-
-impl Part<'_> {
-    /// Cut across the middle of the side along which the centres lie widest apart; as many triangles in both, and the same
-    /// ones whatever order they come in.
-    fn halves(self, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> [Self; 2] {
-        let centre = |t: u32| corners(t).iter().sum::<Vec3>();
-        let first = centre(self.triangles[0]);
-        let both =
-            |(lo, hi): (Vec3, Vec3), other: (Vec3, Vec3)| (lo.inf(&other.0), hi.sup(&other.1));
-        let boxes = self.triangles.par_iter().map(|&t| centre(t)).map(|at| (at, at));
-        let (lo, hi) = boxes.reduce(|| (first, first), both);
-        let axis = (hi - lo).imax();
-        let middle = self.triangles.len() / 2;
-        // looked up once: selecting asks for every centre many times
-        let keys: Vec<(f64, u32)> =
-            self.triangles.par_iter().map(|&t| (centre(t)[axis], t)).collect();
-        let by_key = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let mut shuffled = keys.clone();
-        let first_high = *shuffled.select_nth_unstable_by(middle, by_key).1;
-        drop(shuffled);
-        // Both halves keep the order of the input: what is near in it is near in memory.
-        let is_low = |key: &&(f64, u32)| by_key(key, &first_high).is_lt();
-        let (low, high) = self.triangles.split_at_mut(middle);
-        let take = |half: &mut [u32], of: &mut dyn Iterator<Item = &(f64, u32)>| {
-            half.iter_mut().zip(of).for_each(|(triangle, key)| *triangle = key.1);
-        };
-        take(low, &mut keys.iter().filter(is_low));
-        take(high, &mut keys.iter().filter(|key| !is_low(key)));
-        let next = self.start + middle as u32;
-        let part = |start, triangles| Part { start, triangles, above: self.above };
-        [part(self.start, low), part(next, high)]
-    }
-}
-
-impl<'a> Part<'a> {
-    /// Cut into halves, and those again.
-    fn quarters(self, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync)) -> [Part<'a>; 4] {
-        let [low, high] = self.halves(corners);
-        let (low, high) = rayon::join(|| low.halves(corners), || high.halves(corners));
-        let ([a, b], [c, d]) = (low, high);
-        [a, b, c, d]
-    }
-}
+/// Triangles in trees of parry's that wait to be put together, at most.
+const WAITING_TRIANGLES: usize = 1 << 21;
 
 /// What was packed: its levels and its box (m).
 struct Packed {
@@ -126,17 +75,18 @@ impl Index {
         Sizes { leaf, at_once }: Sizes,
         corners: impl Fn(u32) -> [Vec3; 3] + Sync,
     ) -> (Self, Vec<u32>) {
-        let mut order: Vec<u32> = (0..count as u32).collect();
         if count == 0 {
-            return (Self::default(), order);
+            return (Self::default(), Vec::new());
         }
+        let mut placed: Vec<PlacedTriangle> =
+            (0..count as u32).into_par_iter().map(|t| PlacedTriangle::of(t, &corners)).collect();
         let mut index = Self::default();
-        let whole = Part { start: 0, triangles: &mut order, above: None };
-        let (mut parts, levels) = index.share_out(whole, (&corners, at_once));
+        let whole = Run { start: 0, triangles: &mut placed, above: None };
+        let (mut parts, levels) = index.share_out(whole, at_once);
         let mut whole = Packed::NOTHING;
-        let beside = rayon::current_num_threads().min(BESIDE);
+        let beside = (WAITING_TRIANGLES / at_once).max(1);
         while !parts.is_empty() {
-            let some: Vec<Part> = parts.drain(..beside.min(parts.len())).collect();
+            let some: Vec<Run> = parts.drain(..beside.min(parts.len())).collect();
             let above: Vec<_> = some.iter().map(|part| part.above).collect();
             let packed = some.into_par_iter().map(|part| Tree::pack(part, &corners, leaf));
             for ((tree, packed), above) in packed.collect::<Vec<_>>().into_iter().zip(above) {
@@ -149,18 +99,14 @@ impl Index {
         (index.lo, index.hi) = (whole.lo, whole.hi);
         index.close_boxes();
         index.nodes.shrink_to_fit();
-        (index, order)
+        (index, placed.par_iter().map(|placed| placed.triangle).collect())
     }
 
     /// Cuts what is too large for one tree of parry's into four, and those again; gives the parts and the levels above them.
-    fn share_out<'a>(
-        &mut self,
-        whole: Part<'a>,
-        (corners, at_once): (&(impl Fn(u32) -> [Vec3; 3] + Sync), usize),
-    ) -> (Vec<Part<'a>>, usize) {
+    fn share_out<'a>(&mut self, whole: Run<'a>, at_once: usize) -> (Vec<Run<'a>>, usize) {
         let (mut ready, mut open, mut levels) = (Vec::new(), vec![whole], 0);
         loop {
-            let (large, small): (Vec<Part>, Vec<Part>) =
+            let (large, small): (Vec<Run>, Vec<Run>) =
                 open.into_iter().partition(|part| part.triangles.len() > at_once);
             ready.extend(small);
             if large.is_empty() {
@@ -171,15 +117,14 @@ impl Index {
             let first = self.nodes.len();
             for part in &large {
                 let place = self.nodes.len() as u32;
-                self.nodes.push(Node::EMPTY);
+                self.nodes.push(BvhNode::EMPTY);
                 if let Some((node, side)) = part.above {
                     self.nodes[node].child[side] = place;
                 }
             }
-            let quarters: Vec<_> =
-                large.into_par_iter().map(|part| part.quarters(corners)).collect();
+            let quarters: Vec<_> = large.into_par_iter().map(Run::quarters).collect();
             let below = quarters.into_iter().enumerate().flat_map(|(k, quarters)| {
-                let hung = move |(side, part)| Part { above: Some((first + k, side)), ..part };
+                let hung = move |(side, part)| Run { above: Some((first + k, side)), ..part };
                 quarters.into_iter().enumerate().map(hung)
             });
             open = below.collect();
@@ -216,17 +161,18 @@ impl Index {
 
 /// A tree of parry's, packed: places count from its own first node.
 struct Tree {
-    nodes: Vec<Node>,
+    nodes: Vec<BvhNode>,
     leaf: u32,
 }
 
 impl Tree {
     /// Packs a part of the triangles and puts them into the order of the tree.
-    fn pack(part: Part, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync), leaf: u32) -> (Self, Packed) {
-        let Part { start, triangles, .. } = part;
+    fn pack(part: Run, corners: &(impl Fn(u32) -> [Vec3; 3] + Sync), leaf: u32) -> (Self, Packed) {
+        let Run { start, triangles, .. } = part;
         // The tree may depend on the order in which it is given triangles, and selecting leaves an order of its own.
-        triangles.sort_unstable();
-        let boxes: Vec<Aabb> = triangles.iter().map(|&t| box_of(corners(t))).collect();
+        let mut sorted: Vec<u32> = triangles.iter().map(|placed| placed.triangle).collect();
+        sorted.sort_unstable();
+        let boxes: Vec<Aabb> = sorted.iter().map(|&t| box_of(corners(t))).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
         drop(boxes);
         let mut loose = unroll(&tree);
@@ -236,9 +182,8 @@ impl Tree {
         let mut order = Order { start, leaves: Vec::with_capacity(triangles.len()) };
         let mut packed = Self { nodes: Vec::new(), leaf };
         let depth = packed.take(&loose, 0, &mut order);
-        let sorted = triangles.to_vec();
-        for (triangle, leaf) in triangles.iter_mut().zip(order.leaves) {
-            *triangle = sorted[leaf as usize];
+        for (placed, leaf) in triangles.iter_mut().zip(order.leaves) {
+            placed.triangle = sorted[leaf as usize];
         }
         (packed, Packed { depth, lo, hi })
     }
@@ -246,7 +191,7 @@ impl Tree {
     /// Packs what is below a node, in the order of the tree; returns how deep it is.
     fn take(&mut self, loose: &[Loose], top: u32, order: &mut Order) -> usize {
         let place = self.nodes.len();
-        self.nodes.push(Node::EMPTY);
+        self.nodes.push(BvhNode::EMPTY);
         let mut depth = 0;
         for (side, child) in widest(loose, top, self.leaf).enumerate() {
             let from = &loose[child as usize];
@@ -378,21 +323,5 @@ mod tests {
                 assert!(near.into_iter().all(|t| found.contains(&t)), "{at_once}");
             }
         }
-    }
-
-    /// The parts do not hang on the order in which triangles come.
-    #[test]
-    fn halves_are_the_same_whatever_the_order() {
-        let facets = make::natural_slope(20, 20).facets;
-        let corners = |t: u32| facets[t as usize];
-        let halves = |mut triangles: Vec<u32>| {
-            let halves = Part { start: 0, triangles: &mut triangles, above: None }.halves(&corners);
-            halves.map(|half| {
-                half.triangles.sort_unstable();
-                half.triangles.to_vec()
-            })
-        };
-        let all = 0..facets.len() as u32;
-        assert_eq!(halves(all.clone().collect()), halves(all.rev().collect()));
     }
 }

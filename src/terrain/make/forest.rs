@@ -1,16 +1,15 @@
 //! A forest from a list of trees, standing on a slope.
 
+use super::stems::FOOT_M;
 use super::stems::{Stem, prism, ring};
 use crate::error::{Error, Result};
 use crate::file::{self, LONGEST_TEXT};
-use crate::gis::{self, Shape};
+use crate::gis::{self, Geometry};
 use crate::terrain::Terrain;
 use crate::terrain::stl::Facet;
 use serde::Deserialize;
 use std::path::Path;
 
-/// How deep a stem's foot stays below the lowest ground under it (m).
-const FOOT_M: f64 = 0.5;
 /// What a list must look like.
 const REMEDY: &str =
     "write comma-separated numbers with decimal points under the header x,y,dbh_m,height_m";
@@ -18,7 +17,7 @@ const REMEDY: &str =
 /// One row of a list.
 #[derive(Debug, Deserialize)]
 #[expect(clippy::struct_field_names, reason = "the names are those of the columns")]
-struct Written {
+struct TreeRow {
     #[serde(alias = "x")]
     x_m: f64,
     #[serde(alias = "y")]
@@ -29,7 +28,7 @@ struct Written {
 
 /// A list of trees.
 #[derive(Debug, Clone, PartialEq)]
-pub struct List {
+pub struct TreeList {
     /// Each tree with its line in a text or its number in a drawing.
     trees: Vec<(u64, Stem)>,
     /// `line` or `feature`: what the numbers count.
@@ -38,7 +37,7 @@ pub struct List {
     pub epsg: Option<u32>,
 }
 
-impl List {
+impl TreeList {
     /// How many trees it holds.
     pub fn count(&self) -> usize {
         self.trees.len()
@@ -53,11 +52,11 @@ pub(in crate::terrain) fn begins_like_list(head: &[u8]) -> bool {
 }
 
 /// Points with the properties `dbh_m` and `height_m`.
-fn read_drawn(path: &Path) -> Result<List> {
+fn read_drawn(path: &Path) -> Result<TreeList> {
     let layer = gis::read(path)?;
     let mut trees = Vec::new();
     for feature in layer.features {
-        let Shape::Points(points) = &feature.shape else {
+        let Geometry::Points(points) = &feature.shape else {
             let found = format!("found {}", feature.shape.name());
             return Err(feature.wrong(path, found, "write points"));
         };
@@ -70,7 +69,7 @@ fn read_drawn(path: &Path) -> Result<List> {
         let stem = |&[x_m, y_m]: &[f64; 2]| Stem { x_m, y_m, dbh_m, height_m };
         trees.extend(points.iter().map(|point| (feature.number as u64, stem(point))));
     }
-    Ok(List { trees, counted: "feature", epsg: layer.epsg })
+    Ok(TreeList { trees, counted: "feature", epsg: layer.epsg })
 }
 
 /// Reads a list of trees: a CSV file with the columns `x, y, dbh_m, height_m` (m) in any order, it may have more; or a
@@ -78,7 +77,7 @@ fn read_drawn(path: &Path) -> Result<List> {
 ///
 /// # Errors
 /// A file that cannot be read, a row without these numbers, a diameter or height that is not above 0, no row at all.
-pub fn read_list(path: &Path) -> Result<List> {
+pub fn read_list(path: &Path) -> Result<TreeList> {
     if gis::begins_like_drawing(&file::head(path)?) {
         return read_drawn(path);
     }
@@ -92,7 +91,7 @@ pub fn read_list(path: &Path) -> Result<List> {
         let line_of = |position: Option<&csv::Position>| position.map_or(1, csv::Position::line);
         let row = row.map_err(|why| wrong(line_of(why.position()), format!("found {why}")))?;
         let line = line_of(row.position());
-        let Written { x_m, y_m, dbh_m, height_m } =
+        let TreeRow { x_m, y_m, dbh_m, height_m } =
             row.deserialize(Some(&headers)).map_err(|_| {
                 wrong(line, format!("found {}", row.iter().collect::<Vec<_>>().join(",")))
             })?;
@@ -115,7 +114,7 @@ pub fn read_list(path: &Path) -> Result<List> {
     if trees.is_empty() {
         return Err(Error::input(path, "rows", "found no tree", REMEDY));
     }
-    Ok(List { trees, counted: "line", epsg: None })
+    Ok(TreeList { trees, counted: "line", epsg: None })
 }
 
 /// Eight-sided stems on a slope; everything in the map coordinates of `terrain`.
@@ -125,7 +124,7 @@ pub fn read_list(path: &Path) -> Result<List> {
 ///
 /// # Errors
 /// A tree with no slope below its axis; `file` is for the message.
-pub fn plant(file: &Path, list: &List, terrain: &Terrain) -> Result<Vec<Facet>> {
+pub fn plant(file: &Path, list: &TreeList, terrain: &Terrain) -> Result<Vec<Facet>> {
     let origin_m = terrain.origin_m;
     let ground_m =
         |x: f64, y: f64| Some(terrain.ground_below(x - origin_m.x, y - origin_m.y)? + origin_m.z);

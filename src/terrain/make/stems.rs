@@ -5,7 +5,7 @@ use crate::terrain::stl::Facet;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// How deep a stem stands in the ground (m): its foot stays hidden on steep ground.
-const FOOT_M: f64 = 0.5;
+pub(super) const FOOT_M: f64 = 0.5;
 
 /// One tree of a list.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@
 //! border alone. So no gap and no T-junction opens.
 
 use super::borders::Borders;
-use super::drawing::{Drawing, MOST_NODES};
+use super::drawing::{BorderedTriangle, MOST_NODES};
 use super::triangulate::triangulate;
 use super::{Corner, area_m2, side};
 use crate::terrain::stl::Facet;
@@ -31,7 +31,7 @@ pub(super) fn cut(
         return Ok(Vec::new());
     }
     let order = if turn > 0.0 { [0, 1, 2] } else { [0, 2, 1] };
-    let mut drawing = Drawing::of(order.map(|k| (corners[k], facet[k])));
+    let mut drawing = BorderedTriangle::of(order.map(|k| (corners[k], facet[k])));
     for border in near {
         drawing.draw(border);
         if drawing.nodes.len() > MOST_NODES {

@@ -10,7 +10,7 @@ pub(super) const MOST_NODES: usize = 1000;
 
 /// A point in or on the triangle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Node {
+pub(super) struct BorderPoint {
     /// On the map (m).
     pub(super) at: Corner,
     /// In the file.
@@ -20,20 +20,20 @@ pub(super) struct Node {
 }
 
 /// The triangle with the points and lines that borders draw into it.
-pub(super) struct Drawing {
+pub(super) struct BorderedTriangle {
     /// Its corners first.
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<BorderPoint>,
     /// Pieces of borders inside, by their nodes.
     pub(super) lines: Vec<[usize; 2]>,
 }
 
-impl Drawing {
+impl BorderedTriangle {
     pub(super) fn of(corners: [(Corner, Vec3); 3]) -> Self {
         let node = |k: usize| {
             let (at, point) = corners[k];
             let mut on = [false; 3];
             (on[k], on[(k + 2) % 3]) = (true, true);
-            Node { at, point, on }
+            BorderPoint { at, point, on }
         };
         Self { nodes: vec![node(0), node(1), node(2)], lines: Vec::new() }
     }
@@ -77,7 +77,7 @@ impl Drawing {
         }
     }
 
-    fn node(&mut self, node: Node) -> usize {
+    fn node(&mut self, node: BorderPoint) -> usize {
         let known = self.nodes.iter().position(|known| near(known.at, node.at));
         known.unwrap_or_else(|| {
             self.nodes.push(node);
@@ -96,13 +96,13 @@ impl Drawing {
         }
         let on = from.map(is_zero);
         let Some(k) = on.iter().position(|&on| on) else {
-            return Some(self.node(Node { at, point: self.blend(from), on }));
+            return Some(self.node(BorderPoint { at, point: self.blend(from), on }));
         };
         // snapped onto the edge, at the same place for both of its triangles
         let (low, high) = self.sorted(k);
         let share = share_of([low.at, high.at], at);
         let at = between(low.at, high.at, share);
-        Some(self.node(Node { at, point: low.point + share * (high.point - low.point), on }))
+        Some(self.node(BorderPoint { at, point: low.point + share * (high.point - low.point), on }))
     }
 
     /// On which side of an edge a place lies, to the same bits for both of its triangles: positive inside.
@@ -119,7 +119,7 @@ impl Drawing {
     }
 
     /// Ends of an edge, the same way round for both of its triangles.
-    fn sorted(&self, k: usize) -> (Node, Node) {
+    fn sorted(&self, k: usize) -> (BorderPoint, BorderPoint) {
         let (a, b) = (self.nodes[k], self.nodes[(k + 1) % 3]);
         if before(a.at, b.at) { (a, b) } else { (b, a) }
     }
@@ -132,7 +132,7 @@ impl Drawing {
         let at = between(low.at, high.at, share);
         let mut on = [false; 3];
         on[k] = true;
-        self.node(Node { at, point: low.point + share * (high.point - low.point), on })
+        self.node(BorderPoint { at, point: low.point + share * (high.point - low.point), on })
     }
 
     /// Breaks lines where they cross each other or run through a node.
@@ -173,7 +173,7 @@ impl Drawing {
         let share = from_i / (from_i - from_j);
         let at = between(ends[0], ends[1], share);
         let [one, two] = [self.nodes[i].point, self.nodes[j].point];
-        let made = self.node(Node { at, point: one + share * (two - one), on: [false; 3] });
+        let made = self.node(BorderPoint { at, point: one + share * (two - one), on: [false; 3] });
         // rounding may have put it on an end: then it breaks nothing
         (made != i && made != j).then(|| {
             if made != k && made != l {

@@ -25,7 +25,7 @@ fn ring(corners: &[Corner]) -> Patch {
 /// Facets, grounds and tally after laying zones on the slope.
 fn laid(list: Vec<Patch>, cut: bool) -> (Soup, Vec<u16>, Patched) {
     let mut soup = Soup::from(slope());
-    let mut layer = Layer::new(&Patches { list, cut });
+    let mut layer = ZonePainter::new(&Patches { list, cut });
     let grounds = layer.lay(&mut soup, BASE, &|point| point).unwrap();
     (soup, grounds, layer.done)
 }

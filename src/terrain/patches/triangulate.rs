@@ -1,11 +1,11 @@
 //! Triangles between given points that keep given lines: the shortest further lines first, as long as none crosses another
 //! (greedy triangulation). Slow for many points and simple for the few that lie in one triangle of a slope.
 
-use super::drawing::{Drawing, cross, lies_within};
+use super::drawing::{BorderedTriangle, cross, lies_within};
 use super::{Corner, side};
 
 /// All triangles of a drawing, anticlockwise, by their nodes.
-pub(super) fn triangulate(drawing: &Drawing) -> Vec<[usize; 3]> {
+pub(super) fn triangulate(drawing: &BorderedTriangle) -> Vec<[usize; 3]> {
     let mut graph =
         Graph { at: drawing.nodes.iter().map(|node| node.at).collect(), lines: Vec::new() };
     for k in 0..3 {
@@ -21,7 +21,7 @@ pub(super) fn triangulate(drawing: &Drawing) -> Vec<[usize; 3]> {
 }
 
 /// The pieces of an edge of the triangle between its nodes.
-fn outline(drawing: &Drawing, k: usize) -> Vec<[usize; 2]> {
+fn outline(drawing: &BorderedTriangle, k: usize) -> Vec<[usize; 2]> {
     let (a, b) = (drawing.nodes[k].at, drawing.nodes[(k + 1) % 3].at);
     let along = |node: &usize| {
         let at = drawing.nodes[*node].at;
@@ -34,7 +34,7 @@ fn outline(drawing: &Drawing, k: usize) -> Vec<[usize; 2]> {
 }
 
 /// Pairs of nodes that do not lie on one edge, the nearest first.
-fn candidates(drawing: &Drawing) -> Vec<[usize; 2]> {
+fn candidates(drawing: &BorderedTriangle) -> Vec<[usize; 2]> {
     let nodes = &drawing.nodes;
     let apart = |i: usize, j: usize| !(0..3).any(|k| nodes[i].on[k] && nodes[j].on[k]);
     let pairs = (0..nodes.len()).flat_map(|i| (i + 1..nodes.len()).map(move |j| [i, j]));

@@ -28,7 +28,7 @@ pub(super) fn begins_like_text(bytes: &[u8]) -> bool {
 /// Reads all solids of a text STL.
 pub(super) fn parse(bytes: &[u8], file: &Path) -> Result<Soup> {
     let mut soup = Soup::of_format(Format::Ascii);
-    let mut words = Words::of(bytes, file);
+    let mut words = WordReader::of(bytes, file);
     while let Some(word) = words.next() {
         words.check(word, "solid", "a file holds `solid … endsolid` and nothing between solids")?;
         soup.solids.push(words.rest_of_line());
@@ -38,7 +38,7 @@ pub(super) fn parse(bytes: &[u8], file: &Path) -> Result<Soup> {
 }
 
 /// Reads facets up to and with the line `endsolid`.
-fn read_solid(words: &mut Words, soup: &mut Soup) -> Result<()> {
+fn read_solid(words: &mut WordReader, soup: &mut Soup) -> Result<()> {
     loop {
         let word = words.some_word("`facet` or `endsolid`")?;
         if word.eq_ignore_ascii_case(b"endsolid") {
@@ -56,7 +56,7 @@ fn read_solid(words: &mut Words, soup: &mut Soup) -> Result<()> {
 }
 
 /// Reads up to `outer`. Stored normals may be missing or no numbers: such a normal reads as NaN.
-fn read_normal(words: &mut Words) -> Result<Vec3> {
+fn read_normal(words: &mut WordReader) -> Result<Vec3> {
     let mut normal = [f64::NAN; 3];
     for at in 0..=4 {
         let word = words.some_word("`outer loop`")?;
@@ -76,7 +76,7 @@ fn read_normal(words: &mut Words) -> Result<Vec3> {
     Ok(normal.into())
 }
 
-fn read_vertex(words: &mut Words) -> Result<Vec3> {
+fn read_vertex(words: &mut WordReader) -> Result<Vec3> {
     words.expect("vertex", "a facet has three lines `vertex x y z`")?;
     let mut point = Vec3::zeros();
     for x in point.iter_mut() {
@@ -99,7 +99,7 @@ fn quoted(word: &[u8]) -> String {
 }
 
 /// The words of a text and the line they stand on.
-struct Words<'a> {
+struct WordReader<'a> {
     text: &'a [u8],
     file: &'a Path,
     /// First byte not yet read.
@@ -108,7 +108,7 @@ struct Words<'a> {
     line: usize,
 }
 
-impl<'a> Words<'a> {
+impl<'a> WordReader<'a> {
     fn of(bytes: &'a [u8], file: &'a Path) -> Self {
         Self { text: bytes.strip_prefix(MARK).unwrap_or(bytes), file, at: 0, line: 1 }
     }

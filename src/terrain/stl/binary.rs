@@ -21,8 +21,13 @@ pub(super) fn announced(bytes: &[u8]) -> Option<u32> {
 
 /// Whether the length is exactly what the announced count needs.
 pub(super) fn has_exact_length(bytes: &[u8]) -> bool {
-    let needed = announced(bytes).map(|n| HEAD_BYTES as u64 + TRIANGLE_BYTES * u64::from(n));
-    needed == Some(bytes.len() as u64)
+    fits(bytes, bytes.len() as u64)
+}
+
+/// The same of a file of so many bytes, of which `head` are the first.
+pub(super) fn fits(head: &[u8], length: u64) -> bool {
+    let needed = announced(head).map(|n| HEAD_BYTES as u64 + TRIANGLE_BYTES * u64::from(n));
+    needed == Some(length)
 }
 
 /// Reads bytes that [have the exact length](has_exact_length).

@@ -1,4 +1,6 @@
 use super::*;
+use crate::terrain::facets::Facets;
+use crate::terrain::grid::Grid;
 use proptest::prelude::*;
 
 fn piece(soup: &Soup, sheet: u16) -> Piece<'_> {
@@ -64,6 +66,47 @@ fn sheets_and_facets_are_remembered_across_files_and_seams() {
         (welded.zero_area.count, welded.zero_area.examples_m.clone()),
         (1, vec![[1.0, 0.0, 0.0]])
     );
+}
+
+/// A grid tells that its points are apart; without that, each is looked for. The mesh is the same to the last bit, with
+/// holes, with points that no facet uses, and with further files that share vertices.
+#[test]
+fn points_known_to_be_apart_are_welded_as_if_they_were_not() {
+    let side = 60;
+    let height = |k: usize| {
+        let (x, y) = ((k % side) as f64, (k / side) as f64);
+        (!(k * k / 7).is_multiple_of(11)).then_some(0.3 * x + 0.1 * (x * y % 13.0) - 0.2 * y)
+    };
+    let grid = Grid {
+        columns: side,
+        rows: side,
+        corner_m: [2_600_000.25, 1_200_000.5],
+        cell_m: 0.7,
+        values: (0..side * side).map(height).collect(),
+    };
+    let known = grid.surface(Vec3::new(2_600_000.0, 1_200_000.0, 0.0));
+    assert!(matches!(known, Facets::Shared { apart_m, .. } if apart_m > 0.69));
+    let seam = known.at(17);
+    let Facets::Shared { points, corners, .. } = known.clone() else { panic!("a lattice") };
+    let unknown = Facets::Shared { points, corners, apart_m: 0.0 };
+    let soup = |facets| Soup { facets, ..Soup::from(Vec::new()) };
+    let apart = soup(known.iter().collect::<Vec<_>>().into());
+    let (known, unknown) = (soup(known), soup(unknown));
+    // shares two vertices, one of them nearly
+    let beside = soup(vec![[seam[1], seam[0] + v(1e-6, 0.0, 0.0), v(1.0, 2.0, 60.0)]].into());
+    for tolerance_m in [None, Some(0.0), Some(0.01)] {
+        let welded = |first: &Soup| {
+            let pieces = [piece(first, 0), piece(&beside, 1)];
+            [&pieces[..1], &pieces].map(|some| weld(some, Vec3::zeros(), tolerance_m).unwrap())
+        };
+        let found = welded(&known);
+        assert!(found == welded(&unknown) && found == welded(&apart), "{tolerance_m:?}");
+        assert!(found[0].triangles.len() > 4000 && found[0].moved_corners == 0);
+    }
+    // points that a large tolerance merges are looked for
+    let coarse = |first: &Soup| weld(&[piece(first, 0)], Vec3::zeros(), Some(0.8)).unwrap();
+    let found = coarse(&known);
+    assert!(found == coarse(&unknown) && found.moved_corners > 1000);
 }
 
 #[test]

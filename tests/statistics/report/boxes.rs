@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
 
 use super::svg::{attribute, strip_tags};
-use rockfall::report::svg::metrics::{Face, width_em_in};
+use rockfall::report::svg::metrics::{FontFamily, width_em_in};
 
 /// Height of capitals and depth of letters over the font size.
 const CAP: f64 = 0.718;
@@ -30,7 +30,7 @@ pub(crate) fn faults(svg: &str, place: &str) -> Vec<String> {
         (-2.0..=view[2] + 2.0).contains(&x) && (-2.0..=view[3] + 2.0).contains(&y)
     };
     let mut faults = Vec::new();
-    for face in Face::ALL {
+    for face in FontFamily::ALL {
         let rooms = rooms(svg, face);
         for room in rooms.iter().filter(|room| !room.corners().into_iter().all(on_paper)) {
             let corners = room.corners();
@@ -50,7 +50,7 @@ pub(crate) fn faults(svg: &str, place: &str) -> Vec<String> {
 }
 
 /// The rooms of all texts; the white rim behind a text is none of its own.
-fn rooms(svg: &str, face: Face) -> Vec<Room> {
+fn rooms(svg: &str, face: FontFamily) -> Vec<Room> {
     let mut rooms = Vec::new();
     let mut groups: Vec<(bool, Option<[f64; 3]>)> = Vec::new();
     let mut rest = svg;
@@ -79,7 +79,7 @@ fn turn(tag: &str) -> Option<[f64; 3]> {
     Some([numbers.next()?, numbers.next()?, numbers.next()?])
 }
 
-fn room(tag: &str, inner: &str, face: Face, turned: Option<[f64; 3]>) -> Room {
+fn room(tag: &str, inner: &str, face: FontFamily, turned: Option<[f64; 3]>) -> Room {
     let number = |name: &str| attribute(tag, name).unwrap().parse::<f64>().unwrap();
     let (x, y, size) = (number("x"), number("y"), number("font-size"));
     let width = width(tag, inner, face, size);
@@ -101,7 +101,7 @@ fn room(tag: &str, inner: &str, face: Face, turned: Option<[f64; 3]>) -> Room {
 }
 
 /// Width of a text with its parts: bold ones, raised figures, gaps between parts.
-fn width(tag: &str, inner: &str, face: Face, size: f64) -> f64 {
+fn width(tag: &str, inner: &str, face: FontFamily, size: f64) -> f64 {
     let is_bold = |tag: &str, around: bool| match attribute(tag, "font-weight") {
         Some(weight) => weight == "bold",
         None => around,
@@ -158,5 +158,7 @@ fn rooms_that_meet_are_found() {
     let fails = |x: i32| !faults(&drawing(x), "made").is_empty();
     assert!(fails(100) && fails(900) && !fails(400));
     let turned = r#"<svg viewBox="0 0 1000 1000"><text x="100" y="500" font-size="100" transform="rotate(-90 100 500)">upwards</text><text x="120" y="300" font-size="100">flat</text></svg>"#;
-    assert!(!rooms(turned, Face::Helvetica)[0].meets(&rooms(turned, Face::Helvetica)[1]));
+    assert!(
+        !rooms(turned, FontFamily::Helvetica)[0].meets(&rooms(turned, FontFamily::Helvetica)[1])
+    );
 }

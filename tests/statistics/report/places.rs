@@ -1,11 +1,11 @@
 //! Lines, barriers and maps as a site in map coordinates has them: long names, seven digits, crowds and nobody.
 
 use super::slope;
-use rockfall::hazard::{Agreement, Way};
-use rockfall::output::Zone;
+use rockfall::hazard::{Agreement, ObservedPath};
+use rockfall::output::ReleaseZone;
 use rockfall::report::model::{
-    AnnualView, BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, Line, LinePoint,
-    MapMark, Observed, PlaceView, Quantile, Report, RockView,
+    AnnualView, BandPoint, BarrierView, Behind, CellMap, DesignView, Estimate, LinePoint, MapMark,
+    Observed, PlaceView, Quantile, Report, ReportLine, RockView,
 };
 
 const EAST_M: f64 = 2_600_000.0;
@@ -39,7 +39,7 @@ pub(crate) fn net(rocks: usize) -> BarrierView {
 }
 
 /// A line that so many rocks cross; every third is stopped by a barrier before.
-fn line(number: usize, name: &str, rocks: usize) -> Line {
+fn line(number: usize, name: &str, rocks: usize) -> ReportLine {
     let energy = |k: usize| 400.0 * 1.07_f64.powi(i32::try_from(k % 120).expect("below 120"));
     let point = |k: usize| LinePoint {
         release: k,
@@ -55,7 +55,7 @@ fn line(number: usize, name: &str, rocks: usize) -> Line {
     let marked = |size: f64| {
         [0.5, 0.95].map(|p| Quantile { probability: p, at: Estimate::plain(p * size) }).into()
     };
-    Line {
+    ReportLine {
         name: name.to_owned(),
         number,
         is_barrier: false,
@@ -108,6 +108,7 @@ fn maps() -> CellMap {
         deposits: layer(|cell| f64::from(1 + cell % 90)),
         exceeds: layer(|cell| 1e-3 * f64::from(1 + cell % 300)),
         intensity_cells: [400, 400, 400],
+        few_cells: 130,
     }
 }
 
@@ -125,16 +126,17 @@ fn year(name: &str, has_barriers: bool) -> AnnualView {
         without: curve(0.03),
         with: has_barriers.then(|| curve(0.003)),
         return_periods_years: vec![30.0, 100.0, 300.0, 1000.0],
+        most_per_year: 0.04,
     }
 }
 
 /// Measured ends beside computed ones.
 fn observed() -> Observed {
-    let way = |k: u32| Way {
+    let way = |k: u32| ObservedPath {
         start_m: [EAST_M + 70.0, NORTH_M + 190.0],
         end_m: [EAST_M + 30.0 + f64::from(k * 7 % 80), NORTH_M + 10.0 + f64::from(k * 13 % 90)],
     };
-    let (measured, computed): (Vec<Way>, Vec<Way>) =
+    let (measured, computed): (Vec<ObservedPath>, Vec<ObservedPath>) =
         ((0..40).map(way).collect(), (5..300).map(way).collect());
     let agreement = Agreement::of(&measured, &computed).expect("neither is empty");
     Observed { measured, computed, agreement }
@@ -144,7 +146,7 @@ fn observed() -> Observed {
 pub(crate) fn site() -> Report {
     let area = [[40.0, 185.0], [100.0, 185.0], [100.0, 195.0], [40.0, 195.0]];
     Report {
-        zone: Zone::Polygon(area.map(|[x, y]| [EAST_M + x, NORTH_M + y]).into()),
+        zone: ReleaseZone::Polygon(area.map(|[x, y]| [EAST_M + x, NORTH_M + y]).into()),
         marks: marks(),
         lines: vec![
             line(2, "cantonal road between the upper and the lower village, western verge", 230),
@@ -153,7 +155,11 @@ pub(crate) fn site() -> Report {
         ],
         barriers: vec![net(60), net(0)],
         maps: Some(maps()),
-        annual: vec![year("valley road between the villages", true), year("house", false)],
+        annual: vec![
+            year("valley road between the villages", true),
+            AnnualView { without: Vec::new(), most_per_year: 0.004, ..year("hut", false) },
+            year("house", false),
+        ],
         observed: Some(observed()),
         ..slope::report(700, 60)
     }

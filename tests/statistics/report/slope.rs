@@ -5,8 +5,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rockfall::report::model::{
-    About, BandPoint, Estimate, Fall, Path, Point, Quantile, Quantity, Report, Row, StopShare,
-    Table, Text,
+    About, BandPoint, Estimate, EstimateRow, EstimateTable, Path, Quantile, ReleaseEnd, Report,
+    ReportPathPoint, ReportQuantity, StopShare, Text,
 };
 use rockfall::report::raster::GroundRaster;
 use rockfall::rock::Vec3;
@@ -79,7 +79,7 @@ const STEP_S: f64 = 0.05;
 const RADIUS_M: f64 = 0.4;
 
 /// One rock that bounces down the slope, with points every 0.05 s.
-pub(crate) fn bounce(index: usize, origin: Vec3) -> (Fall, Path) {
+pub(crate) fn bounce(index: usize, origin: Vec3) -> (ReleaseEnd, Path) {
     let mut dice = Dice::new(index);
     let (x, y) = (50.0 + 40.0 * dice.roll(), 188.0 + 4.0 * dice.roll());
     let start = Vec3::new(x, y, height_m(x, y) + RADIUS_M + 0.5);
@@ -115,11 +115,11 @@ pub(crate) fn bounce(index: usize, origin: Vec3) -> (Fall, Path) {
     (fall, Path { index, points })
 }
 
-fn point(step: usize, at: Vec3, v: Vec3) -> Point {
+fn point(step: usize, at: Vec3, v: Vec3) -> ReportPathPoint {
     let clearance = at.z - RADIUS_M - height_m(at.x, at.y);
     let state = if clearance > 0.05 { PathState::Flight } else { PathState::Sliding };
     let time_s = step as f64 * STEP_S;
-    Point {
+    ReportPathPoint {
         time_s,
         place_m: at.into(),
         speed_m_s: v.norm(),
@@ -141,12 +141,12 @@ fn rebound(at: Vec3, v: Vec3, dice: &mut Dice) -> Vec3 {
 }
 
 /// Largest values along the points; what the end decides is filled in by the caller.
-fn summary(points: &[Point], random: f64) -> Fall {
-    let most = |value: fn(&Point) -> f64| points.iter().map(value).fold(0.0, f64::max);
+fn summary(points: &[ReportPathPoint], random: f64) -> ReleaseEnd {
+    let most = |value: fn(&ReportPathPoint) -> f64| points.iter().map(value).fold(0.0, f64::max);
     let mass_kg = 2700.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS_M.powi(3);
     let max_speed_m_s = most(|p| p.speed_m_s);
     let translational_j = 0.5 * mass_kg * max_speed_m_s * max_speed_m_s;
-    Fall {
+    ReleaseEnd {
         stop: Stop::TimeUp,
         runout_m: 0.0,
         drop_m: 0.0,
@@ -167,7 +167,7 @@ fn summary(points: &[Point], random: f64) -> Fall {
 pub(crate) fn report(count: usize, paths: usize) -> Report {
     let origin = Vec3::new(2_600_000.0, 1_200_000.0, 800.0);
     let falls = (0..count).map(|i| bounce(i, origin));
-    let (releases, mut kept): (Vec<Fall>, Vec<Path>) = falls.unzip();
+    let (releases, mut kept): (Vec<ReleaseEnd>, Vec<Path>) = falls.unzip();
     kept.truncate(paths);
     let ground = Some(GroundRaster::from_terrain(&terrain(1.0, origin), 600));
     filled(Report { text: text(), releases, paths: kept, ground, ..Report::default() })
@@ -176,20 +176,20 @@ pub(crate) fn report(count: usize, paths: usize) -> Report {
 /// Adds the estimates that a run would bring (rough ones: only their looks matter here).
 pub(crate) fn filled(mut report: Report) -> Report {
     for quantity in [
-        Quantity::Runout,
-        Quantity::ReachAngle,
-        Quantity::Speed,
-        Quantity::Translational,
-        Quantity::Rotational,
-        Quantity::Total,
-        Quantity::Height,
-        Quantity::Impacts,
+        ReportQuantity::Runout,
+        ReportQuantity::ReachAngle,
+        ReportQuantity::Speed,
+        ReportQuantity::Translational,
+        ReportQuantity::Rotational,
+        ReportQuantity::Total,
+        ReportQuantity::Height,
+        ReportQuantity::Impacts,
     ] {
         let mut values: Vec<f64> = report.releases.iter().map(|f| quantity.of(f)).collect();
         values.sort_by(f64::total_cmp);
         let all = [0.5, 0.95, 0.99].map(|p| Quantile { probability: p, at: quantile(&values, p) });
         report.quantiles.insert(quantity, all.to_vec());
-        if quantity == Quantity::Runout {
+        if quantity == ReportQuantity::Runout {
             report.runout_exceedance = exceedance(&values);
         }
     }
@@ -222,7 +222,7 @@ fn exceedance(sorted: &[f64]) -> Vec<BandPoint> {
     points.map(|i| BandPoint { x: sorted[i], y: wilson((n - 1 - i) as f64, n as f64) }).collect()
 }
 
-fn shares(releases: &[Fall]) -> Vec<StopShare> {
+fn shares(releases: &[ReleaseEnd]) -> Vec<StopShare> {
     let kinds = [Stop::AtRest, Stop::LeftTerrain, Stop::TimeUp, Stop::Failed(String::new())];
     let same = |a: &Stop, b: &Stop| std::mem::discriminant(a) == std::mem::discriminant(b);
     kinds
@@ -234,39 +234,40 @@ fn shares(releases: &[Fall]) -> Vec<StopShare> {
         .collect()
 }
 
-fn headline(report: &Report) -> Vec<Row> {
-    let row = |name: &str, quantity: Quantity, i: usize| {
+fn headline(report: &Report) -> Vec<EstimateRow> {
+    let row = |name: &str, quantity: ReportQuantity, i: usize| {
         let estimate = report.quantiles[&quantity][i].at;
         let unit = quantity.unit(0.0).0.to_owned();
-        Row { name: name.to_owned(), estimate, unit }
+        EstimateRow { name: name.to_owned(), estimate, unit }
     };
     vec![
-        row("Runout, median", Quantity::Runout, 0),
-        row("Runout, P95", Quantity::Runout, 1),
-        row("Runout, P99", Quantity::Runout, 2),
-        row("Maximum speed, P95", Quantity::Speed, 1),
-        row("Maximum total energy, P95", Quantity::Total, 1),
-        row("Bounce height, P95", Quantity::Height, 1),
-        row("Reach angle, median", Quantity::ReachAngle, 0),
+        row("Runout, median", ReportQuantity::Runout, 0),
+        row("Runout, P95", ReportQuantity::Runout, 1),
+        row("Runout, P99", ReportQuantity::Runout, 2),
+        row("Maximum speed, P95", ReportQuantity::Speed, 1),
+        row("Maximum total energy, P95", ReportQuantity::Total, 1),
+        row("Bounce height, P95", ReportQuantity::Height, 1),
+        row("Reach angle, median", ReportQuantity::ReachAngle, 0),
     ]
 }
 
-fn line_table(report: &Report) -> Table {
-    let row = |name: &str, quantity: Quantity| {
+fn line_table(report: &Report) -> EstimateTable {
+    let row = |name: &str, quantity: ReportQuantity| {
         let cells = report.quantiles[&quantity].iter().map(|q| Some(q.at));
         (name.to_owned(), cells.chain([None]).collect())
     };
-    Table {
+    EstimateTable {
         about: About::Lines,
         title: "Line “road”".to_owned(),
         note: "812 first crossings by 1000 releases; 3 rocks cross more than once.".to_owned(),
         columns: ["P50", "P95", "P99", "Maximum"].map(str::to_owned).to_vec(),
         rows: vec![
-            row("Speed (m/s)", Quantity::Speed),
-            row("Translational energy (J)", Quantity::Translational),
-            row("Rotational energy (J)", Quantity::Rotational),
-            row("Height (m)", Quantity::Height),
+            row("Speed (m/s)", ReportQuantity::Speed),
+            row("Translational energy (J)", ReportQuantity::Translational),
+            row("Rotational energy (J)", ReportQuantity::Rotational),
+            row("Height (m)", ReportQuantity::Height),
         ],
+        place: String::new(),
     }
 }
 

@@ -30,7 +30,7 @@ void main() {
   vec3 flat_normal = normalize(cross(dFdx(at), dFdy(at)));
   vec3 n = tree > 0.5 ? flat_normal : normalize(upright);
   if (tree > 0.5 && dot(n, eye - at) < 0.0) n = -n;
-  float light = 0.28 + 0.76 * max(dot(n, LIGHT), 0.0);
+  float light = 0.42 + 0.62 * max(dot(n, LIGHT), 0.0);
   vec3 base = tint;
   if (tree < 0.5) base = mix(tint * vec3(0.90, 0.89, 0.90), tint, smoothstep(0.45, 0.85, n.z));
   vec2 cell = (at.xy - box.xy) * box.zw;

@@ -254,6 +254,10 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     ("Total energy, 95 %", "Gesamtenergie, 95 %"),
     ("Bounce height, 95 %", "Sprunghöhe, 95 %"),
     ("Deposits in a cell", "Ablagerungen in einer Zelle"),
+    (
+        "Blocks are shown as balls of their volume.",
+        "Blöcke mit einer Form sind als Kugeln ihres Volumens gezeigt.",
+    ),
     ("Shown are the first {a} of {b} rocks.", "Gezeigt sind die ersten {a} von {b} Blöcken."),
     (
         "Map layers in cells of {x} m, each with its largest value.",

@@ -257,6 +257,10 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     ("Total energy, 95 %", "Énergie totale, 95 %"),
     ("Bounce height, 95 %", "Hauteur de rebond, 95 %"),
     ("Deposits in a cell", "Dépôts dans une cellule"),
+    (
+        "Blocks are shown as balls of their volume.",
+        "Les blocs qui ont une forme sont montrés en boules de leur volume.",
+    ),
     ("Shown are the first {a} of {b} rocks.", "Sont montrés les {a} premiers blocs sur {b}."),
     (
         "Map layers in cells of {x} m, each with its largest value.",

@@ -251,6 +251,10 @@ pub(super) const VIEW: &[(&str, &str)] = &[
     ("Total energy, 95 %", "Energia totale, 95 %"),
     ("Bounce height, 95 %", "Altezza di rimbalzo, 95 %"),
     ("Deposits in a cell", "Depositi in una cella"),
+    (
+        "Blocks are shown as balls of their volume.",
+        "I blocchi che hanno una forma sono mostrati come sfere del loro volume.",
+    ),
     ("Shown are the first {a} of {b} rocks.", "Si vedono i primi {a} massi su {b}."),
     (
         "Map layers in cells of {x} m, each with its largest value.",

@@ -20,7 +20,7 @@ fn a_capsule_rolls_on_both_of_its_balls() {
     let own = 7.0 / 15.0 * mass * r * r;
     let body =
         balls(vec![Vec3::y() * half, Vec3::y() * -half], r, (mass, [2.0 * own, own, 2.0 * own]));
-    let mut case = Case::new(slope(angle, 100.0), body, (1.0, 0.0));
+    let mut case = BlockRun::new(slope(angle, 100.0), body, (1.0, 0.0));
     let (along, up) = axes(angle);
     let mut moving = case.start(tilted(angle), still(up * r - along * 40.0));
     let start = moving.pose.centre;
@@ -42,7 +42,7 @@ fn one_ball_rolls_as_a_sphere_does() {
     let (angle, r, mass) = (20_f64.to_radians(), 0.5, 1400.0);
     let own = 0.4 * mass * r * r;
     let body = balls(vec![Vec3::zeros()], r, (mass, [own; 3]));
-    let mut case = Case::new(slope(angle, 100.0), body, (1.0, 0.0));
+    let mut case = BlockRun::new(slope(angle, 100.0), body, (1.0, 0.0));
     let (along, up) = axes(angle);
     let mut moving = case.start(tilted(angle), still(up * r - along * 40.0));
     case.follow(&mut moving, 4.0, |_, _| ());
@@ -56,7 +56,7 @@ fn one_ball_rolls_as_a_sphere_does() {
 #[test]
 fn elastic_bounces_run_backwards() {
     let body = block(&box_surface([3.0, 2.0, 1.0]), 0.1);
-    let mut case = Case::new(slope(0.0, 1e3), body, (0.0, 1.0));
+    let mut case = BlockRun::new(slope(0.0, 1e3), body, (0.0, 1.0));
     let start = [Vec3::z() * 3.0, Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.3, -0.7, 0.4)];
     let begun = case.start(Rotation3::identity(), start);
     for asked in [2, 10] {
@@ -103,7 +103,7 @@ fn a_face_slides_over_any_triangulation() {
     };
     let body = block(&box_surface([1.0, 0.9, 0.5]), 0.05);
     let ends = [slope(angle, 100.0), fine(200)].map(|mesh| {
-        let mut case = Case::new(mesh, body.clone(), (0.5, 0.4));
+        let mut case = BlockRun::new(mesh, body.clone(), (0.5, 0.4));
         let mut moving = case.start(tilted(angle), still(up * 0.25));
         let start = moving.pose.centre;
         let (mut worst, mut way) = (0.0f64, 0.0);
@@ -127,7 +127,7 @@ fn a_face_slides_over_any_triangulation() {
 fn a_slab_comes_to_roll_as_a_wheel() {
     let angle = 27_f64.to_radians();
     let body = block(&box_surface([2.5, 3.0, 1.0]), 0.05);
-    let mut case = Case::new(slope(angle, 4e3), body, (10.0, 0.0));
+    let mut case = BlockRun::new(slope(angle, 4e3), body, (10.0, 0.0));
     let (along, up) = axes(angle);
     let start = [up * 2.5 - along * 3000.0, along * 28.0, Vec3::y() * 20.8];
     let mut moving = case.start(tilted(angle) * turn(&Vec3::x_axis(), 0.2), start);
@@ -150,7 +150,8 @@ fn a_slab_comes_to_roll_as_a_wheel() {
 #[test]
 fn restitution_of_a_block_falls_with_speed() {
     for speed in [2.0, 9.0, 20.0] {
-        let mut case = Case::new(slope(0.0, 50.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.6));
+        let mut case =
+            BlockRun::new(slope(0.0, 50.0), block(&box_surface([1.0; 3]), 0.05), (0.5, 0.6));
         case.law.restitution_half_m_s = 9.0;
         let start = [Vec3::z() * 0.5, Vec3::z() * -speed, Vec3::zeros()];
         let mut moving = case.start(Rotation3::identity(), start);

@@ -8,7 +8,8 @@ use crate::ground::SlipFriction;
 #[test]
 fn friction_that_grows_with_slip_tips_a_block() {
     let angle = 45_f64.to_radians();
-    let mut case = Case::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), 0.02), (0.2, 0.0));
+    let mut case =
+        BlockRun::new(slope(angle, 100.0), block(&box_surface([1.0; 3]), 0.02), (0.2, 0.0));
     let kappa = 0.7;
     let soil = SlipFriction { most: 1.3, kappa_per_m: kappa, beta_per_s: 20.0 };
     case.ground.slip_friction = Some(soil);

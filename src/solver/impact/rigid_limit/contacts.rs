@@ -6,7 +6,7 @@ use crate::ground::restitution;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::impact::normal_motion::NONE;
-use crate::solver::impact::sliders::Element;
+use crate::solver::impact::sliders::SliderElement;
 
 /// A speed along a normal that is none, in impact speeds (–).
 const REST: f64 = 1e-9;
@@ -15,13 +15,13 @@ const ALLOWANCE: f64 = 1.05;
 
 /// One of them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contact {
+pub(super) struct ImpactContact {
     pub(super) n: Vec3,
     pub(super) stiffness: f64,
     /// Normal damping when alone.
     pub(super) damping: f64,
-    pub(super) shear: Element,
-    pub(super) rolling: Element,
+    pub(super) shear: SliderElement,
+    pub(super) rolling: SliderElement,
     captured: bool,
     /// Its restitution when alone (–).
     kept: f64,
@@ -30,7 +30,7 @@ pub(super) struct Contact {
 /// All of them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contacts {
-    list: [Contact; MOST],
+    list: [ImpactContact; MOST],
     len: usize,
     /// Frequency of the softest.
     pub(super) softest: f64,
@@ -42,7 +42,7 @@ pub(super) struct Contacts {
 
 /// Where in a step a contact opens or closes.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Place {
+pub(super) enum SwitchTime {
     /// At its start: the contacts that are pressed have been changed, the step must be tried anew.
     Now,
     /// At this share of it.
@@ -51,7 +51,7 @@ pub(super) enum Place {
 
 /// Motion after the impact.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ended {
+pub(super) struct AfterImpact {
     pub(super) v: Vec3,
     pub(super) w: Vec3,
     /// What contacts without rebound have taken at last.
@@ -67,12 +67,12 @@ impl Contacts {
             let law = struck.law;
             let c_n = if struck.captured { law.c_n_captured } else { law.c_n };
             let damping = c_n * struck.stiffness_scale.sqrt() / momentum;
-            Contact {
+            ImpactContact {
                 n: struck.normal,
                 stiffness: stiffness(struck) / stiffest,
                 damping: if damping > NONE { damping } else { 0.0 },
-                shear: Element::shear(body, law, stiffest),
-                rolling: Element::rolling(body, law, stiffest),
+                shear: SliderElement::shear(body, law, stiffest),
+                rolling: SliderElement::rolling(body, law, stiffest),
                 captured: struck.captured,
                 kept: restitution(0.5 * c_n / (law.p_n * body.mass).sqrt()),
             }
@@ -88,7 +88,7 @@ impl Contacts {
     }
 
     #[inline]
-    pub(super) fn list(&self) -> &[Contact] {
+    pub(super) fn list(&self) -> &[ImpactContact] {
         &self.list[..self.len]
     }
 
@@ -111,7 +111,7 @@ impl Contacts {
         before: (Vec3, Vec3),
         (mut v, mut w): (Vec3, Vec3),
         nothing: f64,
-    ) -> Ended {
+    ) -> AfterImpact {
         let mut plastic = [0.0; MOST];
         for _ in 0..=self.len {
             let own = |k: usize| ALLOWANCE * self.list[k].kept * self.fastest[k] + nothing;
@@ -138,7 +138,7 @@ impl Contacts {
             let slower = (was / is).sqrt();
             (v, w) = (v * slower, w * slower);
         }
-        Ended { v, w, plastic }
+        AfterImpact { v, w, plastic }
     }
 
     /// Closest velocity to `v` that comes nearer to no contact and neither nears nor leaves those that are `held`. In three

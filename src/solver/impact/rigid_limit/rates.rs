@@ -1,7 +1,7 @@
 //! Rates of a rock among several frozen contacts, and the moments at which contacts open and close.
 
-use super::contacts::{Contacts, Place};
-use super::{FrozenContact, LONGEST, NOTHING};
+use super::contacts::{Contacts, SwitchTime};
+use super::{FrozenContact, LONGEST_STEP, NOTHING};
 use crate::contact::MOST;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
@@ -43,7 +43,7 @@ impl<const K: usize> ContactRates<K> {
             // All of them at penetration zero: those that come nearer press at once.
             pressed: [false; MOST],
             damping: [0.0; MOST],
-            longest: LONGEST / fastest,
+            longest: LONGEST_STEP / fastest,
             allowed,
         }
     }
@@ -139,7 +139,7 @@ impl<const K: usize> ContactRates<K> {
         y: &[f64; N],
         end: &[f64; N],
         h: f64,
-    ) -> Option<Place> {
+    ) -> Option<SwitchTime> {
         let nothing = self.nothing();
         let mut first: Option<(f64, usize)> = None;
         for k in 0..self.contacts.list().len() {
@@ -156,20 +156,21 @@ impl<const K: usize> ContactRates<K> {
         }
         let (at, k) = first?;
         if at * h > f64::EPSILON {
-            return Some(Place::At(at));
+            return Some(SwitchTime::At(at));
         }
         self.pressed[k] = !self.pressed[k];
         self.share();
-        Some(Place::Now)
+        Some(SwitchTime::Now)
     }
 
-    /// Rates of everything.
+    /// Writes the rates of everything over `rates`.
     #[inline]
     pub(super) fn rates_of<const N: usize, const Q: usize, const P: usize>(
         &self,
         y: &[f64; N],
-    ) -> Rates<N, Q, P> {
-        let mut rates = Rates::<N, Q, P>::NONE;
+        rates: &mut Rates<N, Q, P>,
+    ) {
+        *rates = Rates::NONE;
         let rolls = N > SPRINGS + 3 * K;
         let (v, w, turns) = (speed_of(y), three(y, W[0]), self.contacts.turns);
         let (mut dv, mut dw) = (Vec3::zeros(), Vec3::zeros());
@@ -211,7 +212,6 @@ impl<const K: usize> ContactRates<K> {
         put(&mut rates.y, WAY, &v);
         put(&mut rates.y, V[0], &dv);
         put(&mut rates.y, W[0], &dw);
-        rates
     }
 }
 
@@ -219,8 +219,8 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
     for ContactRates<K>
 {
     #[inline]
-    fn rates(&mut self, _node: usize, y: &[f64; N]) -> Rates<N, Q, P> {
-        self.rates_of(y)
+    fn rates(&mut self, _node: usize, y: &[f64; N], to: &mut Rates<N, Q, P>) {
+        self.rates_of(y, to);
     }
 
     #[inline]

@@ -6,7 +6,7 @@ use crate::contact::MOST;
 use crate::ground::{Ground, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::impact::rigid_limit::Thrown;
+use crate::solver::impact::rigid_limit::FrozenRebound;
 use crate::solver::impact::{Followed, FrozenContact, Plane, Settled, throw};
 use crate::solver::loss::Loss;
 use nalgebra::Rotation3;
@@ -31,14 +31,14 @@ fn smooth(e: f64) -> Ground {
 }
 
 /// How far apart two answers are, relative to the impact's speed.
-fn apart(body: &Body, fast: &Thrown, slow: (Vec3, Vec3), v: &Vec3) -> f64 {
+fn apart(body: &Body, fast: &FrozenRebound, slow: (Vec3, Vec3), v: &Vec3) -> f64 {
     let dv = (fast.velocity_m_s - slow.0).norm();
     let dw = (fast.spin_rad_s - slow.1).norm() * body.radius;
     dv.max(dw) / v.norm()
 }
 
 /// The losses add up to what is gone, and none is negative.
-fn balances(body: &Body, out: &Thrown, v: &Vec3, w: &Vec3) {
+fn balances(body: &Body, out: &FrozenRebound, v: &Vec3, w: &Vec3) {
     let before = motion_j(body, v, w);
     let gone = before - motion_j(body, &out.velocity_m_s, &out.spin_rad_s);
     let lost: f64 = out.loss.iter().map(Loss::sum).sum();

@@ -17,7 +17,7 @@ pub(super) struct Touch {
 
 /// Motion and memory; `way` is that of the centre.
 #[derive(Debug, Clone)]
-pub(super) struct State {
+pub(super) struct OracleState {
     pub(super) way: Vec3,
     pub(super) v: Vec3,
     pub(super) w: Vec3,
@@ -27,7 +27,7 @@ pub(super) struct State {
     pub(super) lost: [f64; 3],
 }
 
-impl State {
+impl OracleState {
     pub(super) fn new(v: Vec3, w: Vec3, contacts: usize) -> Self {
         let none = vec![Vec3::zeros(); contacts];
         Self { way: Vec3::zeros(), v, w, shear: none.clone(), roll: none, lost: [0.0; 3] }
@@ -47,12 +47,12 @@ impl State {
 }
 
 /// Penetration of a contact (m).
-fn depth(touch: &Touch, at: &State) -> f64 {
+fn depth(touch: &Touch, at: &OracleState) -> f64 {
     -touch.n.dot(&at.way)
 }
 
 /// Normal force of every contact (N); `pressed` are those that hold the rock.
-pub(super) fn pushes(touches: &[Touch], pressed: &[bool], at: &State) -> Vec<f64> {
+pub(super) fn pushes(touches: &[Touch], pressed: &[bool], at: &OracleState) -> Vec<f64> {
     let share = |k: usize| -> f64 {
         let cosine = |j: usize| touches[k].n.dot(&touches[j].n).max(0.0);
         let sum: f64 = (0..touches.len()).filter(|j| pressed[*j]).map(|j| cosine(j).powi(2)).sum();
@@ -66,8 +66,8 @@ pub(super) fn pushes(touches: &[Touch], pressed: &[bool], at: &State) -> Vec<f64
     (0..touches.len()).map(|k| if pressed[k] { normal_force(k).max(0.0) } else { 0.0 }).collect()
 }
 
-fn rate(body: &Body, touches: &[Touch], pressed: &[bool], at: &State) -> State {
-    let mut rate = State::new(body.gravity, Vec3::zeros(), touches.len());
+fn rate(body: &Body, touches: &[Touch], pressed: &[bool], at: &OracleState) -> OracleState {
+    let mut rate = OracleState::new(body.gravity, Vec3::zeros(), touches.len());
     rate.way = at.v;
     let normal_force = pushes(touches, pressed, at);
     for (k, touch) in touches.iter().enumerate() {
@@ -93,7 +93,7 @@ fn rate(body: &Body, touches: &[Touch], pressed: &[bool], at: &State) -> State {
 }
 
 /// One classical step of order 4.
-fn step(body: &Body, touches: &[Touch], pressed: &[bool], at: &State, h: f64) -> State {
+fn step(body: &Body, touches: &[Touch], pressed: &[bool], at: &OracleState, h: f64) -> OracleState {
     let k1 = rate(body, touches, pressed, at);
     let k2 = rate(body, touches, pressed, &at.moved(&k1, 0.5 * h));
     let k3 = rate(body, touches, pressed, &at.moved(&k2, 0.5 * h));
@@ -112,10 +112,10 @@ pub(super) fn follow(
     touches: &[Touch],
     (v, w): (Vec3, Vec3),
     per_radian: f64,
-) -> (State, f64) {
+) -> (OracleState, f64) {
     let omega = |touch: &Touch| (touch.law.p_n * touch.scale / body.mass).sqrt();
     let h = 1.0 / (per_radian * touches.iter().map(omega).fold(0.0, f64::max));
-    let mut at = State::new(v, w, touches.len());
+    let mut at = OracleState::new(v, w, touches.len());
     let mut pressed: Vec<bool> = touches.iter().map(|touch| touch.n.dot(&v) < 0.0).collect();
     let mut t = 0.0;
     for _ in 0..100_000_000u64 {

@@ -5,21 +5,21 @@ use crate::contact::pair::{PairHistory, between};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::friction_rolling::Mode;
+use crate::solver::friction_rolling::SlipState;
 use crate::solver::impact::{FrozenContact, throw};
-use crate::solver::island::pair_contact::Motion;
+use crate::solver::island::pair_contact::Twist;
 use crate::solver::law::within;
 use crate::solver::rigid::{IMPACT, rub};
 
 /// One rock inside a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ball {
+pub(super) struct StepBody {
     pub(super) c: Vec3,
     pub(super) v: Vec3,
     pub(super) w: Vec3,
     pub(super) body: Body,
     /// Velocity and spin at the start of the step.
-    pub(super) before: Motion,
+    pub(super) before: Twist,
     /// `1/m` (1/kg) and `1/I` (1/(kg m²)).
     pub(super) inv: (f64, f64),
     /// Change of speed in a sweep that has settled (m/s).
@@ -35,7 +35,7 @@ pub(super) struct Ball {
     pub(super) moved: bool,
 }
 
-impl Ball {
+impl StepBody {
     pub(super) fn new(body: &Body, (c, v, w): (Vec3, Vec3, Vec3)) -> Self {
         let inv = (1.0 / body.mass, 1.0 / body.inertia);
         Self {
@@ -56,19 +56,19 @@ impl Ball {
 
     /// Takes an impulse (N s) and one of rotation (N m s).
     #[inline]
-    pub(super) fn take(&mut self, (normal_force, turn): &Motion) {
+    pub(super) fn take(&mut self, (normal_force, turn): &Twist) {
         self.v += normal_force * self.inv.0;
         self.w += turn * self.inv.1;
     }
 
     /// The same for a blow that fell `s` (s) before the end of the step: the rock has gone on with what it got since.
-    pub(super) fn take_late(&mut self, blow: &Motion, s: f64) {
+    pub(super) fn take_late(&mut self, blow: &Twist, s: f64) {
         self.take(blow);
         self.c += blow.0 * (self.inv.0 * s);
     }
 
     /// Work of an impulse at mean velocity `v` and spin `w` (J).
-    pub(super) fn work_j((normal_force, turn): &Motion, v: &Vec3, w: &Vec3) -> f64 {
+    pub(super) fn work_j((normal_force, turn): &Twist, v: &Vec3, w: &Vec3) -> f64 {
         normal_force.dot(v) + turn.dot(w)
     }
 }
@@ -139,7 +139,7 @@ impl BallContact {
     }
 
     /// Adds to its impulses what the cone allows, and acts with that.
-    pub(super) fn push_on(&mut self, step: &Impulses, a: &mut Ball, b: &mut Ball) {
+    pub(super) fn push_on(&mut self, step: &Impulses, a: &mut StepBody, b: &mut StepBody) {
         let next = self.impulses().plus(step).within((self.friction, 0.0));
         let change = Self {
             normal_force: next.0 - self.normal_force,
@@ -154,7 +154,7 @@ impl BallContact {
     /// The contact of two rocks with centres at `at`, without impulses.
     pub(super) fn new(
         (pair_history, of): (usize, &PairHistory),
-        balls: [&Ball; 2],
+        balls: [&StepBody; 2],
         at: [&Vec3; 2],
     ) -> Self {
         let (n, distance) = between(at[0], at[1]);
@@ -179,20 +179,20 @@ impl BallContact {
 
     /// Normal speed apart (m/s).
     #[inline]
-    pub(super) fn speed(&self, a: &Ball, b: &Ball) -> f64 {
+    pub(super) fn speed(&self, a: &StepBody, b: &StepBody) -> f64 {
         self.n.dot(&(a.v - b.v))
     }
 
     /// Slip of the first rock over the second at the touched point (m/s).
     #[inline]
-    pub(super) fn slip(&self, a: &Ball, b: &Ball) -> Vec3 {
+    pub(super) fn slip(&self, a: &StepBody, b: &StepBody) -> Vec3 {
         let u = a.v - b.v;
         u - self.n * self.n.dot(&u) + self.n.cross(&(a.w * self.levers[0] + b.w * self.levers[1]))
     }
 
     /// Impulse and rotational impulse on end `k`.
     #[inline]
-    pub(super) fn load(&self, k: usize) -> Motion {
+    pub(super) fn load(&self, k: usize) -> Twist {
         let normal_force = self.n * self.normal_force - self.shear_force;
         (
             if k == 0 { normal_force } else { -normal_force },
@@ -203,7 +203,7 @@ impl BallContact {
     /// Finds the impulses for motions that hold the present ones, and acts with what they change by; how much that
     /// changes the speed at the contact (m/s).
     #[inline]
-    pub(super) fn solve(&mut self, a: &mut Ball, b: &mut Ball) -> f64 {
+    pub(super) fn solve(&mut self, a: &mut StepBody, b: &mut StepBody) -> f64 {
         let (held, shear_force) = (self.normal_force, self.shear_force);
         let speed = self.speed(a, b);
         let normal_force = (held + (self.target - speed) / self.inv.0).max(0.0);
@@ -244,7 +244,7 @@ pub(super) struct GroundContact {
     /// Rolling impulse on the rock (N m s).
     pub(super) turn: Vec3,
     /// Which of friction and rolling holds.
-    mode: Mode,
+    mode: SlipState,
     /// The count of its rock when it was solved last.
     pub(super) seen: u32,
 }
@@ -267,14 +267,14 @@ impl GroundContact {
             normal_force: 0.0,
             shear_force: Vec3::zeros(),
             turn: Vec3::zeros(),
-            mode: Mode::default(),
+            mode: SlipState::default(),
             seen: 0,
         }
     }
 
     /// Impulse and rotational impulse on the rock.
     #[inline]
-    pub(super) fn load(&self, body: &Body) -> Motion {
+    pub(super) fn load(&self, body: &Body) -> Twist {
         (
             self.n * self.normal_force + self.shear_force,
             self.turn - self.n.cross(&self.shear_force) * body.radius,
@@ -286,7 +286,7 @@ impl GroundContact {
     }
 
     /// Adds to its impulses what the cone allows, and acts with that.
-    pub(super) fn push_on(&mut self, step: &Impulses, ball: &mut Ball) {
+    pub(super) fn push_on(&mut self, step: &Impulses, ball: &mut StepBody) {
         let next = self.impulses().plus(step).within(self.caps);
         let change = next.less(&self.impulses());
         let change =
@@ -325,7 +325,7 @@ impl GroundContact {
 
     /// Finds the impulses for a motion that holds the present ones, and acts with what they change by; how much that
     /// changes the speed at the contact (m/s).
-    pub(super) fn solve(&mut self, ball: &mut Ball) -> f64 {
+    pub(super) fn solve(&mut self, ball: &mut StepBody) -> f64 {
         let held = *self;
         let (normal_force, turn) = held.load(&ball.body);
         let (v, w) = (ball.v - normal_force * ball.inv.0, ball.w - turn * ball.inv.1);

@@ -7,7 +7,7 @@
 //! step, and each takes energy.
 
 use super::RigidIsland;
-use super::contacts::{Ball, BallContact, GroundContact};
+use super::contacts::{BallContact, GroundContact, StepBody};
 use crate::contact::ContactPoint;
 use crate::contact::pair::PairHistory;
 use crate::rock::Vec3;
@@ -30,16 +30,16 @@ const NEAR: f64 = 1e-3;
 
 /// A blow that is due: time before the end of the step (s, as the bits of a positive number: they keep the order), the
 /// place of its contact, the counts of its rocks.
-pub(super) type Due = (u64, Reverse<usize>, [u32; 2]);
+pub(super) type PendingImpact = (u64, Reverse<usize>, [u32; 2]);
 
 /// What blows act on.
-pub(super) struct Scene<'s> {
+pub(super) struct ImpactScene<'s> {
     pub(super) terrain: &'s Terrain,
     pub(super) members: &'s mut [BodySlot],
     pub(super) pair_histories: &'s [PairHistory],
 }
 
-impl Scene<'_> {
+impl ImpactScene<'_> {
     /// The rocks of a contact: pairs come first, then every rock with the mesh.
     fn ends_of(&self, place: usize) -> [usize; 2] {
         self.pair_histories
@@ -52,7 +52,7 @@ impl Scene<'_> {
 
 impl RigidIsland {
     /// Takes all impacts of a step of length `dt` (s); whether none is left.
-    pub(super) fn strike(&mut self, scene: &mut Scene, dt: f64) -> bool {
+    pub(super) fn strike(&mut self, scene: &mut ImpactScene, dt: f64) -> bool {
         self.due.clear();
         for ball in &mut self.balls {
             (ball.since_s, ball.blows) = (dt, 0);
@@ -93,7 +93,7 @@ impl RigidIsland {
     }
 
     /// Looks for the blows that follow from one on these rocks.
-    fn expect_more(&mut self, scene: &mut Scene, ends: [usize; 2]) {
+    fn expect_more(&mut self, scene: &mut ImpactScene, ends: [usize; 2]) {
         let both = if ends[0] == ends[1] { &ends[..1] } else { &ends[..] };
         for &end in both {
             for at in self.first[end]..self.first[end + 1] {
@@ -105,7 +105,7 @@ impl RigidIsland {
     }
 
     /// Notes the blow of a pair, if one is due.
-    fn expect_pair(&mut self, scene: &Scene, place: usize) {
+    fn expect_pair(&mut self, scene: &ImpactScene, place: usize) {
         let pair_history = &scene.pair_histories[place];
         let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
         let (apart, closing) = (a.c - b.c, a.v - b.v);
@@ -126,7 +126,7 @@ impl RigidIsland {
     }
 
     /// Notes the blow of a rock on the mesh, if one is due.
-    fn expect_ground(&mut self, scene: &mut Scene, k: usize) {
+    fn expect_ground(&mut self, scene: &mut ImpactScene, k: usize) {
         let ball = &self.balls[k];
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
@@ -150,7 +150,7 @@ impl RigidIsland {
     }
 
     /// Takes the blow of a contact, `s` (s) before the end of the step.
-    fn blow(&mut self, scene: &mut Scene, place: usize, s: f64) {
+    fn blow(&mut self, scene: &mut ImpactScene, place: usize, s: f64) {
         if place < scene.pair_histories.len() {
             self.blow_pair(scene, place, s);
         } else {
@@ -158,7 +158,7 @@ impl RigidIsland {
         }
     }
 
-    fn blow_pair(&mut self, scene: &Scene, place: usize, s: f64) {
+    fn blow_pair(&mut self, scene: &ImpactScene, place: usize, s: f64) {
         let pair_history = &scene.pair_histories[place];
         let ends = [pair_history.a as usize, pair_history.b as usize];
         let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { return };
@@ -175,7 +175,7 @@ impl RigidIsland {
             let load = ball_contact.load(k);
             ball.take_late(&load, s);
             let (v, w) = mean_late(ball, &before[k], s);
-            given[k] = -Ball::work_j(&load, &v, &w);
+            given[k] = -StepBody::work_j(&load, &v, &w);
             ball.is_struck(s);
         }
         for (end, given) in ends.into_iter().zip(Given::of_ends(given)) {
@@ -184,7 +184,7 @@ impl RigidIsland {
         self.struck[place] = true;
     }
 
-    fn blow_ground(&mut self, scene: &mut Scene, k: usize, s: f64) {
+    fn blow_ground(&mut self, scene: &mut ImpactScene, k: usize, s: f64) {
         let ball = &mut self.balls[k];
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
@@ -228,7 +228,7 @@ impl RigidIsland {
     }
 }
 
-impl Ball {
+impl StepBody {
     /// Notes that a blow fell `s` (s) before the end of the step.
     fn is_struck(&mut self, s: f64) {
         self.since_s = s;
@@ -251,7 +251,7 @@ fn hit_of(k: usize, touch: &ContactPoint, (c, radius): (&Vec3, f64), approach_m_
 }
 
 /// Whether a rock that slides or rolls strikes the next facet of rough ground, the last one being behind it.
-fn meets_facet(world: &ContactEnvironment, state: &mut ContactState, ball: &Ball) -> bool {
+fn meets_facet(world: &ContactEnvironment, state: &mut ContactState, ball: &StepBody) -> bool {
     let reach = ball.body.radius * (1.0 + HELD);
     let ContactState { touches, facets, .. } = state;
     let rough = touches.iter().filter(|touch| touch.distance_m <= reach).find_map(|touch| {
@@ -262,12 +262,12 @@ fn meets_facet(world: &ContactEnvironment, state: &mut ContactState, ball: &Ball
 }
 
 /// Mean motion in a blow that fell `s` (s) before the end of the step, from the motions there without and with it.
-fn mean_late(ball: &Ball, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
+fn mean_late(ball: &StepBody, before: &(Vec3, Vec3), s: f64) -> (Vec3, Vec3) {
     ((before.0 + ball.v) * 0.5 - ball.body.gravity * s, (before.1 + ball.w) * 0.5)
 }
 
 /// How long before the end of the step a rock that is pressed in by `pen` (m) along `n` touched (s), on its parabola.
-fn time_of_touch(ball: &Ball, n: &Vec3, penetration: f64) -> Option<f64> {
+fn time_of_touch(ball: &StepBody, n: &Vec3, penetration: f64) -> Option<f64> {
     let speed = -n.dot(&ball.v);
     let root2 = speed * speed + 2.0 * n.dot(&ball.body.gravity) * penetration.max(0.0);
     let touches = penetration >= -TOUCH * ball.body.radius && speed > 0.0 && root2 > 0.0;

@@ -5,17 +5,17 @@
 //! it gives way is lost beside the tolerance. The sweeps judge the result.
 
 use super::RigidIsland;
-use super::contacts::{Ball, BallContact, GroundContact};
+use super::contacts::{BallContact, GroundContact, StepBody};
 use crate::contact::pair::PairHistory;
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::island::body::BodySlot;
 use crate::solver::island::newton_step::jump;
-use crate::solver::island::pair_contact::{Motion, PairContact};
+use crate::solver::island::pair_contact::{PairContact, Twist};
 use crate::solver::law::{StageContact, within};
 
 /// Impulse by speed of a spring that stands for a rigid contact, over the largest mass (–).
-const HOLD: f64 = 1e7;
+const HOLD_BY_SPEED: f64 = 1e7;
 /// A jump of more rocks than this costs more than the sweeps that it may save.
 const MOST_ROCKS: usize = 64;
 
@@ -31,7 +31,7 @@ impl RigidIsland {
             return false;
         }
         let heaviest = self.balls.iter().map(|ball| ball.body.mass).fold(0.0, f64::max);
-        let stiffness = HOLD * heaviest;
+        let stiffness = HOLD_BY_SPEED * heaviest;
         self.hand_over(members, stiffness);
         let pair = |ball_contact: &BallContact| {
             ball_contact.bridge(&pair_histories[ball_contact.pair_history], stiffness)
@@ -80,7 +80,7 @@ impl RigidIsland {
     }
 
     /// Sets every impulse of rocks that jumped to what the stiff springs give at their new motions.
-    fn act_on(&mut self, motions: &[Option<Motion>], stiffness: f64) {
+    fn act_on(&mut self, motions: &[Option<Twist>], stiffness: f64) {
         for (ball, motion) in self.balls.iter_mut().zip(motions) {
             if let Some((v, w)) = motion {
                 (ball.v, ball.w) = (*v, *w);
@@ -118,7 +118,7 @@ impl RigidIsland {
     }
 
     /// What weight adds to the velocity in the step in hand.
-    fn gain(&self, ball: &Ball) -> Vec3 {
+    fn gain(&self, ball: &StepBody) -> Vec3 {
         ball.body.gravity * self.dt
     }
 }
@@ -144,7 +144,7 @@ impl GroundContact {
         }
     }
 
-    fn give_way(&mut self, ball: &Ball, stiffness: f64) {
+    fn give_way(&mut self, ball: &StepBody, stiffness: f64) {
         self.normal_force = (stiffness * (self.target - self.n.dot(&ball.v))).max(0.0);
         let slip = ball.body.slip(&self.n, &ball.v, &ball.w);
         let wound = ball.w * (stiffness * ball.body.radius.powi(2));

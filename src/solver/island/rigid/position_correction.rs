@@ -1,8 +1,8 @@
 //! Rocks that got into each other or into the mesh are moved out, without adding velocity.
 
 use super::RigidIsland;
-use super::contacts::Ball;
-use super::impacts::Scene;
+use super::contacts::StepBody;
+use super::impacts::ImpactScene;
 use crate::contact::TOUCH;
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
@@ -19,8 +19,8 @@ const SWEEPS: u32 = 30;
 
 impl PairHistory {
     /// Overlap that is left alone (m).
-    fn slack_m(&self, balls: [&Ball; 2]) -> f64 {
-        let weight = |ball: &Ball| ball.body.mass * ball.body.gravity.norm();
+    fn slack_m(&self, balls: [&StepBody; 2]) -> f64 {
+        let weight = |ball: &StepBody| ball.body.mass * ball.body.gravity.norm();
         let radius = balls[0].body.radius.min(balls[1].body.radius);
         let pressed = LAYERS * (weight(balls[0]) + weight(balls[1])) / self.law.p_n;
         pressed.clamp(SLACK.0 * radius, SLACK.1 * radius)
@@ -29,7 +29,7 @@ impl PairHistory {
 
 impl RigidIsland {
     /// Moves apart what overlaps, each by its share of the mass; the height that a rock gains is paid by its motion.
-    pub(super) fn part(&mut self, scene: &mut Scene) {
+    pub(super) fn part(&mut self, scene: &mut ImpactScene) {
         self.places.clear();
         self.places.extend(self.balls.iter().map(|ball| ball.c));
         for _ in 0..SWEEPS {
@@ -59,7 +59,7 @@ impl RigidIsland {
     }
 
     /// Moves a rock out of the mesh; whether it was in it.
-    fn push_out(&mut self, scene: &mut Scene, k: usize) -> bool {
+    fn push_out(&mut self, scene: &mut ImpactScene, k: usize) -> bool {
         let ball = &mut self.balls[k];
         let IslandBody { state, body, laws, .. } = &mut *scene.members[k];
         let world = ContactEnvironment { terrain: scene.terrain, body: *body, laws };
@@ -91,9 +91,9 @@ impl RigidIsland {
 
     /// Takes energy (J) out of the motion of all rocks that are pushed, each its share.
     fn pay_together(&mut self, owed_j: f64) {
-        let takes_part = |ball: &Ball| ball.pushed || ball.moved;
+        let takes_part = |ball: &StepBody| ball.pushed || ball.moved;
         let motion_j: f64 =
-            self.balls.iter().filter(|ball| takes_part(ball)).map(Ball::motion_j).sum();
+            self.balls.iter().filter(|ball| takes_part(ball)).map(StepBody::motion_j).sum();
         let share = if motion_j > 0.0 { (owed_j / motion_j).min(1.0) } else { 0.0 };
         for (ball, given) in self.balls.iter_mut().zip(&mut self.given) {
             if takes_part(ball) {
@@ -105,7 +105,7 @@ impl RigidIsland {
     }
 }
 
-impl Ball {
+impl StepBody {
     /// Energy in motion (J).
     fn motion_j(&self) -> f64 {
         0.5 * (self.body.mass * self.v.norm_squared() + self.body.inertia * self.w.norm_squared())

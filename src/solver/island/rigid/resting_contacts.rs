@@ -6,7 +6,7 @@
 //! what it took at its start.
 
 use super::RigidIsland;
-use super::contacts::{Ball, BallContact, GroundContact};
+use super::contacts::{BallContact, GroundContact, StepBody};
 use crate::contact::pair::{PairHistory, between};
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
@@ -123,7 +123,7 @@ impl RigidIsland {
 
     /// Moves the rocks with their mean velocities and books what the impulses took.
     fn go_on(&mut self, terrain: &Terrain, members: &[BodySlot], dt: f64) {
-        let mean = |ball: &Ball| -> (Vec3, Vec3) {
+        let mean = |ball: &StepBody| -> (Vec3, Vec3) {
             ((ball.v + ball.before.0) * 0.5, (ball.w + ball.before.1) * 0.5)
         };
         self.taken_j = 0.0;
@@ -143,7 +143,7 @@ impl RigidIsland {
             self.taken_j -= ball_contact.normal_force * ball_contact.n.dot(&(a - b));
             let given = [0, 1].map(|k| {
                 let (v, w) = mean(&self.balls[ball_contact.ends[k]]);
-                -Ball::work_j(&ball_contact.load(k), &v, &w)
+                -StepBody::work_j(&ball_contact.load(k), &v, &w)
             });
             for (end, given) in ball_contact.ends.into_iter().zip(Given::of_ends(given)) {
                 self.given[end].add(&given, 1.0);

@@ -1,0 +1,74 @@
+//! The first page: site and question, what must be known first, the map, what arrives, and the numbers of all rocks.
+
+use super::{NumberedFigures, escape, list, pairs, tables};
+use crate::report::format;
+use crate::report::model::Report;
+use crate::report::words::fill;
+
+/// Site and question, the map, what arrives, and what must be known first.
+pub(super) fn page(report: &Report, drawn: &NumberedFigures<'_>) -> String {
+    let text = &report.text;
+    let subtitle = match text.subtitle.as_str() {
+        "" => String::new(),
+        words => format!("<p class=\"subtitle\">{}</p>\n", escape(words)),
+    };
+    let count = |n: usize| format::decimal(n as f64, 0);
+    let words = report.words();
+    let counted = |n: usize, one, many| format!("{} {}", count(n), format::counted(n, one, many));
+    let facts = format!(
+        "{} · {} · {} {} · rockfall {}",
+        counted(report.releases.len(), words.release_one, words.release_many),
+        counted(report.paths.len(), words.stored_path_one, words.stored_path_many),
+        words.seed,
+        text.seed,
+        text.version
+    );
+    let view = if report.has_view {
+        format!(" · <a href=\"view.html\">{}</a>", escape(words.slope_in_3d))
+    } else {
+        String::new()
+    };
+    let map = drawn.figure("plan.svg").replacen("<figure>", "<figure class=\"map\">", 1);
+    let arrivals: String =
+        report.arrivals.iter().map(|table| tables::table(table, words)).collect();
+    format!(
+        "<header class=\"site\">\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{}{view}</p>\n{}{}</header>\n\
+         <div class=\"front\">\n{map}<section class=\"rocks\">\n{}</section>\n{}\
+         <section class=\"answer\">\n{arrivals}</section>\n</div>\n",
+        escape(&text.title),
+        escape(&facts),
+        pairs(&text.title_block),
+        question(report),
+        tables::headline(&report.headline, words),
+        warnings(report),
+    )
+}
+
+/// What was asked, in one sentence, from what the scene names.
+fn question(report: &Report) -> String {
+    let words = report.words();
+    let names = |is_barrier: bool| -> Vec<String> {
+        let marks = report.marks.iter().filter(|mark| mark.barrier.is_some() == is_barrier);
+        marks.map(|mark| words.quoted(&mark.name)).collect()
+    };
+    let (lines, barriers) = (names(false), names(true));
+    let mut asked = words.question.to_owned();
+    for (text, names) in [(words.question_lines, lines), (words.question_barriers, barriers)] {
+        if !names.is_empty() {
+            asked += &fill(text, &[("names", &names.join(", "))]);
+        }
+    }
+    let mark = if words.code == "fr" { "\u{a0}?" } else { "?" };
+    format!("<p class=\"question\">{}{mark}</p>\n", escape(&asked))
+}
+
+fn warnings(report: &Report) -> String {
+    if report.text.warnings.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<section class=\"warnings\">\n<h2>{}</h2>\n{}</section>\n",
+        escape(report.words().read_first),
+        list(&report.text.warnings.iter().map(|text| format::sentence(text)).collect::<Vec<_>>())
+    )
+}

@@ -1,0 +1,95 @@
+//! Stems that give way to a block.
+//!
+//! The rule is that of spheres (`solver::stems`): what a block puts into its contacts with a stem counts against what the stem can
+//! take; when that is what was left of the stem, the stem is gone and the block goes on. A blow that would take more ends there
+//! ([`Contact::yielding`](super::solve::BlockContact)).
+
+use super::{Footing, Moving};
+use crate::body::Block;
+use crate::contact::block::BlockTouch;
+use crate::random::RandomStream;
+use crate::rock::Vec3;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::loss::Loss;
+use crate::solver::stems::{WITHSTANDS, given_back};
+use crate::terrain::Terrain;
+use crate::terrain::stems::Stems;
+
+impl Footing {
+    /// All stems stand again, with limits drawn for the block of this random stream.
+    pub(crate) fn raise_stems(&mut self, terrain: &Terrain, random: &RandomStream) {
+        self.near.gone.clear();
+        if let Some(stems) = &terrain.stems {
+            self.stem_load.begin(stems, random);
+        }
+    }
+
+    /// Breaks the stems among the contacts that touch which cannot take the blow in hand; what they took (J).
+    pub(crate) fn break_stems(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        moving: &mut Moving,
+    ) -> f64 {
+        let Some(stems) = world.terrain.stems.as_ref() else { return 0.0 };
+        let mut taken_j = 0.0;
+        while let Some((stem, left_j)) = self.break_next(world, stems, (block, moving)) {
+            taken_j += left_j;
+            self.fell(stem);
+            let pose = moving.pose;
+            self.look(world, block, &pose, block.ball_m);
+        }
+        taken_j
+    }
+
+    /// Breaks the first stem that cannot take the blow; it, and what was left of it (J).
+    fn break_next(
+        &mut self,
+        world: &ContactEnvironment,
+        stems: &Stems,
+        (block, moving): (&Block, &mut Moving),
+    ) -> Option<(u32, f64)> {
+        let (mass, motion_j) = (moving.mass(block), moving.motion_j(block));
+        let touching: Vec<BlockTouch> = self.touching(block).copied().collect();
+        touching.iter().find_map(|touch| {
+            let stem = stems.of_triangle(touch.triangle)?;
+            let left_j = self.stem_load.left_j(stems, stem);
+            let u = moving.at(block, &touch.lever);
+            if left_j > WITHSTANDS * motion_j || touch.normal.dot(&u) >= 0.0 {
+                return None;
+            }
+            let mut contact = self.contact(world, (&mass, touch), 0.0, Vec3::zeros());
+            contact.impulse = contact.yielding(&u, left_j)?;
+            moving.take(&[contact], block.mass_kg);
+            Some((stem, left_j))
+        })
+    }
+
+    /// After impulses with these losses: the stem that is touched has taken what went into contacts with trees. Where that is more
+    /// than it can, it gives way, and the block gets back what was too much.
+    pub(crate) fn bend_stem(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+        loss: &mut Loss,
+    ) {
+        let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees > 0.0) else { return };
+        let touched = self.touches.iter().filter_map(|touch| {
+            stems.of_triangle(touch.triangle).map(|stem| (stem, touch.gap_m, touch.normal))
+        });
+        let Some((stem, _, normal)) = touched.min_by(|one, other| one.1.total_cmp(&other.1)) else {
+            return;
+        };
+        if let Some(beyond_j) = self.stem_load.yields(stems, stem, loss.trees) {
+            moving.v += given_back(block.mass_kg, &moving.v, beyond_j, &normal);
+            loss.trees -= beyond_j;
+            self.fell(stem);
+        }
+    }
+
+    /// A stem is gone for this block.
+    fn fell(&mut self, stem: u32) {
+        self.near.gone.push(stem);
+        self.near.forget();
+    }
+}
