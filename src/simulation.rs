@@ -5,12 +5,14 @@ mod rest;
 mod stretches;
 mod crossings;
 mod driver;
+mod fall;
 mod form;
 mod impacts;
 mod passages;
 mod recorder;
 mod rock_in_contact;
 mod settings;
+mod soil;
 mod world;
 mod cells;
 

@@ -48,6 +48,11 @@ fn written(is_compressed: bool) -> Vec<u8> {
 }
 
 fn file_of(points: Vec<Point>, is_compressed: bool) -> Vec<u8> {
+    file_in(points, is_compressed, None)
+}
+
+/// The same with a coordinate system in words.
+fn file_in(points: Vec<Point>, is_compressed: bool, system: Option<&str>) -> Vec<u8> {
     let mut builder = Builder::from((1, 4));
     builder.point_format = Format::new(6).unwrap();
     builder.point_format.is_compressed = is_compressed;
@@ -58,7 +63,11 @@ fn file_of(points: Vec<Point>, is_compressed: bool) -> Vec<u8> {
     ] {
         (axis.scale, axis.offset) = (0.001, offset);
     }
-    let mut writer = Writer::new(Cursor::new(Vec::new()), builder.into_header().unwrap()).unwrap();
+    let mut header = builder.into_header().unwrap();
+    if let Some(system) = system {
+        header.set_wkt_crs(system.as_bytes().to_vec()).unwrap();
+    }
+    let mut writer = Writer::new(Cursor::new(Vec::new()), header).unwrap();
     for point in points {
         writer.write_point(Point { gps_time: Some(0.0), ..point }).unwrap();
     }
@@ -111,6 +120,30 @@ fn the_surface_is_the_slope() {
     }
     let (again, _) = Terrain::read(&[source], origin_m, None).unwrap();
     assert_eq!((again.vertices_m, again.triangles), (terrain.vertices_m, terrain.triangles));
+}
+
+/// Feet, of the map or of the heights alone, are told; metres are read.
+#[test]
+fn a_cloud_in_feet_is_refused() {
+    let system = |map: &str, heights: &str| {
+        format!(
+            "COMPD_CS[\"a\",PROJCS[\"b\",GEOGCS[\"c\",UNIT[\"degree\",0.0174532925199433]],UNIT[{map}]],VERT_CS[\"d\",UNIT[{heights}]]]"
+        )
+    };
+    let (metre, foot) = ("\"metre\",1", "\"US survey foot\",0.304800609601219");
+    let parse = |system: &str| {
+        let bytes = file_in(points(), false, Some(system));
+        cloud::parse(Cursor::new(bytes), Path::new("cloud.las"), &Options::default())
+    };
+    for feet in [system(foot, foot), system(metre, foot)] {
+        let said = parse(&feet).unwrap_err().to_string();
+        assert!(
+            said.contains("found the unit US survey foot, not the metre; write it in metres: pdal")
+                && said.contains("Z = Z * 0.3048"),
+            "{said}"
+        );
+    }
+    assert!(parse(&system(metre, metre)).is_ok());
 }
 
 #[test]
@@ -333,31 +366,9 @@ fn a_cloud_and_a_mesh_of_the_same_slope_agree() {
 /// coordinate system as WKT; all hold the same ground.
 #[test]
 fn what_laspy_writes_is_read() {
-    const SCRIPT: &str = "
-import sys
-try:
-    import laspy, numpy
-except ImportError:
-    print('none'); sys.exit()
-k = numpy.arange(900)
-x, y = 2600000.25 + k % 30, 1200000.75 + k // 30
-z = 50 + 0.5 * (x - 2600000) - 0.25 * (y - 1200000)
-n = 0
-for version, formats in (('1.2', (0, 1, 2, 3)), ('1.4', (0, 1, 6, 7, 8))):
-    for fmt in formats:
-        for end in ('las', 'laz'):
-            header = laspy.LasHeader(point_format=fmt, version=version)
-            header.offsets, header.scales = [2600000, 1200000, 0], [0.001] * 3
-            cloud = laspy.LasData(header)
-            cloud.x, cloud.y, cloud.z = x, y, numpy.where(k % 7 == 0, z + 9, z)
-            cloud.classification = numpy.where(k % 7 == 0, 5, 2).astype('u1')
-            cloud.write(f'{sys.argv[1]}/{version}_{fmt}.{end}')
-            n += 1
-print(n)
-";
     let dir = tempfile::tempdir().unwrap();
     let said = std::process::Command::new("python3")
-        .args(["-c", SCRIPT, dir.path().to_str().unwrap()])
+        .args(["-c", include_str!("made/laspy.py"), dir.path().to_str().unwrap()])
         .output();
     let said = said
         .map(|said| String::from_utf8_lossy(&said.stdout).trim().to_owned())

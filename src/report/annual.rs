@@ -25,7 +25,10 @@ pub(super) fn nobody(words: &Words, view: &AnnualView) -> Option<String> {
     let what = if view.is_object { words.object } else { words.line };
     let place = fill(what, &[("name", &words.quoted(&view.name))]);
     let rate = format::significant(view.most_per_year, 2);
-    let found: [(&str, &dyn std::fmt::Display); 2] = [("place", &place), ("rate", &rate)];
+    let count = |rocks: f64| format::decimal(rocks, 0);
+    let [rocks, effective] = [view.rocks as f64, view.effective_rocks].map(count);
+    let found: [(&str, &dyn std::fmt::Display); 4] =
+        [("place", &place), ("rate", &rate), ("rocks", &rocks), ("effective", &effective)];
     (!view.is_met()).then(|| fill(words.nobody_year, &found))
 }
 

@@ -335,9 +335,19 @@ fn bar(
         canvas.line(&[(at(reach.low), middle), (at(reach.high), middle)], Pen::full(INK, 1.2));
     }
     canvas.text(&Label::new(name, (frame.left - 6.0, y)).right());
-    let reach = format::percent(line.reach.value, 1);
-    let left = behind.map_or(String::new(), |reach| {
-        fill(words.left, &[("share", &format::percent(reach.value, 1))])
-    });
+    let reach = percent_shown(line.reach.value);
+    let left = behind
+        .map_or(String::new(), |reach| fill(words.left, &[("share", &percent_shown(reach.value))]));
     canvas.text(&Label::new(reach, (frame.right + 6.0, y)).followed_by(left));
+}
+
+/// A share in per cent with a digit that is not 0, however small it is.
+fn percent_shown(share: f64) -> String {
+    let decimals = match share {
+        small if small > 0.0 && small < 1e-4 => 4,
+        small if small > 0.0 && small < 1e-3 => 3,
+        small if small > 0.0 && small < 1e-2 => 2,
+        _ => 1,
+    };
+    format::percent(share, decimals)
 }

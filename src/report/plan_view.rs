@@ -98,7 +98,12 @@ fn layout(report: &Report) -> Panel {
     let scale = (widest / (x.1 - x.0)).min(TALLEST_PX / (y.1 - y.0));
     let (width, height) = (scale * (x.1 - x.0), scale * (y.1 - y.0));
     let frame = PaperFrame { left, top: TOP_PX, right: left + width, bottom: TOP_PX + height };
-    panel(frame, x, y)
+    let mut panel = panel(frame, x, y);
+    // a flat map has other ticks than the square, with more digits
+    let more = (panel.room_left() - panel.frame.left).max(0.0);
+    panel.frame.left += more;
+    panel.frame.right += more;
+    panel
 }
 
 type Range = (f64, f64);

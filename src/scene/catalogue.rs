@@ -90,7 +90,8 @@ pub fn catalogue() -> String {
     let mut text = String::from(
         "Grounds for `like = \"NAME\"` under [grounds.…]. Own values beside it override; springs and friction angle are\n\
          always the scene's own. The tangential restitution of the sources is another law's and has no place in this one, where\n\
-         friction takes what slips and tangential_ratio says what an impact that sticks gives back.\n",
+         friction takes what slips and tangential_ratio says what an impact that sticks gives back. CRSP lets restitution fall with\n\
+         speed (Pfeiffer and Bowen 1989): restitution_half_speed_m_s does so here; its constant was not read in a source and is yours.\n",
     );
     for ground in &CATALOGUE {
         let KnownGround { name, what, source, .. } = ground;

@@ -161,9 +161,8 @@ impl Scene {
                 return Err(Complaint::about("orientation", remedy).inside("release"));
             }
         }
-        self.check_soil_of_worlds()?;
         if !self.has_blocks() {
-            return Ok(());
+            return self.check_soil_of_worlds();
         }
         if self.solver.scheme().has_springs() {
             let remedy = "write scheme = \"rigid\": blocks of [[rocks.shapes]] are computed in the rigid limit only, as yet";

@@ -5,17 +5,13 @@
 //! integrates translation, spin and springs until no contact is left. An episode of contact closes with an energy
 //! balance: motion before and after, losses booked by cause, and the remainder, which is the error of the numerics.
 
-mod soil;
-
 use super::block::follow_block;
+use super::fall::{Fall, Soil};
 use super::form::Form;
 use super::recorder::{Keep, Recorder};
 use super::rest::RestCriterion;
-use super::rock_in_contact::RockInContact;
 use super::settings::RunSettings;
 use super::{Stop, Trajectory};
-use soil::Soil;
-
 use crate::error::Result;
 use crate::flight::{Parabola, time_of_impact_past};
 use crate::ground::{Capture, Damping, Law};
@@ -170,18 +166,7 @@ pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> K
     Keep { path_step_s, impacts: plan.impacts.is_kept() }
 }
 
-/// One sphere on its way: what it is, where it is, and what is recorded of it.
-pub(super) struct Fall<'a> {
-    pub(super) settings: &'a RunSettings<'a>,
-    pub(super) body: Body,
-    /// Those in force: soil and the speed of impacts change them on the way.
-    pub(super) laws: &'a mut [Law],
-    soil: Soil<'a>,
-    pub(super) state: &'a mut ContactState,
-    pub(super) recorder: Recorder<'a>,
-}
-
-impl<'a> Fall<'a> {
+impl Fall<'_> {
     /// Whether the rock is in contact with something it is pressed into.
     fn is_pressed(&mut self) -> bool {
         let now = self.recorder.now;
@@ -251,11 +236,6 @@ impl<'a> Fall<'a> {
         stop
     }
 
-    /// Whether contacts have no springs: those of the rigid limit hold nothing, whatever the depth that rounding leaves.
-    fn is_rigid(&self) -> bool {
-        !self.settings.step.scheme.has_springs()
-    }
-
     /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
     fn held(&mut self) -> Loss {
         let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
@@ -321,13 +301,6 @@ impl<'a> Fall<'a> {
                 return ends;
             }
         }
-    }
-
-    /// The rock and its notes.
-    pub(super) fn in_contact(&mut self) -> RockInContact<'_, 'a> {
-        let has_springs = !self.is_rigid();
-        let Self { settings, body, laws, state, recorder, .. } = self;
-        RockInContact { world: settings.around(*body, laws), state, recorder, has_springs }
     }
 
     /// Mechanical energy of the rock in contact (J), weight included.

@@ -28,7 +28,7 @@ use crate::contact::neighbours::Neighbours;
 use crate::flight::block::Tumble;
 use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
-use energy::{hold_energy, rising_s};
+use energy::hold_energy;
 use nalgebra::{Matrix3, Rotation3};
 use solve::{BlockContact, Mass, solve};
 
@@ -44,6 +44,8 @@ const TURN: f64 = 0.03;
 const STILL_M_S: f64 = 1e-9;
 /// A gain of energy that is rounding (–); it is taken off the motion all the same.
 const ROUNDING: f64 = 1e-12;
+/// Velocities are known to this (–).
+const ROUNDING_OF_SPEED: f64 = 1e-14;
 /// Halvings of the restitution where it would gain energy.
 const HALVINGS: u32 = 30;
 
@@ -210,13 +212,13 @@ impl Footing {
                 (self.contact(world, (&mass, touch), 0.0, Vec3::zeros()), back)
             })
             .collect();
-        let before_j = moving.motion_j(block);
+        let (before_j, rounding_m_s) = (moving.motion_j(block), ROUNDING_OF_SPEED * v.norm());
         let mut thrown = moving.clone();
         let mut try_with = |share: f64| {
             self.contacts.clear();
             let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
             self.contacts.extend(wanted.iter().map(goal));
-            solve(&mass, &mut self.contacts, (v, w), &mut self.sweeps);
+            solve(&mass, &mut self.contacts, (v, w), rounding_m_s, &mut self.sweeps);
             thrown = moving.clone();
             thrown.take(&self.contacts, block.mass_kg);
             thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
@@ -270,7 +272,8 @@ impl Footing {
             .min(TRAVEL * block.ball_m / fastest.max(f64::MIN_POSITIVE))
             .min(TURN / spin.norm().max(f64::MIN_POSITIVE));
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
-        let dt = self.closing(world, (block, moving), dt).min(rising_s(world, moving, before_j));
+        let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
+        let dt = self.closing(world, (block, moving), dt);
         moving.drift(block, 0.5 * dt);
         self.look(world, block, &moving.pose, AHEAD * block.ball_m);
         let (mass, weight) = (moving.mass(block), world.body.gravity * dt);
@@ -282,7 +285,11 @@ impl Footing {
             let ahead_m = 0.5 * dt * slip_m_s;
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
         }
-        let settled = solve(&mass, &mut self.contacts, (v + weight, w), &mut self.sweeps);
+        // a goal is a gap, which is known as well as places are, over the time of the step
+        let rounding_m_s =
+            f64::EPSILON * moving.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
+        let free = (v + weight, w);
+        let settled = solve(&mass, &mut self.contacts, free, rounding_m_s, &mut self.sweeps);
         moving.v += weight;
         moving.take(&self.contacts, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives

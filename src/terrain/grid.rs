@@ -26,6 +26,8 @@ pub struct Grid {
 
 /// Sides of cells that a slope may have (m).
 const SMALLEST_CELL_M: f64 = 1e-3;
+/// Side of a cell of a centimetre in degrees: smaller ones are none.
+const SMALLEST_CELL_DEG: f64 = 1e-7;
 /// Sides of cells that a slope may have (m).
 const LARGEST_CELL_M: f64 = 1e5;
 /// Heights beyond this (m) are no height on Earth.
@@ -103,19 +105,27 @@ impl Grid {
 
     /// Refuses cells of no size that a terrain has, as those of a grid in degrees; `epsg` is the scene's code.
     pub(super) fn check_cells(&self, file: &Path, epsg: Option<u32>) -> Result<()> {
-        if self.cell_m >= SMALLEST_CELL_M {
+        let (cell, [x, y]) = (self.cell_m, self.corner_m);
+        if (SMALLEST_CELL_M..=LARGEST_CELL_M).contains(&cell) {
             return Ok(());
         }
-        let [x, y] = self.corner_m;
-        let is_degrees = x.abs() <= 360.0 && y.abs() <= 90.0;
-        let why = if is_degrees { ", like longitude and latitude" } else { "" };
-        let found = format!("found cells of {} at ({x}, {y}){why}", self.cell_m);
-        let code = epsg.map_or_else(|| "CODE".to_owned(), |code| code.to_string());
-        let remedy = format!(
-            "write it in metres: gdalwarp -s_srs EPSG:4326 -t_srs EPSG:{code} -tr 1 1 -r bilinear {} out.tif",
-            file.display()
-        );
-        Err(Error::input(file, "cellsize", found, remedy))
+        let wrong =
+            |found: String, remedy: &str| Err(Error::input(file, "cellsize", found, remedy));
+        if (SMALLEST_CELL_DEG..SMALLEST_CELL_M).contains(&cell)
+            && x.abs() <= 360.0
+            && y.abs() <= 90.0
+        {
+            let code = epsg.map_or_else(|| "CODE".to_owned(), |code| code.to_string());
+            let remedy = format!(
+                "write it in metres: gdalwarp -s_srs EPSG:4326 -t_srs EPSG:{code} -tr 1 1 -r bilinear {} out.tif",
+                file.display()
+            );
+            return wrong(
+                format!("found {cell} at ({x}, {y}), like longitude and latitude"),
+                &remedy,
+            );
+        }
+        wrong(format!("found {cell:e}"), "write metres, from 0.001 to 100000")
     }
 
     /// Whether it can be a slope: cells and heights of this world, and at least one triangle.
@@ -126,10 +136,7 @@ impl Grid {
         let wrong = |place: &str, found: String, remedy: &str| {
             Err(Error::input(file, place, found, remedy))
         };
-        if !(SMALLEST_CELL_M..=LARGEST_CELL_M).contains(&self.cell_m) {
-            let found = format!("found {:e}", self.cell_m);
-            return wrong("cellsize", found, "write metres, from 0.001 to 100000");
-        }
+        self.check_cells(file, None)?;
         if let Some(far) = self.corner_m.iter().find(|m| m.abs() > FARTHEST_M) {
             let found = format!("found {far:e}");
             return wrong("xllcorner, yllcorner", found, "write map coordinates within 1e8 m");

@@ -206,6 +206,10 @@ fn what_differs_is_named_and_what_changes_is_shown() {
     ] {
         assert!(page.contains(words), "{words}");
     }
+    // what only the trees' ground says stands beside nothing, not beside what another ground says
+    let of_trunk: Vec<&str> =
+        page.split("<tr>").filter(|row| row.contains("<td>trunk: ")).collect();
+    assert!(!of_trunk.is_empty() && of_trunk.iter().all(|row| row.contains("<td>–</td>")));
     let drawn: Vec<PathBuf> = std::fs::read_dir(out.join("figures"))
         .unwrap()
         .map(|entry| entry.unwrap().path())

@@ -328,7 +328,7 @@ fn what_does_not_fit_together_is_refused() {
         (
             scene("file = \"degrees.asc\"", ""),
             [
-                "found cells of 0.0002 at (8.5, 47.3), like longitude and latitude",
+                "cellsize: found 0.0002 at (8.5, 47.3), like longitude and latitude",
                 "gdalwarp -s_srs EPSG:4326 -t_srs EPSG:2056",
             ],
         ),

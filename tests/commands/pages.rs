@@ -61,7 +61,8 @@ fn the_pages_open_in_a_browser() {
     let _ = browser(&profile, &out.join("report.html"), &[&print, "--no-pdf-header-footer"]);
     let printed = fs::read(&pdf).unwrap();
     let pages = printed.windows(11).filter(|at| at == b"/Type /Page").count();
-    assert!(printed.starts_with(b"%PDF") && pages > 4, "{pages} pages");
+    // more of them would be half empty ones
+    assert!(printed.starts_with(b"%PDF") && (9..=16).contains(&pages), "{pages} pages");
 }
 
 /// The figure of a study of this very scene stands on its page: from the folder of the results, or from beside it.

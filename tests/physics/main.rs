@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod blocks;
 mod contact;
 mod dda;
 mod dda_energy;
@@ -24,6 +25,7 @@ mod rigid_blows;
 mod rigid_heap;
 mod roughness;
 mod schemes_agree;
+mod soil;
 mod stems;
 mod tangential;
 mod traps;

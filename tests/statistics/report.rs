@@ -1,14 +1,13 @@
 //! Figures and page from made data: whatever comes in, what goes out is a file that opens and a drawing that stays on its paper.
 
 pub(crate) mod boxes;
-mod inputs;
+mod page;
 mod places;
 mod raster;
 mod slope;
 mod studies;
 mod svg;
 
-use inputs::*;
 use places::net;
 use rockfall::report::axis::Axis;
 use rockfall::report::canvas::{Label, Pen, paint};
@@ -38,6 +37,141 @@ fn every_drawing_is_on_the_disk_and_on_the_page() {
             assert!(file == drawing.svg && page.contains(&file), "{name}: {}", heading.file);
         }
     }
+}
+
+/// What a report may be fed: the common and the odd.
+fn inputs() -> Vec<(&'static str, Report)> {
+    let full = slope::report(1000, 300);
+    let one = slope::report(1, 1);
+    vec![
+        ("full", full.clone()),
+        ("empty", Report::default()),
+        ("one_release", one.clone()),
+        ("no_path", Report { paths: Vec::new(), ..slope::report(30, 0) }),
+        ("no_ground", Report { ground: None, ..full.clone() }),
+        ("no_motion", slope::filled(Report { releases: vec![still(); 20], ..Report::default() })),
+        ("one_point", slope::filled(Report { paths: vec![one_point()], ..one.clone() })),
+        ("not_numbers", slope::filled(broken(full))),
+        ("huge", slope::filled(stretched(one, 1e7))),
+        ("small", small()),
+        ("all_ends", slope::filled(all_ends(slope::report(400, 20)))),
+        ("barriers", Report { barriers: vec![net(60), net(0)], ..slope::report(30, 5) }),
+        ("site", places::site()),
+        ("left", left()),
+    ]
+}
+
+/// A rock that stays where it is released.
+fn still() -> ReleaseEnd {
+    ReleaseEnd {
+        stop: Stop::AtRest,
+        runout_m: 0.0,
+        drop_m: 0.0,
+        reach_angle_deg: 0.0,
+        max_speed_m_s: 0.0,
+        max_translational_j: 0.0,
+        max_rotational_j: 0.0,
+        max_total_j: 0.0,
+        max_height_m: 0.0,
+        impacts: 0,
+        tree_impacts: 0,
+        start_m: [2_600_000.0, 1_200_000.0, 500.0],
+        end_m: [2_600_000.0, 1_200_000.0, 500.0],
+    }
+}
+
+fn one_point() -> Path {
+    let place_m = [2_600_050.0, 1_200_100.0, 900.0];
+    let state = PathState::Flight;
+    Path {
+        index: 0,
+        points: vec![ReportPathPoint {
+            time_s: 0.0,
+            place_m,
+            speed_m_s: 0.0,
+            clearance_m: 0.0,
+            state,
+        }],
+    }
+}
+
+/// Values that a failed rock may leave behind.
+fn broken(mut report: Report) -> Report {
+    for (i, fall) in report.releases.iter_mut().enumerate() {
+        match i % 5 {
+            0 => fall.runout_m = f64::NAN,
+            1 => fall.end_m = [f64::NAN; 3],
+            2 => fall.max_speed_m_s = f64::INFINITY,
+            3 => fall.max_total_j = f64::NEG_INFINITY,
+            _ => fall.reach_angle_deg = f64::NAN,
+        }
+    }
+    for path in &mut report.paths {
+        for (i, point) in path.points.iter_mut().enumerate() {
+            match i % 7 {
+                0 => point.clearance_m = f64::NAN,
+                3 => point.speed_m_s = f64::NAN,
+                5 => point.place_m[i % 3] = f64::NAN,
+                _ => {}
+            }
+        }
+    }
+    report
+}
+
+fn stretched(mut report: Report, factor: f64) -> Report {
+    let fall = &mut report.releases[0];
+    fall.end_m[0] += factor;
+    fall.runout_m = factor;
+    fall.max_total_j *= factor;
+    report
+}
+
+/// Every way to end, often: the longest key a map can have.
+fn all_ends(mut report: Report) -> Report {
+    let stops = [Stop::AtRest, Stop::LeftTerrain, Stop::TimeUp, Stop::Failed("made".to_owned())];
+    report.releases = vec![report.releases; 10].concat();
+    for (i, fall) in report.releases.iter_mut().enumerate() {
+        fall.stop = stops[i % 4].clone();
+        // a narrow map leaves the key little room
+        fall.start_m[0] = 2_600_070.0;
+        fall.end_m[0] = 2_600_070.0 + (i % 9) as f64;
+    }
+    Report { ground: None, paths: Vec::new(), ..report }
+}
+
+/// Most rocks leave the terrain: runout is open upwards, the reach angle downwards.
+fn left() -> Report {
+    let mut report = slope::report(400, 40);
+    report.releases.iter_mut().step_by(2).for_each(|fall| fall.stop = Stop::LeftTerrain);
+    let mut report = slope::filled(report);
+    report.runout_exceedance.truncate(60);
+    for (quantity, is) in
+        [(ReportQuantity::Runout, Is::AtLeast), (ReportQuantity::ReachAngle, Is::AtMost)]
+    {
+        for quantile in report.quantiles.get_mut(&quantity).into_iter().flatten() {
+            let at = &mut quantile.at;
+            at.is = is;
+            if is == Is::AtLeast { at.high = f64::NAN } else { at.low = f64::NAN }
+        }
+    }
+    report
+}
+
+/// A table-top experiment: everything within a metre, at the origin.
+fn small() -> Report {
+    let mut report = slope::report(40, 40);
+    let shrink = |p: [f64; 3]| [(p[0] - 2.6e6) * 1e-3, (p[1] - 1.2e6) * 1e-3, p[2] * 1e-3];
+    for fall in &mut report.releases {
+        (fall.start_m, fall.end_m) = (shrink(fall.start_m), shrink(fall.end_m));
+        fall.runout_m *= 1e-3;
+        fall.max_total_j *= 1e-9;
+    }
+    for point in report.paths.iter_mut().flat_map(|path| &mut path.points) {
+        point.place_m = shrink(point.place_m);
+        point.clearance_m *= 1e-3;
+    }
+    slope::filled(Report { ground: None, ..report })
 }
 
 #[test]
@@ -74,51 +208,6 @@ fn the_page_is_well_formed_and_fetches_nothing() {
     }
 }
 
-/// Figures are numbered as a reader meets them, in every language and whatever was drawn.
-#[test]
-fn numbers_of_figures_rise_down_the_page() {
-    for (name, report) in inputs() {
-        let drawn = report::drawings(&report);
-        let page = html::page(&report, &drawn);
-        let numbers: Vec<usize> = page
-            .split("<figcaption><b>Figure ")
-            .skip(1)
-            .map(|rest| rest.split('.').next().unwrap().parse().unwrap())
-            .collect();
-        assert_eq!(numbers, (1..=drawn.len()).collect::<Vec<_>>(), "{name}");
-    }
-}
-
-/// Pasted on a dark slide, or seen in a browser that prefers the dark: the paper is white and every word has its own ink.
-#[test]
-fn nothing_is_unreadable_on_a_dark_ground() {
-    for (name, report) in inputs() {
-        let drawn = report::drawings(&report);
-        for (figure, drawing) in &drawn {
-            let place = format!("{} of {name}", figure.file);
-            let (root, rest) = drawing.svg.split_once(">\n<title>").unwrap();
-            let view: Vec<&str> = svg::attribute(root, "viewBox").unwrap().split(' ').collect();
-            let (_, body) = rest.split_once("</title>").unwrap();
-            let paper = body.trim_start().split('>').next().unwrap();
-            let of_paper = |key| svg::attribute(paper, key).unwrap();
-            assert_eq!([of_paper("x"), of_paper("y"), of_paper("fill")], ["0", "0", "#ffffff"]);
-            assert_eq!([of_paper("width"), of_paper("height")], view[2..], "{place}");
-            for (at, _) in body.match_indices("<text ") {
-                let words = body[at..].split("</text>").next().unwrap();
-                let tag = words.split('>').next().unwrap();
-                let spans = words.matches("<tspan font-weight").count();
-                let inked = words.matches("<tspan font-weight").count() > 0
-                    && words.matches(" fill=\"#").count() >= spans;
-                assert!(svg::attribute(tag, "fill").is_some() || inked, "{place}: {words}");
-            }
-        }
-        let page = html::page(&report, &drawn);
-        assert!(
-            page.contains("color-scheme: light") && page.contains("background: #fff; color: #222")
-        );
-    }
-}
-
 /// Figures share one page: an id defined twice would let one figure use the clip of another.
 #[test]
 fn no_id_is_given_twice_on_the_page() {
@@ -131,23 +220,6 @@ fn no_id_is_given_twice_on_the_page() {
     ids.dedup();
     assert_eq!(ids.len(), count);
     assert!(count > 0);
-}
-
-#[test]
-fn what_the_user_wrote_cannot_break_the_page() {
-    let mut report = slope::report(3, 3);
-    let nasty = "</pre></title><script>alert(1)</script> & \"quotes\" 'n' \u{0}\u{b}";
-    report.text.title = nasty.to_owned();
-    report.text.subtitle = nasty.to_owned();
-    report.text.plan = vec![(nasty.to_owned(), nasty.to_owned())];
-    report.text.warnings = vec![nasty.to_owned()];
-    report.text.inputs = vec![(nasty.to_owned(), nasty.to_owned())];
-    report.headline[0].name = nasty.to_owned();
-    report.tables[0].title = nasty.to_owned();
-    let page = html::page(&report, &report::drawings(&report));
-    assert!(!page.contains("<script"));
-    assert!(!page.contains(['\u{0}', '\u{b}']));
-    svg::check_nesting(&page, "nasty text");
 }
 
 #[test]
@@ -246,7 +318,7 @@ fn what_nobody_reaches_has_a_sentence_and_no_figure() {
     assert!(page.contains("No rock arrives at barrier"));
     // what a year brings too
     assert!(files.contains(&"annual_3.svg") && !files.contains(&"annual_2.svg"), "{files:?}");
-    assert!(page.contains("Object “hut”: no rock of the sample comes here, fewer than 0.0040"));
+    assert!(page.contains("Object “hut”: none of 700 rocks, which know what 350 of equal weight would, comes here: fewer than"));
 }
 
 /// The page speaks its language: head, chapters, axes, captions and glossary; and nothing of the English ones is left.

@@ -19,6 +19,8 @@ pub(super) fn views(results: &Results) -> Vec<AnnualView> {
             name: place.name.clone(),
             is_object: place.is_object,
             most_per_year: figures.passages.high_95,
+            rocks: annual.rocks,
+            effective_rocks: annual.effective_rocks,
             without: band(figures),
             // where no barrier stands before, both are the same curve
             with: place.with_barriers.as_ref().filter(|with| *with != figures).map(band),

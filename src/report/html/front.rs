@@ -34,7 +34,7 @@ pub(super) fn page(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     format!(
         "<header class=\"site\">\n<h1>{}</h1>\n{subtitle}<p class=\"facts\">{}{view}</p>\n{}{}</header>\n\
          <div class=\"front\">\n{map}<section class=\"rocks\">\n{}</section>\n{}\
-         <section class=\"answer\">\n{arrivals}</section>\n</div>\n",
+         <section id=\"answer\" class=\"answer\">\n{arrivals}</section>\n</div>\n",
         escape(&text.title),
         escape(&facts),
         pairs(&text.title_block),

@@ -121,6 +121,10 @@ pub struct AnnualView {
     pub return_periods_years: Vec<f64>,
     /// Rocks that come, 95 % upper end (1/year).
     pub most_per_year: f64,
+    /// Rocks computed.
+    pub rocks: usize,
+    /// Rocks of equal weight that would know as much.
+    pub effective_rocks: f64,
 }
 
 impl AnnualView {

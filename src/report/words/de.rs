@@ -345,7 +345,7 @@ pub(super) static WORDS: Words = Words {
     year_axis: "λ(E ≥ e) (1/Jahr)",
     year_energy_axis: "Gesamtenergie e ({unit})",
     years: "{n} Jahre",
-    nobody_year: "{place}: kein Block der Stichprobe kommt hierher, weniger als {rate} pro Jahr (Vertrauen 95\u{2009}%).",
+    nobody_year: "{place}: keiner von {rocks} Blöcken, so aussagekräftig wie {effective} gleichen Gewichts, kommt hierher: weniger als {rate} pro Jahr (Vertrauen 95\u{2009}%).",
     hits_of: "Treffer von {name}",
     passages_of: "Durchgänge bei {name}",
     year_barriers: " Voll: als gäbe es kein Schutzbauwerk; gestrichelt: was keines davor aufhält.",

@@ -342,7 +342,7 @@ pub(super) static WORDS: Words = Words {
     year_axis: "λ(E ≥ e) (1/year)",
     year_energy_axis: "Total energy e ({unit})",
     years: "{n} years",
-    nobody_year: "{place}: no rock of the sample comes here, fewer than {rate} a year (95\u{2009}% confidence).",
+    nobody_year: "{place}: none of {rocks} rocks, which know what {effective} of equal weight would, comes here: fewer than {rate} a year (95\u{2009}% confidence).",
     hits_of: "hits of {name}",
     passages_of: "passages of {name}",
     year_barriers: " Full: as if there were no barrier; dashed: what no barrier stops before.",

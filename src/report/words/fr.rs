@@ -345,7 +345,7 @@ pub(super) static WORDS: Words = Words {
     year_axis: "λ(E ≥ e) (1/an)",
     year_energy_axis: "Énergie totale e ({unit})",
     years: "{n} ans",
-    nobody_year: "{place}\u{a0}: aucun bloc de l’échantillon n’y arrive, moins de {rate} par an (confiance 95\u{2009}%).",
+    nobody_year: "{place}\u{a0}: aucun des {rocks} blocs, valant {effective} de poids égal, n’y arrive\u{a0}: moins de {rate} par an (confiance 95\u{2009}%).",
     hits_of: "impacts sur {name}",
     passages_of: "passages à {name}",
     year_barriers: " Plein\u{a0}: comme sans ouvrage\u{a0}; tirets\u{a0}: ce qu’aucun ouvrage n’arrête avant.",

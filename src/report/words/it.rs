@@ -345,7 +345,7 @@ pub(super) static WORDS: Words = Words {
     year_axis: "λ(E ≥ e) (1/anno)",
     year_energy_axis: "Energia totale e ({unit})",
     years: "{n} anni",
-    nobody_year: "{place}: nessun masso del campione arriva qui, meno di {rate} all’anno (confidenza 95\u{2009}%).",
+    nobody_year: "{place}: nessuno dei {rocks} massi, che valgono {effective} di peso uguale, arriva qui: meno di {rate} all’anno (confidenza 95\u{2009}%).",
     hits_of: "colpi su {name}",
     passages_of: "passaggi a {name}",
     year_barriers: " Piena: come senza barriere; tratteggio: ciò che nessuna barriera ferma prima.",

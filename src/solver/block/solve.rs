@@ -11,7 +11,7 @@ use nalgebra::Matrix3;
 
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 300;
-/// Change of an impulse, relative to the largest, below which the sweeps have settled (–).
+/// Change of the body's momentum in a sweep, relative to the largest impulse, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-11;
 /// Passes over the impulse of one contact that slides, at most.
 const PASSES: u32 = 100;
@@ -122,27 +122,33 @@ fn within(x: Vec3, cap: f64) -> Vec3 {
     if size > cap { x * (cap / size) } else { x }
 }
 
-/// Sweeps until the impulses settle, from velocity and spin without them; whether they did. `sweeps` counts.
+/// Sweeps until the body moves as it will, from velocity and spin without impulses; whether it did. `sweeps` counts.
+///
+/// What must settle is the motion of the body, not each impulse. Where there are more contacts than a rigid body can tell apart, what one asks
+/// may contradict what another asks, by rounding or by the little that a turn within the step moves two sticking points towards each other; the
+/// sweeps then shift impulse between them without end, and the body does not feel it. Goals are known to `rounding_m_s` (m/s) only.
 pub(crate) fn solve(
     mass: &Mass,
     contacts: &mut [BlockContact],
     (mut v, mut w): (Vec3, Vec3),
+    rounding_m_s: f64,
     sweeps: &mut u64,
 ) -> bool {
     let alone = contacts.len() <= 1;
+    let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
     for _ in 0..SWEEPS {
         *sweeps += 1;
-        let (mut change, mut scale) = (0.0_f64, f64::MIN_POSITIVE);
+        let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {
             let u = Mass::at(&contact.lever, (&v, &w)) - contact.answer * contact.impulse;
             let next = contact.own_impulse(&(u - contact.goal));
             let (dv, dw) = mass.change(contact, &(next - contact.impulse));
             (v, w) = (v + dv, w + dw);
-            change = change.max((next - contact.impulse).norm());
             scale = scale.max(next.norm());
             contact.impulse = next;
         }
-        if alone || change <= SETTLED * scale {
+        let moved = (v - before.0).norm() + (w - before.1).norm() * reach;
+        if alone || moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {
             return true;
         }
     }

@@ -127,6 +127,8 @@ fn year(name: &str, has_barriers: bool) -> AnnualView {
         with: has_barriers.then(|| curve(0.003)),
         return_periods_years: vec![30.0, 100.0, 300.0, 1000.0],
         most_per_year: 0.04,
+        rocks: 700,
+        effective_rocks: 350.0,
     }
 }
 

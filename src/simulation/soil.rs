@@ -2,46 +2,11 @@
 //!
 //! Laws and speed change between steps, so all schemes are treated alike.
 
-use super::Fall;
+use super::fall::{Fall, Slips};
 use crate::contact::history::ContactHistory;
-use crate::rock::Vec3;
-use crate::solver::scar::Scars;
-use crate::solver::slip::Slip;
 
 /// Growth of `κ s` within one step, about (–): friction changes between steps.
 const GROWTH_OF_STEP: f64 = 0.02;
-
-/// What a sphere does to soil.
-pub(super) struct Soil<'a> {
-    scars: &'a mut Scars,
-    slip: &'a mut Slip,
-    /// Where it slips fastest since the current step began.
-    slips: Option<Slips>,
-    /// How long the step before was (s), 0 after a flight.
-    last_step_s: f64,
-}
-
-/// A contact that slips.
-#[derive(Debug, Clone, Copy)]
-struct Slips {
-    speed_m_s: f64,
-    n: Vec3,
-    ground: u16,
-}
-
-impl<'a> Soil<'a> {
-    /// Of a rock that has not moved yet.
-    pub(super) fn new(scars: &'a mut Scars, slip: &'a mut Slip) -> Self {
-        Self { scars, slip, slips: None, last_step_s: 0.0 }
-    }
-
-    /// Flies for so long (s).
-    pub(super) fn fly(&mut self, flight_s: f64) {
-        self.scars.fly(flight_s);
-        self.slip.fly(flight_s);
-        self.last_step_s = 0.0;
-    }
-}
 
 impl Fall<'_> {
     /// Gives the ground that has just been struck its dashpot, and lets the rock dig in; returns what it keeps of its speed (–).

@@ -1,0 +1,182 @@
+//! Blocks on the natural slope of the benchmark: none lost, none that gains energy; and what they cost.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use crate::common;
+
+use common::{GROUND, ROCK, terrain};
+use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
+use rockfall::body::{
+    Block, Shape, ShapeKind, Solid, box_surface, eota, prism_surface, sphere_points,
+};
+use rockfall::ground::{Ground, Scar, SlipFriction};
+use rockfall::plan::{Recorders, RestRule};
+use rockfall::random::{Purpose, stream, unit};
+use rockfall::release::{DrawnShape, Release};
+use rockfall::rock::{Motion, Vec3};
+use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, Trajectory, simulate_block};
+use rockfall::solver::Scheme;
+use rockfall::study::bench::settings;
+use rockfall::terrain::Terrain;
+use rockfall::terrain::make::natural_slope;
+use std::time::Instant;
+
+/// Gravity (m/s²).
+const G: f64 = 9.8;
+/// Where chance starts.
+const SEED: u64 = 11;
+
+/// A meadow: friction that grows with slip and a scar layer.
+const SOIL: Ground = Ground {
+    slip_friction: Some(SlipFriction { most: 1.3, kappa_per_m: 0.7, beta_per_s: 20.0 }),
+    scar: Some(Scar { strength_kn_m2: 15e3, drag: 2.5, soil_density_kg_m3: 1700.0 }),
+    restitution_half_m_s: Some(9.0),
+    ..HARD
+};
+/// Friction 35°, restitution 0.4.
+const HARD: Ground = Ground {
+    friction_angle_rad: 35.0 * std::f64::consts::PI / 180.0,
+    restitution: Some(0.4),
+    ..GROUND
+};
+
+/// All kinds of shapes, with corners rounded at a tenth of the radius.
+fn shapes() -> Vec<(&'static str, ShapeKind, Shape)> {
+    let of = |surface: rockfall::body::Surface| {
+        Shape::of(&Solid::of(&surface), &surface.points, 0.1).unwrap()
+    };
+    let half = [1.0, 0.8, 0.55];
+    let points: Vec<Vec3> =
+        sphere_points().iter().map(|p| p.component_mul(&Vec3::from(half))).collect();
+    let ellipsoid = Shape::of(&Solid::ellipsoid(half), &points, 0.1).unwrap();
+    vec![
+        ("eota111", ShapeKind::Eota111, of(eota([1.0; 3]))),
+        ("eota221", ShapeKind::Eota221, of(eota([1.0, 1.0, 0.5]))),
+        ("box", ShapeKind::Box, of(box_surface([1.0, 0.7, 0.4]))),
+        ("prism", ShapeKind::Prism, of(prism_surface(6, 0.7))),
+        ("ellipsoid", ShapeKind::Ellipsoid, ellipsoid),
+    ]
+}
+
+/// The slope of the benchmark with about so many triangles.
+fn slope(triangles: usize) -> Terrain {
+    let across = (triangles as f64 * 3.0 / 8.0).sqrt().floor() as usize;
+    terrain(natural_slope(across, across * 4 / 3 + 1).facets)
+}
+
+/// Release `index` of a shape in the benchmark's area, turned at random, 1 m above the ground.
+fn fall(
+    terrain: &Terrain,
+    (kind, shape): (ShapeKind, &Shape),
+    ground: Ground,
+    index: usize,
+    scratch: &mut Scratch,
+) -> Trajectory {
+    let mut random = stream(SEED, Purpose::Place, index);
+    let mut next = || unit(&mut random);
+    let (x, y) =
+        (140.0 + 20.0 * next() - terrain.origin_m.x, 10.0 + 10.0 * next() - terrain.origin_m.y);
+    let turn: [f64; 4] = std::array::from_fn(|_| next() - 0.5);
+    let attitude: Rotation3<f64> =
+        UnitQuaternion::from_quaternion(Quaternion::from(turn)).to_rotation_matrix();
+    let block = Block::new(shape, &ROCK);
+    let height_m = terrain.ground_below(x, y).unwrap() + 1.0 + block.bound_m;
+    let motion = Motion {
+        time_s: 0.0,
+        position_m: Vec3::new(x, y, height_m),
+        velocity_m_s: Vec3::zeros(),
+        spin_rad_s: Vec3::zeros(),
+    };
+    let release = Release { rock: ROCK, motion, grounds: vec![ground] };
+    let drawn = DrawnShape { kind, sides: [1.0; 2], block, attitude };
+    let step = settings(Scheme::Rigid, 0.01, None);
+    let course = RunSettings {
+        terrain,
+        gravity_m_s2: G,
+        step: &step,
+        rest: RestRule { speed_m_s: 0.02, time_s: 0.3 },
+        longest_s: 120.0,
+        recorders: Recorders::default(),
+        seed: 1,
+    };
+    let keep = Keep { path_step_s: None, impacts: false };
+    let random = stream(SEED, Purpose::Impacts, index);
+    simulate_block(&course, (&release, &drawn), keep, random, scratch)
+}
+
+/// What a number of releases came to.
+#[derive(Debug, Default)]
+struct Counts {
+    stops: std::collections::BTreeMap<String, usize>,
+    steps: u64,
+    unsettled: u64,
+    leaps: u64,
+    /// Largest gain of an episode over the energy released (–), and error of a ledger.
+    worst: [f64; 2],
+    speed_m_s: f64,
+    spin: f64,
+}
+
+fn count(terrain: &Terrain, of: (ShapeKind, &Shape), ground: Ground, releases: usize) -> Counts {
+    let (mut scratch, mut counts) = (Scratch::default(), Counts::default());
+    for index in 0..releases {
+        let fall = fall(terrain, of, ground, index, &mut scratch);
+        let stop = match &fall.stop {
+            Stop::Failed(why) => format!("failed: {why}"),
+            other => format!("{other:?}"),
+        };
+        *counts.stops.entry(stop).or_default() += 1;
+        counts.steps += fall.effort.steps;
+        counts.unsettled += fall.effort.unsettled;
+        counts.leaps += fall.effort.leaps;
+        let ledger = &fall.ledger;
+        let whole = [ledger.friction_j, ledger.damping_j, ledger.soil_j];
+        assert!(whole.iter().all(|part| *part >= 0.0), "{index}: {ledger:?}");
+        counts.worst[0] = counts.worst[0].max(ledger.rise_j / fall.released_j);
+        counts.worst[1] = counts.worst[1].max(fall.energy_balance_error());
+        counts.speed_m_s += fall.extremes.speed_m_s / releases as f64;
+        counts.spin +=
+            (fall.extremes.rotational_j / fall.extremes.translational_j) / releases as f64;
+    }
+    counts
+}
+
+fn hold(name: &str, counts: &Counts) {
+    let ends = ["AtRest", "LeftTerrain"].map(|end| counts.stops.get(end).copied().unwrap_or(0));
+    let all: usize = counts.stops.values().sum();
+    assert_eq!(ends.iter().sum::<usize>(), all, "{name}: {counts:?}");
+    assert!(counts.worst[0] <= 1e-9, "{name}: {counts:?}");
+    assert!(counts.worst[1] <= 1e-3, "{name}: {counts:?}");
+}
+
+/// Every shape on hard ground and on soil: all releases come to an end by themselves, and nothing gains energy.
+#[test]
+fn no_block_is_lost_on_the_natural_slope() {
+    let slope = slope(10_000);
+    for (name, kind, shape) in shapes() {
+        for ground in [HARD, SOIL] {
+            let counts = count(&slope, (kind, &shape), ground, 12);
+            println!("{name} {counts:?}");
+            hold(name, &counts);
+        }
+    }
+}
+
+/// The same with 100 000 triangles and any number of releases (`ROCKFALL_RELEASES`), with the rate on one thread.
+#[test]
+#[ignore = "hours with 100 000 releases: cargo test --test physics -- --ignored --nocapture blocks_by_the"]
+fn blocks_by_the_thousand_on_the_natural_slope() {
+    let releases = std::env::var("ROCKFALL_RELEASES").map_or(100_000, |n| n.parse().unwrap());
+    let slope = slope(100_000);
+    for (name, kind, shape) in shapes() {
+        for (soil, ground) in [("hard", HARD), ("soil", SOIL)] {
+            let begun = Instant::now();
+            let counts = count(&slope, (kind, &shape), ground, releases);
+            let per_s = releases as f64 / begun.elapsed().as_secs_f64();
+            println!(
+                "{name} ({} corners), {soil}: {per_s:.1} rocks/s; {counts:?}",
+                shape.core.corners.len()
+            );
+            hold(name, &counts);
+        }
+    }
+}
