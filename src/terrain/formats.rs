@@ -91,7 +91,8 @@ pub(super) fn read(path: &Path, options: &Options) -> Result<Loaded> {
             } else {
                 None
             };
-            let geotiff::Raster { grid, epsg } = geotiff::read(path, window, options.epsg)?;
+            let geotiff::Raster { grid, epsg, .. } =
+                geotiff::read(path, window, options.epsg)?.of_heights(path)?;
             Ok(ElevationModel::of(grid, Format::GeoTiff, epsg))
         }
         Some(Format::AsciiGrid) => {

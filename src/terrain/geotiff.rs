@@ -50,6 +50,8 @@ pub struct Raster {
     pub grid: Grid,
     /// EPSG code of its coordinates; absent when the file names none.
     pub epsg: Option<u32>,
+    /// Unit of its values where the file names one that is not the metre.
+    pub unit: Option<String>,
 }
 
 /// Reads a GeoTIFF; `box_m` (west, south, east, north in map coordinates) reads that part alone. `epsg` is the scene's
@@ -62,6 +64,19 @@ pub fn read(path: &Path, box_m: Option<[f64; 4]>, epsg: Option<u32>) -> Result<R
     let file = crate::file::open(path, crate::file::LONGEST_MESH)?;
     let length = file.metadata().map_err(Error::file("read", path))?.len();
     parse(BufReader::with_capacity(1 << 16, file), length, path, (box_m, epsg))
+}
+
+impl Raster {
+    /// The same, of heights; `file` is for messages.
+    ///
+    /// # Errors
+    /// Values in another unit than the metre.
+    pub fn of_heights(self, file: &Path) -> Result<Self> {
+        match &self.unit {
+            Some(unit) => Err(place::heights_in_feet(file, format!("found heights in {unit}"))),
+            None => Ok(self),
+        }
+    }
 }
 
 /// Reads the bytes of a GeoTIFF, `length` of them; `file` is for messages.
@@ -95,7 +110,7 @@ pub fn parse<R: Read + Seek>(
     let mut heights = WindowHeights::over(window, most);
     heights.fill(&mut decoder, (width, height), &place, file)?;
     let grid = place.grid(heights.window, heights.values);
-    Ok(Raster { grid, epsg: place.epsg })
+    Ok(Raster { grid, epsg: place.epsg, unit: place.unit })
 }
 
 /// The part of an image that is read: first column, first row, columns, rows.

@@ -1,4 +1,5 @@
 //! Soft soil under a sphere: scar layer, restitution that falls with speed, friction that grows with slip. Every scheme.
+#![allow(clippy::print_stdout, reason = "a test prints its table")]
 
 use crate::common;
 

@@ -45,6 +45,8 @@ pub(super) struct ImagePlacement {
     /// EPSG code of the projected system.
     pub(super) epsg: Option<u32>,
     nodata: Option<f64>,
+    /// Unit of the values where it is not the metre.
+    pub(super) unit: Option<String>,
 }
 
 impl ImagePlacement {
@@ -56,7 +58,7 @@ impl ImagePlacement {
         let keys = GeoKeys::read(decoder, file)?;
         let warp = warp(file, epsg.or(keys.epsg()));
         keys.check(file, &warp)?;
-        unscaled(decoder, file)?;
+        let unit = unscaled(decoder, file)?;
         let [x_m, dx_m, y_m, dy_m] = transform(decoder, file, &warp)?;
         let wrong = |found: String| Error::input(file, "georeference", found, warp.as_str());
         if !(x_m.abs() < FARTHEST_M && y_m.abs() < FARTHEST_M) {
@@ -73,6 +75,7 @@ impl ImagePlacement {
             northward: dy_m > 0.0,
             epsg: keys.epsg(),
             nodata: nodata(decoder, file)?,
+            unit,
         })
     }
 
@@ -190,17 +193,15 @@ fn unit_of_heights(metadata: &str) -> Option<&str> {
     (!is_metre).then_some(unit)
 }
 
-/// Refuses heights that are stored in another unit, times a scale or plus an offset.
-fn unscaled<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path) -> Result<()> {
+/// Refuses values that are stored times a scale or plus an offset; their unit, if it is not the metre.
+fn unscaled<R: Read + Seek>(decoder: &mut Decoder<R>, file: &Path) -> Result<Option<String>> {
     let tag = Tag::from_u16_exhaustive(tag::GDAL_METADATA);
     let text = decoder.find_tag(tag).ok().flatten().and_then(|value| value.into_string().ok());
-    if let Some(unit) = text.as_deref().and_then(unit_of_heights) {
-        return Err(heights_in_feet(file, format!("found heights in {unit}")));
-    }
+    let unit = text.as_deref().and_then(unit_of_heights).map(str::to_owned);
     let scaled =
         |text: &String| ["role=\"scale\"", "role=\"offset\""].iter().any(|w| text.contains(w));
     if !text.as_ref().is_some_and(scaled) {
-        return Ok(());
+        return Ok(unit);
     }
     let remedy = format!("write the heights themselves: {} -unscale -ot Float32", translate(file));
     Err(Error::input(file, "GDAL_METADATA", "found heights with a scale or an offset", remedy))
@@ -295,7 +296,7 @@ impl GeoKeys {
 }
 
 /// Heights in another unit are refused; `found` says in which.
-fn heights_in_feet(file: &Path, found: String) -> Error {
+pub(super) fn heights_in_feet(file: &Path, found: String) -> Error {
     let remedy = format!(
         "write them in metres: gdal_calc.py -A {} --outfile out.tif --calc A*0.3048, then gdal_edit.py -a_srs EPSG:CODE -units m out.tif with the code of the map alone",
         file.display()

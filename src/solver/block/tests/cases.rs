@@ -71,7 +71,12 @@ fn elastic_bounces_run_backwards() {
         let mut twin = begun.clone();
         twin.pose.centre.z += 1e-8;
         case.follow(&mut twin, longest, |_, _| ());
-        let growth = ((twin.pose.centre - moving.pose.centre).norm() / 1e-8).max(1.0);
+        let apart = [
+            (twin.pose.centre - moving.pose.centre).norm(),
+            (twin.pose.attitude.matrix() - moving.pose.attitude.matrix()).norm(),
+            (twin.v - moving.v).norm(),
+        ];
+        let growth = (apart.into_iter().fold(0.0, f64::max) / 1e-8).max(1.0);
         (moving.v, moving.momentum, case.impacts) = (-moving.v, -moving.momentum, 0);
         case.follow(&mut moving, longest, |_, _| ());
         assert_eq!(case.impacts, bounces);
