@@ -71,13 +71,14 @@ pub(super) fn at_barriers(report: &Report, drawn: &NumberedFigures<'_>) -> Strin
 
 /// What a year brings: maps, then each place with its curve and its tables.
 pub(super) fn in_a_year(report: &Report, drawn: &NumberedFigures<'_>) -> String {
-    let mut body = drawn.figure("maps_year.svg").replace("<figure>", SHEET);
-    let mut told = BTreeSet::new();
+    let (mut body, mut told) = (String::new(), BTreeSet::new());
     for (number, place) in report.annual.iter().enumerate() {
         body += &drawn.figure(&format!("annual_{}.svg", number + 1));
         body += &sentence(annual::nobody(report.words(), place));
         body += &tables_of(report, About::Year, &place.name);
         told.insert(place.name.as_str());
     }
-    body + &other_tables(report, About::Year, &told)
+    body += &other_tables(report, About::Year, &told);
+    // the sheet of maps fills a page of print: places fill up the one before it
+    body + &drawn.figure("maps_year.svg").replace("<figure>", SHEET)
 }

@@ -63,9 +63,9 @@ fn scale_bar(canvas: &Canvas<'_>, panel: &Panel) {
     let length = longest * per_metre;
     let label = format!("{}\u{2009}m", format::plain(longest));
     let needed = length + 6.0 + text_width(&label, SMALL);
-    // beside the axis title where there is room, else beside the frame
+    // beside the axis title where there is room, else beside the frame as far as the sheet goes
     let room = 0.5 * (panel.frame.width() - text_width(&panel.x.title, NORMAL)) - 16.0;
-    let beside = if needed < room { 0.0 } else { needed + 18.0 };
+    let beside = if needed < room { 0.0 } else { (needed + 18.0).min(RIGHT_PX - 4.0) };
     let (right, y) = (panel.frame.right + beside, panel.frame.bottom + FOOT_PX - 8.0);
     let left = right - length;
     for (from, to, fill) in [(left, left + 0.5 * length, INK), (left + 0.5 * length, right, WHITE)]
