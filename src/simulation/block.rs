@@ -24,7 +24,7 @@ use crate::solver::block::{Footing, Moving};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::roughness::RoughFacets;
-use crate::solver::scar::Scars;
+use crate::solver::scar::{Scars, taken_j};
 
 /// One block on its way.
 struct Roll<'a> {
@@ -54,11 +54,7 @@ pub(super) fn follow_block(
     (footing, scars): (&mut Footing, &mut Scars),
 ) -> Trajectory {
     let block = &drawn.block;
-    let world = ContactEnvironment {
-        terrain: settings.terrain,
-        body: Body::of_block(block, settings.gravity_m_s2),
-        laws,
-    };
+    let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
     footing.near.forget();
     footing.raise_stems(settings.terrain, &random);
     (footing.near.tested, footing.sweeps) = (0, 0);
@@ -222,10 +218,7 @@ impl Roll<'_> {
 
     /// Digs in where the fastest of the contacts that are struck strikes, as fast as the centre comes to it.
     fn dig(&mut self, struck: &[BlockTouch]) {
-        let block = self.block;
-        let speed = |touch: &&BlockTouch| -touch.normal.dot(&self.moving.at(block, &touch.lever));
-        let fastest = struck.iter().max_by(|one, other| speed(one).total_cmp(&speed(other)));
-        let Some(touch) = fastest else { return };
+        let Some(touch) = self.moving.fastest(self.block, struck.iter()) else { return };
         let on = (self.world.ground_of(touch.triangle), touch.normal);
         let v = &self.moving.v;
         let speeds = (-touch.normal.dot(v), v.norm());
@@ -237,19 +230,15 @@ impl Roll<'_> {
     fn plough(&mut self, from: &Vec3, is_free: bool) {
         let normal = self.footing.touching(self.block).next().map(|touch| touch.normal);
         let way_m = (self.moving.pose.centre - from).norm();
-        let mut kept = self.scars.plough(way_m, normal);
-        if is_free {
-            kept *= self.scars.leave(&self.world.body, &(self.moving.v * kept));
-        }
+        let ends = is_free.then_some(self.moving.v);
+        let kept = self.scars.plough(&self.world.body, (way_m, normal), ends);
         self.slow(kept);
     }
 
     /// Takes a share of the speed of the centre; the soil has it.
     fn slow(&mut self, kept: f64) {
-        let v = self.moving.v;
-        let lost = 0.5 * self.block.mass_kg * v.norm_squared() * (1.0 - kept * kept);
-        self.recorder.ledger.soil_j += lost;
-        self.moving.v = v * kept;
+        self.recorder.ledger.soil_j += taken_j(&self.world.body, &self.moving.v, kept);
+        self.moving.v *= kept;
     }
 
     /// Mechanical energy (J), weight included.

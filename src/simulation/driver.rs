@@ -263,7 +263,7 @@ impl Fall<'_> {
             };
             // before its losses are paid, and with the speed before
             self.in_contact().announce();
-            self.soil_after_step((self.state.c - before).norm(), done.dt);
+            self.soil_after_step(&before, done.dt);
             self.answer_blow();
             let effort = &mut self.recorder.effort;
             effort.steps += done.steps;

@@ -4,6 +4,8 @@
 
 use super::fall::{Fall, Slips};
 use crate::contact::history::ContactHistory;
+use crate::rock::Vec3;
+use crate::solver::scar::taken_j;
 
 /// Growth of `κ s` within one step, about (–): friction changes between steps.
 const GROWTH_OF_STEP: f64 = 0.02;
@@ -39,15 +41,14 @@ impl Fall<'_> {
         longest_s
     }
 
-    /// After a step of `dt` (s) on a way (m): what has been ploughed and slipped, and what it takes to leave.
-    pub(super) fn soil_after_step(&mut self, way_m: f64, dt: f64) {
+    /// After a step of `dt` (s) that began with the centre at `before`: what has been ploughed and slipped, and what it takes to leave.
+    pub(super) fn soil_after_step(&mut self, before: &Vec3, dt: f64) {
         self.soil.last_step_s = dt;
         if self.soil.scars.are_any() {
             let normal = self.state.histories.first().map(|history| history.n);
-            let mut kept = self.soil.scars.plough(way_m, normal);
-            if self.state.is_free() {
-                kept *= self.soil.scars.leave(&self.body, &(self.state.v * kept));
-            }
+            let way_m = (self.state.c - before).norm();
+            let ends = self.state.is_free().then_some(self.state.v);
+            let kept = self.soil.scars.plough(&self.body, (way_m, normal), ends);
             self.slow(kept);
         }
         if let Some(Slips { speed_m_s, n, ground }) = self.soil.slips.take() {
@@ -62,8 +63,7 @@ impl Fall<'_> {
             return;
         }
         let (v, w) = (self.state.v, self.state.w);
-        let taken_j = 0.5 * self.body.mass * v.norm_squared() * (1.0 - kept * kept);
-        self.recorder.ledger.soil_j += taken_j;
+        self.recorder.ledger.soil_j += taken_j(&self.body, &v, kept);
         let world = self.settings.around(self.body, self.laws);
         self.state.redirect(&world, v * kept, w);
     }

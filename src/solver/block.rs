@@ -131,6 +131,16 @@ impl Moving {
         }
     }
 
+    /// The contact that the block approaches fastest.
+    pub(crate) fn fastest<'t>(
+        &self,
+        block: &Block,
+        touches: impl Iterator<Item = &'t BlockTouch>,
+    ) -> Option<&'t BlockTouch> {
+        let approach = |touch: &&BlockTouch| -touch.normal.dot(&self.at(block, &touch.lever));
+        touches.max_by(|one, other| approach(one).total_cmp(&approach(other)))
+    }
+
     /// Velocity of a point of the block (m/s).
     pub(crate) fn at(&self, block: &Block, lever: &Vec3) -> Vec3 {
         Mass::at(lever, (&self.v, &self.spin(block)))
@@ -317,9 +327,7 @@ impl Footing {
         block: &Block,
         moving: &Moving,
     ) -> Option<Rotation3<f64>> {
-        let approach = |touch: &&BlockTouch| -touch.normal.dot(&moving.at(block, &touch.lever));
-        let fastest =
-            self.touching(block).max_by(|one, other| approach(one).total_cmp(&approach(other)))?;
+        let fastest = moving.fastest(block, self.touching(block))?;
         let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
         let v = moving.at(block, &fastest.lever);
         self.facets.struck(world, &Meeting { n, triangle, c, v })

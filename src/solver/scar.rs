@@ -85,11 +85,18 @@ impl Scars {
         math::exp(-drag_per_m3 * swept_m3(body.radius, depth_m, cosine))
     }
 
-    /// What the rock keeps of its speed on a way along the plane (–), in a contact with this normal if any is known.
-    pub(crate) fn plough(&mut self, way_m: f64, normal: Option<Vec3>) -> f64 {
+    /// What the rock keeps of its speed on a way (m) along the plane (–), in a contact with this normal if any is known; and of the
+    /// velocity before with which the contact `ends`, if it does.
+    pub(crate) fn plough(
+        &mut self,
+        body: &Body,
+        (way_m, normal): (f64, Option<Vec3>),
+        ends: Option<Vec3>,
+    ) -> f64 {
         let Some(now) = &mut self.now else { return 1.0 };
         now.normal = normal.unwrap_or(now.normal);
-        math::exp(-now.per_m * way_m)
+        let kept = math::exp(-now.per_m * way_m);
+        ends.map_or(kept, |v| kept * self.leave(body, &(v * kept)))
     }
 
     /// The rock's contact ends at a velocity: what it keeps of it (–).
@@ -122,4 +129,9 @@ impl Scars {
     pub(crate) fn longest_s(&self, speed_m_s: f64) -> f64 {
         self.now.map_or(f64::INFINITY, |now| LOSS_OF_STEP / (now.per_m * speed_m_s))
     }
+}
+
+/// Energy (J) that the soil takes of a rock that keeps a share of its velocity (–).
+pub(crate) fn taken_j(body: &Body, v: &Vec3, kept: f64) -> f64 {
+    0.5 * body.mass * v.norm_squared() * (1.0 - kept * kept)
 }

@@ -11,6 +11,8 @@ pub(crate) struct Slip {
     on: Option<u16>,
     /// What the grounds do, and their friction before any slip (–).
     soils: Vec<Option<(SlipFriction, f64)>>,
+    /// How fast friction grows with slip at most (1/m); 0 where none grows.
+    fastest_per_m: f64,
 }
 
 impl Slip {
@@ -21,11 +23,13 @@ impl Slip {
         let least = |ground: &Ground| math::tan(ground.friction_angle_rad);
         let soil = |ground: &Ground| ground.slip_friction.map(|soil| (soil, least(ground)));
         self.soils.extend(grounds.iter().map(soil));
+        let rates = self.soils.iter().flatten().map(|(soil, _)| soil.kappa_per_m);
+        self.fastest_per_m = rates.fold(0.0, f64::max);
     }
 
     /// Whether the friction of any ground grows.
     pub(crate) fn is_any(&self) -> bool {
-        self.soils.iter().any(Option::is_some)
+        self.fastest_per_m > 0.0
     }
 
     fn soil(&self, ground: u16) -> Option<&(SlipFriction, f64)> {
@@ -40,7 +44,7 @@ impl Slip {
 
     /// How fast friction grows with slip at most (1/m).
     pub(crate) fn fastest_per_m(&self) -> f64 {
-        self.soils.iter().flatten().map(|(soil, _)| soil.kappa_per_m).fold(0.0, f64::max)
+        self.fastest_per_m
     }
 
     /// Slips further, on a ground if it touches one.

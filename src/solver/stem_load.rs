@@ -20,8 +20,11 @@ pub(crate) struct StemLoad {
 }
 
 impl StemLoad {
-    /// No stem has taken anything; limits are drawn for the rock of this random stream.
-    pub(super) fn begin(&mut self, stems: &Stems, random: &RandomStream) {
+    /// All stems stand again, none of them `gone`, with limits drawn for the rock of this random stream.
+    pub(super) fn raise(&mut self, terrain: &Terrain, random: &RandomStream, gone: &mut Vec<u32>) {
+        gone.clear();
+        let Some(stems) = &terrain.stems else { return };
+        gone.reserve(stems.count());
         self.taken.clear();
         self.taken.reserve(stems.count());
         self.pressed = None;

@@ -32,11 +32,7 @@ pub(crate) struct Broken {
 impl ContactState {
     /// All stems stand again, with limits drawn for the rock of this random stream.
     pub(crate) fn raise_stems(&mut self, terrain: &Terrain, random: &RandomStream) {
-        let (load, gone) = (&mut self.stem_load, &mut self.near.gone);
-        gone.clear();
-        let Some(stems) = &terrain.stems else { return };
-        gone.reserve(stems.count());
-        load.begin(stems, random);
+        self.stem_load.raise(terrain, random, &mut self.near.gone);
     }
 
     /// Sees whether a stem that is pressed may give way in the next step, and returns the longest step (s) in which it does

@@ -2,6 +2,7 @@
 
 use super::Moving;
 use crate::body::Block;
+use crate::rock::Vec3;
 
 /// Slows a block that has more energy of motion than it had, with what its weight gave on the way behind it, and than its weight gives
 /// it on the way to come (J), which is slowed too. Moving out of what it was pressed into is paid by its motion.
@@ -13,5 +14,17 @@ pub(super) fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: 
         let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
         moving.v *= kept;
         moving.momentum *= kept;
+    }
+}
+
+/// No step ends sooner for want of energy (s).
+const SHORTEST_S: f64 = 1e-6;
+
+impl Moving {
+    /// How long a step may be (s) in which the block climbs half of its way on the energy that it has (J): where a contact lets out a block
+    /// that hardly moves, a longer one would lift it for nothing.
+    pub(super) fn climbs_s(&self, (mass_kg, gravity): (f64, &Vec3), motion_j: f64) -> f64 {
+        let power_w = -mass_kg * gravity.dot(&self.v);
+        if power_w > 0.0 { (2.0 * motion_j / power_w).max(SHORTEST_S) } else { f64::INFINITY }
     }
 }

@@ -7,6 +7,7 @@
 //! Gauss–Seidel), each solved for its three unknowns at once.
 
 use crate::rock::Vec3;
+use crate::solver::law::within;
 use nalgebra::Matrix3;
 
 /// Sweeps over the contacts, at most.
@@ -114,12 +115,6 @@ impl BlockContact {
         }
         n * push + drag
     }
-}
-
-/// Shortens `x` to at most `cap`.
-fn within(x: Vec3, cap: f64) -> Vec3 {
-    let size = x.norm();
-    if size > cap { x * (cap / size) } else { x }
 }
 
 /// Sweeps until the body moves as it will, from velocity and spin without impulses; whether it did. `sweeps` counts.

@@ -2,7 +2,7 @@
 //!
 //! The rule is that of spheres (`solver::stems`): what a block puts into its contacts with a stem counts against what the stem can
 //! take; when that is what was left of the stem, the stem is gone and the block goes on. A blow that would take more ends there
-//! ([`Contact::yielding`](super::solve::BlockContact)).
+//! ([`BlockContact::yielding`](super::solve::BlockContact)).
 
 use super::{Footing, Moving};
 use crate::body::Block;
@@ -18,13 +18,10 @@ use crate::terrain::stems::Stems;
 impl Footing {
     /// All stems stand again, with limits drawn for the block of this random stream.
     pub(crate) fn raise_stems(&mut self, terrain: &Terrain, random: &RandomStream) {
-        self.near.gone.clear();
-        if let Some(stems) = &terrain.stems {
-            self.stem_load.begin(stems, random);
-        }
+        self.stem_load.raise(terrain, random, &mut self.near.gone);
     }
 
-    /// Breaks the stems among the contacts that touch which cannot take the blow in hand; what they took (J).
+    /// Breaks the stems among the contacts that touch which cannot take the current blow; what they took (J).
     pub(crate) fn break_stems(
         &mut self,
         world: &ContactEnvironment,

@@ -7,6 +7,7 @@
 
 use super::solve::BlockContact;
 use crate::rock::Vec3;
+use crate::solver::law::within;
 use crate::solver::yielding::BISECTIONS;
 
 /// Shares of the normal impulse that would stop the contact point without friction, for one of which a step goes (–).
@@ -37,8 +38,8 @@ impl BlockContact {
         let rate = 1.0 / (self.answer.trace() - self.n.dot(&(self.answer * self.n)));
         let mut hold = Vec3::zeros();
         for _ in 0..PASSES {
-            hold -= along(slip / push + self.answer * (self.n + hold)) * rate;
-            hold = hold.cap_magnitude(self.friction);
+            let next = hold - along(slip / push + self.answer * (self.n + hold)) * rate;
+            hold = within(next, self.friction);
         }
         (hold, false)
     }
