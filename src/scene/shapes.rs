@@ -164,14 +164,6 @@ impl Scene {
         if !self.has_blocks() {
             return self.check_soil_of_worlds();
         }
-        if self.solver.scheme().has_springs() {
-            let remedy = "write scheme = \"rigid\": blocks of [[rocks.shapes]] are computed in the rigid limit only, as yet";
-            let about = match self.solver.scheme {
-                Some(_) => Complaint::about("scheme", remedy),
-                None => Complaint::missing("scheme", remedy),
-            };
-            return Err(about.inside("solver"));
-        }
         if self.release.together {
             let remedy = "remove it, or the blocks of [[rocks.shapes]]: rocks that share one world are spheres";
             return Err(Complaint::about("together", remedy).inside("release"));

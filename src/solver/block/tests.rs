@@ -2,6 +2,7 @@ use super::*;
 
 mod cases;
 mod slip;
+mod springs;
 mod yielding;
 
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
@@ -10,6 +11,7 @@ use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
 use crate::rock::Rock;
+use crate::solver::Settings;
 use crate::solver::body::Body;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
@@ -54,6 +56,8 @@ struct BlockRun {
     law: Law,
     ground: Ground,
     step_s: f64,
+    /// The step of a scheme with springs; `None` = `rigid`.
+    springs: Option<Settings>,
     lost: Loss,
     impacts: usize,
     steps: usize,
@@ -79,7 +83,8 @@ impl BlockRun {
         let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
         let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
         let lost = Loss::default();
-        Self { terrain, block, law, ground, step_s: 0.01, lost, impacts: 0, steps: 0 }
+        let springs = None;
+        Self { terrain, block, law, ground, step_s: 0.01, springs, lost, impacts: 0, steps: 0 }
     }
 
     fn start(&self, attitude: Rotation3<f64>, [centre, v, w]: [Vec3; 3]) -> Moving {
@@ -115,7 +120,23 @@ impl BlockRun {
             (moving.pose, moving.v) = (tumble.pose(dt), path.velocity(dt));
             now += dt;
             see(now, moving);
+            if let Some(settings) = &self.springs {
+                footing.begin_springs(&world, settings, (&block, moving));
+            }
             while now < longest_s {
+                if let Some(settings) = &self.springs {
+                    let on = (&block, &mut *moving);
+                    let (done, _) =
+                        footing.step_on_springs(&world, settings, on, longest_s - now).unwrap();
+                    self.lost.add(&done.loss, 1.0);
+                    self.steps += 1;
+                    now += done.dt;
+                    see(now, moving);
+                    if done.is_free {
+                        break;
+                    }
+                    continue;
+                }
                 let pose = moving.pose;
                 footing.look(&world, &block, &pose, block.ball_m);
                 if let Some(loss) = footing.strike(&world, &block, moving) {
@@ -375,7 +396,7 @@ fn edges_and_faces_meet_edges_and_peaks() {
         let pose = moving.pose;
         footing.look(&world, &body, &pose, body.ball_m);
         assert_eq!(footing.touching(&body).count(), 1, "{:?}", footing.touches);
-        assert!((footing.touches[0].normal - Vec3::z()).norm() < 1e-7);
+        assert!((footing.touches.found[0].normal - Vec3::z()).norm() < 1e-7);
         // a balanced fall on one point stops dead
         footing.strike(&world, &body, &mut moving).unwrap();
         assert!(moving.v.norm() < 1e-7 && moving.spin(&body).norm() < 1e-7, "{}", moving.v);

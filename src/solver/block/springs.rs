@@ -1,0 +1,265 @@
+//! Schemes with springs for blocks: `adaptive`, `reference` and `dda`.
+//!
+//! The unknowns are the body's six. With the lever `a` of a contact, `V_N = [nᵀ, (a×n)ᵀ]` takes the place of the paper's `V_N = (V, 0)`, and
+//! everything else of the paper stays. The state is centre, attitude, velocity and **angular momentum** in the frame of the terrain:
+//! `ℓ' = Σ a × f`, `ω = I⁻¹ℓ`, so that no gyroscopic term has to be stepped and free spin keeps its momentum exactly.
+//!
+//! A spring and a dashpot over an implicit stage in which an impulse acts for `a` and the block moves for `b` (s) are a contact of the
+//! rigid limit that gives way ([`GivingWay`]): from `F = p (pen − b u_n) − c u_n` and `P = a F`
+//!
+//! ```text
+//! u_n + P_n/(a (p b + c)) = p pen/(p b + c)
+//! ```
+//!
+//! and the same along the surface with `p_s`, `c_s` and the stretch `−ξ`. So all schemes share one solver of contacts
+//! ([`solve`](super::solve::solve)), and `rigid` is its limit for stiff springs.
+
+mod controlled;
+mod dda;
+mod history;
+mod stage;
+
+use super::solve::{BlockContact, GivingWay, Mass};
+use super::{Footing, Moving, Stepped, TOUCH};
+use crate::body::Block;
+use crate::contact::block::{Pose, touches};
+use crate::flight::block::Tumble;
+use crate::ground::Law;
+use crate::math;
+use crate::rock::Vec3;
+use crate::solver::Settings;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::loss::Loss;
+use crate::solver::step_control::{Control, StepError};
+use crate::solver::tableau::STAGES;
+pub(crate) use history::BlockHistory;
+use nalgebra::{Rotation3, Unit};
+
+/// Contacts no further ahead take part in a stage (–, relative to the balls' radius): more than a step's way.
+const AHEAD: f64 = 0.5;
+/// Deeper than this, contacts mean nothing any more (–, relative to the balls' radius).
+const DEEPEST: f64 = 0.5;
+
+/// Rates of change of a block in contact.
+#[derive(Debug, Clone, Default)]
+struct BlockRates {
+    /// Of the centre (m/s), and of its velocity (m/s²).
+    centre: Vec3,
+    v: Vec3,
+    /// Of the rotation vector from the step's start (rad/s), and of the angular momentum (N m).
+    turned: Vec3,
+    momentum: Vec3,
+    /// Of the shear springs (m/s), history by history.
+    shear: Vec<Vec3>,
+    /// Power that goes into contacts (W).
+    loss: Loss,
+}
+
+/// A contact within a stage.
+#[derive(Debug, Clone, Copy)]
+struct SpringContact {
+    /// Which memory it belongs to.
+    history: usize,
+    /// Its law, with its share of a patch and the friction in force.
+    law: Law,
+    /// Triangle whose ground answers.
+    triangle: u32,
+    /// Unit normal from the mesh to the block, and lever (m).
+    n: Vec3,
+    lever: Vec3,
+    /// Penetration (m) and stretch of the shear spring (m) at the stage's base.
+    penetration: f64,
+    shear: Vec3,
+    /// Normal force, ≥ 0, and shear force; the block feels the opposite of the latter (N).
+    normal_force: f64,
+    shear_force: Vec3,
+}
+
+/// Springs of the contacts of one block.
+#[derive(Debug, Default)]
+pub(crate) struct Springs {
+    pub(crate) histories: Vec<BlockHistory>,
+    contacts: Vec<SpringContact>,
+    rates: [BlockRates; STAGES],
+    /// Whether the first rate belongs to the present state.
+    fresh: bool,
+    /// Energy in the springs at the present state (J).
+    stored_j: f64,
+    /// The step to try next (s).
+    h: f64,
+    control: Option<Control>,
+}
+
+impl Springs {
+    /// The motion has been changed from outside.
+    pub(crate) fn refresh(&mut self) {
+        self.fresh = false;
+    }
+
+    /// Whether nothing presses on the block any more.
+    pub(crate) fn is_free(&self) -> bool {
+        self.histories.iter().all(|history| !history.closed)
+    }
+
+    /// Stiffest contact (rad/s).
+    fn stiffest(&self) -> f64 {
+        self.histories.iter().map(|history| history.law.omega).fold(0.0, f64::max)
+    }
+
+    /// Slowest contact (rad/s): the impact of all is over after some of its times.
+    pub(crate) fn slowest(&self) -> f64 {
+        self.histories.iter().map(|history| history.law.omega).fold(f64::INFINITY, f64::min)
+    }
+
+    /// About how much springs hold (J), as the memories tell.
+    pub(crate) fn held_j(&self) -> f64 {
+        let held = self.histories.iter().filter(|history| history.closed).map(|history| {
+            let penetration = history.normal_force / history.law.p_n;
+            history.law.stored_j(penetration, history.shear.norm_squared(), 0.0)
+        });
+        held.sum()
+    }
+}
+
+impl SpringContact {
+    /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
+    fn giving_way(&self, contact: &BlockContact, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
+        let law = &self.law;
+        let answers = [law.p_n * b + law.c_n, law.shear_over(b)];
+        let goal = self.n * (law.p_n * self.penetration / answers[0])
+            - self.shear * (law.p_s / answers[1]);
+        let springs = GivingWay {
+            compliance: answers.map(|answer| 1.0 / (a * answer)),
+            surface_m_s: self.penetration / b,
+        };
+        contact.with_goal(goal).with_springs(mass, springs)
+    }
+
+    /// Takes the forces from an impulse that has acted for `a` (s).
+    fn take(&mut self, impulse: &Vec3, a: f64) {
+        self.normal_force = self.n.dot(impulse) / a;
+        self.shear_force = (self.n * self.n.dot(impulse) - impulse) / a;
+    }
+
+    /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).
+    fn pen_at(&self, u: &Vec3, b: f64) -> f64 {
+        self.penetration - b * self.n.dot(u)
+    }
+
+    /// Stretch of the shear spring (m) after a motion for `b` (s).
+    fn stretch(&self, b: f64) -> Vec3 {
+        self.law.shear_after(&self.shear_force, &self.shear, b)
+    }
+
+    /// Power that goes into it (W) at a velocity `u` of the contact point (m/s); what springs store is counted in.
+    fn power(&self, world: &ContactEnvironment, u: &Vec3, shear_rate: &Vec3) -> Loss {
+        let slip = u - self.n * self.n.dot(u);
+        let friction = self.shear_force.dot(&(slip - shear_rate));
+        let damping = self.shear_force.dot(shear_rate) - self.normal_force * self.n.dot(u);
+        Loss { friction, damping, ..Loss::default() }.on(world, self.triangle)
+    }
+}
+
+/// A rotation by a rotation vector (rad).
+fn turn_by(turned: &Vec3) -> Rotation3<f64> {
+    let angle = turned.norm();
+    if angle > 0.0 {
+        math::turn(&Unit::new_unchecked(turned / angle), angle)
+    } else {
+        Rotation3::identity()
+    }
+}
+
+/// Rate of the rotation vector `θ` of a body that turns with `w`: `θ' = ω − θ×ω/2 + θ×(θ×ω)/12 − …` (Bortz 1971), for small `θ`.
+fn turning(turned: &Vec3, w: &Vec3) -> Vec3 {
+    let once = turned.cross(w);
+    w - once * 0.5 + turned.cross(&once) / 12.0
+}
+
+impl Footing {
+    /// Looks for all contacts of a block that are no wider apart than `reach_m`.
+    fn look_at_all(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, pose): (&Block, &Pose),
+        reach_m: f64,
+    ) {
+        if !self.near.covers_around(&pose.centre, block.bound_m - block.ball_m) {
+            let way = 0.5 * block.radius_m;
+            Tumble::collect(block, &mut self.near, world.terrain, (&pose.centre, way));
+        }
+        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
+    }
+
+    /// Begins an episode of a block that has just touched.
+    pub(crate) fn begin_springs(
+        &mut self,
+        world: &ContactEnvironment,
+        settings: &Settings,
+        (block, moving): (&Block, &Moving),
+    ) {
+        self.springs.histories.clear();
+        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.remember(world, (block, moving));
+        self.springs.stored_j = self.stored(world).sum();
+        let control =
+            settings.scheme.tableau().map(|tableau| Control::new(tableau, settings, world));
+        self.springs.control = control;
+        self.springs.h = self.first_step_s();
+        self.springs.refresh();
+    }
+
+    /// Energy in the springs of the contacts of the last look (J), by what it belongs to.
+    fn stored(&self, world: &ContactEnvironment) -> Loss {
+        let mut stored = Loss::default();
+        for touch in &self.touches.found {
+            let law = world.law(touch.triangle);
+            let damping = touch.gain2 * law.stored_j((-touch.gap_m).max(0.0), 0.0, 0.0);
+            stored.add(&Loss { damping, ..Loss::default() }.on(world, touch.triangle), 1.0);
+        }
+        for history in self.springs.histories.iter().filter(|history| history.closed) {
+            let damping = history.law.stored_j(0.0, history.shear.norm_squared(), 0.0);
+            stored.add(&Loss { damping, ..Loss::default() }.on(world, history.triangle), 1.0);
+        }
+        stored
+    }
+
+    /// Energy in the springs at a pose (J), by what it belongs to.
+    pub(crate) fn springs_j(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) -> Loss {
+        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.stored(world)
+    }
+
+    /// One step of at most `most_s`, and the steps tried and thrown away.
+    ///
+    /// # Errors
+    /// [`StepError`] if no step, however short, settles, or a spring is pressed in too far.
+    pub(crate) fn step_on_springs(
+        &mut self,
+        world: &ContactEnvironment,
+        settings: &Settings,
+        (block, moving): (&Block, &mut Moving),
+        most_s: f64,
+    ) -> Result<(Stepped, u64), StepError> {
+        let start = moving.clone();
+        let slip_m_s = self.slip_m_s(block, &start);
+        let (done, rejected) = match self.springs.control {
+            Some(control) => self.controlled_step(world, (block, moving), (control, most_s))?,
+            None => (self.fixed_step(world, settings, (block, moving), most_s)?, 0),
+        };
+        let slipped_m = 0.5 * done.dt * (slip_m_s + self.slip_m_s(block, moving));
+        let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
+        self.slip.grow(slipped_m, on);
+        Ok((done, rejected))
+    }
+
+    /// Whether a spring is pressed in so far that it means nothing any more.
+    fn check_depth(&self, block: &Block) -> Result<(), StepError> {
+        let deepest = self.touches.found.iter().map(|touch| -touch.gap_m).fold(0.0, f64::max);
+        if deepest > DEEPEST * block.ball_m { Err(StepError::SankIn) } else { Ok(()) }
+    }
+}
