@@ -66,6 +66,7 @@ impl Roll<'_> {
         if broken_j > 0.0 {
             self.footing.springs.refresh();
         }
+        self.footing.springs.until_s = until_s;
         if let Some(turn) = facet {
             self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
         }
@@ -99,9 +100,11 @@ impl Roll<'_> {
         let springs = &self.footing.springs;
         let lasts = |number| springs.histories.iter().any(|history| history.impact == number);
         self.recorder.end_impacts(lasts, || springs.held_j());
-        if self.footing.has_met_its_facet(self.recorder.now.time_s) {
+        let now_s = self.recorder.now.time_s;
+        if self.footing.has_met_its_facet(now_s) {
             self.turn_back();
         }
+        self.footing.springs.capture(now_s);
     }
 
     /// Turns the block back, if it is turned.

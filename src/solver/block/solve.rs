@@ -109,6 +109,12 @@ impl BlockContact {
         Self { whole, springs: Some(springs), ..*self }
     }
 
+    /// How it gives way, in a scheme with springs.
+    #[inline]
+    pub(super) fn springs(&self) -> Option<&GivingWay> {
+        self.springs.as_ref()
+    }
+
     /// Mass that it moves along the normal, and in the mean along the surface (kg).
     pub(crate) fn masses(&self) -> [f64; 2] {
         let along = self.n.dot(&(self.answer * self.n));

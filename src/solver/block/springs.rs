@@ -17,6 +17,7 @@
 mod controlled;
 mod dda;
 mod history;
+mod newton;
 mod stage;
 
 use super::solve::{BlockContact, GivingWay, Mass};
@@ -87,6 +88,8 @@ pub(crate) struct Springs {
     stored_j: f64,
     /// The step to try next (s).
     h: f64,
+    /// When the impacts that go on are over at the latest (s).
+    pub(crate) until_s: f64,
     control: Option<Control>,
 }
 
@@ -102,8 +105,17 @@ impl Springs {
     }
 
     /// Stiffest contact (rad/s).
-    fn stiffest(&self) -> f64 {
-        self.histories.iter().map(|history| history.law.omega).fold(0.0, f64::max)
+    fn stiffest(&self, world: &ContactEnvironment) -> f64 {
+        let of = |laws: &mut dyn Iterator<Item = f64>| laws.fold(0.0, f64::max);
+        let known = of(&mut self.histories.iter().map(|history| history.law.omega));
+        if known > 0.0 { known } else { of(&mut world.laws.iter().map(|law| law.omega)) }
+    }
+
+    /// Impacts whose time is up at `now_s` (s) are over: what still presses lasts, and is damped for good.
+    pub(crate) fn capture(&mut self, now_s: f64) {
+        if now_s >= self.until_s {
+            self.histories.iter_mut().for_each(|history| history.captured |= history.announced);
+        }
     }
 
     /// Slowest contact (rad/s): the impact of all is over after some of its times.
@@ -205,7 +217,7 @@ impl Footing {
         let control =
             settings.scheme.tableau().map(|tableau| Control::new(tableau, settings, world));
         self.springs.control = control;
-        self.springs.h = self.first_step_s();
+        self.springs.h = self.first_step_s(world);
         self.springs.refresh();
     }
 

@@ -108,8 +108,8 @@ impl BlockTrial<'_, '_> {
 
 impl Footing {
     /// First step after a touch (s).
-    pub(super) fn first_step_s(&self) -> f64 {
-        ONSET / self.springs.stiffest().max(f64::MIN_POSITIVE)
+    pub(super) fn first_step_s(&self, world: &ContactEnvironment) -> f64 {
+        ONSET / self.springs.stiffest(world)
     }
 
     /// Energy in the springs at the end of a stage of length `way_s` (J).
@@ -147,12 +147,10 @@ impl Footing {
         if !self.springs.fresh {
             self.rates_now(world, (block, moving));
         }
-        let allowed = if self.springs.is_rebounding() {
-            control.impact * self.springs.fastest_m_s()
-        } else {
-            control.tolerance
-        };
-        let (omega, known) = (self.springs.stiffest(), self.springs.histories.len());
+        let impact_m_s = self.springs.fastest_m_s();
+        let allowed =
+            if impact_m_s > 0.0 { control.impact * impact_m_s } else { control.tolerance };
+        let (omega, known) = (self.springs.stiffest(world), self.springs.histories.len());
         let limit = Self::travel_limit_s(world, (block, moving));
         let (h, start) = (self.springs.h, moving.clone());
         let mut rejected = 0;

@@ -143,7 +143,7 @@ impl Footing {
             impulse: Vec3::zeros(),
             approach_m_s,
             captured,
-            closed: false,
+            closed: approach_m_s > 0.0 && touch.gap_m <= TOUCH * block.radius_m,
             slides: false,
             announced: false,
             impact: 0,
@@ -159,7 +159,8 @@ impl super::Springs {
 
     /// Fastest approach of the impacts that go on (m/s).
     pub(super) fn fastest_m_s(&self) -> f64 {
-        let rebounding = self.histories.iter().filter(|history| !history.captured);
+        let rebounding =
+            self.histories.iter().filter(|history| history.closed && !history.captured);
         rebounding.map(|history| history.approach_m_s).fold(0.0, f64::max)
     }
 

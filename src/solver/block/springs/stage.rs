@@ -5,6 +5,7 @@
 //! end is exact, however the block turns.
 
 use super::super::{Footing, Moving, TOUCH, orthonormal};
+use super::newton::solve_springs;
 use super::{AHEAD, BlockRates, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::block::Pose;
@@ -17,6 +18,8 @@ use crate::solver::loss::Loss;
 use crate::solver::stage::{AGREED, PASSES};
 use crate::solver::tableau::Tableau;
 
+/// So few contacts are swept (–).
+const FEW: usize = 2;
 /// Velocities are known to this (–).
 const ROUNDING_OF_SPEED: f64 = 1e-14;
 
@@ -151,8 +154,17 @@ impl Footing {
         }
         pushed.take(&self.contacts, block.mass_kg);
         let rounding_m_s = ROUNDING_OF_SPEED * (free_v.norm() + guess.v.norm());
+        let free = (free_v, mass.inverse * stage.base.moving.momentum);
         let from = (pushed.v, mass.inverse * pushed.momentum);
-        solve(&mass, &mut self.contacts, from, rounding_m_s, &mut self.sweeps);
+        // one or two contacts are swept faster
+        let few = self.contacts.len() <= FEW;
+        self.sweeps += 1;
+        if few || !solve_springs(&mass, &mut self.contacts, (free, from), rounding_m_s) {
+            for (contact, own) in self.contacts.iter_mut().zip(&self.springs.contacts) {
+                contact.impulse = self.springs.histories[own.history].impulse;
+            }
+            solve(&mass, &mut self.contacts, from, rounding_m_s, &mut self.sweeps);
+        }
         for (contact, solved) in self.springs.contacts.iter_mut().zip(&self.contacts) {
             contact.take(&solved.impulse, act_s);
             self.springs.histories[contact.history].impulse = solved.impulse;
