@@ -20,8 +20,10 @@ use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use nalgebra::Rotation3;
 
-/// Tests of directions are inclusive to this (–).
+/// Tests of directions are inclusive to this (–) …
 const DIRECTION_SLACK: f64 = 1e-9;
+/// … and to this for a contact that is held (–, sine of an angle): a block that lies flat on an edge rests on both sides of it.
+const HELD_SLACK: f64 = 0.2;
 /// Edges closer to parallel than this meet at their ends (–, squared sine).
 const PARALLEL: f64 = 1e-12;
 
@@ -66,6 +68,7 @@ struct Placed<'a> {
     block: &'a Block,
     pose: &'a Pose,
     corners: &'a [Vec3],
+    held: &'a [(u16, Feature)],
 }
 
 /// The contacts of a block, and the work space of the search for them.
@@ -73,11 +76,13 @@ struct Placed<'a> {
 pub struct BlockTouches {
     /// Those found last.
     pub found: Vec<BlockTouch>,
+    /// Pairs of a part of the block and a feature of the mesh that press already.
+    pub held: Vec<(u16, Feature)>,
     corners: Vec<Vec3>,
 }
 
 /// The contacts of a block that are no further away than `reach_m`, in a fixed order: corners, edges, faces. `near` must have been
-/// collected with the balls' radius, for a margin that holds the core.
+/// collected with the balls' radius, for a margin that holds the core. A pair in `touches.held` stays a contact as long as it presses.
 pub fn touches(
     near: &mut Neighbours,
     terrain: &Terrain,
@@ -85,11 +90,11 @@ pub fn touches(
     reach_m: f64,
     touches: &mut BlockTouches,
 ) {
-    let BlockTouches { found, corners } = touches;
+    let BlockTouches { found, held, corners } = touches;
     found.clear();
     corners.clear();
     corners.extend(block.core.corners.iter().map(|own| pose.point(own)));
-    let placed = Placed { block, pose, corners };
+    let placed = Placed { block, pose, corners, held };
     let reach = block.ball_m + reach_m;
     let mut of_ball = ContactPoints::default();
     for (k, p) in corners.iter().enumerate() {
@@ -150,8 +155,9 @@ impl Placed<'_> {
                 continue;
             }
             let normal = off / distance;
-            if edge.outward.iter().any(|out| out.dot(&normal) < -DIRECTION_SLACK)
-                || !self.faces_out(&ridge.into, &normal)
+            let slack = self.slack(part, edge.feature);
+            if edge.outward.iter().any(|out| out.dot(&normal) < -slack)
+                || !self.faces_out(&ridge.into, &normal, slack)
                 || edge.at_border && near.is_covered(terrain, &foot, &p, distance)
             {
                 continue;
@@ -169,8 +175,10 @@ impl Placed<'_> {
         found: &mut Vec<BlockTouch>,
     ) {
         let own = self.pose.attitude.inverse_transform_vector(&(peak.p - self.pose.centre));
-        let touches =
-            |normal: &Vec3| peak.edges.iter().all(|edge| edge.dot(normal) <= DIRECTION_SLACK);
+        let touches = |part: usize, normal: &Vec3| {
+            let slack = self.slack(part, peak.feature);
+            peak.edges.iter().all(|edge| edge.dot(normal) <= slack)
+        };
         let covered = |p: &Vec3, distance: f64| {
             peak.at_border && near.is_covered(terrain, &peak.p, p, distance)
         };
@@ -187,7 +195,11 @@ impl Placed<'_> {
                 continue;
             }
             let normal = (p - peak.p) / distance;
-            if touches(&normal) && self.faces_out(&ridge.into, &normal) && !covered(&p, distance) {
+            let slack = self.slack(part, peak.feature);
+            if touches(part, &normal)
+                && self.faces_out(&ridge.into, &normal, slack)
+                && !covered(&p, distance)
+            {
                 self.add(
                     (part, &p),
                     &point(peak.feature, peak.triangle, (normal, distance)),
@@ -204,7 +216,7 @@ impl Placed<'_> {
             }
             let normal = -(self.pose.attitude * face.normal);
             let p = peak.p + normal * height;
-            if touches(&normal) && !covered(&p, height) {
+            if touches(part, &normal) && !covered(&p, height) {
                 self.add((part, &p), &point(peak.feature, peak.triangle, (normal, height)), found);
             }
         }
@@ -216,9 +228,15 @@ impl Placed<'_> {
     }
 
     /// Whether the opposite of a direction lies between the normals of the two faces at an edge of the block.
-    fn faces_out(&self, into: &[Vec3; 2], normal: &Vec3) -> bool {
+    fn faces_out(&self, into: &[Vec3; 2], normal: &Vec3, slack: f64) -> bool {
         let own = self.pose.attitude.inverse_transform_vector(normal);
-        into.iter().all(|into| into.dot(&own) >= -DIRECTION_SLACK)
+        into.iter().all(|into| into.dot(&own) >= -slack)
+    }
+
+    /// How far the normal of a pair may be out of bounds (–).
+    fn slack(&self, part: usize, feature: Feature) -> f64 {
+        let held = self.held.iter().any(|pair| *pair == (part as u16, feature));
+        if held { HELD_SLACK } else { DIRECTION_SLACK }
     }
 }
 

@@ -36,8 +36,8 @@ use crate::solver::tableau::STAGES;
 pub(crate) use history::BlockHistory;
 use nalgebra::{Rotation3, Unit};
 
-/// Contacts no further ahead take part in a stage (–, relative to the balls' radius): more than a step's way.
-const AHEAD: f64 = 0.5;
+/// Contacts no further ahead than so many times the way of a stage take part in it (–).
+const AHEAD: f64 = 2.0;
 /// Deeper than this, contacts mean nothing any more (–, relative to the balls' radius).
 const DEEPEST: f64 = 0.5;
 
@@ -81,6 +81,8 @@ struct SpringContact {
 pub(crate) struct Springs {
     pub(crate) histories: Vec<BlockHistory>,
     contacts: Vec<SpringContact>,
+    /// Memories at the step's start.
+    known: usize,
     rates: [BlockRates; STAGES],
     /// Whether the first rate belongs to the present state.
     fresh: bool,
@@ -88,6 +90,8 @@ pub(crate) struct Springs {
     stored_j: f64,
     /// The step to try next (s).
     h: f64,
+    /// Fastest approach of the impacts that go on (m/s); 0 if none does.
+    impact_m_s: f64,
     /// When the impacts that go on are over at the latest (s).
     pub(crate) until_s: f64,
     control: Option<Control>,
@@ -211,6 +215,8 @@ impl Footing {
         (block, moving): (&Block, &Moving),
     ) {
         self.springs.histories.clear();
+        self.touches.held.clear();
+        self.springs.impact_m_s = 0.0;
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.remember(world, (block, moving));
         self.springs.stored_j = self.stored(world).sum();
@@ -224,13 +230,14 @@ impl Footing {
     /// Energy in the springs of the contacts of the last look (J), by what it belongs to.
     fn stored(&self, world: &ContactEnvironment) -> Loss {
         let mut stored = Loss::default();
-        for touch in &self.touches.found {
-            let law = world.law(touch.triangle);
-            let damping = touch.gain2 * law.stored_j((-touch.gap_m).max(0.0), 0.0, 0.0);
-            stored.add(&Loss { damping, ..Loss::default() }.on(world, touch.triangle), 1.0);
-        }
-        for history in self.springs.histories.iter().filter(|history| history.closed) {
-            let damping = history.law.stored_j(0.0, history.shear.norm_squared(), 0.0);
+        for history in &self.springs.histories {
+            let touch = self.touches.found.iter().find(|touch| history.is_of(touch));
+            let Some(touch) = touch.filter(|touch| touch.gap_m < -history.offset_m) else {
+                continue;
+            };
+            let law = history.law.of_patch(touch.gain2, 1.0);
+            let penetration = -touch.gap_m - history.offset_m;
+            let damping = law.stored_j(penetration, history.shear.norm_squared(), 0.0);
             stored.add(&Loss { damping, ..Loss::default() }.on(world, history.triangle), 1.0);
         }
         stored
@@ -267,6 +274,13 @@ impl Footing {
         let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
         self.slip.grow(slipped_m, on);
         Ok((done, rejected))
+    }
+
+    /// How far ahead (m) a block can touch something within a stage of `way_s`.
+    fn ahead_m(world: &ContactEnvironment, (block, moving): (&Block, &Moving), way_s: f64) -> f64 {
+        let fastest = moving.v.norm() + moving.spin(block).norm() * block.bound_m;
+        let way_m = way_s * (fastest + world.body.gravity.norm() * way_s);
+        TOUCH * block.radius_m + AHEAD * way_m
     }
 
     /// Whether a spring is pressed in so far that it means nothing any more.

@@ -1,8 +1,8 @@
 //! Schemes `adaptive` and `reference` for blocks: a diagonally implicit tableau with error control.
 
 use super::super::{Footing, Moving, Stepped, TRAVEL, TURN};
-use super::BlockRates;
 use super::stage::{BlockEnd, StageBase};
+use super::{BlockHistory, BlockRates};
 use crate::body::Block;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
@@ -21,8 +21,6 @@ struct BlockTrial<'a, 'w> {
     h: f64,
     limit: f64,
     omega: f64,
-    /// Memories at the step's start.
-    known: usize,
     /// Local error allowed (m/s).
     allowed: f64,
     end: Option<BlockEnd>,
@@ -42,7 +40,8 @@ impl TrialStep for BlockTrial<'_, '_> {
     }
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {
-        self.footing.springs.histories.truncate(self.known);
+        let springs = &mut self.footing.springs;
+        springs.histories.truncate(springs.known);
         let Some((end, error)) = self.attempt(dt) else { return TryOutcome::Unsettled };
         let gains = error <= 1.0 && dt * self.omega > RESOLVED && self.gains(&end, dt);
         self.end = Some(end);
@@ -147,10 +146,15 @@ impl Footing {
         if !self.springs.fresh {
             self.rates_now(world, (block, moving));
         }
-        let impact_m_s = self.springs.fastest_m_s();
-        let allowed =
-            if impact_m_s > 0.0 { control.impact * impact_m_s } else { control.tolerance };
-        let (omega, known) = (self.springs.stiffest(world), self.springs.histories.len());
+        let springs = &mut self.springs;
+        springs.impact_m_s = springs.fastest_m_s().map_or(0.0, |own| own.max(springs.impact_m_s));
+        let allowed = if springs.impact_m_s > 0.0 {
+            control.impact * springs.impact_m_s
+        } else {
+            control.tolerance
+        };
+        self.springs.known = self.springs.histories.len();
+        let omega = self.springs.stiffest(world);
         let limit = Self::travel_limit_s(world, (block, moving));
         let (h, start) = (self.springs.h, moving.clone());
         let mut rejected = 0;
@@ -164,7 +168,6 @@ impl Footing {
             h,
             limit,
             omega,
-            known,
             allowed,
             end: None,
         };
@@ -229,5 +232,7 @@ impl Footing {
             }
         }
         springs.histories.truncate(kept);
+        self.touches.held.clear();
+        self.touches.held.extend(springs.histories.iter().map(BlockHistory::pair));
     }
 }

@@ -3,9 +3,9 @@
 //! Over a step the block moves with the mean of its velocities at both ends, forces are those of the springs at its end, and geometry is
 //! that of its start, as in the paper (Eqs. (1)–(5)): impulses act for half the step before the mean velocity is reached.
 
-use super::super::{Footing, Moving, Stepped};
+use super::super::{Footing, Moving, Stepped, TOUCH};
+use super::SpringContact;
 use super::stage::{BlockEnd, StageBase};
-use super::{AHEAD, SpringContact};
 use crate::body::Block;
 use crate::contact::history::SAME_GRIP;
 use crate::flight::top::Top;
@@ -33,8 +33,11 @@ impl Footing {
         let limit = Self::travel_limit_s(world, (block, moving));
         let dt = settings.step_s.min(most_s).min(limit);
         let start = moving.clone();
-        self.look_at_all(world, (block, &start.pose), AHEAD * block.ball_m);
+        let ahead_m = Self::ahead_m(world, (block, &start), dt);
+        self.look_at_all(world, (block, &start.pose), ahead_m);
+        self.springs.known = self.springs.histories.len();
         self.remember(world, (block, &start));
+        self.begin_unpressed((&start, &start));
         let memory = settings.shear_memory;
         let shear_of = |footing: &Self, k: usize| {
             if memory { footing.springs.histories[k].shear } else { Vec3::zeros() }
@@ -61,7 +64,7 @@ impl Footing {
             done.loss.add(&contact.power(world, &u, &shear_rate), dt);
         }
         self.keep((block, &mean), dt);
-        self.look_at_all(world, (block, &moving.pose), AHEAD * block.ball_m);
+        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.check_depth(block)?;
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         done.is_free = self.springs.is_free();

@@ -35,6 +35,8 @@ pub(crate) struct BlockHistory {
     pub(crate) shear: Vec3,
     /// Normal force at the end of the last step (N).
     pub(crate) normal_force: f64,
+    /// Penetration at which its spring begins to press (m): what was pressed in before it became a contact stores nothing.
+    pub(super) offset_m: f64,
     /// Impulse of the last solve (N s): where the next begins.
     pub(super) impulse: Vec3,
     /// Speed of approach when it began (m/s).
@@ -50,8 +52,13 @@ pub(crate) struct BlockHistory {
 }
 
 impl BlockHistory {
-    fn is_of(&self, touch: &BlockTouch) -> bool {
+    pub(super) fn is_of(&self, touch: &BlockTouch) -> bool {
         self.part == touch.part && self.feature == touch.feature
+    }
+
+    /// Which parts of block and mesh touch.
+    pub(super) fn pair(&self) -> (u16, Feature) {
+        (self.part, self.feature)
     }
 
     /// Goes on where the contact now is.
@@ -73,7 +80,9 @@ impl Footing {
         approach_m_s: f64,
     ) -> Law {
         let mut law = *world.law(touch.triangle);
-        law.struck_at(approach_m_s);
+        if approach_m_s >= capture_m_s(&law) {
+            law.struck_at(approach_m_s);
+        }
         let contact = BlockContact::new(mass, (touch.normal, touch.lever), (0.0, 0), Vec3::zeros());
         let [along, across] = contact.masses();
         let along = along * self.share_of((block, mass), touch);
@@ -140,6 +149,7 @@ impl Footing {
             point: moving.pose.centre + touch.lever,
             shear: Vec3::zeros(),
             normal_force: 0.0,
+            offset_m: 0.0,
             impulse: Vec3::zeros(),
             approach_m_s,
             captured,
@@ -157,11 +167,11 @@ impl super::Springs {
         self.histories.iter().any(|history| history.closed && !history.captured)
     }
 
-    /// Fastest approach of the impacts that go on (m/s).
-    pub(super) fn fastest_m_s(&self) -> f64 {
+    /// Fastest approach of the impacts that go on (m/s); `None` if none does.
+    pub(super) fn fastest_m_s(&self) -> Option<f64> {
         let rebounding =
             self.histories.iter().filter(|history| history.closed && !history.captured);
-        rebounding.map(|history| history.approach_m_s).fold(0.0, f64::max)
+        rebounding.map(|history| history.approach_m_s).reduce(f64::max)
     }
 
     /// The memory, of those not taken, of a contact that has gone on to a neighbouring feature and is now at `point`.

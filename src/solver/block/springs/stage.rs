@@ -6,7 +6,7 @@
 
 use super::super::{Footing, Moving, TOUCH, orthonormal};
 use super::newton::solve_springs;
-use super::{AHEAD, BlockRates, SpringContact, turn_by, turning};
+use super::{BlockRates, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::block::Pose;
 use crate::contact::history::carry;
@@ -80,9 +80,11 @@ impl Footing {
         let (act_s, _) = stage.times_s;
         let free_v = stage.base.moving.v + world.body.gravity * act_s;
         let mut guess = stage.moved(block, free_v, stage.base.moving.momentum, &stage.base);
+        let ahead_m = Self::ahead_m(world, (block, stage.start), stage.times_s.1);
         for _ in 0..PASSES {
-            self.look_at_all(world, (block, &guess.moving.pose), AHEAD * block.ball_m);
+            self.look_at_all(world, (block, &guess.moving.pose), ahead_m);
             self.remember(world, (block, &guess.moving));
+            self.begin_unpressed((stage.start, &guess.moving));
             self.place(world, (block, &guess.moving), stage.times_s.1, &shear_of);
             let (v, momentum) = self.pushed(block, stage, &guess.moving, free_v);
             let end = stage.moved(block, v, momentum, &guess);
@@ -94,6 +96,19 @@ impl Footing {
             }
         }
         None
+    }
+
+    /// A contact that begins in this step begins with its spring unpressed, even where it was pressed in at the step's start: an edge or
+    /// a face of the block that comes to own a contact finds it so.
+    pub(super) fn begin_unpressed(&mut self, (start, guess): (&Moving, &Moving)) {
+        let known = self.springs.known;
+        for (touch, history) in self.touches.found.iter().zip(&self.of_touch) {
+            let Some(history) = history.filter(|&k| k >= known) else { continue };
+            let own = guess.pose.attitude.inverse_transform_vector(&touch.lever);
+            let way = guess.pose.centre + touch.lever - start.pose.point(&own);
+            let began_m = touch.gap_m - touch.normal.dot(&way);
+            self.springs.histories[history].offset_m = (-began_m).max(0.0);
+        }
     }
 
     /// Makes the touches of the last look, at `guess`, into contacts based at the stage's base.
@@ -120,7 +135,9 @@ impl Footing {
                 triangle: touch.triangle,
                 n: touch.normal,
                 lever: touch.lever,
-                penetration: way_s * touch.normal.dot(&guess.at(block, &touch.lever)) - touch.gap_m,
+                penetration: way_s * touch.normal.dot(&guess.at(block, &touch.lever))
+                    - touch.gap_m
+                    - memory.offset_m,
                 shear: carry(shear_of(self, history), &memory.n, &touch.normal),
                 normal_force: 0.0,
                 shear_force: Vec3::zeros(),
