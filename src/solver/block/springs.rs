@@ -68,6 +68,8 @@ struct SpringContact {
     /// Unit normal from the mesh to the block, and lever (m).
     n: Vec3,
     lever: Vec3,
+    /// Penetration at which its spring begins to press (m).
+    offset_m: f64,
     /// Penetration (m) and stretch of the shear spring (m) at the stage's base.
     penetration: f64,
     shear: Vec3,
@@ -218,7 +220,13 @@ impl Footing {
         self.touches.held.clear();
         self.springs.impact_m_s = 0.0;
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.springs.known = 0;
         self.remember(world, (block, moving));
+        for (touch, history) in self.touches.found.iter().zip(&self.of_touch) {
+            let offset_m = if block.core.is_corner(touch.part) { 0.0 } else { -touch.gap_m };
+            let Some(k) = *history else { continue };
+            self.springs.histories[k].offset_m = offset_m.max(0.0);
+        }
         self.springs.stored_j = self.stored(world).sum();
         let control =
             settings.scheme.tableau().map(|tableau| Control::new(tableau, settings, world));

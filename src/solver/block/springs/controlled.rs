@@ -221,7 +221,9 @@ impl Footing {
             let cap = contact.law.friction * contact.normal_force;
             history.slides = contact.shear_force.norm() >= cap * (1.0 - 1e-9);
             let u = moving.at(block, &contact.lever);
-            history.closed = contact.normal_force > 0.0 || contact.pen_at(&u, way_s) > 0.0;
+            (history.offset_m, history.pressed_m) =
+                (contact.offset_m, contact.pen_at(&u, way_s).max(0.0));
+            history.closed = contact.normal_force > 0.0 || history.pressed_m > 0.0;
         }
         let mut kept = 0;
         for k in 0..springs.histories.len() {

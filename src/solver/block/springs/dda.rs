@@ -37,12 +37,11 @@ impl Footing {
         self.look_at_all(world, (block, &start.pose), ahead_m);
         self.springs.known = self.springs.histories.len();
         self.remember(world, (block, &start));
-        self.begin_unpressed((&start, &start));
         let memory = settings.shear_memory;
         let shear_of = |footing: &Self, k: usize| {
             if memory { footing.springs.histories[k].shear } else { Vec3::zeros() }
         };
-        self.place(world, (block, &start), 0.0, &shear_of);
+        self.place(world, (block, &start, &start), 0.0, &shear_of);
         let base = BlockEnd { moving: start.clone(), turned: Vec3::zeros() };
         let stage = StageBase { start: &start, base, times_s: (0.5 * dt, dt) };
         let mean = self.mean_motion(world, block, &stage);
@@ -121,7 +120,7 @@ impl Footing {
         if self.touches.found.len() > self.springs.contacts.len() {
             self.remember(world, (block, mean));
             let contacts: Vec<SpringContact> = self.springs.contacts.clone();
-            self.place(world, (block, mean), 0.0, &|footing: &Self, k| {
+            self.place(world, (block, mean, mean), 0.0, &|footing: &Self, k| {
                 footing.springs.histories[k].shear
             });
             self.springs.contacts[..contacts.len()].copy_from_slice(&contacts);

@@ -37,6 +37,8 @@ pub(crate) struct BlockHistory {
     pub(crate) normal_force: f64,
     /// Penetration at which its spring begins to press (m): what was pressed in before it became a contact stores nothing.
     pub(super) offset_m: f64,
+    /// How far its spring was pressed in at the end of the last step (m).
+    pub(super) pressed_m: f64,
     /// Impulse of the last solve (N s): where the next begins.
     pub(super) impulse: Vec3,
     /// Speed of approach when it began (m/s).
@@ -150,6 +152,7 @@ impl Footing {
             shear: Vec3::zeros(),
             normal_force: 0.0,
             offset_m: 0.0,
+            pressed_m: 0.0,
             impulse: Vec3::zeros(),
             approach_m_s,
             captured,

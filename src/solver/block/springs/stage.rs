@@ -8,7 +8,7 @@ use super::super::{Footing, Moving, TOUCH, orthonormal};
 use super::newton::solve_springs;
 use super::{BlockRates, SpringContact, turn_by, turning};
 use crate::body::Block;
-use crate::contact::block::Pose;
+use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
 use crate::rock::Vec3;
 use crate::solver::block::solve::{BlockContact, Mass, solve};
@@ -84,8 +84,7 @@ impl Footing {
         for _ in 0..PASSES {
             self.look_at_all(world, (block, &guess.moving.pose), ahead_m);
             self.remember(world, (block, &guess.moving));
-            self.begin_unpressed((stage.start, &guess.moving));
-            self.place(world, (block, &guess.moving), stage.times_s.1, &shear_of);
+            self.place(world, (block, stage.start, &guess.moving), stage.times_s.1, &shear_of);
             let (v, momentum) = self.pushed(block, stage, &guess.moving, free_v);
             let end = stage.moved(block, v, momentum, &guess);
             let moved = (end.moving.pose.centre - guess.moving.pose.centre).norm()
@@ -98,24 +97,34 @@ impl Footing {
         None
     }
 
-    /// A contact that begins in this step begins with its spring unpressed, even where it was pressed in at the step's start: an edge or
-    /// a face of the block that comes to own a contact finds it so.
-    pub(super) fn begin_unpressed(&mut self, (start, guess): (&Moving, &Moving)) {
-        let known = self.springs.known;
-        for (touch, history) in self.touches.found.iter().zip(&self.of_touch) {
-            let Some(history) = history.filter(|&k| k >= known) else { continue };
-            let own = guess.pose.attitude.inverse_transform_vector(&touch.lever);
-            let way = guess.pose.centre + touch.lever - start.pose.point(&own);
-            let began_m = touch.gap_m - touch.normal.dot(&way);
-            self.springs.histories[history].offset_m = (-began_m).max(0.0);
+    /// Penetration (m) at which the spring of a contact begins to press: none, but where a contact of an edge or a face of the block
+    /// begins in this step, or goes on to another feature, that was pressed in further at the step's start than the spring was. What a
+    /// feature finds when it comes to own a contact stores nothing, so that no change of features can gain energy. The patches of
+    /// a corner's ball hand over without a jump by themselves.
+    fn offset_m(
+        &self,
+        (start, guess): (&Moving, &Moving),
+        touch: &BlockTouch,
+        (block, history): (&Block, usize),
+    ) -> f64 {
+        let memory = &self.springs.histories[history];
+        if block.core.is_corner(touch.part) {
+            return 0.0;
         }
+        if history < self.springs.known && memory.is_of(touch) {
+            return memory.offset_m;
+        }
+        let own = guess.pose.attitude.inverse_transform_vector(&touch.lever);
+        let way = guess.pose.centre + touch.lever - start.pose.point(&own);
+        let began_m = touch.normal.dot(&way) - touch.gap_m;
+        (began_m - memory.pressed_m).max(0.0)
     }
 
     /// Makes the touches of the last look, at `guess`, into contacts based at the stage's base.
     pub(super) fn place(
         &mut self,
         world: &ContactEnvironment,
-        (block, guess): (&Block, &Moving),
+        (block, start, guess): (&Block, &Moving, &Moving),
         way_s: f64,
         shear_of: &impl Fn(&Self, usize) -> Vec3,
     ) {
@@ -129,15 +138,17 @@ impl Footing {
                 law.c_n = law.c_n_captured;
             }
             law.friction = self.slip.friction(world.ground_of(touch.triangle), &law, 0.0);
+            let offset_m = self.offset_m((start, guess), touch, (block, history));
             contacts.push(SpringContact {
                 history,
+                offset_m,
                 law,
                 triangle: touch.triangle,
                 n: touch.normal,
                 lever: touch.lever,
                 penetration: way_s * touch.normal.dot(&guess.at(block, &touch.lever))
                     - touch.gap_m
-                    - memory.offset_m,
+                    - offset_m,
                 shear: carry(shear_of(self, history), &memory.n, &touch.normal),
                 normal_force: 0.0,
                 shear_force: Vec3::zeros(),
@@ -224,7 +235,9 @@ impl Footing {
     ) {
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.remember(world, (block, moving));
-        self.place(world, (block, moving), 0.0, &|footing, k| footing.springs.histories[k].shear);
+        self.place(world, (block, moving, moving), 0.0, &|footing, k| {
+            footing.springs.histories[k].shear
+        });
         let springs = &mut self.springs;
         let mut rate = std::mem::take(&mut springs.rates[0]);
         rate.shear.fill(Vec3::zeros());

@@ -4,7 +4,7 @@ use super::*;
 use crate::body::Core;
 
 /// Balls of radius `ball_m` at these places, with these moments.
-fn balls(corners: Vec<Vec3>, ball_m: f64, (mass_kg, moments): (f64, [f64; 3])) -> Block {
+pub(super) fn balls(corners: Vec<Vec3>, ball_m: f64, (mass_kg, moments): (f64, [f64; 3])) -> Block {
     let bound_m = corners.iter().map(Vec3::norm).fold(0.0, f64::max) + ball_m;
     let core = Core { corners, ridges: Vec::new(), faces: Vec::new() };
     let radius_m = crate::math::cbrt(0.75 * mass_kg / (2700.0 * std::f64::consts::PI));
