@@ -146,6 +146,12 @@ impl Scene {
         self.rocks.shapes.iter().any(|shape| shape.kind != ShapeKind::Sphere)
     }
 
+    /// Corner radius of the sharpest blocks over `radius_m` (–); `None` where all rocks are spheres.
+    pub fn sharpest(&self) -> Option<f64> {
+        let blocks = self.rocks.shapes.iter().filter(|shape| shape.kind != ShapeKind::Sphere);
+        blocks.filter_map(|shape| shape.corner_radius).reduce(f64::min)
+    }
+
     /// The tables of shapes, and what cannot be had together with blocks.
     pub(super) fn check_shapes(&self) -> Checked {
         for (index, shape) in self.rocks.shapes.iter().enumerate() {
