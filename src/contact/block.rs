@@ -235,7 +235,7 @@ impl Placed<'_> {
 
     /// How far the normal of a pair may be out of bounds (–).
     fn slack(&self, part: usize, feature: Feature) -> f64 {
-        let held = self.held.iter().any(|pair| *pair == (part as u16, feature));
+        let held = self.held.contains(&(part as u16, feature));
         if held { HELD_SLACK } else { DIRECTION_SLACK }
     }
 }

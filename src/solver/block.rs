@@ -20,7 +20,7 @@ use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
 use super::loss::Loss;
 use super::rigid::HELD;
-use super::roughness::{Meeting, RoughFacets};
+use super::roughness::RoughFacets;
 use super::slip::Slip;
 use super::stem_load::StemLoad;
 use crate::body::Block;
@@ -324,19 +324,6 @@ impl Footing {
         self.slip.grow(slipped_m, on);
         let is_free = !self.holds(world, (block, moving), pushed);
         Stepped { dt, loss, slides, is_free, unsettled: !settled }
-    }
-
-    /// The facet of rough ground that the fastest of the contacts that touch meets.
-    fn facet(
-        &mut self,
-        world: &ContactEnvironment,
-        block: &Block,
-        moving: &Moving,
-    ) -> Option<Rotation3<f64>> {
-        let fastest = moving.fastest(block, self.touching(block))?;
-        let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
-        let v = moving.at(block, &fastest.lever);
-        self.facets.struck(world, &Meeting { n, triangle, c, v })
     }
 
     /// A contact at a touch, where the block will have slipped `ahead_m` (m) further.

@@ -2,13 +2,11 @@
 //! that it meets, as spheres are (`simulation::rock_in_contact`).
 
 use super::super::impacts::Struck;
+use super::super::rock_in_contact::IMPACT_TIMES;
 use super::{Roll, turned};
 use crate::solver::loss::Loss;
 use crate::solver::roughness::Meeting;
 use std::f64::consts::PI;
-
-/// An impact is over after so many contact times (–), whether the block has left or not.
-const IMPACT_TIMES: f64 = 3.0;
 
 impl Roll<'_> {
     /// Begins an episode of contact; what its springs hold (J).

@@ -1,11 +1,11 @@
-//! Rough ground in the schemes with springs: while an impact lasts, a block is turned against the facet that it meets.
-//!
-//! As for spheres, velocity and spin are turned, not the mesh: the block presses into the surface that is there, and no spring can give
+//! Rough ground. In the rigid limit an impact is one with the facet that is met. In the schemes with springs a block is turned against the
+//! facet while the impact lasts. As for spheres, velocity and spin are turned, not the mesh: the block presses into the surface that is there, and no spring can give
 //! back more than it took. The spin is given the length that keeps its energy, as the moments of inertia stay where they are.
 
 use super::{Footing, Moving};
 use crate::body::Block;
-use crate::solver::roughness::Tilt;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::roughness::{Meeting, Tilt};
 use nalgebra::Rotation3;
 
 impl Moving {
@@ -23,6 +23,19 @@ impl Moving {
 }
 
 impl Footing {
+    /// The facet of rough ground that the fastest of the contacts that touch meets.
+    pub(super) fn facet(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        moving: &Moving,
+    ) -> Option<Rotation3<f64>> {
+        let fastest = moving.fastest(block, self.touching(block))?;
+        let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
+        let v = moving.at(block, &fastest.lever);
+        self.facets.struck(world, &Meeting { n, triangle, c, v })
+    }
+
     /// Turns the block against a facet until it is turned back, at `until_s` (s) at the latest.
     pub(crate) fn turn_against(
         &mut self,

@@ -29,6 +29,7 @@ use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::Settings;
+use crate::solver::dda::DEEPEST;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
@@ -38,8 +39,6 @@ use nalgebra::{Rotation3, Unit};
 
 /// Contacts no further ahead than so many times the way of a stage take part in it (–).
 const AHEAD: f64 = 2.0;
-/// Deeper than this, contacts mean nothing any more (–, relative to the balls' radius).
-const DEEPEST: f64 = 0.5;
 
 /// Rates of change of a block in contact.
 #[derive(Debug, Clone, Default)]
@@ -291,7 +290,7 @@ impl Footing {
         TOUCH * block.radius_m + AHEAD * way_m
     }
 
-    /// Whether a spring is pressed in so far that it means nothing any more.
+    /// Whether a spring is pressed in so far, over the balls' radius, that it means nothing any more.
     fn check_depth(&self, block: &Block) -> Result<(), StepError> {
         let deepest = self.touches.found.iter().map(|touch| -touch.gap_m).fold(0.0, f64::max);
         if deepest > DEEPEST * block.ball_m { Err(StepError::SankIn) } else { Ok(()) }

@@ -124,7 +124,7 @@ impl Footing {
                 let near = self.springs.nearest(&touch, (&point, block.ball_m), &of_touch);
                 of_touch[k] = near.or_else(|| {
                     let new = self.begin(world, (&mass, &touch), (block, moving));
-                    Some(self.springs.add(new))
+                    Some(self.springs.add(&new))
                 });
             }
         }
@@ -194,8 +194,8 @@ impl super::Springs {
     }
 
     /// Adds a memory.
-    fn add(&mut self, new: BlockHistory) -> usize {
-        self.histories.push(new);
+    fn add(&mut self, new: &BlockHistory) -> usize {
+        self.histories.push(*new);
         for rate in &mut self.rates {
             rate.shear.resize(self.histories.len(), Vec3::zeros());
         }

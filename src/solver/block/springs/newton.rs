@@ -16,11 +16,11 @@ const HALVINGS: u32 = 4;
 const SETTLED: f64 = 1e-12;
 
 /// The impulse of a contact whose point moves by `u` (m/s), and its derivative (kg).
-type Answer = (Vec3, Matrix3<f64>);
+type ImpulseAndSlope = (Vec3, Matrix3<f64>);
 
 impl BlockContact {
     /// Its impulse at a velocity of its point; `None` where only the sweeps can tell.
-    fn answer_at(&self, u: &Vec3) -> Option<Answer> {
+    fn answer_at(&self, u: &Vec3) -> Option<ImpulseAndSlope> {
         let springs = self.springs()?;
         let [along, across] = springs.compliance.map(|c| 1.0 / c);
         let off = self.goal - u;
