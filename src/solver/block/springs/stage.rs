@@ -4,7 +4,7 @@
 //! ends. The penetration from which a pass starts is the one found there, put back by the motion of the pass before; once they agree the
 //! end is exact, however the block turns.
 
-use super::super::{Footing, Moving, TOUCH, orthonormal};
+use super::super::{Footing, Moving, ROUNDING_OF_SPEED, TOUCH, orthonormal};
 use super::newton::solve_springs;
 use super::{BlockRates, SpringContact, turn_by, turning};
 use crate::body::Block;
@@ -20,8 +20,6 @@ use crate::solver::tableau::Tableau;
 
 /// So few contacts are swept (–).
 const FEW: usize = 2;
-/// Velocities are known to this (–).
-const ROUNDING_OF_SPEED: f64 = 1e-14;
 
 /// A block within a step.
 #[derive(Debug, Clone)]
