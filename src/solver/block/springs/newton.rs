@@ -13,7 +13,7 @@ const TRIES: u32 = 30;
 /// Halvings of one step that does not come nearer.
 const HALVINGS: u32 = 4;
 /// Change of the motion, relative to the largest impulse over the mass, below which it has settled (–).
-const SETTLED: f64 = 1e-12;
+const MOTION_SETTLED: f64 = 1e-12;
 
 /// The impulse of a contact whose point moves by `u` (m/s), and its derivative (kg).
 type ImpulseAndSlope = (Vec3, Matrix3<f64>);
@@ -122,7 +122,7 @@ pub(super) fn solve_springs(
         let moved = (dv.norm() + dw.norm() * reach) * share;
         let scale =
             equations.contacts.iter().map(|contact| contact.impulse.norm()).fold(0.0, f64::max);
-        if moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {
+        if moved <= (MOTION_SETTLED * scale / mass.mass).max(rounding_m_s) {
             return true;
         }
     }
