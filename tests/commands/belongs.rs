@@ -147,7 +147,13 @@ fn one_part_of_one_is_merged() {
 #[cfg(target_os = "linux")]
 fn a_hang_up_is_ignored_under_nohup_alone() {
     let dir = tempfile::tempdir().unwrap();
-    for (trap, status) in [("trap '' HUP; ", 0), ("", 130)] {
+    // a shell cannot undo what it was started with: under nohup there is only the first case
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    let is_nohup = ignored.is_some_and(|mask| mask & 1 != 0);
+    let cases = [("trap '' HUP; ", 0), ("", 130)];
+    for (trap, status) in cases.into_iter().take(if is_nohup { 1 } else { 2 }) {
         let out = dir.path().join(format!("out_{status}"));
         let script = format!(
             "{trap}exec {} run examples/quick.toml --quiet --releases 1500 --threads 1 --out {}",
