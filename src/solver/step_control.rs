@@ -7,6 +7,7 @@ use super::stage::End;
 use super::tableau::RATIO;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
+use crate::ground::Law;
 use crate::math;
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
@@ -98,9 +99,12 @@ pub fn first_step(world: &ContactEnvironment, state: &ContactState) -> f64 {
 
 /// Largest `√(p_N/m)` among the contacts (rad/s).
 fn stiffest(world: &ContactEnvironment, state: &ContactState) -> f64 {
-    let omega =
-        state.histories.iter().map(|history| world.law(history.triangle).omega).fold(0.0, f64::max);
-    if omega > 0.0 { omega } else { world.laws.iter().map(|law| law.omega).fold(0.0, f64::max) }
+    let omega = state
+        .histories
+        .iter()
+        .map(|history| world.law(history.triangle).omega_rad_s())
+        .fold(0.0, f64::max);
+    if omega > 0.0 { omega } else { world.laws.iter().map(Law::omega_rad_s).fold(0.0, f64::max) }
 }
 
 /// One accepted step of at most `h_max` (s), or all those of an impact on one plane; `h` is the step to try and becomes the

@@ -171,7 +171,7 @@ impl<'a> IslandWindow<'a> {
             pair_history.captured = -n.dot(&(a.v - b.v)) < pair_history.law.capture_m_s;
             if !pair_history.captured {
                 // the first step of an impact resolves the onset of its spring, whatever step the island had before
-                let h = ONSET / pair_history.law.omega;
+                let h = ONSET / pair_history.law.omega_rad_s();
                 for end in ends {
                     self.bodies[end].h = self.bodies[end].h.min(h);
                 }
@@ -280,7 +280,7 @@ impl<'a> IslandWindow<'a> {
             for k in [pair_history.a, pair_history.b] {
                 let body = &mut self.bodies[k as usize];
                 body.pressed_m_s += pair_history.normal_force.abs()
-                    / (body.member.body.mass * pair_history.law.omega);
+                    / (body.member.body.mass * pair_history.law.omega_rad_s());
             }
         }
     }

@@ -7,7 +7,7 @@ use super::body::IslandBody;
 use super::outcome::{Done, Given};
 use super::pair_contact::break_bond;
 use crate::contact::history::carry;
-use crate::contact::pair::{Bond, PairHistory, between};
+use crate::contact::pair::{PairHistory, between};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
@@ -95,18 +95,12 @@ impl Island<'_> {
                 if pair_history.is_held() { turned(rate) } else { Vec3::zeros() };
             // at its cap but for rounding: the contact slips
             pair_history.slides = pair_history.bond.is_none()
-                && pair_history.shear_force.norm()
-                    >= pair_history.law.friction * pair_history.normal_force * (1.0 - 1e-9);
-            let overload = |bond| {
-                Bond::overload(
-                    bond,
-                    pair_history.normal_force,
-                    pair_history.shear_force.norm(),
-                    pair_history.law.friction,
-                )
-            };
+                && pair_history
+                    .law
+                    .shear
+                    .slides(pair_history.shear_force.norm(), pair_history.normal_force);
             // forces jump as a bond lets go: the next step must begin with rates of its own
-            if pair_history.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0) {
+            if pair_history.overload() > 0.0 {
                 break_bond(pair_history);
                 self.pair_forces[k] = (pair_history.normal_force, pair_history.shear_force);
                 self.fresh = false;
@@ -156,7 +150,7 @@ impl Island<'_> {
         }
         let lost = before - self.angular_momentum();
         let (_, c, _) = self.centre();
-        let spins = self.pair_histories.iter().any(|pair_history| pair_history.law.friction > 0.0);
+        let spins = self.pair_histories.iter().any(|pair_history| pair_history.law.shear.is_on());
         let mut inertia = Matrix3::zeros();
         for member in &self.members {
             let d = member.state.c - c;

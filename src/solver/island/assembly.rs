@@ -11,6 +11,7 @@ use super::outcome::Done;
 use super::pair_contact::PairContact;
 use super::rigid::RigidIsland;
 use crate::contact::pair::{PairHistory, between};
+use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::contact_state::ContactEnvironment;
@@ -193,10 +194,10 @@ impl<'a> Island<'a> {
             .pair_histories
             .iter()
             .filter(|pair_history| pair_history.is_held())
-            .map(|pair_history| pair_history.law.omega);
+            .map(|pair_history| pair_history.law.omega_rad_s());
         let ground = self.members.iter().map(|member| member.omega(self.terrain));
         let omega = pair_histories.chain(ground).fold(0.0, f64::max);
-        let all = self.members.iter().flat_map(|member| &member.laws).map(|law| law.omega);
+        let all = self.members.iter().flat_map(|member| &member.laws).map(Law::omega_rad_s);
         if omega > 0.0 { omega } else { all.fold(1.0, f64::max) }
     }
 
@@ -242,18 +243,12 @@ impl<'a> Island<'a> {
         self.h * self.omega() > 1e-6
             && self.pairs.iter().any(|pair| {
                 let used = |bond: &crate::contact::pair::Bond| {
-                    bond.overload(pair.normal_force, pair.shear_force.norm(), pair.law.friction)
+                    bond.overload(&pair.law, pair.normal_force, pair.shear_force.norm())
                 };
                 let pair_history = &self.pair_histories[pair.pair_history];
                 // One that is overloaded from the start breaks at once: no shorter step changes that.
-                pair.bond.as_ref().is_some_and(|bond| {
-                    used(bond) > OVERLOAD
-                        && bond.overload(
-                            pair_history.normal_force,
-                            pair_history.shear_force.norm(),
-                            pair_history.law.friction,
-                        ) <= 0.0
-                })
+                pair.bond.as_ref().is_some_and(|bond| used(bond) > OVERLOAD)
+                    && pair_history.overload() <= 0.0
             })
     }
 
@@ -270,12 +265,12 @@ impl<'a> Island<'a> {
             .filter(|(pair_history, _)| pair_history.is_held())
         {
             for k in [pair_history.a as usize, pair_history.b as usize] {
-                omegas[k] = omegas[k].max(pair_history.law.omega);
+                omegas[k] = omegas[k].max(pair_history.law.omega_rad_s());
             }
             // error of the shear stretch (m/s as a rate), times ω to compare with an acceleration
             let sums = rates.iter().zip(weights);
             let drift = sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate * *weight);
-            worst2 = worst2.max(drift.norm_squared() * pair_history.law.omega.powi(2));
+            worst2 = worst2.max(drift.norm_squared() * pair_history.law.omega_rad_s().powi(2));
         }
         for (member, omega) in self.members.iter().zip(&omegas) {
             // the embedded method's difference in place, velocity and spin, each as an acceleration: ω² x, v̇ and R ẇ

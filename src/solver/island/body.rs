@@ -196,7 +196,7 @@ impl IslandBody {
         let histories = self.state.histories.iter();
         histories
             .map(|history| {
-                history.normal_force / (self.body.mass * world.law(history.triangle).omega)
+                history.normal_force / (self.body.mass * world.law(history.triangle).omega_rad_s())
             })
             .sum()
     }
@@ -215,7 +215,7 @@ impl IslandBody {
         self.state
             .histories
             .iter()
-            .map(|history| world.law(history.triangle).omega)
+            .map(|history| world.law(history.triangle).omega_rad_s())
             .fold(0.0, f64::max)
     }
 }

@@ -165,7 +165,7 @@ impl RigidIsland {
         let at = [&*a, &*b].map(|ball| ball.c - ball.v * s);
         let mut ball_contact = BallContact::new((place, pair_history), [a, b], [&at[0], &at[1]]);
         let restitution =
-            if a.blows.max(b.blows) < LIVELY { pair_history.law.restitution } else { 0.0 };
+            if a.blows.max(b.blows) < LIVELY { pair_history.law.slow_restitution() } else { 0.0 };
         ball_contact.target = -restitution * ball_contact.speed(a, b);
         let before = [(a.v, a.w), (b.v, b.w)];
         let (mut one, mut two) = (*a, *b);
