@@ -102,8 +102,36 @@ pub struct PairHistory {
     pub slides: bool,
     /// Whether it was there at the last accepted step.
     pub closed: bool,
+    /// The impact that goes on.
+    pub impact: PairImpact,
     /// The bond, until it breaks.
     pub bond: Option<Bond>,
+}
+
+/// An impact of two rocks, for as long as it is followed as one.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PairImpact {
+    /// Speed of approach (m/s); 0 = there is none.
+    pub speed_m_s: f64,
+    /// How much longer it lasts at most (rad of the contact).
+    left_rad: f64,
+}
+
+/// After so long (rad) an impact is over, or goes on as lasting contact.
+const LASTS_RAD: f64 = 20.0;
+
+impl PairImpact {
+    /// One that has just begun with an approach of so much (m/s).
+    pub fn begun(speed_m_s: f64) -> Self {
+        Self { speed_m_s, left_rad: LASTS_RAD }
+    }
+
+    /// What is left of it so much later (rad).
+    #[must_use]
+    pub fn after(self, rad: f64) -> Self {
+        let left_rad = self.left_rad - rad;
+        if left_rad > 0.0 { Self { left_rad, ..self } } else { Self::default() }
+    }
 }
 
 impl PairHistory {
@@ -120,6 +148,7 @@ impl PairHistory {
             captured: false,
             slides: false,
             closed: false,
+            impact: PairImpact::default(),
             bond: None,
         }
     }
@@ -129,6 +158,12 @@ impl PairHistory {
         let over =
             |bond: &Bond| bond.overload(&self.law, self.normal_force, self.shear_force.norm());
         self.bond.as_ref().map_or(0.0, over)
+    }
+
+    /// The rocks no longer touch.
+    pub fn part(&mut self) {
+        (self.closed, self.impact) = (false, PairImpact::default());
+        (self.normal_force, self.shear_force, self.shear) = (0.0, Vec3::zeros(), Vec3::zeros());
     }
 
     /// Whether it must be remembered.

@@ -165,6 +165,12 @@ impl Law {
         }
     }
 
+    /// The same law without rolling friction: rocks among themselves have none.
+    #[must_use]
+    pub(crate) fn without_rolling(&self) -> Self {
+        Self { rolling: FrictionElement::NONE, ..*self }
+    }
+
     /// `√(p_N/m)` (rad/s): a contact lasts about `π` over this.
     #[inline]
     pub fn omega_rad_s(&self) -> f64 {
@@ -223,10 +229,10 @@ impl Law {
         self.restitution / (1.0 + over * over)
     }
 
-    /// Normal restitution (–) of slow impacts.
+    /// Whether nothing is given back, however slow the impact.
     #[inline]
-    pub(crate) fn slow_restitution(&self) -> f64 {
-        self.restitution
+    pub(crate) fn is_plastic(&self) -> bool {
+        self.restitution <= 0.0
     }
 
     /// Takes the dashpot of an impact at a normal speed (m/s), until the next one.

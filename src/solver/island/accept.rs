@@ -7,7 +7,7 @@ use super::body::IslandBody;
 use super::outcome::{Done, Given};
 use super::pair_contact::break_bond;
 use crate::contact::history::carry;
-use crate::contact::pair::{PairHistory, between};
+use crate::contact::pair::{PairHistory, PairImpact, between};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
@@ -23,10 +23,12 @@ impl Island<'_> {
         let before = self.angular_state();
         for member in &mut self.members {
             let mut loss = Loss::default();
+            let omegas_dt = member.omega(self.terrain) * dt;
             let end = member.end;
             let IslandBody { state, body, laws, .. } = &mut **member;
             let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
             step_control::accept(&world, tableau, state, (&end, dt), &mut loss);
+            state.impact.pass(omegas_dt);
             // a merged contact acts otherwise than its rates say
             self.fresh &= state.fresh;
             done.losses.push(loss);
@@ -64,12 +66,7 @@ impl Island<'_> {
         let mut pairs = self.pairs.iter().peekable();
         for (k, pair_history) in self.pair_histories.iter_mut().enumerate() {
             let Some(pair) = pairs.next_if(|pair| pair.pair_history == k) else {
-                (
-                    pair_history.closed,
-                    pair_history.normal_force,
-                    pair_history.shear_force,
-                    pair_history.shear,
-                ) = (false, 0.0, Vec3::zeros(), Vec3::zeros());
+                pair_history.part();
                 self.pair_rates[k][0] = Vec3::zeros();
                 continue;
             };
@@ -86,6 +83,11 @@ impl Island<'_> {
             pair_history.captured = pair.captured;
             pair_history.closed =
                 pair.normal_force > 0.0 || distance < a.body.radius + b.body.radius;
+            pair_history.impact = if pair_history.closed {
+                pair.impact.after(pair_history.law.omega_rad_s() * dt)
+            } else {
+                PairImpact::default()
+            };
             pair_history.shear = if pair_history.closed || pair_history.bond.is_some() {
                 turned(stretch)
             } else {

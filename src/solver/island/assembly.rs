@@ -16,7 +16,7 @@ use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::step_control::{self, Control, ONSET, StepError, TRAVEL, TrialStep, TryOutcome};
-use crate::solver::tableau::{STAGES, TR_BDF2, Tableau};
+use crate::solver::tableau::{STAGES, TR_BDF2};
 use crate::terrain::Terrain;
 
 /// Overload at which a bond does not simply break: the step is cut to find the moment.
@@ -59,10 +59,8 @@ impl<'a> Island<'a> {
         mut members: Vec<BodySlot>,
         pair_histories: Vec<PairHistory>,
     ) -> Self {
-        // a rock alone goes through the solver of one rock: the same numbers as outside a world
-        let is_one = members.len() == 1;
         for member in &mut members {
-            member.enter_island(is_one);
+            member.enter_island();
         }
         let pair_forces = pair_histories
             .iter()
@@ -91,8 +89,8 @@ impl<'a> Island<'a> {
     /// # Errors
     /// [`StepError`] if the step had to become too short to matter.
     pub fn advance(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
-        let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
         if let [member] = &mut self.members[..] {
+            let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
             let h = &mut self.h;
             return member.advance_alone(self.terrain, |world, state| {
                 let control = Control::new(tableau, settings, world);
@@ -102,14 +100,7 @@ impl<'a> Island<'a> {
                 step_control::advance(world, &control, state, h, h_max)
             });
         }
-        // impacts of several rocks are not followed as a whole: one tolerance rules
-        let control = &Control {
-            tableau,
-            tolerance: settings.tolerance_m_s,
-            impact: f64::INFINITY,
-            plane_impacts: false,
-        };
-        self.tolerance = control.tolerance;
+        let control = &self.control(settings);
         // a rock that was turned against a facet, or whose stem has given way, has other rates
         if !self.fresh || self.members.iter().any(|member| !member.state.fresh) {
             self.rates_now();
@@ -235,7 +226,8 @@ impl<'a> Island<'a> {
         if self.tears_badly() {
             return None;
         }
-        Some(dt * self.error(tableau) / control.tolerance)
+        self.note_impacts(true);
+        Some(dt * self.error(control))
     }
 
     /// Whether a bond is loaded far beyond its strength, which a shorter step would have found out.
@@ -252,9 +244,12 @@ impl<'a> Island<'a> {
             })
     }
 
-    /// Largest error of the embedded method (m/s²).
-    fn error(&self, tableau: &Tableau) -> f64 {
+    /// Largest error of the embedded method over what is allowed to the rock (1/s).
+    fn error(&self, control: &Control) -> f64 {
+        let tableau = control.tableau;
         let weights = &tableau.error[..tableau.stages];
+        let over_allowed: Vec<f64> =
+            self.members.iter().map(|member| 1.0 / member.allowed_m_s(control.impact)).collect();
         let mut worst2 = 0.0f64;
         let mut omegas: Vec<f64> =
             self.members.iter().map(|member| member.omega(self.terrain)).collect();
@@ -270,9 +265,12 @@ impl<'a> Island<'a> {
             // error of the shear stretch (m/s as a rate), times ω to compare with an acceleration
             let sums = rates.iter().zip(weights);
             let drift = sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate * *weight);
-            worst2 = worst2.max(drift.norm_squared() * pair_history.law.omega_rad_s().powi(2));
+            let by =
+                over_allowed[pair_history.a as usize].max(over_allowed[pair_history.b as usize]);
+            worst2 =
+                worst2.max(drift.norm_squared() * (pair_history.law.omega_rad_s() * by).powi(2));
         }
-        for (member, omega) in self.members.iter().zip(&omegas) {
+        for ((member, omega), by) in self.members.iter().zip(&omegas).zip(&over_allowed) {
             // the embedded method's difference in place, velocity and spin, each as an acceleration: ω² x, v̇ and R ẇ
             let mut off = [Vec3::zeros(); 3];
             for (rate, weight) in member.state.rates.iter().zip(weights) {
@@ -287,10 +285,10 @@ impl<'a> Island<'a> {
                     sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * *weight);
                 stretch2 = stretch2.max(drift.norm_squared());
             }
-            worst2 = worst2
-                .max(stretch2 * omega * omega)
+            let own2 = (stretch2 * omega * omega)
                 .max(off[1].norm_squared())
                 .max(off[2].norm_squared() * member.body.radius.powi(2));
+            worst2 = worst2.max(own2 * by * by);
         }
         worst2.sqrt()
     }

@@ -1,7 +1,7 @@
 //! The contact of two rocks inside one implicit stage: the law of [`StageContact`](crate::solver::law::StageContact) with a second body.
 
 pub(super) use crate::contact::TOUCH;
-use crate::contact::pair::{Bond, PairHistory, between};
+use crate::contact::pair::{Bond, PairHistory, PairImpact, between};
 use crate::ground::{Law, NormalElement, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
@@ -22,6 +22,8 @@ pub(super) struct PairContact {
     pub(super) normal: NormalElement,
     /// Too slow to rebound.
     pub(super) captured: bool,
+    /// The impact that goes on.
+    pub(super) impact: PairImpact,
     /// Holds in tension too.
     pub(super) bond: Option<Bond>,
     /// Unit normal from the second to the first.
@@ -65,6 +67,7 @@ impl PairContact {
             law: pair_history.law,
             normal: pair_history.law.normal(pair_history.captured),
             captured: pair_history.captured,
+            impact: pair_history.impact,
             bond: pair_history.bond,
             n,
             penetration: pair_history.bond.map_or(reach, |bond| bond.length_m) - distance,
@@ -75,6 +78,15 @@ impl PairContact {
             inv_m,
             inv_t: inv_m + turning[0] + turning[1],
         })
+    }
+
+    /// Begins as bodies come together at a speed (m/s): too slow to rebound, or an impact.
+    pub(super) fn begin(&mut self, approach_m_s: f64) {
+        self.captured = approach_m_s < self.law.capture_m_s;
+        self.normal = self.law.normal(self.captured);
+        if !self.captured {
+            self.impact = PairImpact::begun(approach_m_s);
+        }
     }
 
     /// Whether it holds any force.

@@ -195,6 +195,24 @@ impl BallContact {
         )
     }
 
+    /// Impulses of an impact of the two rocks: the limit of stiff springs, the same map as for a rock and the ground.
+    ///
+    /// What the two do to each other is what the ground does to one body with their reduced mass `1/(1/m_a + 1/m_b)`, with their
+    /// velocity apart and their slip for its velocity, and an inertia that meets friction at the contact point as they do.
+    pub(super) fn impact(&mut self, law: &Law, [a, b]: [&StepBody; 2], captured: bool) {
+        let (inv_n, inv_t) = self.inv;
+        let (mass, radius) = (1.0 / inv_n, a.body.radius.min(b.body.radius));
+        let inertia = mass * radius * radius / (inv_t / inv_n - 1.0);
+        let body = Body { mass, inertia, radius, gravity: Vec3::zeros() };
+        let captured = captured || law.is_plastic();
+        let struck = FrozenContact { normal: self.n, law, stiffness_scale: 1.0, captured };
+        let v = self.n * self.speed(a, b) + self.slip(a, b);
+        let thrown = throw(&body, &[struck], (&v, &Vec3::zeros()), IMPACT);
+        let load = (thrown.velocity_m_s - v) * mass;
+        self.normal_force = self.n.dot(&load).max(0.0);
+        self.shear_force = self.n * self.n.dot(&load) - load;
+    }
+
     /// Finds the impulses for motions that hold the present ones, and acts with what they change by; how much that
     /// changes the speed at the contact (m/s).
     #[inline]

@@ -6,7 +6,7 @@
 
 use super::RigidIsland;
 use super::contacts::{BallContact, GroundContact, StepBody};
-use crate::contact::pair::PairHistory;
+use crate::contact::pair::{PairHistory, PairImpact};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::island::body::BodySlot;
@@ -157,6 +157,7 @@ impl BallContact {
             normal: law.normal(false),
             law,
             captured: pair_history.captured,
+            impact: PairImpact::default(),
             bond: None,
             n: self.n,
             penetration: self.target,
