@@ -49,11 +49,11 @@ fn a_blow_between_rocks_is_the_limit_of_their_springs() {
     let motions = [
         [[0.0, 0.0, -3.0], [0.0; 3]],
         [[2.0, 1.0, -3.0], [0.2, 0.0, 0.1]],
-        [[9.0, -2.0, -2.0], [0.0, 0.5, 0.3]],
+        [[4.0, -1.0, -2.5], [0.0, 0.5, 0.3]],
     ];
     for (sizes, angle) in spheres.into_iter().flat_map(|s| [(s, 10.0f64), (s, 30.0), (s, 50.0)]) {
         for [v, u] in motions {
-            let rocks = meeting(sizes, [0.3, 0.2, 1.0], [v, u], 0.05);
+            let rocks = meeting(sizes, [0.1, -0.05, 1.0], [v, u], 0.05);
             let world = World { friction_angle_rad: angle.to_radians(), ..WORLD };
             let stiff = World {
                 scheme: Scheme::Reference,

@@ -210,7 +210,9 @@ impl BallContact {
         let thrown = throw(&body, &[struck], (&v, &Vec3::zeros()), IMPACT);
         let load = (thrown.velocity_m_s - v) * mass;
         self.normal_force = self.n.dot(&load).max(0.0);
-        self.shear_force = self.n * self.n.dot(&load) - load;
+        // followed to a tolerance, the impulse of a rock that slides all the while may be beyond its cap by as much
+        let shear_force = self.n * self.n.dot(&load) - load;
+        self.shear_force = self.limits.shear(shear_force, self.normal_force);
     }
 
     /// Finds the impulses for motions that hold the present ones, and acts with what they change by; how much that
