@@ -15,6 +15,13 @@ pub struct Rock {
 }
 
 impl Rock {
+    /// Moment of inertia over `m R²` (–), that of a solid sphere.
+    pub const INERTIA: f64 = 0.4;
+    /// Mass over what a force along the surface meets at the contact point (–): `1 + m R²/I`, 7/2.
+    pub const SLIP_LIGHTNESS: f64 = 1.0 + 1.0 / Self::INERTIA;
+    /// Moment of inertia about the contact point over `m R²` (–): `1 + I/(m R²)`, 7/5.
+    pub const ROLLING_INERTIA: f64 = 1.0 + Self::INERTIA;
+
     /// Mass `ρ 4/3 π R³` (kg).
     pub fn mass_kg(&self) -> f64 {
         self.density_kg_m3 * 4.0 / 3.0 * PI * self.radius_m.powi(3)
@@ -22,7 +29,7 @@ impl Rock {
 
     /// Moment of inertia of a solid sphere about any axis, `2/5 m R²` (kg m²).
     pub fn inertia_kg_m2(&self) -> f64 {
-        0.4 * self.mass_kg() * self.radius_m * self.radius_m
+        Self::INERTIA * self.mass_kg() * self.radius_m * self.radius_m
     }
 }
 

@@ -69,13 +69,13 @@ impl Bond {
     }
 
     /// How far a load passes the strength, as a share of it; 0 or less while the bond holds. `normal_force` is the normal force
-    /// (N, negative in tension), `drag` the size of the shear force (N).
-    pub fn overload(&self, normal_force: f64, shear_force: f64, tan_phi: f64) -> f64 {
+    /// (N, negative in tension), `shear_force` the size of the shear force (N), `law` that of the two rocks, for its friction.
+    pub fn overload(&self, law: &Law, normal_force: f64, shear_force: f64) -> f64 {
         let over = |load: f64, most: f64| {
             if load <= most { 0.0 } else { (load - most) / most.max(f64::MIN_POSITIVE) }
         };
         over(-normal_force, self.pull_n)
-            .max(over(shear_force, (self.shear_n + normal_force * tan_phi).max(0.0)))
+            .max(over(shear_force, (self.shear_n + law.shear.cap(normal_force)).max(0.0)))
     }
 }
 
@@ -102,8 +102,36 @@ pub struct PairHistory {
     pub slides: bool,
     /// Whether it was there at the last accepted step.
     pub closed: bool,
+    /// The impact that goes on.
+    pub impact: PairImpact,
     /// The bond, until it breaks.
     pub bond: Option<Bond>,
+}
+
+/// An impact of two rocks, for as long as it is followed as one.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct PairImpact {
+    /// Speed of approach (m/s); 0 = there is none.
+    pub speed_m_s: f64,
+    /// How much longer it lasts at most (rad of the contact).
+    left_rad: f64,
+}
+
+/// After so long (rad) an impact is over, or goes on as lasting contact.
+const LASTS_RAD: f64 = 20.0;
+
+impl PairImpact {
+    /// One that has just begun with an approach of so much (m/s).
+    pub fn begun(speed_m_s: f64) -> Self {
+        Self { speed_m_s, left_rad: LASTS_RAD }
+    }
+
+    /// What is left of it so much later (rad).
+    #[must_use]
+    pub fn after(self, rad: f64) -> Self {
+        let left_rad = self.left_rad - rad;
+        if left_rad > 0.0 { Self { left_rad, ..self } } else { Self::default() }
+    }
 }
 
 impl PairHistory {
@@ -120,8 +148,22 @@ impl PairHistory {
             captured: false,
             slides: false,
             closed: false,
+            impact: PairImpact::default(),
             bond: None,
         }
+    }
+
+    /// How far its forces pass the strength of its bond, as a share of it; 0 or less without one.
+    pub(crate) fn overload(&self) -> f64 {
+        let over =
+            |bond: &Bond| bond.overload(&self.law, self.normal_force, self.shear_force.norm());
+        self.bond.as_ref().map_or(0.0, over)
+    }
+
+    /// The rocks no longer touch.
+    pub fn part(&mut self) {
+        (self.closed, self.impact) = (false, PairImpact::default());
+        (self.normal_force, self.shear_force, self.shear) = (0.0, Vec3::zeros(), Vec3::zeros());
     }
 
     /// Whether it must be remembered.
@@ -151,11 +193,14 @@ mod tests {
     #[test]
     fn a_bond_holds_up_to_its_strength() {
         let bond = Bond::new(&Strength { tensile_pa: 1e6, cohesion_pa: 2e6 }, 0.5, 1.0);
+        let mut law = Law::NONE;
+        law.rub_with(0.5);
+        let overload = |pull_n: f64, shear_n: f64| bond.overload(&law, pull_n, shear_n);
         let area = 0.25 * PI;
-        assert!(bond.overload(-0.999e6 * area, 0.0, 0.5) <= 0.0);
-        assert!((bond.overload(-1.1e6 * area, 0.0, 0.5) - 0.1).abs() < 1e-12);
-        assert!(bond.overload(0.0, 1.999e6 * area, 0.5) <= 0.0);
-        assert!(bond.overload(0.0, 2.001e6 * area, 0.5) > 0.0);
-        assert!(bond.overload(1e6 * area, 2.499e6 * area, 0.5) <= 0.0);
+        assert!(overload(-0.999e6 * area, 0.0) <= 0.0);
+        assert!((overload(-1.1e6 * area, 0.0) - 0.1).abs() < 1e-12);
+        assert!(overload(0.0, 1.999e6 * area) <= 0.0);
+        assert!(overload(0.0, 2.001e6 * area) > 0.0);
+        assert!(overload(1e6 * area, 2.499e6 * area) <= 0.0);
     }
 }

@@ -50,22 +50,22 @@ pub fn normal_row(v: &Vec3) -> Vec6 {
     Vec6::new(v.x, v.y, v.z, 0.0, 0.0, 0.0)
 }
 
-/// Normal spring of stiffness `p_n` (N/m), Eq. (10): `p_N V_Nᵀ V_N → K`.
+/// Normal spring of a stiffness (N/m), Eq. (10): `p_N V_Nᵀ V_N → K`.
 #[inline]
-pub fn normal_stiffness(p_n: f64, row: &Vec6) -> Mat6 {
-    (row * p_n) * row.transpose()
+pub fn normal_stiffness(stiffness_n_m: f64, row: &Vec6) -> Mat6 {
+    (row * stiffness_n_m) * row.transpose()
 }
 
 /// Normal spring pressed in or apart by `gap_m` at the step's start, Eq. (11): `p_N λ V_Nᵀ → F`.
 #[inline]
-pub fn normal_load(p_n: f64, gap_m: f64, row: &Vec6) -> Vec6 {
-    row * (p_n * gap_m)
+pub fn normal_load(stiffness_n_m: f64, gap_m: f64, row: &Vec6) -> Vec6 {
+    row * (stiffness_n_m * gap_m)
 }
 
-/// Shear spring of stiffness `p_s` (N/m), Eq. (13): `p_s (Tᵀ T − V_Nᵀ V_N) → K`.
+/// Shear spring of a stiffness (N/m), Eq. (13): `p_s (Tᵀ T − V_Nᵀ V_N) → K`.
 #[inline]
-pub fn shear_stiffness(p_s: f64, t: &Mat3x6, row: &Vec6) -> Mat6 {
-    (t.transpose() * t - row * row.transpose()) * p_s
+pub fn shear_stiffness(stiffness_n_m: f64, t: &Mat3x6, row: &Vec6) -> Mat6 {
+    (t.transpose() * t - row * row.transpose()) * stiffness_n_m
 }
 
 /// Shear spring stretched by `stretch` (m, tangent to the surface) at the step's start, in place of Eq. (14):
@@ -74,8 +74,8 @@ pub fn shear_stiffness(p_s: f64, t: &Mat3x6, row: &Vec6) -> Mat6 {
 /// As printed, `p_s Tᵀ (P2 − P1) − p_s λ V_Nᵀ` is identically zero: `P1` is placed anew on the normal at every step,
 /// so `P2 − P1 = λ V`. The stretch has to be carried from step to step.
 #[inline]
-pub fn shear_load(p_s: f64, t: &Mat3x6, stretch: &Vec3) -> Vec6 {
-    force_at(t, &(stretch * -p_s))
+pub fn shear_load(stiffness_n_m: f64, t: &Mat3x6, stretch: &Vec3) -> Vec6 {
+    force_at(t, &(stretch * -stiffness_n_m))
 }
 
 /// Part along the surface of the displacement `u` of `P1` (m), Eq. (16): `u − V (V·u)`.
@@ -86,16 +86,11 @@ pub fn slip(v: &Vec3, u: &Vec3) -> Vec3 {
     u - v * v.dot(u)
 }
 
-/// Largest friction force (N), Eq. (15): `f_s = N tan φ`; the paper takes `N = p_N d_p` of the last step's end.
-#[inline]
-pub fn friction_cap(push_n: f64, tan_phi: f64) -> f64 {
-    push_n * tan_phi
-}
-
 /// Friction on the sphere (N), Eqs. (17), (18): `−f Tᵀ (l m n)ᵀ → F`, `friction` being `f` times the direction in which
 /// the sphere slides.
 ///
-/// The sign is right only with the direction of the sphere's own slip; Eq. (15) calls `f` `f_s`.
+/// The sign is right only with the direction of the sphere's own slip. Eq. (15) calls `f` `f_s`: it is `N tan φ`, and the paper
+/// takes `N = p_N d_p` of the last step's end.
 #[inline]
 pub fn friction_load(t: &Mat3x6, friction: &Vec3) -> Vec6 {
     force_at(t, &-friction)
@@ -107,11 +102,12 @@ pub fn force_at(t: &Mat3x6, force: &Vec3) -> Vec6 {
     t.tr_mul(force)
 }
 
-/// Spring against rotation (N m/rad) about any axis through the centre: `k_r` on the rotations' diagonal `→ K`. Not in
+/// Spring against rotation (N m/rad) about any axis through the centre: on the rotations' diagonal `→ K`. Not in
 /// the paper: rolling friction.
 #[inline]
-pub fn rolling_stiffness(k_r: f64) -> Mat6 {
-    Mat6::from_diagonal(&Vec6::new(0.0, 0.0, 0.0, k_r, k_r, k_r))
+pub fn rolling_stiffness(stiffness_n_m_rad: f64) -> Mat6 {
+    let [x, y, z] = [stiffness_n_m_rad; 3];
+    Mat6::from_diagonal(&Vec6::new(0.0, 0.0, 0.0, x, y, z))
 }
 
 /// A moment (N m) about the centre `→ F`.
@@ -256,7 +252,7 @@ mod tests {
         fn friction_opposes_the_slip_of_the_sphere(v in unit(), d in motion()) {
             let t = displacement(&touching_point(&v, RADIUS));
             let way = slip(&v, &(t * d));
-            let force = friction_cap(P, 0.5);
+            let force = 0.5 * P;
             let work = friction_load(&t, &(way.normalize() * force)).dot(&d);
             prop_assert!((work + force * way.norm()).abs() < 1e-14 * P);
         }

@@ -73,8 +73,7 @@ impl Fall<'_> {
         let mut changes = false;
         for (ground, law) in self.laws.iter_mut().enumerate() {
             let friction = self.soil.slip.friction(ground as u16, law, ahead_m);
-            changes |=
-                std::mem::replace(&mut law.friction, friction).to_bits() != friction.to_bits();
+            changes |= law.rub_with(friction);
         }
         if changes {
             let (v, w) = (self.state.v, self.state.w);

@@ -209,7 +209,7 @@ impl BodyWorld<'_> {
             let radius = one.body.radius.min(two.body.radius);
             let bond = Bond::new(&answer.strength, radius, length);
             let law = self.law(a, b);
-            self.tie(PairHistory { n, bond: Some(bond), ..PairHistory::new(a, b, law) });
+            self.tie(&PairHistory { n, bond: Some(bond), ..PairHistory::new(a, b, law) });
             self.hold(a);
             self.hold(b);
         }

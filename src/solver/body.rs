@@ -33,6 +33,12 @@ impl Body {
         }
     }
 
+    /// Mass that a force along the surface meets at the contact point (kg): `m/(1 + m R²/I)`.
+    #[inline]
+    pub(crate) fn mass_along(&self) -> f64 {
+        1.0 / Rock::SLIP_LIGHTNESS * self.mass
+    }
+
     /// Velocity of the contact point along the surface with normal `n` (m/s): `Q (v + w × (−R n))`.
     #[inline]
     pub fn slip(&self, n: &Vec3, v: &Vec3, w: &Vec3) -> Vec3 {

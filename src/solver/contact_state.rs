@@ -14,6 +14,7 @@ use super::tableau::STAGES;
 use crate::contact::history::{ContactHistories, HISTORIES};
 use crate::contact::neighbours::Neighbours;
 use crate::contact::{ContactPoints, MOST, TOUCH};
+use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::stopwatch::{Stopwatches, TimedPiece};
 use nalgebra::Rotation3;
@@ -218,7 +219,7 @@ impl ContactState {
     /// How far an impact goes before it is over (m), between bounds: the less is collected the fewer features there are,
     /// and the more often it is one face alone.
     fn way_of_impact(&self, world: &ContactEnvironment) -> f64 {
-        let slowest = world.laws.iter().map(|law| law.omega).fold(f64::INFINITY, f64::min);
+        let slowest = world.laws.iter().map(Law::omega_rad_s).fold(f64::INFINITY, f64::min);
         let way = IMPACT_WAY * std::f64::consts::PI / slowest * self.v.norm();
         way.clamp(LEAST_MARGIN * world.body.radius, MARGIN * world.body.radius)
     }

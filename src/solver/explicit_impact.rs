@@ -82,7 +82,7 @@ impl ContactState {
         let known = self.histories.len();
         let mut accepted = None;
         if known <= 2 {
-            accepted = if world.laws.iter().any(|law| law.k_r > 0.0) {
+            accepted = if world.laws.iter().any(|law| law.rolling.is_on()) {
                 self.step_among::<2, 21, 6>(world, &bounds, done)?
             } else {
                 self.step_among::<2, 15, 6>(world, &bounds, done)?
@@ -195,14 +195,11 @@ impl ContactState {
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {
             return 0.0;
         }
-        // What spring and dashpot would pull with grows as long as `p_N v_n` outdoes `c_N g`.
         let leaves = |history: &ContactHistory| {
             let law = world.law(history.triangle);
-            let damping = law.c_n.max(law.c_n_captured);
             let n = &history.n;
             let weight = n.dot(&world.body.gravity).min(0.0);
-            history.normal_force <= 0.0
-                && law.p_n * (n.dot(&self.v) + weight * dt) > -damping * weight
+            history.normal_force <= 0.0 && law.lets_go(n.dot(&self.v), weight, dt)
         };
         if !self.histories.iter().all(leaves) {
             return 0.0;

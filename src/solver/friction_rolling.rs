@@ -4,8 +4,8 @@
 //! changes the slip. Of the four cases (stick or slip, each) two have closed forms and two a scalar equation for Newton.
 
 use super::body::Body;
-use crate::ground::Law;
-use crate::rock::Vec3;
+use crate::ground::{INSIDE, Law};
+use crate::rock::{Rock, Vec3};
 
 /// A vector along a surface, in the frame of a contact.
 pub(crate) type Along = [f64; 2];
@@ -74,17 +74,21 @@ pub(crate) struct Answers {
 impl Answers {
     #[inline]
     pub(crate) fn of(body: &Body, law: &Law, h: f64) -> Self {
-        let (kap, kar) = (law.shear_over(h), law.rolling_over(h));
+        let (kap, kar) = (law.shear.over(h), law.rolling.over(h));
         let (turn_q, turn_m) = (kap * h / body.inertia, kar * h / body.inertia);
-        // The contact point's mass along the surface is 2/7 m.
-        Self::new((kap, kar), 3.5 * kap * h / body.mass, turn_m, (turn_q, body.radius))
+        Self::new(
+            (kap, kar),
+            Rock::SLIP_LIGHTNESS * kap * h / body.mass,
+            turn_m,
+            (turn_q, body.radius),
+        )
     }
 
-    /// The limit of stiff springs, for impulses: `q̂ = 2/7 m slip − 5/7 n × M/R` and `M̂ = I w + R n × q`.
+    /// The limit of stiff springs, for impulses: `q̂ = 2/7 m slip − 5/7 n × M/R` and `M̂ = I w + R n × q` for a solid sphere.
     #[inline]
     pub(crate) fn rigid(radius: f64) -> Self {
-        let (c, er) = (5.0 / 7.0 / radius, radius);
-        Self { kap: 0.0, kar: 0.0, share_q: 1.0, c, share_m: 1.0, er, both: 3.5 }
+        let (c, er) = (1.0 / Rock::ROLLING_INERTIA / radius, radius);
+        Self { kap: 0.0, kar: 0.0, share_q: 1.0, c, share_m: 1.0, er, both: Rock::SLIP_LIGHTNESS }
     }
 
     #[inline]
@@ -110,8 +114,6 @@ pub(crate) struct Pair<'a> {
 
 /// Newton steps for a ratio.
 const RATIO_STEPS: u32 = 30;
-/// A force below this part of its cap is held (–).
-pub(crate) const INSIDE: f64 = 1.0 - 1e-9;
 /// Change of a ratio, relative to it, after which Newton's next would be rounding (–): sweeps over several contacts wait for
 /// each of them to say the same again.
 const NEAR: f64 = 1e-7;
@@ -375,7 +377,7 @@ mod tests {
             b in 0.001f64..100.0, e in 0.001f64..100.0, r in 0.01f64..10.0, hint in 0.0f64..100.0,
         ) {
             // C E R = 5/7 B E, as a solid sphere has it
-            let c = 5.0 / 7.0 * b / r;
+            let c = b / Rock::ROLLING_INERTIA / r;
             let d = [d[0] * r, d[1] * r, if spins { d[2] * r } else { 0.0 }];
             let answers = Answers::new((b, e), b, e, (c / r, r));
             let pair = Pair { answers: &answers, a, d, caps: (caps[0], caps[1] * r) };

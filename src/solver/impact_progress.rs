@@ -24,6 +24,11 @@ impl ImpactProgress {
         (self.speed_m_s, self.left, self.tried_m_s) = (0.0, 0.0, 0.0);
     }
 
+    /// Goes on for so long (rad) where it is not followed in its own time.
+    pub(super) fn pass(&mut self, rad: f64) {
+        self.left = (self.left - rad).max(0.0);
+    }
+
     /// A try is made anew: what it met before has not been met.
     pub(crate) fn try_anew(&mut self) {
         self.tried_m_s = 0.0;

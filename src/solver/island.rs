@@ -14,6 +14,7 @@ pub mod partition;
 mod newton_step;
 mod dda_contact;
 mod body;
+mod impact_tolerance;
 mod ordering;
 mod outcome;
 mod active_set;

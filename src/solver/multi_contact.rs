@@ -6,8 +6,8 @@
 //! heading. The sweeps alone decide whether the result holds.
 
 use super::body::Body;
-use super::friction_rolling::INSIDE;
 use super::law::StageContact;
+use crate::ground::NormalLine;
 use crate::rock::Vec3;
 use nalgebra::{Matrix3, SMatrix, SVector};
 
@@ -17,8 +17,6 @@ const SWEEPS: u32 = 4;
 const JUMPS: u32 = 12;
 /// Change of a force, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-9;
-/// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
-const HOLD: f64 = 1e7;
 
 type Matrix6 = SMatrix<f64, 6, 6>;
 type Vector6 = SVector<f64, 6>;
@@ -126,55 +124,19 @@ fn driven(
 /// Sets every force to what its law gives at velocity and spin `at`.
 fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: f64) {
     for contact in contacts {
-        let normal = NormalLine::of(body, contact, h);
+        let normal = contact.line(body, h);
         contact.normal_force = normal.at(contact.n.dot(v));
         let law = &contact.law;
         let (stick, wound) = contact.trials(body, v, w, h);
-        contact.shear_force = super::law::within(stick, law.friction * contact.normal_force);
-        contact.rolling_moment = super::law::within(wound, law.rolling_m * contact.normal_force);
+        contact.shear_force = law.shear.capped(stick, contact.normal_force);
+        contact.rolling_moment = law.rolling.capped(wound, contact.normal_force);
     }
 }
 
-/// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct NormalLine {
-    pub(crate) a: f64,
-    pub(crate) b: f64,
-}
-
-impl NormalLine {
-    /// The line of the mode the contact is in: open, pressed, or held exactly at the surface.
-    fn of(body: &Body, contact: &StageContact, h: f64) -> Self {
-        Self::line(
-            (contact.law.p_n, contact.c_n),
-            (contact.penetration, contact.normal_force),
-            body.mass,
-            h,
-        )
-    }
-
-    /// The same from spring and dashpot, penetration and push, and the mass that the push moves.
-    pub(crate) fn line(
-        (p_n, c_n): (f64, f64),
-        (penetration, normal_force): (f64, f64),
-        m: f64,
-        h: f64,
-    ) -> Self {
-        let b = p_n * h + c_n;
-        if normal_force <= 0.0 {
-            return Self { a: 0.0, b: 0.0 };
-        }
-        let speed = (p_n * penetration - normal_force) / b;
-        if penetration - h * speed < 0.0 {
-            // The push is less than spring and dashpot would give: it holds the rock at the surface.
-            let b = HOLD * m / h;
-            return Self { a: b * penetration / h, b };
-        }
-        Self { a: p_n * penetration, b }
-    }
-
-    pub(crate) fn at(&self, speed: f64) -> f64 {
-        (self.a - self.b * speed).max(0.0)
+impl StageContact {
+    /// Its normal force as a line, in the mode that it is in.
+    pub(crate) fn line(&self, body: &Body, h: f64) -> NormalLine {
+        self.normal.line((self.penetration, self.normal_force), body.mass, h)
     }
 }
 
@@ -208,7 +170,7 @@ fn add(
     contact: &StageContact,
     ((v, w), h): (&(Vec3, Vec3), f64),
 ) {
-    let normal = NormalLine::of(body, contact, h);
+    let normal = contact.line(body, h);
     let (law, n, r) = (&contact.law, contact.n, body.radius);
     // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
     let q = Matrix3::identity() - n * n.transpose();
@@ -217,13 +179,8 @@ fn add(
     let normal_force = normal.at(n.dot(v));
     // The sweeps know the mode. What the law gives at `now` does not: a newton of another contact that has changed
     // since moves a stiff spring far beyond its cap.
-    let shear =
-        Slider::left(law.friction, law.shear_over(h), (&contact.shear_force, contact.normal_force));
-    let roll = Slider::left(
-        law.rolling_m,
-        law.rolling_over(h),
-        (&contact.rolling_moment, contact.normal_force),
-    );
+    let shear = law.shear.left(h, (&contact.shear_force, contact.normal_force));
+    let roll = law.rolling.left(h, (&contact.rolling_moment, contact.normal_force));
     let (shear, roll) = (shear.at(stick, normal_force), roll.at(wound, normal_force));
     let slip = body.slip(&n, v, w);
     // q ≈ q0 + J (u − u0) − e μ b (s − s0), and the same for the moment.
@@ -243,49 +200,4 @@ fn add(
     force += n * normal.a - drag0;
     let mut torque = f.fixed_rows_mut::<3>(3);
     torque -= spin.transpose() * drag0 + moment0;
-}
-
-/// A slider and its mode.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Slider {
-    coefficient: f64,
-    stiffness: f64,
-    histories: bool,
-}
-
-/// A slider's force, and how that changes with the speed and with the push.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Answer {
-    pub(crate) force: Vec3,
-    pub(crate) jacobian: Matrix3<f64>,
-    /// Change of force with the push; zero while it sticks.
-    pub(crate) along: Vec3,
-}
-
-impl Slider {
-    /// The slider in the mode in which the sweeps left it with `force` under `push`; in no mode but sticking where the
-    /// push is without bound.
-    pub(crate) fn left(
-        coefficient: f64,
-        stiffness: f64,
-        (force, normal_force): (&Vec3, f64),
-    ) -> Self {
-        Self {
-            coefficient,
-            stiffness,
-            histories: force.norm() < coefficient * normal_force * INSIDE,
-        }
-    }
-
-    pub(crate) fn at(&self, trial: Vec3, normal_force: f64) -> Answer {
-        let (cap, size) = (self.coefficient * normal_force, trial.norm());
-        if self.histories || size <= cap {
-            let jacobian = Matrix3::identity() * self.stiffness;
-            return Answer { force: trial, jacobian, along: Vec3::zeros() };
-        }
-        let e = trial / size;
-        let across = Matrix3::identity() - e * e.transpose();
-        let jacobian = across * (self.stiffness * cap / size);
-        Answer { force: e * cap, jacobian, along: e * self.coefficient }
-    }
 }

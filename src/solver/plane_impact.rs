@@ -6,6 +6,7 @@ use super::step_control::Advance;
 use crate::contact::TOUCH;
 use crate::contact::neighbours::PressedPath;
 use crate::contact::{ContactPoint, FeatureKind};
+use crate::ground::NormalElement;
 use crate::math;
 use crate::rock::Vec3;
 
@@ -22,7 +23,11 @@ impl ContactState {
         let [history] = &self.histories[..] else { return false };
         let (face, is_face) = (history.feature.id, history.feature.kind == FeatureKind::Face);
         let begins = !history.closed && is_face;
-        if !begins || self.may_yield || self.touches.iter().any(|touch| is_sunk(world, touch)) {
+        if !begins
+            || !NormalElement::has_closed_form()
+            || self.may_yield
+            || self.touches.iter().any(|touch| is_sunk(world, touch))
+        {
             return false;
         }
         let (n, triangle) = (history.n, history.triangle);

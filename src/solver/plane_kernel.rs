@@ -17,7 +17,7 @@ use super::plane_state::{
 };
 use super::step_control::{Advance, Control, StepError, StepFailure, TRAVEL};
 use crate::contact::FeatureKind;
-use crate::ground::Law;
+use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 use trial::PlaneTrial;
 
@@ -52,11 +52,11 @@ impl ContactState {
         self.see_ahead(world, h.min(h_max));
         let history = self.histories[0];
         let law = world.law(history.triangle);
-        let c_n = if history.captured { law.c_n_captured } else { law.c_n };
+        let normal = law.normal(history.captured);
         let penetration = self.sunk(world);
         // state and rates stay in the plane's frame from step to step; they are turned only on the way in and out
         if !self.plane.on {
-            self.enter_plane(law, &world.body, (penetration, c_n));
+            self.enter_plane(law, &world.body, (penetration, &normal));
         }
         let gravity = self.plane.frame.local(&world.body.gravity);
         let mut trial = PlaneTrial {
@@ -66,7 +66,7 @@ impl ContactState {
             control,
             world,
             law,
-            c_n,
+            normal,
             gravity,
             penetration,
             energy: self.motion_j(&world.body) + self.stored,
@@ -116,7 +116,12 @@ impl ContactState {
     }
 
     /// Turns state and rates into the plane's frame.
-    fn enter_plane(&mut self, law: &Law, body: &Body, (penetration, c_n): (f64, f64)) {
+    fn enter_plane(
+        &mut self,
+        law: &Law,
+        body: &Body,
+        (penetration, normal): (f64, &NormalElement),
+    ) {
         let (history, plane) = (&self.histories[0], &mut self.plane);
         plane.on = true;
         plane.frame = ContactFrame::of(&history.n);
@@ -140,7 +145,7 @@ impl ContactState {
                 [loss.trees, 0.0, 0.0]
             };
         } else {
-            self.stored = plane.begin(law, body, (penetration, c_n));
+            self.stored = plane.begin(law, body, (penetration, normal));
             self.fresh = true;
         }
     }
@@ -157,8 +162,7 @@ impl ContactState {
         history.roll = frame.out_local(three(state, ROLL));
         // forces of the end, for the first guess of what comes next
         history.normal_force = press.normal_force;
-        history.slides =
-            square(press.shear_force) >= (law.friction * press.normal_force * (1.0 - 1e-9)).powi(2);
+        history.slides = law.shear.slides2(square(press.shear_force), press.normal_force);
         history.closed = press.closed;
         state[WAY..SPEED].fill(0.0);
         // the rock has lifted off: the episode may be over, and no memory is left

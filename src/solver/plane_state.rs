@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::friction_rolling::{Along, ContactFrame, Local, cut, cut_moment};
 use super::tableau::STAGES;
-use crate::ground::Law;
+use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 
 /// Numbers that change along a step, and where each kind begins.
@@ -132,21 +132,23 @@ impl PlaneState {
     }
 
     /// Rates at the present state, for the explicit first stage; returns the energy in the springs (J).
-    pub(super) fn begin(&mut self, law: &Law, body: &Body, (penetration, c_n): (f64, f64)) -> f64 {
+    pub(super) fn begin(
+        &mut self,
+        law: &Law,
+        body: &Body,
+        (penetration, normal): (f64, &NormalElement),
+    ) -> f64 {
         let (penetration, s) = (penetration.max(0.0), &self.state);
         let (speed, spin) = (three(s, SPEED), three(s, SPIN));
         let slip = slip(body, speed, spin);
-        let normal_force = (law.p_n * penetration - c_n * speed[2]).max(0.0);
-        let held = two(s, SHEAR).map(|x| x * law.p_s);
-        let shear_force =
-            cut([0, 1].map(|k| held[k] + slip[k] * law.c_s), law.friction * normal_force);
-        let wound = three(s, ROLL).map(|x| x * law.k_r);
-        let rolling_moment = cut_moment(
-            [0, 1, 2].map(|k| wound[k] + spin[k] * law.c_r),
-            law.rolling_m * normal_force,
-        );
-        let over = |damping: f64| if damping > 0.0 { 1.0 / damping } else { 0.0 };
-        let (over_s, over_r) = (over(law.c_s), over(law.c_r));
+        let normal_force = normal.force(penetration, speed[2]);
+        let held = two(s, SHEAR).map(|x| law.shear.held(x));
+        let asked = [0, 1].map(|k| held[k] + law.shear.damped(slip[k]));
+        let shear_force = cut(asked, law.shear.cap(normal_force));
+        let wound = three(s, ROLL).map(|x| law.rolling.held(x));
+        let asked = [0, 1, 2].map(|k| wound[k] + law.rolling.damped(spin[k]));
+        let rolling_moment = cut_moment(asked, law.rolling.cap(normal_force));
+        let (over_s, over_r) = (law.shear.mobility(), law.rolling.mobility());
         let gravity = self.frame.local(&body.gravity);
         let (dv, dw) = accelerations(body, normal_force, shear_force, rolling_moment);
         let rate = &mut self.rates[0];

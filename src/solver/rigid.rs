@@ -65,7 +65,7 @@ impl ImpulsiveContact<'_> {
             (self.shear_force, self.turn) = (Vec3::zeros(), Vec3::zeros());
             return;
         }
-        let caps = (self.law.friction * self.normal_force, self.law.rolling_m * self.normal_force);
+        let caps = self.law.limits().caps(self.normal_force);
         (self.shear_force, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
     }
 
@@ -100,7 +100,7 @@ pub(crate) fn rub(
     let frame = ContactFrame::of(n);
     let pair = Pair {
         answers: &Answers::rigid(body.radius),
-        a: frame.along(&(body.slip(n, v, w) * (2.0 / 7.0 * body.mass))),
+        a: frame.along(&(body.slip(n, v, w) * (body.mass_along()))),
         d: frame.local(&(w * body.inertia)),
         caps,
     };

@@ -1,7 +1,6 @@
 //! How far a rock has slipped, and the friction that soil answers with.
 
 use crate::ground::{Ground, Law, SlipFriction};
-use crate::math;
 
 /// How far a rock has slipped.
 #[derive(Debug, Default)]
@@ -20,8 +19,9 @@ impl Slip {
     pub(crate) fn begin(&mut self, grounds: &[Ground]) {
         (self.way_m, self.on) = (0.0, None);
         self.soils.clear();
-        let least = |ground: &Ground| math::tan(ground.friction_angle_rad);
-        let soil = |ground: &Ground| ground.slip_friction.map(|soil| (soil, least(ground)));
+        let soil = |ground: &Ground| {
+            ground.slip_friction.map(|soil| (soil, ground.friction_coefficient()))
+        };
         self.soils.extend(grounds.iter().map(soil));
         let rates = self.soils.iter().flatten().map(|(soil, _)| soil.kappa_per_m);
         self.fastest_per_m = rates.fold(0.0, f64::max);
@@ -38,8 +38,9 @@ impl Slip {
 
     /// Coefficient of friction (–) on a ground where the rock will have slipped `ahead_m` (m) further.
     pub(crate) fn friction(&self, ground: u16, law: &Law, ahead_m: f64) -> f64 {
-        self.soil(ground)
-            .map_or(law.friction, |(soil, least)| soil.at(*least, self.way_m + ahead_m))
+        self.soil(ground).map_or(law.friction_coefficient(), |(soil, least)| {
+            soil.at(*least, self.way_m + ahead_m)
+        })
     }
 
     /// How fast friction grows with slip at most (1/m).

@@ -42,7 +42,7 @@ impl ContactState {
     ) -> f64 {
         let held = histories.map(|history| {
             let law = world.law(history.triangle);
-            let penetration = history.normal_force / law.p_n;
+            let penetration = law.pressed_m(history.normal_force);
             law.stored_j(penetration, history.shear.norm_squared(), history.roll.norm_squared())
         });
         held.sum()
@@ -56,17 +56,15 @@ impl ContactState {
         work_j: f64,
         on: impl Fn(&ContactHistory) -> bool,
     ) -> f64 {
-        // W(h) ≤ Σ (v_n + μ |u|) (F h + p_N v_n h²/2)
         let (mut now_w, mut grows_w_s) = (0.0, 0.0);
         for history in self.histories.iter().filter(|history| on(history)) {
             let law = world.law(history.triangle);
             let speed = -history.n.dot(&self.v);
             let (inwards, slip): (f64, Vec3) =
                 (speed.max(0.0), world.body.slip(&history.n, &self.v, &self.w));
-            let force = history.normal_force.max(law.c_n * inwards);
-            let way = inwards + law.friction * slip.norm();
-            now_w += force * way;
-            grows_w_s += 0.5 * law.p_n * inwards * way;
+            let (power_w, growth_w_s) = law.taken_w(history.normal_force, inwards, slip.norm());
+            now_w += power_w;
+            grows_w_s += growth_w_s;
         }
         2.0 * work_j / (now_w + (now_w * now_w + 4.0 * grows_w_s * work_j).sqrt())
     }

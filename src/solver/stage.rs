@@ -53,7 +53,7 @@ impl StageContact {
             roll: self.roll,
         };
         let law = &self.law;
-        let action = Action::of(&world.body, law, (law.p_n, self.c_n), &at, (v, w));
+        let action = Action::of(&world.body, law, &self.normal, &at, (v, w));
         self.normal_force = action.normal[0];
         (self.shear_force, self.rolling_moment) = (action.shear_force, action.rolling_moment);
         (action.rates[0], action.rates[1])
@@ -177,7 +177,7 @@ impl ContactState {
             history,
             feature: touch.feature,
             triangle: touch.triangle,
-            c_n: if memory.captured { law.c_n_captured } else { law.c_n },
+            normal: law.normal(memory.captured),
             is_tree: world.terrain.is_tree(touch.triangle),
             n: touch.normal,
             penetration: 0.0,

@@ -1,12 +1,14 @@
 //! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
 
 use super::Settings;
+use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use super::stage::End;
 use super::tableau::RATIO;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
+use crate::ground::Law;
 use crate::math;
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
@@ -78,17 +80,22 @@ const PIVOT: f64 = 0.02;
 impl Control {
     /// The control of a rock in `world`.
     pub fn new(tableau: &'static Tableau, settings: &Settings, world: &ContactEnvironment) -> Self {
-        let own = (world.body.gravity.norm() * world.body.radius).sqrt();
-        let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
         let usual = (IMPACT.0 * settings.tolerance_m_s).min(IMPACT.1);
         let impact = settings.scheme.of([usual, usual, IMPACT_OF_REFERENCE, usual]);
         Self {
             tableau,
-            tolerance: settings.tolerance_m_s.min(relative),
+            tolerance: lasting_m_s(settings, &world.body),
             impact,
             plane_impacts: settings.plane_impacts,
         }
     }
+}
+
+/// Local error allowed to a rock in lasting contact (m/s): that of the run, and a share of `√(g R)`.
+pub(crate) fn lasting_m_s(settings: &Settings, body: &Body) -> f64 {
+    let own = (body.gravity.norm() * body.radius).sqrt();
+    let relative = if own > 0.0 { PIVOT * own } else { f64::INFINITY };
+    settings.tolerance_m_s.min(relative)
 }
 
 /// First step after a touch (s).
@@ -98,9 +105,12 @@ pub fn first_step(world: &ContactEnvironment, state: &ContactState) -> f64 {
 
 /// Largest `√(p_N/m)` among the contacts (rad/s).
 fn stiffest(world: &ContactEnvironment, state: &ContactState) -> f64 {
-    let omega =
-        state.histories.iter().map(|history| world.law(history.triangle).omega).fold(0.0, f64::max);
-    if omega > 0.0 { omega } else { world.laws.iter().map(|law| law.omega).fold(0.0, f64::max) }
+    let omega = state
+        .histories
+        .iter()
+        .map(|history| world.law(history.triangle).omega_rad_s())
+        .fold(0.0, f64::max);
+    if omega > 0.0 { omega } else { world.laws.iter().map(Law::omega_rad_s).fold(0.0, f64::max) }
 }
 
 /// One accepted step of at most `h_max` (s), or all those of an impact on one plane; `h` is the step to try and becomes the

@@ -31,7 +31,7 @@ impl Pressing {
     /// Gone on for `h` (s) at the rates of `there`.
     fn moved(&self, body: &Body, law: &Law, there: &Self, h: f64) -> Self {
         let n = &there.at.n;
-        let acts = Action::of(body, law, (law.p_n, law.c_n), &there.at, (&there.v, &there.w));
+        let acts = Action::of(body, law, &law.normal(false), &there.at, (&there.v, &there.w));
         let turning = n.cross(&acts.shear_force) * body.radius - acts.rolling_moment;
         Self {
             at: ContactPlace {
@@ -61,7 +61,7 @@ pub(crate) fn yielding_impact(
     let at = ContactPlace { n: *n, penetration: 0.0, shear: Vec3::zeros(), roll: Vec3::zeros() };
     let mut rock = Pressing { at, v: *v, w: *w };
     let left_j = rock.motion_j(body) - limit_j;
-    let step = STEP / law.omega;
+    let step = STEP / law.omega_rad_s();
     let mut gone = 0.0;
     while n.dot(&rock.v) < 0.0 && gone < COMES_TO_REST {
         let next = rock.after(body, law, step);

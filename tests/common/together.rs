@@ -21,6 +21,8 @@ pub struct World {
     pub tolerance_m_s: f64,
     pub gravity_m_s2: f64,
     pub restitution: f64,
+    /// Normal stiffness of the rocks among themselves (N/m), shear a quarter of it.
+    pub stiffness_n_m: f64,
     pub friction_angle_rad: f64,
     pub step_s: f64,
     pub ground: Ground,
@@ -35,6 +37,7 @@ pub const WORLD: World = World {
     tolerance_m_s: 0.0,
     gravity_m_s2: 0.0,
     restitution: 0.5,
+    stiffness_n_m: GROUND.normal_stiffness_n_m,
     friction_angle_rad: std::f64::consts::FRAC_PI_6,
     step_s: 0.01,
     ground: GROUND,
@@ -82,6 +85,8 @@ impl World {
         };
         let releases: Vec<Release> = spheres.iter().map(release).collect();
         let ground = Ground {
+            normal_stiffness_n_m: self.stiffness_n_m,
+            shear_stiffness_n_m: 0.25 * self.stiffness_n_m,
             restitution: Some(self.restitution),
             friction_angle_rad: self.friction_angle_rad,
             ..GROUND

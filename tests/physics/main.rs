@@ -16,6 +16,7 @@ mod ledger;
 mod leaving_out;
 mod oracle_contact;
 mod oracle_flight;
+mod pair_law;
 mod pairs;
 mod paper;
 mod patch;

@@ -93,11 +93,11 @@ impl<'a> BodyWorld<'a> {
     }
 
     /// Adds a pair, at its place in the order of numbers: a binary search in O(log n), a shift in O(n).
-    pub(super) fn tie(&mut self, pair_history: PairHistory) {
+    pub(super) fn tie(&mut self, pair_history: &PairHistory) {
         let place = self
             .pair_histories
             .partition_point(|known| (known.a, known.b) < (pair_history.a, pair_history.b));
-        self.pair_histories.insert(place, pair_history);
+        self.pair_histories.insert(place, *pair_history);
     }
 
     /// A bonded rock does not fly: its contacts begin with the world.

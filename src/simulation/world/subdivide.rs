@@ -36,7 +36,7 @@ impl IslandWindow<'_> {
         let stiffest = self
             .pair_histories
             .iter()
-            .map(|pair_history| pair_history.law.omega)
+            .map(|pair_history| pair_history.law.omega_rad_s())
             .fold(0.0, f64::max);
         let Some(cuts) = self.falls_apart(stiffest) else {
             self.run_whole();

@@ -11,7 +11,7 @@
 mod rigid;
 
 use super::{BodyState, WorldBody, WorldStats};
-use crate::contact::pair::{PairHistory, meeting_s};
+use crate::contact::pair::{PairHistory, PairImpact, meeting_s};
 use crate::simulation::Stop;
 use crate::simulation::settings::RunSettings;
 use crate::solver::island::partition::Partition;
@@ -168,10 +168,12 @@ impl<'a> IslandWindow<'a> {
             let (n, _) = crate::contact::pair::between(&a.c, &b.c);
             (pair_history.n, pair_history.closed) = (n, true);
             // below the capture speed a rebound would be smaller than the errors of the steps: dashpot of full damping
-            pair_history.captured = -n.dot(&(a.v - b.v)) < pair_history.law.capture_m_s;
+            let approach_m_s = -n.dot(&(a.v - b.v));
+            pair_history.captured = approach_m_s < pair_history.law.capture_m_s;
             if !pair_history.captured {
+                pair_history.impact = PairImpact::begun(approach_m_s);
                 // the first step of an impact resolves the onset of its spring, whatever step the island had before
-                let h = ONSET / pair_history.law.omega;
+                let h = ONSET / pair_history.law.omega_rad_s();
                 for end in ends {
                     self.bodies[end].h = self.bodies[end].h.min(h);
                 }
@@ -280,7 +282,7 @@ impl<'a> IslandWindow<'a> {
             for k in [pair_history.a, pair_history.b] {
                 let body = &mut self.bodies[k as usize];
                 body.pressed_m_s += pair_history.normal_force.abs()
-                    / (body.member.body.mass * pair_history.law.omega);
+                    / (body.member.body.mass * pair_history.law.omega_rad_s());
             }
         }
     }

@@ -61,6 +61,8 @@ struct SpringContact {
     history: usize,
     /// Its law, with its share of a patch and the friction in force.
     law: Law,
+    /// Whether it came in too slowly to rebound.
+    captured: bool,
     /// Triangle whose ground answers.
     triangle: u32,
     /// Unit normal from the mesh to the block, and lever (m).
@@ -111,8 +113,8 @@ impl Springs {
     /// Stiffest contact (rad/s).
     fn stiffest(&self, world: &ContactEnvironment) -> f64 {
         let of = |laws: &mut dyn Iterator<Item = f64>| laws.fold(0.0, f64::max);
-        let known = of(&mut self.histories.iter().map(|history| history.law.omega));
-        if known > 0.0 { known } else { of(&mut world.laws.iter().map(|law| law.omega)) }
+        let known = of(&mut self.histories.iter().map(|history| history.law.omega_rad_s()));
+        if known > 0.0 { known } else { of(&mut world.laws.iter().map(|law| law.omega_rad_s())) }
     }
 
     /// Impacts whose time is up at `now_s` (s) are over: what still presses lasts, and is damped for good.
@@ -124,13 +126,13 @@ impl Springs {
 
     /// Slowest contact (rad/s): the impact of all is over after some of its times.
     pub(crate) fn slowest(&self) -> f64 {
-        self.histories.iter().map(|history| history.law.omega).fold(f64::INFINITY, f64::min)
+        self.histories.iter().map(|history| history.law.omega_rad_s()).fold(f64::INFINITY, f64::min)
     }
 
     /// About how much springs hold (J), as the memories tell.
     pub(crate) fn held_j(&self) -> f64 {
         let held = self.histories.iter().filter(|history| history.closed).map(|history| {
-            let penetration = history.normal_force / history.law.p_n;
+            let penetration = history.law.pressed_m(history.normal_force);
             history.law.stored_j(penetration, history.shear.norm_squared(), 0.0)
         });
         held.sum()
@@ -140,14 +142,9 @@ impl Springs {
 impl SpringContact {
     /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
     fn giving_way(&self, contact: &BlockContact, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
-        let law = &self.law;
-        let answers = [law.p_n * b + law.c_n, law.shear_over(b)];
-        let goal = self.n * (law.p_n * self.penetration / answers[0])
-            - self.shear * (law.p_s / answers[1]);
-        let springs = GivingWay {
-            compliance: answers.map(|answer| 1.0 / (a * answer)),
-            surface_m_s: self.penetration / b,
-        };
+        let stage = self.law.over_stage(self.captured, (a, b));
+        let goal = self.n * (stage.out_per_s * self.penetration) - self.shear * stage.back_per_s;
+        let springs = GivingWay { compliance: stage.compliance, surface_m_s: self.penetration / b };
         contact.with_goal(goal).with_springs(mass, springs)
     }
 
@@ -164,7 +161,7 @@ impl SpringContact {
 
     /// Stretch of the shear spring (m) after a motion for `b` (s).
     fn stretch(&self, b: f64) -> Vec3 {
-        self.law.shear_after(&self.shear_force, &self.shear, b)
+        self.law.shear.stretch_after(&self.shear_force, &self.shear, b)
     }
 
     /// Power that goes into it (W) at a velocity `u` of the contact point (m/s); what springs store is counted in.

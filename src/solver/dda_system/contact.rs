@@ -4,12 +4,11 @@ use super::slider::{Change, DdaSlider, along};
 use crate::contact::TOUCH;
 use crate::contact::history::{ContactHistory, SAME_GRIP, carry};
 use crate::contact::submatrix::{
-    Mat6, Vec6, displacement, friction_cap, friction_load, gap, moment_load, normal_load,
-    normal_row, normal_stiffness, rolling_stiffness, shear_load, shear_stiffness, slip,
-    touching_point,
+    Mat6, Vec6, displacement, friction_load, gap, moment_load, normal_load, normal_row,
+    normal_stiffness, rolling_stiffness, shear_load, shear_stiffness, slip, touching_point,
 };
 use crate::contact::{ContactPoint, Feature};
-use crate::ground::Law;
+use crate::ground::{FixedStepNormal, FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::loss::Loss;
 
@@ -73,11 +72,8 @@ pub(crate) struct DdaContact {
     radius: f64,
     /// `λ` at the step's start (m).
     gap: f64,
-    p_n: f64,
-    /// Normal damping over the step's length (N/m).
-    damper: f64,
-    tan_phi: f64,
-    rolling_m: f64,
+    element: FixedStepNormal,
+    limits: FrictionLimits,
     /// Normal force at the end of the last step (N).
     push_before: f64,
     /// Normal force (N).
@@ -99,10 +95,8 @@ impl DdaContact {
         p1: Vec3::new(0.0, 0.0, 0.0),
         radius: 0.0,
         gap: 0.0,
-        p_n: 0.0,
-        damper: 0.0,
-        tan_phi: 0.0,
-        rolling_m: 0.0,
+        element: FixedStepNormal::NONE,
+        limits: FrictionLimits::NONE,
         push_before: 0.0,
         normal_force: 0.0,
         presses: false,
@@ -120,8 +114,6 @@ impl DdaContact {
     ) -> Self {
         let v = -touch.normal;
         let p1 = touching_point(&v, step.radius);
-        let has_dashpots = law.c_s > 0.0;
-        let c_n = if history.captured && has_dashpots { law.c_n_captured } else { law.c_n };
         let mut contact = Self {
             history: k,
             feature: touch.feature,
@@ -130,25 +122,21 @@ impl DdaContact {
             p1,
             radius: step.radius,
             gap: gap(&v, &p1, &(v * touch.distance_m)),
-            p_n: law.p_n,
-            damper: c_n / step.dt,
-            tan_phi: law.friction,
-            rolling_m: law.rolling_m,
+            element: law.normal_over_step(history.captured, step.dt),
+            limits: law.limits(),
             push_before: history.normal_force,
-            shear: DdaSlider { spring: law.p_s, compliance: step.compliance.0, ..DdaSlider::NONE },
+            shear: DdaSlider::new(&law.shear, step.dt, step.compliance.0),
             roll: DdaSlider {
                 stretch: history.roll,
-                spring: law.k_r,
-                damper: law.c_r / step.dt,
-                compliance: step.compliance.1,
-                ..DdaSlider::NONE
+                ..DdaSlider::new(&law.rolling, step.dt, step.compliance.1)
             },
             shear_memory: step.shear_memory,
             ..Self::NONE
         };
         if step.shear_memory {
             contact.shear.stretch = carry(history.shear, &history.n, &touch.normal);
-            contact.shear.damper = law.c_s / step.dt;
+        } else {
+            contact.shear.damper = 0.0;
         }
         contact.presses = history.closed || contact.depth(&step.free) > 0.0;
         contact.expect(&step.free, history);
@@ -161,14 +149,14 @@ impl DdaContact {
             return;
         }
         let (way, turn) = self.ways(free);
-        let cap = friction_cap(history.normal_force, self.tan_phi);
+        let cap = self.limits.caps(history.normal_force).0;
         if self.shear_memory {
             self.shear.judge(&way, &Vec3::zeros(), cap);
         } else if history.slides {
             (self.shear.slides, self.shear.friction) = (true, along(&way) * cap);
         }
-        if self.rolling_m > 0.0 {
-            self.roll.judge(&turn, &Vec3::zeros(), self.rolling_m * history.normal_force);
+        if self.limits.has_rolling() {
+            self.roll.judge(&turn, &Vec3::zeros(), self.limits.caps(history.normal_force).1);
         }
     }
 
@@ -198,8 +186,7 @@ impl DdaContact {
     /// Counted from the touch the force grows steadily from nothing as the rock gets in, so every set of contacts has
     /// one state that fits; a dashpot that worked on the way there would leave none.
     fn normal_force(&self, d: &Vec6) -> f64 {
-        let depth = self.depth(d);
-        self.p_n * depth + self.damper * (depth - self.inside())
+        self.element.force(self.depth(d), self.inside())
     }
 
     /// Its springs and dashpots in force.
@@ -210,9 +197,9 @@ impl DdaContact {
         ContactMatrixTerms {
             v: self.v,
             p1: self.p1,
-            normal: if self.presses { self.p_n + self.damper } else { 0.0 },
+            normal: if self.presses { self.element.stiffness() } else { 0.0 },
             shear: of(&self.shear, self.presses),
-            roll: of(&self.roll, self.presses && self.rolling_m > 0.0),
+            roll: of(&self.roll, self.presses && self.limits.has_rolling()),
         }
     }
 
@@ -222,14 +209,14 @@ impl DdaContact {
             return;
         }
         let t = displacement(&self.p1);
-        let stiff = if self.gap < 0.0 { self.p_n } else { self.p_n + self.damper };
+        let stiff = self.element.load_stiffness(self.gap);
         *f += normal_load(stiff, self.gap, &normal_row(&self.v));
         *f += if self.shear.slides {
             friction_load(&t, &self.shear.friction)
         } else {
             shear_load(self.shear.spring, &t, &self.shear.stretch)
         };
-        if self.rolling_m > 0.0 {
+        if self.limits.has_rolling() {
             *f -= moment_load(&self.roll.force(&Vec3::zeros()));
         }
     }
@@ -246,18 +233,18 @@ impl DdaContact {
         let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
         if self.presses {
             let (way, turn) = self.ways(d);
-            let cap = friction_cap(self.normal_force, self.tan_phi);
+            let cap = self.limits.caps(self.normal_force).0;
             change = change.max(if self.shear_memory {
                 self.shear.judge(&way, &shear_force, cap)
             } else {
-                let before = friction_cap(self.push_before, self.tan_phi);
+                let before = self.limits.caps(self.push_before).0;
                 self.shear.judge_as_printed(&way, cap, before)
             });
-            if self.rolling_m > 0.0 {
+            if self.limits.has_rolling() {
                 change = change.max(self.roll.judge(
                     &turn,
                     &rolling_moment,
-                    self.rolling_m * self.normal_force,
+                    self.limits.caps(self.normal_force).1,
                 ));
             }
         }
@@ -268,7 +255,7 @@ impl DdaContact {
     pub(crate) fn stick(&mut self) {
         let apart = self.begins_apart();
         self.presses |= !apart;
-        self.shear.slides = apart || self.tan_phi <= 0.0;
+        self.shear.slides = apart || !self.limits.has_friction();
         self.roll.slides = apart;
         (self.shear.friction, self.roll.friction) = (Vec3::zeros(), Vec3::zeros());
     }
@@ -291,7 +278,7 @@ impl DdaContact {
         let (way, turn) = self.ways(d);
         if !self.presses {
             (Vec3::zeros(), Vec3::zeros())
-        } else if self.rolling_m > 0.0 {
+        } else if self.limits.has_rolling() {
             (self.shear.force(&way), self.roll.force(&turn))
         } else {
             (self.shear.force(&way), Vec3::zeros())
@@ -302,14 +289,7 @@ impl DdaContact {
     pub(crate) fn loss(&self, d: &Vec6) -> Loss {
         let (shear_force, rolling_moment) = self.forces(d);
         let (way, turn) = self.ways(d);
-        let damping = if self.presses {
-            self.damper * (self.depth(d) - self.inside()).powi(2)
-        } else if self.damper > 0.0 {
-            // Lifted off before the spring is back at its length: the dashpot beside it takes the rest.
-            0.5 * self.p_n * (self.inside().powi(2) - self.depth(d).max(0.0).powi(2))
-        } else {
-            0.0
-        };
+        let damping = self.element.loss_j(self.presses, self.depth(d), self.inside());
         let mut loss = Loss { damping, ..Loss::default() };
         if self.shear_memory {
             let (friction, damping) = self.shear.loss(&way, &shear_force);
@@ -318,7 +298,7 @@ impl DdaContact {
         } else if self.shear.slides {
             loss.friction = shear_force.dot(&way);
         }
-        if self.rolling_m > 0.0 {
+        if self.limits.has_rolling() {
             let (slider, dashpot) = self.roll.loss(&turn, &rolling_moment);
             loss.rolling = slider + dashpot;
         }
@@ -332,7 +312,7 @@ impl DdaContact {
         if self.shear_memory {
             history.shear = self.shear.end(&shear_force);
         }
-        if self.rolling_m > 0.0 {
+        if self.limits.has_rolling() {
             history.roll = self.roll.end(&rolling_moment);
         }
         history.normal_force = self.normal_force;

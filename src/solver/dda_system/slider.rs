@@ -1,5 +1,6 @@
 //! The element that shear and rolling are made of.
 
+use crate::ground::FrictionElement;
 use crate::rock::Vec3;
 
 /// Change of a friction force, relative to its cap, below which it has settled (–).
@@ -43,6 +44,12 @@ impl DdaSlider {
         slides: false,
         friction: Vec3::new(0.0, 0.0, 0.0),
     };
+
+    /// A friction element over a step of length `dt` (s), at rest.
+    pub(crate) fn new(element: &FrictionElement, dt: f64, compliance: f64) -> Self {
+        let [spring, damper] = element.over_step(dt);
+        Self { spring, damper, compliance, ..Self::NONE }
+    }
 
     /// Force after `way`, should it stick.
     pub(crate) fn sticking(&self, way: &Vec3) -> Vec3 {

@@ -3,6 +3,7 @@
 use crate::contact::TOUCH;
 use crate::contact::history::carry;
 use crate::contact::{ContactPoint, Feature};
+use crate::ground::NormalElement;
 use crate::rock::Vec3;
 use crate::solver::contact_state::{ContactEnvironment, ContactState};
 use crate::solver::impact::dormand_prince::{Flow, Rates, put, three};
@@ -28,8 +29,8 @@ pub(super) struct PressedContact {
     pub(super) touch: ContactPoint,
     pub(super) at: ContactPlace,
     pub(super) is_tree: bool,
-    /// Normal stiffness (N/m).
-    pub(super) p_n: f64,
+    /// Normal spring and dashpot in force.
+    pub(super) normal: NormalElement,
     /// Normal force (N), and whether friction is at its cap.
     pub(super) normal_force: f64,
     pub(super) slides: bool,
@@ -57,7 +58,7 @@ impl PressedContact {
         touch: ContactPoint::NONE,
         at: ContactPlace { n: ZERO, penetration: 0.0, shear: ZERO, roll: ZERO },
         is_tree: false,
-        p_n: 0.0,
+        normal: NormalElement::NONE,
         normal_force: 0.0,
         slides: false,
     };
@@ -111,7 +112,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         }
         let mut stored = Loss::default();
         for contact in contacts {
-            let joule = 0.5 * contact.p_n * contact.at.penetration * contact.at.penetration;
+            let joule = contact.normal.stored_j(contact.at.penetration);
             *(if contact.is_tree { &mut stored.trees } else { &mut stored.damping }) += joule;
         }
         Some(stored)
@@ -167,10 +168,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             }
             let (n, memory) = (touch.normal, &state.histories[place]);
             let law = world.law(touch.triangle);
-            let damping = if memory.captured { law.c_n_captured } else { law.c_n };
-            let gain = touch.gain2.sqrt();
-            let share = gain * world.dashpot_share(&state.touches, k);
-            let p_n = law.p_n * touch.gain2;
+            let share = world.dashpot_share(&state.touches, k);
+            let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
             let at = ContactPlace {
                 n,
                 penetration: (body.radius - touch.distance_m).max(0.0),
@@ -181,7 +180,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
                     Vec3::zeros()
                 },
             };
-            let action = Action::of(body, law, (p_n, damping * share), &at, (&v, &w));
+            let action = Action::of(body, law, &normal, &at, (&v, &w));
             let [normal_force, pulls] = action.normal;
             let approach = -n.dot(&v);
             dv += (n * normal_force - action.shear_force) * by_mass;
@@ -192,7 +191,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             }
             let is_tree = world.terrain.is_tree(touch.triangle);
             let [friction, damping, rolling] = action.powers(approach, &w);
-            let stores = p_n * at.penetration * approach;
+            let stores = normal.storing_w(at.penetration, approach);
             if is_tree {
                 rates.q[3] += friction + damping + rolling;
                 rates.q[5] += stores;
@@ -202,16 +201,16 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
                 rates.q[2] += rolling;
                 rates.q[4] += stores;
             }
-            let (cap, most) = (law.friction * normal_force, law.rolling_m * normal_force);
+            let (cap, most) = law.limits().caps(normal_force);
             // In units of acceleration, so that times a step they are speeds.
             let turn = body.radius * by_inertia;
             rates.kinks[3 * place] =
                 [(normal_force * by_mass).powi(2), (-pulls).max(0.0) * by_mass];
             rates.kinks[3 * place + 1] = [action.asked2[0] * by_mass * by_mass, cap * by_mass];
             rates.kinks[3 * place + 2] = [action.asked2[1] * turn * turn, most * turn];
-            let slides = action.asked2[0] >= (cap * (1.0 - 1e-9)).powi(2);
+            let slides = law.shear.slides2(action.asked2[0], normal_force);
             self.list[self.len] =
-                PressedContact { place, touch, at, is_tree, p_n, normal_force, slides };
+                PressedContact { place, touch, at, is_tree, normal, normal_force, slides };
             self.len += 1;
         }
         put(&mut rates.y, WAY, &v);

@@ -78,24 +78,24 @@ impl Plane {
     /// Prepares the impacts of `body` on a ground of `law`; `tolerance` is the local error allowed of a step (–, relative to
     /// the speed of the impact).
     pub(crate) fn new(body: &Body, law: &Law, tolerance: f64) -> Self {
-        Self::of_patch(body, law, (law.c_n, 1.0), tolerance)
+        Self::of_patch(body, law, (false, 1.0), tolerance)
     }
 
-    /// The same with its own normal damping (N s/m) and stiffness scale (–).
+    /// The same of a patch, captured or not, with its stiffness scale (–).
     pub(super) fn of_patch(
         body: &Body,
         law: &Law,
-        (c_n, scale): (f64, f64),
+        (captured, scale): (bool, f64),
         tolerance: f64,
     ) -> Self {
-        let p_n = law.p_n * scale;
-        let momentum = (law.p_n * body.mass).sqrt();
+        let normal = law.normal(captured);
+        let stiffness = normal.stiffness_n_m(scale);
         Self {
             body: *body,
-            omega: (p_n / body.mass).sqrt(),
-            swing: NormalMotion::new(0.5 * c_n / momentum),
-            shear: SliderElement::shear(body, law, p_n),
-            rolling: SliderElement::rolling(body, law, p_n),
+            omega: (stiffness / body.mass).sqrt(),
+            swing: NormalMotion::new(normal.damping_ratio(body.mass)),
+            shear: SliderElement::shear(body, law, stiffness),
+            rolling: SliderElement::rolling(body, law, stiffness),
             tolerance,
             first: FIRST * math::pow(tolerance, 0.2),
         }

@@ -98,7 +98,7 @@ pub(crate) fn throw(
     if let [contact] = contacts {
         return alone(body, contact, (v, w), tolerance, same);
     }
-    let rolls = contacts.iter().any(|contact| contact.law.k_r > 0.0);
+    let rolls = contacts.iter().any(|contact| contact.law.rolling.is_on());
     let how = (body, contacts, tolerance);
     match (contacts.len(), rolls) {
         (2, false) => several::<2, 15, 8, 6>(how, (v, w), same),
@@ -121,8 +121,7 @@ fn alone(
 ) -> FrozenRebound {
     let body = Body { gravity: Vec3::zeros(), ..*body };
     let (law, n) = (contact.law, &contact.normal);
-    let c_n = if contact.captured { law.c_n_captured } else { law.c_n };
-    let plane = Plane::of_patch(&body, law, (c_n, contact.stiffness_scale), tolerance);
+    let plane = Plane::of_patch(&body, law, (contact.captured, contact.stiffness_scale), tolerance);
     let Followed::Left(rebound) = plane.follow(n, v, w) else {
         // Without weight nothing keeps it but a speed too small to be squared.
         end.velocity_m_s -= n * n.dot(v);

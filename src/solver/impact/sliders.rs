@@ -21,7 +21,7 @@ pub(super) struct SliderElement {
 }
 
 impl SliderElement {
-    fn new(stiffness: f64, damping: f64, limit: f64) -> Self {
+    fn new([stiffness, damping, limit]: [f64; 3]) -> Self {
         if damping > 0.0 && limit > 0.0 {
             Self { damping, rate: stiffness / damping, cap: limit / damping }
         } else {
@@ -29,17 +29,17 @@ impl SliderElement {
         }
     }
 
-    /// The shear element of a contact of stiffness `p_N` (N/m).
-    pub(super) fn shear(body: &Body, law: &Law, p_n: f64) -> Self {
-        let momentum = (p_n * body.mass).sqrt();
-        Self::new(law.p_s / p_n, law.c_s / momentum, law.friction)
+    /// The shear element of a contact of a normal stiffness (N/m).
+    pub(super) fn shear(body: &Body, law: &Law, stiffness: f64) -> Self {
+        let momentum = (stiffness * body.mass).sqrt();
+        Self::new(law.shear.in_units([stiffness, momentum, 1.0]))
     }
 
     /// Its rolling element; with the spin times the radius for a speed.
-    pub(super) fn rolling(body: &Body, law: &Law, p_n: f64) -> Self {
-        let momentum = (p_n * body.mass).sqrt();
+    pub(super) fn rolling(body: &Body, law: &Law, stiffness: f64) -> Self {
+        let momentum = (stiffness * body.mass).sqrt();
         let r2 = body.radius * body.radius;
-        Self::new(law.k_r / (r2 * p_n), law.c_r / (r2 * momentum), law.rolling_m / body.radius)
+        Self::new(law.rolling.in_units([r2 * stiffness, r2 * momentum, body.radius]))
     }
 
     pub(super) fn is_on(&self) -> bool {

@@ -7,7 +7,7 @@ use super::body::IslandBody;
 use super::outcome::{Done, Given};
 use super::pair_contact::break_bond;
 use crate::contact::history::carry;
-use crate::contact::pair::{Bond, PairHistory, between};
+use crate::contact::pair::{PairHistory, PairImpact, between};
 use crate::math;
 use crate::rock::Vec3;
 use crate::solver::contact_state::ContactEnvironment;
@@ -23,10 +23,12 @@ impl Island<'_> {
         let before = self.angular_state();
         for member in &mut self.members {
             let mut loss = Loss::default();
+            let omegas_dt = member.omega(self.terrain) * dt;
             let end = member.end;
             let IslandBody { state, body, laws, .. } = &mut **member;
             let world = ContactEnvironment { terrain: self.terrain, body: *body, laws };
             step_control::accept(&world, tableau, state, (&end, dt), &mut loss);
+            state.impact.pass(omegas_dt);
             // a merged contact acts otherwise than its rates say
             self.fresh &= state.fresh;
             done.losses.push(loss);
@@ -64,12 +66,7 @@ impl Island<'_> {
         let mut pairs = self.pairs.iter().peekable();
         for (k, pair_history) in self.pair_histories.iter_mut().enumerate() {
             let Some(pair) = pairs.next_if(|pair| pair.pair_history == k) else {
-                (
-                    pair_history.closed,
-                    pair_history.normal_force,
-                    pair_history.shear_force,
-                    pair_history.shear,
-                ) = (false, 0.0, Vec3::zeros(), Vec3::zeros());
+                pair_history.part();
                 self.pair_rates[k][0] = Vec3::zeros();
                 continue;
             };
@@ -86,6 +83,11 @@ impl Island<'_> {
             pair_history.captured = pair.captured;
             pair_history.closed =
                 pair.normal_force > 0.0 || distance < a.body.radius + b.body.radius;
+            pair_history.impact = if pair_history.closed {
+                pair.impact.after(pair_history.law.omega_rad_s() * dt)
+            } else {
+                PairImpact::default()
+            };
             pair_history.shear = if pair_history.closed || pair_history.bond.is_some() {
                 turned(stretch)
             } else {
@@ -95,18 +97,12 @@ impl Island<'_> {
                 if pair_history.is_held() { turned(rate) } else { Vec3::zeros() };
             // at its cap but for rounding: the contact slips
             pair_history.slides = pair_history.bond.is_none()
-                && pair_history.shear_force.norm()
-                    >= pair_history.law.friction * pair_history.normal_force * (1.0 - 1e-9);
-            let overload = |bond| {
-                Bond::overload(
-                    bond,
-                    pair_history.normal_force,
-                    pair_history.shear_force.norm(),
-                    pair_history.law.friction,
-                )
-            };
+                && pair_history
+                    .law
+                    .shear
+                    .slides(pair_history.shear_force.norm(), pair_history.normal_force);
             // forces jump as a bond lets go: the next step must begin with rates of its own
-            if pair_history.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0) {
+            if pair_history.overload() > 0.0 {
                 break_bond(pair_history);
                 self.pair_forces[k] = (pair_history.normal_force, pair_history.shear_force);
                 self.fresh = false;
@@ -156,7 +152,7 @@ impl Island<'_> {
         }
         let lost = before - self.angular_momentum();
         let (_, c, _) = self.centre();
-        let spins = self.pair_histories.iter().any(|pair_history| pair_history.law.friction > 0.0);
+        let spins = self.pair_histories.iter().any(|pair_history| pair_history.law.shear.is_on());
         let mut inertia = Matrix3::zeros();
         for member in &self.members {
             let d = member.state.c - c;

@@ -11,11 +11,12 @@ use super::outcome::Done;
 use super::pair_contact::PairContact;
 use super::rigid::RigidIsland;
 use crate::contact::pair::{PairHistory, between};
+use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::Settings;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::step_control::{self, Control, ONSET, StepError, TRAVEL, TrialStep, TryOutcome};
-use crate::solver::tableau::{STAGES, TR_BDF2, Tableau};
+use crate::solver::tableau::{STAGES, TR_BDF2};
 use crate::terrain::Terrain;
 
 /// Overload at which a bond does not simply break: the step is cut to find the moment.
@@ -58,10 +59,8 @@ impl<'a> Island<'a> {
         mut members: Vec<BodySlot>,
         pair_histories: Vec<PairHistory>,
     ) -> Self {
-        // a rock alone goes through the solver of one rock: the same numbers as outside a world
-        let is_one = members.len() == 1;
         for member in &mut members {
-            member.enter_island(is_one);
+            member.enter_island();
         }
         let pair_forces = pair_histories
             .iter()
@@ -90,8 +89,8 @@ impl<'a> Island<'a> {
     /// # Errors
     /// [`StepError`] if the step had to become too short to matter.
     pub fn advance(&mut self, settings: &Settings, h_max: f64) -> Result<Done, StepError> {
-        let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
         if let [member] = &mut self.members[..] {
+            let tableau = settings.scheme.tableau().unwrap_or(&TR_BDF2);
             let h = &mut self.h;
             return member.advance_alone(self.terrain, |world, state| {
                 let control = Control::new(tableau, settings, world);
@@ -101,14 +100,7 @@ impl<'a> Island<'a> {
                 step_control::advance(world, &control, state, h, h_max)
             });
         }
-        // impacts of several rocks are not followed as a whole: one tolerance rules
-        let control = &Control {
-            tableau,
-            tolerance: settings.tolerance_m_s,
-            impact: f64::INFINITY,
-            plane_impacts: false,
-        };
-        self.tolerance = control.tolerance;
+        let control = &self.control(settings);
         // a rock that was turned against a facet, or whose stem has given way, has other rates
         if !self.fresh || self.members.iter().any(|member| !member.state.fresh) {
             self.rates_now();
@@ -193,10 +185,10 @@ impl<'a> Island<'a> {
             .pair_histories
             .iter()
             .filter(|pair_history| pair_history.is_held())
-            .map(|pair_history| pair_history.law.omega);
+            .map(|pair_history| pair_history.law.omega_rad_s());
         let ground = self.members.iter().map(|member| member.omega(self.terrain));
         let omega = pair_histories.chain(ground).fold(0.0, f64::max);
-        let all = self.members.iter().flat_map(|member| &member.laws).map(|law| law.omega);
+        let all = self.members.iter().flat_map(|member| &member.laws).map(Law::omega_rad_s);
         if omega > 0.0 { omega } else { all.fold(1.0, f64::max) }
     }
 
@@ -234,7 +226,8 @@ impl<'a> Island<'a> {
         if self.tears_badly() {
             return None;
         }
-        Some(dt * self.error(tableau) / control.tolerance)
+        self.note_impacts(true);
+        Some(dt * self.error(control))
     }
 
     /// Whether a bond is loaded far beyond its strength, which a shorter step would have found out.
@@ -242,24 +235,21 @@ impl<'a> Island<'a> {
         self.h * self.omega() > 1e-6
             && self.pairs.iter().any(|pair| {
                 let used = |bond: &crate::contact::pair::Bond| {
-                    bond.overload(pair.normal_force, pair.shear_force.norm(), pair.law.friction)
+                    bond.overload(&pair.law, pair.normal_force, pair.shear_force.norm())
                 };
                 let pair_history = &self.pair_histories[pair.pair_history];
                 // One that is overloaded from the start breaks at once: no shorter step changes that.
-                pair.bond.as_ref().is_some_and(|bond| {
-                    used(bond) > OVERLOAD
-                        && bond.overload(
-                            pair_history.normal_force,
-                            pair_history.shear_force.norm(),
-                            pair_history.law.friction,
-                        ) <= 0.0
-                })
+                pair.bond.as_ref().is_some_and(|bond| used(bond) > OVERLOAD)
+                    && pair_history.overload() <= 0.0
             })
     }
 
-    /// Largest error of the embedded method (m/s²).
-    fn error(&self, tableau: &Tableau) -> f64 {
+    /// Largest error of the embedded method over what is allowed to the rock (1/s).
+    fn error(&self, control: &Control) -> f64 {
+        let tableau = control.tableau;
         let weights = &tableau.error[..tableau.stages];
+        let over_allowed: Vec<f64> =
+            self.members.iter().map(|member| 1.0 / member.allowed_m_s(control.impact)).collect();
         let mut worst2 = 0.0f64;
         let mut omegas: Vec<f64> =
             self.members.iter().map(|member| member.omega(self.terrain)).collect();
@@ -270,14 +260,17 @@ impl<'a> Island<'a> {
             .filter(|(pair_history, _)| pair_history.is_held())
         {
             for k in [pair_history.a as usize, pair_history.b as usize] {
-                omegas[k] = omegas[k].max(pair_history.law.omega);
+                omegas[k] = omegas[k].max(pair_history.law.omega_rad_s());
             }
             // error of the shear stretch (m/s as a rate), times ω to compare with an acceleration
             let sums = rates.iter().zip(weights);
             let drift = sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate * *weight);
-            worst2 = worst2.max(drift.norm_squared() * pair_history.law.omega.powi(2));
+            let by =
+                over_allowed[pair_history.a as usize].max(over_allowed[pair_history.b as usize]);
+            worst2 =
+                worst2.max(drift.norm_squared() * (pair_history.law.omega_rad_s() * by).powi(2));
         }
-        for (member, omega) in self.members.iter().zip(&omegas) {
+        for ((member, omega), by) in self.members.iter().zip(&omegas).zip(&over_allowed) {
             // the embedded method's difference in place, velocity and spin, each as an acceleration: ω² x, v̇ and R ẇ
             let mut off = [Vec3::zeros(); 3];
             for (rate, weight) in member.state.rates.iter().zip(weights) {
@@ -292,10 +285,10 @@ impl<'a> Island<'a> {
                     sums.fold(Vec3::zeros(), |sum, (rate, weight)| sum + rate.shear[k] * *weight);
                 stretch2 = stretch2.max(drift.norm_squared());
             }
-            worst2 = worst2
-                .max(stretch2 * omega * omega)
+            let own2 = (stretch2 * omega * omega)
                 .max(off[1].norm_squared())
                 .max(off[2].norm_squared() * member.body.radius.powi(2));
+            worst2 = worst2.max(own2 * by * by);
         }
         worst2.sqrt()
     }
@@ -324,6 +317,7 @@ impl TrialStep for IslandTrial<'_, '_> {
     }
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {
+        self.island.members.iter_mut().for_each(|member| member.state.impact.try_anew());
         let outcome = match self.island.attempt(self.control, dt) {
             None => TryOutcome::Unsettled,
             Some(error) if error <= 1.0 => {

@@ -35,6 +35,9 @@ pub struct IslandBody {
     pub flew: bool,
     /// Whether anything but its weight acted on it in the last step (`rigid`).
     pub was_touched: bool,
+    /// Local error allowed in lasting contact, and the speed of the fastest impact that goes on, 0 if none (m/s).
+    pub(super) lasting_m_s: f64,
+    pub(super) struck_m_s: f64,
     pub(super) base: End,
     pub(super) guess: Vec3,
     /// Velocity and spin at the stage's end without contact forces …
@@ -111,6 +114,8 @@ impl IslandBody {
             flying: true,
             flew: true,
             was_touched: false,
+            lasting_m_s: 0.0,
+            struck_m_s: 0.0,
             base: end,
             guess: c,
             free: zero,
@@ -155,13 +160,10 @@ impl IslandBody {
         self.kept.clear();
     }
 
-    /// Comes into an island that knows nothing of the steps before; `alone` if nothing but the mesh can touch it there.
-    pub(super) fn enter_island(&mut self, alone: bool) {
+    /// Comes into an island that knows nothing of the steps before.
+    pub(super) fn enter_island(&mut self) {
         self.state.plane.forget();
         self.state.fresh = false;
-        if !alone {
-            self.state.impact.forget();
-        }
     }
 
     /// One step of a rock that nothing but the mesh can touch: that of a single rock.
@@ -196,7 +198,7 @@ impl IslandBody {
         let histories = self.state.histories.iter();
         histories
             .map(|history| {
-                history.normal_force / (self.body.mass * world.law(history.triangle).omega)
+                history.normal_force / (self.body.mass * world.law(history.triangle).omega_rad_s())
             })
             .sum()
     }
@@ -215,7 +217,7 @@ impl IslandBody {
         self.state
             .histories
             .iter()
-            .map(|history| world.law(history.triangle).omega)
+            .map(|history| world.law(history.triangle).omega_rad_s())
             .fold(0.0, f64::max)
     }
 }

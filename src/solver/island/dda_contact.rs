@@ -7,8 +7,9 @@
 use crate::contact::history::carry;
 use crate::contact::pair::{Bond, PairHistory, between};
 use crate::contact::submatrix::{
-    Mat3x6, Mat6, Vec6, displacement, force_at, friction_cap, normal_row, slip, touching_point,
+    Mat3x6, Mat6, Vec6, displacement, force_at, normal_row, slip, touching_point,
 };
+use crate::ground::{FixedStepNormal, FrictionLimits};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::dda_system::slider::{Change, DdaSlider};
@@ -22,9 +23,8 @@ pub(super) struct DdaPairContact {
     t: [Mat3x6; 2],
     /// `λ` at the step's start (m).
     gap: f64,
-    p_n: f64,
-    damper: f64,
-    tan_phi: f64,
+    element: FixedStepNormal,
+    limits: FrictionLimits,
     bond: Option<Bond>,
     captured: bool,
     normal_force: f64,
@@ -54,29 +54,26 @@ impl DdaPairContact {
         let v = -n;
         let points = [touching_point(&v, bodies[0].radius), touching_point(&-v, bodies[1].radius)];
         let law = &pair_history.law;
-        let damped = law.c_s > 0.0;
-        let c_n = if pair_history.captured && damped { law.c_n_captured } else { law.c_n };
         let compliance = |body: &Body| {
             0.5 * dt * dt * (1.0 / body.mass + body.radius * body.radius / body.inertia)
         };
         // A new pair knows no normal yet, and from the opposite of `n` there is no shortest turn.
         let from = if pair_history.is_held() { &pair_history.n } else { &n };
-        let shear = DdaSlider {
-            stretch: if memory { carry(pair_history.shear, from, &n) } else { Vec3::zeros() },
-            spring: law.p_s,
-            damper: if memory { law.c_s / dt } else { 0.0 },
-            compliance: bodies.iter().map(|body| compliance(body)).sum(),
-            ..DdaSlider::NONE
-        };
+        let compliance = bodies.iter().map(|body| compliance(body)).sum();
+        let mut shear = DdaSlider::new(&law.shear, dt, compliance);
+        if memory {
+            shear.stretch = carry(pair_history.shear, from, &n);
+        } else {
+            shear.damper = 0.0;
+        }
         Some(Self {
             pair_history: k,
             ends: [pair_history.a as usize, pair_history.b as usize],
             v,
             t: points.map(|point| displacement(&point)),
             gap: distance - reach,
-            p_n: law.p_n,
-            damper: c_n / dt,
-            tan_phi: law.friction,
+            element: law.normal_over_step(pair_history.captured, dt),
+            limits: law.limits(),
             bond: pair_history.bond,
             captured: pair_history.captured,
             normal_force: pair_history.normal_force,
@@ -101,8 +98,7 @@ impl DdaPairContact {
     }
 
     fn normal_force(&self, d: [&Vec6; 2]) -> f64 {
-        let depth = self.depth(d);
-        self.p_n * depth + self.damper * (depth - self.inside())
+        self.element.force(self.depth(d), self.inside())
     }
 
     /// Block `K_kl`.
@@ -111,7 +107,7 @@ impl DdaPairContact {
             return Mat6::zeros();
         }
         let row = normal_row(&self.v);
-        let normal = (row * (self.p_n + self.damper)) * row.transpose();
+        let normal = (row * self.element.stiffness()) * row.transpose();
         let shear = if self.shear.slides { 0.0 } else { self.shear.spring + self.shear.damper };
         // T_kᵀ Q T_l, as Vᵀ T = V_N
         let across = (self.t[k].transpose() * self.t[l] - row * row.transpose()) * shear;
@@ -123,8 +119,7 @@ impl DdaPairContact {
         if !self.presses {
             return Vec6::zeros();
         }
-        // What the dashpot has done before the touch is not its work.
-        let constant = self.p_n * self.gap + self.damper * (self.gap + self.inside());
+        let constant = self.element.constant(self.gap, self.inside());
         let shear_force = if self.shear.slides {
             self.shear.friction
         } else {
@@ -148,11 +143,11 @@ impl DdaPairContact {
         let shear_force = self.drag(d);
         let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
         if self.presses && self.bond.is_none() {
-            let (way, cap) = (self.way(d), friction_cap(self.normal_force, self.tan_phi));
+            let (way, cap) = (self.way(d), self.limits.caps(self.normal_force).0);
             change = change.max(if self.memory {
                 self.shear.judge(&way, &shear_force, cap)
             } else {
-                let before = friction_cap(self.push_before, self.tan_phi);
+                let before = self.limits.caps(self.push_before).0;
                 self.shear.judge_as_printed(&way, cap, before)
             });
         }
@@ -160,7 +155,7 @@ impl DdaPairContact {
     }
 
     pub(super) fn stick(&mut self) {
-        self.shear.slides = self.tan_phi <= 0.0 && self.bond.is_none();
+        self.shear.slides = !self.limits.has_friction() && self.bond.is_none();
     }
 
     fn drag(&self, d: [&Vec6; 2]) -> Vec3 {
@@ -186,8 +181,8 @@ impl DdaPairContact {
             (self.normal_force, shear_force, self.captured);
         pair_history.slides = self.presses && self.shear.slides;
         pair_history.closed = self.presses || self.depth(d) > 0.0;
-        let overload =
-            |bond: &Bond| bond.overload(self.normal_force, shear_force.norm(), self.tan_phi);
+        let law = &pair_history.law;
+        let overload = |bond: &Bond| bond.overload(law, self.normal_force, shear_force.norm());
         let breaks = self.bond.as_ref().is_some_and(|bond| overload(bond) > 0.0);
         if breaks {
             super::pair_contact::break_bond(pair_history);

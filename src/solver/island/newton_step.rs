@@ -11,9 +11,9 @@ use super::block_factor::{Below, Blocks, Factor};
 use super::body::{BodySlot, IslandBody};
 use super::pair_contact::{PairContact, Twist};
 use crate::contact::submatrix::{Mat3x6, Mat6, Vec6};
+use crate::ground::{LinearFriction, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::law::StageContact;
-use crate::solver::multi_contact::{Answer, NormalLine, Slider};
 use nalgebra::{DMatrix, DVector, Matrix3};
 
 /// Most rocks for which a dense matrix is as cheap; it looks for its pivots everywhere.
@@ -24,7 +24,7 @@ struct Linear {
     /// Normal force (N) as a line in the normal speed.
     normal: NormalLine,
     /// Shear force (N) linearised in slip (m/s) and normal force.
-    shear: Answer,
+    shear: LinearFriction,
     /// Slip and normal speed there, as far as they come from the ends that are sought.
     slip: Vec3,
     speed: f64,
@@ -84,27 +84,17 @@ impl Linear {
     fn of_pair(pair: &PairContact, members: &[BodySlot], place: &[Option<usize>], h: f64) -> Self {
         let ends = pair.ends.map(|k| &members[k].now);
         let (law, speed, trial) = (&pair.law, pair.speed(ends), pair.trial(ends, h));
-        let (normal, cap) = if pair.bond.is_some() {
-            (NormalLine { a: law.p_n * pair.penetration, b: law.p_n * h + pair.c_n }, f64::INFINITY)
+        let (normal, slider) = if pair.bond.is_some() {
+            (pair.normal.bond(pair.penetration, h).into(), law.shear.bonded(h))
         } else {
-            let springs = (law.p_n, pair.c_n);
-            let normal = NormalLine::line(
-                springs,
-                (pair.penetration, pair.normal_force),
-                1.0 / pair.inv_m,
-                h,
-            );
-            (normal, law.friction)
+            (pair.line(h), law.shear.left(h, (&pair.shear_force, pair.normal_force)))
         };
-        let (normal_force, held) =
-            if pair.bond.is_some() { (1.0, 1.0) } else { (normal.at(speed), pair.normal_force) };
-        let slider = Slider::left(cap, law.shear_over(h), (&pair.shear_force, held));
         let still = (Vec3::zeros(), Vec3::zeros());
         let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
         let own = pair.speed(sought);
         Self {
             normal: NormalLine { a: normal.a - normal.b * (speed - own), ..normal },
-            shear: slider.at(trial, normal_force),
+            shear: slider.at(trial, normal.at(speed)),
             slip: pair.slip(sought),
             speed: own,
             n: pair.n,
@@ -131,20 +121,11 @@ impl NewtonSystem {
     /// A contact of rock `k` with the mesh; the mesh is an end that does not move, so only `K_kk` changes.
     fn add_contact_force(&mut self, k: usize, member: &IslandBody, contact: &StageContact, h: f64) {
         let (body, law, (v, w)) = (&member.body, &contact.law, &member.now);
-        let normal = NormalLine::line(
-            (law.p_n, contact.c_n),
-            (contact.penetration, contact.normal_force),
-            body.mass,
-            h,
-        );
+        let normal = contact.line(body, h);
         let speed = contact.n.dot(v);
         let (stick, wound) = contact.trials(body, v, w, h);
         let normal_force = normal.at(speed);
-        let shear = Slider::left(
-            law.friction,
-            law.shear_over(h),
-            (&contact.shear_force, contact.normal_force),
-        );
+        let shear = law.shear.left(h, (&contact.shear_force, contact.normal_force));
         let shear = shear.at(stick, normal_force);
         let ends = [Some((k, 1.0, body.radius)), None];
         self.add(&Linear {
@@ -155,12 +136,8 @@ impl NewtonSystem {
             n: contact.n,
             ends,
         });
-        if law.rolling_m > 0.0 {
-            let roll = Slider::left(
-                law.rolling_m,
-                law.rolling_over(h),
-                (&contact.rolling_moment, contact.normal_force),
-            );
+        if law.rolling.is_on() {
+            let roll = law.rolling.left(h, (&contact.rolling_moment, contact.normal_force));
             let roll = roll.at(wound, normal_force);
             self.add_rolling(k, &roll, &normal, (&contact.n, speed, w));
         }
@@ -170,7 +147,7 @@ impl NewtonSystem {
     fn add_rolling(
         &mut self,
         k: usize,
-        roll: &Answer,
+        roll: &LinearFriction,
         normal: &NormalLine,
         (n, speed, w): (&Vec3, f64, &Vec3),
     ) {

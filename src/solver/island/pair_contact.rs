@@ -1,11 +1,11 @@
 //! The contact of two rocks inside one implicit stage: the law of [`StageContact`](crate::solver::law::StageContact) with a second body.
 
 pub(super) use crate::contact::TOUCH;
-use crate::contact::pair::{Bond, PairHistory, between};
-use crate::ground::Law;
+use crate::contact::pair::{Bond, PairHistory, PairImpact, between};
+use crate::ground::{Law, NormalElement, NormalLine};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
-use crate::solver::law::{normal_force, within};
+use crate::solver::law::within;
 
 /// A velocity and a spin.
 pub(super) type Twist = (Vec3, Vec3);
@@ -18,10 +18,12 @@ pub(super) struct PairContact {
     /// The two rocks, as places in the island.
     pub(super) ends: [usize; 2],
     pub(super) law: Law,
-    /// Normal damping in force (N s/m).
-    pub(super) c_n: f64,
+    /// Normal spring and dashpot in force.
+    pub(super) normal: NormalElement,
     /// Too slow to rebound.
     pub(super) captured: bool,
+    /// The impact that goes on.
+    pub(super) impact: PairImpact,
     /// Holds in tension too.
     pub(super) bond: Option<Bond>,
     /// Unit normal from the second to the first.
@@ -63,12 +65,9 @@ impl PairContact {
             pair_history: 0,
             ends: [pair_history.a as usize, pair_history.b as usize],
             law: pair_history.law,
-            c_n: if pair_history.captured {
-                pair_history.law.c_n_captured
-            } else {
-                pair_history.law.c_n
-            },
+            normal: pair_history.law.normal(pair_history.captured),
             captured: pair_history.captured,
+            impact: pair_history.impact,
             bond: pair_history.bond,
             n,
             penetration: pair_history.bond.map_or(reach, |bond| bond.length_m) - distance,
@@ -79,6 +78,15 @@ impl PairContact {
             inv_m,
             inv_t: inv_m + turning[0] + turning[1],
         })
+    }
+
+    /// Begins as bodies come together at a speed (m/s): too slow to rebound, or an impact.
+    pub(super) fn begin(&mut self, approach_m_s: f64) {
+        self.captured = approach_m_s < self.law.capture_m_s;
+        self.normal = self.law.normal(self.captured);
+        if !self.captured {
+            self.impact = PairImpact::begun(approach_m_s);
+        }
     }
 
     /// Whether it holds any force.
@@ -101,43 +109,46 @@ impl PairContact {
 
     /// What the shear spring would hold if it did not slide (N).
     pub(super) fn trial(&self, ends: [&Twist; 2], h: f64) -> Vec3 {
-        self.shear * self.law.p_s + self.slip(ends) * self.law.shear_over(h)
+        self.law.shear.held(self.shear) + self.slip(ends) * self.law.shear.over(h)
     }
 
     /// Forces for motions without this contact's own effect, over a stage of length `h`.
     pub(super) fn solve(&mut self, ends: [&Twist; 2], h: f64) {
-        let (springs, vn) = ((self.law.p_n, self.c_n), self.speed(ends));
+        let vn = self.speed(ends);
         if self.bond.is_none() {
-            self.normal_force = normal_force(springs, self.penetration, vn, 1.0 / self.inv_m, h);
+            self.normal_force = self.normal.stage_force(self.penetration, vn, 1.0 / self.inv_m, h);
             if self.normal_force <= 0.0 {
                 self.shear_force = Vec3::zeros();
                 return;
             }
         }
-        let free = self.trial(ends, h) / (1.0 + h * self.law.shear_over(h) * self.inv_t);
+        let free = self.trial(ends, h) / (1.0 + h * self.law.shear.over(h) * self.inv_t);
         if self.bond.is_some() {
-            let stiff = self.law.p_n * h + self.c_n;
-            self.normal_force =
-                (self.law.p_n * self.penetration - stiff * vn) / (1.0 + stiff * h * self.inv_m);
+            self.normal_force = self.normal.bond(self.penetration, h).force(vn, h, self.inv_m);
             self.shear_force = free;
             return;
         }
-        self.shear_force = within(free, self.law.friction * self.normal_force);
+        self.shear_force = self.law.shear.capped(free, self.normal_force);
     }
 
     /// Forces at the present state, for the explicit first stage; gives the rate of the shear spring.
     pub(super) fn act_now(&mut self, ends: [&Twist; 2]) -> Vec3 {
         let (penetration, vn) = (self.penetration, self.speed(ends));
-        let held = self.shear * self.law.p_s;
-        let stick = held + self.slip(ends) * self.law.c_s;
+        let held = self.law.shear.held(self.shear);
+        let stick = held + self.law.shear.damped(self.slip(ends));
         if self.bond.is_some() {
             (self.normal_force, self.shear_force) =
-                (self.law.p_n * penetration - self.c_n * vn, stick);
+                (self.normal.pull_or_push(penetration, vn), stick);
         } else {
-            self.normal_force = (self.law.p_n * penetration.max(0.0) - self.c_n * vn).max(0.0);
-            self.shear_force = within(stick, self.law.friction * self.normal_force);
+            self.normal_force = self.normal.force(penetration.max(0.0), vn);
+            self.shear_force = self.law.shear.capped(stick, self.normal_force);
         }
-        if self.law.c_s > 0.0 { (self.shear_force - held) / self.law.c_s } else { Vec3::zeros() }
+        self.law.shear.relaxing(self.shear_force, held)
+    }
+
+    /// Its normal force as a line, in the mode that it is in.
+    pub(super) fn line(&self, h: f64) -> NormalLine {
+        self.normal.line((self.penetration, self.normal_force), 1.0 / self.inv_m, h)
     }
 
     /// Force and moment on end `k` (N, N m).
@@ -156,7 +167,7 @@ impl PairContact {
 
     /// Stretch of the shear spring at the stage's end: `ξ' = (h q + c_s ξ*)/(h p_s + c_s)`.
     pub(super) fn stretch(&self, h: f64) -> Vec3 {
-        self.law.shear_after(&self.shear_force, &self.shear, h)
+        self.law.shear.stretch_after(&self.shear_force, &self.shear, h)
     }
 }
 
@@ -165,8 +176,7 @@ pub(super) fn break_bond(pair_history: &mut PairHistory) {
     pair_history.bond = None;
     pair_history.captured = true;
     pair_history.normal_force = pair_history.normal_force.max(0.0);
-    let cap = pair_history.law.friction * pair_history.normal_force / pair_history.law.p_s;
-    pair_history.shear = within(pair_history.shear, cap);
-    pair_history.shear_force =
-        within(pair_history.shear_force, pair_history.law.friction * pair_history.normal_force);
+    let (slider, pressed) = (pair_history.law.shear, pair_history.normal_force);
+    pair_history.shear = within(pair_history.shear, slider.longest_stretch(pressed));
+    pair_history.shear_force = slider.capped(pair_history.shear_force, pressed);
 }

@@ -124,8 +124,9 @@ impl RigidIsland {
             let [a, b] = ball_contact.ends.map(|k| &self.balls[k]);
             (pair_history.normal_force, pair_history.shear_force) =
                 (ball_contact.normal_force / dt, ball_contact.shear_force / dt);
-            pair_history.slides = ball_contact.shear_force.norm()
-                >= ball_contact.friction * ball_contact.normal_force * (1.0 - 1e-9);
+            pair_history.slides = ball_contact
+                .limits
+                .slides(ball_contact.shear_force.norm(), ball_contact.normal_force);
             // what carried in this step is where the next begins to look for what carries
             pair_history.closed |= pair_history.is_slow(&(a.v - b.v));
         }

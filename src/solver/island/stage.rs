@@ -74,12 +74,7 @@ impl Island<'_> {
             let apart = pair.n.dot(&((a.base.c - b.base.c) - (a.guess - b.guess)));
             pair.penetration -= apart;
             if !pair_history.is_held() {
-                pair.captured = -pair.n.dot(&(a.base.v - b.base.v)) < pair_history.law.capture_m_s;
-                pair.c_n = if pair.captured {
-                    pair_history.law.c_n_captured
-                } else {
-                    pair_history.law.c_n
-                };
+                pair.begin(-pair.n.dot(&(a.base.v - b.base.v)));
             }
             // the remembered stretch is turned with the normal: the spring stays in the tangent plane
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
@@ -146,13 +141,7 @@ impl Island<'_> {
             };
             let motions = [(a.state.v, a.state.w), (b.state.v, b.state.w)];
             if !pair_history.is_held() {
-                pair.captured =
-                    -pair.speed([&motions[0], &motions[1]]) < pair_history.law.capture_m_s;
-                pair.c_n = if pair.captured {
-                    pair_history.law.c_n_captured
-                } else {
-                    pair_history.law.c_n
-                };
+                pair.begin(-pair.speed([&motions[0], &motions[1]]));
                 pair_history.n = pair.n;
             }
             pair.shear = carry(pair_history.shear, &pair_history.n, &pair.n);

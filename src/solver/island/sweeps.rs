@@ -10,8 +10,6 @@ use super::assembly::Island;
 use super::body::IslandBody;
 use super::newton_step::jump;
 use super::pair_contact::Twist;
-use crate::solver::law::within;
-use crate::solver::multi_contact::NormalLine;
 
 /// Sweeps before the first jump, and between two of them: at least, for each rock that is stirred, and at most. A jump
 /// costs as much as some hundred contacts.
@@ -192,17 +190,10 @@ impl Island<'_> {
             *now = (*v, *w);
             for contact in &mut state.contacts[..state.contact_count] {
                 let law = contact.law;
-                let springs = (law.p_n, contact.c_n);
-                let line = NormalLine::line(
-                    springs,
-                    (contact.penetration, contact.normal_force),
-                    body.mass,
-                    h,
-                );
-                contact.normal_force = line.at(contact.n.dot(v));
+                contact.normal_force = contact.line(body, h).at(contact.n.dot(v));
                 let (stick, wound) = contact.trials(body, v, w, h);
-                contact.shear_force = within(stick, law.friction * contact.normal_force);
-                contact.rolling_moment = within(wound, law.rolling_m * contact.normal_force);
+                contact.shear_force = law.shear.capped(stick, contact.normal_force);
+                contact.rolling_moment = law.rolling.capped(wound, contact.normal_force);
             }
         }
         for pair in &mut self.pairs {
@@ -212,14 +203,11 @@ impl Island<'_> {
             let ends = pair.ends.map(|k| &self.members[k].now);
             let (law, speed, stick) = (pair.law, pair.speed(ends), pair.trial(ends, h));
             if pair.bond.is_some() {
-                pair.normal_force = law.p_n * (pair.penetration - h * speed) - pair.c_n * speed;
+                pair.normal_force = pair.normal.bond_force(pair.penetration, speed, h);
                 pair.shear_force = stick;
             } else {
-                let springs = (law.p_n, pair.c_n);
-                let pressed = (pair.penetration, pair.normal_force);
-                pair.normal_force =
-                    NormalLine::line(springs, pressed, 1.0 / pair.inv_m, h).at(speed);
-                pair.shear_force = within(stick, law.friction * pair.normal_force);
+                pair.normal_force = pair.line(h).at(speed);
+                pair.shear_force = law.shear.capped(stick, pair.normal_force);
             }
         }
     }

@@ -1,16 +1,15 @@
 //! One step on a plane, tried with any length.
 //!
 //! The numbers of a state are way, velocity, spin, shear stretch and rolling stretch, in the frame of two tangents
-//! and the normal: fourteen in all. Normal force and friction follow in closed form (`law::normal_force`,
+//! and the normal: fourteen in all. Normal force and friction follow in closed form (`stage_force`,
 //! `Pair::solve`), so a stage takes no iteration but that of the two sliders.
 
 use crate::contact::neighbours::Neighbours;
-use crate::ground::Law;
+use crate::ground::{Law, NormalElement};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::friction_rolling::{Answers, Local, Pair, SlipState};
-use crate::solver::law::normal_force;
 use crate::solver::loss::Loss;
 use crate::solver::plane_state::{
     PlaneForces, PlaneState, ROLL, SHEAR, SIZE, SPEED, SPIN, State, WAY, accelerations, dot, slip,
@@ -37,8 +36,8 @@ pub(super) struct PlaneTrial<'a, 'w> {
     pub(super) world: &'a ContactEnvironment<'w>,
     pub(super) law: &'a Law,
     pub(super) plane: &'a mut PlaneState,
-    /// Normal damping in force (N s/m).
-    pub(super) c_n: f64,
+    /// Normal spring and dashpot in force.
+    pub(super) normal: NormalElement,
     /// Gravity in the frame of the plane (m/s²).
     pub(super) gravity: Local,
     /// Penetration at `start` (m).
@@ -102,14 +101,14 @@ impl PlaneTrial<'_, '_> {
         let speed = [0, 1, 2].map(|k| base[SPEED + k] + self.gravity[k] * hh);
         let penetration = self.penetration - base[WAY + 2];
         // Kelvin–Voigt spring of the stage's end, never pulling; see the law
-        let normal_force = normal_force((law.p_n, self.c_n), penetration, speed[2], body.mass, hh);
+        let normal_force = self.normal.stage_force(penetration, speed[2], body.mass, hh);
         let (mut shear_force, mut rolling_moment) = ([0.0; 2], [0.0; 3]);
         if normal_force > 0.0 {
             let (slip, answers) = (slip(body, speed, spin), &by.answers);
             // trial forces: what springs and dashpots would give if nothing slipped
-            let a = [0, 1].map(|k| base[SHEAR + k] * law.p_s + slip[k] * answers.kap);
-            let d = [0, 1, 2].map(|k| base[ROLL + k] * law.k_r + spin[k] * answers.kar);
-            let caps = (law.friction * normal_force, law.rolling_m * normal_force);
+            let a = [0, 1].map(|k| law.shear.held(base[SHEAR + k]) + slip[k] * answers.kap);
+            let d = [0, 1, 2].map(|k| law.rolling.held(base[ROLL + k]) + spin[k] * answers.kar);
+            let caps = law.limits().caps(normal_force);
             (shear_force, rolling_moment) = Pair { answers, a, d, caps }.solve(&mut self.mode);
         }
         let (dv, dw) = accelerations(body, normal_force, shear_force, rolling_moment);
@@ -121,10 +120,10 @@ impl PlaneTrial<'_, '_> {
             rate[SPIN + k] = dw[k];
         }
         for k in 0..2 {
-            rate[SHEAR + k] = (shear_force[k] - law.p_s * base[SHEAR + k]) * by.over_s;
+            rate[SHEAR + k] = (shear_force[k] - law.shear.held(base[SHEAR + k])) * by.over_s;
         }
         for k in 0..3 {
-            rate[ROLL + k] = (rolling_moment[k] - law.k_r * base[ROLL + k]) * by.over_r;
+            rate[ROLL + k] = (rolling_moment[k] - law.rolling.held(base[ROLL + k])) * by.over_r;
         }
         // stiffly accurate: the last of these ends is that of the step
         for k in 0..SIZE {
@@ -156,7 +155,7 @@ impl PlaneTrial<'_, '_> {
             return None;
         }
         // It runs into something: what it meets must be resolved from the start, so come close first.
-        Some(if dt * self.law.omega > ONSET {
+        Some(if dt * self.law.omega_rad_s() > ONSET {
             TryOutcome::Unsettled
         } else {
             TryOutcome::Elsewhere
@@ -174,7 +173,7 @@ impl PlaneTrial<'_, '_> {
                 *off += rate * weight;
             }
         }
-        let omega2 = self.law.omega * self.law.omega;
+        let omega2 = self.law.omega_rad_s() * self.law.omega_rad_s();
         let worst2 = (square(three(&off, WAY)).max(square(two(&off, SHEAR))) * omega2)
             .max(square(three(&off, SPEED)))
             .max(square(three(&off, SPIN)) * self.world.body.radius.powi(2));
@@ -207,7 +206,7 @@ impl PlaneTrial<'_, '_> {
         done: &mut Advance,
     ) -> Option<StepFailure> {
         // A stem must be asked after every step whether it still stands.
-        let span = if is_tree { 0.0 } else { IMPACT / self.law.omega };
+        let span = if is_tree { 0.0 } else { IMPACT / self.law.omega_rad_s() };
         let (control, mut sum) = (self.control, [0.0; 3]);
         let halt = loop {
             let left = h_max - done.dt;
@@ -264,7 +263,7 @@ impl TrialStep for PlaneTrial<'_, '_> {
     }
 
     fn omega(&self) -> f64 {
-        self.law.omega
+        self.law.omega_rad_s()
     }
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {
@@ -284,7 +283,7 @@ impl TrialStep for PlaneTrial<'_, '_> {
         self.stored =
             if self.press.closed { stored_j(self.law, penetration, &self.end) } else { 0.0 };
         self.energy_at_end = self.end_j();
-        if dt * self.law.omega > RESOLVED && self.gains() {
+        if dt * self.law.omega_rad_s() > RESOLVED && self.gains() {
             return TryOutcome::Gains;
         }
         TryOutcome::Error(error)

@@ -218,8 +218,8 @@ impl Footing {
             }
             history.shear = contact.stretch(way_s);
             history.normal_force = contact.normal_force;
-            let cap = contact.law.friction * contact.normal_force;
-            history.slides = contact.shear_force.norm() >= cap * (1.0 - 1e-9);
+            history.slides =
+                contact.law.shear.slides(contact.shear_force.norm(), contact.normal_force);
             let u = moving.at(block, &contact.lever);
             (history.offset_m, history.pressed_m) =
                 (contact.offset_m, contact.pen_at(&u, way_s).max(0.0));

@@ -13,7 +13,6 @@ use crate::contact::history::carry;
 use crate::rock::Vec3;
 use crate::solver::block::solve::{BlockContact, Mass, solve};
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::law::within;
 use crate::solver::loss::Loss;
 use crate::solver::stage::{AGREED, PASSES};
 use crate::solver::tableau::Tableau;
@@ -132,15 +131,13 @@ impl Footing {
             let Some(history) = self.of_touch[k] else { continue };
             let memory = &self.springs.histories[history];
             let mut law = memory.law.of_patch(touch.gain2, 1.0);
-            if memory.captured {
-                law.c_n = law.c_n_captured;
-            }
-            law.friction = self.slip.friction(world.ground_of(touch.triangle), &law, 0.0);
+            law.rub_with(self.slip.friction(world.ground_of(touch.triangle), &law, 0.0));
             let offset_m = self.offset_m((start, guess), touch, (block, history));
             contacts.push(SpringContact {
                 history,
                 offset_m,
                 law,
+                captured: memory.captured,
                 triangle: touch.triangle,
                 n: touch.normal,
                 lever: touch.lever,
@@ -171,7 +168,7 @@ impl Footing {
             let bare = BlockContact::new(
                 &mass,
                 at,
-                (contact.law.friction, contact.triangle),
+                (contact.law.friction_coefficient(), contact.triangle),
                 Vec3::zeros(),
             );
             let mut soft = contact.giving_way(&bare, &mass, stage.times_s);
@@ -244,13 +241,12 @@ impl Footing {
         for contact in &mut springs.contacts {
             let (law, n) = (contact.law, contact.n);
             let u = Mass::at(&contact.lever, (&moving.v, &rate.turned));
-            let pressed = law.p_n * contact.penetration.max(0.0) - law.c_n * n.dot(&u);
-            contact.normal_force = pressed.max(0.0);
-            let (slip, held) = (u - n * n.dot(&u), contact.shear * law.p_s);
-            contact.shear_force =
-                within(held + slip * law.c_s, law.friction * contact.normal_force);
-            let shear_rate =
-                if law.c_s > 0.0 { (contact.shear_force - held) / law.c_s } else { slip };
+            let normal = law.normal(contact.captured);
+            contact.normal_force = normal.force(contact.penetration.max(0.0), n.dot(&u));
+            let (slip, held) = (u - n * n.dot(&u), law.shear.held(contact.shear));
+            let asked = held + law.shear.damped(slip);
+            contact.shear_force = law.shear.capped(asked, contact.normal_force);
+            let shear_rate = law.shear.relaxing(contact.shear_force, held);
             let force = n * contact.normal_force - contact.shear_force;
             rate.v += force / block.mass_kg;
             rate.momentum += contact.lever.cross(&force);

@@ -17,7 +17,7 @@ fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockRun {
     case.springs = Some(Settings {
         scheme,
         tolerance_m_s: 1e-3,
-        step_s: 0.01 / case.law.omega,
+        step_s: 0.01 / case.law.omega_rad_s(),
         shear_memory: true,
         plane_impacts: true,
         capture_speed_m_s: own_m_s,

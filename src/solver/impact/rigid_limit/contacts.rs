@@ -60,13 +60,14 @@ pub(super) struct AfterImpact {
 
 impl Contacts {
     pub(super) fn new(body: &Body, struck: &[FrozenContact]) -> Self {
-        let stiffness = |struck: &FrozenContact| struck.law.p_n * struck.stiffness_scale;
+        let normal = |struck: &FrozenContact| struck.law.normal(struck.captured);
+        let stiffness =
+            |struck: &FrozenContact| normal(struck).stiffness_n_m(struck.stiffness_scale);
         let stiffest = struck.iter().map(stiffness).fold(0.0, f64::max);
         let momentum = (stiffest * body.mass).sqrt();
         let contact = |struck: &FrozenContact| {
             let law = struck.law;
-            let c_n = if struck.captured { law.c_n_captured } else { law.c_n };
-            let damping = c_n * struck.stiffness_scale.sqrt() / momentum;
+            let damping = normal(struck).damping_over(struck.stiffness_scale, momentum);
             ImpactContact {
                 n: struck.normal,
                 stiffness: stiffness(struck) / stiffest,
@@ -74,7 +75,7 @@ impl Contacts {
                 shear: SliderElement::shear(body, law, stiffest),
                 rolling: SliderElement::rolling(body, law, stiffest),
                 captured: struck.captured,
-                kept: restitution(0.5 * c_n / (law.p_n * body.mass).sqrt()),
+                kept: restitution(normal(struck).damping_ratio(body.mass)),
             }
         };
         let softest = struck.iter().map(stiffness).fold(f64::INFINITY, f64::min) / stiffest;

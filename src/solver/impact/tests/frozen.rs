@@ -16,7 +16,7 @@ fn touches(contacts: &[FrozenContact]) -> Vec<Touch> {
     let touch = |contact: &FrozenContact| Touch {
         n: contact.normal,
         law: *contact.law,
-        c_n: if contact.captured { contact.law.c_n_captured } else { contact.law.c_n },
+        captured: contact.captured,
         scale: contact.stiffness_scale,
     };
     contacts.iter().map(touch).collect()

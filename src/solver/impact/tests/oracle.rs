@@ -11,7 +11,7 @@ use crate::solver::law::within;
 pub(super) struct Touch {
     pub(super) n: Vec3,
     pub(super) law: Law,
-    pub(super) c_n: f64,
+    pub(super) captured: bool,
     pub(super) scale: f64,
 }
 
@@ -60,8 +60,10 @@ pub(super) fn pushes(touches: &[Touch], pressed: &[bool], at: &OracleState) -> V
     };
     let normal_force = |k: usize| {
         let touch = &touches[k];
-        let c = touch.c_n * touch.scale.sqrt() * share(k);
-        touch.law.p_n * touch.scale * depth(touch, at) - c * touch.n.dot(&at.v)
+        let [p_n, c_n, c_n_captured] = touch.law.coefficients().normal;
+        let c_n = if touch.captured { c_n_captured } else { c_n };
+        let c = c_n * touch.scale.sqrt() * share(k);
+        p_n * touch.scale * depth(touch, at) - c * touch.n.dot(&at.v)
     };
     (0..touches.len()).map(|k| if pressed[k] { normal_force(k).max(0.0) } else { 0.0 }).collect()
 }
@@ -74,14 +76,16 @@ fn rate(body: &Body, touches: &[Touch], pressed: &[bool], at: &OracleState) -> O
         let (n, law, force) = (&touch.n, &touch.law, normal_force[k]);
         let slip = body.slip(n, &at.v, &at.w);
         let mut shear_force = Vec3::zeros();
-        if law.friction > 0.0 {
-            shear_force = within(at.shear[k] * law.p_s + slip * law.c_s, law.friction * force);
-            rate.shear[k] = (shear_force - at.shear[k] * law.p_s) / law.c_s;
+        let [p_s, c_s, friction] = law.coefficients().shear;
+        if friction > 0.0 {
+            shear_force = within(at.shear[k] * p_s + slip * c_s, friction * force);
+            rate.shear[k] = (shear_force - at.shear[k] * p_s) / c_s;
         }
         let mut rolling_moment = Vec3::zeros();
-        if law.k_r > 0.0 {
-            rolling_moment = within(at.roll[k] * law.k_r + at.w * law.c_r, law.rolling_m * force);
-            rate.roll[k] = (rolling_moment - at.roll[k] * law.k_r) / law.c_r;
+        let [k_r, c_r, rolling_m] = law.coefficients().rolling;
+        if k_r > 0.0 {
+            rolling_moment = within(at.roll[k] * k_r + at.w * c_r, rolling_m * force);
+            rate.roll[k] = (rolling_moment - at.roll[k] * k_r) / c_r;
         }
         rate.v += (n * force - shear_force) / body.mass;
         rate.w += (n.cross(&shear_force) * body.radius - rolling_moment) / body.inertia;
@@ -113,7 +117,8 @@ pub(super) fn follow(
     (v, w): (Vec3, Vec3),
     per_radian: f64,
 ) -> (OracleState, f64) {
-    let omega = |touch: &Touch| (touch.law.p_n * touch.scale / body.mass).sqrt();
+    let omega =
+        |touch: &Touch| (touch.law.coefficients().normal[0] * touch.scale / body.mass).sqrt();
     let h = 1.0 / (per_radian * touches.iter().map(omega).fold(0.0, f64::max));
     let mut at = OracleState::new(v, w, touches.len());
     let mut pressed: Vec<bool> = touches.iter().map(|touch| touch.n.dot(&v) < 0.0).collect();

@@ -2,13 +2,12 @@
 
 use crate::contact::Feature;
 use crate::contact::pair::{PairHistory, between};
-use crate::ground::Law;
+use crate::ground::{FrictionLimits, Law};
 use crate::rock::Vec3;
 use crate::solver::body::Body;
 use crate::solver::friction_rolling::SlipState;
 use crate::solver::impact::{FrozenContact, throw};
 use crate::solver::island::pair_contact::Twist;
-use crate::solver::law::within;
 use crate::solver::rigid::{IMPACT, rub};
 
 /// One rock inside a step.
@@ -97,14 +96,10 @@ impl Impulses {
         n * self.0 * self.0 + t * self.1.norm_squared() + r * self.2.norm_squared()
     }
 
-    /// Within the cone of friction with these caps over the normal impulse.
-    fn within(&self, caps: (f64, f64)) -> Self {
+    /// Within the cone of friction.
+    fn within(&self, limits: &FrictionLimits) -> Self {
         let normal_force = self.0.max(0.0);
-        Self(
-            normal_force,
-            within(self.1, caps.0 * normal_force),
-            within(self.2, caps.1 * normal_force),
-        )
+        Self(normal_force, limits.shear(self.1, normal_force), limits.rolling(self.2, normal_force))
     }
 }
 
@@ -121,8 +116,8 @@ pub(super) struct BallContact {
     pub(super) levers: [f64; 2],
     /// `1/m_a + 1/m_b`, and the same for the touched point along the surface (1/kg).
     pub(super) inv: (f64, f64),
-    /// Friction coefficient `tan φ` (–).
-    pub(super) friction: f64,
+    /// What friction bears.
+    pub(super) limits: FrictionLimits,
     /// Normal speed apart wanted after the impulse (m/s).
     pub(super) target: f64,
     /// Normal impulse (N s), ≥ 0.
@@ -140,7 +135,7 @@ impl BallContact {
 
     /// Adds to its impulses what the cone allows, and acts with that.
     pub(super) fn push_on(&mut self, step: &Impulses, a: &mut StepBody, b: &mut StepBody) {
-        let next = self.impulses().plus(step).within((self.friction, 0.0));
+        let next = self.impulses().plus(step).within(&self.limits);
         let change = Self {
             normal_force: next.0 - self.normal_force,
             shear_force: next.1 - self.shear_force,
@@ -169,7 +164,7 @@ impl BallContact {
             n,
             levers,
             inv: (inv_n, inv_n + turning[0] + turning[1]),
-            friction: of.law.friction,
+            limits: of.law.limits().without_rolling(),
             target: 0.0,
             normal_force: 0.0,
             shear_force: Vec3::zeros(),
@@ -200,6 +195,26 @@ impl BallContact {
         )
     }
 
+    /// Impulses of an impact of the two rocks: the limit of stiff springs, the same map as for a rock and the ground.
+    ///
+    /// What the two do to each other is what the ground does to one body with their reduced mass `1/(1/m_a + 1/m_b)`, with their
+    /// velocity apart and their slip for its velocity, and an inertia that meets friction at the contact point as they do.
+    pub(super) fn impact(&mut self, law: &Law, [a, b]: [&StepBody; 2], captured: bool) {
+        let (inv_n, inv_t) = self.inv;
+        let (mass, radius) = (1.0 / inv_n, a.body.radius.min(b.body.radius));
+        let inertia = mass * radius * radius / (inv_t / inv_n - 1.0);
+        let body = Body { mass, inertia, radius, gravity: Vec3::zeros() };
+        let captured = captured || law.is_plastic();
+        let struck = FrozenContact { normal: self.n, law, stiffness_scale: 1.0, captured };
+        let v = self.n * self.speed(a, b) + self.slip(a, b);
+        let thrown = throw(&body, &[struck], (&v, &Vec3::zeros()), IMPACT);
+        let load = (thrown.velocity_m_s - v) * mass;
+        self.normal_force = self.n.dot(&load).max(0.0);
+        // followed to a tolerance, the impulse of a rock that slides all the while may be beyond its cap by as much
+        let shear_force = self.n * self.n.dot(&load) - load;
+        self.shear_force = self.limits.shear(shear_force, self.normal_force);
+    }
+
     /// Finds the impulses for motions that hold the present ones, and acts with what they change by; how much that
     /// changes the speed at the contact (m/s).
     #[inline]
@@ -212,7 +227,7 @@ impl BallContact {
         }
         let stick = shear_force + self.slip(a, b) / self.inv.1;
         (self.normal_force, self.shear_force) =
-            (normal_force, within(stick, self.friction * normal_force));
+            (normal_force, self.limits.shear(stick, normal_force));
         let change = Self {
             normal_force: normal_force - held,
             shear_force: self.shear_force - shear_force,
@@ -233,8 +248,8 @@ pub(super) struct GroundContact {
     pub(super) triangle: u32,
     /// Unit normal from the mesh to the centre.
     pub(super) n: Vec3,
-    /// Friction (–) and rolling friction (m): the largest impulses over the normal one.
-    pub(super) caps: (f64, f64),
+    /// What friction and rolling friction bear.
+    pub(super) limits: FrictionLimits,
     /// Normal speed wanted after the impulse (m/s).
     pub(super) target: f64,
     /// Normal impulse (N s), ≥ 0.
@@ -262,7 +277,7 @@ impl GroundContact {
             feature,
             triangle,
             n,
-            caps: (law.friction, law.rolling_m),
+            limits: law.limits(),
             target: 0.0,
             normal_force: 0.0,
             shear_force: Vec3::zeros(),
@@ -287,7 +302,7 @@ impl GroundContact {
 
     /// Adds to its impulses what the cone allows, and acts with that.
     pub(super) fn push_on(&mut self, step: &Impulses, ball: &mut StepBody) {
-        let next = self.impulses().plus(step).within(self.caps);
+        let next = self.impulses().plus(step).within(&self.limits);
         let change = next.less(&self.impulses());
         let change =
             Self { normal_force: change.0, shear_force: change.1, turn: change.2, ..*self };
@@ -319,7 +334,7 @@ impl GroundContact {
             (self.shear_force, self.turn) = (Vec3::zeros(), Vec3::zeros());
             return;
         }
-        let caps = (self.caps.0 * self.normal_force, self.caps.1 * self.normal_force);
+        let caps = self.limits.caps(self.normal_force);
         (self.shear_force, self.turn) = rub(body, &self.n, caps, (v, w), &mut self.mode);
     }
 

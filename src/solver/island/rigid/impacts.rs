@@ -164,12 +164,9 @@ impl RigidIsland {
         let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { return };
         let at = [&*a, &*b].map(|ball| ball.c - ball.v * s);
         let mut ball_contact = BallContact::new((place, pair_history), [a, b], [&at[0], &at[1]]);
-        let restitution =
-            if a.blows.max(b.blows) < LIVELY { pair_history.law.restitution } else { 0.0 };
-        ball_contact.target = -restitution * ball_contact.speed(a, b);
+        let law = pair_history.law.without_rolling();
         let before = [(a.v, a.w), (b.v, b.w)];
-        let (mut one, mut two) = (*a, *b);
-        ball_contact.solve(&mut one, &mut two);
+        ball_contact.impact(&law, [a, b], a.blows.max(b.blows) >= LIVELY);
         let mut given = [0.0; 2];
         for (k, ball) in [a, b].into_iter().enumerate() {
             let load = ball_contact.load(k);

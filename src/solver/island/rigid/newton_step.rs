@@ -6,13 +6,13 @@
 
 use super::RigidIsland;
 use super::contacts::{BallContact, GroundContact, StepBody};
-use crate::contact::pair::PairHistory;
+use crate::contact::pair::{PairHistory, PairImpact};
 use crate::ground::Law;
 use crate::rock::Vec3;
 use crate::solver::island::body::BodySlot;
 use crate::solver::island::newton_step::jump;
 use crate::solver::island::pair_contact::{PairContact, Twist};
-use crate::solver::law::{StageContact, within};
+use crate::solver::law::StageContact;
 
 /// Impulse by speed of a spring that stands for a rigid contact, over the largest mass (–).
 const HOLD_BY_SPEED: f64 = 1e7;
@@ -98,10 +98,9 @@ impl RigidIsland {
                 let [a, b] = ball_contact.ends.map(|k| &self.balls[k]);
                 ball_contact.normal_force =
                     (stiffness * (ball_contact.target - ball_contact.speed(a, b))).max(0.0);
-                ball_contact.shear_force = within(
-                    ball_contact.slip(a, b) * stiffness,
-                    ball_contact.friction * ball_contact.normal_force,
-                );
+                ball_contact.shear_force = ball_contact
+                    .limits
+                    .shear(ball_contact.slip(a, b) * stiffness, ball_contact.normal_force);
             }
         }
     }
@@ -123,18 +122,14 @@ impl RigidIsland {
     }
 }
 
-/// A law whose springs give this impulse by speed, with the friction of another.
-fn law(stiffness: f64, (friction, rolling_m): (f64, f64), radius: f64) -> Law {
-    let k_r = if rolling_m > 0.0 { stiffness * radius * radius } else { 0.0 };
-    Law { p_n: stiffness, p_s: stiffness, k_r, friction, rolling_m, ..Law::NONE }
-}
-
 impl GroundContact {
     fn spot(&self, radius: f64, stiffness: f64) -> StageContact {
+        let law = Law::stiff(stiffness, self.limits, radius);
         StageContact {
             feature: self.feature,
             triangle: self.triangle,
-            law: law(stiffness, self.caps, radius),
+            normal: law.normal(false),
+            law,
             n: self.n,
             penetration: self.target,
             normal_force: self.normal_force,
@@ -148,19 +143,21 @@ impl GroundContact {
         self.normal_force = (stiffness * (self.target - self.n.dot(&ball.v))).max(0.0);
         let slip = ball.body.slip(&self.n, &ball.v, &ball.w);
         let wound = ball.w * (stiffness * ball.body.radius.powi(2));
-        self.shear_force = -within(slip * stiffness, self.caps.0 * self.normal_force);
-        self.turn = -within(wound, self.caps.1 * self.normal_force);
+        self.shear_force = -self.limits.shear(slip * stiffness, self.normal_force);
+        self.turn = -self.limits.rolling(wound, self.normal_force);
     }
 }
 
 impl BallContact {
     fn bridge(&self, pair_history: &PairHistory, stiffness: f64) -> PairContact {
+        let law = Law::stiff(stiffness, self.limits, 1.0);
         PairContact {
             pair_history: self.pair_history,
             ends: self.ends,
-            law: law(stiffness, (self.friction, 0.0), 1.0),
-            c_n: 0.0,
+            normal: law.normal(false),
+            law,
             captured: pair_history.captured,
+            impact: PairImpact::default(),
             bond: None,
             n: self.n,
             penetration: self.target,

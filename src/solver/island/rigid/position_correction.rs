@@ -22,7 +22,7 @@ impl PairHistory {
     fn slack_m(&self, balls: [&StepBody; 2]) -> f64 {
         let weight = |ball: &StepBody| ball.body.mass * ball.body.gravity.norm();
         let radius = balls[0].body.radius.min(balls[1].body.radius);
-        let pressed = LAYERS * (weight(balls[0]) + weight(balls[1])) / self.law.p_n;
+        let pressed = self.law.pressed_m(LAYERS * (weight(balls[0]) + weight(balls[1])));
         pressed.clamp(SLACK.0 * radius, SLACK.1 * radius)
     }
 }

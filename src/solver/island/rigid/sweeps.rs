@@ -8,6 +8,7 @@
 use super::RigidIsland;
 use super::contacts::Impulses;
 use crate::contact::pair::PairHistory;
+use crate::rock::Rock;
 use crate::solver::island::body::BodySlot;
 
 /// Sweeps over the contacts before a jump, at most, and after the last. They cost little: a few contacts creep while all
@@ -140,7 +141,7 @@ impl RigidIsland {
         if k < ground_contacts {
             let ground_contact = &self.ground_contacts[k];
             let ball = &self.balls[ground_contact.ball];
-            (ground_contact.impulses(), [ball.inv.0, 3.5 * ball.inv.0, ball.inv.1])
+            (ground_contact.impulses(), [ball.inv.0, Rock::SLIP_LIGHTNESS * ball.inv.0, ball.inv.1])
         } else {
             let ball_contact = &self.ball_contacts[k - ground_contacts];
             (ball_contact.impulses(), [ball_contact.inv.0, ball_contact.inv.1, 0.0])

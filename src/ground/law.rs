@@ -1,0 +1,277 @@
+//! The contact law: all that stiffness, damping and friction of a ground do to a rock, or to two rocks.
+//!
+//! Normal: a spring beside a dashpot, no tension ([`normal`](NormalElement)). Shear and rolling: a slider in series with a spring
+//! and a dashpot ([`friction`](FrictionElement)). **Nobody outside this folder reads a coefficient**: what a contact does is asked
+//! here, by meaning, so that another law is written in one place. The fields are private, so the compiler sees to it.
+//!
+//! | asked | here |
+//! |---|---|
+//! | a force at a motion | [`NormalElement::force`], [`FrictionElement::held`], `damped`, `capped` |
+//! | a force at the end of an implicit stage | [`NormalElement::stage_force`], [`FrictionElement::over`] |
+//! | its derivatives | [`NormalElement::line`], [`FrictionElement::left`] |
+//! | what springs store | [`Law::stored_j`], [`NormalElement::stored_j`] |
+//! | what friction bears | [`FrictionElement::cap`], [`Law::limits`] |
+//! | how long a contact lasts | [`Law::omega_rad_s`] |
+//! | which impact rebounds, and how | [`Law::capture_m_s`], [`Law::restitution_at`] |
+
+mod damping;
+mod friction;
+mod lever;
+mod normal;
+
+use super::Ground;
+use crate::rock::Rock;
+use damping::CAPTURE_DAMPING_RATIO;
+pub use damping::{
+    Damping, NormalImpact, damping_ratio, normal_impact, restitution, tangential_restitution,
+};
+pub(crate) use friction::{FrictionElement, FrictionLimits, INSIDE, LinearFriction, within};
+pub(crate) use normal::{FixedStepNormal, NormalElement, NormalLine};
+
+/// Rolling stiffness over `p_s R²` (–); with it the rolling spring is a tenth as stiff as the shear spring.
+const ROLLING_STIFFNESS: f64 = 0.1;
+/// Damping ratio of the shear spring: without it the spring returns the slip like a super ball.
+const SHEAR_DAMPING_RATIO: f64 = 1.0;
+/// No impact slower than this rebounds (m/s), whatever the springs say.
+const SLOWEST_REBOUND_M_S: f64 = 0.02;
+/// No impact is slower than this (m/s), whatever capture speed is asked for: in the rigid limit a blow takes no time, and rounding
+/// would strike without end.
+const LEAST_M_S: f64 = 1e-6;
+
+/// The contact law of one ground for one rock, or of two rocks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Law {
+    /// Normal stiffness `p_N` (N/m).
+    p_n: f64,
+    /// Normal damping `c_N` (N s/m).
+    c_n: f64,
+    /// Normal damping of a captured impact (N s/m).
+    c_n_captured: f64,
+    /// What slip along the surface meets.
+    pub(crate) shear: FrictionElement,
+    /// What rolling meets.
+    pub(crate) rolling: FrictionElement,
+    /// Impacts slower than this do not rebound (m/s).
+    pub capture_m_s: f64,
+    /// Normal restitution (–) of slow impacts, see [`Self::restitution_at`].
+    restitution: f64,
+    /// Normal speed (m/s) at which half of it is left; infinite where it stays the same.
+    pub(crate) restitution_half_m_s: f64,
+    /// Largest random tilt of the normal (rad).
+    pub roughness_rad: f64,
+    /// Way over which one tilted facet reaches (m).
+    pub roughness_length_m: f64,
+    /// `√(p_N/m)` (rad/s).
+    omega: f64,
+}
+
+/// What a law needs to know besides ground and rock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capture {
+    /// Capture speed the user wrote (m/s), if any.
+    pub own_m_s: Option<f64>,
+    /// Local error allowed (m/s): slower rebounds than half of it cannot be told from error.
+    pub tolerance_m_s: f64,
+    /// Gravity (m/s²), positive.
+    pub gravity_m_s2: f64,
+}
+
+impl Law {
+    /// A ground that does nothing.
+    pub const NONE: Self = Self {
+        p_n: 0.0,
+        c_n: 0.0,
+        c_n_captured: 0.0,
+        shear: FrictionElement::NONE,
+        rolling: FrictionElement::NONE,
+        capture_m_s: 0.0,
+        restitution: 0.0,
+        restitution_half_m_s: f64::INFINITY,
+        roughness_rad: 0.0,
+        roughness_length_m: 0.0,
+        omega: 0.0,
+    };
+
+    /// The law of `ground` for `rock`; `damping` belongs to the ground's restitution.
+    pub fn new(ground: &Ground, damping: &Damping, rock: &Rock, capture: &Capture) -> Self {
+        Self::of_mass(ground, damping, (rock.mass_kg(), rock.radius_m), capture)
+    }
+
+    /// The law of a contact that moves the mass `m` (kg), of a rolling radius (m). For two rocks that is their reduced
+    /// mass `m_a m_b/(m_a + m_b)`: the same formulas hold, along the surface too, as both are solid spheres.
+    pub fn of_mass(
+        ground: &Ground,
+        damping: &Damping,
+        (m, radius): (f64, f64),
+        capture: &Capture,
+    ) -> Self {
+        let (p_n, p_s) = (ground.normal_stiffness_n_m, ground.shear_stiffness_n_m);
+        let omega = (p_n / m).sqrt();
+        let rolls = ground.rolling_friction > 0.0;
+        let k_r = if rolls { ROLLING_STIFFNESS * p_s * radius * radius } else { 0.0 };
+        let physical = damping.capture_number * capture.gravity_m_s2 / omega;
+        let least = (0.5 * capture.tolerance_m_s).max(SLOWEST_REBOUND_M_S);
+        let damped = if ground.restitution.is_some() { SHEAR_DAMPING_RATIO } else { 0.0 };
+        Self {
+            p_n,
+            c_n: 2.0 * damping.ratio * m * omega,
+            c_n_captured: 2.0 * CAPTURE_DAMPING_RATIO.max(damping.ratio) * m * omega,
+            shear: FrictionElement {
+                k: p_s,
+                c: 2.0 * damped * (p_s * m / Rock::SLIP_LIGHTNESS).sqrt(),
+                limit: ground.friction_coefficient(),
+            },
+            rolling: FrictionElement {
+                k: k_r,
+                c: 2.0 * (k_r * Rock::ROLLING_INERTIA * m).sqrt() * radius,
+                limit: ground.rolling_friction * radius,
+            },
+            capture_m_s: capture.own_m_s.unwrap_or_else(|| physical.max(least)),
+            restitution: ground.restitution.unwrap_or(1.0),
+            restitution_half_m_s: ground.restitution_half_m_s.unwrap_or(f64::INFINITY),
+            roughness_rad: ground.roughness_rad,
+            roughness_length_m: ground.roughness_length_m.unwrap_or(radius),
+            omega,
+        }
+    }
+
+    /// Springs that stand for a rigid contact: an impulse (N s) by speed (m/s) of so much, with the friction of another law on a
+    /// rock of a radius (m).
+    pub(crate) fn stiff(stiffness_kg: f64, limits: FrictionLimits, radius: f64) -> Self {
+        let k_r = if limits.has_rolling() { stiffness_kg * radius * radius } else { 0.0 };
+        Self {
+            p_n: stiffness_kg,
+            shear: FrictionElement { k: stiffness_kg, c: 0.0, limit: limits.shear },
+            rolling: FrictionElement { k: k_r, c: 0.0, limit: limits.rolling },
+            ..Self::NONE
+        }
+    }
+
+    /// The same law for a patch of stiffness `gain2 = |a|²` (–) among several that are pressed at once: its effective mass is
+    /// `m/|a|²`, so `c_N` goes with `|a|`, and parallel dashpots take `share` of theirs (–), so that the damping ratio, and
+    /// with it the restitution, does not depend on how many patches there are.
+    #[must_use]
+    #[inline]
+    #[expect(clippy::float_cmp, reason = "a single point has exactly these")]
+    pub fn of_patch(&self, gain2: f64, share: f64) -> Self {
+        if gain2 == 1.0 && share == 1.0 {
+            return *self;
+        }
+        let gain = gain2.sqrt();
+        Self {
+            p_n: self.p_n * gain2,
+            c_n: self.c_n * (gain * share),
+            c_n_captured: self.c_n_captured * (gain * share),
+            ..*self
+        }
+    }
+
+    /// The same law without rolling friction: rocks among themselves have none.
+    #[must_use]
+    pub(crate) fn without_rolling(&self) -> Self {
+        Self { rolling: FrictionElement::NONE, ..*self }
+    }
+
+    /// `√(p_N/m)` (rad/s): a contact lasts about `π` over this.
+    #[inline]
+    pub fn omega_rad_s(&self) -> f64 {
+        self.omega
+    }
+
+    /// What sliders bear: the limits of friction and of rolling friction.
+    #[inline]
+    pub(crate) fn limits(&self) -> FrictionLimits {
+        FrictionLimits { shear: self.shear.limit, rolling: self.rolling.limit }
+    }
+
+    /// Coefficient of friction `tan φ` in force (–), before what slip adds.
+    #[inline]
+    pub(crate) fn friction_coefficient(&self) -> f64 {
+        self.shear.limit
+    }
+
+    /// Gives the ground another coefficient of friction (–); whether it is another.
+    pub(crate) fn rub_with(&mut self, coefficient: f64) -> bool {
+        std::mem::replace(&mut self.shear.limit, coefficient).to_bits() != coefficient.to_bits()
+    }
+}
+
+impl Law {
+    /// Energy in springs (J) at a penetration (m) and the squares of their stretches (m², rad²):
+    /// `(p_N pen² + p_s ξ² + k_r θ²)/2`.
+    #[inline]
+    pub(crate) fn stored_j(&self, penetration: f64, shear2: f64, roll2: f64) -> f64 {
+        0.5 * (self.p_n * penetration * penetration
+            + self.shear.k * shear2
+            + self.rolling.k * roll2)
+    }
+
+    /// An upper bound of the power that a contact takes (W), and of half its growth (W/s), under a normal force (N), at speeds
+    /// inwards and along the surface (m/s): forces do not grow faster than those of springs without loss.
+    pub(crate) fn taken_w(&self, force_n: f64, inwards: f64, slip: f64) -> (f64, f64) {
+        // W(h) ≤ Σ (v_n + μ |u|) (F h + p_N v_n h²/2)
+        let force = force_n.max(self.c_n * inwards);
+        let way = inwards + self.shear.limit * slip;
+        (force * way, 0.5 * self.p_n * inwards * way)
+    }
+}
+
+impl Law {
+    /// Speed of approach from which on a blow rebounds in the rigid limit (m/s).
+    #[inline]
+    pub(crate) fn rebounds_from_m_s(&self) -> f64 {
+        self.capture_m_s.max(LEAST_M_S)
+    }
+
+    /// Normal restitution (–) of an impact at a normal speed (m/s): `e/(1 + (v/v_half)²)` (Pfeiffer and Bowen 1989).
+    #[inline]
+    pub fn restitution_at(&self, approach_m_s: f64) -> f64 {
+        let over = approach_m_s / self.restitution_half_m_s;
+        self.restitution / (1.0 + over * over)
+    }
+
+    /// Whether nothing is given back, however slow the impact.
+    #[inline]
+    pub(crate) fn is_plastic(&self) -> bool {
+        self.restitution <= 0.0
+    }
+
+    /// Takes the dashpot of an impact at a normal speed (m/s), until the next one.
+    pub fn struck_at(&mut self, approach_m_s: f64) {
+        if self.restitution_half_m_s.is_finite() {
+            let ratio = damping_ratio(self.restitution_at(approach_m_s));
+            let critical = 2.0 * self.p_n / self.omega;
+            self.c_n = ratio * critical;
+            self.c_n_captured = CAPTURE_DAMPING_RATIO.max(ratio) * critical;
+        }
+    }
+}
+
+/// The numbers of a law, for tests that write it down a second time.
+#[cfg(test)]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coefficients {
+    /// Normal stiffness (N/m), damping, damping when captured (N s/m).
+    pub(crate) normal: [f64; 3],
+    /// Stiffness, damping, limit of shear (N/m, N s/m, –) and of rolling (N m/rad, N m s/rad, m).
+    pub(crate) shear: [f64; 3],
+    pub(crate) rolling: [f64; 3],
+}
+
+#[cfg(test)]
+impl Law {
+    /// All numbers.
+    pub(crate) fn coefficients(&self) -> Coefficients {
+        let of = |element: &FrictionElement| [element.k, element.c, element.limit];
+        Coefficients {
+            normal: [self.p_n, self.c_n, self.c_n_captured],
+            shear: of(&self.shear),
+            rolling: of(&self.rolling),
+        }
+    }
+
+    /// The same law without its normal dashpot.
+    pub(crate) fn undamped(&self) -> Self {
+        Self { c_n: 0.0, ..*self }
+    }
+}

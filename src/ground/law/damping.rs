@@ -1,0 +1,205 @@
+//! What restitution asks of the normal dashpot, and what one impact gives back.
+
+use crate::math;
+use crate::rock::Rock;
+use std::f64::consts::{PI, TAU};
+
+/// Below this restitution an impact is plastic (–): the damping ratio of e → 0 grows without bound.
+const PLASTIC_RESTITUTION: f64 = 0.01;
+/// Damping ratio of an impact too slow to rebound; it ends all flutter.
+pub(super) const CAPTURE_DAMPING_RATIO: f64 = 2.0;
+/// Damping ratio of a plastic impact; `e(5) = 0.01`.
+const PLASTIC_DAMPING_RATIO: f64 = 5.0;
+
+/// Restitution of a no-tension spring and dashpot without gravity.
+///
+/// `e(ζ) = exp(−2 ζ acos ζ / √(1−ζ²))`; the contact ends when the force falls to zero, not when the spring is
+/// back at its length (the textbook's `exp(−π ζ/√(1−ζ²))`), so nothing ever pulls.
+pub fn restitution(zeta: f64) -> f64 {
+    math::exp(-2.0 * zeta * angle_over_sine(zeta))
+}
+
+/// `acos ζ / √(1−ζ²)`, beyond ζ = 1 with acosh.
+fn angle_over_sine(zeta: f64) -> f64 {
+    let off = 1.0 - zeta * zeta;
+    if off.abs() < 1e-9 {
+        1.0 + off / 6.0
+    } else if off > 0.0 {
+        math::acos(zeta) / off.sqrt()
+    } else {
+        math::acosh(zeta) / (-off).sqrt()
+    }
+}
+
+/// Share of its slip that an impact on a plane gives back where it sticks throughout (–), for a ratio `p_s/p_N` (–);
+/// negative where the slip goes on when the rock leaves.
+///
+/// The slip is that of the contact point's `2/7 m` on the critically damped shear spring, `u = u₀ (1 − ω_s t) e^(−ω_s t)`
+/// with `ω_s = ω √(7/2 p_s/p_N)`, over the `2 acos ζ/√(1 − ζ²)` radians of ω that [`restitution`] ends after.
+pub fn tangential_restitution(ratio: f64, damping: &Damping) -> f64 {
+    let phase = (Rock::SLIP_LIGHTNESS * ratio).sqrt() * 2.0 * angle_over_sine(damping.ratio);
+    (phase - 1.0) * math::exp(-phase)
+}
+
+/// The damping ratio ζ that gives restitution `e` (0..1), the inverse of [`restitution`] by bisection.
+pub fn damping_ratio(e: f64) -> f64 {
+    if e < PLASTIC_RESTITUTION {
+        return PLASTIC_DAMPING_RATIO;
+    }
+    let (mut lo, mut hi) = (0.0, PLASTIC_DAMPING_RATIO);
+    for _ in 0..60 {
+        let middle = 0.5 * (lo + hi);
+        if restitution(middle) > e {
+            lo = middle;
+        } else {
+            hi = middle;
+        }
+    }
+    0.5 * (lo + hi)
+}
+
+/// One impact on a plane with gravity, exact as far as the normal motion goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalImpact {
+    /// When the force falls to zero after the touch (s).
+    pub lift_s: f64,
+    /// Rebound speed at the surface (m/s); `None` when the rock does not come out again.
+    pub rebound_m_s: Option<f64>,
+}
+
+/// Closed form of the spring-dashpot impact at approach speed `v`, frequency `omega`, damping ratio `zeta < 1`.
+///
+/// `x'' = g_n − 2 ζω x' − ω² x` from `x = 0, x' = v` until the force vanishes, then free.
+pub fn normal_impact(v: f64, omega: f64, zeta: f64, g_n: f64) -> NormalImpact {
+    let al = zeta * omega;
+    let wd = omega * (1.0 - zeta * zeta).sqrt();
+    let (x0, b) = (g_n / (omega * omega), (v - al * g_n / (omega * omega)) / wd);
+    let state = |t: f64| {
+        let (s, c) = math::sin_cos(wd * t);
+        let fade = math::exp(-al * t);
+        let x = x0 + fade * (b * s - x0 * c);
+        let speed = fade * ((b * wd + al * x0) * c + (x0 * wd - al * b) * s);
+        (x, speed)
+    };
+    // In units of g_n and 1/ω the same swing has its first trough at a known time.
+    let (low, deepest) = first_trough(v * omega / g_n, zeta);
+    if deepest > 0.0 {
+        return NormalImpact { lift_s: f64::INFINITY, rebound_m_s: None };
+    }
+    // Newton on the force, halving where a step would leave the bracket.
+    let (mut lo, mut hi) = (0.0, low / omega);
+    let mut t = 0.5 * hi;
+    for _ in 0..60 {
+        let (x, speed) = state(t);
+        let push = omega * omega * x + 2.0 * al * speed;
+        if push > 0.0 {
+            lo = t;
+        } else {
+            hi = t;
+        }
+        let slope = omega * omega * speed + 2.0 * al * (g_n - push);
+        let next = t - push / slope;
+        let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+        let change = (next - t).abs();
+        t = next;
+        if change <= 1e-16 * low / omega {
+            break;
+        }
+    }
+    let (x, speed) = state(t);
+    let out = speed * speed - 2.0 * g_n * x;
+    let leaves = speed < 0.0 && out > 0.0;
+    NormalImpact { lift_s: t, rebound_m_s: leaves.then(|| out.sqrt()) }
+}
+
+/// Time and depth of the contact force's first trough, in units of 1/ω and of the weight.
+///
+/// The force swings around the weight, `F = 1 + A e^(−ζt) cos(ω_d t + φ)`, with `F(0) = 2ζp`, `F'(0) = p + 2ζ(1 − 2ζp)`
+/// at the approach speed `p = v ω/g_n`.
+fn first_trough(p: f64, zeta: f64) -> (f64, f64) {
+    let wd = (1.0 - zeta * zeta).sqrt();
+    let (off, slope) = (2.0 * zeta * p - 1.0, p + 2.0 * zeta * (1.0 - 2.0 * zeta * p));
+    let across = -(slope + zeta * off) / wd;
+    let low = PI - math::atan(zeta / wd);
+    let t = (low - math::atan2(across, off)).rem_euclid(TAU) / wd;
+    (t, 1.0 + math::hypot(off, across) * math::exp(-zeta * t) * math::cos(low))
+}
+
+/// What restitution asks of the normal dashpot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damping {
+    /// Restitution (–), `None` without dashpots.
+    pub restitution: Option<f64>,
+    /// Damping ratio ζ (–).
+    pub ratio: f64,
+    /// `p* = v ω/g` below which gravity keeps the rock in contact (–): the physical capture speed.
+    pub capture_number: f64,
+}
+
+impl Damping {
+    /// The dashpot of a restitution.
+    pub fn of(restitution: Option<f64>) -> Self {
+        let ratio = restitution.map_or(0.0, damping_ratio);
+        Self {
+            restitution,
+            ratio,
+            capture_number: restitution.map_or(0.0, |_| capture_number(ratio)),
+        }
+    }
+}
+
+fn capture_number(zeta: f64) -> f64 {
+    // Towards ζ = 1 the swing dies out; so heavily damped an impact hardly rebounds at all.
+    let zeta = zeta.min(0.95);
+    let (mut lo, mut hi) = (0.0, 200.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (lo + hi);
+        if normal_impact(middle, 1.0, zeta, 1.0).rebound_m_s.is_some() {
+            hi = middle;
+        } else {
+            lo = middle;
+        }
+    }
+    hi
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The table of exact damping ratios (closed form, 12 digits).
+    #[test]
+    fn restitution_and_damping_ratio_are_inverse() {
+        for (e, zeta) in [
+            (0.9, 0.034_265_204_126),
+            (0.5, 0.255_275_637_649),
+            (0.3, 0.497_239_394_699),
+            (0.1, 1.243_187_851_014),
+        ] {
+            assert!((restitution(zeta) - e).abs() < 1e-11);
+            assert!((damping_ratio(e) - zeta).abs() < 1e-11);
+        }
+        assert!((restitution(1.0) - (-2.0f64).exp()).abs() < 1e-12);
+        assert!((restitution(1.0 + 1e-10) - restitution(1.0 - 1e-10)).abs() < 1e-8);
+    }
+
+    /// With gravity the rebound falls with speed; e = 0.5 from the closed form at p = v ω/g.
+    #[test]
+    fn gravity_lowers_the_restitution_of_slow_impacts() {
+        let zeta = damping_ratio(0.5);
+        for (p, e) in [(5.0, 0.283_85), (10.0, 0.411_35), (30.0, 0.473_29), (100.0, 0.492_24)] {
+            let out = normal_impact(p, 1.0, zeta, 1.0).rebound_m_s.unwrap();
+            assert!((out / p - e).abs() < 1e-5, "p = {p}: {}", out / p);
+        }
+    }
+
+    /// p* of the table: below it no rebound.
+    #[test]
+    fn slow_impacts_are_captured_at_the_physical_speed() {
+        for (e, p) in [(0.9, 0.722_657), (0.5, 3.492_462), (0.3, 8.714_621)] {
+            let zeta = damping_ratio(e);
+            let found = capture_number(zeta);
+            assert!((found - p).abs() < 1e-5, "e = {e}: {found}");
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! The law of a contact with a lever, and over a stage: a contact of the rigid limit that gives way.
+
+use super::Law;
+use crate::rock::Rock;
+
+/// How a contact gives way over an implicit stage: what it asks of the velocity of its point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StageCompliance {
+    /// Along the normal and along the surface (1/kg): speed over impulse.
+    pub(crate) compliance: [f64; 2],
+    /// Speed along the normal that is asked for, over the penetration (1/s) …
+    pub(crate) out_per_s: f64,
+    /// … and against the stretch along the surface, over it (1/s).
+    pub(crate) back_per_s: f64,
+}
+
+impl Law {
+    /// The same law for a contact with a lever, which moves other masses (kg) along its normal and along the surface than a ball of
+    /// mass `mass_kg` does: damping ratios stay.
+    #[must_use]
+    pub(crate) fn for_masses(&self, [along, across]: [f64; 2], mass_kg: f64) -> Self {
+        let slower = (along / mass_kg).sqrt();
+        let mut law = *self;
+        law.c_n *= slower;
+        law.c_n_captured *= slower;
+        law.shear.c *= (Rock::SLIP_LIGHTNESS * across / mass_kg).sqrt();
+        law.omega /= slower;
+        law
+    }
+
+    /// Over a stage in which impulses act for `a` and points move for `b` (s): from `F = p pen − (p b + c) u` and `P = a F`.
+    pub(crate) fn over_stage(&self, captured: bool, (a, b): (f64, f64)) -> StageCompliance {
+        let normal = self.normal(captured);
+        let answers = [normal.p_n * b + normal.c_n, self.shear.over(b)];
+        StageCompliance {
+            compliance: answers.map(|answer| 1.0 / (a * answer)),
+            out_per_s: normal.p_n / answers[0],
+            back_per_s: self.shear.k / answers[1],
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! The normal element of a contact: a spring beside a dashpot, and no tension.
+//!
+//! `F = max(0, p_N x + c_N x')` for the penetration `x`; set-valued where the rock just does not get in. The functions below
+//! are all that anybody asks of it: the force at a motion, the force at the end of an implicit stage and its linear form,
+//! what the spring stores, and the element in the units of an impact's own time.
+
+use super::Law;
+
+/// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
+const HOLD: f64 = 1e7;
+
+/// Spring and dashpot in force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NormalElement {
+    /// Stiffness `p_N` (N/m).
+    pub(super) p_n: f64,
+    /// Damping `c_N` (N s/m).
+    pub(super) c_n: f64,
+}
+
+impl NormalElement {
+    /// None.
+    pub(crate) const NONE: Self = Self { p_n: 0.0, c_n: 0.0 };
+
+    /// Force at a penetration (m) and a speed apart (m/s) if the contact could pull (N): `p_N x − c_N s`.
+    #[inline]
+    pub(crate) fn pull_or_push(&self, penetration: f64, apart_m_s: f64) -> f64 {
+        self.p_n * penetration - self.c_n * apart_m_s
+    }
+
+    /// The force (N), ≥ 0.
+    #[inline]
+    pub(crate) fn force(&self, penetration: f64, apart_m_s: f64) -> f64 {
+        self.pull_or_push(penetration, apart_m_s).max(0.0)
+    }
+
+    /// Force at the end of a stage of length `h` (s), no tension, set-valued where the bodies just do not get in; `vn` is their
+    /// normal speed apart without this force (m/s), `m` the mass that it moves (kg).
+    #[inline]
+    pub(crate) fn stage_force(&self, penetration: f64, vn: f64, m: f64, h: f64) -> f64 {
+        let Self { p_n, c_n } = *self;
+        let reached = penetration - h * vn;
+        let force = (p_n * reached - c_n * vn) / (1.0 + (p_n * h + c_n) * h / m);
+        if force <= 0.0 {
+            0.0
+        } else if reached - h * h * force / m < 0.0 {
+            // The dashpot alone would keep the rock out: the force that holds it exactly at the surface.
+            (reached * m / (h * h)).max(0.0)
+        } else {
+            force
+        }
+    }
+
+    /// The force as a line in the normal speed at the end of a stage of length `h` (s), in the mode in which the contact is with
+    /// a penetration at the stage's base (m) and a force (N): open, pressed, or held exactly at the surface.
+    pub(crate) fn line(
+        &self,
+        (penetration, normal_force): (f64, f64),
+        m: f64,
+        h: f64,
+    ) -> NormalLine {
+        let b = self.p_n * h + self.c_n;
+        if normal_force <= 0.0 {
+            return NormalLine { a: 0.0, b: 0.0 };
+        }
+        let speed = (self.p_n * penetration - normal_force) / b;
+        if penetration - h * speed < 0.0 {
+            // The push is less than spring and dashpot would give: it holds the rock at the surface.
+            let b = HOLD * m / h;
+            return NormalLine { a: b * penetration / h, b };
+        }
+        NormalLine { a: self.p_n * penetration, b }
+    }
+
+    /// The same of a bond, which pulls as well as it pushes.
+    #[inline]
+    pub(crate) fn bond(&self, penetration: f64, h: f64) -> BondLine {
+        BondLine { pressed: self.p_n * penetration, per_speed: self.p_n * h + self.c_n }
+    }
+
+    /// Force of a bond at the end of a stage where the speed apart is known (N).
+    #[inline]
+    pub(crate) fn bond_force(&self, penetration: f64, apart_m_s: f64, h: f64) -> f64 {
+        self.p_n * (penetration - h * apart_m_s) - self.c_n * apart_m_s
+    }
+
+    /// Whether the normal motion of an impact on a plane has the closed form of a linear spring and dashpot.
+    #[inline]
+    pub(crate) const fn has_closed_form() -> bool {
+        true
+    }
+
+    /// The element of a patch of stiffness `gain2 = |a|²` (–) whose dashpot takes `share` of its own (–), see [`Law::of_patch`].
+    #[inline]
+    pub(crate) fn of_patch(&self, gain2: f64, share: f64) -> Self {
+        Self { p_n: self.p_n * gain2, c_n: self.c_n * (gain2.sqrt() * share) }
+    }
+
+    /// Energy in the spring (J).
+    #[inline]
+    pub(crate) fn stored_j(&self, penetration: f64) -> f64 {
+        0.5 * self.p_n * penetration * penetration
+    }
+
+    /// Power that the spring takes up (W).
+    #[inline]
+    pub(crate) fn storing_w(&self, penetration: f64, closing_m_s: f64) -> f64 {
+        self.p_n * penetration * closing_m_s
+    }
+
+    /// Stiffness of a patch of `scale` (–), the unit of an impact's own stiffnesses (N/m).
+    #[inline]
+    pub(crate) fn stiffness_n_m(&self, scale: f64) -> f64 {
+        self.p_n * scale
+    }
+
+    /// Damping of a patch of `scale` (–) in units of a momentum over time (N s/m).
+    #[inline]
+    pub(crate) fn damping_over(&self, scale: f64, unit_n_s_m: f64) -> f64 {
+        self.c_n * scale.sqrt() / unit_n_s_m
+    }
+
+    /// Damping ratio `ζ = c_N/(2 √(p_N m))` (–) with a mass (kg).
+    #[inline]
+    pub(crate) fn damping_ratio(&self, m: f64) -> f64 {
+        0.5 * self.c_n / (self.p_n * m).sqrt()
+    }
+
+    /// The element in a step of fixed length `dt` (s).
+    pub(crate) fn over_step(&self, dt: f64) -> FixedStepNormal {
+        FixedStepNormal { spring: self.p_n, damper: self.c_n / dt }
+    }
+}
+
+impl Law {
+    /// The normal element in force: that of an impact, or that of one too slow to rebound.
+    #[inline]
+    pub(crate) fn normal(&self, captured: bool) -> NormalElement {
+        NormalElement { p_n: self.p_n, c_n: if captured { self.c_n_captured } else { self.c_n } }
+    }
+
+    /// The normal element of a fixed step of length `dt` (s): without dashpots nothing is captured.
+    pub(crate) fn normal_over_step(&self, captured: bool, dt: f64) -> FixedStepNormal {
+        self.normal(captured && self.shear.is_damped()).over_step(dt)
+    }
+
+    /// Penetration at which the spring alone holds a force (m).
+    #[inline]
+    pub(crate) fn pressed_m(&self, force_n: f64) -> f64 {
+        force_n / self.p_n
+    }
+
+    /// Whether a contact that does not push now will not push for `dt` (s): what spring and dashpot would pull with grows as long
+    /// as `p_N v_n` outdoes `c_N g`. `weight` is the part of gravity along the normal, ≤ 0 (m/s²).
+    pub(crate) fn lets_go(&self, apart_m_s: f64, weight_m_s2: f64, dt: f64) -> bool {
+        let damping = self.c_n.max(self.c_n_captured);
+        self.p_n * (apart_m_s + weight_m_s2 * dt) > -damping * weight_m_s2
+    }
+}
+
+/// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NormalLine {
+    pub(crate) a: f64,
+    pub(crate) b: f64,
+}
+
+impl NormalLine {
+    pub(crate) fn at(&self, speed: f64) -> f64 {
+        (self.a - self.b * speed).max(0.0)
+    }
+}
+
+/// The force of a bond over a stage, linear wherever it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BondLine {
+    /// Force at no speed (N).
+    pressed: f64,
+    /// Change of the force with the speed apart (N s/m).
+    per_speed: f64,
+}
+
+impl BondLine {
+    /// Force for a normal speed `vn` without the bond's own effect (m/s); `inv_m` is the reciprocal of the mass it moves (1/kg).
+    #[inline]
+    pub(crate) fn force(&self, vn: f64, h: f64, inv_m: f64) -> f64 {
+        (self.pressed - self.per_speed * vn) / (1.0 + self.per_speed * h * inv_m)
+    }
+}
+
+impl From<BondLine> for NormalLine {
+    fn from(bond: BondLine) -> Self {
+        Self { a: bond.pressed, b: bond.per_speed }
+    }
+}
+
+/// Spring and dashpot over a step of fixed length: forces by ways (N/m).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FixedStepNormal {
+    spring: f64,
+    damper: f64,
+}
+
+impl FixedStepNormal {
+    /// None.
+    pub(crate) const NONE: Self = Self { spring: 0.0, damper: 0.0 };
+
+    /// Force at a penetration `depth` at the step's end and `inside` at its start (m, the latter ≥ 0): the dashpot works from the
+    /// touch on.
+    #[inline]
+    pub(crate) fn force(&self, depth: f64, inside: f64) -> f64 {
+        self.spring * depth + self.damper * (depth - inside)
+    }
+
+    /// Change of the force with the way (N/m).
+    #[inline]
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.spring + self.damper
+    }
+
+    /// Stiffness by which a gap (m), negative where bodies overlap, acts as a load (N/m).
+    #[inline]
+    pub(crate) fn load_stiffness(&self, gap: f64) -> f64 {
+        if gap < 0.0 { self.spring } else { self.stiffness() }
+    }
+
+    /// The part of the force that does not change with the way (N): what the dashpot has done before the touch is not its work.
+    #[inline]
+    pub(crate) fn constant(&self, gap: f64, inside: f64) -> f64 {
+        self.spring * gap + self.damper * (gap + inside)
+    }
+
+    /// Energy that the dashpot takes on the way from `inside` to `depth` (J).
+    pub(crate) fn loss_j(&self, pressed: bool, depth: f64, inside: f64) -> f64 {
+        if pressed {
+            self.damper * (depth - inside).powi(2)
+        } else if self.damper > 0.0 {
+            // Lifted off before the spring is back at its length: the dashpot beside it takes the rest.
+            0.5 * self.spring * (inside.powi(2) - depth.max(0.0).powi(2))
+        } else {
+            0.0
+        }
+    }
+}
