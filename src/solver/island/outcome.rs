@@ -40,7 +40,7 @@ pub struct Done {
     pub losses: Vec<Loss>,
     /// Energy given to other rocks, for each rock (J).
     pub given: Vec<Given>,
-    /// Steps tried and deviated away.
+    /// Steps tried and thrown away.
     pub rejected: u64,
     /// Impacts on the mesh (`rigid`; with the others the memory of a contact tells).
     pub hits: Vec<Hit>,
