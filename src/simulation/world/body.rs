@@ -41,6 +41,7 @@ impl<'a> WorldBody<'a> {
 
     /// Velocity at a time not before its own (m/s).
     pub(super) fn velocity_at(&self, settings: &RunSettings, time_s: f64) -> Vec3 {
+        // `c + v t − g t²/2 z` differentiated
         if self.member.flying && time_s > self.recorder.now.time_s {
             self.flight(settings).velocity(time_s - self.recorder.now.time_s)
         } else {
@@ -49,6 +50,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Begins to watch how far its velocity changes; returns what was watched before.
+    /// The reference is the velocity along the parabola at `now_s`.
     pub(super) fn watch_from(&mut self, settings: &RunSettings, now_s: f64) -> (Vec3, f64) {
         let velocity = self.velocity_at(settings, now_s);
         std::mem::replace(&mut self.off, (velocity, 0.0))
@@ -138,11 +140,15 @@ impl<'a> WorldBody<'a> {
     }
 
     /// What others and the contacts with them have had so far (J).
+    ///
+    /// `others_j` is lost in contacts with them, `passed_on_j` is theirs now: together what this
+    /// rock no longer has.
     fn given_j(&self) -> f64 {
         self.recorder.ledger.others_j + self.recorder.ledger.passed_on_j
     }
 
     /// Touches the mesh.
+    /// Contact begins with springs at rest, unless the rock is pressed in already.
     pub(super) fn land(&mut self, settings: &RunSettings) {
         self.begin(settings);
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
@@ -207,6 +213,9 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Notes one step of its island in the rigid limit: rocks that fly touch and fly on within a step, too.
+    ///
+    /// Unlike with springs there is no memory that tells of an impact: `hit` was told of each
+    /// before.
     pub(super) fn stride(
         &mut self,
         settings: &RunSettings,
@@ -246,6 +255,9 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Watches how far its velocity has changed.
+    ///
+    /// Largest change since the reference, not the last: a rock that is hit and hit back has
+    /// deviated all the same.
     fn watch(&mut self) {
         self.off.1 = self.off.1.max((self.member.state.v - self.off.0).norm());
     }
@@ -351,6 +363,7 @@ impl<'a> WorldBody<'a> {
         self.recorder.end_path();
         // Friction that turns round within a step may seem to work: that is an error of the steps.
         let ledger = &mut self.recorder.ledger;
+        // booked where it belongs: an entry below 0 is no loss but the numerics' gain
         for entry in [&mut ledger.friction_j, &mut ledger.damping_j, &mut ledger.rolling_j] {
             ledger.remainder_j += entry.min(0.0);
             *entry = entry.max(0.0);

@@ -1,5 +1,8 @@
 //! A snapshot of a world, kept to go back to: a rock that was deviated further than its island allowed for may have run
 //! into another island that knew nothing of it.
+//!
+//! Only what later windows depend on is kept: motions, memories of contacts, random streams, and
+//! how long the recorders' lists were. Geometry and scratch space are found again. Cost: O(n) in the rocks that are left.
 
 use super::bodies::BodyWorld;
 use super::{BodyState, Stop, WorldBody};
@@ -51,6 +54,9 @@ impl WorldBody<'_> {
     }
 
     /// When this is gone through again, it is known how far the rock was deviated.
+    ///
+    /// Twice the change that was seen: each return at least doubles the bound, so few returns
+    /// suffice.
     pub(super) fn foresee(&mut self) {
         self.foreseen_m_s = self.foreseen_m_s.max(2.0 * self.off.1);
     }

@@ -20,6 +20,9 @@ use crate::solver::loss::Loss;
 use crate::solver::step_control::{ONSET, StepError};
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
+///
+/// Roots of the quadratic of a meeting are right to some 1e-15 of the distance flown, not of the
+/// gap.
 const GAP_ROUNDING: f64 = 1e-11;
 
 /// A time that is nothing (s): the clock cannot tell less after an hour.
@@ -101,6 +104,7 @@ impl<'a> IslandWindow<'a> {
     }
 
     /// When the next flying rock touches mesh or another flying rock (s).
+    /// O(n + pairs): it is asked again after every event.
     pub(super) fn next_event_s(&self) -> f64 {
         let flying = self.bodies.iter().filter(|body| body.member.flying);
         let landings = flying.filter_map(|body| body.lands.as_ref().map(|(time_s, _)| *time_s));
@@ -154,6 +158,9 @@ impl<'a> IslandWindow<'a> {
     }
 
     /// Begins all contacts that are due now.
+    ///
+    /// Several may be due at one instant, of the same rock too: each is begun, and the next step
+    /// solves them together.
     fn begin_contacts(&mut self) {
         let due: Vec<bool> =
             self.pair_histories.iter().map(|pair_history| self.meets_now(pair_history)).collect();
@@ -259,6 +266,7 @@ impl<'a> IslandWindow<'a> {
         // the stiffest of the rocks in contact decides the step of all
         let h = self.bodies.iter().filter(|body| !body.member.flying).map(|body| body.h);
         let h = h.fold(f64::INFINITY, f64::min);
+        // the solver borrows the rocks' state; the journeys stay here
         let members = self.bodies.iter_mut().map(|body| body.member.lend()).collect();
         let mut island =
             Island::new(self.settings.terrain, members, std::mem::take(&mut self.pair_histories));
