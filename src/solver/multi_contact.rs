@@ -4,6 +4,13 @@
 //! With the modes (open, closed, sticking, sliding) that the sweeps have found, the stage is one linear system for
 //! velocity and spin, the paper's 6×6 system of Eq. (4) for one rock; solving it jumps to where the sweeps were
 //! heading. The sweeps alone decide whether the result holds.
+//!
+//! ```text
+//! sweep:  contact by contact, forces of the others held: closed form of `StageContact::solve`
+//! jump:   (M/h + Σ N b Nᵀ + Σ Sᵀ J S …) x = M x_free/h + Σ N a − Σ Sᵀ q0      x = (v, ω), six unknowns
+//! ```
+//!
+//! Cost: a sweep is linear in the contacts, a jump one LU of 6×6 whatever their number.
 
 use super::body::Body;
 use super::friction_rolling::INSIDE;
@@ -18,6 +25,9 @@ const JUMPS: u32 = 12;
 /// Change of a force, relative to the largest, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-9;
 /// Stiffness that holds a contact exactly at the surface, over `m/h` (–).
+///
+/// Stands for the set-valued branch of the normal law: a push between 0 and what spring and dashpot
+/// would give, at penetration 0.
 const HOLD: f64 = 1e7;
 
 type Matrix6 = SMatrix<f64, 6, 6>;
@@ -45,6 +55,8 @@ pub(super) fn solve(
     }
 }
 
+/// Nonlinear Gauss–Seidel first, because it finds the modes; Newton in these modes, because it
+/// finds the forces.
 fn sweep_and_jump(
     body: &Body,
     contacts: &mut [StageContact],
@@ -76,18 +88,24 @@ fn sweep_and_jump(
 
 /// One pass over the contacts; whether all agree. `calm` counts those that were asked since anything they answer to has
 /// changed.
+///
+/// Counts across sweeps: as soon as each contact has been asked once with nothing changed since,
+/// all agree.
 fn sweep(
     body: &Body,
     contacts: &mut [StageContact],
     ((v, w), calm): (&mut (Vec3, Vec3), &mut usize),
     h: f64,
 ) -> bool {
+    // changes are measured by the largest force, and by a thousandth of the weight where there is
+    // hardly any
     let least = 1e-3 * body.mass * body.gravity.norm();
     let scale = contacts.iter().map(|contact| contact.normal_force).fold(least, f64::max);
     let count = contacts.len();
     for contact in contacts.iter_mut() {
         let before = (contact.normal_force, contact.shear_force, contact.rolling_moment);
         let (dv, dw) = contact.effect(body, h);
+        // without this contact's own forces: what the others do to the rock
         let (vf, wf) = (*v - dv, *w - dw);
         contact.solve(body, &vf, &wf, h);
         let (dv, dw) = contact.effect(body, h);
@@ -124,6 +142,9 @@ fn driven(
 }
 
 /// Sets every force to what its law gives at velocity and spin `at`.
+///
+/// After a jump: the linear system may have left a cone or let a spring pull; the law itself may
+/// not.
 fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: f64) {
     for contact in contacts {
         let normal = NormalLine::of(body, contact, h);
@@ -136,6 +157,9 @@ fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: 
 }
 
 /// The normal force as a line `F = a − b s` in the normal speed `s` at the stage's end.
+///
+/// `F = p_N (pen − h s) − c_N s`: `a = p_N pen`, `b = p_N h + c_N`, with `s` positive where the
+/// rock leaves.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NormalLine {
     pub(crate) a: f64,
@@ -164,6 +188,7 @@ impl NormalLine {
         if normal_force <= 0.0 {
             return Self { a: 0.0, b: 0.0 };
         }
+        // the speed at which the line gives this force: does it leave the surface within the stage?
         let speed = (p_n * penetration - normal_force) / b;
         if penetration - h * speed < 0.0 {
             // The push is less than spring and dashpot would give: it holds the rock at the surface.
@@ -179,6 +204,7 @@ impl NormalLine {
 }
 
 /// Velocity and spin that solve the stage linearised in its present modes.
+/// Friction grows with the normal force, which makes the matrix unsymmetric: LU, not Cholesky.
 fn jump(
     body: &Body,
     contacts: &[StageContact],
@@ -211,6 +237,7 @@ fn add(
     let normal = NormalLine::of(body, contact, h);
     let (law, n, r) = (&contact.law, contact.n, body.radius);
     // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
+    // S = [Q, R n×], the slip of the contact point from velocity and spin
     let q = Matrix3::identity() - n * n.transpose();
     let spin = n.cross_matrix() * r;
     let (stick, wound) = contact.trials(body, v, w, h);
@@ -250,6 +277,7 @@ fn add(
 pub(crate) struct Slider {
     coefficient: f64,
     stiffness: f64,
+    /// Whether it sticks.
     histories: bool,
 }
 
@@ -277,6 +305,8 @@ impl Slider {
         }
     }
 
+    /// Sticking: `q = trial`, `∂q/∂u = κ`. Slipping: `q = cap e`, `∂q/∂u = κ cap/|trial| (1 − e
+    /// eᵀ)`, `∂q/∂F = μ e`, with `e` the direction of the trial force.
     pub(crate) fn at(&self, trial: Vec3, normal_force: f64) -> Answer {
         let (cap, size) = (self.coefficient * normal_force, trial.norm());
         if self.histories || size <= cap {

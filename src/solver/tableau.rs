@@ -1,4 +1,15 @@
 //! Diagonally implicit Runge–Kutta tableaux with an explicit first stage.
+//!
+//! ```text
+//! x_1 = x,   x_i = x + h (Σ_{j<i} a_ij f_j + γ f_i),   i = 2 … s
+//! step = x_s, so the weights b are the last row (stiffly accurate)
+//! ```
+//!
+//! One diagonal coefficient γ for all stages: each is a displacement step `x_i = x* + h γ f(x_i)`
+//! of the same form, one DDA solve, with one set of effective stiffnesses a step. The explicit
+//! first stage gives stage order two; SDIRK schemes without it lose their order on stiff springs
+//! (second-order SDIRK2: an error of 3.7e-2 where TR-BDF2 has 9.7e-5, a sphere on an edge at 1e13
+//! N/m).
 
 /// Most stages of a tableau.
 pub const STAGES: usize = 6;
@@ -14,8 +25,12 @@ pub struct Tableau {
     /// Diagonal coefficient.
     pub diagonal: f64,
     /// Coefficients below the diagonal; the last row with the diagonal are the weights.
+    /// Row `i` belongs to stage `i + 1` and lacks its diagonal; the first row is empty.
     pub a: &'static [&'static [f64]],
     /// Weights minus embedded weights: the error estimate.
+    ///
+    /// `b − b̂`, stage by stage; times rates and step it is the error (that of the lower order of
+    /// the two).
     pub error: [f64; STAGES],
     /// `1/(order of the embedded method + 1)`.
     pub exponent: f64,
@@ -41,8 +56,11 @@ impl Tableau {
     }
 }
 
+/// `γ = 2 − √2`: trapezoidal rule to `γ h`, then BDF2; with it both stages have the diagonal `γ/2`.
 const SQRT2: f64 = std::f64::consts::SQRT_2;
+/// `√2/4`, the weight of the first two stages.
 const W: f64 = SQRT2 / 4.0;
+/// `γ/2 = 1 − √2/2`, the diagonal.
 const D: f64 = 1.0 - SQRT2 / 2.0;
 
 /// TR-BDF2 (Bank et al. 1985; embedded third order after Hosea and Shampine 1996): second order, stiffly accurate,
