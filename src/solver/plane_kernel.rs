@@ -2,7 +2,8 @@
 //!
 //! While only one face touches, geometry is a plane and the normal a constant: the stages of `stage.rs` are the same sums
 //! over fourteen numbers, and there is nothing to iterate. Where each stage ends it is asked whether that face is still
-//! alone; if the features around the rock certify it (`contact::near`), not even that. Most impacts are of this kind.
+//! alone; if the features around the rock certify it (`Neighbours::plane`), not even that. Most
+//! impacts are of this kind.
 //!
 //! The steps are those of `stage.rs`, but for rounding; only their cost differs.
 //!

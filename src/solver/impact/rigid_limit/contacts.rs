@@ -1,4 +1,7 @@
 //! The contacts of a frozen impact, in units of mass, radius, speed and the stiffest contact's `1/ω`.
+//!
+//! In these units a contact's stiffness is `p_N |a|²/p_N,max`, its dashpot `c_N |a|/√(p_N,max m)`,
+//! spin is `R ω/|v|`.
 
 use super::FrozenContact;
 use crate::contact::MOST;
@@ -33,6 +36,7 @@ pub(super) struct Contacts {
     list: [ImpactContact; MOST],
     len: usize,
     /// Frequency of the softest.
+    /// In units of the stiffest's: `√(k_min/k_max)`, at most 1.
     pub(super) softest: f64,
     /// `m R²/I` (–).
     pub(super) turns: f64,
@@ -93,6 +97,7 @@ impl Contacts {
     }
 
     /// Energy of motion.
+    /// `(v² + (Rω)²/(m R²/I))/2`, the unit of energy being `m |v|²`.
     pub(super) fn energy(&self, (v, w): (Vec3, Vec3)) -> f64 {
         0.5 * (v.norm_squared() + w.norm_squared() / self.turns)
     }
@@ -113,6 +118,8 @@ impl Contacts {
         nothing: f64,
     ) -> AfterImpact {
         let mut plastic = [0.0; MOST];
+        // each round may press the rock against a contact it had left: at most one more for each
+        // contact
         for _ in 0..=self.len {
             let own = |k: usize| ALLOWANCE * self.list[k].kept * self.fastest[k] + nothing;
             let stays = |k: usize| self.list[k].captured && self.list[k].n.dot(&v) <= own(k);
@@ -143,6 +150,9 @@ impl Contacts {
 
     /// Closest velocity to `v` that comes nearer to no contact and neither nears nor leaves those that are `held`. In three
     /// dimensions it is `v` itself, lies in one contact's plane, along the line of two, or is zero: each is tried.
+    ///
+    /// A projection on a convex cone; in the sense of energy the closest is the one that loses
+    /// least.
     fn nearest_allowed(&self, v: &Vec3, held: [bool; MOST]) -> Vec3 {
         let is_allowed = |x: &Vec3| {
             self.list().iter().zip(held).all(|(contact, held)| {

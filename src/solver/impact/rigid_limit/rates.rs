@@ -1,4 +1,8 @@
 //! Rates of a rock among several frozen contacts, and the moments at which contacts open and close.
+//!
+//! A contact is pressed from the moment its penetration is 0 and rising until its force would pull;
+//! where that changes the dashpots are shared anew, so steps end there and rates are smooth in
+//! between.
 
 use super::contacts::{Contacts, SwitchTime};
 use super::{FrozenContact, LONGEST_STEP, NOTHING};
@@ -54,6 +58,7 @@ impl<const K: usize> ContactRates<K> {
     }
 
     /// Penetration of contact `k` and its rate.
+    /// `x = −n·way`, `x' = −n·v`: at the touch the way is 0.
     fn depth<const N: usize>(&self, k: usize, y: &[f64; N]) -> [f64; 2] {
         let n = &self.contacts.list()[k].n;
         [-n.dot(&three(y, WAY)), -n.dot(&speed_of(y))]
@@ -65,6 +70,8 @@ impl<const K: usize> ContactRates<K> {
         let (nothing, mut changed) = (self.nothing(), false);
         for k in 0..self.contacts.list().len() {
             let [x, rate] = self.depth(k, y);
+            // in, or at the surface and not leaving: a tolerance on both sides keeps rounding from
+            // opening and closing it without end
             let pressed = x > nothing || (x >= -nothing && rate > -nothing);
             changed |= pressed != self.pressed[k];
             self.set(k, pressed, y);
@@ -115,6 +122,7 @@ impl<const K: usize> ContactRates<K> {
     }
 
     /// Time until a rock that nothing pushes touches again, if it does.
+    /// Without weight a free rock moves straight: `−x/x'`.
     pub(super) fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
         let nothing = self.nothing();
         let waits = (0..self.contacts.list().len()).filter_map(|k| {
@@ -181,6 +189,7 @@ impl<const K: usize> ContactRates<K> {
             let (n, at) = (&contact.n, SPRINGS + 3 * k);
             let asked = self.asked(k, y);
             let normal_force = asked.max(0.0);
+            // a contact that opens is a kink too: its "cap" is what it would pull with
             rates.kinks[3 * k] = [normal_force * normal_force, (-asked).max(0.0)];
             let approach = -n.dot(&v);
             let slip = v + n * approach + n.cross(&w);
@@ -242,6 +251,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
 }
 
 /// Where between 0 and 1 the cubic with values and slopes given at both ends crosses zero, downwards or upwards.
+/// Hermite's cubic of penetration and rate at both ends of the step.
 fn root([x0, d0]: [f64; 2], [x1, d1]: [f64; 2], down: bool) -> f64 {
     let (b, a) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
     let is_before = |t: f64| {
