@@ -82,6 +82,7 @@ impl Island<'_> {
     }
 
     /// Open–close iteration; a step that does not settle is solved with all contacts sticking.
+    /// The same limits as for a rock alone (`dda_system`): six changes of state, forty solves.
     fn settle_fixed(&mut self, links: &mut [DdaPairContact], dt: f64) -> Option<bool> {
         let mut rounds = 0;
         for _ in 0..SOLVES {
@@ -183,6 +184,7 @@ impl Island<'_> {
 
 impl IslandBody {
     /// Displacement of the step.
+    /// Paper Eq. (1), `D = D₀ + E`.
     fn way(&self) -> Vec6 {
         self.ways[0] + self.ways[1]
     }

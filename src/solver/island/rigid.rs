@@ -4,6 +4,12 @@
 //! step ran into are taken in the order of their times; then what still overlaps is moved apart. The step's length
 //! follows from the way of the fastest rock alone, so that its cost grows with the number of rocks and no faster. An
 //! island of one rock is the single rock's scheme.
+//!
+//! ```text
+//! resting_contacts      v₁ = v₀ + g Δt + M⁻¹ Σ J        sustained contacts, geometry of the middle of the step
+//! impacts               blows between v₀ and v₁, each at its own time within the step
+//! position_correction   c moved out of what still overlaps, paid for by energy
+//! ```
 
 mod contacts;
 mod position_correction;
@@ -97,6 +103,7 @@ impl RigidIsland {
     }
 
     /// Takes over the end of the step.
+    /// Impulses over the step's length are the forces that the next step starts from.
     fn take_over(
         &self,
         terrain: &Terrain,
@@ -106,6 +113,8 @@ impl RigidIsland {
         for (pair_history, struck) in pair_histories.iter_mut().zip(&self.struck) {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
             let (n, distance) = between(&a.c, &b.c);
+            // a touch a little apart still holds: rounding must not end a heap's contacts from step
+            // to step
             let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
             pair_history.n = n;
             pair_history.closed =
@@ -158,6 +167,7 @@ impl RigidIsland {
 }
 
 /// Lists for every rock the numbers of what joins it to another, or to itself alone.
+/// Counting sort: two passes, no allocation but the lists themselves.
 fn lay(ends: &[[usize; 2]], rocks: usize, (first, links): (&mut Vec<u32>, &mut Vec<u32>)) {
     let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
     first.clear();
@@ -218,6 +228,7 @@ impl RigidIsland {
     }
 
     /// Length of the step (s): the time left in equal parts.
+    /// Equal parts of the window, so that no remnant is left for the last.
     fn step_s(&self, longest: f64, h_max: f64) -> f64 {
         let way = |ball: &StepBody| {
             let speed = ball.v.norm() + ball.body.gravity.norm() * h_max;

@@ -4,6 +4,9 @@
 //! penetrations are those at the end of the stage, so geometry and forces depend on each other: forces are solved
 //! with the geometry of a guess, the guess is moved to where they lead, and this is repeated until both agree. On
 //! planes one pass suffices; around corners and between spheres a few.
+//!
+//! The equations of one rock are those of `solver::stage`; what is new is that forces between rocks
+//! act on two of them with opposite sign, and that all must agree before any goes on.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -73,6 +76,7 @@ impl Island<'_> {
             // penetration is measured from the base, along the normal of the guess
             let apart = pair.n.dot(&((a.base.c - b.base.c) - (a.guess - b.guess)));
             pair.penetration -= apart;
+            // a new contact: whether it rebounds is judged by the approach at the stage's base
             if !pair_history.is_held() {
                 pair.captured = -pair.n.dot(&(a.base.v - b.base.v)) < pair_history.law.capture_m_s;
                 pair.c_n = if pair.captured {
@@ -126,6 +130,9 @@ impl Island<'_> {
     }
 
     /// Rates at the present state, for the explicit first stage.
+    ///
+    /// Nothing is solved: forces follow from places, velocities and stretches as they are
+    /// (`act_now`).
     pub(super) fn rates_now(&mut self) {
         for member in &mut self.members {
             let IslandBody { state, body, laws, .. } = &mut **member;

@@ -4,6 +4,10 @@
 //! not been stirred since it was solved is passed over, so a sweep costs what happens and not what is there. Where
 //! contacts oppose each other stiffly (a light rock under a heavy one, a high pile) sweeps creep; then the stirred part
 //! of the island is solved at once in the modes that they have found, and the sweeps judge the result.
+//!
+//! Settled means: what is still to come would change no velocity by more than a hundredth of the
+//! step's tolerance. Absolute forces would not do: a newton is nothing for a block and everything
+//! for a pebble.
 
 use super::active_set::SETTLED_AT_ONCE;
 use super::assembly::Island;
@@ -46,6 +50,9 @@ impl Island<'_> {
     }
 
     /// Sweeps until nothing changes or a jump is due; whether nothing changes any more.
+    ///
+    /// The number of sweeps before a jump grows with what is still stirred: a large stirred part
+    /// makes a jump dear.
     fn sweep_on(&mut self, h: f64) -> bool {
         let mut most = SWEEPS.2;
         let mut k = 0;
@@ -102,6 +109,7 @@ impl Island<'_> {
     }
 
     /// One pass over the contacts, onwards or backwards.
+    /// To and fro, so that a load is handed up and down a pile alike.
     fn sweep(&mut self, h: f64, backwards: bool) {
         let (contacts, pairs) = (self.members.len(), self.pairs.len());
         for k in 0..contacts + pairs {
@@ -137,6 +145,7 @@ impl Island<'_> {
                 .abs()
                 .max((contact.shear_force - before.1).norm());
             let change = change.max((contact.rolling_moment - before.2).norm() / body.radius);
+            // a force that changes the velocity by SETTLED · tolerance in a stage
             let allowed = SETTLED * self.tolerance * body.mass / h;
             worst =
                 worst.max(change / allowed.max(ROUNDING / SETTLED_AT_ONCE * contact.normal_force));
@@ -150,6 +159,7 @@ impl Island<'_> {
         self.stirred.contacts[k] = if count > 1 { seen } else { self.stirred.times[k] };
     }
 
+    /// Takes the pair's own forces off both rocks, solves it, and puts the new ones on.
     fn sweep_pair(&mut self, k: usize, h: f64) {
         let passes_over = self.passes_over();
         let pair = &mut self.pairs[k];
@@ -185,6 +195,9 @@ impl Island<'_> {
     }
 
     /// Sets every force of rocks that jumped to what its law gives at their new motions.
+    ///
+    /// The linear system knows neither cones nor that a contact cannot pull: the law is asked once
+    /// more.
     fn act_on(&mut self, motions: &[Option<Twist>], h: f64) {
         for (member, motion) in self.members.iter_mut().zip(motions) {
             let Some((v, w)) = motion else { continue };

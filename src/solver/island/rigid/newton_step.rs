@@ -3,6 +3,10 @@
 //! A light rock under a heavy one, a high pile: each sweep hands on a small share of what must be carried. The modes that
 //! the sweeps have found make the step a linear system, that of [`jump`]; the rigid limit is a spring so stiff that what
 //! it gives way is lost beside the tolerance. The sweeps judge the result.
+//!
+//! In the language of stages: `h = 1`, `p_N = 1e7 m_max` per unit of speed, penetration in place of
+//! the speed wanted. A contact then gives way by `J/p_N`, 1e-7 of the speed that the impulse gives
+//! the heaviest rock.
 
 use super::RigidIsland;
 use super::contacts::{BallContact, GroundContact, StepBody};
@@ -130,6 +134,8 @@ fn law(stiffness: f64, (friction, rolling_m): (f64, f64), radius: f64) -> Law {
 }
 
 impl GroundContact {
+    /// The contact with the mesh as the linear system knows contacts; signs turn, as there forces
+    /// act against slip.
     fn spot(&self, radius: f64, stiffness: f64) -> StageContact {
         StageContact {
             feature: self.feature,
@@ -144,6 +150,7 @@ impl GroundContact {
         }
     }
 
+    /// Impulses of the stiff springs at the rock's new motion, cut to the cones.
     fn give_way(&mut self, ball: &StepBody, stiffness: f64) {
         self.normal_force = (stiffness * (self.target - self.n.dot(&ball.v))).max(0.0);
         let slip = ball.body.slip(&self.n, &ball.v, &ball.w);
@@ -154,6 +161,7 @@ impl GroundContact {
 }
 
 impl BallContact {
+    /// The same for two rocks.
     fn bridge(&self, pair_history: &PairHistory, stiffness: f64) -> PairContact {
         PairContact {
             pair_history: self.pair_history,

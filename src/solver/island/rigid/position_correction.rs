@@ -1,4 +1,8 @@
 //! Rocks that got into each other or into the mesh are moved out, without adding velocity.
+//!
+//! Velocity-level steps keep gaps only to the error of the step; left alone, overlaps grow. Moving
+//! rocks apart changes places only, but lifts some of them: that height is work, and someone must
+//! pay for it, or a heap warms up by itself.
 
 use super::RigidIsland;
 use super::contacts::StepBody;
@@ -43,6 +47,7 @@ impl RigidIsland {
                     continue;
                 }
                 let (n, distance) = between(&a.c, &b.c);
+                // each moves by its share of 1/m: the centre of mass of the two stays
                 let way = n * ((allowed - distance) / (a.inv.0 + b.inv.0));
                 a.c += way * a.inv.0;
                 b.c -= way * b.inv.0;
@@ -76,6 +81,7 @@ impl RigidIsland {
     /// error of a step loses its energy there, and has it back when it is lifted out. The rest is paid by motion.
     /// (Paid by motion alone, the lifting of 1e-5 R would stop a heap that begins to slide.)
     fn pay_for_height(&mut self) {
+        // heights of all rocks together: what one rock sinks pays for what another rises
         let mut net_j = 0.0;
         for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;

@@ -4,6 +4,9 @@
 //! to the next the impulses therefore go on in a conjugate direction: `x ← S(x) + β p`, `p ← S(x) − x + β p`, with `β` the
 //! ratio of the squares of the last two sweeps' changes, and anew where that is no less than 1 (nonsmooth nonlinear
 //! conjugate gradients, Silcowitz, Niebe and Erleben 2010). The last word is a sweep's.
+//!
+//! A contact has settled when its change of speed is small against what its weight gains in a step,
+//! or against the speed of its rocks: the rule has no absolute size, so it means the same for pebbles and for blocks.
 
 use super::RigidIsland;
 use super::contacts::Impulses;
@@ -113,6 +116,7 @@ impl RigidIsland {
             square += change.square(inv);
         }
         let share = square / self.lean.square;
+        // where changes grow the direction is worth nothing: begin anew from plain sweeps
         let leans = share < 1.0;
         self.lean.square = square;
         let map = self.lean.map;
@@ -181,7 +185,7 @@ impl RigidIsland {
         change
     }
 
-    /// Feet come first, then knots.
+    /// Contacts with the mesh come first, then those between rocks.
     fn sweep_contact(&mut self, k: usize) -> f64 {
         self.asked.remove(k);
         let ground_contacts = self.ground_contacts.len();
@@ -297,6 +301,7 @@ impl Leaning {
 }
 
 /// A set of contacts, a bit for each.
+/// Found again in ascending or descending order by counting zeros of words: no heap, no sorting.
 #[derive(Debug, Default)]
 pub(super) struct ContactQueue(Vec<u64>);
 
