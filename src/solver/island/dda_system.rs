@@ -23,6 +23,9 @@ pub(super) struct Global {
 
 impl Global {
     /// Writes into every member what contacts add to its free displacement over `dt`; false if there is no solution.
+    ///
+    /// One block and one load a rock, then the blocks of contacts between rocks. A rock that no
+    /// other touches is solved at once; the others are handed to the block factor.
     pub(super) fn solve(
         &mut self,
         members: &mut [BodySlot],
@@ -32,12 +35,14 @@ impl Global {
         let mut blocks: Vec<Mat6> = Vec::with_capacity(members.len());
         let mut loads: Vec<Vec6> = Vec::with_capacity(members.len());
         for member in members.iter() {
+            // springs of the rock's contacts with the mesh: they join no other block
             let contacts = member
                 .joints
                 .iter()
                 .fold(Mat6::zeros(), |sum, joint| sum + joint.shape().stiffness());
             let mut load = -(contacts * member.ways[0]);
             member.joints.iter().for_each(|joint| joint.add_load(&mut load));
+            // 2M/Δt²: constant acceleration over the step
             blocks.push(contacts + inertia(member.body.mass, member.body.inertia, dt));
             loads.push(load);
         }
@@ -45,6 +50,7 @@ impl Global {
         let mut place = vec![usize::MAX; members.len()];
         for link in links {
             for k in 0..2 {
+                // K_kk and F_k of both ends; K_kl follows below the diagonal
                 blocks[link.ends[k]] += link.stiffness(k, k);
                 loads[link.ends[k]] += link.load(k);
                 for l in 0..2 {

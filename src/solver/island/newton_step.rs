@@ -52,6 +52,9 @@ struct NewtonSystem {
 
 /// Motions of the rocks that take part that solve the stage of length `h` linearised around the present ones, while the
 /// others go on as they do.
+///
+/// `takes_part` lets a jump be local: rocks that have settled keep their motion and enter as moving
+/// supports.
 pub(super) fn jump(
     members: &[BodySlot],
     pairs: &[PairContact],
@@ -104,8 +107,10 @@ impl Linear {
         };
         let (normal_force, held) =
             if pair.bond.is_some() { (1.0, 1.0) } else { (normal.at(speed), pair.normal_force) };
+        // the mode is that of the sweeps; a bond sticks whatever its force
         let slider = Slider::left(cap, law.shear_over(h), (&pair.shear_force, held));
         let still = (Vec3::zeros(), Vec3::zeros());
+        // only ends that are sought count in the unknowns: the others stand in the constants
         let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
         let own = pair.speed(sought);
         Self {
@@ -211,6 +216,7 @@ impl NewtonSystem {
             }
         }
         if let [Some((k, one)), Some((l, two))] = &rows {
+            // K_kl ≠ K_lkᵀ: friction follows the normal force of both
             let (below, above) = (block(one, two), block(two, one));
             self.joined.push(if k > l {
                 ((*k, *l, below), above)

@@ -38,6 +38,7 @@ use sweeps::{ContactQueue, Leaning};
 pub const TRAVEL: f64 = 0.2;
 
 /// Work space of the rigid steps of an island.
+/// Kept from step to step, so that a step of a thousand rocks allocates next to nothing.
 #[derive(Debug, Default)]
 pub(super) struct RigidIsland {
     balls: Vec<StepBody>,
@@ -71,6 +72,9 @@ impl RigidIsland {
     ///
     /// # Errors
     /// [`StepError`] if motion is no longer finite.
+    ///
+    /// The order of the parts matters: sustained contact first gives each rock the path on which
+    /// its impacts are looked for.
     pub(super) fn advance(
         &mut self,
         terrain: &Terrain,
@@ -121,6 +125,7 @@ impl RigidIsland {
                 *struck && distance <= reach && pair_history.is_slow(&(a.v - b.v));
             (pair_history.normal_force, pair_history.shear_force, pair_history.slides) =
                 (0.0, Vec3::zeros(), false);
+            // known from now on as a contact that does not rebound, until the rocks are apart
             pair_history.captured = true;
             if distance > reach {
                 pair_history.captured = false;
@@ -206,6 +211,7 @@ impl StepBody {
 
 impl RigidIsland {
     /// Takes the rocks over at the start of a step.
+    /// Losses and hits are those of one step; contacts are found anew in it.
     fn begin(&mut self, members: &[BodySlot], pair_histories: &[PairHistory]) {
         self.balls.clear();
         let ball = |member: &BodySlot| {
@@ -231,6 +237,7 @@ impl RigidIsland {
     /// Equal parts of the window, so that no remnant is left for the last.
     fn step_s(&self, longest: f64, h_max: f64) -> f64 {
         let way = |ball: &StepBody| {
+            // the fastest that it may get within the window
             let speed = ball.v.norm() + ball.body.gravity.norm() * h_max;
             TRAVEL * ball.body.radius / speed.max(f64::MIN_POSITIVE)
         };

@@ -34,9 +34,13 @@ const ROUNDING: f64 = 1e-11;
 
 impl Island<'_> {
     /// Finds all contact forces of a stage of length `h`; whether they settled.
+    ///
+    /// Sweeps and jumps alternate; a jump is never the last word, as it knows neither Coulomb's
+    /// cone nor that contacts do not pull.
     pub(super) fn settle(&mut self, h: f64) -> bool {
         self.drive(h);
         self.stirred.begin(self.members.len(), self.pairs.len());
+        // forces of the last stage were the first guess: a warm start
         for round in 0..JUMPS {
             if self.sweep_on(h) {
                 return true;
@@ -81,6 +85,7 @@ impl Island<'_> {
     }
 
     /// The neighbours of what was stirred take part in a jump.
+    /// Without them a jump would press stirred rocks against ones held fast.
     fn grow_stirred(&mut self) {
         let core = self.stirred.lately.clone();
         for [a, b] in self.pairs.iter().filter(|pair| pair.acts()).map(|pair| pair.ends) {
@@ -184,6 +189,7 @@ impl Island<'_> {
             }
         }
         let allowed = SETTLED * self.tolerance / (h * pair.inv_m);
+        // whichever is larger: a change that matters to the velocity, or rounding of a large force
         let worst = change / allowed.max(ROUNDING / SETTLED_AT_ONCE * pair.normal_force.abs());
         self.stirred.note(worst);
         if worst > STIRS {

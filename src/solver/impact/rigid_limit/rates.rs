@@ -26,12 +26,16 @@ pub(super) fn speed_of<const N: usize>(y: &[f64; N]) -> Vec3 {
 }
 
 /// Up to `K` contacts and which of them are pressed.
+/// `K` is the room for contacts; `N = 9 + 3 K` numbers without rolling, `9 + 6 K` with.
 pub(super) struct ContactRates<const K: usize> {
     pub(super) contacts: Contacts,
     pub(super) pressed: [bool; MOST],
     /// Normal damping of each among those pressed now.
     damping: [f64; MOST],
     /// Longest step.
+    ///
+    /// In radians of the stiffest contact, shorter where a dashpot is so strong that it, and not
+    /// the spring, sets the fastest rate.
     pub(super) longest: f64,
     /// Local error allowed.
     pub(super) allowed: f64,
@@ -53,6 +57,7 @@ impl<const K: usize> ContactRates<K> {
     }
 
     /// Speed, and way, that is nothing.
+    /// Far below the error allowed: what is less is neither a touch nor a parting.
     pub(super) fn nothing(&self) -> f64 {
         NOTHING * self.allowed
     }
@@ -82,6 +87,7 @@ impl<const K: usize> ContactRates<K> {
         changed
     }
 
+    /// A contact that opens lets its springs go slack: what they held was lost when it opened.
     fn set<const N: usize>(&mut self, k: usize, pressed: bool, y: &mut [f64; N]) {
         self.pressed[k] = pressed;
         if !pressed {
@@ -98,6 +104,7 @@ impl<const K: usize> ContactRates<K> {
         let list = self.contacts.list();
         for (k, contact) in list.iter().enumerate() {
             let others = list.iter().zip(self.pressed).filter(|(_, pressed)| *pressed);
+            // itself included, where it is pressed: a contact alone keeps its dashpot
             let sum: f64 = others.map(|(other, _)| contact.n.dot(&other.n).max(0.0).powi(2)).sum();
             self.damping[k] = contact.damping / sum.max(1.0).sqrt();
         }
@@ -113,6 +120,7 @@ impl<const K: usize> ContactRates<K> {
     /// Whether no contact pushes.
     pub(super) fn is_free<const N: usize>(&self, y: &[f64; N]) -> bool {
         let nothing = self.nothing() * self.nothing();
+        // open, or its force would pull and it is leaving, or it is just at the surface and still
         (0..self.contacts.list().len()).all(|k| {
             let [x, rate] = self.depth(k, y);
             !self.pressed[k]
@@ -133,6 +141,7 @@ impl<const K: usize> ContactRates<K> {
     }
 
     /// Lets a free rock fly on for `wait`.
+    /// Springs are at rest in flight; which contacts press at the end is found anew.
     pub(super) fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait: f64) {
         for k in 0..3 {
             y[WAY + k] += wait * y[V[k]];
@@ -152,10 +161,13 @@ impl<const K: usize> ContactRates<K> {
         let mut first: Option<(f64, usize)> = None;
         for k in 0..self.contacts.list().len() {
             let ([x, rate], [x1, rate1]) = (self.depth(k, y), self.depth(k, end));
+            // a pressed contact that ends apart, or an open one that ends pressed in
             let is_crossed = if self.pressed[k] { x1 < -nothing } else { x1 > nothing };
             if !is_crossed {
                 continue;
             }
+            // at the surface and hardly moving: the crossing is at the start, and only the mode is
+            // wrong
             let slow = self.pressed[k] && x <= nothing && rate <= nothing;
             let at = if slow { 0.0 } else { root([x, rate * h], [x1, rate1 * h], self.pressed[k]) };
             if first.is_none_or(|(found, _)| at < found) {
@@ -181,6 +193,7 @@ impl<const K: usize> ContactRates<K> {
         *rates = Rates::NONE;
         let rolls = N > SPRINGS + 3 * K;
         let (v, w, turns) = (speed_of(y), three(y, W[0]), self.contacts.turns);
+        // unit mass; dw is that of spin times radius, so moments enter times m R²/I
         let (mut dv, mut dw) = (Vec3::zeros(), Vec3::zeros());
         for (k, contact) in self.contacts.list().iter().enumerate().take(K) {
             if !self.pressed[k] {
@@ -193,6 +206,8 @@ impl<const K: usize> ContactRates<K> {
             rates.kinks[3 * k] = [normal_force * normal_force, (-asked).max(0.0)];
             let approach = -n.dot(&v);
             let slip = v + n * approach + n.cross(&w);
+            // s of the shear element (`sliders`): the speed at which its dashpot would hold what
+            // its spring holds
             let held = three(y, at);
             let asked = slip + held;
             let (share, slips, cap) = contact.shear.share(asked.norm_squared(), normal_force);
@@ -207,6 +222,7 @@ impl<const K: usize> ContactRates<K> {
             rates.kinks[3 * k + 1] = [asked.norm_squared(), cap];
             if rolls {
                 let at = SPRINGS + 3 * (K + k);
+                // the same of the rolling element, over all three components of the spin
                 let wound = three(y, at);
                 let asked = w + wound;
                 let (share, _, cap) = contact.rolling.share(asked.norm_squared(), normal_force);
@@ -234,6 +250,8 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
 
     #[inline]
     fn size2(&self, off: &[f64; N]) -> f64 {
+        // way, velocity and spin have one unit here; a spring's error counts as the stretch it
+        // means
         let mut sum: f64 = off[..SPRINGS].iter().map(|x| x * x).sum();
         for (k, contact) in self.contacts.list().iter().enumerate() {
             let mut add = |at: usize, rate: f64| {

@@ -25,6 +25,10 @@ const MOST_ROCKS: usize = 64;
 
 impl RigidIsland {
     /// Solves the rocks that were stirred since `times`, and their neighbours, at once; whether that was possible.
+    ///
+    /// Cost: one factorisation over the stirred rocks, in place of the sweeps that creep. Modes
+    /// (closed, sliding) are those of the last sweep; if they were wrong, the sweeps after it find
+    /// out, and `settle` takes the jump back.
     pub(super) fn jump(
         &mut self,
         (members, pair_histories): (&mut [BodySlot], &[PairHistory]),
@@ -34,6 +38,8 @@ impl RigidIsland {
         if takes_part.iter().filter(|part| **part).count() > MOST_ROCKS {
             return false;
         }
+        // one stiffness for all contacts: ratios of masses are in the matrix, and a contact's give
+        // is small against the heaviest rock
         let heaviest = self.balls.iter().map(|ball| ball.body.mass).fold(0.0, f64::max);
         let stiffness = HOLD_BY_SPEED * heaviest;
         self.hand_over(members, stiffness);
@@ -48,6 +54,9 @@ impl RigidIsland {
     }
 
     /// Rocks that were set in another motion, and what touches them.
+    ///
+    /// `times` are the counts of a sweep ago: who changed since is still creeping. Neighbours take
+    /// part, because their contacts must give way too.
     fn stirred_since(&self, times: &[u32]) -> Vec<bool> {
         let core: Vec<bool> =
             self.balls.iter().zip(times).map(|(ball, times)| ball.times != *times).collect();
@@ -68,6 +77,7 @@ impl RigidIsland {
     fn hand_over(&self, members: &mut [BodySlot], stiffness: f64) {
         for (member, ball) in members.iter_mut().zip(&self.balls) {
             let member = &mut **member;
+            // free motion of the step: velocity at its start plus weight, without impulses
             member.free = (ball.before.0 + self.gain(ball), ball.before.1);
             member.now = (ball.v, ball.w);
             member.state.contact_count = 0;
@@ -75,6 +85,7 @@ impl RigidIsland {
         for ground_contact in &self.ground_contacts {
             let member = &mut *members[ground_contact.ball];
             let state = &mut member.state;
+            // no more contacts than a rock keeps: what is left out is left to the sweeps
             if state.contact_count < state.contacts.len() {
                 state.contacts[state.contact_count] =
                     ground_contact.spot(member.body.radius, stiffness);
@@ -111,6 +122,9 @@ impl RigidIsland {
     }
 
     /// Motions from weight and all impulses together.
+    ///
+    /// Adds all impulses anew instead of changes to changes: rounding of many sweeps does not pile
+    /// up.
     fn drive(&mut self) {
         for k in 0..self.balls.len() {
             let gain = self.gain(&self.balls[k]);
@@ -122,12 +136,16 @@ impl RigidIsland {
     }
 
     /// What weight adds to the velocity in the current step.
+    /// `g Δt` (m/s).
     fn gain(&self, ball: &StepBody) -> Vec3 {
         ball.body.gravity * self.dt
     }
 }
 
 /// A law whose springs give this impulse by speed, with the friction of another.
+///
+/// Shear has the same stiffness, rolling that times the square of the lever: none of them gives way
+/// more than the others.
 fn law(stiffness: f64, (friction, rolling_m): (f64, f64), radius: f64) -> Law {
     let k_r = if rolling_m > 0.0 { stiffness * radius * radius } else { 0.0 };
     Law { p_n: stiffness, p_s: stiffness, k_r, friction, rolling_m, ..Law::NONE }

@@ -36,6 +36,9 @@ fn target(gap: f64, speed: f64, dt: f64) -> f64 {
 
 impl RigidIsland {
     /// Takes the rocks through the step without its impacts; whether the impulses settled.
+    ///
+    /// Contacts of the step, weight, warm start, sweeps, and the way of the step: the order of
+    /// Moreau's time stepping.
     pub(super) fn sustain(
         &mut self,
         terrain: &Terrain,
@@ -90,6 +93,9 @@ impl RigidIsland {
     }
 
     /// Contacts of rocks with each other in the middle of the step.
+    ///
+    /// Pairs stand in the order of their numbers, and so do their contacts: sweeps go through them
+    /// in the same order everywhere.
     fn link(&mut self, pair_histories: &[PairHistory], dt: f64) {
         self.ball_contacts.clear();
         for (k, pair_history) in pair_histories.iter().enumerate() {
@@ -142,6 +148,7 @@ impl RigidIsland {
         {
             let (member, ball) = (&members[ground_contact.ball], &self.balls[ground_contact.ball]);
             let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
+            // the work of an impulse is that at the mean velocity, exactly
             let motion = mean(ball);
             self.losses[ground_contact.ball].add(&ground_contact.loss(&world, &motion), 1.0);
             self.taken_j -= ground_contact.normal_force * ground_contact.n.dot(&motion.0);

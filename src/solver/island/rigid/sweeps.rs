@@ -69,6 +69,9 @@ impl RigidIsland {
     }
 
     /// What may still change at every rock: the less the slower it and its neighbours are.
+    ///
+    /// A rock's neighbours count too: a slow rock struck by a fast one need not be solved to its
+    /// own standstill.
     fn allow(&mut self) {
         let few = self.balls.len() <= FEW;
         let of_weight = if few { SETTLED_FEW } else { SETTLED.0 };
@@ -139,6 +142,9 @@ impl RigidIsland {
     }
 
     /// The impulses of a contact, and the weights that make their squares energies.
+    ///
+    /// `1/m` for the normal impulse, `7/2 · 1/m` for that along the surface (contact point), `1/I`
+    /// for rolling.
     fn impulses(&self, k: usize) -> (Impulses, [f64; 3]) {
         let ground_contacts = self.ground_contacts.len();
         if k < ground_contacts {
