@@ -149,10 +149,12 @@ impl<'a> Recorder<'a> {
     }
 
     /// The sheet that a triangle belongs to.
+    /// The mesh file, and with it ground and whether it is a tree.
     pub(super) fn sheet_of(&self, triangle: u32) -> u16 {
         self.terrain.sheet_of[triangle as usize]
     }
 
+    /// Motion and turn as of now.
     fn instant(&self) -> RockInstant {
         RockInstant { motion: self.now, turned: self.turned }
     }
@@ -170,6 +172,7 @@ impl<'a> Recorder<'a> {
     /// `most_m`, so most instants cost no search through the mesh.
     fn note_height(&mut self, at: &RockInstant) {
         let centre = &at.motion.position_m;
+        // over the lowest ground around: an upper bound of the height over the ground below
         let most_m =
             centre.z - self.form.below_m(at) - self.terrain.floor.under(centre.x, centre.y);
         if most_m <= self.extremes.height_m {
@@ -198,6 +201,7 @@ impl<'a> Recorder<'a> {
         for k in 1..=points {
             self.note_height(&at(dt * f64::from(k) / f64::from(points + 1)));
         }
+        // lines, cells and stretches each look at the flight as a whole, not at its points
         self.crossings.fly((self.terrain, &self.form), flight, dt, at);
         self.passages.fly((self.terrain, &self.form), flight, dt, at);
         self.stretches.fly((self.terrain, &self.form), flight, dt, at);
@@ -218,6 +222,7 @@ impl<'a> Recorder<'a> {
     /// Goes along one step in `state` to `to`.
     pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
         let from = std::mem::replace(&mut self.now, to);
+        // a step in contact is noted from where it began to where it ended
         self.crossings.step((self.terrain, &self.form), [&from, &to], self.turned);
         self.passages.step(&self.form, [&from, &to], self.turned);
         let dt = to.time_s - from.time_s;
@@ -228,6 +233,8 @@ impl<'a> Recorder<'a> {
             let motion = Motion { time_s: self.next_point_s, ..motion };
             self.point(&RockInstant { motion, turned: self.turned }, state);
         }
+        // in a world a flying rock is carried along by the steps of its island: it has a height
+        // there
         let flies = state == PathState::Flight;
         if flies {
             self.note_height(&self.instant());
@@ -278,6 +285,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Keeps the last point of the path.
+    /// So that a path ends where its rock does, whatever the time step of its points.
     pub(super) fn end_path(&mut self) {
         if self.keep.path_step_s.is_some()
             && self.path.last().is_none_or(|last| last.motion.time_s < self.now.time_s)
@@ -303,6 +311,9 @@ impl<'a> Recorder<'a> {
     }
 
     /// Ends the impacts whose time is over or whose patch no longer `holds` the rock; `held_j` as above.
+    ///
+    /// `held_j` is asked only if the last of them ends: summing the springs costs a look at every
+    /// contact.
     pub(super) fn end_impacts(
         &mut self,
         holds: impl Fn(u32) -> bool,

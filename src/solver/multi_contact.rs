@@ -78,6 +78,7 @@ fn sweep_and_jump(
                 return Some(now);
             }
         }
+        // a singular system is no harm: the sweeps simply go on
         if let Some(jumped) = jump(body, contacts, free, &now, h) {
             act_on(body, contacts, &jumped, h);
             now = driven(body, contacts, free, h);
@@ -218,6 +219,7 @@ fn jump(
         (k[(axis, axis)], k[(axis + 3, axis + 3)]) = (body.mass / h, body.inertia / h);
         (f[axis], f[axis + 3]) = (free.0[axis] * body.mass / h, free.1[axis] * body.inertia / h);
     }
+    // open contacts have neither stiffness nor load
     for contact in contacts.iter().filter(|contact| contact.normal_force > 0.0) {
         add(&mut k, &mut f, body, contact, (now, h));
     }

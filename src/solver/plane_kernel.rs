@@ -44,6 +44,10 @@ fn is_on_face(world: &ContactEnvironment, rock: &ContactState) -> bool {
 
 impl ContactState {
     /// One accepted step on a plane, or all of an impact; `None` if the rock does not stay on one.
+    ///
+    /// `h` is the step to try, and becomes the next; `h_max` (s) the longest asked for. An impact
+    /// on a plane is stepped to its end in one call: looking around, turning frames and copying
+    /// memories are paid once.
     pub(crate) fn step_on_plane(
         &mut self,
         world: &ContactEnvironment,
@@ -59,6 +63,8 @@ impl ContactState {
         let history = self.histories[0];
         let law = world.law(history.triangle);
         let c_n = if history.captured { law.c_n_captured } else { law.c_n };
+        // from the centre, not from the last step's sum: ways of many steps do not drift off the
+        // plane
         let penetration = self.sunk(world);
         // state and rates stay in the plane's frame from step to step; they are turned only on the way in and out
         if !self.plane.on {

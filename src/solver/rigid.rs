@@ -128,6 +128,7 @@ pub(crate) fn rub(
 }
 
 /// The contacts of one impact or step.
+/// On the stack, as many as a rock keeps.
 struct Blows<'w> {
     list: [ImpulsiveContact<'w>; MOST],
     len: usize,
@@ -284,6 +285,7 @@ fn step(world: &ContactEnvironment, state: &mut ContactState, longest: f64, done
     let r = body.radius;
     let (c, v, w) = (state.c, state.v, state.w);
     let dt = closing(world, state, longest.min(TRAVEL * r / v.norm().max(f64::MIN_POSITIVE)));
+    // contacts are those of the middle of the step, looked for there
     let middle = c + v * (0.5 * dt);
     state.look_ahead(world, &middle);
     let mut blows = Blows::of(world, state, |blow, distance| {
@@ -296,6 +298,7 @@ fn step(world: &ContactEnvironment, state: &mut ContactState, longest: f64, done
     // mean of both velocities: the parabola under weight alone is exact
     state.c = c + (v + state.v) * (0.5 * dt);
     done.dt = dt;
+    // without any impulse the rock is free, and the next leap takes over
     let pushed = blows.list[..blows.len].iter().any(|blow| blow.normal_force > 0.0);
     push_out(world, state);
     remember(world, state, |_| pushed);
@@ -320,6 +323,7 @@ fn push_out(world: &ContactEnvironment, state: &mut ContactState) {
     for _ in 0..4 {
         let c = state.c;
         state.look_ahead_again(world, &c);
+        // each normal adds what the ones before it have not moved out already
         let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
             let missing = r - touch.distance_m - sum.dot(&touch.normal);
             sum + touch.normal * missing.max(0.0)

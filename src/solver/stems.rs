@@ -82,6 +82,9 @@ impl ContactState {
     }
 
     /// How the stem that is struck at `touch` with a velocity and spin gives way, if it cannot take the blow.
+    ///
+    /// Only asked where the motion could break it at all; the impact itself is followed by
+    /// `yielding_impact`.
     pub(crate) fn broken_by(
         &self,
         world: &ContactEnvironment,
@@ -116,6 +119,8 @@ impl ContactState {
 
     /// Breaks the stems that cannot take the current blow, in the rigid limit; `note` hears of each, with the touch and the
     /// energy it took (J), and whether the rock has just come to it.
+    ///
+    /// Before the blow itself: a stem that breaks takes its energy, and the rock goes on with what is left.
     pub(crate) fn break_stems(
         &mut self,
         world: &ContactEnvironment,

@@ -174,6 +174,7 @@ impl<'a> BodyWorld<'a> {
         let length = self.window_length();
         // the last window ends with the time limit of the scene
         let end_s = (self.now_s + length).min(self.settings.longest_s);
+        // what each does from here on is measured against its flight
         let (settings, now_s) = (self.settings, self.now_s);
         self.bodies.iter_mut().flatten().for_each(|body| {
             body.watch_from(settings, now_s);
@@ -231,6 +232,7 @@ impl<'a> BodyWorld<'a> {
     }
 
     /// The rocks that are in the world.
+    /// Asleep or moving; the lists of a window count places among these.
     fn present(&self) -> Vec<u32> {
         let count = self.bodies.len() as u32;
         (0..count).filter(|&k| !matches!(self.body(k).state, BodyState::Gone(_))).collect()
@@ -282,6 +284,7 @@ impl<'a> BodyWorld<'a> {
     }
 
     /// Takes every island in which something may happen before `end_s` out of the world.
+    /// Rocks are moved, not copied; what stays behind is the empty place.
     fn jobs(
         &mut self,
         present: &[u32],

@@ -77,6 +77,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Finds the end of the flight that begins now.
+    /// Kept until it comes: windows only compare times with it.
     pub(super) fn look_ahead(&mut self, settings: &RunSettings) {
         let now_s = self.recorder.now.time_s;
         let left = settings.longest_s - now_s;
@@ -201,6 +202,7 @@ impl<'a> WorldBody<'a> {
         rock.state.bend(&rock.world, &mut loss);
         let to = self.motion_at(time_s);
         // A rock may be hit and let go within one step: then it flies another way.
+        // neither the mesh nor another rock took or gave anything in this step
         let is_untouched = given == Given::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
             self.recorder.step_as(to, PathState::Flight);
@@ -279,6 +281,7 @@ impl<'a> WorldBody<'a> {
     ) {
         let before_j = self.total_j(settings);
         let dt = to.time_s - self.recorder.now.time_s;
+        // one slipping contact, with mesh or rock, makes the step "sliding"
         let slides = slides || self.member.state.histories.iter().any(|history| history.slides);
         self.recorder.step(to, slides);
         self.recorder.pay(&loss, 1.0);
@@ -318,6 +321,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Makes ready for a step in contact; returns the longest that it may be (s).
+    /// Stems and facets, as for a rock alone.
     pub(super) fn before_step(&mut self, settings: &RunSettings) -> f64 {
         if self.member.flying {
             return f64::INFINITY;
@@ -334,6 +338,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Takes it out of the world; one that has already stopped keeps its reason.
+    /// From then on it is in no island, and others pass where it was.
     pub(super) fn leave(&mut self, stop: Stop) {
         if self.state == BodyState::Moving {
             self.state = BodyState::Gone(stop);

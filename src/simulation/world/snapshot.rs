@@ -31,6 +31,7 @@ pub(super) struct Kept {
 }
 
 impl WorldBody<'_> {
+    /// What the rock is now, as far as later windows depend on it.
     pub(super) fn keep(&self) -> Kept {
         Kept {
             memory: self.member.memory(),
@@ -44,6 +45,7 @@ impl WorldBody<'_> {
         }
     }
 
+    /// To the bit what it was; only its effort and what is foreseen of it stay.
     pub(super) fn go_back(&mut self, kept: &Kept) {
         self.member.recall(&kept.memory);
         self.recorder.go_back(&kept.mark);
@@ -76,6 +78,9 @@ impl BodyWorld<'_> {
     }
 
     /// Goes back to a moment that was kept.
+    ///
+    /// Rocks that have left since then do not come back: nothing of theirs was kept, as they were
+    /// gone already.
     pub(super) fn go_back(&mut self, snapshot: &Snapshot) {
         for (body, kept) in self.bodies.iter_mut().zip(&snapshot.bodies) {
             if let (Some(body), Some(kept)) = (body, kept) {

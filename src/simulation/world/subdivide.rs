@@ -32,6 +32,9 @@ const RETURNS: usize = 6;
 
 impl IslandWindow<'_> {
     /// Takes the island to the end of its window.
+    ///
+    /// From cheap to dear: all fly and nothing happens; a rigid heap; parts that do not meet; all
+    /// of it together.
     pub(super) fn run(&mut self) {
         if self.is_rigid_heap() {
             self.run_rigid();
@@ -51,6 +54,7 @@ impl IslandWindow<'_> {
             self.run_whole();
             return;
         };
+        // `end_s` moves from cut to cut, so that no part goes beyond its cut
         let (start_s, end_s) = (self.now_s, self.end_s);
         for k in 1..=cuts {
             let part = f64::from(k) / f64::from(cuts);
@@ -93,11 +97,13 @@ impl IslandWindow<'_> {
         None
     }
 
+    /// Where its rocks are, and what each may do within `dt` (s).
     fn places(&self, dt: f64) -> Vec<PredictedRock> {
         let place = |body: &WorldBody| place_of(body, self.settings, (self.now_s, dt));
         self.bodies.iter().map(|body| place(body)).collect()
     }
 
+    /// Who may meet whom within `dt` (s).
     fn meetings(&self, places: &[PredictedRock], (dt, stiffest): (f64, f64)) -> Meetings {
         let spread = if dt * stiffest > FAR { HitSpread::Island } else { HitSpread::Neighbours };
         meeting_ties(&self.pair_histories, places, Ahead { dt, spread })
@@ -108,6 +114,7 @@ impl IslandWindow<'_> {
     /// As the world does with its windows (`bodies`), on a smaller scale: a return here costs this
     /// island alone.
     fn run_parts_again(&mut self, stiffest: f64) {
+        // as the world keeps a snapshot before its windows
         let kept: Vec<Kept> = self.bodies.iter().map(|body| body.keep()).collect();
         let pair_histories = self.pair_histories.clone();
         for _ in 0..RETURNS {

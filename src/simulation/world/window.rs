@@ -79,11 +79,14 @@ impl<'a> IslandWindow<'a> {
     }
 
     /// Gives rocks and pairs back to the world.
+    /// Ends of pairs still count places in the island.
     pub(super) fn into_parts(self) -> (Vec<u32>, Bodies<'a>, Vec<PairHistory>) {
         (self.ids, self.bodies, self.pair_histories)
     }
 
     /// Takes all of the island to the end of the window together.
+    ///
+    /// Ends when all fly beyond the window, or when the steps have reached its end.
     pub(super) fn run_whole(&mut self) {
         // a sleeping rock in a busy island may be pushed, so it takes part from the start
         for body in &mut self.bodies {

@@ -90,6 +90,9 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// The present state.
+    ///
+    /// Way 0: positions are counted from where the step begins, as map coordinates would cost
+    /// digits.
     pub(super) fn begin<const N: usize>(&self) -> [f64; N] {
         let mut y = [0.0; N];
         put(&mut y, V, &self.state.v);
@@ -132,6 +135,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Writes the contacts at the state last asked for into their memories.
+    /// The pair's last stage is at the step's end, so what was asked for last is the end.
     pub(super) fn remember(&mut self) {
         let histories = &mut self.state.histories;
         histories.iter_mut().for_each(|history| history.closed = false);
@@ -174,6 +178,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         self.len = 0;
         for k in 0..state.touches.len() {
             let touch = state.touches[k];
+            // by feature; a contact that has no memory yet takes over that of a like one, or begins
+            // one
             let known = state.histories.iter().position(|history| history.feature == touch.feature);
             let place = known.unwrap_or_else(|| state.history_of(world, k, taken, &v));
             taken |= 1 << place;
@@ -209,6 +215,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             if Self::rolls::<N>() {
                 put(&mut rates.y, SPRINGS + 3 * (C + place), &action.rates[1]);
             }
+            // energy that goes into trees is counted apart, whatever takes it
             let is_tree = world.terrain.is_tree(touch.triangle);
             let [friction, damping, rolling] = action.powers(approach, &w);
             let stores = p_n * at.penetration * approach;

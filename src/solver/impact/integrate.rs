@@ -109,6 +109,7 @@ pub(super) fn run<
 ) -> ([f64; N], [f64; Q]) {
     let mut force = Force::<D>::new(span.swing, span.gamma);
     let over_allowed2 = 1.0 / (span.allowed * span.allowed);
+    // a strong dashpot makes the force's series short-lived
     let longest = LONGEST / (2.0 * span.swing.zeta).max(1.0);
     let (mut sum, mut t, mut wish) = ([0.0; Q], 0.0, span.first);
     let mut stages = Stages::NONE;

@@ -138,6 +138,8 @@ fn alone(
 ) -> FrozenRebound {
     let body = Body { gravity: Vec3::zeros(), ..*body };
     let (law, n) = (contact.law, &contact.normal);
+    // one that gives nothing back has its damping at least doubled over critical, and its rest of
+    // rebound taken away below
     let c_n = if contact.captured { law.c_n_captured } else { law.c_n };
     let plane = Plane::of_patch(&body, law, (c_n, contact.stiffness_scale), tolerance);
     let Followed::Left(rebound) = plane.follow(n, v, w) else {
@@ -297,6 +299,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
     }
 
     /// Notes how fast the contacts that are pressed come nearer.
+    /// The fastest approach of each tells what restitution may give back of it.
     fn note(&mut self) {
         let v = speed_of(&self.y);
         for (k, contact) in self.flow.contacts.list().iter().enumerate() {
@@ -308,6 +311,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
     }
 
     /// What friction, dashpots and rolling of each contact have taken.
+    /// Sums along the steps, none below 0: the step's error may make a small one negative.
     fn parts(&self) -> [[f64; 3]; MOST] {
         let mut parts = [[0.0; 3]; MOST];
         for (part, sums) in parts.iter_mut().zip(self.sums.chunks(4)) {

@@ -21,6 +21,7 @@ use nalgebra::{Cholesky, Const, LU};
 pub(super) type Below = (usize, usize, Mat6);
 
 /// A system: one block a rock on the diagonal, and those that join rocks.
+/// Sorted by column and row, each block once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Blocks<'a> {
     pub(super) diagonal: &'a [Mat6],
@@ -164,6 +165,7 @@ impl Factor {
     }
 
     /// `L y = b`, then `U x = y`.
+    /// The load is put in the order of elimination first, and the solution taken out of it.
     fn substitute(&self, load: &mut [f64]) -> Option<()> {
         let Ordering { place, starts, rows } = &self.ordering;
         let mut x = vec![Vec6::zeros(); place.len()];

@@ -253,6 +253,7 @@ impl IslandBody {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         self.state.place_contacts(&world, tableau, (i, h), (&self.base, &self.guess));
         for contact in &mut self.state.contacts[..self.state.contact_count] {
+            // the same feature as before: its forces are the best first guess there is
             let kept = self.kept.iter().find(|kept| kept.0 == contact.feature);
             if let Some((_, normal_force, shear_force, rolling_moment)) = kept {
                 (contact.normal_force, contact.shear_force, contact.rolling_moment) =

@@ -48,6 +48,9 @@ const SIGN: [f64; 2] = [1.0, -1.0];
 
 impl DdaPairContact {
     /// The contact of pair `k` if the rocks are nearer than `slack` (m).
+    ///
+    /// `memory` is off in the printed scheme: no stretch is carried, no dashpot acts along the
+    /// surface.
     pub(super) fn over(
         (k, pair_history): (usize, &PairHistory),
         bodies: [&Body; 2],
@@ -65,6 +68,7 @@ impl DdaPairContact {
         let points = [touching_point(&v, bodies[0].radius), touching_point(&-v, bodies[1].radius)];
         let law = &pair_history.law;
         let damped = law.c_s > 0.0;
+        // without restitution there are no dashpots (`c_s = 0`), and capture adds none
         let c_n = if pair_history.captured && damped { law.c_n_captured } else { law.c_n };
         // way of the contact point per newton: Δt²/2 (1/m + R²/I) of each sphere
         let compliance = |body: &Body| {
@@ -161,6 +165,7 @@ impl DdaPairContact {
     }
 
     /// Compares its state with the displacements that came out.
+    /// Shear is judged before the normal state changes: its force belongs to the solution in hand.
     pub(super) fn judge(&mut self, d: [&Vec6; 2]) -> Change {
         let shear_force = self.drag(d);
         let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
@@ -188,6 +193,9 @@ impl DdaPairContact {
     }
 
     /// Work on end `k` over its displacement (J): what the other rock and the springs give it.
+    ///
+    /// `F_k · D_k` with the force at the step's end: the paper's springs act with it over the whole
+    /// step.
     pub(super) fn work(&self, k: usize, d: [&Vec6; 2]) -> f64 {
         if !self.presses {
             return 0.0;

@@ -103,6 +103,7 @@ impl Contacts {
     }
 
     /// Whether nothing in them takes energy.
+    /// Then the limit is exactly elastic, and so must be the result.
     fn conserve(&self) -> bool {
         self.list().iter().all(|contact| {
             contact.damping == 0.0 && !contact.shear.is_on() && !contact.rolling.is_on()
@@ -111,6 +112,9 @@ impl Contacts {
 
     /// Takes out of the motion what captured contacts gave back of themselves and every approach that is left, and sees to it
     /// that the energy is not more than it was: exactly the same where nothing in the contacts takes any.
+    ///
+    /// Captured contacts have a spring too, and would throw the rock back by their own restitution;
+    /// that much is taken from them, not what other contacts threw at the rock.
     pub(super) fn come_to_an_end(
         &self,
         before: (Vec3, Vec3),
@@ -183,6 +187,7 @@ impl Contacts {
 
     /// Books energy that ended in the contacts to those that stopped `v`, by the speeds they stopped.
     fn share_plastic(&self, v: &Vec3, taken: f64, held: [bool; MOST], plastic: &mut [f64; MOST]) {
+        // square of the speed along each normal that had to go: the energy it stood for
         let stopped: [f64; MOST] = std::array::from_fn(|k| {
             let up = if k < self.len { self.list[k].n.dot(v) } else { 0.0 };
             if up < 0.0 || held[k] { up * up } else { 0.0 }

@@ -33,6 +33,9 @@ impl PairHistory {
 
 impl RigidIsland {
     /// Moves apart what overlaps, each by its share of the mass; the height that a rock gains is paid by its motion.
+    ///
+    /// Gauss–Seidel over pairs and mesh, to and fro between them until nothing moves: each rock out
+    /// of one neighbour may be in another.
     pub(super) fn part(&mut self, scene: &mut ImpactScene) {
         self.places.clear();
         self.places.extend(self.balls.iter().map(|ball| ball.c));
@@ -41,6 +44,8 @@ impl RigidIsland {
             for pair_history in scene.pair_histories {
                 let ends = [pair_history.a as usize, pair_history.b as usize];
                 let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
+                // what weight would press in anyway is left: without it contacts of a heap would
+                // open and close from step to step
                 let reach = a.body.radius + b.body.radius;
                 let allowed = reach - pair_history.slack_m([a, b]);
                 if (a.c - b.c).norm_squared() >= allowed * allowed {
@@ -96,6 +101,7 @@ impl RigidIsland {
     }
 
     /// Takes energy (J) out of the motion of all rocks that are pushed, each its share.
+    /// In proportion to what each has, so that directions and ratios of speeds stay.
     fn pay_together(&mut self, owed_j: f64) {
         let takes_part = |ball: &StepBody| ball.pushed || ball.moved;
         let motion_j: f64 =
