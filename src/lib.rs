@@ -22,7 +22,7 @@
 //! # }
 //! ```
 //!
-//! Start with [`Scene::read`], [`Plan::of_scene`] and [`run`]; what came out is in [`Results`]: all rocks together
+//! Start with [`Scene::read`], [`Plan::of_scene`] and [`run()`]; what came out is in [`Results`]: all rocks together
 //! ([`Hazard`]), their crossings of each line ([`Line`]), and the contents of `summary.json` ([`Summary`]). Single rocks come
 //! from [`simulate_release`], rock by rock and without files.
 //!

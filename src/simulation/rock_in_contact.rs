@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 ///
 /// Without weight a contact lasts `π/ω` at most; weight prolongs it, but threefold only where the
 /// rock is about to stay.
-const IMPACT_TIMES: f64 = 3.0;
+pub(super) const IMPACT_TIMES: f64 = 3.0;
 
 /// A rock in contact and its notes.
 pub(super) struct RockInContact<'r, 'a> {
