@@ -9,12 +9,15 @@
 
 use crate::rock::Vec3;
 use crate::solver::law::within;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 300;
 /// Change of the body's momentum in a sweep, relative to the largest impulse, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-11;
+/// Turns of the direction of friction, at most, and the widest of them (rad).
+const TURNS: u32 = 20;
+const WIDEST_TURN: f64 = 0.8;
 /// Passes over the impulse of one contact that slides, at most.
 const PASSES: u32 = 100;
 /// Change of it below which they have settled (–).
@@ -155,10 +158,44 @@ impl BlockContact {
         if push > 0.0 && drag.norm_squared() <= (self.friction * push).powi(2) {
             return stick;
         }
-        self.sliding(u, (drag, &whole.matrix))
+        self.on_rim(u, (&drag, &whole.matrix))
+            .unwrap_or_else(|| self.sliding(u, (drag, &whole.matrix)))
     }
 
-    /// The impulse on the rim of Coulomb's cone. Also where no rigid solution exists (Painlevé): then the last pass, which obeys the
+    /// The impulse on the rim of Coulomb's cone, `p (n + μ d)` with a direction `d` along the surface against the slip that it leaves: one
+    /// equation for the angle of `d`, by Newton's method from that of `drag`. `None` where it does not settle on a slip that friction
+    /// opposes.
+    fn on_rim(&self, u: &Vec3, (drag, whole): (&Vec3, &Matrix3<f64>)) -> Option<Vec3> {
+        let n = &self.n;
+        let first = drag.try_normalize(0.0)?;
+        let second = n.cross(&first);
+        let (to_n, to_first, to_second) = (whole * n, whole * first, whole * second);
+        let flat = |x: &Vec3| Vector2::new(first.dot(x), second.dot(x));
+        let (up, slip, lift) = (n.dot(u), flat(u), flat(&to_n));
+        let across = Matrix2::from_columns(&[flat(&to_first), flat(&to_second)]) * self.friction;
+        let mut d = Vector2::new(1.0, 0.0);
+        for _ in 0..TURNS {
+            let aside = Vector2::new(-d.y, d.x);
+            let own = n.dot(&to_n) + self.friction * lift.dot(&d);
+            let push = -up / own;
+            let answer = lift + across * d;
+            let left = slip + answer * push;
+            let push_turns = -push * self.friction * lift.dot(&aside) / own;
+            let turns = aside.dot(&(answer * push_turns + across * aside * push)) - d.dot(&left);
+            let turn = -aside.dot(&left) / turns;
+            if own <= 0.0 || !turn.is_finite() {
+                return None;
+            }
+            d = (d + aside * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
+            if turn.abs() <= NEAR {
+                let opposes = d.dot(&left) <= 0.0;
+                return opposes.then(|| (n + (first * d.x + second * d.y) * self.friction) * push);
+            }
+        }
+        None
+    }
+
+    /// The same by passes over drag and push, slowly. Also where no rigid solution exists (Painlevé): then the last pass, which obeys the
     /// cone and pushes.
     fn sliding(&self, u: &Vec3, (mut drag, whole): (Vec3, &Matrix3<f64>)) -> Vec3 {
         let n = &self.n;
