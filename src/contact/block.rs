@@ -79,6 +79,17 @@ pub struct BlockTouches {
     /// Pairs of a part of the block and a feature of the mesh that press already.
     pub held: Vec<(u16, Feature)>,
     corners: Vec<Vec3>,
+    /// Corner by corner, a place where it was (m) and how far from there nothing was at least (m).
+    clear: Vec<(Vec3, f64)>,
+}
+
+impl BlockTouches {
+    /// Forgets what was seen of another block.
+    pub fn forget(&mut self) {
+        self.found.clear();
+        self.held.clear();
+        self.clear.clear();
+    }
 }
 
 /// The contacts of a block that are no further away than `reach_m`, in a fixed order: corners, edges, faces. `near` must have been
@@ -90,16 +101,22 @@ pub fn touches(
     reach_m: f64,
     touches: &mut BlockTouches,
 ) {
-    let BlockTouches { found, held, corners } = touches;
+    let BlockTouches { found, held, corners, clear } = touches;
     found.clear();
     corners.clear();
     corners.extend(block.core.corners.iter().map(|own| pose.point(own)));
     let placed = Placed { block, pose, corners, held };
     let reach = block.ball_m + reach_m;
-    let mut of_ball = ContactPoints::default();
-    for (k, p) in corners.iter().enumerate() {
-        near.touches(terrain, p, reach, &mut of_ball);
-        for touch in of_ball.iter() {
+    let (mut of_ball, sees) = (ContactPoints::default(), near.sees_m().max(reach));
+    clear.resize(corners.len(), (Vec3::repeat(f64::INFINITY), 0.0));
+    for ((k, p), (seen, far)) in corners.iter().enumerate().zip(clear) {
+        // where nothing was near, nothing is nearer than the corner has moved since
+        if *far > reach && (p - *seen).norm_squared() < (*far - reach).powi(2) {
+            continue;
+        }
+        near.touches(terrain, p, sees, &mut of_ball);
+        (*seen, *far) = (*p, of_ball.iter().map(|touch| touch.distance_m).fold(sees, f64::min));
+        for touch in of_ball.iter().filter(|touch| touch.distance_m < reach) {
             placed.add((k, p), touch, found);
         }
     }
@@ -142,6 +159,10 @@ impl Placed<'_> {
         reach: f64,
         found: &mut Vec<BlockTouch>,
     ) {
+        let along = edge.along.dot(&(self.pose.centre - edge.a)).clamp(0.0, edge.length);
+        if !self.is_near(&(edge.a + edge.along * along), reach) {
+            return;
+        }
         for (part, ridge) in self.ridges() {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
             let Some((s, t)) = crossing((a, b - a), (edge.a, edge.along)) else { continue };
@@ -174,6 +195,9 @@ impl Placed<'_> {
         reach: f64,
         found: &mut Vec<BlockTouch>,
     ) {
+        if !self.is_near(&peak.p, reach) {
+            return;
+        }
         let own = self.pose.attitude.inverse_transform_vector(&(peak.p - self.pose.centre));
         let touches = |part: usize, normal: &Vec3| {
             let slack = self.slack(part, peak.feature);
@@ -220,6 +244,12 @@ impl Placed<'_> {
                 self.add((part, &p), &point(peak.feature, peak.triangle, (normal, height)), found);
             }
         }
+    }
+
+    /// Whether a point of the mesh may be nearer to the core than `reach` (m).
+    fn is_near(&self, point: &Vec3, reach: f64) -> bool {
+        let core = self.block.bound_m - self.block.ball_m;
+        (point - self.pose.centre).norm_squared() <= (core + reach).powi(2)
     }
 
     /// The block's edges with their numbers among its parts.

@@ -27,7 +27,6 @@ use crate::body::Block;
 use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, BlockTouches, Pose, keep_widest, touches};
 use crate::contact::neighbours::Neighbours;
-use crate::flight::block::Tumble;
 use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
 use energy::hold_energy;
@@ -37,6 +36,10 @@ use springs::Springs;
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
+/// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
+const WAY: f64 = 0.5;
+/// … and so far from the balls (–, relative to their radius): a corner that far from all need not be asked for a while.
+const SEES: f64 = 3.0;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
 const AHEAD: f64 = 1.0;
 /// No point of the block moves further in one step (–, relative to the balls' radius) …
@@ -163,6 +166,16 @@ fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
 }
 
 impl Footing {
+    /// Sees to it that the features around a block are known, with room for some looks.
+    fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
+        let core = block.bound_m - block.ball_m;
+        if !self.near.covers_around(&pose.centre, core) {
+            let margin = core + WAY * block.radius_m;
+            let slack = SEES * block.ball_m;
+            self.near.collect(world.terrain, &pose.centre, block.ball_m, margin, slack);
+        }
+    }
+
     /// Looks for the contacts of a block that are no wider apart than `reach_m`.
     pub(crate) fn look(
         &mut self,
@@ -171,10 +184,7 @@ impl Footing {
         pose: &Pose,
         reach_m: f64,
     ) {
-        if !self.near.covers_around(&pose.centre, block.bound_m - block.ball_m) {
-            let way = 0.5 * block.radius_m;
-            Tumble::collect(block, &mut self.near, world.terrain, (&pose.centre, way));
-        }
+        self.know(world, block, pose);
         touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
         if self.touches.found.len() > MOST {
             keep_widest(&mut self.touches.found, MOST);

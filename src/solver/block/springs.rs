@@ -24,7 +24,6 @@ use super::solve::{BlockContact, GivingWay, Mass};
 use super::{Footing, Moving, Stepped, TOUCH};
 use crate::body::Block;
 use crate::contact::block::{Pose, touches};
-use crate::flight::block::Tumble;
 use crate::ground::Law;
 use crate::math;
 use crate::rock::Vec3;
@@ -201,10 +200,7 @@ impl Footing {
         (block, pose): (&Block, &Pose),
         reach_m: f64,
     ) {
-        if !self.near.covers_around(&pose.centre, block.bound_m - block.ball_m) {
-            let way = 0.5 * block.radius_m;
-            Tumble::collect(block, &mut self.near, world.terrain, (&pose.centre, way));
-        }
+        self.know(world, block, pose);
         touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
     }
 

@@ -6,7 +6,7 @@ mod springs;
 mod yielding;
 
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
-use crate::flight::block::first_touch;
+use crate::flight::block::{Tumble, first_touch};
 use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
