@@ -1,4 +1,17 @@
 //! Where a sphere touches the mesh, what it remembers of it, and the paper's 6×6 submatrices.
+//!
+//! Signs and frames of everything in here; all lengths in metres, in the terrain's local frame (z
+//! up, near its origin):
+//!
+//! ```text
+//! c            centre of the sphere, R its radius, q the nearest point of the mesh
+//! n            (c − q)/|c − q|, from the mesh towards the centre; the paper's V = −n
+//! d, pen       |c − q| and R − d: pen > 0 is pressed in, pen < 0 a gap
+//! P1, P2       c − R n and q: the two ends of the contact's springs, Eq. (5)
+//! ```
+//!
+//! Nothing here knows of forces: a contact is geometry and a memory. What passes through it is the
+//! law's affair.
 
 pub mod block;
 pub mod closest;
@@ -13,8 +26,15 @@ use crate::terrain::Terrain;
 use serde::{Deserialize, Serialize};
 
 /// Most contacts one rock keeps at a time, the deepest first.
+///
+/// Three contacts hold a sphere; more press at the same instant only in hollows with many walls.
+/// Should a mesh offer more than fit, those that press least are left out: they carry the least of
+/// the load.
 pub const MOST: usize = 8;
 /// A gap this small is a touch (–, relative to R): rounding of the leap.
+///
+/// Looser than what sums of positions and times are rounded by, far tighter than any penetration
+/// that carries weight: at rest `m g/p_N`, 3e-5 R for a block of 0.5 m on 1e9 N/m.
 pub const TOUCH: f64 = 1e-9;
 
 /// What of the mesh was touched.
@@ -30,6 +50,10 @@ pub enum FeatureKind {
 }
 
 /// What of the mesh a contact belongs to.
+///
+/// A kind and a number are the identity of a contact from step to step: the springs' memory is
+/// found again by it. Faces of a flat part are different features all the same, so a rock that
+/// rolls over a seam hands its memory on by its normal (`history`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Feature {
     /// Face, edge or vertex.
@@ -56,6 +80,10 @@ pub struct ContactPoint {
     /// that of the point contact that acts like it.
     pub distance_m: f64,
     /// `|a|²`: stiffness of the patch relative to that of a single point (–), 1 for a single point.
+    ///
+    /// Energy of the patch is `p_N gain2 pen²/2` with `pen = R − distance_m`, its force `p_N gain2
+    /// pen` along `normal`: two points pressed in alike, with an angle θ between their normals,
+    /// have `1 + cos θ`, never more than 2.
     pub gain2: f64,
 }
 
@@ -63,6 +91,8 @@ impl ContactPoint {
     /// A single nearest point, from which the centre is `off` and `distance_m` away (m).
     #[inline]
     pub(crate) fn single(feature: Feature, triangle: u32, off: &Vec3, distance_m: f64) -> Self {
+        // off = c − q: the normal comes out of the distance vector itself, so a face, an edge and a
+        // vertex are treated alike
         Self { feature, triangle, normal: off / distance_m, distance_m, gain2: 1.0 }
     }
 
@@ -76,6 +106,9 @@ impl ContactPoint {
     };
 
     /// Whether it is one point of one face, whose plane tells everything.
+    ///
+    /// Then `n` is constant and `d` linear in `c`, so the contact is a linear spring: closed forms
+    /// and plane kernels apply.
     #[inline]
     #[expect(clippy::float_cmp, reason = "a single point has exactly 1")]
     pub fn is_on_plane(&self) -> bool {
@@ -84,6 +117,9 @@ impl ContactPoint {
 }
 
 /// The touches of one rock, without allocation.
+///
+/// A fixed array: the list is rebuilt at every stage of every step, and steps allocate nothing
+/// (`tests/no_allocation.rs`).
 #[derive(Debug, Clone, Copy)]
 pub struct ContactPoints {
     list: [ContactPoint; MOST],
@@ -104,6 +140,10 @@ impl ContactPoints {
     }
 
     /// The same touches from another centre, if all are on faces: their planes tell, nothing need be searched.
+    ///
+    /// Signed on purpose: a centre that has passed through the plane within a trial step gets a
+    /// negative distance, hence more penetration and a force back to the side it came from. An
+    /// unsigned distance would push it out on the other side.
     #[inline]
     pub fn slide_to(&mut self, terrain: &Terrain, centre: &Vec3) -> bool {
         let touches = &mut self.list[..self.len];
@@ -111,6 +151,8 @@ impl ContactPoints {
             return false;
         }
         for touch in touches {
+            // d = n·(c − a): exact for any centre, as long as the foot stays on the face, which the
+            // caller sees to
             let corner = terrain.face(touch.feature.id).a;
             touch.distance_m = touch.normal.dot(&(centre - corner));
         }
@@ -142,6 +184,9 @@ impl ContactPoints {
     }
 
     /// Adds one; when full, it takes the place of the shallowest if it is deeper.
+    ///
+    /// O(1) until it is full, O(`MOST`) after. Which one gives way depends on distances alone, not
+    /// on the order of the search.
     #[inline]
     pub fn add(&mut self, touch: ContactPoint) {
         if self.len < MOST {
@@ -149,6 +194,7 @@ impl ContactPoints {
             self.len += 1;
             return;
         }
+        // the largest distance from the centre is the least penetration
         let shallowest = self.list.iter_mut().max_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
         if let Some(place) = shallowest.filter(|place| place.distance_m > touch.distance_m) {
             *place = touch;

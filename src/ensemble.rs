@@ -59,12 +59,12 @@ impl Ensemble {
         self.pool.current_num_threads()
     }
 
-    /// Set it, from a Ctrl-C handler for example, and no chunk follows the current one.
+    /// The flag that stops the computation after the current chunk; set it from a Ctrl-C handler, for example.
     pub fn stop_flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.stop)
     }
 
-    /// Computes something whose parts spread over the workers by themselves.
+    /// Runs `work` on the worker threads; parallel iterators inside it use all of them.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.pool.install(work)
     }

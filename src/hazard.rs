@@ -1,4 +1,4 @@
-//! What all rocks say together: counts, percentiles and shares, each with its confidence interval.
+//! Statistics over all rocks: counts, percentiles and shares, each with its confidence interval.
 //!
 //! Values are kept exactly, 8 bytes each: the eleven [quantities](Quantity) take 88 MB per million releases.
 //! Nothing is sketched or binned before it is asked for, so the statistics do not depend on the order or the
@@ -56,7 +56,7 @@ use std::collections::BTreeMap;
 /// Percentiles of every table (per cent).
 pub const PERCENTS: [u8; 5] = [50, 90, 95, 98, 99];
 
-/// All rocks so far.
+/// Statistics over all rocks computed so far.
 ///
 /// The statistics are over all rocks but the failed and the never released: these have a row and are counted, but
 /// where they stopped is where the computation did. A rock that left the terrain or ran out of time or work counts with what it

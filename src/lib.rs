@@ -1,8 +1,8 @@
 //! Rockfall hazard by spherical discontinuous deformation analysis (SDDA) on triangle meshes.
 //!
 //! A **scene** says what is asked. A **plan** says what that needs, and names what it leaves out and why. Each
-//! **rock** is a pure function of the plan and its number. The **hazard** is what all rocks say together. Files and
-//! figures are drawn from the hazard, and nothing flows back:
+//! **rock** is a pure function of the plan and its number. The **hazard** is the statistics over all rocks. Files and
+//! figures are drawn from it, and nothing flows back:
 //!
 //! ```text
 //! scene.toml ─► Scene ─► Terrain ─► Plan ─► Trajectory × n ─► Hazard ─► CSV · JSON · SVG · HTML
@@ -22,8 +22,12 @@
 //! # }
 //! ```
 //!
-//! What stands here is the public face. The modules behind it stand in the order of the floors of a house: each uses only
-//! modules above it in the list; their contents may change from one version to the next.
+//! Start with [`Scene::read`], [`Plan::of_scene`] and [`run()`]; what came out is in [`Results`]: all rocks together
+//! ([`Hazard`]), their crossings of each line ([`Line`]), and the contents of `summary.json` ([`Summary`]). Single rocks come
+//! from [`simulate_release`], rock by rock and without files.
+//!
+//! Only the names on this page are the public face. The hidden modules behind it are listed so that each uses only modules
+//! above it in the list; their contents may change from one version to the next.
 //! SI units and `f64` throughout; z points up. The library prints nothing.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 

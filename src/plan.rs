@@ -29,7 +29,7 @@ use crate::terrain::{Terrain, patches::Patched, stems::Stems};
 use std::convert::Infallible;
 use std::path::PathBuf;
 
-/// Something a scene may do without.
+/// A part of the computation that a scene may not need.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Part<T> {
     /// Needed, with what it takes.
@@ -68,7 +68,9 @@ pub struct RestRule {
     pub time_s: f64,
 }
 
-/// The plan.
+/// What a scene needs, in numbers: everything that its rocks have in common, and what is left out.
+///
+/// Printed (`println!("{plan}")`) it is the text of `rockfall plan`.
 #[derive(Debug)]
 pub struct Plan {
     /// Heading of the report.
@@ -83,7 +85,7 @@ pub struct Plan {
     pub mesh_origin_m: [f64; 3],
     /// EPSG code of the map coordinates.
     pub epsg: Option<u32>,
-    /// Where chance starts.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Number of releases; their indices are `0..count`.
     pub count: usize,
@@ -103,7 +105,7 @@ pub struct Plan {
     pub ground_names: Vec<String>,
     /// Gravity (m/s²), 0 or more, along −z.
     pub gravity_m_s2: f64,
-    /// The step.
+    /// Scheme, tolerance and step in force.
     pub step: Settings,
     /// Speed below which an impact does not rebound, for the median rock on each ground (m/s).
     pub capture_m_s: Vec<f64>,
@@ -117,7 +119,7 @@ pub struct Plan {
     pub trees: Part<usize>,
     /// Stems that give way, and how many; the limits stand in the terrain.
     pub breaking: Part<usize>,
-    /// Stepping through the air; always left out.
+    /// Time steps in free flight; always left out, flights are exact.
     pub flight: Part<Infallible>,
     /// How far a rock has turned; always left out.
     pub orientation: Part<Infallible>,
@@ -127,7 +129,7 @@ pub struct Plan {
     pub roughness: Part<()>,
     /// What soft soil does, ground by ground.
     pub soil: Part<Vec<String>>,
-    /// Contact between rocks, as their grounds' law.
+    /// Properties of contacts between rocks, in the form of a ground.
     pub rock_against_rock: Part<Ground>,
     /// One system of equations for all rocks that touch.
     pub coupled_solve: Part<()>,
@@ -147,7 +149,7 @@ pub struct Plan {
     pub year: Part<YearPlan>,
     /// Cells of the maps.
     pub maps: Part<MapGrid>,
-    /// Length of the stretches of the profile of speed and height (m).
+    /// Bin length of the profile of speed and height over the distance from the release (m).
     pub profile: Part<f64>,
     /// Grounds with values of the catalogue: name, what was taken, source.
     pub catalogued: Vec<String>,
@@ -167,7 +169,7 @@ pub struct Plan {
     pub language: Language,
     /// What the user should look at before trusting the results.
     pub warnings: Vec<String>,
-    /// What it should know if rocks come so fast.
+    /// Warnings that hold only if rocks get as fast as stated in them.
     pub fast_warnings: Vec<FastWarning>,
 }
 

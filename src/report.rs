@@ -121,7 +121,7 @@ fn draw_all(results: &Results, ground: Option<GroundRaster>) -> Result<()> {
     draw(&Report { has_view, ..from_results::gather(results, ground)? }, &results.dir)
 }
 
-/// Each headline statistic of the rocks with its 95 % interval, line by line, and what the computation warns of.
+/// The main statistics with their 95 % intervals, one line of text each, and the warnings of the computation.
 pub fn headline(hazard: &Hazard) -> Vec<String> {
     let words = Words::of(Language::En);
     let warnings =

@@ -22,7 +22,7 @@ use std::sync::atomic::AtomicBool;
 pub enum RunEnd {
     /// All releases asked for are written, and the report is drawn.
     Complete(Box<Results>),
-    /// Stopped between two chunks; what is written can be gone on with.
+    /// Stopped between two chunks; [`Mode::Resume`] goes on from there.
     Interrupted {
         /// Releases written.
         done: usize,
@@ -33,8 +33,8 @@ pub enum RunEnd {
 
 /// Computes the releases of a plan, writes results and report into a folder, and returns the results.
 ///
-/// What is complete is on the disk after every chunk: a run that was stopped goes on with
-/// [`Mode::Resume`], and ends with the same bytes as one that was not.
+/// Every chunk (about two seconds of work) is on the disk before the next begins: an interrupted run goes on with
+/// [`Mode::Resume`], and ends with the same bytes as an undisturbed one.
 ///
 /// # Errors
 /// A folder that holds results which [`RunOptions::existing`] does not allow to touch, a disk that is full, a measured

@@ -1,4 +1,18 @@
 //! One implicit step of a rock in contact.
+//!
+//! Four schemes, one law. What they share: contacts found by `contact`, the law of `law.rs`, states
+//! and memories of `contact_state.rs`.
+//!
+//! ```text
+//! dda        Newmark β = 1/2, γ = 1 at a fixed step, open–close iteration             dda, dda_system
+//! adaptive   TR-BDF2, order 2, error control; impacts by an explicit pair 5(4)        step_control, stage, impact
+//! reference  the same law with ESDIRK4(3), order 4, and a tight tolerance             the same files
+//! rigid      limit p_N → ∞: impacts at an instant, sustained contact in velocities    rigid, impact/rigid_limit
+//! ```
+//!
+//! One plane has kernels of its own (`plane_kernel`, `plane_impact`): the same sums over fewer
+//! numbers. Rocks that touch each other are solved together (`island`); blocks that are no balls
+//! have their own step (`block`).
 
 pub(crate) mod block;
 pub mod body;
@@ -52,6 +66,7 @@ pub struct Settings {
 }
 
 /// The stepping of one contact episode.
+/// Made anew for each episode: a flight, however short, leaves no step size worth keeping.
 #[derive(Debug)]
 pub enum Stepper {
     /// `adaptive` and `reference`, with the step to try next (s).
@@ -81,6 +96,9 @@ impl Stepper {
 ///
 /// # Errors
 /// [`StepError`] if no step, however short, settles.
+///
+/// What it moved, lost and cost comes back as an [`Advance`]; position, velocity, spin and memories
+/// are in `state`.
 pub fn advance(
     stepper: &mut Stepper,
     world: &ContactEnvironment,

@@ -52,7 +52,7 @@ pub struct Sheet {
     pub is_tree: bool,
 }
 
-/// The terrain as it is computed with. Triangles stand in the order of the index.
+/// The slope and the trees, welded, indexed and ready for computation. Triangles are in the order of the index.
 #[derive(Debug)]
 pub struct Terrain {
     /// Map position of the local (0, 0, 0): `map = local + origin` (m).
@@ -71,7 +71,7 @@ pub struct Terrain {
     pub features: Features,
     /// The spatial index.
     pub index: Index,
-    /// How low the slope lies at most.
+    /// Lower bounds of the slope's height, area by area.
     pub floor: Floor,
     /// Stems that can give way to a rock; none if all stand for good. The plan, which knows the limits, puts them here.
     pub stems: Option<Stems>,

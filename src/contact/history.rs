@@ -1,13 +1,22 @@
 //! What a rock remembers of its contacts: the stretch of their shear and rolling springs.
+//!
+//! The normal spring needs no memory: its length is geometry, `R − d`. Shear and rolling springs
+//! do: their stretch ξ is what has been slipped against the spring since the contact began, less
+//! what Coulomb's law has let go. The method paper has none (its Eq. (14) vanishes identically), so
+//! a sphere held by friction creeps at `T/(p_s dt)`, faster the smaller the step.
 
 use super::{ContactPoint, Feature, MOST};
 use crate::rock::Vec3;
 
 /// Most memories: the contacts of a step's start and those that come up during the step.
+/// A bit of a `u32` marks each as taken, so no more than 32 would do without a change there.
 pub const HISTORIES: usize = 2 * MOST;
 
 /// Cosine of the turn of the normal up to which a new contact takes over an old one's springs (–): a rock rolling
 /// from face to edge to face keeps its grip.
+///
+/// 45.6°. Between faces that meet at a sharper angle the new contact is another impact, and starts
+/// without stretch.
 pub const SAME_GRIP: f64 = 0.7;
 
 /// The memory of one contact.
@@ -22,14 +31,28 @@ pub struct ContactHistory {
     /// Triangle whose ground answers.
     pub triangle: u32,
     /// Normal to which `shear` is tangent.
+    /// Unit, from the mesh to the centre, as of the end of the last accepted step.
     pub n: Vec3,
     /// Stretch of the shear spring ξ (m).
+    ///
+    /// Positive in the direction in which the sphere's contact point has moved over the mesh; the
+    /// force on the sphere is `−p_s ξ`.
     pub shear: Vec3,
     /// Stretch of the rolling spring (rad).
+    ///
+    /// All three components, so it holds the spin about the normal (torsion) as well as rolling;
+    /// the moment is `−k_r θ`.
     pub roll: Vec3,
     /// Came in too slowly to rebound: damped for good.
+    ///
+    /// Below the capture speed a rebound would be smaller than the errors of the steps, and the
+    /// rock would flutter for ever.
     pub captured: bool,
     /// Normal force at the end of the last step (N).
+    ///
+    /// Asked where the last force is wanted: first guesses of the next step, the energy of its
+    /// spring, stems, and `dda` as printed, whose Eq. (15) caps friction by this lagged force. All
+    /// other caps take the force of the stage that is being solved.
     pub normal_force: f64,
     /// Whether it slid at the end of the last step.
     pub slides: bool,
@@ -61,6 +84,11 @@ impl ContactHistory {
 }
 
 /// Turns a vector tangent at `from` into one tangent at `to` by the shortest rotation; its length stays.
+///
+/// `x' = x − (n'·x)/(1 + n·n') (n + n')`, Rodrigues' rotation about `n × n'` for a vector with `n·x
+/// = 0`: then `n'·x' = 0` and `|x'| = |x|` exactly, so the spring's energy `p_s ξ²/2` does not
+/// change because the ground curves. Projecting instead would lose stretch at every step of a rock
+/// that pivots on an edge. Singular only for `n' = −n`, which no memory survives.
 #[inline]
 pub fn carry(x: Vec3, from: &Vec3, to: &Vec3) -> Vec3 {
     if from == to { x } else { x - (from + to) * (to.dot(&x) / (1.0 + from.dot(to))) }
@@ -69,18 +97,27 @@ pub fn carry(x: Vec3, from: &Vec3, to: &Vec3) -> Vec3 {
 impl ContactHistory {
     /// Takes over the stretches of a contact that has merged into this one. They never store more than both did before:
     /// `ξ = (ξ_A + ξ_B) min(1, √((ξ_A² + ξ_B²)/|ξ_A + ξ_B|²))`, and the same for rolling.
+    ///
+    /// In words: springs that pull the same way merge with less stretch than their sum, because one
+    /// spring of stiffness `p_s` holds `p_s (ξ_A + ξ_B)²/2`, up to twice what both held; springs
+    /// that pull against each other cancel and the loss is friction's.
     fn absorb(&mut self, other: &Self) {
+        // |ξ|² of the merged spring is capped by the sum of squares: an upper bound on energy, not
+        // on force
         let both = |one: Vec3, other: Vec3| {
             let (sum, most2) = (one + other, one.norm_squared() + other.norm_squared());
             let size2 = sum.norm_squared();
             if size2 > most2 { sum * (most2 / size2).sqrt() } else { sum }
         };
+        // the stretch of the other is tangent to another normal: it is turned first; rolling is a
+        // vector in space and needs no turn
         self.shear = both(self.shear, carry(other.shear, &other.n, &self.n));
         self.roll = both(self.roll, other.roll);
     }
 }
 
 /// The memories of one rock, without allocation.
+/// Searched linearly: with one to three entries that is faster than any index.
 #[derive(Debug, Clone)]
 pub struct ContactHistories {
     list: [ContactHistory; HISTORIES],
@@ -122,6 +159,10 @@ impl ContactHistories {
     /// The memory of a touch: its own, else that of a like one which has lost its feature, else a new one.
     ///
     /// `taken` marks memories that belong to other touches of the same instant.
+    ///
+    /// The second rule lets a rolling rock keep its grip over seams: the face it leaves is no touch
+    /// any more, the face it enters has none yet, and both normals agree within `SAME_GRIP`.
+    /// `captured` is asked only for a contact that is new.
     #[inline]
     pub fn find(
         &mut self,
@@ -130,16 +171,20 @@ impl ContactHistories {
         taken: u32,
         captured: impl FnOnce() -> bool,
     ) -> usize {
+        // two touches of one instant must not share a spring: it would be stretched twice
         let free = |k: usize| taken & (1 << k) == 0;
         if let Some(k) = (0..self.len).find(|&k| free(k) && self.list[k].feature == touch.feature) {
             return k;
         }
+        // a memory whose feature is still touched keeps it, whatever its normal
         let orphan =
             |history: &ContactHistory| touches.iter().all(|other| other.feature != history.feature);
         let like = (0..self.len).find(|&k| {
             free(k) && self.list[k].n.dot(&touch.normal) > SAME_GRIP && orphan(&self.list[k])
         });
         like.unwrap_or_else(|| {
+            // room for twice the contacts there can be; should it be full all the same, the
+            // youngest memory is given up
             let place = self.len.min(HISTORIES - 1);
             self.list[place] = ContactHistory::new(touch, captured());
             self.len = place + 1;
@@ -149,10 +194,15 @@ impl ContactHistories {
 
     /// Hands the stretches of every contact that is no more to the one that it merged into: `heir` names its feature.
     /// Whether there was any.
+    ///
+    /// Where two contacts meet at a blunt fold they become one patch. Without this its spring would
+    /// start slack, and the energy of the one that vanished would be lost from one step to the
+    /// next.
     pub fn merge_lost(&mut self, heir: impl Fn(Feature) -> Option<Feature>) -> bool {
         let mut merged = false;
         for k in 0..self.len {
             let lost = self.list[k];
+            // what is still closed is not lost, and what has no stretch leaves nothing
             if lost.closed || lost.shear == Vec3::zeros() && lost.roll == Vec3::zeros() {
                 continue;
             }

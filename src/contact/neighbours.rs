@@ -23,6 +23,7 @@ use crate::terrain::Terrain;
 pub use pressed::PressedPath;
 
 /// Inclusive tests, relative to the radius (–): a point on a border must not fall between two features.
+/// For a rock of 0.1 m that is 1e-10 m, a thousand times the rounding of coordinates of 1 km.
 const SLACK: f64 = 1e-9;
 /// Feet closer than this times the radius, with normals within it, are one contact (–). Loose enough for the
 /// rounding of map coordinates, which bends flat edges by 1e-9.
@@ -121,6 +122,7 @@ pub struct Neighbours {
     /// Work space for what is pressed into around saddles.
     patches: PatchScratch,
     /// Directions that belong to edges and vertices, one after the other: normals of faces, or edges at a vertex.
+    /// One list for all keeps them side by side in memory, and spares an allocation for each edge.
     rays: Vec<Vec3>,
     /// All triangles within reach; only looked at when a border or a saddle is near.
     sheets: Vec<u32>,
@@ -218,6 +220,8 @@ impl Neighbours {
     #[inline]
     pub fn plane(&self) -> Option<u32> {
         match &self.faces[..] {
+            // a plane of several triangles has several faces here, and no certificate: that is
+            // asked of `is_plane_on`
             [face]
                 if self.edges.is_empty() && self.corners.is_empty() && self.saddles.is_empty() =>
             {
@@ -268,6 +272,9 @@ impl Neighbours {
     }
 
     /// Whether a rock at `centre` comes nearer than `reach` (m) to nothing but `face`.
+    ///
+    /// Cheapest tests first: heights over faces need three products, borders a search through all
+    /// triangles near.
     #[inline]
     pub fn is_alone(&self, terrain: &Terrain, face: u32, (centre, reach): (&Vec3, f64)) -> bool {
         let (mut faces, mut edges) = (self.faces.iter(), self.edges.iter());
@@ -303,6 +310,7 @@ impl Neighbours {
         if s < -slack || s > edge.length + slack {
             return None;
         }
+        // the nearest point of the edge: its line's, held between its ends
         let off = to - edge.along * s.clamp(0.0, edge.length);
         let distance2 = off.norm_squared();
         if distance2 >= reach * reach {

@@ -1,4 +1,10 @@
 //! Where two rocks touch, what they remember of it, and the bond that may hold them together.
+//!
+//! Two spheres have one nearest point, so a pair is one contact, never a patch. Its normal `n` runs
+//! from `b` to `a`, its gap is `λ = |c_a − c_b| − R_a − R_b` (m, negative when pressed in); forces
+//! named here act on `a`, their opposites on `b`. Bonds follow Potyondy and Cundall (Int. J. Rock
+//! Mech. Min. Sci. 41, 2004, parallel bond) without its moments: a bond carries force and shear,
+//! but does not resist bending or twist.
 
 use crate::ground::Law;
 use crate::rock::Vec3;
@@ -21,12 +27,16 @@ pub fn between(a: &Vec3, b: &Vec3) -> (Vec3, f64) {
 pub fn meeting_s(apart: &Vec3, closing: &Vec3, reach: f64) -> Option<f64> {
     let toward = -apart.dot(closing);
     let speed2 = closing.norm_squared();
+    // d(|d + u t|²)/dt = 2 d·u at t = 0: what is not negative only moves apart, for a straight
+    // relative path for ever
     if toward <= 0.0 || speed2 == 0.0 {
         return None;
     }
     // |d|² − reach² as a product: the difference of squares would cost the digits of a small gap.
     let distance = apart.norm();
     let outside = (distance - reach) * (distance + reach);
+    // |u|² t² − 2 toward t + outside = 0; the smaller root written as outside/(toward + √…), which
+    // keeps the digits of a small gap where (toward − √…)/|u|² would lose them
     let root2 = toward * toward - speed2 * outside;
     if outside <= 0.0 {
         return Some(0.0);
@@ -40,6 +50,7 @@ pub struct Strength {
     /// Tensile strength of a bond (Pa), 0 or more.
     pub tensile_pa: f64,
     /// Its cohesion (Pa), 0 or more.
+    /// Shear strength without normal stress, `c` of Mohr–Coulomb's `τ = c + σ tan φ`.
     pub cohesion_pa: f64,
 }
 
@@ -51,6 +62,9 @@ impl Strength {
 }
 
 /// A bond between two rocks: Mohr–Coulomb with a tension cut-off over a disc.
+///
+/// Brittle: it breaks at once and never forms again. What its springs held beyond friction is lost
+/// then.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bond {
     /// Largest pull (N): `σ_t A`.
@@ -63,13 +77,19 @@ pub struct Bond {
 
 impl Bond {
     /// The bond of two rocks whose smaller radius is `radius_m`, at a distance of `length_m`; its disc has that radius.
+    /// A disc of the smaller radius: `A = π R²`, all of the section that the smaller rock has.
     pub fn new(strength: &Strength, radius_m: f64, length_m: f64) -> Self {
         let area = PI * radius_m * radius_m;
         Self { pull_n: strength.tensile_pa * area, shear_n: strength.cohesion_pa * area, length_m }
     }
 
-    /// How far a load passes the strength, as a share of it; 0 or less while the bond holds. `normal_force` is the normal force
-    /// (N, negative in tension), `shear_force` the size of the shear force (N), `law` that of the two rocks, for its friction.
+    /// How far a load passes the strength, as a share of it; 0 or less while the bond holds.
+    /// `normal_force` is positive in compression and negative in tension, `shear_force` the size of
+    /// the shear force (both N), `law` that of the two rocks, for its friction.
+    ///
+    /// Tension: `−F ≤ σ_t A`. Shear: `|q| ≤ max(0, c A + F tan φ)`, so that pressure strengthens
+    /// and tension weakens. The larger of both overloads counts; a step that overshoots by much is
+    /// cut, so that the moment of breaking does not depend on its length.
     pub fn overload(&self, law: &Law, normal_force: f64, shear_force: f64) -> f64 {
         let over = |load: f64, most: f64| {
             if load <= most { 0.0 } else { (load - most) / most.max(f64::MIN_POSITIVE) }
@@ -80,6 +100,9 @@ impl Bond {
 }
 
 /// The memory of the contact of two rocks.
+///
+/// In the frame of both rocks: for a pair that spins together as a whole, `n` and `shear` turn with
+/// it.
 #[derive(Debug, Clone, Copy)]
 pub struct PairHistory {
     /// The rock with the smaller number …
@@ -89,8 +112,10 @@ pub struct PairHistory {
     /// The contact law of the two.
     pub law: Law,
     /// Normal from `b` to `a` to which `shear` is tangent.
+    /// Unit.
     pub n: Vec3,
     /// Stretch of the shear spring (m), of `a` relative to `b`.
+    /// Tangent to `n`; the force on `a` is `−p_s ξ`.
     pub shear: Vec3,
     /// Normal force at the end of the last step (N).
     pub normal_force: f64,
@@ -167,6 +192,7 @@ impl PairHistory {
     }
 
     /// Whether it must be remembered.
+    /// A bonded pair is held even when its rocks are a little apart: a stretched bond pulls.
     pub fn is_held(&self) -> bool {
         self.closed || self.bond.is_some()
     }

@@ -13,6 +13,19 @@
 //!
 //! A patch acts like one point contact: with `p = √(2U/p_N)`, `a = −∇p` and `n̂ = a/|a|`, its force `p_N p a` is that of a
 //! spring of stiffness `p_N |a|²` pressed in by `p/|a|` along `n̂`, with the same energy.
+//!
+//! Why not one spring per nearest point: where the foot of the centre crosses a seam between two
+//! blunt faces, one nearest point vanishes with whatever penetration it has, and its energy with
+//! it. On a fold of 0.02 rad a rock left with 0.6 to 1.9 times the energy it came with, depending
+//! on where it landed. With the sum above it leaves with 1.00000.
+//!
+//! Checks by hand. Coplanar triangles: all but one cancel, `U = p_N pen²/2`. Ridge: `+1 +1 −1` at
+//! one point. Apex of three faces: `3 − 3 + 1`. Sharp valley, its fold out of reach: two contacts.
+//! Blunt valley: `pen_A² + pen_B² − pen_fold²`.
+//!
+//! Cost: O(k log k) in the k triangles inside the ball, from the sort that brings the copies of an
+//! edge together. It is paid only where a saddle of the distance may be inside the ball
+//! (`has_saddle`); most steps never come here.
 
 use super::closest::{TrianglePart, closest_part};
 use super::{ContactPoint, Feature, FeatureKind};
@@ -21,6 +34,9 @@ use crate::terrain::Terrain;
 use crate::terrain::edges::ends;
 
 /// Squared length of `a` below which a patch presses nowhere (–): opposite walls of one patch cancel.
+///
+/// A ball wedged between two parallel walls has `a = 0`: the forces cancel and there is no normal
+/// to speak of.
 const BALANCED: f64 = 1e-12;
 
 /// One triangle inside the ball, and the sums of the patch that it stands for.
@@ -30,6 +46,9 @@ struct PressedTriangle {
     /// Another one of the same patch, or itself.
     parent: u32,
     /// `Σ w pen²` (m²) and `Σ w pen n` (m).
+    ///
+    /// `U = p_N square/2` and `−∇U = p_N slope` of the whole patch, once its parts are joined: kept
+    /// at the root.
     square: f64,
     slope: Vec3,
     /// Nearest point of the patch.
@@ -40,15 +59,22 @@ struct PressedTriangle {
 #[derive(Debug, Clone, Copy)]
 struct Shared {
     /// Edges by the numbers of their ends, then vertices by theirs.
+    ///
+    /// Sorting by it brings the copies of one edge or vertex side by side, in an order that no
+    /// thread or hash decides.
     key: u64,
+    /// Which triangle of the list it was met on.
     place: u32,
     /// Of an edge, a side on it.
+    /// Three times the triangle plus 0, 1 or 2.
     side: u32,
+    /// From the centre to its nearest point (m), and the unit vector from there to the centre.
     distance_m: f64,
     normal: Vec3,
 }
 
 /// There are fewer than 2³¹ vertices.
+/// An edge's key, two numbers below 2³¹ side by side, stays under this bit; a vertex has it set.
 const VERTEX: u64 = 1 << 63;
 
 /// Work space.
@@ -75,12 +101,14 @@ impl PatchScratch {
     ) {
         self.pressed.clear();
         self.shared.clear();
+        // triangles add w = 1 each; edges and vertices follow once each, after the sort
         for &t in sheets {
             self.press(terrain, t, (centre, radius));
         }
         self.shared.sort_unstable_by_key(|shared| (shared.key, shared.place));
         self.join(terrain, radius);
         for k in 0..self.pressed.len() {
+            // only roots of the union–find stand for a patch
             let patch = &self.pressed[k];
             if patch.parent as usize == k
                 && let Some(touch) = patch.touch(radius)
@@ -96,6 +124,7 @@ impl PatchScratch {
     }
 
     /// The nearest feature of the patch that holds `feature`, of those found last.
+    /// Tells which patch a lost contact has merged into, so that its springs find an heir.
     pub(super) fn holding(&self, terrain: &Terrain, feature: Feature) -> Option<Feature> {
         let id = feature.id;
         let has = |t: u32| match feature.kind {
@@ -111,8 +140,13 @@ impl PatchScratch {
     }
 
     /// Notes a triangle that is inside the ball, and those of its sides and corners that are.
+    ///
+    /// Distances to convex sets, so each term `max(0, R − dist)²` is once continuously
+    /// differentiable in the centre.
     fn press(&mut self, terrain: &Terrain, t: u32, (centre, radius): (&Vec3, f64)) {
         let face = terrain.face(t);
+        // |height| is a lower bound of the distance to the triangle: most are rejected by one
+        // scalar product
         let height = face.n.dot(&(centre - face.a));
         if height.abs() >= radius {
             return;
@@ -121,6 +155,8 @@ impl PatchScratch {
         let (point, part) = closest_part(&corners, centre);
         let off = centre - point;
         let distance2 = off.norm_squared();
+        // a centre exactly on the mesh has no normal; it cannot get there while the springs are
+        // stiff enough (pen < 0.1 R)
         if distance2 >= radius * radius || distance2 == 0.0 {
             return;
         }
@@ -132,6 +168,7 @@ impl PatchScratch {
             }
             TrianglePart::Corner(k) => Feature { kind: FeatureKind::Vertex, id: vertices[k] },
         };
+        // on a face the plane's normal is more exact than the difference of two close points
         let (distance_m, normal) = match part {
             TrianglePart::Face => (height.abs(), if height < 0.0 { -face.n } else { face.n }),
             _ => (distance2.sqrt(), off / distance2.sqrt()),
@@ -141,11 +178,16 @@ impl PatchScratch {
         let nearest = ContactPoint { feature, triangle: t, normal, distance_m, gain2: 1.0 };
         let (square, slope) = (penetration * penetration, normal * penetration);
         self.pressed.push(PressedTriangle { triangle: t, parent: place, square, slope, nearest });
+        // Every side and corner inside the ball is put down once for each of its triangles: that is
+        // what joins triangles to patches. An edge inside the ball has all its triangles inside it
+        // too, as none is farther than its edge: no copy is missing.
         for k in 0..3 {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
             let side = b - a;
             let s = (side.dot(&(centre - a)) / side.norm_squared()).clamp(0.0, 1.0);
             let number = 3 * t + k as u32;
+            // the two ends in ascending order: both triangles of an edge give it the same key,
+            // whichever way they run along it
             let [lower, upper] = ends(&terrain.triangles, number).map(u64::from);
             let edge = (lower << 32 | upper, place, number);
             self.share(edge, (centre - (a + side * s), radius));
@@ -164,6 +206,10 @@ impl PatchScratch {
     }
 
     /// Adds every edge and vertex once to its patch, and joins the triangles that meet there.
+    ///
+    /// `w(edge) = 1 − its triangles` is −1 for an ordinary edge, 0 at a border, −2 where three
+    /// sheets meet. That of a vertex is known from the terrain: it takes all triangles and edges
+    /// around it, and all of those are inside the ball if it is.
     fn join(&mut self, terrain: &Terrain, radius: f64) {
         let mut start = 0;
         while start < self.shared.len() {
@@ -178,6 +224,7 @@ impl PatchScratch {
             } else {
                 f64::from(features.vertex_weight[(first.key - VERTEX) as usize])
             };
+            // the copies differ by rounding at most; the first stands for all
             let penetration = radius - first.distance_m;
             let root = self.root(first.place);
             let patch = &mut self.pressed[root as usize];
@@ -187,6 +234,7 @@ impl PatchScratch {
         }
     }
 
+    /// Root of a patch, halving the path on the way (Tarjan): nearly O(1) a call.
     fn root(&mut self, mut place: u32) -> u32 {
         while self.pressed[place as usize].parent != place {
             let up = self.pressed[place as usize].parent;
@@ -196,6 +244,8 @@ impl PatchScratch {
         place
     }
 
+    /// Joins two patches; the one with the smaller number stays, so the outcome does not depend on
+    /// the order of joins.
     fn unite(&mut self, one: u32, other: u32) {
         let (one, other) = (self.root(one), self.root(other));
         if one == other {
@@ -217,6 +267,8 @@ impl PressedTriangle {
     /// The point contact that acts like the patch; `None` where it does not press.
     fn touch(&self, radius: f64) -> Option<ContactPoint> {
         let slope2 = self.slope.norm_squared();
+        // U ≤ 0 can only be rounding of a sum that cancels; a force without direction is left out,
+        // too
         if self.square <= 0.0 || slope2 <= BALANCED * self.square {
             return None;
         }

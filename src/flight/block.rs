@@ -11,6 +11,11 @@
 //! as `|ω|² ≤ ω_m²` and `|ω̇| ≤ α_m` for a body without torque. With the speed of approach `c = −n·ṗ` and the gap `δ = d − r` the step
 //! `τ = 2δ/(c + √(c² + 2Bδ))` is never too long, and near a touch it converges like Newton's method from one side. Edges and faces of the
 //! block are hulls of corners: with `n` from their own nearest points the same bound holds for each of their corners.
+//!
+//! Frames: corners are fixed in the block's principal frame; `attitude` turns them to the
+//! terrain's. `ρ` is a corner's distance from the centre of mass (m), `r` the radius of the balls
+//! at the corners (m). Cost: about ten evaluations a corner over a second of flight without any
+//! window, most of them in the last window before the touch.
 
 use super::top::Top;
 use super::{FlightEnd, Parabola, time_of_impact_past};
@@ -22,10 +27,13 @@ use crate::rock::Vec3;
 use crate::terrain::Terrain;
 
 /// A gap that counts as touching (–, relative to the radius of the sphere of equal volume).
+/// A tenth of the gap at which contact begins: what is found here is a touch there.
 const TOUCHING: f64 = 1e-10;
 /// No step forward is shorter (s): what comes so soon touches now.
+/// Below it the time could not be told from the one before, at times of some hundred seconds.
 const SHORTEST_S: f64 = 1e-13;
 /// Way of the centre for which features are collected at a time (–, relative to the radius of the ball around).
+/// Longer windows collect more features, shorter ones collect more often.
 const WINDOW: f64 = 0.5;
 
 /// A block in free flight.
@@ -50,6 +58,9 @@ struct Moment {
 }
 
 /// A part of the block that may touch, and until when it surely does not (s).
+///
+/// Parts are worked on in the order of these times: one that is due after the best touch is never
+/// looked at.
 #[derive(Clone, Copy)]
 struct DuePart {
     time: f64,
@@ -58,8 +69,11 @@ struct DuePart {
 
 #[derive(Clone, Copy)]
 enum BlockPart {
+    /// A rounded corner against faces, edges and vertices of the mesh.
     Corner(usize),
+    /// An edge of the block against edges of the mesh that stand out.
     Ridge(usize),
+    /// A face of the block against vertices of the mesh that stand out.
     Face(usize),
 }
 
@@ -76,6 +90,10 @@ impl Tumble<'_> {
     }
 
     /// Largest size of `ω × (ω × ρ) + ω̇ × ρ` over the length of `ρ` (1/s²).
+    ///
+    /// `ω_m² + α_m` of the head of this file: a free body's `|ω|² ≤ 2E/I_min`, and `|ω̇| ≤ ω_m²
+    /// (I_max − I_min)/I_min` by Euler's equations. Times `ρ` it bounds the acceleration of a point
+    /// relative to the centre of mass.
     fn bend(&self) -> f64 {
         let [low, high] = [f64::min, f64::max]
             .map(|pick| self.block.inertia_kg_m2.into_iter().reduce(pick).unwrap_or(1.0));
@@ -90,12 +108,18 @@ impl Tumble<'_> {
         terrain: &Terrain,
         (centre, way): (&Vec3, f64),
     ) {
+        // corners sit up to `bound − ball` from the centre: what they can meet is that much farther
+        // than what the centre can
         let core = block.bound_m - block.ball_m;
         near.collect(terrain, centre, block.ball_m, core + way, block.ball_m);
     }
 }
 
 /// Follows the flight for at most `longest_s`; `near` is overwritten.
+///
+/// Alternates between two gaits: where the ball around the block is free, it is leapt ahead to its
+/// own touch, exactly; where it is not, the block goes on window by window. Both end at the same
+/// time as a search without windows would.
 pub fn first_touch(
     terrain: &Terrain,
     tumble: &Tumble,
@@ -106,6 +130,8 @@ pub fn first_touch(
     let mut dues = Vec::new();
     loop {
         let centre = tumble.path.centre(t);
+        // as long as nothing is within the bounding ball the block cannot touch: its leap is exact,
+        // in place of many evaluations
         if !is_within(terrain, &centre, bound, near) {
             let ahead =
                 Parabola { start: centre, velocity: tumble.path.velocity(t), ..tumble.path };
@@ -120,6 +146,7 @@ pub fn first_touch(
             }
         }
         let way = WINDOW * bound;
+        // within this time the centre stays inside the ball for which features were collected
         let ends = (t + time_for(&tumble.path, t, way)).min(longest_s);
         Tumble::collect(tumble.block, near, terrain, (&tumble.path.centre(t), way));
         if let Some(touch) = advance(terrain, tumble, near, (t, ends), &mut dues) {
@@ -133,6 +160,7 @@ pub fn first_touch(
 }
 
 /// Whether a triangle is nearer to a point than `reach` (m).
+/// Walks the index once; what it finds is not kept.
 fn is_within(terrain: &Terrain, point: &Vec3, reach: f64, near: &mut Neighbours) -> bool {
     let (mut within, mut tested) = (false, 0);
     terrain.index.near(point, reach, |start, count| {
@@ -149,11 +177,15 @@ fn is_within(terrain: &Terrain, point: &Vec3, reach: f64, near: &mut Neighbours)
 
 /// A time in which the centre surely moves no further than `way` (m) from where it is at `t`.
 fn time_for(path: &Parabola, t: f64, way: f64) -> f64 {
+    // way ≥ |v| t + g t²/2, solved for t without cancellation
     let speed = path.velocity(t).norm();
     2.0 * way / (speed + (speed * speed + 2.0 * path.gravity * way).sqrt())
 }
 
 /// First touch within a window of time, among what was collected.
+///
+/// Always moves the part that is due first. A part that may touch now ends the search; all others
+/// are due later, so nothing touched before.
 fn advance(
     terrain: &Terrain,
     tumble: &Tumble,
@@ -163,6 +195,7 @@ fn advance(
 ) -> Option<f64> {
     let core = &tumble.block.core;
     let bend = tumble.bend();
+    // on ground without sharp edges or peaks only corners can touch
     let (edges, peaks) = (near.sharp_edges().next().is_some(), near.peaks().next().is_some());
     let due = |part| DuePart { time: begins, part };
     dues.clear();
@@ -176,6 +209,8 @@ fn advance(
         if next.time >= ends {
             return None;
         }
+        // the attitude is a closed form, but dear (elliptic functions): once a moment, for all
+        // parts due then
         if next.time > now {
             now = next.time;
             search.moment = tumble.moment(now);
@@ -198,6 +233,7 @@ struct WindowSearch<'a> {
 }
 
 /// A corner as it flies.
+/// Position `p` (m), velocity (m/s) in the frame of the terrain.
 #[derive(Clone, Copy)]
 struct Flying {
     p: Vec3,
@@ -210,6 +246,7 @@ impl WindowSearch<'_> {
     fn flying(&self, k: usize) -> Flying {
         let own = &self.tumble.block.core.corners[k];
         let arm = self.moment.pose.attitude * own;
+        // v + ω × ρ, and the bound g + ρ (ω_m² + α_m) on its acceleration
         Flying {
             p: self.moment.pose.centre + arm,
             velocity: self.moment.velocity + self.moment.spin.cross(&arm),
@@ -218,10 +255,16 @@ impl WindowSearch<'_> {
     }
 
     /// How long a corner surely keeps off a plane with unit normal `n` through `q` (s).
+    ///
+    /// `τ = 2δ/(c + √(c² + 2Bδ))` while it approaches, `(√(c² + 2Bδ) − c)/B` while it parts (`c ≤
+    /// 0`): then gravity and spin need time to turn it round. Both are the positive root of `δ − c
+    /// τ − B τ²/2 = 0`, each in the form without cancellation.
     fn safe(&self, corner: &Flying, n: &Vec3, q: &Vec3) -> f64 {
         let gap = n.dot(&(corner.p - q)) - self.tumble.block.ball_m;
         let closing = -n.dot(&corner.velocity);
         let touching = TOUCHING * self.tumble.block.radius_m;
+        // only an approach touches: a corner that has just left lies within the same gap and must
+        // be free to go
         if closing > 0.0 && gap <= touching {
             return 0.0;
         }
@@ -254,13 +297,19 @@ impl WindowSearch<'_> {
             if self.safe(&corner, &side, &face.a) >= least {
                 continue;
             }
+            // the true distance of a convex set is never less than that of its own supporting plane
+            // at the nearest point
             let q = closest_on(&self.terrain.corners_m(t), &corner.p);
+            // a corner exactly on the triangle has no direction: the plane's normal on its side
+            // stands in
             let n = (corner.p - q).try_normalize(0.0).unwrap_or(side);
             least = least.min(self.safe(&corner, &n, &q));
         }
         least
     }
 
+    /// An edge of the block: with `n` from the nearest points of two segments, the plane square to
+    /// `n` keeps both apart, and the ridge stays on its side as long as both its ends do.
     fn of_ridge(&self, k: usize, mut least: f64) -> f64 {
         let ends = self.tumble.block.core.ridges[k].ends.map(|end| self.flying(usize::from(end)));
         let [a, b] = ends;
@@ -268,6 +317,8 @@ impl WindowSearch<'_> {
         let bend = a.bend.max(b.bend);
         let fastest = a.velocity.norm().max(b.velocity.norm());
         for edge in self.near.sharp_edges() {
+            // distance of the ridge's middle to the edge less half a ridge: a lower bound without
+            // the nearest points
             let along = edge.along.dot(&(middle - edge.a)).clamp(0.0, edge.length);
             let room =
                 (middle - edge.a - edge.along * along).norm() - half - self.tumble.block.ball_m;
@@ -285,6 +336,8 @@ impl WindowSearch<'_> {
         least
     }
 
+    /// A face of the block against a vertex of the mesh: nearest point over a fan of triangles,
+    /// then the bound for all corners of the face.
     fn of_face(&self, k: usize, mut least: f64) -> f64 {
         let face = &self.tumble.block.core.faces[k];
         let corners: Vec<Flying> =
@@ -303,6 +356,7 @@ impl WindowSearch<'_> {
 }
 
 /// The nearest points of two segments (Ericson, Real-Time Collision Detection, 5.1.9).
+/// As `closest::segments_distance2`, but it tells the points: `n` is wanted, not only the distance.
 fn nearest_of_segments((p1, q1): (Vec3, Vec3), (p2, q2): (Vec3, Vec3)) -> (Vec3, Vec3) {
     let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
     let (a, e, f) = (d1.norm_squared(), d2.norm_squared(), d2.dot(&r));

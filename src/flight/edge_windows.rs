@@ -2,6 +2,15 @@
 //!
 //! With `p₁ = e₁·(c − a)` and `p₂ = e₂·(c − a)` everything in the triangle's plane is linear in `(p₁, p₂)`, and both
 //! are quadratic in time: their range over a window costs a few products and spares most of the quartics.
+//!
+//! ```text
+//! d11 = e1·e1, d12 = e1·e2, d22 = e2·e2,   det = d11 d22 − d12² = (2 area)²
+//! along e1: p₁ in 0 … d11               inside of it: d11 p₂ − d12 p₁ ≥ 0
+//! along e2: p₂ in 0 … d22               inside of it: d22 p₁ − d12 p₂ ≥ 0
+//! third:    p₂ − p₁ + d11 − d12 in 0 … |e2 − e1|²   inside: det − (d22 − d12) p₁ − (d11 − d12) p₂ ≥ 0
+//! ```
+//!
+//! These are the barycentric coordinates of the foot, scaled so that nothing is divided.
 
 use super::{Parabola, least, most};
 use crate::terrain::faces::Face;
@@ -10,11 +19,15 @@ use crate::terrain::faces::Face;
 const SLACK: f64 = 1e-6;
 
 /// The two coordinates at the ends of a window, and how much they sag between.
+/// All in m²: a scalar product of two lengths each.
 pub(super) struct EdgeWindows {
+    /// `(p₁, p₂)` when the window opens …
     from: (f64, f64),
+    /// … and when it closes.
     to: (f64, f64),
     /// Second coefficients times a quarter of the window squared.
     sag: (f64, f64),
+    /// Gram matrix of the sides `e1`, `e2` (m²).
     d11: f64,
     d12: f64,
     d22: f64,
@@ -23,10 +36,13 @@ pub(super) struct EdgeWindows {
 
 impl EdgeWindows {
     pub(super) fn new(face: &Face, flight: &Parabola, (ta, tb): (f64, f64)) -> Self {
+        // a is the corner that both sides start at
         let at = |t: f64| {
             let to = flight.centre(t) - face.a;
             (face.e1.dot(&to), face.e2.dot(&to))
         };
+        // p(t) has the second coefficient −g e_z/2; over a window of length h it sags by a quarter
+        // of that times h² below its chord
         let quarter = -0.125 * flight.gravity * (tb - ta) * (tb - ta);
         Self {
             from: at(ta),
@@ -40,6 +56,9 @@ impl EdgeWindows {
     }
 
     /// Smallest and largest `α p₁ + β p₂` over the window.
+    ///
+    /// A bound, not the exact range: the chord's ends, widened by the sag on the side to which the
+    /// parabola bulges.
     #[inline]
     fn range(&self, alpha: f64, beta: f64) -> (f64, f64) {
         let one = alpha * self.from.0 + beta * self.from.1;
@@ -54,6 +73,8 @@ impl EdgeWindows {
         let det = d11 * d22 - d12 * d12;
         let d_far = d11 + d22 - 2.0 * d12;
         // `inside` grows with √(length² det) per metre towards the inside of the triangle.
+        // range along the edge, its squared length, and range of the inside coordinate: the last
+        // two swap ends where that has a minus
         let ((low, high), length2, (nearest, furthest)) = match k {
             0 => (self.range(1.0, 0.0), d11, self.range(-d12, d11)),
             1 => {
@@ -63,6 +84,7 @@ impl EdgeWindows {
             }
             _ => (self.range(0.0, 1.0), d22, self.range(d22, -d12)),
         };
+        // a foot x metres inside has the inside coordinate x √(length² det)
         let per_metre = (length2 * det).sqrt();
         let along = SLACK * self.radius * length2.sqrt();
         high >= -along
@@ -75,6 +97,8 @@ impl EdgeWindows {
     pub(super) fn corner(&self, k: usize) -> bool {
         let (d11, d12, d22) = (self.d11, self.d12, self.d22);
         let (one, other) = match k {
+            // at corner 0: e1·(c − a) ≤ 0 and e2·(c − a) ≤ 0; the others alike with their own two
+            // sides
             0 => (self.range(1.0, 0.0).0, self.range(0.0, 1.0).0),
             1 => (d11 - self.range(1.0, 0.0).1, self.range(-1.0, 1.0).0 + d11 - d12),
             _ => (d22 - self.range(0.0, 1.0).1, self.range(1.0, -1.0).0 + d22 - d12),

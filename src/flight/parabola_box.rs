@@ -2,6 +2,17 @@
 //!
 //! Boxes are `f32` anyway. What is taken from the flight is rounded away from them, what is computed of it is off by a few
 //! roundings of its own size, and the windows that come out are wider by more than that ([`WIDER`]).
+//!
+//! ```text
+//! x, y:  lo − R ≤ c0 + v t ≤ hi + R                          one interval each, from two products
+//! z:     z(t) = z_a − g (t − t_a)²/2,   t_a = v_z/g,  z_a = c_z + v_z²/(2g)        (apex)
+//!        above the floor: |t − t_a| ≤ √(2 (z_a − lo_z + R)/g)
+//!        below the roof:  |t − t_a| ≥ √(2 (z_a − hi_z − R)/g)
+//! ```
+//!
+//! The floor gives one interval and the roof cuts its middle out; what is kept is the hull of the
+//! two ends, so a box under the arc of a flight is opened in vain now and then. A window too narrow
+//! would lose a touch, and with it a rock through the slope.
 
 use super::Parabola;
 use crate::terrain::index::{BvhNode, above, below};
@@ -20,6 +31,7 @@ const STANDING: f64 = 1e30;
 /// The parabola's pass through boxes: linear in x and y, quadratic in z.
 pub(super) struct ParabolaBox {
     /// Start less, and plus, the radius of the ball and a little more.
+    /// The one is compared with lower sides of boxes, the other with upper ones.
     less: [f32x4; 3],
     plus: [f32x4; 3],
     /// Reciprocal of the speeds; of the vertical one without gravity only.
@@ -43,6 +55,7 @@ impl ParabolaBox {
         let (c, v, g) = (flight.start, flight.velocity, flight.gravity);
         let r = flight.radius * (1.0 + ROUNDING);
         let (down, up) = (|x: f64| f32x4::splat(below(x)), |x: f64| f32x4::splat(above(x)));
+        // z_a = c_z + v_z²/(2 g)
         let apex = c.z + 0.5 * v.z * v.z / g;
         // Gravity so weak that the apex is out of every scale bends no flight.
         let bends = g > 0.0 && apex < STANDING;
@@ -52,6 +65,8 @@ impl ParabolaBox {
             plus: up(apex + r),
             over: [down(2.0 / g * (1.0 - SQUARED)), up(2.0 / g * (1.0 + SQUARED))],
         });
+        // 1/0 becomes 1e30: times a distance to a box it is ±1e30 s or more than any window, the
+        // right sign deciding
         let inv = |speed: f64| (1.0 / speed).clamp(-STANDING, STANDING) as f32;
         Self {
             less: [0, 1, 2].map(|k| down(c[k] - r)),
@@ -63,6 +78,7 @@ impl ParabolaBox {
 
     /// Times within `0..limit` between which the centre may be in the boxes grown by the radius: where the windows begin
     /// and where they end; empty if reversed.
+    /// Four children of a node at once: the four lanes are the four boxes.
     #[inline]
     pub(super) fn windows(&self, node: &BvhNode, limit: f64) -> (f32x4, f32x4) {
         let mut window = (f32x4::ZERO, f32x4::splat(limit as f32));
@@ -75,6 +91,7 @@ impl ParabolaBox {
         let mut window = (window.0 * (1.0 - WIDER), window.1 * (1.0 + WIDER));
         if let (Some(fall), Some(floor2)) = (&self.fall, floor2) {
             fall.clip_to_roof(node, &mut window);
+            // floor2 < 0: the apex lies below the floor of the grown box, it is never reached
             let never = f32x4::splat(f32::INFINITY);
             window.0 = floor2.simd_lt(f32x4::ZERO).select(never, window.0);
         }
@@ -84,6 +101,8 @@ impl ParabolaBox {
     /// Clips the windows to the time between two planes.
     #[inline]
     fn clip(&self, node: &BvhNode, axis: usize, (begin, end): &mut (f32x4, f32x4)) {
+        // one of the two products is the time of entry, whichever way the ball moves: the lesser of
+        // both
         let one = (node.lo[axis] - self.plus[axis]) * self.inv[axis];
         let other = (node.hi[axis] - self.less[axis]) * self.inv[axis];
         *begin = begin.fast_max(one.fast_min(other));
@@ -106,6 +125,8 @@ impl HeightOverTime {
     /// Above the roof between two times: leaves the window's hull, unless the way up or the way down is out of it already.
     #[inline]
     fn clip_to_roof(&self, node: &BvhNode, (begin, end): &mut (f32x4, f32x4)) {
+        // 2/g rounded down and heights rounded so that the part above the roof comes out too short:
+        // the window may only be too wide
         let roof2 = (self.less - node.hi[2]) * self.over[0];
         let roof = roof2.fast_max(f32x4::ZERO).sqrt();
         let up = (self.apex_s[1] - roof) * (1.0 + WIDER);

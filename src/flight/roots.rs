@@ -1,15 +1,22 @@
 //! Times at which a polynomial of degree two or four first falls through zero.
+//!
+//! The polynomials are squared distances less `R²`, so a fall through zero is a touch and a rise is
+//! a parting.
 
 use super::{least, most};
 
 /// The two roots of `a t² + b t + c`, ascending, without cancellation; `None` if there are none.
 ///
 /// A linear polynomial has its one root twice.
+///
+/// `q = −(b + sign(b) √(b² − 4ac))/2`, roots `q/a` and `c/q`: both terms of `q` have one sign, so
+/// the small root keeps its digits.
 #[inline]
 pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     if a == 0.0 {
         return (b != 0.0).then(|| (-c / b, -c / b));
     }
+    // a negative discriminant: the height is never reached
     let inside = b * b - 4.0 * a * c;
     if inside < 0.0 {
         return None;
@@ -23,11 +30,15 @@ pub(super) fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
 ///
 /// The Bernstein coefficients over the window tell most cases at once: no change of sign, no crossing. Otherwise the
 /// window is halved until there is one change, which is then refined by safeguarded Newton steps.
+///
+/// A general root finder seeks all four roots; here the earliest fall within a window is wanted,
+/// and most windows hold none: the signs of five numbers tell.
 pub(super) fn first_fall(
     p: &[f64; 5],
     (t0, t1): (f64, f64),
     wanted: &impl Fn(f64) -> bool,
 ) -> Option<f64> {
+    // `wanted` sees the refined time: the caller asks there whether the foot still lies on the edge
     let fall = |b: &[f64; 5], from: f64, to: f64| {
         Some(polish(p, cross(b, from, to), t0, t1)).filter(|&t| wanted(t))
     };
@@ -35,6 +46,9 @@ pub(super) fn first_fall(
 }
 
 /// Bernstein coefficients of a quartic on `t0..t1`.
+///
+/// With `p(t0 + h s) = Σ c_j s^j` they are `b_k = Σ_j C(k, j)/C(4, j) c_j`. The curve lies in the
+/// hull of its coefficients, and has no more zeros than they change sign (variation diminishing).
 fn bernstein(p: &[f64; 5], t0: f64, t1: f64) -> [f64; 5] {
     // Taylor shift to t0 (Horner), then scale to 0..1.
     let mut s = *p;
@@ -58,16 +72,20 @@ fn bernstein(p: &[f64; 5], t0: f64, t1: f64) -> [f64; 5] {
 const HALVINGS: u32 = 48;
 
 /// The first fall on a window with Bernstein coefficients `b`; `fall` refines one where there is just one.
+/// The left half is searched before the right: the first fall found is the earliest.
 fn fall_between(
     b: &[f64; 5],
     (t0, t1): (f64, f64),
     depth: u32,
     fall: &impl Fn(&[f64; 5], f64, f64) -> Option<f64>,
 ) -> Option<f64> {
+    // all of one sign: no zero; a coefficient of exactly 0 counts as below, so that a touch at the
+    // window's end is not lost
     if b.iter().all(|&c| c > 0.0) || b.iter().all(|&c| c <= 0.0) {
         return None;
     }
     let changes = b.windows(2).filter(|w| (w[0] > 0.0) != (w[1] > 0.0)).count();
+    // one change of sign, one zero: it is a fall if the curve starts above
     if changes == 1 || depth == HALVINGS {
         return if b[0] > 0.0 && b[4] <= 0.0 { fall(b, t0, t1) } else { None };
     }
@@ -79,6 +97,7 @@ fn fall_between(
 }
 
 /// De Casteljau at the middle.
+/// Means of neighbours only: no cancellation, so halving 48 times loses nothing.
 fn halve(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
     let mut row = *b;
     let (mut left, mut right) = ([0.0; 5], [0.0; 5]);
@@ -95,11 +114,13 @@ fn halve(b: &[f64; 5]) -> ([f64; 5], [f64; 5]) {
 /// The one crossing between Bernstein coefficients of unlike sign: Newton steps, halving where one would leave the bracket.
 fn cross(b: &[f64; 5], t0: f64, t1: f64) -> f64 {
     // Powers of 0..1; what rounding this costs close to a double root is won back by `polish`.
+    // forward differences Δᵏb; the power coefficients are C(4, k) Δᵏb
     let (d1, d2, d3) = (b[1] - b[0], b[2] - 2.0 * b[1] + b[0], b[3] - 3.0 * (b[2] - b[1]) - b[0]);
     let d4 = b[4] - 4.0 * (b[3] + b[1]) + 6.0 * b[2] + b[0];
     let c = [b[0], 4.0 * d1, 6.0 * d2, 4.0 * d3, d4];
     let (mut lo, mut hi) = (0.0, 1.0);
     let mut s = b[0] / (b[0] - b[4]);
+    // f > 0 before the fall and < 0 after it: the bracket lo … hi keeps that
     for _ in 0..HALVINGS {
         let f = c[0] + s * (c[1] + s * (c[2] + s * (c[3] + s * c[4])));
         let slope = c[1] + s * (2.0 * c[2] + s * (3.0 * c[3] + s * (4.0 * c[4])));

@@ -4,6 +4,10 @@
 //! and from a corner are quartics: every touch is a root of one of them, with no step of time anywhere. What cannot
 //! touch is left out before a root is sought: by the range of heights, by the sides of the triangle, and by the
 //! normal cone of each edge and corner (`Brim`), which tells from how high over the plane it can be touched at all.
+//!
+//! Signs: heights are over the triangle's plane along its normal (m); the ball may land on either
+//! side, so both are asked. A triangle owns some of its edges and corners; each belongs to one
+//! triangle only, so no quartic is solved twice, and flat ones to none.
 
 use super::edge_windows::EdgeWindows;
 use super::roots::{first_fall, quadratic};
@@ -21,6 +25,7 @@ const NEAR: f64 = 1e-9;
 /// A foot this far beside a triangle still lies on it (–, relative to R): neighbours must not leave a gap.
 const BESIDE: f64 = 1e-9;
 /// What rounding may add to the sine of a brim's steepest direction (–).
+/// Three digits are enough: it only decides how many triangles are looked at.
 const ASIDE: f64 = 1e-3;
 /// A start beside a triangle but this little under its plane (–, relative to R) is on a neighbour in the same plane.
 const ROUNDING: f64 = 1e-9;
@@ -54,17 +59,22 @@ pub(super) fn of_triangle(
     let slack = BESIDE * flight.radius;
     let starts_near = ta <= 0.0 && starts_near(&face, flight, height.h0);
     let on_it = starts_near && face.holds_foot_of(&flight.start, slack);
+    // a window whose greatest height stays below the radius cannot hold a landing from above
     let level = flight.radius * (1.0 - 2.0 * NEAR);
     for (side, above) in [(1.0, range.1), (-1.0, -range.0)] {
         if (above >= level || on_it)
             // the plane is touched at t; the triangle only if the foot of the centre lies on it then
             && let Some(t) = height.falls_to(side, (flight.radius, on_it), range, (ta, best))
+            // 1e-9 R beside the triangle still counts: between two neighbours there is no gap to
+            // fall through
             && face.holds_foot_of(&flight.centre(t), slack)
         {
             best = t;
             found = Some(t);
         }
     }
+    // edges and corners after the face: where the face is landed on first, they have the shorter
+    // window
     let brim = &terrain.features.brims[t as usize];
     if brim.front | brim.back | brim.anywhere == 0 {
         return found;
@@ -73,6 +83,8 @@ pub(super) fn of_triangle(
         if rim.owned == 0 || rim.heights.0 > range.1 || rim.heights.1 < range.0 {
             continue;
         }
+        // the touch lies between two heights over this plane (normal cone), which is a part of the
+        // window again
         let slab = height.within(rim.heights, (ta, best));
         if slab.0 <= slab.1
             && let Some(t) = of_rim(terrain, t, flight, (&rim, slab))
@@ -85,6 +97,7 @@ pub(super) fn of_triangle(
 }
 
 /// Whether the ball may be nearer than its radius to a triangle when it starts, at a height of `h0` (m).
+/// At a height `h0` the ball reaches `√(R² − h0²)` aside in the plane.
 #[inline]
 fn starts_near(face: &Face, flight: &Parabola, h0: f64) -> bool {
     let aside2 = flight.radius * flight.radius - h0 * h0;
@@ -114,6 +127,8 @@ fn rims(brim: &Brim, radius: f64, pressed_in: bool) -> [Rim; 3] {
     if pressed_in {
         return [anywhere(brim.front | brim.back | brim.anywhere), anywhere(0), anywhere(0)];
     }
+    // a touch whose normal leans by the angle with sine `√(1 − least²)` has its foot that far
+    // beside, times R
     let aside = |least: f64| ((1.0 - least * least).max(0.0).sqrt() + ASIDE) * radius;
     let [front, back] = [brim.least_front, brim.least_back].map(|least| f64::from(least) - NEAR);
     [
@@ -125,11 +140,15 @@ fn rims(brim: &Brim, radius: f64, pressed_in: bool) -> [Rim; 3] {
 
 /// Whether the ball starts pressed into one of the edges and corners that a triangle owns: there it comes back to its
 /// starting distance, not to the radius, and may do so from where it could not touch.
+///
+/// Only asked for what is near at the start; a flight that begins in the air has nothing pressed
+/// in.
 fn is_pressed_in(terrain: &Terrain, t: u32, flight: &Parabola) -> bool {
     let brim = &terrain.features.brims[t as usize];
     let owned = brim.front | brim.back | brim.anywhere;
     let corners = terrain.corners_m(t);
     let pressed2 = flight.radius * flight.radius * (1.0 - NEAR);
+    // distance to the corner, then to the side that starts there, both against R²(1 − 1e-9)
     (0..3).any(|k| {
         let to = flight.start - corners[k];
         if owned & (8 << k) != 0 && to.norm_squared() < pressed2 {
@@ -152,10 +171,12 @@ fn of_rim(
     let face = terrain.face(t);
     let (owned, aside) = (rim.owned, rim.aside);
     let lasts = slab.1 - slab.0;
+    // |v| + g h/2 bounds the mean speed of the window: the foot goes no farther than this
     let way = (flight.velocity(slab.0).norm() + 0.5 * flight.gravity * lasts) * lasts;
     Seen::of(&face, flight.centre(slab.0) - face.a, (0.0, way + aside + NEAR * flight.radius))?;
     let abreast = EdgeWindows::new(&face, flight, slab);
     let (mut best, mut found) = (slab.1, None);
+    // each touch found shortens the window of the next
     for k in 0..3 {
         let window = (slab.0, best);
         let times = [
@@ -196,6 +217,7 @@ impl Height {
     }
 
     /// Lowest and highest in a window.
+    /// Ends and, if the turn `t = −h1/(2 h2)` is inside, the height there.
     #[inline]
     fn range(&self, (ta, tb): (f64, f64)) -> (f64, f64) {
         let (ha, hb) = (self.at(ta), self.at(tb));
@@ -206,6 +228,9 @@ impl Height {
     }
 
     /// The part of a window in which the height may be between two levels (its hull); reversed if nowhere.
+    ///
+    /// The height is a parabola: it can leave and enter the band twice; the hull of all parts is
+    /// kept.
     #[inline]
     fn within(&self, (low, high): (f64, f64), (ta, tb): (f64, f64)) -> (f64, f64) {
         let holds = |t: f64| (low..=high).contains(&self.at(t));
@@ -239,9 +264,14 @@ impl Height {
         let touching = h0 >= 0.0
             && h0 < radius * (1.0 + TOUCHING)
             && (on_it || h0 > radius * (1.0 - ROUNDING));
+        // exactly on the plane and moving into it, or drawn into it by gravity at once: a touch
+        // now, however small the speed
         if touching && ta <= 0.0 && (h1 < 0.0 || h1 == 0.0 && h2 < 0.0) {
             return Some(0.0);
         }
+        // Pressed in at the start: touching again at the radius would be at once, or never if it
+        // leaves slowly. It touches when it is back at the depth it started from, so a grazing
+        // start can never fall through.
         let level = if touching { least(h0, radius) } else { radius };
         let (below, above) = if side > 0.0 { (low, high) } else { (-high, -low) };
         if level < below - NEAR * radius || level > above + NEAR * radius {
@@ -249,6 +279,8 @@ impl Height {
         }
         let (one, other) = quadratic(h2, h1, h0 - level)?;
         // A start on the level has a root at 0 that is no fall.
+        // of the two roots the first at which the height falls; rising through the level is a
+        // parting
         [one, other]
             .into_iter()
             .find(|&t| t >= ta && t <= tb && side * self.speed(t) < 0.0 && (t > 0.0 || h1 < 0.0))
@@ -256,15 +288,20 @@ impl Height {
 }
 
 /// When the ball touches edge `k` of a triangle: the distance to its line falls to the radius, abreast of it.
+///
+/// `|(1 − e eᵀ)(c(t) − a)|² = R²` with the foot between the ends: a quartic in `t`, because gravity
+/// has a part across the edge.
 fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f64)) -> Option<f64> {
     let corners = terrain.triangles[t as usize];
     let [a, b] = [corners[k], corners[(k + 1) % 3]].map(|v| terrain.vertices_m[v as usize]);
     let length = (b - a).norm();
     let along = (b - a) / length;
     // across the edge the problem is plane: a point and a moving centre, again a quartic
+    // the part across the edge direction
     let off = |x: Vec3| x - along * along.dot(&x);
     let fall = Vec3::new(0.0, 0.0, -0.5 * flight.gravity);
     let slack = 1e-11 * length;
+    // beyond an end the corner is nearer and is asked by itself
     let abreast = |x: Vec3| (-slack..=length + slack).contains(&along.dot(&(x - a)));
     let path = [off(flight.start - a), off(flight.velocity), off(fall)];
     // The line goes on beyond the edge: the ball may meet it there first and the edge later.
@@ -272,6 +309,7 @@ fn edge(terrain: &Terrain, t: u32, k: usize, flight: &Parabola, window: (f64, f6
 }
 
 /// When the ball touches corner `k` of a triangle.
+/// `|c(t) − p|² = R²`.
 fn corner(
     terrain: &Terrain,
     t: u32,
@@ -298,6 +336,7 @@ fn ball_meets(
     let slope = 2.0 * x0.dot(&x1);
     let curve = x1.norm_squared() + 2.0 * x0.dot(&x2);
     let cubic = 2.0 * x1.dot(&x2);
+    // touching at the start: falling further is a touch at 0, to first or second order
     if ta <= 0.0 && gap < TOUCHING * r2 && wanted(0.0) {
         if slope < 0.0 || slope == 0.0 && curve < 0.0 {
             return Some(0.0);

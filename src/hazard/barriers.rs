@@ -23,7 +23,7 @@ pub struct Barrier {
     pub name: String,
     /// Height above the ground (m), positive.
     pub height_m: f64,
-    /// Energy that it takes (J), positive.
+    /// Largest total energy that it can stop (J), positive.
     pub capacity_j: f64,
     /// How a design is derived; none leaves it out.
     pub design: Option<Rule>,
@@ -55,7 +55,7 @@ pub struct BarrierSummary {
     pub stopped: Proportion,
     /// Rocks that reach above its upper edge.
     pub over: usize,
-    /// Rocks below its edge with more energy than it takes.
+    /// Rocks below its edge with more energy than it can stop.
     pub through: usize,
     /// Total energy of the rocks that arrive (J).
     pub energy_j: Statistic,

@@ -11,7 +11,7 @@ pub struct Sample {
     sorted: Vec<f64>,
     /// What each of them weighs; none where all weigh the same.
     weights: Option<Vec<f64>>,
-    /// The same with the rocks seen only in part at the far end of where they may lie; none when all were seen whole.
+    /// The same with censored values (bounds only) at the far end of their possible range; none when no value is censored.
     far: Option<(Box<Sample>, Open)>,
 }
 
@@ -24,7 +24,7 @@ pub struct Mean {
     pub low_95: Option<f64>,
     /// Upper end of the interval; none for a single value.
     pub high_95: Option<f64>,
-    /// Whether values that are only bounds leave the mean a bound too: its interval is open on their side.
+    /// Whether some values are only bounds (censored): then the mean is one too, and its interval is open on that side.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub censored: bool,
 }

@@ -17,13 +17,13 @@ use std::path::Path;
 /// What to do with results that the folder holds already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Refuse them.
+    /// Refuse to touch them: the folder must hold no results.
     Fresh,
-    /// The same for parts that are put together, where there is nothing to go on with.
+    /// Refuse to touch them, as [`Self::Fresh`]; for shards that are being merged, which cannot be resumed.
     Merge,
-    /// Go on with them; start when there are none; nothing is left to do when they are complete.
+    /// Go on with an interrupted run; start where there are no results, do nothing where they are complete.
     Resume,
-    /// The same, also where they are the first of the releases asked for.
+    /// Go on with them, and with more releases than they were computed for.
     Extend,
     /// Replace them.
     Overwrite,

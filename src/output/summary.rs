@@ -87,10 +87,10 @@ pub struct Summary {
     /// What each barrier stops and what its rule asks for.
     #[serde(default)]
     pub barriers: Vec<BarrierSummary>,
-    /// What was asked of the year: sources, objects, classes of hazard.
+    /// What annual numbers were asked for: sources, objects, classes of hazard.
     #[serde(default)]
     pub asked: AnnualRequest,
-    /// What a year brings to each line and object; none without sources, and none of a part of a run.
+    /// Annual numbers at each line and object; none without sources, and none in a shard.
     #[serde(default)]
     pub annual: Option<Annual>,
     /// What remains at each line behind the barriers.

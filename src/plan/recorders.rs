@@ -7,7 +7,7 @@ use crate::scene::{Corner, MapsTable, ObjectTable, Polyline, Scene};
 use crate::terrain::Terrain;
 use std::path::Path;
 
-/// An evaluation line: a vertical curtain over a polyline. Or an object, which has a footprint.
+/// An evaluation line: the upright surface over a polyline on the map, of any height. Or an object, which has a footprint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationLine {
     /// Name in the results.

@@ -3,7 +3,8 @@
 use super::figure::Figure;
 use super::{distributions, plan_view, reach_angle, runout, side_view, stops};
 
-/// All figures in the order of the page. To add one: a file with a `draw` function and a line here.
+/// All figures that every report has. To add one: a file with a `draw` function and a line here; the page shows it behind the
+/// histograms, if no chapter names it elsewhere.
 pub const FIGURES: [Figure; 6] = [
     Figure { file: "plan.svg", title: |words| words.plan_title, draw: plan_view::draw },
     Figure { file: "stops.svg", title: |words| words.stops_title, draw: stops::draw },

@@ -13,11 +13,11 @@ pub struct RunOptions {
     pub out: PathBuf,
     /// What to do with results that it holds already.
     pub existing: Mode,
-    /// Which of the releases.
+    /// Which releases are computed.
     pub selection: Selection,
-    /// Worker threads, 1 or more; `None` = all cores. It changes the time and no result.
+    /// Worker threads, 1 or more; `None` = all cores. Results do not depend on it.
     pub threads: Option<usize>,
-    /// Go on with more releases until this interval is narrow enough.
+    /// Go on with more releases until the interval of this percentile is narrow enough; `None` = the plan's number.
     pub until: Option<TargetPrecision>,
 }
 

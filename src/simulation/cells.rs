@@ -1,4 +1,8 @@
 //! Which cells of the maps a rock passes, with its largest energy and height in each.
+//!
+//! Cells are numbered in plan view, whatever the rock's height over them. What a map shows of many
+//! rocks (how many passed, percentiles of energy and height) is made elsewhere from these passages;
+//! here each rock has one entry a cell, however often it comes back.
 
 use super::form::{Form, RockInstant, Turned, between};
 use super::passages::{Passage, Passages};
@@ -19,8 +23,10 @@ pub struct CellPassage {
 }
 
 /// The cells of one rock so far.
+/// Memory grows with the cells passed, not with the size of the grid.
 #[derive(Debug)]
 pub(super) struct CellPassages<'a> {
+    /// None where the plan keeps no maps: then nothing below costs anything.
     cells: Option<&'a MapGrid>,
     pub(super) found: Passages<CellPassage>,
 }
@@ -45,14 +51,19 @@ impl<'a> CellPassages<'a> {
         let from = at(0.0);
         let rotational_j = form.rotational_j(&from);
         let from = &from.motion;
+        // m |v|²/2 of the parabola, plus the rotational energy, which no flight changes
         let total_j =
             |t: f64| 0.5 * form.rock.mass_kg() * flight.velocity(t).norm_squared() + rotational_j;
+        // lowest point of the rock over the ground below; where there is no ground there is no
+        // height
         let height_m = |t: f64| {
             let centre = flight.centre(t);
             let ground = terrain.ground_under(centre.x, centre.y, centre.z);
             ground.map_or(0.0, |ground| (centre.z - form.below_m(&at(t)) - ground).max(0.0))
         };
         let end = flight.centre(dt);
+        // in plan view the flight is straight and even, so a share of the way is the same share of
+        // the time
         walk(cells, [&from.position_m, &end], |cell, s0, s1| {
             let (t0, t1) = (s0 * dt, s1 * dt);
             let height_m = [t0, 0.5 * (t0 + t1), t1].map(height_m).into_iter().fold(0.0, f64::max);
@@ -63,6 +74,7 @@ impl<'a> CellPassages<'a> {
     /// Notes the cells of a step in contact, which are shorter than cells: its ends hold what it has.
     pub(super) fn step(&mut self, form: &Form, [from, to]: [&Motion; 2], turned: Option<Turned>) {
         let Some(cells) = self.cells else { return };
+        // velocity linear within the step: its square has no largest value inside either
         let total_j = |s: f64| {
             let motion = between(from, to, s);
             let rotational_j = form.rotational_j(&RockInstant { motion, turned });
@@ -88,16 +100,22 @@ impl Passage for CellPassage {
 
 /// Calls `pass` with every cell under the straight way between two places and the shares of the way at which it is
 /// entered and left (Amanatides and Woo 1987).
+///
+/// Steps from edge to edge, never cell by cell with a test: it visits exactly the cells under the
+/// way, and the parts add up to 1.
 fn walk(cells: &MapGrid, ends: [&Vec3; 2], mut pass: impl FnMut(u32, f64, f64)) {
     let [from, to] = ends.map(|end| cells.place(end.x, end.y));
     let mut at = from.map(|x| x.floor() as i64);
     let last = to.map(|x| x.floor() as i64);
     let way = [to[0] - from[0], to[1] - from[1]];
     let step = way.map(|x| if x > 0.0 { 1 } else { -1 });
+    // share of the way at which the next line of the grid is met along one axis
     let edge = |axis: usize, at: i64| {
         let edge = if way[axis] > 0.0 { at + 1 } else { at };
         if way[axis] == 0.0 { f64::INFINITY } else { (edge as f64 - from[axis]) / way[axis] }
     };
+    // so many edges lie between first and last cell: counting them ends the walk, not a comparison
+    // of rounded numbers
     let mut left = (last[0] - at[0]).unsigned_abs() + (last[1] - at[1]).unsigned_abs();
     let mut entered = 0.0;
     loop {

@@ -39,6 +39,9 @@ impl Crossing {
 }
 
 /// The crossings of one rock so far.
+///
+/// Only the first crossing of a line is kept in full: statistics at a line ask how a rock arrives
+/// there. All are counted.
 #[derive(Debug)]
 pub(super) struct Crossings<'a> {
     lines: &'a [EvaluationLine],
@@ -93,7 +96,9 @@ impl<'a> Crossings<'a> {
             (terrain, form),
             [a, a, b, b],
             |piece| {
+                // signed distances to the endless line through the piece, positive on its left
                 let (start, end) = (piece.side_m(a), piece.side_m(b));
+                // the way is straight in plan view: start/(start − end) of it lies before the line
                 let crosses = (start > 0.0) != (end > 0.0);
                 crosses.then(|| start / (start - end)).into_iter().collect()
             },
@@ -150,6 +155,7 @@ impl<'a> Crossings<'a> {
             if let Some(footprint) = evaluation_line.footprint {
                 let rim_m = form.rim_m();
                 let free = |k: usize| [low[k] - rim_m, high[k] + rim_m];
+                // an object is met by the rim of the rock, not by its centre
                 let ([west, east], [south, north]) = (free(0), free(1));
                 let is_known = self.found.iter().any(|crossing| crossing.line == line);
                 if is_known || !evaluation_line.is_near([west, south], [east, north]) {
@@ -214,6 +220,9 @@ impl<'a> Crossings<'a> {
         let centre = instant.motion.position_m;
         // the slope without trees: bounce height is a height above the ground
         let below = terrain.slope_under(centre.x, centre.y, centre.z);
+        // Vertical height of the lowest point; along the slope's normal the centre's height times
+        // cos of the slope, less how far the rock reaches towards the slope. For a sphere on a
+        // steep slope the second is the clearance a net must have.
         let (height_m, height_normal_m) = below.map_or((f64::NAN, f64::NAN), |(ground, normal)| {
             let over = centre.z - ground;
             let near = over * normal.z.abs() - form.reach_m(&instant, &-up(normal));
@@ -237,6 +246,7 @@ impl<'a> Crossings<'a> {
 }
 
 /// The normal of a slope that points up.
+/// A mesh may be wound either way.
 fn up(normal: Vec3) -> Vec3 {
     if normal.z < 0.0 { -normal } else { normal }
 }
@@ -257,6 +267,8 @@ fn enter(
     at: impl Fn(f64) -> RockInstant,
 ) -> Option<(f64, f64)> {
     let side = |pair: &[Corner]| math::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+    // A Bézier curve's derivative is 3 times the differences of its points: no place moves faster
+    // than this per unit of s.
     let fastest_m = 3.0 * hull.windows(2).map(side).fold(0.0, f64::max);
     let mut s = 0.0;
     while s <= 1.0 {
@@ -265,6 +277,7 @@ fn enter(
         if free_m <= TOUCH_M {
             return Some((s, along_m));
         }
+        // at least `SHORTEST_M` a time: a way along the object's own edge must come to an end
         s += free_m.max(SHORTEST_M) / fastest_m;
     }
     None
@@ -287,10 +300,13 @@ fn roots(ordinates: [f64; 4]) -> Vec<f64> {
     if ordinates.iter().all(|b| *b > 0.0) || ordinates.iter().all(|b| *b <= 0.0) {
         return Vec::new();
     }
+    // Bernstein form: Σ C(3, k) s^k (1 − s)^(3 − k) b_k
     let value = |s: f64| {
         let r = 1.0 - s;
         r * r * r * b0 + 3.0 * s * r * (r * b1 + s * b2) + s * s * s * b3
     };
+    // the derivative is a quadratic with the ordinates c_k; its roots, without cancellation, part
+    // the curve into monotone pieces
     let (c0, c1, c2) = (b1 - b0, b2 - b1, b3 - b2);
     let (a, b, c) = (c0 - 2.0 * c1 + c2, c1 - c0, c0);
     let root = (b * b - a * c).sqrt();

@@ -44,6 +44,7 @@ pub struct Scratch {
     /// Contact laws of the grounds for this rock: stiffness, damping, friction.
     laws: Vec<Law>,
     /// Dashpots of the grounds of the rock before: most scenes never change them.
+    /// By ground, as far as their restitution is still the same.
     damping: Vec<Damping>,
 }
 
@@ -62,6 +63,9 @@ impl Scratch {
 
     /// Fills in the laws of all grounds for one rock. The damping ratio of a restitution takes a root search, so it is
     /// kept as long as the restitution of a ground stays the same.
+    ///
+    /// A law holds what a ground means for this one rock: `ω = √(p_N/m)`, `c_N = 2 ζ(e) √(p_N m)`,
+    /// `c_s` and the speed of capture all hang on its mass, so they are made anew for each.
     fn make_laws(&mut self, release: &Release, capture: &Capture) {
         self.damping.truncate(release.grounds.len());
         self.laws.clear();
@@ -77,6 +81,9 @@ impl Scratch {
 }
 
 /// Follows one rock from its release to its stop.
+///
+/// A pure function of its arguments: scratch only lends memory, so that the same rock comes out
+/// with the same bytes on every thread.
 pub fn simulate(
     settings: &RunSettings,
     release: &Release,
@@ -105,6 +112,8 @@ pub fn simulate(
     };
     // A rock that starts pressed into something must not fly out of its grip: a leap sees no touch where none begins.
     // stop is only set here if the rock is at rest, or fails, where it was released
+    // The loop is the whole life of a rock: fly to the next touch, step in contact until it is
+    // free, and again. Each part may end it.
     let mut stop = if fall.is_pressed() { fall.touch() } else { None };
     let stop = loop {
         stop = stop.or_else(|| fall.fly()).or_else(|| fall.touch());
@@ -134,6 +143,9 @@ pub fn simulate_block(
 ///
 /// # Errors
 /// None today; a caller must be ready for one.
+///
+/// The random stream belongs to seed, purpose and number: rock 137 is the same alone, resumed, or
+/// among a million.
 pub fn simulate_release(
     plan: &Plan,
     index: usize,
@@ -156,6 +168,7 @@ pub fn simulate_release(
 }
 
 /// What to keep of release `index`: a path for the plan's first releases and for `paths`.
+/// A path that is asked for by number is kept even where the plan leaves paths out.
 pub(super) fn kept(plan: &Plan, index: usize, paths: Option<&Range<usize>>) -> Keep {
     let wanted = paths.is_some_and(|paths| paths.contains(&index));
     let path_step_s = match &plan.paths {
@@ -176,6 +189,7 @@ impl Fall<'_> {
     }
 
     /// Leaps to the next touch.
+    /// Cost: one search through the index, however long the flight.
     fn fly(&mut self) -> Option<Stop> {
         let now = self.recorder.now;
         let flight = Parabola {
@@ -186,6 +200,7 @@ impl Fall<'_> {
         };
         let left = self.settings.longest_s - now.time_s;
         let begun = self.state.stopwatches.now();
+        // stems that this rock has broken are no longer in its way
         let end = time_of_impact_past(
             self.settings.terrain,
             &flight,
@@ -206,6 +221,9 @@ impl Fall<'_> {
     }
 
     /// Goes on in contact until the rock is free again or stops.
+    ///
+    /// Contact begins with a fresh look: memories of the episode before are gone, as a flight of
+    /// any length relaxes the springs.
     fn touch(&mut self) -> Option<Stop> {
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
         let world = self.settings.around(self.body, self.laws);
@@ -214,21 +232,28 @@ impl Fall<'_> {
         // soil takes speed out of the blow before any spring answers
         let kept = self.answer_blow();
         self.recorder.now.velocity_m_s *= kept;
+        // from here on the balance is kept: motion and weight now, losses and springs as they are
+        // booked
         let before_j = self.total_j();
         let lost_before_j = self.recorder.lost_j();
         // those of the look that `begin` has just taken
         let world = self.settings.around(self.body, self.laws);
+        // A rock released pressed in, or one that never left, begins with energy in its springs: it
+        // counts as brought along.
         let held = if self.is_rigid() { Loss::default() } else { self.state.stored_j(&world) };
         let mut stepper = Stepper::new(self.settings.step, &world, self.state);
         // from here to the end of the episode time goes by steps
         let stop = self.steps(&mut stepper);
         // energy balance over the episode: the change of motion and all booked losses add up to the remainder
+        // ΔE of motion and weight; with losses ≥ 0 and springs at rest at both ends it is −(losses)
+        // up to the numerics' own error
         let rise_j = self.total_j() - before_j;
         self.recorder.ledger.remainder_j -= rise_j + self.recorder.lost_j() - lost_before_j;
         // A rock that rests presses on its springs: what they hold is not lost.
         let stored = self.held();
         self.recorder.pay(&stored, -1.0);
         self.recorder.pay(&held, 1.0);
+        // largest over all episodes: 0 in exact arithmetic, since contacts only take energy
         self.recorder.ledger.rise_j =
             self.recorder.ledger.rise_j.max(rise_j + stored.sum() - held.sum());
         self.recorder.end_impacts(|_| false, || 0.0);
@@ -238,6 +263,8 @@ impl Fall<'_> {
 
     /// Energy in the contact springs at the end of an episode; only a fixed step leaves some in those of a free rock.
     fn held(&mut self) -> Loss {
+        // the springs of a rock that is free hold nothing, but a fixed step may end with a spring
+        // still pressed or pulled
         let left = self.state.is_free() && !self.settings.step.scheme.has_fixed_step();
         if left || self.is_rigid() {
             return Loss::default();
@@ -287,6 +314,8 @@ impl Fall<'_> {
             self.recorder.step(to, slides);
             self.in_contact().end_impacts();
             self.state.stopwatches.stop(TimedPiece::NotesInContact, begun);
+            // exact comparison: `advance` takes no more than `left`, and takes all of it in its
+            // last step
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if self.state.is_free() {
@@ -304,6 +333,7 @@ impl Fall<'_> {
     }
 
     /// Mechanical energy of the rock in contact (J), weight included.
+    /// `m v²/2 + I ω²/2 − m g·c`; springs are not in it.
     fn total_j(&mut self) -> f64 {
         self.state.motion_j(&self.body) - self.body.mass * self.body.gravity.dot(&self.state.c)
     }

@@ -11,6 +11,7 @@ use crate::solver::scar::Scars;
 use crate::solver::slip::Slip;
 
 /// One sphere.
+/// Everything that a journey needs and nothing that outlives it.
 pub(super) struct Fall<'a> {
     pub(super) settings: &'a RunSettings<'a>,
     pub(super) body: Body,
@@ -36,6 +37,7 @@ impl<'a> Fall<'a> {
 }
 
 /// What a sphere does to soil.
+/// All of it is changed between steps, so a step itself sees constant laws.
 pub(super) struct Soil<'a> {
     pub(super) scars: &'a mut Scars,
     pub(super) slip: &'a mut Slip,
@@ -46,6 +48,9 @@ pub(super) struct Soil<'a> {
 }
 
 /// A contact that slips.
+///
+/// Speed of the contact point along the surface, normal of the contact, and the ground on which it
+/// slips.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slips {
     pub(super) speed_m_s: f64,

@@ -1,4 +1,8 @@
 //! What a rock looks like to those who note its way: a ball, or a block that is turned somehow.
+//!
+//! A sphere is the same from all sides; for a block heights and crossings depend on how it is
+//! turned, so these are asked here and nowhere by radius. The support of a block along a direction
+//! is `max_k ρ_k·d + r`, over its corners `ρ_k` with balls of radius `r`.
 
 use crate::body::Block;
 use crate::flight::Parabola;
@@ -39,6 +43,9 @@ impl Turned {
 }
 
 /// A turn as a unit quaternion w, x, y, z with w ≥ 0.
+///
+/// `q` and `−q` are the same turn; the sign is fixed, so that files do not depend on how the matrix
+/// came about.
 pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
     let turn = UnitQuaternion::from_rotation_matrix(turn);
     let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
@@ -48,6 +55,8 @@ pub(super) fn quaternion(turn: &Rotation3<f64>) -> [f64; 4] {
 impl RockInstant {
     /// The rock after `t` (s) of a flight that began with `start`; a block turns as `top` does.
     pub(super) fn in_flight(start: &Motion, flight: &Parabola, top: Option<&Top>, t: f64) -> Self {
+        // the attitude is a closed form of the time (`Top`); the energy of rotation is constant in
+        // flight
         let turned = top.map(|top| {
             let attitude = top.attitude(t);
             (top.spin(&attitude), Turned { attitude, rotational_j: top.energy_j() })
@@ -56,6 +65,7 @@ impl RockInstant {
             time_s: start.time_s + t,
             position_m: flight.centre(t),
             velocity_m_s: flight.velocity(t),
+            // a sphere keeps its spin in flight: nothing turns it
             spin_rad_s: turned.map_or(start.spin_rad_s, |(spin, _)| spin),
         };
         Self { motion, turned: turned.map(|(_, turned)| turned) }
@@ -74,11 +84,15 @@ impl Form<'_> {
     }
 
     /// How far the lowest point lies below the centre (m).
+    /// The radius of a sphere; for a block the support downwards.
     pub(super) fn below_m(&self, at: &RockInstant) -> f64 {
         self.reach_m(at, &-Vec3::z())
     }
 
     /// Radius of the circle that it may cover on the map (m).
+    ///
+    /// That of the ball around a block, whichever way it is turned: on the map a block may turn as
+    /// it passes.
     pub(super) fn rim_m(&self) -> f64 {
         self.block.map_or(self.rock.radius_m, |block| block.bound_m)
     }
@@ -90,6 +104,10 @@ impl Form<'_> {
 }
 
 /// The motion a share `s` of a step after its start: cubic in position, linear in velocity and spin.
+///
+/// Hermite's cubic through positions and velocities at both ends: it leaves and arrives with the
+/// velocities of the step, and its error is of fourth order in the step. `bend` is what it differs
+/// from the straight way by; 0 for a constant velocity.
 pub(super) fn between(from: &Motion, to: &Motion, s: f64) -> Motion {
     let dt = to.time_s - from.time_s;
     let way = to.position_m - from.position_m;

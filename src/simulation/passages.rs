@@ -1,4 +1,8 @@
 //! A list of passages of one rock: through cells, or along stretches of its way.
+//!
+//! A rock mostly stays where it is, so a new passage is compared with the last entry alone; what
+//! came back to an earlier place is joined at the end, by one sort. O(n log n) in the number of
+//! entries, and no table as large as the map.
 
 /// One rock in one place.
 pub(super) trait Passage: Copy {
@@ -23,6 +27,7 @@ impl<T: Passage> Passages<T> {
     }
 
     /// How many there are so far, and the last, which the next may join.
+    /// The last must be copied: it is the one entry that changes after it has been added.
     pub(super) fn mark(&self) -> (usize, Option<T>) {
         (self.0.len(), self.0.last().copied())
     }
@@ -49,6 +54,7 @@ impl<T: Passage> Passages<T> {
     }
 
     /// One entry a place, in the order of places.
+    /// A stable sort, so joining does not depend on anything but the order in which the rock went.
     pub(super) fn into_found(mut self) -> Vec<T> {
         self.0.sort_by_key(Passage::place);
         self.0.dedup_by(|next, kept| {

@@ -1,4 +1,8 @@
 //! What is noted down along one rock's way: largest values, path, impacts, ledger, effort.
+//!
+//! The recorder follows the motion and never acts on it: with or without paths, lines and maps the
+//! rock goes the same way, bit for bit. Everything is in SI units and local coordinates; the writer
+//! adds the terrain's offset.
 
 use super::cells::{CellPassage, CellPassages};
 use super::crossings::{Crossing, Crossings};
@@ -24,6 +28,7 @@ pub struct Keep {
 }
 
 /// Notes along the way.
+/// `now` is the last instant noted; flights and steps append to it and leave no gap in time.
 #[derive(Debug)]
 pub(super) struct Recorder<'a> {
     terrain: &'a Terrain,
@@ -41,10 +46,12 @@ pub(super) struct Recorder<'a> {
     pub(super) tree_impact_count: u32,
     pub(super) ledger: Ledger,
     pub(super) effort: Effort,
+    /// When the path gets its next point (s); infinite where none is kept.
     next_point_s: f64,
 }
 
 /// Path points of a flight at which its height is measured, at most; the leap itself needs none.
+/// The largest clearance over rough ground has no closed form, so it is sampled.
 const HEIGHT_POINTS: f64 = 8.0;
 /// Heights are measured at most this often in flight (s).
 const HEIGHT_STEP_S: f64 = 0.1;
@@ -89,6 +96,7 @@ impl<'a> Recorder<'a> {
             effort: Effort::default(),
             next_point_s: if keep.path_step_s.is_some() { 0.0 } else { f64::INFINITY },
         };
+        // the release itself counts: a rock thrown at 20 m/s has had 20 m/s, whatever comes
         recorder.note_speed();
         recorder.note_height(&recorder.instant());
         let (at, speed_m_s) = (start.position_m, start.velocity_m_s.norm());
@@ -114,6 +122,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Goes back to `mark`; what was tried in vain was work all the same.
+    /// `effort` is not put back.
     pub(super) fn go_back(&mut self, mark: &RecorderMark) {
         (self.now, self.extremes, self.ledger) = (mark.now, mark.extremes, mark.ledger);
         self.turned = mark.turned;
@@ -126,6 +135,9 @@ impl<'a> Recorder<'a> {
     }
 
     /// Notes the present speed and energies.
+    ///
+    /// Called at both ends of every flight and step: speed and energy along a parabola are largest
+    /// at an end, and contact steps are short.
     pub(super) fn note_speed(&mut self) {
         let one = self.now.translational_j(&self.form.rock);
         let two = self.form.rotational_j(&self.instant());
@@ -137,14 +149,18 @@ impl<'a> Recorder<'a> {
     }
 
     /// The sheet that a triangle belongs to.
+    /// The mesh file, and with it ground and whether it is a tree.
     pub(super) fn sheet_of(&self, triangle: u32) -> u16 {
         self.terrain.sheet_of[triangle as usize]
     }
 
+    /// Motion and turn as of now.
     fn instant(&self) -> RockInstant {
         RockInstant { motion: self.now, turned: self.turned }
     }
 
+    /// Vertical distance from the ground below to the lowest point of the rock (m), negative when
+    /// pressed in; none beside the terrain.
     fn clearance_m(&self, at: &RockInstant) -> Option<f64> {
         let centre = &at.motion.position_m;
         self.terrain
@@ -152,8 +168,11 @@ impl<'a> Recorder<'a> {
             .map(|ground| centre.z - self.form.below_m(at) - ground)
     }
 
+    /// A cheap bound first: over the lowest ground around (`floor`) the height cannot be more than
+    /// `most_m`, so most instants cost no search through the mesh.
     fn note_height(&mut self, at: &RockInstant) {
         let centre = &at.motion.position_m;
+        // over the lowest ground around: an upper bound of the height over the ground below
         let most_m =
             centre.z - self.form.below_m(at) - self.terrain.floor.under(centre.x, centre.y);
         if most_m <= self.extremes.height_m {
@@ -170,21 +189,26 @@ impl<'a> Recorder<'a> {
     pub(super) fn fly(&mut self, flight: &Parabola, top: Option<&Top>, dt: f64) {
         let start = self.now;
         let at = |t: f64| RockInstant::in_flight(&start, flight, top, t);
+        // path points at even times, on the parabola itself
         while self.next_point_s <= start.time_s + dt {
             let t = self.next_point_s - start.time_s;
             let instant = at(t);
             let motion = Motion { time_s: self.next_point_s, ..instant.motion };
             self.point(&RockInstant { motion, ..instant }, PathState::Flight);
         }
+        // none at the two ends: there the rock touches, or its height is noted by what comes next
         let points = (dt / HEIGHT_STEP_S).ceil().min(HEIGHT_POINTS) as u32;
         for k in 1..=points {
             self.note_height(&at(dt * f64::from(k) / f64::from(points + 1)));
         }
+        // lines, cells and stretches each look at the flight as a whole, not at its points
         self.crossings.fly((self.terrain, &self.form), flight, dt, at);
         self.passages.fly((self.terrain, &self.form), flight, dt, at);
         self.stretches.fly((self.terrain, &self.form), flight, dt, at);
         let end = at(dt);
         self.now.time_s += dt;
+        // the end is computed as the parabola gives it, so that the touch found there holds to the
+        // last digit
         (self.now.position_m, self.now.velocity_m_s) = (flight.centre(dt), flight.velocity(dt));
         (self.now.spin_rad_s, self.turned) = (end.motion.spin_rad_s, end.turned);
         self.note_speed();
@@ -198,15 +222,19 @@ impl<'a> Recorder<'a> {
     /// Goes along one step in `state` to `to`.
     pub(super) fn step_as(&mut self, to: Motion, state: PathState) {
         let from = std::mem::replace(&mut self.now, to);
+        // a step in contact is noted from where it began to where it ended
         self.crossings.step((self.terrain, &self.form), [&from, &to], self.turned);
         self.passages.step(&self.form, [&from, &to], self.turned);
         let dt = to.time_s - from.time_s;
         while self.next_point_s <= to.time_s {
             let s = if dt > 0.0 { (self.next_point_s - from.time_s) / dt } else { 1.0 };
+            // within a step the cubic of its ends; see `between`
             let motion = between(&from, &to, s.clamp(0.0, 1.0));
             let motion = Motion { time_s: self.next_point_s, ..motion };
             self.point(&RockInstant { motion, turned: self.turned }, state);
         }
+        // in a world a flying rock is carried along by the steps of its island: it has a height
+        // there
         let flies = state == PathState::Flight;
         if flies {
             self.note_height(&self.instant());
@@ -235,6 +263,7 @@ impl<'a> Recorder<'a> {
         released_j: f64,
     ) -> Trajectory {
         Trajectory {
+            // the caller knows number and shape
             index: 0,
             rock: release.rock,
             shape: None,
@@ -256,6 +285,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Keeps the last point of the path.
+    /// So that a path ends where its rock does, whatever the time step of its points.
     pub(super) fn end_path(&mut self) {
         if self.keep.path_step_s.is_some()
             && self.path.last().is_none_or(|last| last.motion.time_s < self.now.time_s)
@@ -270,6 +300,8 @@ impl<'a> Recorder<'a> {
     /// the springs of other contacts hold. Returns its number.
     pub(super) fn begin_impact(&mut self, struck: &Struck, until_s: f64, held_j: f64) -> u32 {
         let times_s = (self.now.time_s, until_s);
+        // springs of contacts that are still pressed hold energy that is booked as lost until they
+        // give it back: not this impact's
         let lost_j = (self.lost_to_mesh_j() - held_j, self.ledger.soil_j);
         let speed_m_s = self.now.velocity_m_s.norm();
         let (number, is_new) = self.impacts.begin(struck, times_s, speed_m_s, lost_j);
@@ -279,6 +311,9 @@ impl<'a> Recorder<'a> {
     }
 
     /// Ends the impacts whose time is over or whose patch no longer `holds` the rock; `held_j` as above.
+    ///
+    /// `held_j` is asked only if the last of them ends: summing the springs costs a look at every
+    /// contact.
     pub(super) fn end_impacts(
         &mut self,
         holds: impl Fn(u32) -> bool,
@@ -294,6 +329,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Writes `times` the losses into the ledger.
+    /// Times −1 takes a loss back: what springs held at the end was not lost.
     pub(super) fn pay(&mut self, loss: &Loss, times: f64) {
         self.ledger.friction_j += times * loss.friction;
         self.ledger.damping_j += times * loss.damping;
@@ -302,6 +338,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// All losses so far (J).
+    /// Including what other rocks got or took.
     pub(super) fn lost_j(&self) -> f64 {
         self.lost_to_mesh_j() + self.ledger.others_j + self.ledger.passed_on_j
     }

@@ -3,6 +3,14 @@
 //! A ball beside the top of a ridge and a heap that begins to slide are slow for a while. What tells them from rest is that
 //! they speed up. A rock in a settled heap jitters, but goes nowhere; so what is compared is not the speed at two
 //! instants but the mean velocity over the two halves of the rule's time.
+//!
+//! ```text
+//! slow:     max(|v|, R |ω|) < speed of the rule, over the whole time of the rule
+//! no gain:  mean speed of the second half ≤ mean speed of the first half + 1 % of the rule's speed
+//! mean:     way of the centre, or of the rim by rotation, over the time of the half
+//! ```
+//!
+//! Ways are counted as vectors, so a jitter to and fro adds up to nothing.
 
 use crate::plan::RestRule;
 use crate::rock::{Motion, Vec3};
@@ -34,13 +42,16 @@ impl RestCriterion {
 
     /// Notes a step of `dt` (s) that ended in `to`, of a rock of this radius (m).
     pub(super) fn note(&mut self, dt: f64, to: &Motion, radius_m: f64, rule: &RestRule) {
+        // a rock that spins on the spot moves at its rim: it does not rest
         let rim_m_s = to.spin_rad_s * radius_m;
+        // too fast: the clock starts again from here
         if to.velocity_m_s.norm().max(rim_m_s.norm()) >= rule.speed_m_s {
             *self = Self::from(to.position_m);
             return;
         }
         self.half_s += dt;
         self.turned_m += rim_m_s * dt;
+        // half of the rule's time is over: its mean speed is compared with that of the half before
         if self.half_s >= 0.5 * rule.time_s {
             let way_m = (to.position_m - self.from_m).norm().max(self.turned_m.norm());
             let mean_m_s = way_m / self.half_s.max(f64::MIN_POSITIVE);

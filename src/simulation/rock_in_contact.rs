@@ -1,6 +1,10 @@
 //! A rock in contact with the mesh, alone or among others: its impacts are noted down as they begin and end, and on rough
 //! ground it is turned against the facets that it meets.
 
+//!
+//! An impact here is a contact that begins with an approach above the capture speed: only those
+//! rebound, are counted and get a row. Contacts of rocks of a world with the mesh are handled by
+//! the same code.
 use super::impacts::Struck;
 use super::recorder::Recorder;
 use crate::contact::history::ContactHistory;
@@ -11,6 +15,9 @@ use crate::solver::roughness::Meeting;
 use std::f64::consts::PI;
 
 /// An impact is over after so many contact times (–), whether the rock has left or not.
+///
+/// Without weight a contact lasts `π/ω` at most; weight prolongs it, but threefold only where the
+/// rock is about to stay.
 pub(super) const IMPACT_TIMES: f64 = 3.0;
 
 /// A rock in contact and its notes.
@@ -24,8 +31,13 @@ pub(super) struct RockInContact<'r, 'a> {
 
 impl RockInContact<'_, '_> {
     /// Notes down impacts that have just begun, and turns the rock against the facet of the fastest.
+    ///
+    /// Why the fastest: all contacts that begin at one instant see the same facet of rough ground,
+    /// and the blow that counts for soil and dashpot is the fastest of them. Speeds are those
+    /// before the blow.
     pub(super) fn announce(&mut self) {
         let Some(fastest) = self.fastest_unannounced() else { return };
+        // a facet that is still met belongs to the place before: the rock is turned back first
         let facet = if self.world.law(fastest.triangle).roughness_rad > 0.0 {
             self.leave_facet();
             let Blow { n, triangle, .. } = fastest;
@@ -35,10 +47,13 @@ impl RockInContact<'_, '_> {
             None
         };
         // whether a rock rebounds is judged by its approach to the facet
+        // approach to the tilted normal n' = turn n, at the velocity not yet turned
         let to_facet_m_s = facet.map_or(0.0, |turn| -(turn * fastest.n).dot(&self.state.v));
         if to_facet_m_s >= self.world.law(fastest.triangle).capture_m_s {
             self.state.rebound(&self.world, to_facet_m_s);
         }
+        // what contacts that were announced earlier hold in their springs: the new impact must not
+        // be charged with it
         let known = self.state.histories.iter().filter(|history| history.announced);
         let held_j = ContactState::held_j(&self.world, known);
         let until_s = self.recorder.now.time_s + self.impact_time();
@@ -49,6 +64,7 @@ impl RockInContact<'_, '_> {
                 self.announce_one(&mut history, (&fastest, to_facet_m_s), (until_s, held_j));
             self.state.histories[k] = history;
         }
+        // in the rigid limit what is about to be struck stands in a list of its own
         for k in 0..self.state.struck.len() {
             let mut history = self.state.struck[k];
             rebounds |=
@@ -59,6 +75,7 @@ impl RockInContact<'_, '_> {
             let approach_m_s = fastest.approach_m_s.max(to_facet_m_s);
             self.state.blow = Some(Blow { approach_m_s, ..fastest });
         }
+        // the rock is turned against the facet, instead of the mesh: contact itself stays as it is
         if let Some(turn) = facet.filter(|_| rebounds) {
             self.state.turn_against(&self.world, turn, until_s);
         }
@@ -76,6 +93,7 @@ impl RockInContact<'_, '_> {
     }
 
     /// Notes down a contact that has begun, the `fastest` by its approach to the facet; whether it rebounds.
+    /// One that was captured, or is too slow, is announced but is no impact.
     fn announce_one(
         &mut self,
         history: &mut ContactHistory,
@@ -87,6 +105,7 @@ impl RockInContact<'_, '_> {
         }
         let own_m_s = -history.n.dot(&self.recorder.now.velocity_m_s);
         let is_fastest = history.n == fastest.n;
+        // the facet counts for the contact that it was drawn for
         let approach_m_s = if is_fastest { own_m_s.max(to_facet_m_s) } else { own_m_s };
         // what comes too slowly is no impact
         history.impact = if approach_m_s < self.world.law(history.triangle).capture_m_s {
@@ -101,6 +120,9 @@ impl RockInContact<'_, '_> {
 
     /// Breaks the stems that cannot take the current blow, and meets the next facet if it is time for it; returns the longest
     /// step (s) in which no stem takes more than it can.
+    ///
+    /// With springs a stem gives way in the course of steps, so the step is limited; in the rigid
+    /// limit it gives way at once.
     pub(super) fn before_step(&mut self) -> f64 {
         let longest_s = if self.has_springs {
             self.state.longest_before_yield_s(&self.world)
@@ -131,6 +153,9 @@ impl RockInContact<'_, '_> {
     }
 
     /// A rock that slides or rolls on rough ground meets the next facet once the last is behind it.
+    ///
+    /// Roughness is a property of the way covered, not of the number of contact events: see
+    /// `solver::roughness`.
     fn meet_next_facet(&mut self) {
         if self.state.facets.is_any_met() {
             return;
@@ -138,6 +163,7 @@ impl RockInContact<'_, '_> {
         let rests = |history: &&mut ContactHistory| history.closed && history.announced;
         let pressed = self.state.histories.iter_mut().filter(rests);
         let Some(history) =
+            // the contact that carries the most load feels the facet
             pressed.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force))
         else {
             return;
@@ -153,6 +179,7 @@ impl RockInContact<'_, '_> {
     }
 
     /// The longest an impact is taken to last (s): in the rigid limit no time at all.
+    /// `3 π/ω` of the softest contact.
     fn impact_time(&self) -> f64 {
         if !self.has_springs {
             return 0.0;
@@ -196,6 +223,7 @@ impl RockInContact<'_, '_> {
 }
 
 /// What a rock with its centre at `c` strikes with an approach of so much (m/s) at a feature with normal `n`, of a triangle.
+/// The touched point is `P1 = c − R n`.
 fn struck(
     recorder: &Recorder,
     radius_m: f64,

@@ -10,6 +10,7 @@ use crate::solver::environment::ContactEnvironment;
 use crate::terrain::Terrain;
 
 /// What all rocks of a scene have in common.
+/// Borrowed from the plan and never changed while rocks fall, so all threads share one.
 #[derive(Debug, Clone, Copy)]
 pub struct RunSettings<'a> {
     /// The meshes.
@@ -19,6 +20,7 @@ pub struct RunSettings<'a> {
     /// The step.
     pub step: &'a Settings,
     /// When a rock is at rest.
+    /// See [`RestRule`].
     pub rest: RestRule,
     /// Simulated time after which a rock is out of time (s).
     pub longest_s: f64,
@@ -43,6 +45,9 @@ impl<'a> RunSettings<'a> {
     }
 
     /// What the laws of grounds and rocks need to know of the run.
+    ///
+    /// The scene's own capture speed, or what it is made of where the scene names none: tolerance
+    /// and gravity.
     pub(super) fn capture(&self) -> Capture {
         Capture {
             own_m_s: self.step.capture_speed_m_s,
@@ -60,11 +65,13 @@ impl<'a> RunSettings<'a> {
     }
 
     /// Whether a rock has had all the work it may have.
+    /// A budget of work, not of time: a rock that is stopped here is stopped on every machine.
     pub(super) fn over_budget(&self, effort: &Effort) -> Option<Stop> {
         (effort.work() > self.step.scheme.most_work()).then_some(Stop::OverBudget)
     }
 
     /// How long a flight lasts (s) that ends so and began at `now_s`, and whether the rock stops there.
+    /// The time limit counts as reached when a flight ends at it exactly.
     pub(super) fn end_of_flight(&self, end: &FlightEnd, now_s: f64) -> (f64, Option<Stop>) {
         let left = self.longest_s - now_s;
         let (dt, stop) = match *end {

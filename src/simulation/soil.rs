@@ -1,6 +1,10 @@
 //! A sphere on soil: what its impacts and its slip do to the laws of the grounds, and what soil takes of its speed.
 //!
 //! Laws and speed change between steps, so all schemes are treated alike.
+//!
+//! Two laws, each on grounds that ask for it: the scar of Lu et al. (2019), `solver::scar`, and
+//! friction that grows with slip of Leine et al. (2014), `solver::slip`. A third, restitution that
+//! falls with the speed of the impact, is the ground's own (`Law::struck_at`).
 
 use super::fall::{Fall, Slips};
 use crate::contact::history::ContactHistory;
@@ -8,10 +12,15 @@ use crate::rock::Vec3;
 use crate::solver::scar::taken_j;
 
 /// Growth of `κ s` within one step, about (–): friction changes between steps.
+/// Taken at the step's middle, so what is left of the error is of second order in it.
 const GROWTH_OF_STEP: f64 = 0.02;
 
 impl Fall<'_> {
     /// Gives the ground that has just been struck its dashpot, and lets the rock dig in; returns what it keeps of its speed (–).
+    ///
+    /// Order: the soil takes its share first, and the dashpot is that of the speed that is left.
+    /// `kept` is a factor on the velocity, so the direction stays and the spin is untouched: drag
+    /// acts at the centre.
     pub(super) fn answer_blow(&mut self) -> f64 {
         let Some(blow) = self.state.blow.take() else { return 1.0 };
         let ground = self.settings.around(self.body, self.laws).ground_of(blow.triangle);
@@ -26,6 +35,7 @@ impl Fall<'_> {
     }
 
     /// Before a step: what strikes, how friction has grown, and the longest step (s).
+    /// The longest step is the least of what stems, scars and growing friction allow.
     pub(super) fn before_step(&mut self) -> f64 {
         let longest_s = self.in_contact().before_step();
         self.answer_blow();
@@ -33,6 +43,7 @@ impl Fall<'_> {
         if self.soil.slip.is_any() {
             self.soil.slips = self.fastest_slip();
             let speed_m_s = self.soil.slips.map_or(0.0, |slips| slips.speed_m_s);
+            // d(κ s)/dt = κ |slip|: a step of GROWTH/per_s lets κ s grow by that much
             let per_s = self.soil.slip.fastest_per_m() * speed_m_s;
             longest_s = longest_s.min(GROWTH_OF_STEP / per_s);
             // of the middle of the step
@@ -42,6 +53,9 @@ impl Fall<'_> {
     }
 
     /// After a step of `dt` (s) that began with the centre at `before`: what has been ploughed and slipped, and what it takes to leave.
+    ///
+    /// Ways of the step just taken: the centre's for ploughing, the contact point's slip (mean of
+    /// both ends) for friction.
     pub(super) fn soil_after_step(&mut self, before: &Vec3, dt: f64) {
         self.soil.last_step_s = dt;
         if self.soil.scars.are_any() {
@@ -58,6 +72,7 @@ impl Fall<'_> {
     }
 
     /// Takes a share of the speed; the soil has it.
+    /// `ΔE = m v² (1 − kept²)/2` goes to the soil.
     fn slow(&mut self, kept: f64) {
         if kept >= 1.0 {
             return;
@@ -69,6 +84,9 @@ impl Fall<'_> {
     }
 
     /// Gives the grounds their friction after all the way slipped and so much more (m).
+    ///
+    /// Only where the value really changes, to the bit, is the stepper told: a redirect costs it
+    /// what it knows of the last step.
     fn rub_after(&mut self, ahead_m: f64) {
         let mut changes = false;
         for (ground, law) in self.laws.iter_mut().enumerate() {

@@ -1,4 +1,7 @@
 //! How fast and how high a rock was, stretch by stretch of its distance from its release in plan view.
+//!
+//! Stretches are rings about the release point, not pieces of the path: a rock that turns back
+//! passes its own stretch again. They make the profiles of speed and height over distance.
 
 use super::form::{Form, RockInstant};
 use super::passages::{Passage, Passages};
@@ -24,6 +27,7 @@ pub struct Stretch {
 pub(super) struct Stretches {
     /// Length of a stretch (m); none where nobody asks.
     step_m: Option<f64>,
+    /// Release in plan view (m).
     from_m: Corner,
     pub(super) found: Passages<Stretch>,
 }
@@ -40,6 +44,7 @@ impl Stretches {
     }
 
     /// Notes a place with the speed and the height there.
+    /// `⌊distance/step⌋` is the stretch.
     pub(super) fn note(&mut self, at: &Vec3, speed_m_s: f64, height_m: f64) {
         let Some(step_m) = self.step_m else { return };
         let away_m = math::hypot(at.x - self.from_m[0], at.y - self.from_m[1]);
@@ -47,6 +52,7 @@ impl Stretches {
     }
 
     /// Notes the end of a step in contact, and the stretches that it passes over.
+    /// A stretch that a step passes over entirely gets the values of the step's end.
     pub(super) fn step(&mut self, to: &Motion, height_m: f64) {
         let before = self.found.last().map(|last| last.number);
         let speed_m_s = to.velocity_m_s.norm();
@@ -86,6 +92,7 @@ impl Stretches {
         let mut before = 0.0;
         walk(place, way, step_m, |number, s0, s1| {
             let (t0, t1) = (s0 * dt, s1 * dt);
+            // a height known for this stretch spares the search for lower ones
             let last = self.found.last().filter(|last| last.number == number);
             let known_m = last.map_or(before, |last| last.height_m.max(before));
             let mut highest_m = height_m(0.5 * (t0 + t1), known_m);
@@ -113,6 +120,9 @@ impl Passage for Stretch {
 
 /// Calls `pass` with every stretch under a straight way in plan view and the shares of the way at which it is entered and
 /// left. The distance from the release falls to the nearest point of the way and rises behind it.
+///
+/// Where the ring of radius `r` is met: `a s² + 2 b s + c − r² = 0` with `a = |way|²`, `b =
+/// place·way`, `c = |place|²`.
 fn walk(place: Corner, way: Corner, step_m: f64, mut pass: impl FnMut(u32, f64, f64)) {
     let dot = |a: Corner, b: Corner| a[0] * b[0] + a[1] * b[1];
     let (a, b, c) = (dot(way, way), dot(place, way), dot(place, place));
@@ -120,6 +130,7 @@ fn walk(place: Corner, way: Corner, step_m: f64, mut pass: impl FnMut(u32, f64, 
         let at = [0, 1].map(|k| place[k] + s * way[k]);
         (dot(at, at).sqrt() / step_m) as u32
     };
+    // straight up or down
     if a == 0.0 {
         return pass(number(0.0), 0.0, 1.0);
     }

@@ -3,6 +3,11 @@
 //! Rocks in flight leap, also past each other: their meeting is a quadratic. An island has its own step; where all of
 //! it is quiet it sleeps until something comes near. Windows, islands and contacts stand in a fixed order, so the
 //! number of threads changes nothing.
+//!
+//! Every rock is advanced by the scheme of the scene as if it were alone, until a window shows that
+//! it may meet another; so a world of rocks that never meet gives the paths of single rocks. The
+//! springs between two rocks carry the rocks' own law (`PairMaterial`), the masses of a pair
+//! entering as `m_a m_b/(m_a + m_b)`.
 
 mod statistics;
 mod bodies;
@@ -48,6 +53,7 @@ pub struct PairMaterial {
 const TOUCHING: f64 = 1e-4;
 
 /// Dashpots that are kept at hand.
+/// Damping for a restitution is a root search; more different ones than this are sought again.
 const KNOWN: usize = 16;
 
 /// One rock on its way.
@@ -56,16 +62,22 @@ struct WorldBody<'a> {
     recorder: Recorder<'a>,
     state: BodyState,
     /// When its flight ends (s), and how.
+    /// None for a rock in contact, and for one that has not looked ahead yet.
     lands: Option<(f64, Option<Stop>)>,
     /// Whether it is slow and gets no faster.
     calm: RestCriterion,
     /// Step its last island would have tried next (s).
+    ///
+    /// Error control goes on from it, so that a rock that changes islands need not begin with the
+    /// onset of an impact.
     h: f64,
     /// Velocity when the window began, and the largest change of it since (m/s).
+    /// This is what the prediction of meetings is checked by at the window's end.
     off: (Vec3, f64),
     /// By how much its velocity changed when these windows were gone through before (m/s).
     foreseen_m_s: f64,
     /// Speed that the springs which press on it may give it (m/s).
+    /// `Σ F/(m ω)`: a spring that holds F gives a mass no more than this when it lets go.
     pressed_m_s: f64,
     /// Mechanical energy and what others had got of it at the beginning of the contact episode (J).
     began_j: (f64, f64),
@@ -77,6 +89,7 @@ enum BodyState {
     /// Under way.
     Moving,
     /// At rest until something comes near.
+    /// No island computes it meanwhile.
     Asleep,
     /// No longer in the world.
     Gone(Stop),
@@ -160,6 +173,7 @@ pub fn simulate_world(
     })
 }
 
+/// One rock at its release: springs at rest, flying until its island says otherwise.
 fn body<'a>(
     settings: &RunSettings<'a>,
     release: &Release,
@@ -192,6 +206,7 @@ fn body<'a>(
 }
 
 /// The contact law of two rocks.
+/// Reduced mass, and the smaller radius as the lever of rolling friction.
 fn law_between(a: &Body, b: &Body, answer: &(Ground, Damping), capture: &Capture) -> Law {
     let mass = a.mass * b.mass / (a.mass + b.mass);
     Law::of_mass(&answer.0, &answer.1, (mass, a.radius.min(b.radius)), capture)
@@ -203,6 +218,8 @@ impl BodyWorld<'_> {
         if !answer.strength.is_some() || self.is_rigid() {
             return;
         }
+        // both rocks are in contact from the start: a bonded block begins at rest in itself,
+        // whatever its weight then does to it
         for (a, b) in self.touching_at_start() {
             let [one, two] = [a, b].map(|k| &self.body(k).member);
             let (n, length) = between(&one.state.c, &two.state.c);

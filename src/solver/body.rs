@@ -1,4 +1,7 @@
 //! A rock as the mechanics sees it.
+//!
+//! A solid homogeneous sphere has `I = 2/5 m R²`; seen from its contact point the mass along the
+//! surface is `1/(1/m + R²/I) = 2/7 m`, and a sphere that rolls without slip moves like the mass `7/5 m`. These numbers come back all over the solver.
 
 use crate::body::Block;
 use crate::rock::{Rock, Vec3};
@@ -24,6 +27,9 @@ impl Body {
     }
 
     /// The body of a block as the laws of grounds want it: mass and radius of the sphere of equal volume.
+    ///
+    /// The mean of its three moments stands for the inertia; the block's own equations of motion take
+    /// its three moments.
     pub(crate) fn of_block(block: &Block, g_m_s2: f64) -> Self {
         Self {
             mass: block.mass_kg,
@@ -40,6 +46,7 @@ impl Body {
     }
 
     /// Velocity of the contact point along the surface with normal `n` (m/s): `Q (v + w × (−R n))`.
+    /// `n × w R` is `w × (−R n)`: the lever from the centre to the contact point is `−R n`.
     #[inline]
     pub fn slip(&self, n: &Vec3, v: &Vec3, w: &Vec3) -> Vec3 {
         v - n * n.dot(v) + n.cross(w) * self.radius

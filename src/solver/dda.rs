@@ -11,6 +11,12 @@
 //! those of springs at the step's end or against the step's displacement: springs lose `k (Δx)²/2` a step and nothing
 //! gains, however long the step. Dashpots act on the mean velocity `D/Δt` for that reason: on `V₁` they may add energy
 //! where a step turns the motion round.
+//!
+//! Why this rule is stable and yet coarse: it is unconditionally stable and first order, and damps an oscillation
+//! of phase `z = ω Δt` by `exp(−π z/4)` in half a period. At fixed `p_N` and `Δt` small rocks,
+//! whose `ω` is large, lose more than large ones: an artefact of the step, not of the rock. From `z
+//! = 2` on an impact is turned round in one step, and from 4 on that of an impact which begins within
+//! a step is anything between nothing and all of its speed.
 
 use super::Settings;
 use super::body::Body;
@@ -40,6 +46,9 @@ pub const SINGLE_STEP_PHASE: f64 = 2.0;
 /// `e = −ρᴺ (cos Nθ − √(q/(8−q)) sin Nθ)`, about `exp(−π phase/4)` while the step resolves the impact. From phase 2 on
 /// one step turns it round, with `e = (q−1)/(q+1)`. An impact that begins within a step, on another contact, keeps
 /// `(1+q)^(−π/(2θ))` on average below phase 4 and anything less than the above beyond.
+///
+/// For Table 1 of the paper (1e9 N/m, 1e-5 s) and a block of 0.5 m the phase is 0.0084 and `e =
+/// 0.993`.
 pub fn own_restitution(phase: f64) -> f64 {
     let q = 0.5 * phase * phase;
     if phase >= SINGLE_STEP_PHASE {
@@ -79,6 +88,8 @@ impl Fixed {
         state: &mut ContactState,
         h_max: f64,
     ) -> Result<Advance, StepError> {
+        // cut by events and by the way that has been looked ahead; the phase of a cut step is
+        // smaller, so it damps less
         let dt = self.step_s.min(h_max).min(state.longest_step(world, TRAVEL));
         let step = StepConstants {
             dt,
@@ -106,22 +117,30 @@ impl Fixed {
     }
 }
 
+/// A displacement and a rotation as the six unknowns of Eq. (1).
 fn six(a: &Vec3, b: &Vec3) -> Vec6 {
     Vec6::new(a.x, a.y, a.z, b.x, b.y, b.z)
 }
 
 /// Displacement and rotation over `dt` without contacts.
+/// `D₀ = V₀ Δt + g Δt²/2`; a free sphere keeps its spin.
 pub(crate) fn free_motion(world: &ContactEnvironment, state: &ContactState, dt: f64) -> Vec6 {
     six(&(state.v * dt + world.body.gravity * (0.5 * dt * dt)), &(state.w * dt))
 }
 
 /// Way of the touched point per newton along the surface (m/N), turn of the sphere per newton metre, over `dt`.
+///
+/// `Δt²/(2m) + R² Δt²/(2I)`: displacement is force times half the square of the step over the mass,
+/// and the contact point also turns.
 pub(crate) fn compliance(body: &Body, dt: f64) -> (f64, f64) {
     let turn = 0.5 * dt * dt / body.inertia;
     (0.5 * dt * dt / body.mass + body.radius * body.radius * turn, turn)
 }
 
 /// Makes the touches of the step's start into contacts.
+///
+/// Normals stay those of the start for the whole step: on an edge that makes every order of the
+/// rule first order.
 fn meet(world: &ContactEnvironment, step: &StepConstants, state: &mut ContactState) {
     (state.scratch.count, state.scratch.taken) = (0, 0);
     for k in 0..state.touches.len() {
@@ -151,6 +170,7 @@ fn add_contact(
 /// otherwise find itself inside the other flank and be thrown out with energy from nowhere.
 ///
 /// Ends with the touches of the step's end.
+/// Ends: each round adds a contact, and there are no more than `MOST`.
 fn solve(
     world: &ContactEnvironment,
     step: &StepConstants,
@@ -191,6 +211,7 @@ pub(crate) fn knows(
 }
 
 /// Moves the rock by `d`, and changes its velocity by what contacts added.
+/// `V₁ = 2D/Δt − V₀ = V₀ + g Δt + 2E/Δt`, as `D = D₀ + E`: what no contact acts on is not rounded.
 fn carry_on(world: &ContactEnvironment, state: &mut ContactState, d: &Vec6, kick: &Vec6, dt: f64) {
     for history in state.histories.iter_mut() {
         history.closed = false;

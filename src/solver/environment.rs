@@ -10,6 +10,7 @@ use crate::terrain::Terrain;
 const LEAST_IMPACT: f64 = 1e-3;
 
 /// What stays the same while one rock falls.
+/// Borrowed and copied freely: a few words.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactEnvironment<'a> {
     /// The mesh.
@@ -35,17 +36,22 @@ impl ContactEnvironment<'_> {
     }
 
     /// Whether a contact is too slow to rebound.
+    /// `−n·v < v_capture`: approach along the normal alone; speed along the surface is friction's.
     #[inline]
     pub fn captures(&self, touch: &ContactPoint, v: &Vec3) -> bool {
         -touch.normal.dot(v) < self.law(touch.triangle).capture_m_s
     }
 
     /// Slowest approach that is an impact to be followed in its own time (m/s): slower than that a rock just presses.
+    ///
+    /// `√(g R)` is the speed of a rock that falls by half its radius: what comes in at a thousandth
+    /// of it is part of rolling, not a blow.
     pub(super) fn least_impact_m_s(&self) -> f64 {
         LEAST_IMPACT * (self.body.gravity.norm() * self.body.radius).sqrt()
     }
 
     /// The law of touch `k` among others of the same instant.
+    /// Patch and neighbours change the dashpot only through the mass that they move: `m/|a|²`.
     #[inline]
     pub fn law_of(&self, touches: &[ContactPoint], k: usize) -> Law {
         let touch = &touches[k];

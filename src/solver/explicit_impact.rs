@@ -5,6 +5,11 @@
 //! relative to the speed of the impact, so that restitution is as right for a pebble as for a block. Geometry is that of every
 //! stage; force is continuous wherever patches meet (`contact::patch`), and where friction begins to slip or a further contact
 //! begins the step is cut.
+//!
+//! State: way, velocity and spin of the rock, shear and rolling stretch of each contact; summed
+//! along: what friction, dashpots, rolling and trees take. Why explicit: the implicit stage costs
+//! an iteration over geometry and contacts, and a rebound is over in `π` radians, a handful of
+//! steps; stiffness enters only by the unit of time.
 
 mod flow;
 
@@ -21,10 +26,12 @@ use flow::{Among, SUMS};
 /// First step of an impact (rad of its oscillation).
 const FIRST: f64 = 0.3;
 /// Longest step (rad).
+/// Beyond about a radian the error estimate of the pair is no longer to be trusted.
 const LONGEST_RAD: f64 = 0.9;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
 const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion).
+/// A larger one is no error of steps, and hiding it would hide a fault.
 const BALANCED: f64 = 0.1;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
 const SHORTEST_RAD: f64 = 1e-9;
@@ -63,6 +70,10 @@ impl ContactState {
     ///
     /// # Errors
     /// [`StepError`] if the motion is no longer finite.
+    ///
+    /// Tried with room for two contacts first, the usual case: the numbers of a state live on the
+    /// stack, and their count is a constant that the compiler unrolls. With more contacts the step
+    /// is tried anew with room for all.
     pub(crate) fn step_impact(
         &mut self,
         world: &ContactEnvironment,
@@ -77,6 +88,8 @@ impl ContactState {
         self.know(world, &c);
         let way = TRAVEL * world.body.radius;
         let limit = longest_step(&world.body, self.v.norm(), way).min(LONGEST_RAD / omega);
+        // a share of the tolerance, as an impact takes a handful of steps; relative to the speed of
+        // the impact, so it has no unit of its own
         let allowed = LOCAL * tolerance * self.impact.speed_m_s;
         let bounds = StepBounds { omega, limit, h_max, allowed };
         let known = self.histories.len();
@@ -89,6 +102,7 @@ impl ContactState {
             };
         }
         if accepted.is_none() {
+            // what the crowded try has met is forgotten
             self.histories.truncate(known);
             accepted = self.step_among::<HISTORIES, { 9 + 6 * HISTORIES }, { 3 * HISTORIES }>(
                 world, &bounds, done,
@@ -102,6 +116,9 @@ impl ContactState {
     }
 
     /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more of them.
+    ///
+    /// A try that is cut at a kink is shorter, not wrong; one whose error is too large shrinks by
+    /// the usual rule.
     fn step_among<const C: usize, const N: usize, const P: usize>(
         &mut self,
         world: &ContactEnvironment,
@@ -141,6 +158,7 @@ impl ContactState {
                     return Err(StepError::NotFinite);
                 }
                 done.rejected -= 1;
+                // cut short from outside: the step that was wished for stays
                 let least = if dt < wished { wished } else { 0.0 };
                 flow.state.impact.h = (dt * growth(error2)).max(least);
                 let (end, after) = (flow.end(&tried.y), flow.stored_j());
@@ -166,6 +184,8 @@ impl ContactState {
         let [friction, damping, rolling, trees, stores, tree_stores] = accepted.sums;
         let mut loss = Loss { friction, damping, rolling, trees };
         // Where springs push from the step's start to its end, what they store is known exactly.
+        // damping power is summed along the way; the springs' own change is exact between the two
+        // ends and replaces its sum
         if let Some((before, after)) = &accepted.stored {
             loss.damping -= stores;
             loss.trees -= tree_stores;
@@ -190,6 +210,8 @@ impl ContactState {
 
     /// Flies out of contacts that push no more, if nothing else is in the way there and it takes no longer than `longest` (s);
     /// returns the time that took (s).
+    ///
+    /// What still hangs on the contacts then has no force, and the parabola is exact.
     fn let_go(&mut self, world: &ContactEnvironment, bounds: &StepBounds, longest: f64) -> f64 {
         let dt = LONGEST_RAD / bounds.omega;
         if self.histories.is_empty() || dt > longest.min(bounds.limit) {
@@ -217,6 +239,9 @@ impl ContactState {
 
     /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of
     /// the energy is what came in less what the contacts took.
+    ///
+    /// Velocity and spin are scaled by one factor, so the direction of the rebound does not change.
+    /// An impact with `e = 1` and no friction then keeps its energy to rounding.
     fn balance(&mut self, world: &ContactEnvironment) {
         let (gained, motion) = (self.impact.gained, self.motion_j(&world.body));
         if gained.abs() < BALANCED * motion {

@@ -2,6 +2,9 @@
 //!
 //! Both are springs with dashpots in series with sliders. They act on each other: shear turns the rock, the moment
 //! changes the slip. Of the four cases (stick or slip, each) two have closed forms and two a scalar equation for Newton.
+//!
+//! `B = 7/2 κ h/m`, `C = κ h R/I`, `E = κ_r h/I`, with `κ = p_s h + c_s` and `κ_r = k_r h + c_r` of
+//! a stage of length `h`.
 
 use super::body::Body;
 use crate::ground::{INSIDE, Law};

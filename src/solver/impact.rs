@@ -14,10 +14,12 @@
 //! }
 //! ```
 //!
-//! Normal motion is a closed form (`normal.rs`); slip, spin and springs are integrated by an explicit pair of order 5(4) under the
-//! known force (`pair.rs`, `run.rs`, `rub.rs`), steps ending where an element begins to slip or stick. `tolerance` is relative to
-//! `|v|`: at 1e-4 errors stay within about it, at 1e-6 and below rare ones reach some ten times it. Without friction and
-//! rolling friction nothing is integrated. Whether an impact is captured is the caller's to ask before.
+//! Normal motion is a closed form (`normal_motion.rs`); slip, spin and springs are integrated by an
+//! explicit pair of order 5(4) under the known force (`dormand_prince.rs`, `integrate.rs`,
+//! `sliders.rs`), steps ending where an element begins to slip or stick. `tolerance` is relative to
+//! `|v|`: at 1e-4 errors stay within about it, at 1e-6 and below rare ones reach some ten times it.
+//! Without friction and rolling friction nothing is integrated. Whether an impact is captured is
+//! the caller's to ask before.
 //!
 //! **Frozen geometry, no weight** (scheme `rigid`, the limit `p_N → ∞`): [`throw`] with up to [`MOST`](crate::contact::MOST)
 //! contacts, all at penetration zero; those that do not approach are pressed as soon as motion presses them.

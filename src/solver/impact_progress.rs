@@ -1,4 +1,7 @@
 //! How far an impact that is followed in its own time has come.
+//!
+//! An impact that has not ended after `LASTS` radians of its contact is none any more: the rock
+//! rolls, slides or rests, and implicit steps take over, whose length does not hang on `ω`.
 
 /// An impact is over after so long (rad), or goes on as lasting contact.
 const LASTS: f64 = 20.0;
@@ -53,6 +56,8 @@ impl ImpactProgress {
         if self.left <= 0.0 {
             (self.h, self.gained) = (0.0, 0.0);
         }
+        // a further contact within an impact prolongs it, and the fastest approach sets the scale
+        // of its error
         (self.speed_m_s, self.left) = (self.speed_m_s.max(speed_m_s), LASTS);
     }
 }

@@ -2,6 +2,16 @@
 //!
 //! Rocks that may touch within a short while form an island; islands know nothing of each other. An island takes the
 //! step of a single rock for all of its rocks at once; only the contact forces are sought together.
+//!
+//! ```text
+//! adaptive, reference   stage, sweeps, newton_step     forces by nonlinear Gauss–Seidel, helped by Newton jumps
+//! dda                   dda_step, dda_system           the paper's global system, Eq. (4), and open–close iteration
+//! rigid                 rigid/                         impulses at velocity level, impacts in the order of their times
+//! ```
+//!
+//! Lists of rocks and pairs stand in the order of their numbers, sums are taken in that order, and
+//! one thread works on an island: the bytes of a world do not depend on how many threads share its
+//! islands.
 
 mod accept;
 mod pair_contact;

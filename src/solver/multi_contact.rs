@@ -4,6 +4,13 @@
 //! With the modes (open, closed, sticking, sliding) that the sweeps have found, the stage is one linear system for
 //! velocity and spin, the paper's 6×6 system of Eq. (4) for one rock; solving it jumps to where the sweeps were
 //! heading. The sweeps alone decide whether the result holds.
+//!
+//! ```text
+//! sweep:  contact by contact, forces of the others held: closed form of `StageContact::solve`
+//! jump:   (M/h + Σ N b Nᵀ + Σ Sᵀ J S …) x = M x_free/h + Σ N a − Σ Sᵀ q0      x = (v, ω), six unknowns
+//! ```
+//!
+//! Cost: a sweep is linear in the contacts, a jump one LU of 6×6 whatever their number.
 
 use super::body::Body;
 use super::law::StageContact;
@@ -43,6 +50,8 @@ pub(super) fn solve(
     }
 }
 
+/// Nonlinear Gauss–Seidel first, because it finds the modes; Newton in these modes, because it
+/// finds the forces.
 fn sweep_and_jump(
     body: &Body,
     contacts: &mut [StageContact],
@@ -64,6 +73,7 @@ fn sweep_and_jump(
                 return Some(now);
             }
         }
+        // a singular system is no harm: the sweeps simply go on
         if let Some(jumped) = jump(body, contacts, free, &now, h) {
             act_on(body, contacts, &jumped, h);
             now = driven(body, contacts, free, h);
@@ -74,18 +84,24 @@ fn sweep_and_jump(
 
 /// One pass over the contacts; whether all agree. `calm` counts those that were asked since anything they answer to has
 /// changed.
+///
+/// Counts across sweeps: as soon as each contact has been asked once with nothing changed since,
+/// all agree.
 fn sweep(
     body: &Body,
     contacts: &mut [StageContact],
     ((v, w), calm): (&mut (Vec3, Vec3), &mut usize),
     h: f64,
 ) -> bool {
+    // changes are measured by the largest force, and by a thousandth of the weight where there is
+    // hardly any
     let least = 1e-3 * body.mass * body.gravity.norm();
     let scale = contacts.iter().map(|contact| contact.normal_force).fold(least, f64::max);
     let count = contacts.len();
     for contact in contacts.iter_mut() {
         let before = (contact.normal_force, contact.shear_force, contact.rolling_moment);
         let (dv, dw) = contact.effect(body, h);
+        // without this contact's own forces: what the others do to the rock
         let (vf, wf) = (*v - dv, *w - dw);
         contact.solve(body, &vf, &wf, h);
         let (dv, dw) = contact.effect(body, h);
@@ -122,6 +138,9 @@ fn driven(
 }
 
 /// Sets every force to what its law gives at velocity and spin `at`.
+///
+/// After a jump: the linear system may have left a cone or let a spring pull; the law itself may
+/// not.
 fn act_on(body: &Body, contacts: &mut [StageContact], (v, w): &(Vec3, Vec3), h: f64) {
     for contact in contacts {
         let normal = contact.line(body, h);
@@ -141,6 +160,7 @@ impl StageContact {
 }
 
 /// Velocity and spin that solve the stage linearised in its present modes.
+/// Friction grows with the normal force, which makes the matrix unsymmetric: LU, not Cholesky.
 fn jump(
     body: &Body,
     contacts: &[StageContact],
@@ -154,6 +174,7 @@ fn jump(
         (k[(axis, axis)], k[(axis + 3, axis + 3)]) = (body.mass / h, body.inertia / h);
         (f[axis], f[axis + 3]) = (free.0[axis] * body.mass / h, free.1[axis] * body.inertia / h);
     }
+    // open contacts have neither stiffness nor load
     for contact in contacts.iter().filter(|contact| contact.normal_force > 0.0) {
         add(&mut k, &mut f, body, contact, (now, h));
     }
@@ -173,6 +194,7 @@ fn add(
     let normal = contact.line(body, h);
     let (law, n, r) = (&contact.law, contact.n, body.radius);
     // Slip u = T x with T = [Q, R n×]; shear acts back through the same T.
+    // S = [Q, R n×], the slip of the contact point from velocity and spin
     let q = Matrix3::identity() - n * n.transpose();
     let spin = n.cross_matrix() * r;
     let (stick, wound) = contact.trials(body, v, w, h);

@@ -2,9 +2,14 @@
 //!
 //! While only one face touches, geometry is a plane and the normal a constant: the stages of `stage.rs` are the same sums
 //! over fourteen numbers, and there is nothing to iterate. Where each stage ends it is asked whether that face is still
-//! alone; if the features around the rock certify it (`contact::near`), not even that. Most impacts are of this kind.
+//! alone; if the features around the rock certify it (`Neighbours::plane`), not even that. Most
+//! impacts are of this kind.
 //!
 //! The steps are those of `stage.rs`, but for rounding; only their cost differs.
+//!
+//! Frame: two tangents `s`, `t` and the normal `n` (from the mesh to the centre), fixed as long as
+//! the face is. State: way of the centre since the last look (3), velocity (3), spin (3), shear
+//! stretch (2), rolling stretch (3).
 
 mod trial;
 
@@ -32,12 +37,17 @@ fn is_on_face(world: &ContactEnvironment, rock: &ContactState) -> bool {
     }
     let face = world.terrain.face(history.feature.id);
     // Deep inside, or with a memory from elsewhere, the side it is on must be looked up.
+    // more than half a radius off the plane: there is no doubt on which side the rock is
     history.n.dot(&(rock.c - face.a)) > 0.5 * world.body.radius
         && (history.n == face.n || history.n == -face.n)
 }
 
 impl ContactState {
     /// One accepted step on a plane, or all of an impact; `None` if the rock does not stay on one.
+    ///
+    /// `h` is the step to try, and becomes the next; `h_max` (s) the longest asked for. An impact
+    /// on a plane is stepped to its end in one call: looking around, turning frames and copying
+    /// memories are paid once.
     pub(crate) fn step_on_plane(
         &mut self,
         world: &ContactEnvironment,
@@ -53,6 +63,8 @@ impl ContactState {
         let history = self.histories[0];
         let law = world.law(history.triangle);
         let normal = law.normal(history.captured);
+        // from the centre, not from the last step's sum: ways of many steps do not drift off the
+        // plane
         let penetration = self.sunk(world);
         // state and rates stay in the plane's frame from step to step; they are turned only on the way in and out
         if !self.plane.on {
@@ -87,6 +99,8 @@ impl ContactState {
         let (press, stored) = (trial.press, trial.stored);
         self.sweeps += trial.solved;
         match halt {
+            // a failure before the first step is the caller's; after it, what was done counts and
+            // the next call sees to the rest
             Some(StepFailure::Unsettled) if done.steps == 0 => {
                 return Some(Err(StepError::Unsettled));
             }
@@ -100,6 +114,7 @@ impl ContactState {
     }
 
     /// Sees to it that the features where a step of `dt` goes are known, and a little beyond.
+    /// Looks ahead along the velocity, so that most of what is collected is still to come.
     fn see_ahead(&mut self, world: &ContactEnvironment, dt: f64) {
         let way = (self.v * dt).cap_magnitude(TRAVEL * world.body.radius);
         if !(self.near.covers(&self.c) && self.near.covers(&(self.c + way))) {
@@ -109,6 +124,7 @@ impl ContactState {
     }
 
     /// Penetration into the plane of the one contact (m).
+    /// `R − n·(c − a)`, positive when pressed in.
     fn sunk(&self, world: &ContactEnvironment) -> f64 {
         let history = &self.histories[0];
         let corner = world.terrain.face(history.feature.id).a;
@@ -116,6 +132,9 @@ impl ContactState {
     }
 
     /// Turns state and rates into the plane's frame.
+    ///
+    /// Rates of the last step are turned with the state, where they still hold, so that the first
+    /// stage need not be computed anew.
     fn enter_plane(
         &mut self,
         law: &Law,
@@ -174,6 +193,7 @@ impl ContactState {
     }
 
     /// Hands state and rates back to the frame of the terrain.
+    /// The general stage goes on from the same rates: changing kernels costs no step.
     pub(crate) fn leave_plane(&mut self, world: &ContactEnvironment) {
         let plane = &mut self.plane;
         if !std::mem::take(&mut plane.on) {

@@ -3,6 +3,17 @@
 //! Friction and rolling friction are impulses bounded by the normal impulse; several contacts are swept
 //! (projected Gauss–Seidel, after Moreau). What each impulse takes is booked by the mean velocity it acts on, so
 //! the energy balance closes to rounding but for the push-out of penetrations.
+//!
+//! ```text
+//! impact:     all touches of the instant at once, in the limit p_N → ∞ (`impact::throw`)
+//! sustained:  v₁ = v₀ + g Δt + Σ (J n + j)/m,    n·v₁ ≥ −max(0, gap/Δt, n·v₀)
+//!             J ≥ 0,  |j| ≤ μ J,  |M| ≤ μ_r R J
+//!             c₁ = c₀ + Δt (v₀ + v₁)/2
+//! ```
+//!
+//! Geometry is that of the middle of the step: second order where nothing switches, first order
+//! over lift-off and sliding into rolling. What is lost against springs: the time of an impact, and
+//! the penetration at rest, `m g/p_N`.
 
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
@@ -58,6 +69,7 @@ impl ImpulsiveContact<'_> {
     };
 
     /// Impulses for velocity `v` and spin `w` without this contact's own.
+    /// `J = max(0, m (target − n·v))`: exact for one contact; for several the sweeps repeat it.
     fn solve(&mut self, body: &Body, v: &Vec3, w: &Vec3) {
         let m = body.mass;
         self.normal_force = (m * (self.target - self.n.dot(v))).max(0.0);
@@ -70,6 +82,7 @@ impl ImpulsiveContact<'_> {
     }
 
     /// Change of velocity and spin.
+    /// `Δv = (J n + j)/m`, `Δω = (M − R n × j)/I`: here `j` and `M` act on the rock.
     fn effect(&self, body: &Body) -> (Vec3, Vec3) {
         let dv = (self.n * self.normal_force + self.shear_force) / body.mass;
         let dw = (self.turn - self.n.cross(&self.shear_force) * body.radius) / body.inertia;
@@ -77,6 +90,9 @@ impl ImpulsiveContact<'_> {
     }
 
     /// Energy that the impulses take (J), at mean velocity `v` and spin `w`.
+    ///
+    /// An impulse works with the mean of the velocities before and after: `J·(v₀ + v₁)/2` is the
+    /// change of kinetic energy exactly.
     fn loss(&self, body: &Body, v: &Vec3, w: &Vec3) -> Loss {
         let friction = -self.shear_force.dot(&body.slip(&self.n, v, w));
         Loss {
@@ -90,6 +106,9 @@ impl ImpulsiveContact<'_> {
 
 /// Impulses along the surface with normal `n` (N s) and of rolling (N m s) on a rock with velocity `v` and spin `w`
 /// without them; `caps` are the largest of both. The mode found before is tried first.
+///
+/// The stick solution: `2/7 m` is the contact point's mass along the surface, `I ω` stops all
+/// rotation; `Pair` couples both and cuts them.
 pub(crate) fn rub(
     body: &Body,
     n: &Vec3,
@@ -109,6 +128,7 @@ pub(crate) fn rub(
 }
 
 /// The contacts of one impact or step.
+/// On the stack, as many as a rock keeps.
 struct Blows<'w> {
     list: [ImpulsiveContact<'w>; MOST],
     len: usize,
@@ -131,6 +151,7 @@ impl<'w> Blows<'w> {
     }
 
     /// Sweeps until the impulses settle; returns velocity and spin after them.
+    /// Projected Gauss–Seidel; for one contact the first pass is exact.
     fn solve(&mut self, body: &Body, v: Vec3, w: Vec3, sweeps: &mut u64) -> (Vec3, Vec3) {
         let (mut v, mut w) = (v, w);
         for _ in 0..SWEEPS {
@@ -174,6 +195,7 @@ impl<'w> Blows<'w> {
 ///
 /// # Errors
 /// [`StepError`] if motion is no longer finite.
+/// Order: first what comes in fast, as an impact of no duration; else a step of sustained contact.
 pub fn advance(
     world: &ContactEnvironment,
     state: &mut ContactState,
@@ -185,6 +207,7 @@ pub fn advance(
     state.struck.clear();
     state.look_ahead_again(world, &c);
     if hits(world, state) {
+        // only what touches at this instant takes part in the impact
         state.look(world, &c, world.body.radius * (1.0 + TOUCH));
         if state.is_struck {
             impact(world, state, &mut done);
@@ -254,11 +277,15 @@ fn impact(world: &ContactEnvironment, state: &mut ContactState, done: &mut Advan
 }
 
 /// One step of sustained contact.
+///
+/// A step may slide over an edge: half of the turn of the normal lies before its middle and half
+/// after it.
 fn step(world: &ContactEnvironment, state: &mut ContactState, longest: f64, done: &mut Advance) {
     let body = &world.body;
     let r = body.radius;
     let (c, v, w) = (state.c, state.v, state.w);
     let dt = closing(world, state, longest.min(TRAVEL * r / v.norm().max(f64::MIN_POSITIVE)));
+    // contacts are those of the middle of the step, looked for there
     let middle = c + v * (0.5 * dt);
     state.look_ahead(world, &middle);
     let mut blows = Blows::of(world, state, |blow, distance| {
@@ -268,8 +295,10 @@ fn step(world: &ContactEnvironment, state: &mut ContactState, longest: f64, done
     });
     let after = blows.solve(body, v + body.gravity * dt, w, &mut state.sweeps);
     blows.apply(world, state, after, &mut done.loss);
+    // mean of both velocities: the parabola under weight alone is exact
     state.c = c + (v + state.v) * (0.5 * dt);
     done.dt = dt;
+    // without any impulse the rock is free, and the next leap takes over
     let pushed = blows.list[..blows.len].iter().any(|blow| blow.normal_force > 0.0);
     push_out(world, state);
     remember(world, state, |_| pushed);
@@ -286,11 +315,15 @@ fn closing(world: &ContactEnvironment, state: &ContactState, dt: f64) -> f64 {
 }
 
 /// Moves a rock that got into the mesh out along the normals; the height it gains is paid by its motion.
+///
+/// The depth is the error of the step. Lifting the rock out for nothing would create energy at
+/// every step of a slide over rough ground.
 fn push_out(world: &ContactEnvironment, state: &mut ContactState) {
     let (r, before) = (world.body.radius, state.c);
     for _ in 0..4 {
         let c = state.c;
         state.look_ahead_again(world, &c);
+        // each normal adds what the ones before it have not moved out already
         let out = state.touches.iter().fold(Vec3::zeros(), |sum, touch| {
             let missing = r - touch.distance_m - sum.dot(&touch.normal);
             sum + touch.normal * missing.max(0.0)

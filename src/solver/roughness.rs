@@ -7,6 +7,9 @@
 //! Roughness belongs to the place: until the rock has moved on by the ground's roughness length it meets the same facet, so
 //! that the number of its small impacts, which is a matter of stiffness and steps, does not decide how often it is deflected.
 //! A rock that slides or rolls meets the next facet once that length is behind it.
+//!
+//! Energy is untouched: the rock is turned against the facet and turned back, and a rotation
+//! changes neither speed nor spin.
 
 use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
@@ -18,6 +21,7 @@ use nalgebra::{Rotation3, Unit};
 use std::f64::consts::TAU;
 
 /// Facets drawn until one is met: one in three at least where the rock comes to the surface, one in six where it goes along it.
+/// A bound for pathological cases only.
 const DRAWS: u32 = 1000;
 
 /// The facets that one rock meets.
@@ -28,6 +32,7 @@ pub(crate) struct RoughFacets {
     pub(super) tilt: Option<Tilt>,
 }
 
+/// The facet met last.
 #[derive(Debug, Clone)]
 struct TiltedFacet {
     /// Where the rock was (m), and on which ground.
@@ -59,6 +64,10 @@ pub(crate) struct Meeting {
 
 impl Meeting {
     /// Fastest approach to any facet tilted by `most` (rad) at most (m/s).
+    ///
+    /// `−n'·v` over all `n'` within an angle of `n` is `|v|` if the direction `−v` is among them,
+    /// else that of the `n'` nearest to it: `approach cos + along sin`. It scales the rejection
+    /// below, so that the most visible facet is always accepted.
     fn most_m_s(&self, most: f64) -> f64 {
         let approach = -self.n.dot(&self.v);
         let along = (self.v + self.n * approach).norm();
@@ -97,6 +106,7 @@ impl RoughFacets {
             return None;
         }
         let approach = |turn: &Rotation3<f64>| -(turn * at.n).dot(&at.v);
+        // the last facet still reaches here, and is not seen from behind
         let known = self.last.as_ref().filter(|facet| {
             facet.ground == ground
                 && (facet.centre - at.c).norm() < law.roughness_length_m
@@ -130,9 +140,14 @@ impl RoughFacets {
 }
 
 /// A facet that a rock sees, as the rotation from the surface to it; tilted by `most` (rad) at most.
+///
+/// Rejection sampling: tilt and direction uniform, accepted with the probability `max(0,
+/// −v·n')/fastest`. Three numbers of the rock's own stream a try.
 fn draw(random: &mut RandomStream, at: &Meeting, most: f64) -> Option<Rotation3<f64>> {
     let fastest = at.most_m_s(most);
     let beside = if at.n.x.abs() < 0.6 { Vec3::x() } else { Vec3::y() };
+    // any axis square to the normal: it is turned by a uniform angle to give the direction of the
+    // tilt
     let across = at.n.cross(&beside);
     (0..DRAWS).find_map(|_| {
         let around = math::turn(&Unit::new_normalize(at.n), TAU * unit(random));

@@ -30,6 +30,9 @@ const LOSS_OF_STEP: f64 = 0.02;
 struct Furrow {
     depth_m: f64,
     /// `C ρ_s/(2 m)` (1/m³).
+    ///
+    /// The constant of `|v|' = −(C ρ_s A/2m)|v|²`; over a way `s` the speed falls by `exp(−C ρ_s A
+    /// s/(2m))`.
     drag_per_m3: f64,
     /// Share of its speed that the rock loses on each metre along the plane (1/m), small.
     per_m: f64,
@@ -73,6 +76,8 @@ impl Scars {
         let Some(scar) = self.layers.get(usize::from(ground)).copied().flatten() else {
             return 1.0;
         };
+        // d = 0.1 M^(1/3) M_E^(−0.4) v_n^0.8 (Lu et al. 2019, Eq. 11), in the units that the
+        // formula is bound to
         let depth_m = scar.depth_m(body.mass, approach_m_s.max(0.0));
         if depth_m <= self.now.map_or(0.0, |now| now.depth_m) {
             self.now = self.now.map(|now| Furrow { normal, ..now });
@@ -81,6 +86,8 @@ impl Scars {
         let drag_per_m3 = scar.drag_per_m3(body.mass);
         let per_m = drag_per_m3 * cut_area_m2(body.radius, depth_m, 0.0);
         self.now = Some(Furrow { depth_m, drag_per_m3, per_m, normal, longest_s: 0.0 });
+        // speed over the way in: ∫ A ds is the volume that the ball sweeps down to d, along the
+        // velocity
         let cosine = (approach_m_s / speed_m_s).min(1.0);
         math::exp(-drag_per_m3 * swept_m3(body.radius, depth_m, cosine))
     }
@@ -115,6 +122,8 @@ impl Scars {
             self.now = None;
             return kept;
         }
+        // too slow along the normal to climb d against gravity: it comes down in the same scar, and
+        // the drag along the plane goes on
         let hop_s = 2.0 * up / pull;
         now.longest_s += hop_s;
         math::exp(-now.per_m * speed * hop_s)

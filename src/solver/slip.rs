@@ -1,4 +1,8 @@
 //! How far a rock has slipped, and the friction that soil answers with.
+//!
+//! `μ(s) = μ_min + (2/π)(μ_max − μ_min) atan(κ s)` (Leine et al. 2014, Eqs. 46, 47): the further a
+//! rock has ploughed, the more soil it has pushed up before it. `s` grows with slip in contact and
+//! is forgotten in flight, `s' = −β s`. One number a rock, whatever its grounds.
 
 use crate::ground::{Ground, Law, SlipFriction};
 
@@ -55,6 +59,7 @@ impl Slip {
     }
 
     /// Forgets in a flight of `flight_s` (s) what its last ground forgets.
+    /// Exactly: `s e^(−β t)`.
     pub(crate) fn fly(&mut self, flight_s: f64) {
         let soil = self.on.and_then(|ground| self.soil(ground));
         self.way_m = soil.map_or(0.0, |(soil, _)| soil.left_m(self.way_m, flight_s));

@@ -4,6 +4,10 @@
 //! that is what was left of the stem, the stem is gone and the rock goes on: the schemes with springs cut their step there,
 //! in the rigid limit the impulse ends there. What a stem took in earlier contacts with the same rock is not given back. A stem
 //! gives way to one rock alone: the next, also one that shares its world, finds it whole.
+//!
+//! The limit is an energy (J), drawn for each stem and rock from the scene's distribution: what a
+//! trunk takes until it breaks is known from pull and impact tests as an energy, and it needs no
+//! model of the trunk's motion.
 
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
@@ -17,6 +21,7 @@ use crate::terrain::Terrain;
 use crate::terrain::stems::Stems;
 
 /// A stem that has more than this times the motion left (–) cannot give way.
+/// The tenth on top is for what weight may add within the contact.
 pub(super) const WITHSTANDS: f64 = 1.1;
 
 /// How a stem gives way to a blow in the rigid limit.
@@ -42,6 +47,7 @@ impl ContactState {
         self.stem_load.look(world.terrain, stems, &self.histories);
         let motion_j = self.motion_j(&world.body);
         let load = &self.stem_load;
+        // all of the rock's motion would not break it: no step need be limited
         let yielding =
             load.pressed.filter(|stem| load.left_j(stems, *stem) <= WITHSTANDS * motion_j);
         self.may_yield = yielding.is_some();
@@ -62,6 +68,7 @@ impl ContactState {
         self.stem_load.look(world.terrain, stems, &self.histories);
         let Some(stem) = self.stem_load.pressed else { return false };
         let Some(beyond_j) = self.stem_load.yields(stems, stem, loss.trees) else { return false };
+        // the push of all contacts with this stem: energy is given back along it
         let normal_force: Vec3 = self
             .histories
             .iter()
@@ -75,6 +82,9 @@ impl ContactState {
     }
 
     /// How the stem that is struck at `touch` with a velocity and spin gives way, if it cannot take the blow.
+    ///
+    /// Only asked where the motion could break it at all; the impact itself is followed by
+    /// `yielding_impact`.
     pub(crate) fn broken_by(
         &self,
         world: &ContactEnvironment,
@@ -109,6 +119,8 @@ impl ContactState {
 
     /// Breaks the stems that cannot take the current blow, in the rigid limit; `note` hears of each, with the touch and the
     /// energy it took (J), and whether the rock has just come to it.
+    ///
+    /// Before the blow itself: a stem that breaks takes its energy, and the rock goes on with what is left.
     pub(crate) fn break_stems(
         &mut self,
         world: &ContactEnvironment,
@@ -142,6 +154,7 @@ impl ContactState {
 
 /// Change of the velocity `v` (m/s) of a mass (kg) that gives back what the last step took beyond the limit (J), negative for what
 /// it left, along the push of the stem.
+/// From `m v²/2` along the push: `v₁ = ±√(v² + 2 J/m)`; the part across it is not touched.
 pub(super) fn given_back(mass_kg: f64, v: &Vec3, joule: f64, normal_force: &Vec3) -> Vec3 {
     let along =
         normal_force.try_normalize(0.0).or_else(|| v.try_normalize(0.0)).unwrap_or(Vec3::z());

@@ -1,4 +1,14 @@
 //! Schemes `adaptive` and `reference`: a diagonally implicit tableau with error control.
+//!
+//! ```text
+//! stage i:   x_i = x + h Σ_{j<i} a_ij f_j + h γ f(x_i),      f_i = f(x_i)
+//! error:     h |Σ_i (b_i − b̂_i) f_i|,  in m/s: max(|Δv|, R |Δω|, ω |Δc|, ω |Δξ|)  over the tolerance
+//! next step: h · clamp(0.9 err^(−1/(p̂+1)), 0.2, 4)
+//! ```
+//!
+//! Way and stretch are times `ω = √(p_N/m)`: in these units one tolerance in m/s bounds motion and
+//! springs alike, and the cost of an impact does not depend on `p_N`. A step is also refused when a
+//! stage has no solution, when it jumps over a feature, and when energy rises.
 
 use super::Settings;
 use super::body::Body;
@@ -12,8 +22,12 @@ use crate::ground::Law;
 use crate::math;
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
+///
+/// Schemes of second order and more make energy out of an impact that they do not resolve, up to
+/// four times the speed at `ω h` of 1e4.
 pub(crate) const ONSET: f64 = 0.3;
 /// Longest way in one step where more than one plane is near (–, relative to R).
+/// On one plane nothing can be jumped over, and steps are as long as the error allows.
 pub(crate) const TRAVEL: f64 = 0.15;
 /// The step controller's safety factor (–).
 const SAFETY: f64 = 0.9;
@@ -70,6 +84,9 @@ pub struct Control {
 }
 
 /// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most.
+///
+/// 4e-3 times the tolerance, 2e-4 at most: at the default of 0.05 m/s that is 2e-4, and restitution
+/// is right to about as much.
 const IMPACT: (f64, f64) = (4e-3, 2e-4);
 /// The same for the reference.
 const IMPACT_OF_REFERENCE: f64 = 1e-10;
@@ -126,6 +143,8 @@ pub fn advance(
     h_max: f64,
 ) -> Result<Advance, StepError> {
     let mut done = Advance::default();
+    // an impact is short and not stiff in its own time: explicit, whole on one plane, step by step
+    // elsewhere
     if state.is_rebounding() {
         state.leave_plane(world);
         if control.plane_impacts && state.bounce(world, control.impact, h_max, &mut done) {
@@ -134,10 +153,13 @@ pub fn advance(
         let omega = stiffest(world, state);
         return state.step_impact(world, (omega, control.impact), h_max, &mut done).map(|()| done);
     }
+    // lasting contact on one plane: the kernel, else the stages among any features
     if let Some(settled) = state.step_on_plane(world, control, (h, h_max), &mut done) {
         return settled.map(|()| done);
     }
     state.leave_plane(world);
+    // First same as last: the rates at a step's end are those of the next step's first stage,
+    // unless something has changed them
     if !state.fresh {
         state.rates_now(world);
     }
@@ -195,6 +217,7 @@ pub(crate) trait TrialStep {
 
 /// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
 /// try next.
+/// The one place where steps are accepted, for stages in space, on a plane and in islands alike.
 pub(crate) fn settle(
     trial: &mut impl TrialStep,
     control: &Control,
@@ -207,6 +230,7 @@ pub(crate) fn settle(
         let dt = wished.min(h_max);
         let ratio = match trial.try_step(dt) {
             TryOutcome::Error(error) if error <= 1.0 => {
+                // a step cut short by `h_max` says nothing of how long it could have been
                 let least = if dt < wished { wished } else { 0.0 };
                 *trial.h() = grown(control, dt, error).max(least);
                 return Ok(dt);
@@ -251,6 +275,7 @@ impl TrialStep for RockTrial<'_, '_> {
     }
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {
+        // memories that came up in a try that failed have never been
         self.state.histories.truncate(self.known);
         self.state.impact.try_anew();
         let Some((end, error)) = attempt(self.world, self.control, self.state, dt, self.omega)
@@ -267,6 +292,9 @@ impl TrialStep for RockTrial<'_, '_> {
 }
 
 /// Whether motion, height and springs together hold more at the step's end than at its start.
+///
+/// `m v²/2 + I ω²/2 − m g·Δc + springs`, each at the end against the start; dashpots and friction
+/// only take.
 fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -> bool {
     let body = &world.body;
     let motion = 0.5 * (body.mass * end.v.norm_squared() + body.inertia * end.w.norm_squared());
@@ -283,6 +311,7 @@ fn gains(world: &ContactEnvironment, state: &ContactState, end: &End, hh: f64) -
 }
 
 /// Energy in the springs of the contacts that are closed at the end of the step (J).
+/// `Σ (p_N pen² + p_s ξ² + k_r θ²)/2` over what is closed.
 pub(crate) fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
     let closed = state.contacts[..state.contact_count]
         .iter()
@@ -339,6 +368,7 @@ fn attempt(
 }
 
 /// Takes over the step's end: motion, memories, losses.
+/// Only here does a step leave traces; a try that is thrown away changes nothing but scratch space.
 pub(crate) fn accept(
     world: &ContactEnvironment,
     tableau: &Tableau,
@@ -353,6 +383,7 @@ pub(crate) fn accept(
     let hh = tableau.diagonal * dt;
     state.stored = pressed_j(state, end, hh);
     let (first, later) = state.rates.split_at_mut(last);
+    // the last stage's rates open the next step; shear rates are turned with their normals
     let next = &mut first[0];
     next.take(&later[0], state.histories.len());
     for history in state.histories.iter_mut() {

@@ -1,4 +1,15 @@
 //! Diagonally implicit Runge–Kutta tableaux with an explicit first stage.
+//!
+//! ```text
+//! x_1 = x,   x_i = x + h (Σ_{j<i} a_ij f_j + γ f_i),   i = 2 … s
+//! step = x_s, so the weights b are the last row (stiffly accurate)
+//! ```
+//!
+//! One diagonal coefficient γ for all stages: each is a displacement step `x_i = x* + h γ f(x_i)`
+//! of the same form, one DDA solve, with one set of effective stiffnesses a step. The explicit
+//! first stage gives stage order two; SDIRK schemes without it lose their order on stiff springs
+//! (second-order SDIRK2: an error of 3.7e-2 where TR-BDF2 has 9.7e-5, a sphere on an edge at 1e13
+//! N/m).
 
 /// Most stages of a tableau.
 pub const STAGES: usize = 6;
@@ -14,8 +25,12 @@ pub struct Tableau {
     /// Diagonal coefficient.
     pub diagonal: f64,
     /// Coefficients below the diagonal; the last row with the diagonal are the weights.
+    /// Row `i` belongs to stage `i + 1` and lacks its diagonal; the first row is empty.
     pub a: &'static [&'static [f64]],
     /// Weights minus embedded weights: the error estimate.
+    ///
+    /// `b − b̂`, stage by stage; times rates and step it is the error (that of the lower order of
+    /// the two).
     pub error: [f64; STAGES],
     /// `1/(order of the embedded method + 1)`.
     pub exponent: f64,
@@ -41,8 +56,11 @@ impl Tableau {
     }
 }
 
+/// `γ = 2 − √2`: trapezoidal rule to `γ h`, then BDF2; with it both stages have the diagonal `γ/2`.
 const SQRT2: f64 = std::f64::consts::SQRT_2;
+/// `√2/4`, the weight of the first two stages.
 const W: f64 = SQRT2 / 4.0;
+/// `γ/2 = 1 − √2/2`, the diagonal.
 const D: f64 = 1.0 - SQRT2 / 2.0;
 
 /// TR-BDF2 (Bank et al. 1985; embedded third order after Hosea and Shampine 1996): second order, stiffly accurate,
@@ -88,31 +106,33 @@ pub static ESDIRK4: Tableau = Tableau {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::Scheme;
 
-    /// Consistency and stage order two: `Σ a_ij = c_i`, `Σ a_ij c_j = c_i²/2` for every implicit stage, and the
-    /// error weights sum to nothing. 1e-15 times a few terms: rounding of the printed fractions.
+    /// Of every scheme with a tableau: consistency and stage order two, `Σ a_ij = c_i` and `Σ a_ij c_j = c_i²/2` for every
+    /// implicit stage; error weights that sum to nothing; the order that the scheme states, `Σ b_i c_i^(p−1) = 1/p` up to it
+    /// and no further. 1e-15 times a few terms: rounding of the printed fractions.
     #[test]
-    fn tableaux_have_stage_order_two_and_an_embedded_method() {
-        for tableau in [&TR_BDF2, &ESDIRK4] {
+    fn tableaux_have_stage_order_two_the_order_stated_and_an_embedded_method() {
+        let schemes = Scheme::ALL.into_iter();
+        for (scheme, tableau) in schemes.filter_map(|one| Some((one, one.tableau()?))) {
             let n = tableau.stages;
             let mut c = vec![0.0; n];
             for i in 1..n {
                 c[i] = tableau.a[i].iter().sum::<f64>() + tableau.diagonal;
-                let rolling_moment: f64 = tableau.a[i].iter().zip(&c).map(|(a, c)| a * c).sum();
-                assert!(
-                    (rolling_moment + tableau.diagonal * c[i] - 0.5 * c[i] * c[i]).abs() < 2e-14,
-                    "stage {i}"
-                );
+                let below: f64 = tableau.a[i].iter().zip(&c).map(|(a, c)| a * c).sum();
+                let off = below + tableau.diagonal * c[i] - 0.5 * c[i] * c[i];
+                assert!(off.abs() < 2e-14, "{scheme:?} stage {i}");
             }
             assert!((c[n - 1] - 1.0).abs() < 1e-14);
             assert!(tableau.error.iter().sum::<f64>().abs() < 1e-14);
-            let third = |weight: fn(&Tableau, usize) -> f64| {
-                (0..n).map(|k| weight(tableau, k) * c[k] * c[k]).sum::<f64>() - 1.0 / 3.0
+            let holds = |weight: fn(&Tableau, usize) -> f64, p: i32| {
+                let sum: f64 = (0..n).map(|k| weight(tableau, k) * c[k].powi(p - 1)).sum();
+                (sum - 1.0 / f64::from(p)).abs() < 1e-13
             };
-            let order3 = n == 6;
-            assert_eq!(order3, third(Tableau::weight).abs() < 1e-13);
+            let order = (1..=9).take_while(|p| holds(Tableau::weight, *p)).count();
+            assert!((order as f64 - scheme.order()).abs() < 0.5, "{scheme:?}: {order}");
             // the work is summed to third order at least
-            assert!(third(Tableau::work_weight).abs() < 1e-13);
+            assert!((1..=3).all(|p| holds(Tableau::work_weight, p)), "{scheme:?}");
         }
     }
 }

@@ -1,5 +1,9 @@
 //! An impact on something that gives way, in the limit of stiff springs: the law of one contact at one place, followed in the
 //! impact's own time until what is struck has taken all it can.
+//!
+//! In the limit of stiff springs nothing moves while the impact lasts, so normal and place are
+//! fixed and the law of one contact is all there is: three springs, six velocities. Energy that has
+//! left the rock's motion is in the stem, whether in springs or in friction.
 
 use super::body::Body;
 use super::law::{Action, ContactPlace};
@@ -7,6 +11,7 @@ use crate::ground::Law;
 use crate::rock::Vec3;
 
 /// Step (rad of the contact's oscillation).
+/// 5e-3 rad with a midpoint rule: an error of some 1e-5 of the speed, over at most 4000 steps.
 const STEP: f64 = 5e-3;
 /// A rock comes to rest along the normal within this (rad), however heavily damped.
 const COMES_TO_REST: f64 = 20.0;
@@ -23,6 +28,7 @@ struct Pressing {
 
 impl Pressing {
     /// After `h` (s), by a step through the middle.
+    /// Midpoint rule: `x + h f(x + h f(x)/2)`.
     fn after(&self, body: &Body, law: &Law, h: f64) -> Self {
         let middle = self.moved(body, law, self, 0.5 * h);
         self.moved(body, law, &middle, h)
@@ -66,6 +72,8 @@ pub(crate) fn yielding_impact(
     while n.dot(&rock.v) < 0.0 && gone < COMES_TO_REST {
         let next = rock.after(body, law, step);
         if next.motion_j(body) <= left_j {
+            // halving is safe where the energy taken is not monotone: the interval always ends with
+            // the first crossing that the step saw
             let (mut low, mut high) = (0.0, step);
             for _ in 0..BISECTIONS {
                 let middle = 0.5 * (low + high);

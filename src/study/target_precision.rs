@@ -24,11 +24,11 @@ const NARROWEST: f64 = 1e-3;
 /// A percentile and the width that its 95 % interval must stay below.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TargetPrecision {
-    /// Of what.
+    /// The quantity.
     pub quantity: Quantity,
     /// Which percentile (per cent).
     pub percent: u8,
-    /// Width of the interval, upper minus lower end, SI.
+    /// Largest width of the interval, upper minus lower end, in the SI unit of the quantity.
     pub width: f64,
     name: &'static str,
     unit: &'static str,

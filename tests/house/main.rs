@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot read the sources has failed")]
 
 mod circles;
+mod comments;
 mod law;
 mod words;
 

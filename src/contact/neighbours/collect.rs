@@ -1,4 +1,9 @@
 //! What of a triangle can touch a rock whose centre stays within a margin.
+//!
+//! Every test here bounds what the centre may do within the margin, so it may take too much and
+//! never too little: what it leaves out cannot be touched from any place within the margin, and the
+//! tests of each place (`touches`) are made on what is left. On a slope of triangles as large as
+//! the rock that is some ten triangles, and of their edges and vertices hardly any.
 
 use super::{NearCorner, NearEdge, NearFace, NearSaddle, Neighbours, SLACK};
 use crate::rock::Vec3;
@@ -15,6 +20,9 @@ const ASIDE_SLACK: f32 = 1e-3;
 
 impl Neighbours {
     /// Takes of one triangle what may touch; the centre is `to` from its first corner and `height` over its plane (m).
+    ///
+    /// `height` is signed along the triangle's normal; `to` is `c − a`. Nothing is taken twice:
+    /// each edge and vertex has one owner.
     pub(super) fn take(
         &mut self,
         terrain: &Terrain,
@@ -22,13 +30,17 @@ impl Neighbours {
         (to, height): (Vec3, f64),
     ) {
         self.sheets.push(t);
+        // how far the foot of the centre may come while the centre moves within the margin
         let near = self.margin + SLACK * self.radius;
         let brim = &terrain.features.brims[t as usize];
         self.take_vertices(terrain, t, brim.vertices);
         let (owned, beside) = self.within_sight(brim, height);
         let (hollow, beside_hollow) = self.hollow_in_sight(brim, height);
         let beside = beside.max(beside_hollow).max(near);
+        // `beside` is the farthest beside the triangle at which any of its parts can be touched:
+        // beyond it nothing of it is
         let Some(seen) = Seen::of(face, to, (height, beside)) else { return };
+        // a face is touched only where the foot lies inside it
         if seen.is_within(near) {
             self.take_face(t, face);
         }
@@ -45,8 +57,11 @@ impl Neighbours {
         }
     }
 
+    /// Unit vectors out of the face across its three sides, `side × n`, and what `out · x` is on
+    /// each side: the test of a foot is then three scalar products and three comparisons.
     fn take_face(&mut self, t: u32, face: &Face) {
         let corners = [face.a, face.a + face.e1, face.a + face.e2];
+        // counter-clockwise as seen against the normal: a→b, b→c, c→a
         let sides = [face.e1, face.e2 - face.e1, -face.e2];
         let out = sides.map(|side| side.cross(&face.n).normalize());
         let rim = [0, 1, 2].map(|k| out[k].dot(&corners[k]));
@@ -55,6 +70,9 @@ impl Neighbours {
 
     /// Those of the edges and corners on a triangle's brim that can be touched from the side on which the centre is, and
     /// how far beside the triangle it can be then (m).
+    ///
+    /// A normal cone that leans by no more than an angle with the cosine `steepest` is touched only
+    /// from within `reach √(1 − steepest²)` beside the triangle.
     #[inline]
     fn within_sight(&self, brim: &Brim, height: f64) -> (u8, f64) {
         let sure = self.margin + ASIDE * self.reach;
@@ -93,6 +111,9 @@ impl Neighbours {
     }
 
     /// Takes an edge that the ball can press into from its hollow side; `face` is the first triangle on it.
+    ///
+    /// Two faces hold the foot of the centre at once only if the centre stands inside of both
+    /// outward planes of the edge: the opposite of the condition under which an edge is touched.
     fn take_hollow(&mut self, terrain: &Terrain, (edge, face): (u32, &Face)) {
         let edges = &terrain.features.edges;
         if edges.is_border(edge) {
@@ -102,11 +123,15 @@ impl Neighbours {
         let length = (b - a).norm();
         let along = (b - a) / length;
         let to = self.centre - a;
+        // distance of the centre from the edge, its ends included: a ball that does not reach it
+        // has no saddle there
         let off = to - along * along.dot(&to).clamp(0.0, length);
         if off.norm() > self.radius + self.margin {
             return;
         }
         let first = self.rays.len();
+        // an edge of three sheets and more has no simple condition: it is kept whatever the
+        // directions
         if let Some([_, other]) = edges.pair_on(edge) {
             for outward in [face.outward(&ends_m), terrain.face(other).outward(&ends_m)] {
                 if outward.dot(&off) > self.margin + SLACK * self.radius {
@@ -134,6 +159,10 @@ impl Neighbours {
     }
 
     /// Takes an edge; `face` is the first triangle on it.
+    ///
+    /// `along` is its unit vector, `s` the coordinate of the foot on it. Left out where the foot
+    /// stays beyond its ends, the line farther than the reach, or the centre behind one of its
+    /// faces, for all places within the margin.
     fn take_edge(&mut self, terrain: &Terrain, (edge, face): (u32, &Face)) {
         let ends_m @ [a, b] = terrain.mesh().ends_m(edge);
         let length = (b - a).norm();
@@ -145,6 +174,8 @@ impl Neighbours {
         }
         let first = self.rays.len();
         let edges = &terrain.features.edges;
+        // in-plane unit vectors out of each triangle on the edge: `m_i`, and the contact test is (c
+        // − p)·m_i ≥ 0 for all of them
         let others = edges.triangles_on(edge).skip(1).map(|t| terrain.face(t).outward(&ends_m));
         for outward in std::iter::once(face.outward(&ends_m)).chain(others) {
             if outward.dot(&to) < -self.margin - SLACK * self.radius {
@@ -165,6 +196,8 @@ impl Neighbours {
         });
     }
 
+    /// A vertex stands out only if every edge at it leads away from the centre: `(c − p)·e_j ≤ 0`,
+    /// here with the margin allowed for.
     fn take_corner(&mut self, terrain: &Terrain, id: u32, owner: u32) {
         let p = terrain.vertices_m[id as usize];
         let to = self.centre - p;

@@ -1,10 +1,17 @@
 //! What was collected, as the edges and faces of a block meet it.
+//!
+//! A block's edges and faces meet the mesh's edges and vertices too (`contact::block`), so it asks
+//! for the lists themselves, where a sphere asks only for the contacts found. All vectors are in
+//! the terrain's frame.
 
 use super::Neighbours;
 use crate::contact::{Feature, FeatureKind};
 use crate::rock::Vec3;
 
 /// An edge of the mesh that stands out, as a block meets it.
+///
+/// From `a` along the unit vector `along` for `length` (m); `outward` are unit vectors in the
+/// planes of its triangles, out of each across the edge.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SharpEdge<'a> {
     pub(crate) feature: Feature,
@@ -17,6 +24,7 @@ pub(crate) struct SharpEdge<'a> {
 }
 
 /// A vertex of the mesh that stands out, as a block meets it.
+/// At `p` (m); `edges` are unit vectors along the edges that start there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Peak<'a> {
     pub(crate) feature: Feature,
@@ -52,6 +60,7 @@ impl Neighbours {
     }
 
     /// Whether what was collected holds for all that is `around_m` about a point or nearer.
+    /// For a block the corners, not the centre, must stay inside the margin.
     pub(crate) fn covers_around(&self, point: &Vec3, around_m: f64) -> bool {
         (point - self.centre).norm() + around_m <= self.margin
     }
@@ -62,6 +71,7 @@ impl Neighbours {
     }
 
     /// All triangles within reach.
+    /// Also those that own nothing that stands out: a corner may touch their faces.
     pub(crate) fn triangles(&self) -> &[u32] {
         &self.sheets
     }

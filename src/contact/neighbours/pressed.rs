@@ -1,4 +1,9 @@
 //! Where a ball presses into the mesh: patches in place of minima, and how far a single plane reaches.
+//!
+//! The second question is that of a whole impact: does the rock, on its way in and out, meet
+//! anything but one plane? Its way is enclosed in the rectangle of `along` and `into`, widened by
+//! `off_m`; a linear function over a rectangle has its extremes at the corners, so each test is a
+//! few scalar products.
 
 use super::{NearSaddle, Neighbours, SLACK};
 use crate::contact::closest::segments_distance2;
@@ -23,30 +28,36 @@ pub struct PressedPath {
 
 impl PressedPath {
     /// Least and largest value of a linear function over the rectangle of `along` and `into`.
+    /// `d·(start + s along + t into)` over `0 ≤ s, t ≤ 1`.
     fn range(&self, direction: &Vec3, at_start: f64) -> (f64, f64) {
         let (s, d) = (direction.dot(&self.along), direction.dot(&self.into));
         (at_start + s.min(0.0) + d.min(0.0), at_start + s.max(0.0) + d.max(0.0))
     }
 
     /// Whether it may come nearer than `reach` to a plane.
+    /// From either side: a plane may be approached from behind by a ball that reaches over a ridge.
     fn comes_nearer_to_plane(&self, (n, p): (&Vec3, &Vec3), reach: f64) -> bool {
         let (low, high) = self.range(n, n.dot(&(self.start - p)));
         low < reach + self.off_m && high > -reach - self.off_m
     }
 
     /// Whether it stays where `direction · x` is larger than `rim`.
+    /// Then the foot of the centre is never on the face of which `rim` is that side.
     fn stays_beyond(&self, direction: &Vec3, rim: f64) -> bool {
         self.range(direction, direction.dot(&self.start)).0 > rim + self.off_m
     }
 
     /// Whether it may come nearer than `reach` to a segment. To what lies below the centre it is nearest where it is deepest.
     fn comes_nearer(&self, (p, d): (&Vec3, &Vec3), reach: f64) -> bool {
+        // `into` points against the normal, so what lies further that way than the deepest place is
+        // below it
         let below = |x: &Vec3| self.into.dot(&(x - self.start - self.into)) >= 0.0;
         if below(p) && below(&(p + d)) {
             let reach = reach + self.off_m;
             let lowest = self.start + self.into;
             segments_distance2((&lowest, &self.along), (p, d)) < reach * reach
         } else {
+            // above the deepest place: the plain bound, everything within the way of the start
             let reach = reach + self.way_m;
             segments_distance2((&self.start, &Vec3::zeros()), (p, d)) < reach * reach
         }
@@ -57,6 +68,7 @@ impl Neighbours {
     /// Whether a rock on its `passage` touches nothing but the plane of `face`, however many triangles that is.
     pub fn is_plane_on(&self, face: u32, passage: &PressedPath) -> bool {
         let Some(own) = self.faces.iter().find(|own| own.id == face) else { return false };
+        // other triangles of the same plane are no obstacle: their seams are not felt
         let in_plane = |p: &Vec3| own.n.dot(&(p - own.a)).abs() <= SLACK * self.radius;
         let rays_of = |rays: (u32, u32)| &self.rays[rays.0 as usize..rays.1 as usize];
         let lies_flat = |rays: (u32, u32)| {
@@ -72,12 +84,16 @@ impl Neighbours {
             to - along * along.dot(&to).clamp(0.0, length)
         };
         let reach = self.radius;
+        // a face is harmless if it lies in the same plane (either winding), is never near, or never
+        // holds the foot
         self.faces.iter().all(|other| {
             let turned = (other.n - own.n).norm_squared().min((other.n + own.n).norm_squared());
             turned <= SLACK * SLACK && in_plane(&other.a)
                 || !passage.comes_nearer_to_plane((&other.n, &other.a), reach)
                 || (0..3).any(|k| passage.stays_beyond(&other.out[k], other.rim[k]))
         }) && self.edges.iter().all(|edge| {
+            // an edge: never near, never with the centre outside of all its faces, or flat in the
+            // plane itself
             !passage.comes_nearer((&edge.a, &(edge.along * edge.length)), reach)
                 || !may_stand(edge.rays, &from_start(&edge.a, &edge.along, edge.length), 1.0)
                 || !edge.at_border && lies_flat(edge.rays) && in_plane(&edge.a)
@@ -90,11 +106,16 @@ impl Neighbours {
                     || rays.0 < rays.1 && !may_stand(*rays, &from_start(a, along, *length), -1.0)
                     || lies_flat(*rays) && in_plane(a)
             }
+            // a vertex that can be a saddle is only harmless out of reach: its sectors are not
+            // looked at here
             NearSaddle::Vertex { p, .. } => !passage.comes_nearer((p, &Vec3::zeros()), reach),
         })
     }
 
     /// Whether a saddle or a maximum of the distance is inside the ball.
+    ///
+    /// Decides whether single nearest points will do (the usual case) or patches must be summed;
+    /// asked at every stage, so it is cheap.
     #[inline]
     pub(super) fn has_saddle(&self, terrain: &Terrain, centre: &Vec3) -> bool {
         self.saddles.iter().any(|saddle| match saddle {
@@ -103,6 +124,8 @@ impl Neighbours {
                 let s = along.dot(&to);
                 let off = to - along * s;
                 let slack = SLACK * self.radius;
+                // the foot lies on the edge and the centre inside of both faces: both are minima,
+                // and the edge between them is the saddle
                 let outward = &self.rays[rays.0 as usize..rays.1 as usize];
                 // beyond its ends the edge is as near as its vertices, and those are asked by themselves
                 s >= -slack
@@ -126,6 +149,7 @@ impl Neighbours {
     /// Puts the patches in place of the touches that the ball presses into.
     #[cold]
     pub(super) fn gather(&mut self, terrain: &Terrain, centre: &Vec3, touches: &mut ContactPoints) {
+        // what does not reach the ball yet stays as it is: a patch is only what is pressed in
         touches.drop_nearer(self.radius);
         let mut patches = std::mem::take(&mut self.patches);
         patches.find(terrain, &self.sheets, (centre, self.radius), |touch: ContactPoint| {
@@ -136,6 +160,7 @@ impl Neighbours {
                 FeatureKind::Edge => features.edges.is_border(touch.feature.id),
                 FeatureKind::Vertex => features.is_border_vertex(touch.feature.id, terrain.mesh()),
             };
+            // the border of one sheet on another (T-junction, overlap) is no contact of its own
             let covered = at_border && self.is_covered(terrain, &nearest, centre, touch.distance_m);
             if !covered {
                 self.merge(touch, centre, touches);

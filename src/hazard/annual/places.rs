@@ -14,14 +14,14 @@ use crate::frequency::Frequency;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a year brings, at every line and object.
+/// Annual frequencies and energies at every line and object.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Annual {
     /// Events a year of all sources (1/year).
     pub events_per_year: f64,
     /// Rocks computed.
     pub rocks: usize,
-    /// So many of equal weight would say as much of all rocks together (–).
+    /// Number of equally weighted rocks that would give the same precision (–).
     pub effective_rocks: f64,
     /// Strata that they were drawn from.
     pub strata: usize,

@@ -1,6 +1,7 @@
 //! The chapters that answer: each picture, and behind it the tables about the same.
 
 use super::{NumberedFigures, escape, tables};
+use crate::report::figures::FIGURES;
 use crate::report::format;
 use crate::report::model::{About, Report};
 use crate::report::{annual, barriers, lines};
@@ -34,14 +35,19 @@ pub(super) fn where_to(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     pictures + &measured + &agreement + &maps
 }
 
+/// Figures of the list that have a place of their own on the page.
+const PLACED: [&str; 5] = ["plan.svg", "stops.svg", "side.svg", "runout.svg", "reach_angle.svg"];
+
 /// A figure of about a page.
 const SHEET: &str = "<figure class=\"sheet\">";
 
-/// How fast and how high. In print the table fills the page below the ways of single rocks: six histograms take most of one.
+/// How fast and how high, and all figures of the list without a place of their own. In print the table fills the page below
+/// the ways of single rocks: six histograms take most of one.
 pub(super) fn how_fast(report: &Report, drawn: &NumberedFigures<'_>) -> String {
+    let others = FIGURES.iter().map(|figure| figure.file).filter(|file| !PLACED.contains(file));
     drawn.all(&["side.svg", "profile.svg", "along.svg"])
         + &tables_of(report, About::Rocks, "")
-        + &drawn.figure("distributions.svg")
+        + &drawn.all(&others.collect::<Vec<_>>())
 }
 
 /// Each line: its figure and its table together.

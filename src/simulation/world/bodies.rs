@@ -23,6 +23,9 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Way of the fastest rock in one window, relative to its radius (–): the islands stay small.
+///
+/// A rock cannot cross another one unseen: two that fly at each other close a fifth of a radius a
+/// window.
 const WAY: f64 = 0.1;
 /// Longest window (s).
 const LONGEST_S: f64 = 0.02;
@@ -171,6 +174,7 @@ impl<'a> BodyWorld<'a> {
         let length = self.window_length();
         // the last window ends with the time limit of the scene
         let end_s = (self.now_s + length).min(self.settings.longest_s);
+        // what each does from here on is measured against its flight
         let (settings, now_s) = (self.settings, self.now_s);
         self.bodies.iter_mut().flatten().for_each(|body| {
             body.watch_from(settings, now_s);
@@ -204,6 +208,7 @@ impl<'a> BodyWorld<'a> {
         self.pair_histories.sort_unstable_by_key(|pair_history| (pair_history.a, pair_history.b));
         self.now_s = end_s;
         self.statistics.windows += 1;
+        // where each rock really came to, and by how much its velocity changed on the way
         let after = |k: usize| {
             let body = self.body(present[k]);
             (body.position_at(self.settings, end_s), body.off.1)
@@ -227,6 +232,7 @@ impl<'a> BodyWorld<'a> {
     }
 
     /// The rocks that are in the world.
+    /// Asleep or moving; the lists of a window count places among these.
     fn present(&self) -> Vec<u32> {
         let count = self.bodies.len() as u32;
         (0..count).filter(|&k| !matches!(self.body(k).state, BodyState::Gone(_))).collect()
@@ -238,6 +244,7 @@ impl<'a> BodyWorld<'a> {
         let mut length = LONGEST_S;
         // In the rigid limit nothing happens between the steps: a window is one.
         let way = if self.is_rigid() { TRAVEL } else { WAY };
+        // way R/|v|: the window of the smallest fast rock is that of all
         for body in self.bodies.iter().flatten().filter(|body| body.state == BodyState::Moving) {
             let speed = body.velocity_at(self.settings, self.now_s).norm();
             length = length.min(way * body.member.body.radius / speed.max(1e-9));
@@ -277,6 +284,7 @@ impl<'a> BodyWorld<'a> {
     }
 
     /// Takes every island in which something may happen before `end_s` out of the world.
+    /// Rocks are moved, not copied; what stays behind is the empty place.
     fn jobs(
         &mut self,
         present: &[u32],

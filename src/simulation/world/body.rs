@@ -41,6 +41,7 @@ impl<'a> WorldBody<'a> {
 
     /// Velocity at a time not before its own (m/s).
     pub(super) fn velocity_at(&self, settings: &RunSettings, time_s: f64) -> Vec3 {
+        // `c + v t − g t²/2 z` differentiated
         if self.member.flying && time_s > self.recorder.now.time_s {
             self.flight(settings).velocity(time_s - self.recorder.now.time_s)
         } else {
@@ -49,6 +50,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Begins to watch how far its velocity changes; returns what was watched before.
+    /// The reference is the velocity along the parabola at `now_s`.
     pub(super) fn watch_from(&mut self, settings: &RunSettings, now_s: f64) -> (Vec3, f64) {
         let velocity = self.velocity_at(settings, now_s);
         std::mem::replace(&mut self.off, (velocity, 0.0))
@@ -75,6 +77,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Finds the end of the flight that begins now.
+    /// Kept until it comes: windows only compare times with it.
     pub(super) fn look_ahead(&mut self, settings: &RunSettings) {
         let now_s = self.recorder.now.time_s;
         let left = settings.longest_s - now_s;
@@ -138,11 +141,15 @@ impl<'a> WorldBody<'a> {
     }
 
     /// What others and the contacts with them have had so far (J).
+    ///
+    /// `others_j` is lost in contacts with them, `passed_on_j` is theirs now: together what this
+    /// rock no longer has.
     fn given_j(&self) -> f64 {
         self.recorder.ledger.others_j + self.recorder.ledger.passed_on_j
     }
 
     /// Touches the mesh.
+    /// Contact begins with springs at rest, unless the rock is pressed in already.
     pub(super) fn land(&mut self, settings: &RunSettings) {
         self.begin(settings);
         let Motion { position_m: c, velocity_m_s: v, spin_rad_s: w, .. } = self.recorder.now;
@@ -195,6 +202,7 @@ impl<'a> WorldBody<'a> {
         rock.state.bend(&rock.world, &mut loss);
         let to = self.motion_at(time_s);
         // A rock may be hit and let go within one step: then it flies another way.
+        // neither the mesh nor another rock took or gave anything in this step
         let is_untouched = given == Given::default() && loss == Loss::default();
         if was_flying && self.member.flying && is_untouched {
             self.recorder.step_as(to, PathState::Flight);
@@ -207,6 +215,9 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Notes one step of its island in the rigid limit: rocks that fly touch and fly on within a step, too.
+    ///
+    /// Unlike with springs there is no memory that tells of an impact: `hit` was told of each
+    /// before.
     pub(super) fn stride(
         &mut self,
         settings: &RunSettings,
@@ -246,6 +257,9 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Watches how far its velocity has changed.
+    ///
+    /// Largest change since the reference, not the last: a rock that is hit and hit back has
+    /// deviated all the same.
     fn watch(&mut self) {
         self.off.1 = self.off.1.max((self.member.state.v - self.off.0).norm());
     }
@@ -267,6 +281,7 @@ impl<'a> WorldBody<'a> {
     ) {
         let before_j = self.total_j(settings);
         let dt = to.time_s - self.recorder.now.time_s;
+        // one slipping contact, with mesh or rock, makes the step "sliding"
         let slides = slides || self.member.state.histories.iter().any(|history| history.slides);
         self.recorder.step(to, slides);
         self.recorder.pay(&loss, 1.0);
@@ -306,6 +321,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Makes ready for a step in contact; returns the longest that it may be (s).
+    /// Stems and facets, as for a rock alone.
     pub(super) fn before_step(&mut self, settings: &RunSettings) -> f64 {
         if self.member.flying {
             return f64::INFINITY;
@@ -322,6 +338,7 @@ impl<'a> WorldBody<'a> {
     }
 
     /// Takes it out of the world; one that has already stopped keeps its reason.
+    /// From then on it is in no island, and others pass where it was.
     pub(super) fn leave(&mut self, stop: Stop) {
         if self.state == BodyState::Moving {
             self.state = BodyState::Gone(stop);
@@ -351,6 +368,7 @@ impl<'a> WorldBody<'a> {
         self.recorder.end_path();
         // Friction that turns round within a step may seem to work: that is an error of the steps.
         let ledger = &mut self.recorder.ledger;
+        // booked where it belongs: an entry below 0 is no loss but the numerics' gain
         for entry in [&mut ledger.friction_j, &mut ledger.damping_j, &mut ledger.rolling_j] {
             ledger.remainder_j += entry.min(0.0);
             *entry = entry.max(0.0);

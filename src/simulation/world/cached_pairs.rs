@@ -1,10 +1,17 @@
 //! Who is near whom, asked several times with growing reaches: the answer to a somewhat larger question serves all.
+//!
+//! Verlet's list (Phys. Rev. 159, 1967): balls are grown by a skin, and the pairs found then hold
+//! until a rock has used up its skin. The answer is always the exact one for the reaches asked: the
+//! list only spares the search.
 
 use super::prediction::PredictedRock;
 use crate::rock::Vec3;
 use crate::solver::island::broad_phase::{Ball, overlapping};
 
 /// Share by which the way that is asked for is larger than it must be (–).
+///
+/// Passes ask with growing reaches within one window; half as much again usually serves all of
+/// them.
 const SPARE: f64 = 0.5;
 
 /// Way that each rock may go besides before all are looked for anew (–, relative to its radius).
@@ -26,6 +33,8 @@ impl CachedPairs {
         places: &[PredictedRock],
         reaches: &[f64],
     ) -> Vec<(u32, u32)> {
+        // a ball of the reach asked, at the present centre, lies inside the ball that the list was
+        // made for
         let fits = |(k, asked): (usize, &f64)| {
             let room = self.reaches[k] - asked;
             let off = places[k].centre - self.centres[k];
@@ -46,6 +55,7 @@ impl CachedPairs {
             let balls: Vec<Ball> = places.iter().zip(&self.reaches).map(ball).collect();
             self.pairs = overlapping(&balls);
         }
+        // what the list holds is too much; the distance decides
         let near = |&&(a, b): &&(u32, u32)| {
             let [a, b] = [a, b].map(|k| k as usize);
             let reach = reaches[a] + reaches[b];

@@ -1,4 +1,11 @@
 //! Islands within a window: who may meet whom before its end.
+//!
+//! Why a prediction: contact forces couple rocks, so all that meet in a window must be solved as
+//! one system, and who meets is known only after the solution. A bound on how far each velocity may
+//! change gives every rock a ball that holds it through the window; pairs of balls that overlap are
+//! joined. Too large a bound makes islands large and slow, too small a one is found out
+//! (`Meetings::missed`) and the window is gone through again: the bound decides the cost and never
+//! the result.
 
 use super::{BodyState, WorldBody};
 use crate::contact::pair::PairHistory;
@@ -8,9 +15,12 @@ use crate::solver::island::broad_phase::Ball;
 use crate::solver::island::partition::Partition;
 
 /// Passes in which islands grow by the reach of those that may be hit.
+///
+/// Joined islands have faster members, which may throw others farther.
 const PASSES: usize = 3;
 
 /// Times that a hit is handed on within a short window.
+/// In a window hardly longer than a contact there is time for one hit to be felt beyond the pair.
 const HANDED_ON: usize = 1;
 
 /// … and within one that is long beside a contact.
@@ -35,11 +45,15 @@ pub(super) struct PredictedRock {
 
 impl PredictedRock {
     /// Largest speed of its own (m/s).
+    /// `|v| + dv_bound`.
     fn speed(&self) -> f64 {
         self.velocity.norm() + self.dv_bound
     }
 
     /// A ball that holds the rock through `dt` (s) if it goes no further than `deviation_m` (m) off its straight way.
+    ///
+    /// Centred on the middle of the straight way: half the way and the deviation are its radius
+    /// beyond the rock's own.
     pub(super) fn swept(&self, deviation_m: f64, dt: f64) -> Ball {
         let half = self.velocity * (0.5 * dt);
         let radius = self.radius * (1.0 + REACH_ROUNDING) + half.norm() + deviation_m;
@@ -56,9 +70,11 @@ pub(super) fn place_of(
     let sleeps = body.state == BodyState::Asleep;
     let velocity = if sleeps { Vec3::zeros() } else { body.velocity_at(settings, now_s) };
     let speed = velocity.norm();
+    // a rock that lands, or is near the mesh, may be turned round by it: twice its speed at most
     let lands = body.lands.as_ref().is_some_and(|(time_s, _)| *time_s <= now_s + dt);
     let near_mesh = !body.member.flying && body.member.is_near_mesh(speed * dt);
     let turned = if lands || near_mesh { 2.0 * speed } else { 0.0 };
+    // weight adds g dt; springs that are pressed may give back what they hold
     let dv_bound = body.pressed_m_s + settings.gravity_m_s2 * dt + turned;
     PredictedRock {
         centre: body.position_at(settings, now_s),
@@ -72,6 +88,8 @@ pub(super) fn place_of(
 
 /// Speed that a rock may have after being hit, over the fastest speed around it (–): twice for a light one under a
 /// heavy one.
+///
+/// An elastic hit from a far heavier rock of speed v gives 2 v; the rest is room.
 const KICK: f64 = 2.2;
 /// Of a hit within a short window, the share that is allowed for: it takes its time (–).
 const LATE: f64 = 0.5;
@@ -104,6 +122,7 @@ pub(super) struct Meetings {
 }
 
 /// Nearest that two rocks come to each other within `dt` (s) on straight ways, less their radii (m).
+/// `|d + u t|` is least at `t = −d·u/|u|²`; clamped to the window. Negative where they overlap.
 fn nearest_gap(a: &PredictedRock, b: &PredictedRock, dt: f64) -> f64 {
     let (apart, closing) = (a.centre - b.centre, a.velocity - b.velocity);
     let speed2 = closing.norm_squared();
@@ -151,6 +170,9 @@ impl Meetings {
 
 /// Pairs that may touch and the islands they form, where any rock of an island may be hit by its fastest: `near` gives the
 /// pairs that overlap if each rock may be anywhere within so far of its centre (m).
+///
+/// The speed that any rock of an island may get is `KICK` times that of its fastest: each pass
+/// joins what this lets meet.
 pub(super) fn meetings_of_islands(
     places: &[PredictedRock],
     dt: f64,
@@ -160,6 +182,7 @@ pub(super) fn meetings_of_islands(
     let (mut pairs, mut islands) = (Vec::new(), Partition::alone(places.len()));
     let mut allowed = Vec::new();
     for _ in 0..PASSES {
+        // what its velocity may change by, beyond the speed it has
         let deviated = |(place, speed): (&PredictedRock, &f64)| {
             let own = place.velocity.norm();
             speed.max(own + place.predicted_dv) - own
@@ -170,6 +193,7 @@ pub(super) fn meetings_of_islands(
         };
         pairs = near(&places.iter().zip(&allowed).map(reach).collect::<Vec<_>>());
         islands = joined(&pairs, places.len());
+        // the fastest of every island, then handed back to all of its rocks
         let mut most = vec![0.0f64; places.len()];
         for (place, k) in places.iter().zip(0..) {
             let root = islands.of(k) as usize;
@@ -185,6 +209,9 @@ pub(super) fn meetings_of_islands(
 /// Pairs that may touch and the islands they form where rocks pass each other: only what changes the velocity of one
 /// relative to the other brings them together, and a hit is handed on to the next few. `held` are pairs that touch or are
 /// bonded, in ascending order; `near` as for [`meetings_of_islands`].
+///
+/// Rocks that roll down side by side are near each other all the time, and yet few meet: the gap on
+/// straight ways tells them apart where balls of the size of their ways would join the whole heap.
 pub(super) fn meetings_in_passing(
     places: &[PredictedRock],
     dt: f64,
@@ -267,6 +294,9 @@ fn meetings_of_neighbours(
 }
 
 /// The same, given the nearest that each pair comes to each other on straight ways (m).
+///
+/// `gap ≤ (Δv_a + Δv_b) dt` is the test: both may leave their straight ways by so much towards each
+/// other.
 fn meetings_by_gaps(
     places: &[PredictedRock],
     dt: f64,
@@ -283,6 +313,8 @@ fn meetings_by_gaps(
     };
     for _ in 0..handed_on {
         let before = allowed.clone();
+        // what one rock may get from the other is added to what it may do by itself; `before` keeps
+        // the order of pairs out of the result
         for (a, b) in meet(&before) {
             for (k, other) in [(a as usize, b as usize), (b as usize, a as usize)] {
                 let (own, its) = (&places[k], &places[other]);
@@ -299,6 +331,9 @@ fn meetings_by_gaps(
 }
 
 /// Whether anything of an island moves other than along a parabola that goes on beyond `end_s`.
+///
+/// A rock alone whose flight outlasts the window needs no work at all: its recorder goes along the
+/// parabola when it lands.
 pub(super) fn is_busy<'r, 'a: 'r>(
     mut bodies: impl ExactSizeIterator<Item = &'r WorldBody<'a>>,
     end_s: f64,

@@ -1,5 +1,8 @@
 //! A snapshot of a world, kept to go back to: a rock that was deviated further than its island allowed for may have run
 //! into another island that knew nothing of it.
+//!
+//! Only what later windows depend on is kept: motions, memories of contacts, random streams, and
+//! how long the recorders' lists were. Geometry and scratch space are found again. Cost: O(n) in the rocks that are left.
 
 use super::bodies::BodyWorld;
 use super::{BodyState, Stop, WorldBody};
@@ -28,6 +31,7 @@ pub(super) struct Kept {
 }
 
 impl WorldBody<'_> {
+    /// What the rock is now, as far as later windows depend on it.
     pub(super) fn keep(&self) -> Kept {
         Kept {
             memory: self.member.memory(),
@@ -41,6 +45,7 @@ impl WorldBody<'_> {
         }
     }
 
+    /// To the bit what it was; only its effort and what is foreseen of it stay.
     pub(super) fn go_back(&mut self, kept: &Kept) {
         self.member.recall(&kept.memory);
         self.recorder.go_back(&kept.mark);
@@ -51,6 +56,9 @@ impl WorldBody<'_> {
     }
 
     /// When this is gone through again, it is known how far the rock was deviated.
+    ///
+    /// Twice the change that was seen: each return at least doubles the bound, so few returns
+    /// suffice.
     pub(super) fn foresee(&mut self) {
         self.foreseen_m_s = self.foreseen_m_s.max(2.0 * self.off.1);
     }
@@ -70,6 +78,9 @@ impl BodyWorld<'_> {
     }
 
     /// Goes back to a moment that was kept.
+    ///
+    /// Rocks that have left since then do not come back: nothing of theirs was kept, as they were
+    /// gone already.
     pub(super) fn go_back(&mut self, snapshot: &Snapshot) {
         for (body, kept) in self.bodies.iter_mut().zip(&snapshot.bodies) {
             if let (Some(body), Some(kept)) = (body, kept) {

@@ -11,7 +11,7 @@ pub struct WorldStats {
     pub steps: u64,
     /// The same times the rocks of each.
     pub rock_steps: u64,
-    /// Steps deviated away.
+    /// Steps tried and thrown away.
     pub rejected: u64,
     /// Sweeps over the contacts of an island, or solves of its system.
     pub sweeps: u64,

@@ -1,5 +1,10 @@
 //! An island whose rocks mostly do not meet in a much shorter window is taken apart: each part goes through that on its
 //! own.
+//!
+//! A window of the world is as long as the fastest rock's way allows; inside a heap hits travel
+//! through many rocks in that time, so the prediction joins all of it. In a window of a radian or
+//! so of the stiffest contact a hit reaches only the next rocks, and a loose heap falls into parts
+//! that are cheap: the cost of an island's step grows faster than its number of rocks.
 
 use super::WorldBody;
 use super::prediction::{
@@ -12,10 +17,12 @@ use crate::rock::Vec3;
 use rayon::prelude::*;
 
 /// An island of no more rocks than this is stepped as a whole.
+/// Taking apart costs a search and copies; below this it saves nothing.
 const FEW: usize = 4;
 /// In how many windows one is cut in which most of an island's rocks cannot meet.
 const CUTS: u32 = 4;
 /// Shortest of them, in radians of the stiffest contact (–): less than a step of a quiet heap.
+/// Radians of a contact are `ω t` with `ω = √(p_N/m)`: a spring turns a hit round in π of them.
 const SHORTEST_PART: f64 = 1.5;
 /// Within so many radians of the stiffest contact a hit is handed on to the next few rocks only (–).
 const FAR: f64 = 12.0;
@@ -25,6 +32,9 @@ const RETURNS: usize = 6;
 
 impl IslandWindow<'_> {
     /// Takes the island to the end of its window.
+    ///
+    /// From cheap to dear: all fly and nothing happens; a rigid heap; parts that do not meet; all
+    /// of it together.
     pub(super) fn run(&mut self) {
         if self.is_rigid_heap() {
             self.run_rigid();
@@ -33,6 +43,8 @@ impl IslandWindow<'_> {
         if self.flies_through() {
             return;
         }
+        // the contact between rocks with the highest frequency; contacts with the mesh join no
+        // rocks
         let stiffest = self
             .pair_histories
             .iter()
@@ -42,6 +54,7 @@ impl IslandWindow<'_> {
             self.run_whole();
             return;
         };
+        // `end_s` moves from cut to cut, so that no part goes beyond its cut
         let (start_s, end_s) = (self.now_s, self.end_s);
         for k in 1..=cuts {
             let part = f64::from(k) / f64::from(cuts);
@@ -66,6 +79,9 @@ impl IslandWindow<'_> {
 
     /// In how many much shorter windows most of the island's rocks are not joined: then those are cheaper than stepping
     /// all together.
+    ///
+    /// Tried from few cuts to many: the first that lets no part be larger than three quarters of
+    /// the island.
     fn falls_apart(&self, stiffest: f64) -> Option<u32> {
         let (count, length) = (self.bodies.len(), self.end_s - self.now_s);
         let mut cuts = CUTS;
@@ -81,18 +97,24 @@ impl IslandWindow<'_> {
         None
     }
 
+    /// Where its rocks are, and what each may do within `dt` (s).
     fn places(&self, dt: f64) -> Vec<PredictedRock> {
         let place = |body: &WorldBody| place_of(body, self.settings, (self.now_s, dt));
         self.bodies.iter().map(|body| place(body)).collect()
     }
 
+    /// Who may meet whom within `dt` (s).
     fn meetings(&self, places: &[PredictedRock], (dt, stiffest): (f64, f64)) -> Meetings {
         let spread = if dt * stiffest > FAR { HitSpread::Island } else { HitSpread::Neighbours };
         meeting_ties(&self.pair_histories, places, Ahead { dt, spread })
     }
 
     /// Takes the parts there, and again if a rock was deviated further than was allowed for.
+    ///
+    /// As the world does with its windows (`bodies`), on a smaller scale: a return here costs this
+    /// island alone.
     fn run_parts_again(&mut self, stiffest: f64) {
+        // as the world keeps a snapshot before its windows
         let kept: Vec<Kept> = self.bodies.iter().map(|body| body.keep()).collect();
         let pair_histories = self.pair_histories.clone();
         for _ in 0..RETURNS {
@@ -162,6 +184,8 @@ impl<'a> IslandWindow<'a> {
         }
         let mut pair_histories: Vec<Vec<PairHistory>> = lists.iter().map(|_| Vec::new()).collect();
         let mut pairs = meetings.pairs.iter().peekable();
+        // a pair goes with its part if both ends are in it; pairs between parts wait with the
+        // island until the parts are joined again
         self.pair_histories.retain(|pair_history| {
             let (number, a) = part[pair_history.a as usize];
             let meets = pairs.next_if(|pair| **pair == (pair_history.a, pair_history.b)).is_some();
@@ -203,6 +227,7 @@ impl<'a> IslandWindow<'a> {
                 homes[k as usize] = Some(body);
             }
         }
+        // ascending order again: what follows must not depend on how the island was cut
         self.pair_histories.sort_unstable_by_key(|pair_history| (pair_history.a, pair_history.b));
         self.bodies.extend(homes.into_iter().flatten());
     }

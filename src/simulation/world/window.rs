@@ -20,6 +20,9 @@ use crate::solver::loss::Loss;
 use crate::solver::step_control::{ONSET, StepError};
 
 /// A gap between two rocks that is rounding of their flight (–, relative to the sum of their radii).
+///
+/// Roots of the quadratic of a meeting are right to some 1e-15 of the distance flown, not of the
+/// gap.
 const GAP_ROUNDING: f64 = 1e-11;
 
 /// A time that is nothing (s): the clock cannot tell less after an hour.
@@ -76,11 +79,14 @@ impl<'a> IslandWindow<'a> {
     }
 
     /// Gives rocks and pairs back to the world.
+    /// Ends of pairs still count places in the island.
     pub(super) fn into_parts(self) -> (Vec<u32>, Bodies<'a>, Vec<PairHistory>) {
         (self.ids, self.bodies, self.pair_histories)
     }
 
     /// Takes all of the island to the end of the window together.
+    ///
+    /// Ends when all fly beyond the window, or when the steps have reached its end.
     pub(super) fn run_whole(&mut self) {
         // a sleeping rock in a busy island may be pushed, so it takes part from the start
         for body in &mut self.bodies {
@@ -101,6 +107,7 @@ impl<'a> IslandWindow<'a> {
     }
 
     /// When the next flying rock touches mesh or another flying rock (s).
+    /// O(n + pairs): it is asked again after every event.
     pub(super) fn next_event_s(&self) -> f64 {
         let flying = self.bodies.iter().filter(|body| body.member.flying);
         let landings = flying.filter_map(|body| body.lands.as_ref().map(|(time_s, _)| *time_s));
@@ -154,6 +161,9 @@ impl<'a> IslandWindow<'a> {
     }
 
     /// Begins all contacts that are due now.
+    ///
+    /// Several may be due at one instant, of the same rock too: each is begun, and the next step
+    /// solves them together.
     fn begin_contacts(&mut self) {
         let due: Vec<bool> =
             self.pair_histories.iter().map(|pair_history| self.meets_now(pair_history)).collect();
@@ -261,6 +271,7 @@ impl<'a> IslandWindow<'a> {
         // the stiffest of the rocks in contact decides the step of all
         let h = self.bodies.iter().filter(|body| !body.member.flying).map(|body| body.h);
         let h = h.fold(f64::INFINITY, f64::min);
+        // the solver borrows the rocks' state; the journeys stay here
         let members = self.bodies.iter_mut().map(|body| body.member.lend()).collect();
         let mut island =
             Island::new(self.settings.terrain, members, std::mem::take(&mut self.pair_histories));

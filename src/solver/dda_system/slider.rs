@@ -1,4 +1,12 @@
 //! The element that shear and rolling are made of.
+//!
+//! ```text
+//! sticks:  q = k (ξ + Δ) + (c/Δt) Δ,        Δ the way of the contact point over the step
+//! slides:  q = cap · e,                     e the direction of the force that would make it stick
+//! end:     ξ₁ = (q + (c/Δt) ξ)/(k + c/Δt)   the stretch at which spring and dashpot give q
+//! ```
+//!
+//! The caller takes the sign: `q` acts against the sphere's motion.
 
 use crate::ground::FrictionElement;
 use crate::rock::Vec3;
@@ -7,6 +15,7 @@ use crate::rock::Vec3;
 const SETTLED: f64 = 1e-5;
 
 /// What a judgement changed.
+/// Ordered by what it costs to answer it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Change {
     /// Nothing.
@@ -69,6 +78,10 @@ impl DdaSlider {
     ///
     /// `way` is what came out with the force `used`. Taking the effect of that force off before asking is what makes the
     /// iteration settle: the slip that friction itself has left says little about its direction.
+    ///
+    /// `way + used · compliance` is what the contact point would move without any force of this
+    /// element; from there the force that holds it is `(k ξ + k_eff Δ₀)/(1 + k_eff · compliance)`, `k_eff = k + c/Δt`: the element's own
+    /// force shortens the way.
     pub(crate) fn judge(&mut self, way: &Vec3, used: &Vec3, cap: f64) -> Change {
         let stiff = 1.0 + (self.spring + self.damper) * self.compliance;
         let needed = self.sticking(&(way + used * self.compliance)) / stiff;
@@ -103,6 +116,9 @@ impl DdaSlider {
     }
 
     /// Energy that slider and dashpot take over `way` at `force`.
+    ///
+    /// Work of the slider is force times what it slipped, way less growth of the stretch; the
+    /// dashpot takes `c/Δt` times the square of that growth.
     pub(crate) fn loss(&self, way: &Vec3, force: &Vec3) -> (f64, f64) {
         let stretched = self.end(force) - self.stretch;
         (force.dot(&(way - stretched)), self.damper * stretched.norm_squared())

@@ -1,4 +1,14 @@
 //! Rates of a rock and of the springs of its contacts, wherever it is.
+//!
+//! ```text
+//! c' = v,   v' = g + Σ (F n − q)/m,   ω' = Σ (R n × q − M)/I
+//! ξ' and θ' of each contact from its sliders (`law::Action`)
+//! F ≥ 0 by spring and dashpot,   |q| ≤ μ F,   |M| ≤ μ_r R F
+//! ```
+//!
+//! Geometry is looked up at every stage. Springs belong to memories, each tangent to the normal of
+//! its memory: they are turned to the normal of the place before they are asked, and their rates
+//! are turned back.
 
 use crate::contact::TOUCH;
 use crate::contact::history::carry;
@@ -75,11 +85,15 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Whether rolling springs are among `N` numbers.
+    /// Scenes without rolling friction carry no numbers for it.
     const fn rolls<const N: usize>() -> bool {
         N > SPRINGS + 3 * C
     }
 
     /// The present state.
+    ///
+    /// Way 0: positions are counted from where the step begins, as map coordinates would cost
+    /// digits.
     pub(super) fn begin<const N: usize>(&self) -> [f64; N] {
         let mut y = [0.0; N];
         put(&mut y, V, &self.state.v);
@@ -105,6 +119,9 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Energy in the normal springs at the state last asked for (J), if all of them push.
+    ///
+    /// `p_N pen²/2`; where a contact pulls or hangs free the spring relaxes by itself, and the sums
+    /// must tell.
     pub(super) fn stored_j(&self) -> Option<Loss> {
         let contacts = self.pressed();
         if contacts.is_empty() || contacts.iter().any(|contact| contact.normal_force <= 0.0) {
@@ -119,6 +136,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
     }
 
     /// Writes the contacts at the state last asked for into their memories.
+    /// The pair's last stage is at the step's end, so what was asked for last is the end.
     pub(super) fn remember(&mut self) {
         let histories = &mut self.state.histories;
         histories.iter_mut().for_each(|history| history.closed = false);
@@ -150,6 +168,8 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         let (c, v, w) = (state.c + three(y, WAY), three(y, V), three(y, W));
         state.look(world, &c, body.radius * (1.0 + TOUCH));
         let (mut dv, mut dw, mut taken) = (body.gravity, Vec3::zeros(), 0);
+        // patches and edges have kinks that the error estimate hardly sees: a step that meets any
+        // is held to a tighter error
         let face = match &state.touches[..] {
             [touch] if touch.is_on_plane() => touch.feature,
             _ => Feature::NONE,
@@ -159,15 +179,20 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
         self.len = 0;
         for k in 0..state.touches.len() {
             let touch = state.touches[k];
+            // by feature; a contact that has no memory yet takes over that of a like one, or begins
+            // one
             let known = state.histories.iter().position(|history| history.feature == touch.feature);
             let place = known.unwrap_or_else(|| state.history_of(world, k, taken, &v));
             taken |= 1 << place;
+            // more contacts than places: what is computed now is thrown away, but must not be out
+            // of bounds
             if place >= C {
                 self.is_crowded = true;
                 continue;
             }
             let (n, memory) = (touch.normal, &state.histories[place]);
             let law = world.law(touch.triangle);
+            // a patch of stiffness |a|² has its dashpot times |a|; parallel patches share theirs
             let share = world.dashpot_share(&state.touches, k);
             let normal = law.normal(memory.captured).of_patch(touch.gain2, share);
             let at = ContactPlace {
@@ -189,6 +214,7 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
             if Self::rolls::<N>() {
                 put(&mut rates.y, SPRINGS + 3 * (C + place), &action.rates[1]);
             }
+            // energy that goes into trees is counted apart, whatever takes it
             let is_tree = world.terrain.is_tree(touch.triangle);
             let [friction, damping, rolling] = action.powers(approach, &w);
             let stores = normal.storing_w(at.penetration, approach);
@@ -226,6 +252,7 @@ impl<const C: usize, const N: usize, const P: usize> Flow<N, SUMS, P> for Among<
     }
 
     /// A spring that nothing presses on any more holds nothing: how it relaxes does not matter.
+    /// Norm of an error: way and stretches times `ω`, spin times `R`, all in m/s.
     #[inline]
     fn size2(&self, off: &[f64; N]) -> f64 {
         let (omega, allowed) = self.scale;

@@ -1,4 +1,15 @@
 //! An explicit embedded Runge–Kutta pair of order 5(4) (Dormand and Prince 1980), on the stack.
+//!
+//! ```text
+//! y₁ = y + h Σ b_i k_i              order 5
+//! error = h Σ (b_i − b̂_i) k_i       against order 4
+//! k_7 = f(y₁)                       is k_1 of the next step
+//! ```
+//!
+//! Kinks: where a slider reaches its cap or a contact opens the right side is continuous, but its
+//! derivative jumps. A pair of order five falls to order two there, and its estimate sees little of
+//! it. So each element says what it asks for and its cap; where they cross within a step, the step
+//! is cut.
 
 use crate::rock::Vec3;
 use crate::solver::tableau::RATIO;
@@ -6,6 +17,7 @@ use crate::solver::tableau::RATIO;
 /// Times of its stages (–, relative to the step).
 pub(in crate::solver) const NODES: [f64; 6] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 
+/// Coefficients of the stages, row by row.
 const A2: [f64; 1] = [0.2];
 const A3: [f64; 2] = [3.0 / 40.0, 9.0 / 40.0];
 const A4: [f64; 3] = [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0];
@@ -114,6 +126,7 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         flow.rates(1, &mixed(y, h, [&k1.y], A2), k2);
         flow.rates(2, &mixed(y, h, [&k1.y, &k2.y], A3), k3);
         flow.rates(3, &mixed(y, h, [&k1.y, &k2.y, &k3.y], A4), k4);
+        // a kink in the first four fifths is found before the last three stages are paid for
         if let Some(cut) = felt.and_then(|allowed| self.cut(EARLY, h, allowed)) {
             return Attempt::Cut(cut);
         }
@@ -121,6 +134,7 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
         flow.rates(4, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y], A5), k5);
         flow.rates(5, &mixed(y, h, [&k1.y, &k2.y, &k3.y, &k4.y, &k5.y], A6), k6);
         let end = mixed(y, h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y], B);
+        // the seventh stage is at the step's end: it serves the error, and opens the next step
         flow.rates(5, &end, k7);
         let off = mixed(&[0.0; N], h, [&k1.y, &k3.y, &k4.y, &k5.y, &k6.y, &k7.y], E);
         let tried = Tried {
@@ -155,6 +169,7 @@ fn mixed<const N: usize, const K: usize>(
 const SAFETY: f64 = 0.85;
 
 /// By how much the next step may be longer.
+/// `clamp(0.85 err^(−1/4), 0.2, 4)`, with `err² = error2`.
 #[inline]
 pub(in crate::solver) fn growth(error2: f64) -> f64 {
     // The fourth root, between those of the orders 4 and 5 for little more than three roots.
@@ -190,7 +205,10 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
     }
 
     /// Where in the step element `k` first crosses its cap, and how far beyond it gets, by the first `known` stages.
+    ///
+    /// Linear between stages; the shorter step finds it again, nearer.
     fn kink(&self, k: usize, known: usize) -> (f64, f64) {
+        // what is asked less the cap: above 0 it slips, or the contact is open
         let over = |stage: &Rates<N, Q, P>| {
             let [asked2, cap] = stage.kinks[k];
             asked2.sqrt() - cap
@@ -206,6 +224,7 @@ impl<const N: usize, const Q: usize, const P: usize> Stages<N, Q, P> {
             }
             (before, at) = (here, node);
         }
+        // a kink hardly left at the start is hardly felt: the lesser of both sides counts
         (found.unwrap_or(1.0), beyond.min(first.abs()))
     }
 }

@@ -1,4 +1,8 @@
 //! Steps through the time of one contact on a plane, with the local error under control.
+//!
+//! The normal force is known in closed form before slip is followed: on a plane normal motion does
+//! not feel friction. So the law of slip is an ordinary differential equation with a given force,
+//! smooth but for the kinks where an element begins or ends to slip.
 
 use super::ImpactEffort;
 use super::dormand_prince::{Attempt, Flow, NODES, Rates, Stages, growth};
@@ -18,10 +22,14 @@ pub(super) trait ForcedFlow<const N: usize, const Q: usize, const K: usize> {
 }
 
 /// The force along a contact, by series from step to step.
+/// Forces in `m ω v_n`; times in `1/ω`.
 struct Force<const D: usize> {
     swing: NormalMotion,
+    /// Gravity into the plane over `ω v_n` (–).
     gamma: f64,
+    /// Force and its rate at the step's start.
     now: [f64; 2],
+    /// Forces at the times of the stages.
     nodes: [f64; 6],
     series: Series<D>,
 }
@@ -34,6 +42,7 @@ impl<const D: usize> Force<D> {
     }
 
     /// Sets the forces at the stages of a step of length `h`.
+    /// Never negative: a contact does not pull.
     #[inline]
     fn aim(&mut self, h: f64) {
         for (force, node) in self.nodes.iter_mut().zip(NODES).skip(1) {
@@ -42,6 +51,9 @@ impl<const D: usize> Force<D> {
     }
 
     /// Goes on by `h`.
+    ///
+    /// A new series from force and rate at the step's end: each holds its digits over one step
+    /// only.
     #[inline]
     fn pass(&mut self, h: f64) {
         self.now = self.series.both(h);
@@ -97,6 +109,7 @@ pub(super) fn run<
 ) -> ([f64; N], [f64; Q]) {
     let mut force = Force::<D>::new(span.swing, span.gamma);
     let over_allowed2 = 1.0 / (span.allowed * span.allowed);
+    // a strong dashpot makes the force's series short-lived
     let longest = LONGEST / (2.0 * span.swing.zeta).max(1.0);
     let (mut sum, mut t, mut wish) = ([0.0; Q], 0.0, span.first);
     let mut stages = Stages::NONE;
@@ -105,6 +118,7 @@ pub(super) fn run<
     while t < span.length {
         let left = span.length - t;
         let wished = wish.min(longest);
+        // the last two steps share what is left, so that none is a remnant
         let h = if wished >= left {
             left
         } else if 2.0 * wished > left {
@@ -125,6 +139,7 @@ pub(super) fn run<
                 }
                 force.pass(h);
                 t = if h >= left { span.length } else { t + h };
+                // after a cut the step before it is taken up again: the kink is behind
                 wish = f64::max(h * growth(tried.error2), kept);
                 kept = 0.0;
                 effort.steps += 1;

@@ -9,6 +9,10 @@
 //!
 //! Without gravity that is at `t_c`, where `f' = −e`; gravity moves it by about `γ (1 + e)/e`. From there a Taylor series, whose
 //! terms follow from the equation itself, gives it to rounding without another sine (numerics 2.1, 2.2).
+//!
+//! Scales: `m` the mass, `p_N` and `c_N` the contact's, `ω = √(p_N/m)`, `ζ = c_N/(2 √(p_N m))`. An
+//! impact on any plane is then told by two numbers, `ζ` and `γ`; `γ` is small for a fast impact and
+//! grows as the rock slows down, until gravity keeps it in contact.
 
 use crate::ground::restitution;
 use crate::math;
@@ -31,6 +35,9 @@ pub(super) struct NormalMotion {
     /// Damping ratio `ζ` (–).
     pub(super) zeta: f64,
     /// Restitution without gravity (–).
+    ///
+    /// `e(ζ) = exp(−2ζ acos ζ/√(1−ζ²))`, for a contact that ends where the force is 0 and nothing
+    /// pulls.
     kept: f64,
     /// When contact ends without gravity (1/ω).
     pub(super) contact: f64,
@@ -50,10 +57,12 @@ pub(super) struct Exit {
 impl NormalMotion {
     pub(super) fn new(zeta: f64) -> Self {
         let zeta = if zeta > NONE { zeta } else { 0.0 };
+        // contact ends where S + 2ζ S' = 0, that is S'/S + ζ = ζ − 1/(2ζ)
         Self { zeta, kept: restitution(zeta), contact: time_at(zeta, zeta - 0.5 / zeta) }
     }
 
     /// Force and its rate at the touch.
+    /// `f(0) = 2ζ`: the dashpot acts at once. `f'(0) = 1 − 2ζ (2ζ − γ)`.
     #[inline]
     pub(super) fn onset(&self, gamma: f64) -> [f64; 2] {
         let zeta = self.zeta;
@@ -63,14 +72,17 @@ impl NormalMotion {
     /// How the rock leaves; `None` if gravity keeps it.
     pub(super) fn exit(&self, gamma: f64) -> Option<Exit> {
         let (lift, rate) = self.lift_nearby(gamma).or_else(|| self.lift_anywhere(gamma))?;
+        // where f = 0: x' = f' − 2ζγ, so the rock rises at −x', still pressed in by x = −2ζ x'
         let up = 2.0 * self.zeta * gamma - rate;
         let x = 2.0 * self.zeta * up;
+        // out of the slab against gravity: up² − 2γ x must be positive, or it falls back
         let left = up * up - 2.0 * gamma * x;
         if up <= 0.0 || left <= 0.0 {
             return None;
         }
         // Without damping nothing is lost, and no rounding may say otherwise.
         let speed = if self.zeta == 0.0 { 1.0 } else { left.sqrt() };
+        // x = up·t − γ t²/2 for the time of the way out, without cancellation
         Some(Exit { lift, out: 2.0 * x / (up + speed), speed })
     }
 
@@ -79,9 +91,11 @@ impl NormalMotion {
     fn lift_nearby(&self, gamma: f64) -> Option<(f64, f64)> {
         let (zeta, e) = (self.zeta, self.kept);
         let late = gamma * (1.0 + e) / e;
+        // too far for the series: gravity moves the end of contact by a good part of its time
         if late.abs() * (2.0 * zeta).max(1.0) > 0.5 * NEAR {
             return None;
         }
+        // at t_c the free swing has S + 2ζS' = 0 and S' = −e, so there f = γ (1 + e) and f' = −e
         let series = Series::<TERMS>::new([gamma * (1.0 + e), -e], zeta, gamma);
         let mut t = late;
         for _ in 0..8 {
@@ -98,6 +112,8 @@ impl NormalMotion {
 
     /// The same, wherever it is: between the touch and the force's first trough.
     fn lift_anywhere(&self, gamma: f64) -> Option<(f64, f64)> {
+        // the force rises, falls and has its first trough; if it is below 0 there, it has crossed 0
+        // just once before
         let mut hi = self.trough(gamma);
         if hi.is_none() && gamma < 0.0 {
             // Nothing holds the rock: the force falls to less than zero at last.
@@ -130,6 +146,8 @@ impl NormalMotion {
         let a = 1.0 - 2.0 * zeta * beta;
         if 1.0 - zeta * zeta > CRITICAL {
             let wd = (1.0 - zeta * zeta).sqrt();
+            // a S' − β S = 0 for a damped swing: a sine whose phase is known, the first time at
+            // which it rises through 0
             let phase = math::atan2((a * zeta + beta) / wd, a);
             return Some((-0.25 * TAU - phase).rem_euclid(TAU) / wd);
         }
@@ -148,6 +166,7 @@ impl NormalMotion {
     /// Largest penetration of an impact that leaves: where `S' = −γ S`.
     pub(super) fn deepest(&self, gamma: f64) -> f64 {
         let zeta = self.zeta;
+        // x' = S' + γ S = 0 at the deepest point
         let t = time_at(zeta, zeta - gamma);
         gamma + math::exp(-zeta * t) * (1.0 - 2.0 * zeta * gamma + gamma * gamma).max(0.0).sqrt()
     }
@@ -160,6 +179,7 @@ fn time_at(zeta: f64, y: f64) -> f64 {
         return 1.0 / y;
     }
     let wd = off.abs().sqrt();
+    // S'/S + ζ = w_d cot(w_d t), and its hyperbolic and critical forms
     if off > 0.0 { math::atan2(wd, y) / wd } else { math::atanh(wd / y) / wd }
 }
 
@@ -183,6 +203,9 @@ fn answer(zeta: f64, t: f64) -> [f64; 2] {
 }
 
 /// The force's Taylor series about some time, of `N` terms.
+///
+/// `f'' = γ − f − 2ζ f'` gives each coefficient from the two before it: `(k+1)(k+2) a_(k+2) = −a_k
+/// − 2ζ (k+1) a_(k+1)`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Series<const N: usize>([f64; N]);
 
@@ -212,6 +235,7 @@ impl<const N: usize> Series<N> {
     }
 
     /// Its value `t` later.
+    /// Horner's rule.
     #[inline]
     pub(super) fn at(&self, t: f64) -> f64 {
         self.0.iter().rev().fold(0.0, |sum, a| sum * t + a)

@@ -1,4 +1,8 @@
 //! An impact on one plane, with gravity.
+//!
+//! Units: mass `m`, speed `v_n` of the approach, time `1/ω`, length `v_n/ω`; spin times radius is a
+//! speed. Frame: two tangents and the normal. Normal motion first, closed and alone; then motion
+//! along the plane under its force; then the free way out of the slab.
 
 use super::ImpactEffort;
 use super::integrate::{ForcedFlow, Span, run};
@@ -60,6 +64,7 @@ pub(crate) struct Rebound {
 }
 
 /// Motion along the plane and spin, with their losses, in units of mass, radius, approach speed and `1/ω`.
+/// Slip is `u = v + R n × ω`: in the frame `u = (v_s − R ω_t, v_t + R ω_s)`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Along2 {
     pub(super) v: Along,
@@ -88,6 +93,8 @@ impl Plane {
         (captured, scale): (bool, f64),
         tolerance: f64,
     ) -> Self {
+        // the dashpot of a patch is c_N |a| and its stiffness p_N |a|², so ζ = c_N/(2 √(p_N m)) is
+        // that of a single point
         let normal = law.normal(captured);
         let stiffness = normal.stiffness_n_m(scale);
         Self {
@@ -108,6 +115,7 @@ impl Plane {
         let [vx, vy, vn] = frame.local(v);
         let speed = -vn;
         let (over, over_force) = (1.0 / speed, 1.0 / (self.omega * speed));
+        // gravity in units of acceleration ω v_n
         let [gx, gy, gn] = frame.local(&self.body.gravity).map(|g| g * over_force);
         let Some(exit) = self.swing.exit(-gn) else { return Followed::Stays };
         let mut effort = ImpactEffort::default();
@@ -120,6 +128,8 @@ impl Plane {
         };
         let along = self.along(&start, &exit, &mut effort);
         let unit_j = self.body.mass * speed * speed;
+        // normal energy (1 − speed²)/2: dashpot, and weight over the way of the slab is none, as it
+        // comes out where it went in
         let pressed = 0.5 * (1.0 - exit.speed * exit.speed).max(0.0);
         let (scale, spin) = (speed / self.omega, speed / self.body.radius);
         Followed::Left(Rebound {
@@ -155,6 +165,7 @@ impl Plane {
             let v = [0, 1].map(|k| start.v[k] + start.gravity[k] * t);
             Along2 { v, w: start.w, way, lost: [0.0; 3] }
         };
+        // after lift-off: free flight along the surface too, until the penetration is 0
         for k in 0..2 {
             let gained = start.gravity[k] * exit.out;
             end.way[k] += (end.v[k] + 0.5 * gained) * exit.out;
@@ -174,12 +185,17 @@ impl Plane {
     }
 
     /// Shear alone: slip and spring decide, velocity and spin follow from the impulse.
+    ///
+    /// Two numbers of slip and two of the spring are integrated; `v` and `ω` follow from the
+    /// impulse `J = Σ q dt` alone: `Δv = −J/m`, and the lever `R` turns it into spin.
     fn shears(&self, start: &Start, t: f64, effort: &mut ImpactEffort) -> Along2 {
         let turns = self.turns();
         let flow = Shear { element: self.shear, lightness: 1.0 + turns, gravity: start.gravity };
         let u = [start.v[0] - start.w[1], start.v[1] + start.w[0]];
         let (y, [slipping, ways @ ..]) = self.run(&flow, [u[0], u[1], 0.0, 0.0], start, t, effort);
         let g = start.gravity;
+        // slip without friction, less slip as it came out, is what the impulse did to the contact
+        // point
         let free = [0, 1].map(|k| u[k] + g[k] * t);
         // Impulse over mass, and its sum over time.
         let blow = [0, 1].map(|k| (free[k] - y[k]) / flow.lightness);
@@ -199,6 +215,9 @@ impl Plane {
     }
 
     /// Shear and rolling.
+    ///
+    /// The rolling moment acts on spin alone, so velocity no longer follows from slip: all ten
+    /// numbers are integrated.
     fn rolls(&self, start: &Start, t: f64, effort: &mut ImpactEffort) -> Along2 {
         let flow = Both {
             shear: self.shear,
@@ -250,6 +269,7 @@ impl Plane {
 }
 
 /// Shares what is known to be lost as the steps have summed it up.
+/// The total is exact, from energies; the parts are sums along the steps and only share it.
 pub(super) fn shared<const N: usize>(lost: f64, parts: [f64; N]) -> [f64; N] {
     let sum: f64 = parts.iter().sum();
     if sum > 0.0 {

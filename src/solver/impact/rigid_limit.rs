@@ -1,4 +1,16 @@
 //! The limit of stiff springs: contacts whose geometry does not change while the impact lasts.
+//!
+//! ```text
+//! c' = v,   v' = Σ (F n − q)/m,   R ω' = (m R²/I) Σ (n × q − M/R)/m
+//! F = max(0, k x + c x'),   x = −n·c
+//! ```
+//!
+//! in units of mass, `|v|`, `R` and `1/ω` of the stiffest contact; normals are fixed, so `x` is
+//! linear in the way.
+//!
+//! Ratios of stiffness stay as `p_N` grows, and with them the outcome: what is computed here is the
+//! limit itself, not a large stiffness. The penetration goes to 0 in it, so weight, the turn of
+//! normals and the time of the impact do not matter.
 
 mod contacts;
 mod rates;
@@ -77,6 +89,9 @@ const MOST_STEPS: u32 = 20_000;
 ///
 /// # Panics
 /// Never: contacts beyond [`MOST`] are not looked at.
+///
+/// Cost: one contact is a closed form and a short integration; several are followed step by step by the
+/// explicit pair.
 pub(crate) fn throw(
     body: &Body,
     contacts: &[FrozenContact],
@@ -92,6 +107,7 @@ pub(crate) fn throw(
         settled: Settled::Free,
         effort: ImpactEffort::default(),
     };
+    // nothing comes nearer: no impact
     if contacts.iter().all(|contact| contact.normal.dot(v) >= 0.0) {
         return same;
     }
@@ -100,6 +116,7 @@ pub(crate) fn throw(
     }
     let rolls = contacts.iter().any(|contact| contact.law.rolling.is_on());
     let how = (body, contacts, tolerance);
+    // the numbers of contacts and springs are constants, so that each case is a loop on the stack
     match (contacts.len(), rolls) {
         (2, false) => several::<2, 15, 8, 6>(how, (v, w), same),
         (2, true) => several::<2, 21, 8, 6>(how, (v, w), same),
@@ -121,6 +138,8 @@ fn alone(
 ) -> FrozenRebound {
     let body = Body { gravity: Vec3::zeros(), ..*body };
     let (law, n) = (contact.law, &contact.normal);
+    // one that gives nothing back has its damping at least doubled over critical, and its rest of
+    // rebound taken away below
     let plane = Plane::of_patch(&body, law, (contact.captured, contact.stiffness_scale), tolerance);
     let Followed::Left(rebound) = plane.follow(n, v, w) else {
         // Without weight nothing keeps it but a speed too small to be squared.
@@ -144,6 +163,7 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     (v, w): (&Vec3, &Vec3),
     mut end: FrozenRebound,
 ) -> FrozenRebound {
+    // |v| is the unit of speed: the tolerance is relative to it
     let speed = v.norm();
     let flow = ContactRates::<K>::new(body, contacts, LOCAL * tolerance);
     let mut run = ImpactRun::<K, N, Q, P>::new(flow, v / speed, w * (body.radius / speed));
@@ -155,6 +175,7 @@ fn several<const K: usize, const N: usize, const Q: usize, const P: usize>(
     for (part, plastic) in parts.iter_mut().zip(place.plastic) {
         part[1] += plastic;
     }
+    // exact energy of the impact; the summed parts only say where it went
     let lost = run.flow.contacts.energy(start) - run.flow.contacts.energy((place.v, place.w));
     let unit_j = body.mass * speed * speed;
     let taken_j: [f64; 3 * MOST] = std::array::from_fn(|k| parts[k / 3][k % 3]);
@@ -192,6 +213,9 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
     }
 
     /// Steps until nothing pushes and nothing comes nearer.
+    ///
+    /// A rock may touch, fly and touch again within one impact (a wedge): flights between touches
+    /// are closed forms and cost no time.
     fn follow(&mut self, first: f64) -> Settled {
         let (mut wish, mut kept, mut time) = (first, 0.0, 0.0);
         let softest = self.flow.contacts.softest;
@@ -236,6 +260,8 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
                     continue;
                 }
             };
+            // a contact that opens or closes within the step ends it: dashpots are shared anew
+            // among those that are pressed
             match self.flow.crossing(&self.y, &tried.y, h) {
                 Some(SwitchTime::Now) if !turned => {
                     turned = true;
@@ -272,6 +298,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
     }
 
     /// Notes how fast the contacts that are pressed come nearer.
+    /// The fastest approach of each tells what restitution may give back of it.
     fn note(&mut self) {
         let v = speed_of(&self.y);
         for (k, contact) in self.flow.contacts.list().iter().enumerate() {
@@ -283,6 +310,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
     }
 
     /// What friction, dashpots and rolling of each contact have taken.
+    /// Sums along the steps, none below 0: the step's error may make a small one negative.
     fn parts(&self) -> [[f64; 3]; MOST] {
         let mut parts = [[0.0; 3]; MOST];
         for (part, sums) in parts.iter_mut().zip(self.sums.chunks(4)) {
@@ -296,6 +324,9 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> ImpactRun<K
 }
 
 /// Since when the motion of a rock has not changed.
+///
+/// A rock wedged between two contacts keeps its velocity, near 0, while springs and friction hold
+/// each other: no step would end that.
 #[derive(Default)]
 struct Quiet {
     since: f64,

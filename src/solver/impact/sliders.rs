@@ -3,6 +3,9 @@
 //! In units of mass, radius, approach speed and `1/ω`. With `s = k ξ/c`, the speed at which the dashpot would hold what the
 //! spring holds, the law of an element reads `p = proj_{cap}(u + s)`, `s' = (k/c)(p − s)`, force `c p`: the slider slips by
 //! `u + s − p`, the dashpot moves by `p − s`.
+//!
+//! Why `s` and not `ξ`: it is a speed, so slip and spring add up before the projection. Losses: the slider takes `c p (u + s − p)`, the dashpot `c
+//! (p − s)²`; what is left goes into the spring.
 
 use super::dormand_prince::Rates;
 use super::integrate::ForcedFlow;
@@ -20,6 +23,7 @@ pub(super) struct SliderElement {
     pub(super) cap: f64,
 }
 
+/// Without a dashpot the element has no such form and is left out.
 impl SliderElement {
     fn new([stiffness, damping, limit]: [f64; 3]) -> Self {
         if damping > 0.0 && limit > 0.0 {
@@ -78,6 +82,8 @@ impl ForcedFlow<4, 3, 1> for Shear {
         let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
         let (share, slips, cap) = self.element.share(asked2, f);
         let p = asked.map(|x| x * share);
+        // an impulse c p changes the slip by (1 + m R²/I) = 7/2 of it for a sphere: velocity and
+        // spin both give way
         let normal_force = self.lightness * damping;
         let g = self.gravity;
         *to = Rates {
@@ -92,6 +98,7 @@ impl ForcedFlow<4, 3, 1> for Shear {
         };
     }
 
+    /// Springs over their rate, so that an error of `s` counts as the stretch it means.
     #[inline]
     fn size2(&self, off: &[f64; 4]) -> f64 {
         let over = 1.0 / self.element.rate;
@@ -116,11 +123,13 @@ impl ForcedFlow<10, 5, 2> for Both {
     #[inline]
     fn rates(&self, f: f64, y: &[f64; 10], to: &mut Rates<10, 5, 2>) {
         let (shear, rolling) = (self.shear, self.rolling);
+        // u = (v_s − R ω_t, v_t + R ω_s), with y[2..5] = R ω
         let slip = [y[0] - y[3], y[1] + y[2]];
         let asked = [slip[0] + y[5], slip[1] + y[6]];
         let asked2 = asked[0] * asked[0] + asked[1] * asked[1];
         let (share, slips, cap) = shear.share(asked2, f);
         let p = asked.map(|x| x * share);
+        // rolling acts on all of the spin, that about the normal too
         let wound = [y[2] + y[7], y[3] + y[8], y[4] + y[9]];
         let wound2 = wound[0] * wound[0] + wound[1] * wound[1] + wound[2] * wound[2];
         let (share, _, most) = rolling.share(wound2, f);

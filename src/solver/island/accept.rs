@@ -1,6 +1,9 @@
 //! The end of an accepted step: memories, bonds, angular momentum.
 //!
 //! Until here a step may be tried again with another length; only this part changes what the island remembers.
+//!
+//! Bonds: checked at the end of accepted steps only, by the forces there. A bond that breaks leaves
+//! friction, with its stretch cut back to Coulomb's cone, so that nothing it held becomes motion.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -76,6 +79,7 @@ impl Island<'_> {
             let rate = carry(self.pair_rates[k][last], &from, &pair.n);
             let stretch = pair.stretch(hh);
             // The spring turns with the two rocks about their line.
+            // half the common spin about the normal, over the step: ξ' += ((ω_a + ω_b)·n/2) n × ξ
             let turn = 0.5 * dt * (a.state.w + b.state.w).dot(&pair.n);
             let turned = |x: Vec3| x * math::cos(turn) + pair.n.cross(&x) * math::sin(turn);
             (pair_history.normal_force, pair_history.shear_force, pair_history.n) =
@@ -88,6 +92,7 @@ impl Island<'_> {
             } else {
                 PairImpact::default()
             };
+            // a contact that opens forgets its stretch, a bond does not
             pair_history.shear = if pair_history.closed || pair_history.bond.is_some() {
                 turned(stretch)
             } else {
@@ -116,6 +121,7 @@ impl Island<'_> {
 
 impl Island<'_> {
     /// Angular momentum about the common centre of mass (kg m²/s) of an island that touches nothing but itself.
+    /// `None` where the mesh, or nothing at all, acts: there is nothing to keep then.
     fn angular_state(&self) -> Option<Vec3> {
         let alone =
             self.members.iter().all(|m| m.state.histories.iter().all(|history| !history.closed))
@@ -145,6 +151,10 @@ impl Island<'_> {
 
     /// Gives back the angular momentum that the step's own error took from a free island, by a turn of the whole:
     /// far less than the tolerance, but a free collision keeps it to rounding.
+    ///
+    /// `Δω = I⁻¹ (L₀ − L)` about the centre of mass, as a rigid turn of all rocks: it changes
+    /// neither the velocity of the centre of mass nor
+    /// the speed at which any two rocks near each other.
     fn keep_spin(&mut self, before: Option<Vec3>) {
         let Some(before) = before else { return };
         if self.members.iter().any(|m| m.state.histories.iter().any(|history| history.closed)) {

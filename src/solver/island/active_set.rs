@@ -1,4 +1,8 @@
 //! Which contacts of an island must be solved again.
+//!
+//! Most contacts of a large heap have settled after a few sweeps. Each rock carries a count of how
+//! often it was set in another motion; a contact compares the counts of its rocks with those it
+//! last saw, and is passed over where they agree.
 
 /// Part of that below which a change counts as settled however fast changes die out (–).
 pub(super) const SETTLED_AT_ONCE: f64 = 1e-4;
@@ -45,6 +49,9 @@ impl ActiveSet {
 
     /// Whether all changes still to come are small: `q + q² + …` times the last one, if each sweep leaves the share `q` of
     /// the change before. Where sweeps creep, that is far more than the last change, and only the third sweep tells.
+    ///
+    /// The geometric series `q/(1 − q)` of a linearly convergent iteration, with `q` the worse of
+    /// the last two ratios.
     pub(super) fn is_settled(&self) -> bool {
         let [now, before, earlier] = self.changes;
         let share = f64::max(now / before, before / earlier);
@@ -52,6 +59,7 @@ impl ActiveSet {
         now <= SETTLED_AT_ONCE || knows && now <= 1.0 && now * share <= 1.0 - share
     }
 
+    /// Rock `k` has another motion: all its contacts must be asked again.
     pub(super) fn stir(&mut self, k: usize) {
         self.times[k] += 1;
         self.lately[k] = true;

@@ -3,6 +3,15 @@
 //! Numbers are our own work, where a library would be quicker: those choose their kernels, and with them the order of their sums, by the
 //! processor and the sizes of its caches, and a world must have the same bytes on every machine. One thread: islands are
 //! what is computed at once.
+//!
+//! ```text
+//! pivot_k = A_kk − Σ_{j<k} L_kj U_jk
+//! L_rk    = A_rk − Σ_j L_rj U_jk,        U_kr = pivot_k⁻¹ (A_kr − Σ_j L_kj U_jr)      r > k
+//! ```
+//!
+//! Crout's form: `L` keeps the pivots' size, so that with `A` symmetric `U_kr = pivot_k⁻¹ L_rkᵀ`
+//! and half of the work falls away. No pivoting between blocks: diagonal blocks carry inertia and
+//! are far from singular. Cost: O(fill) products of 6×6.
 
 use super::ordering::Ordering;
 use crate::contact::submatrix::{Mat6, Vec6};
@@ -12,6 +21,7 @@ use nalgebra::{Cholesky, Const, LU};
 pub(super) type Below = (usize, usize, Mat6);
 
 /// A system: one block a rock on the diagonal, and those that join rocks.
+/// Sorted by column and row, each block once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Blocks<'a> {
     pub(super) diagonal: &'a [Mat6],
@@ -21,6 +31,7 @@ pub(super) struct Blocks<'a> {
 }
 
 /// A factor whose pattern is kept as long as the same rocks are joined.
+/// Order and pattern cost more than the numbers; a heap at rest keeps them for thousands of steps.
 #[derive(Debug, Default)]
 pub(super) struct Factor {
     /// Where the blocks below the diagonal stand.
@@ -46,6 +57,9 @@ enum Pivot {
 }
 
 /// Which columns take part in the next ones: each waits at the first of its rows that is still to come.
+///
+/// Linked lists through the columns, as in sparse Cholesky by columns (George and Liu 1981): O(1)
+/// to find the columns that reach row k.
 #[derive(Debug, Default)]
 struct Walk {
     /// The columns that wait at each row: the first, and after each the next.
@@ -73,11 +87,14 @@ impl Factor {
         self.substitute(load)
     }
 
+    /// Finds order and pattern anew, and the place of each block in it.
     fn analyse(&mut self, blocks: Blocks) {
         self.analysed += 1;
         self.joined = blocks.below.iter().map(|block| (block.0, block.1)).collect();
         self.ordering = Ordering::of(blocks.diagonal.len(), &self.joined);
         let Ordering { place, starts, rows } = &self.ordering;
+        // in the order of elimination a block may stand on the other side of the diagonal: then it
+        // is the other half of the pair
         let home = |&(row, column): &(usize, usize)| {
             let turned = place[row] < place[column];
             let (row, column) = (place[row].max(place[column]), place[row].min(place[column]));
@@ -87,6 +104,8 @@ impl Factor {
         self.homes = self.joined.iter().map(home).collect();
     }
 
+    /// Puts the blocks of the matrix in their places; the rest of the pattern is fill and begins as
+    /// zero.
     fn fill(&mut self, blocks: Blocks) {
         let size = self.ordering.rows.len();
         for half in [&mut self.lower, &mut self.upper] {
@@ -121,6 +140,8 @@ impl Factor {
                 waiting = walk.after[j];
                 let at = walk.at[j];
                 let (l, u) = (known_l[at], known_u[at]);
+                // A_kk less the products of the rows above, then the column below, then
+                // (unsymmetric only) the row beside it
                 take(pivot, &known_l[at], &u);
                 for r in at + 1..starts[j + 1] {
                     let slot = walk.slot[rows[r]];
@@ -144,6 +165,7 @@ impl Factor {
     }
 
     /// `L y = b`, then `U x = y`.
+    /// The load is put in the order of elimination first, and the solution taken out of it.
     fn substitute(&self, load: &mut [f64]) -> Option<()> {
         let Ordering { place, starts, rows } = &self.ordering;
         let mut x = vec![Vec6::zeros(); place.len()];
@@ -172,6 +194,9 @@ impl Factor {
 }
 
 /// `c − a bᵀ` in place.
+///
+/// Loops in fixed order, unrolled by the compiler: no library kernel whose order of sums depends on
+/// the processor.
 #[inline]
 fn take(c: &mut Mat6, a: &Mat6, b: &Mat6) {
     for j in 0..6 {

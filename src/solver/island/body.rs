@@ -1,4 +1,7 @@
 //! One rock of an island.
+//!
+//! The state of a rock alone (`ContactState`) with what an island adds: the base and guess of the
+//! stage in hand, motions with and without contact forces, and what it gives to other rocks.
 
 use super::outcome::{Done, Given};
 use super::pair_contact::Twist;
@@ -38,17 +41,20 @@ pub struct IslandBody {
     /// Local error allowed in lasting contact, and the speed of the fastest impact that goes on, 0 if none (m/s).
     pub(super) lasting_m_s: f64,
     pub(super) struck_m_s: f64,
+    /// The stage's base `x* = x + h Σ a_ij f_j`, and the guess of the centre at its end (m).
     pub(super) base: End,
     pub(super) guess: Vec3,
     /// Velocity and spin at the stage's end without contact forces …
     pub(super) free: Twist,
     /// … and with them.
     pub(super) now: Twist,
+    /// Where the stage ended; after the last stage, the step.
     pub(super) end: End,
     /// Forces of the last solution, to start the next from.
     pub(super) kept: Vec<(Feature, f64, Vec3, Vec3)>,
     /// Power given to other rocks at each stage (W).
     pub(super) given: [Given; STAGES],
+    /// Memories at the step's start: a try that is thrown away goes back to them.
     pub(super) known: usize,
     /// Contacts with the mesh in a fixed step.
     pub(super) joints: Vec<DdaContact>,
@@ -57,6 +63,7 @@ pub struct IslandBody {
 }
 
 /// What a rock is and remembers between two steps: all that later steps depend on.
+/// Scratch space and geometry are not in it: they are found again from the motion.
 #[derive(Debug)]
 pub struct Memory {
     motion: (Vec3, Vec3, Vec3),
@@ -143,6 +150,7 @@ impl IslandBody {
     }
 
     /// Goes back to what it was.
+    /// To the bit: from here it goes the way it went, if nothing else has changed.
     pub fn recall(&mut self, memory: &Memory) {
         let state = &mut self.state;
         (state.c, state.v, state.w) = memory.motion;
@@ -193,6 +201,9 @@ impl IslandBody {
     }
 
     /// Speed that the springs of its contacts with the mesh may give it (m/s): `Σ F/(m ω)`.
+    ///
+    /// A spring of frequency `ω` that holds `F` has stored `F²/(2 m ω²)`: let go, it gives `m` the
+    /// speed `F/(m ω)`.
     pub fn pressed_m_s(&self, terrain: &Terrain) -> f64 {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         let histories = self.state.histories.iter();
@@ -223,12 +234,15 @@ impl IslandBody {
 }
 
 impl IslandBody {
+    /// Looks for what the guess of the stage's end touches.
     pub(super) fn look(&mut self, terrain: &Terrain) {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         let guess = self.guess;
         self.state.look_ahead(&world, &guess);
     }
 
+    /// Makes the touches of the guess into contacts of stage `i`; forces begin with those of the
+    /// last solution of the same feature, a warm start.
     pub(super) fn place_contacts(
         &mut self,
         terrain: &Terrain,
@@ -238,6 +252,7 @@ impl IslandBody {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         self.state.place_contacts(&world, tableau, (i, h), (&self.base, &self.guess));
         for contact in &mut self.state.contacts[..self.state.contact_count] {
+            // the same feature as before: its forces are the best first guess there is
             let kept = self.kept.iter().find(|kept| kept.0 == contact.feature);
             if let Some((_, normal_force, shear_force, rolling_moment)) = kept {
                 (contact.normal_force, contact.shear_force, contact.rolling_moment) =
@@ -246,6 +261,7 @@ impl IslandBody {
         }
     }
 
+    /// Keeps the solution of stage `i` as rates, and its forces for the next start.
     pub(super) fn store(&mut self, terrain: &Terrain, (i, hh): (usize, f64)) {
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
         let c = self.base.c + self.now.0 * hh;

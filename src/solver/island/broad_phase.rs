@@ -1,4 +1,8 @@
 //! Which rocks are near each other: grids of several sizes, one for each octave of radii.
+//!
+//! Why not a tree: rocks move in every window, and a sorted list of cells is made anew in O(n log
+//! n) with no memory of its own; why several sizes: in one grid a single boulder makes every cell
+//! as large as itself, and a thousand pebbles fall into one of them.
 
 use crate::math;
 use crate::rock::Vec3;
@@ -23,6 +27,7 @@ const AHEAD: [[i64; 2]; 5] = [[0, 0], [0, 1], [1, -1], [1, 0], [1, 1]];
 ///
 /// Each ball lies in one cell of the grid whose cells are between one and two of its diameters wide, and is compared
 /// with its neighbours there and in coarser grids: the work is near-linear in the number of balls, whatever their sizes.
+/// Pairs come out sorted, so what is built on them does not depend on how the grids lie.
 pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
     let grids = Grids::of(balls);
     let mut entries: Vec<CellEntry> =
@@ -50,6 +55,7 @@ pub fn overlapping(balls: &[Ball]) -> Vec<(u32, u32)> {
 }
 
 /// Octave of the cells a ball lies in: they are at least as wide as the ball.
+/// `⌈log₂ 2r⌉`: two balls of one octave that overlap lie in neighbouring cells.
 fn level(ball: &Ball) -> i32 {
     math::log2(2.0 * ball.radius).ceil() as i32
 }
@@ -83,6 +89,7 @@ impl Grids {
     }
 }
 
+/// Cell numbers are integers, so a point near an edge falls on one side of it for all that ask.
 fn entry(ball: &Ball, level: i32, k: u32) -> CellEntry {
     let cell = 2.0f64.powi(level);
     let [x, y, z]: [f64; 3] = (ball.centre / cell).into();
@@ -92,6 +99,7 @@ fn entry(ball: &Ball, level: i32, k: u32) -> CellEntry {
 /// Calls `see` with every two balls in cells of the same size next to each other. Balls are gone through in the order of
 /// their cells, and so are the first of each column beside them: nothing need be searched.
 fn visit_own(entries: &[CellEntry], see: &mut impl FnMut(u32, u32)) {
+    // one cursor for each of the columns ahead: together they go through the list once
     let mut first = [0; AHEAD.len()];
     for (place, &(level, [x, y, z], k)) in entries.iter().enumerate() {
         for (first, [dx, dy]) in first.iter_mut().zip(AHEAD) {

@@ -3,6 +3,9 @@
 //! With `V` from the first sphere to the second, `s = 1` for the first and `−1` for the second, the relative
 //! displacement is `Σ s_k T_k D_k`, and every submatrix of the sphere–edge contact becomes four:
 //! `K_kl += s_k s_l (p_N V_Nᵀ V_N + p_s T_kᵀ Q T_l)`, `F_k += s_k (p_N λ V_Nᵀ − p_s T_kᵀ ξ)`.
+//!
+//! `λ = |c_b − c_a| − R_a − R_b` (m, negative when pressed in), a bond's rest length in place of
+//! the radii. Dashpots act on the mean velocity of the step, `c/Δt` beside the spring, as in `dda`.
 
 use crate::contact::history::carry;
 use crate::contact::pair::{Bond, PairHistory, between};
@@ -19,7 +22,9 @@ use crate::solver::dda_system::slider::{Change, DdaSlider};
 pub(super) struct DdaPairContact {
     pub(super) pair_history: usize,
     pub(super) ends: [usize; 2],
+    /// Unit vector from the first centre to the second, frozen at the step's start.
     v: Vec3,
+    /// `T` of Eq. (3) for the contact point of each sphere.
     t: [Mat3x6; 2],
     /// `λ` at the step's start (m).
     gap: f64,
@@ -27,17 +32,24 @@ pub(super) struct DdaPairContact {
     limits: FrictionLimits,
     bond: Option<Bond>,
     captured: bool,
+    /// Force of the last judgement (N), positive when pressing.
     normal_force: f64,
     pub(super) presses: bool,
     shear: DdaSlider,
+    /// Whether the shear spring remembers; without, as printed.
     memory: bool,
+    /// Normal force at the end of the last step (N): the printed scheme caps friction by it.
     push_before: f64,
 }
 
+/// `s` of the first and of the second sphere: what pushes one pushes the other back.
 const SIGN: [f64; 2] = [1.0, -1.0];
 
 impl DdaPairContact {
     /// The contact of pair `k` if the rocks are nearer than `slack` (m).
+    ///
+    /// `memory` is off in the printed scheme: no stretch is carried, no dashpot acts along the
+    /// surface.
     pub(super) fn over(
         (k, pair_history): (usize, &PairHistory),
         bodies: [&Body; 2],
@@ -89,14 +101,19 @@ impl DdaPairContact {
         normal_row(&self.v).dot(&(d[0] - d[1])) - self.gap
     }
 
+    /// Slip of the first sphere's contact point relative to the second's over the step (m), Eq.
+    /// (16).
     fn way(&self, d: [&Vec6; 2]) -> Vec3 {
         slip(&self.v, &(self.t[0] * d[0] - self.t[1] * d[1]))
     }
 
+    /// Penetration at the step's start (m), 0 for a contact that closes within the step: its dashpot
+    /// begins at the touch.
     fn inside(&self) -> f64 {
         if self.bond.is_some() { -self.gap } else { (-self.gap).max(0.0) }
     }
 
+    /// `p_N pen + c_N/Δt (pen − pen₀)` (N); negative only in a bond.
     fn normal_force(&self, d: [&Vec6; 2]) -> f64 {
         self.element.force(self.depth(d), self.inside())
     }
@@ -129,6 +146,7 @@ impl DdaPairContact {
     }
 
     /// Opens or closes; whether that changed anything.
+    /// A contact without bond is open where its force would pull.
     pub(super) fn open_or_close(&mut self, d: [&Vec6; 2]) -> bool {
         self.normal_force = self.normal_force(d);
         if self.bond.is_some() {
@@ -139,6 +157,7 @@ impl DdaPairContact {
     }
 
     /// Compares its state with the displacements that came out.
+    /// Shear is judged before the normal state changes: its force belongs to the solution in hand.
     pub(super) fn judge(&mut self, d: [&Vec6; 2]) -> Change {
         let shear_force = self.drag(d);
         let mut change = if self.open_or_close(d) { Change::Mode } else { Change::None };
@@ -154,15 +173,21 @@ impl DdaPairContact {
         change
     }
 
+    /// Fixes its sliders for a step whose states could not be found: friction holds, or there is
+    /// none.
     pub(super) fn stick(&mut self) {
         self.shear.slides = !self.limits.has_friction() && self.bond.is_none();
     }
 
+    /// Shear force on the first sphere (N), against its slip.
     fn drag(&self, d: [&Vec6; 2]) -> Vec3 {
         if self.presses { self.shear.force(&self.way(d)) } else { Vec3::zeros() }
     }
 
     /// Work on end `k` over its displacement (J): what the other rock and the springs give it.
+    ///
+    /// `F_k · D_k` with the force at the step's end: the paper's springs act with it over the whole
+    /// step.
     pub(super) fn work(&self, k: usize, d: [&Vec6; 2]) -> f64 {
         if !self.presses {
             return 0.0;

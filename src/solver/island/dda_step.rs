@@ -64,6 +64,7 @@ impl Island<'_> {
     }
 
     /// Solves the step, and again with the contacts that it ran into; whether the contact states settled.
+    /// Ends, because a rock keeps no more than `MOST` contacts and each round adds one.
     fn solve_fixed(
         &mut self,
         links: &mut [DdaPairContact],
@@ -82,6 +83,7 @@ impl Island<'_> {
     }
 
     /// Open–close iteration; a step that does not settle is solved with all contacts sticking.
+    /// The same limits as for a rock alone (`dda_system`): six changes of state, forty solves.
     fn settle_fixed(&mut self, links: &mut [DdaPairContact], dt: f64) -> Option<bool> {
         let mut rounds = 0;
         for _ in 0..SOLVES {
@@ -123,6 +125,9 @@ impl Island<'_> {
     }
 
     /// One solve of the system with the contact states as they are; `None` if it is singular or no longer finite.
+    ///
+    /// One pass of assembly and factorisation; blocks of contacts are those of the paper's
+    /// submatrices.
     fn solve_once(&mut self, links: &[DdaPairContact], dt: f64) -> Option<()> {
         let solved = self.global.solve(&mut self.members, links, dt);
         let finite = self.members.iter().all(|m| m.ways[1].iter().all(|x| x.is_finite()));
@@ -151,6 +156,9 @@ impl Island<'_> {
     ///
     /// # Errors
     /// [`StepError::SankIn`] if a contact is deeper than the springs are meant for: the step is too long for them.
+    ///
+    /// Energy: the work of a contact on each of its ends; what they do not get back is lost in it,
+    /// half to each.
     fn remember(&mut self, links: &[DdaPairContact], done: &mut Done) -> Result<(), StepError> {
         for pair_history in &mut self.pair_histories {
             pair_history.closed = false;
@@ -158,6 +166,7 @@ impl Island<'_> {
         for link in links {
             let d = link.ends.map(|k| self.members[k].way());
             let d = [&d[0], &d[1]];
+            // half of the smaller radius: deeper, the normal may point the wrong way
             let least = link.ends.map(|k| self.members[k].body.radius);
             if link.depth(d) > DEEPEST * least[0].min(least[1]) {
                 return Err(StepError::SankIn);
@@ -183,6 +192,7 @@ impl Island<'_> {
 
 impl IslandBody {
     /// Displacement of the step.
+    /// Paper Eq. (1), `D = D₀ + E`.
     fn way(&self) -> Vec6 {
         self.ways[0] + self.ways[1]
     }
@@ -199,6 +209,7 @@ impl IslandBody {
     }
 
     /// Makes the touches of the step's start into contacts; what their springs hold.
+    /// Normals and levers are those of this place for the whole step, as in the paper.
     fn meet(&mut self, terrain: &Terrain, how: (f64, bool)) -> Loss {
         let c = self.state.c;
         let world = ContactEnvironment { terrain, body: self.body, laws: &self.laws };
@@ -213,6 +224,9 @@ impl IslandBody {
     }
 
     /// Makes touch `k` a contact of the step, with the memory of the contact that it continues.
+    ///
+    /// `distance_m` is that of the plane of the touch from the centre at the step's start: for one
+    /// found at the end it is counted back.
     fn add_joint(&mut self, terrain: &Terrain, how: (f64, bool), (k, distance_m): (usize, f64)) {
         let step = self.fixed_step(how);
         let Self { state, body, laws, joints, .. } = self;
@@ -246,6 +260,7 @@ impl IslandBody {
     }
 
     /// Moves the rock, and gives what its contacts with the mesh took.
+    /// `v₁ = v₀ + g Δt + 2E/Δt`, with `E` what contacts add to the free displacement.
     fn carry_on(&mut self, terrain: &Terrain, dt: f64, before: &Loss) -> Result<Loss, StepError> {
         let (d, kick) = (self.way(), self.ways[1] * (2.0 / dt));
         let Self { state, body, laws, joints, .. } = self;

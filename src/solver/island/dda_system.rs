@@ -2,6 +2,9 @@
 //!
 //! Rocks that no other touches have a block of their own; the rest is factorised together, and the
 //! pattern is kept as long as the same rocks touch.
+//!
+//! `K_kk` of a rock is `2M/Δt²` with its contacts; `K_kl` couples two rocks that touch. The matrix
+//! is symmetric and positive definite, so blocks are factorised without pivoting.
 
 use super::block_factor::{Below, Blocks, Factor};
 use super::body::BodySlot;
@@ -20,6 +23,9 @@ pub(super) struct Global {
 
 impl Global {
     /// Writes into every member what contacts add to its free displacement over `dt`; false if there is no solution.
+    ///
+    /// One block and one load a rock, then the blocks of contacts between rocks. A rock that no
+    /// other touches is solved at once; the others are handed to the block factor.
     pub(super) fn solve(
         &mut self,
         members: &mut [BodySlot],
@@ -29,21 +35,26 @@ impl Global {
         let mut blocks: Vec<Mat6> = Vec::with_capacity(members.len());
         let mut loads: Vec<Vec6> = Vec::with_capacity(members.len());
         for member in members.iter() {
+            // springs of the rock's contacts with the mesh: they join no other block
             let contacts = member
                 .joints
                 .iter()
                 .fold(Mat6::zeros(), |sum, joint| sum + joint.shape().stiffness());
             let mut load = -(contacts * member.ways[0]);
             member.joints.iter().for_each(|joint| joint.add_load(&mut load));
+            // 2M/Δt²: constant acceleration over the step
             blocks.push(contacts + inertia(member.body.mass, member.body.inertia, dt));
             loads.push(load);
         }
+        // usize::MAX: no other rock touches it
         let mut place = vec![usize::MAX; members.len()];
         for link in links {
             for k in 0..2 {
+                // K_kk and F_k of both ends; K_kl follows below the diagonal
                 blocks[link.ends[k]] += link.stiffness(k, k);
                 loads[link.ends[k]] += link.load(k);
                 for l in 0..2 {
+                    // F − K D₀: each contact of two rocks sees the free displacements of both
                     let way = members[link.ends[l]].ways[0];
                     loads[link.ends[k]] -= link.stiffness(k, l) * way;
                 }
@@ -54,6 +65,7 @@ impl Global {
         for (k, member) in members.iter_mut().enumerate() {
             if place[k] == usize::MAX {
                 let Some(factor) = Cholesky::new(blocks[k]) else { return false };
+                // alone: a 6×6 system of its own
                 member.ways[1] = factor.solve(&loads[k]);
             } else {
                 place[k] = linked;
@@ -63,6 +75,7 @@ impl Global {
         linked == 0 || self.solve_linked(members, links, &place, (&blocks, &loads)).is_some()
     }
 
+    /// Those that touch each other, numbered among themselves: the pattern has no empty rows.
     fn solve_linked(
         &mut self,
         members: &mut [BodySlot],
@@ -77,7 +90,8 @@ impl Global {
             self.diagonal.push(blocks[k]);
             self.load.extend(loads[k].iter());
         }
-        // Ties stand in ascending order of their ends, and so do the blocks below the diagonal by column and row.
+        // Pairs stand in ascending order of their ends, and so do the blocks below the diagonal by
+        // column and row.
         self.below.clear();
         self.below.extend(
             links

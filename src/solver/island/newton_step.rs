@@ -6,6 +6,12 @@
 //! Sweeps over the contacts (Gauss–Seidel) find quickly which contacts press, stick or slip, but converge slowly in
 //! heaps: a push travels one contact a sweep. With those modes held, the stage is smooth, and one linear solve over
 //! all rocks that take part replaces many sweeps. The sweeps then check the modes again.
+//!
+//! ```text
+//! normal:  F = a − b s,  s = n·(v_1 − v_2)              (open contacts are left out)
+//! shear:   q = q0 + J (u − u0) + μ e (F − F0)           sticking: J = κ 1;  sliding: J = κ cap/|trial| (1 − e eᵀ)
+//! rows:    N = ± (n, 0),   S = (± Q, lever n×)          of one end, so s = Σ N x and u = Σ S x
+//! ```
 
 use super::block_factor::{Below, Blocks, Factor};
 use super::body::{BodySlot, IslandBody};
@@ -46,6 +52,9 @@ struct NewtonSystem {
 
 /// Motions of the rocks that take part that solve the stage of length `h` linearised around the present ones, while the
 /// others go on as they do.
+///
+/// `takes_part` lets a jump be local: rocks that have settled keep their motion and enter as moving
+/// supports.
 pub(super) fn jump(
     members: &[BodySlot],
     pairs: &[PairContact],
@@ -90,9 +99,12 @@ impl Linear {
             (pair.line(h), law.shear.left(h, (&pair.shear_force, pair.normal_force)))
         };
         let still = (Vec3::zeros(), Vec3::zeros());
+        // only ends that are sought count in the unknowns: the others stand in the constants
         let sought = [0, 1].map(|k| if place[pair.ends[k]].is_some() { ends[k] } else { &still });
         let own = pair.speed(sought);
         Self {
+            // an end that does not take part moves as it does: its share of the normal speed goes
+            // into the constant
             normal: NormalLine { a: normal.a - normal.b * (speed - own), ..normal },
             shear: slider.at(trial, normal.at(speed)),
             slip: pair.slip(sought),
@@ -180,6 +192,7 @@ impl NewtonSystem {
             }
         }
         if let [Some((k, one)), Some((l, two))] = &rows {
+            // K_kl ≠ K_lkᵀ: friction follows the normal force of both
             let (below, above) = (block(one, two), block(two, one));
             self.joined.push(if k > l {
                 ((*k, *l, below), above)
@@ -227,6 +240,9 @@ impl NewtonSystem {
 }
 
 /// Rows of normal speed and slip of one end.
+///
+/// The lever is `R` for both ends with the same sign: spins of two rocks rolling on each other add
+/// up in the slip.
 fn rows(n: &Vec3, sign: f64, lever: f64) -> (Vec6, Mat3x6) {
     let across = (Matrix3::identity() - n * n.transpose()) * sign;
     let mut slip = Mat3x6::zeros();

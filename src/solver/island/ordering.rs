@@ -2,6 +2,10 @@
 //!
 //! Approximate minimum degree (Amestoy, Davis & Duff 1996) on the graph of rocks, by faer. Integers only: the order is the
 //! same on every machine.
+//!
+//! Eliminating a rock joins all its neighbours that are left: that is the fill. Taking the rock
+//! with the fewest neighbours first keeps it small; for heaps, whose graphs are like grids in
+//! space, far below that of any order by place.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
@@ -34,6 +38,8 @@ impl Ordering {
             column.sort_unstable();
             column.dedup();
             if let Some((&first, rest)) = column.split_first() {
+                // the elimination tree: the first row below the diagonal is the parent, and
+                // inherits the rest of the column
                 columns[first].extend_from_slice(rest);
             }
             rows.extend(column);

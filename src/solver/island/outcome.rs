@@ -14,6 +14,9 @@ pub struct Given {
 
 impl Given {
     /// Of the two ends of a contact, from the work that each does on it.
+    ///
+    /// `lost` is half of the sum for each; what is left is equal and opposite, so that `passed_on`
+    /// adds up to 0 over a world.
     pub(super) fn of_ends([a, b]: [f64; 2]) -> [Self; 2] {
         let lost = 0.5 * (a + b);
         [Self { lost, passed_on: a - lost }, Self { lost, passed_on: b - lost }]
@@ -40,7 +43,7 @@ pub struct Done {
     pub losses: Vec<Loss>,
     /// Energy given to other rocks, for each rock (J).
     pub given: Vec<Given>,
-    /// Steps tried and deviated away.
+    /// Steps tried and thrown away.
     pub rejected: u64,
     /// Impacts on the mesh (`rigid`; with the others the memory of a contact tells).
     pub hits: Vec<Hit>,

@@ -4,6 +4,12 @@
 //! step ran into are taken in the order of their times; then what still overlaps is moved apart. The step's length
 //! follows from the way of the fastest rock alone, so that its cost grows with the number of rocks and no faster. An
 //! island of one rock is the single rock's scheme.
+//!
+//! ```text
+//! resting_contacts      v₁ = v₀ + g Δt + M⁻¹ Σ J        sustained contacts, geometry of the middle of the step
+//! impacts               blows between v₀ and v₁, each at its own time within the step
+//! position_correction   c moved out of what still overlaps, paid for by energy
+//! ```
 
 mod contacts;
 mod position_correction;
@@ -32,6 +38,7 @@ use sweeps::{ContactQueue, Leaning};
 pub const TRAVEL: f64 = 0.2;
 
 /// Work space of the rigid steps of an island.
+/// Kept from step to step, so that a step of a thousand rocks allocates next to nothing.
 #[derive(Debug, Default)]
 pub(super) struct RigidIsland {
     balls: Vec<StepBody>,
@@ -65,6 +72,9 @@ impl RigidIsland {
     ///
     /// # Errors
     /// [`StepError`] if motion is no longer finite.
+    ///
+    /// The order of the parts matters: sustained contact first gives each rock the path on which
+    /// its impacts are looked for.
     pub(super) fn advance(
         &mut self,
         terrain: &Terrain,
@@ -97,6 +107,7 @@ impl RigidIsland {
     }
 
     /// Takes over the end of the step.
+    /// Impulses over the step's length are the forces that the next step starts from.
     fn take_over(
         &self,
         terrain: &Terrain,
@@ -106,12 +117,15 @@ impl RigidIsland {
         for (pair_history, struck) in pair_histories.iter_mut().zip(&self.struck) {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.balls[k as usize]);
             let (n, distance) = between(&a.c, &b.c);
+            // a touch a little apart still holds: rounding must not end a heap's contacts from step
+            // to step
             let reach = a.body.radius + b.body.radius + HELD * a.body.radius.min(b.body.radius);
             pair_history.n = n;
             pair_history.closed =
                 *struck && distance <= reach && pair_history.is_slow(&(a.v - b.v));
             (pair_history.normal_force, pair_history.shear_force, pair_history.slides) =
                 (0.0, Vec3::zeros(), false);
+            // known from now on as a contact that does not rebound, until the rocks are apart
             pair_history.captured = true;
             if distance > reach {
                 pair_history.captured = false;
@@ -159,6 +173,7 @@ impl RigidIsland {
 }
 
 /// Lists for every rock the numbers of what joins it to another, or to itself alone.
+/// Counting sort: two passes, no allocation but the lists themselves.
 fn lay(ends: &[[usize; 2]], rocks: usize, (first, links): (&mut Vec<u32>, &mut Vec<u32>)) {
     let of = |[a, b]: [usize; 2]| [Some(a), Some(b).filter(|b| *b != a)].into_iter().flatten();
     first.clear();
@@ -197,6 +212,7 @@ impl StepBody {
 
 impl RigidIsland {
     /// Takes the rocks over at the start of a step.
+    /// Losses and hits are those of one step; contacts are found anew in it.
     fn begin(&mut self, members: &[BodySlot], pair_histories: &[PairHistory]) {
         self.balls.clear();
         let ball = |member: &BodySlot| {
@@ -219,8 +235,10 @@ impl RigidIsland {
     }
 
     /// Length of the step (s): the time left in equal parts.
+    /// Equal parts of the window, so that no remnant is left for the last.
     fn step_s(&self, longest: f64, h_max: f64) -> f64 {
         let way = |ball: &StepBody| {
+            // the fastest that it may get within the window
             let speed = ball.v.norm() + ball.body.gravity.norm() * h_max;
             TRAVEL * ball.body.radius / speed.max(f64::MIN_POSITIVE)
         };

@@ -4,6 +4,9 @@
 //! penetrations are those at the end of the stage, so geometry and forces depend on each other: forces are solved
 //! with the geometry of a guess, the guess is moved to where they lead, and this is repeated until both agree. On
 //! planes one pass suffices; around corners and between spheres a few.
+//!
+//! The equations of one rock are those of `solver::stage`; what is new is that forces between rocks
+//! act on two of them with opposite sign, and that all must agree before any goes on.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -18,7 +21,11 @@ use crate::solver::tableau::Tableau;
 
 impl Island<'_> {
     /// Solves implicit stage `i` of a step of length `h` and stores its rates.
+    ///
+    /// Outer loop: geometry; inner: forces (`settle`). A step that fails in either is tried again,
+    /// shorter.
     pub(super) fn stage(&mut self, tableau: &Tableau, i: usize, h: f64) -> Option<()> {
+        // γ h, the same for all stages: contacts keep their effective stiffness through the step
         let hh = tableau.diagonal * h;
         for member in &mut self.members {
             // the guess goes on with velocity and acceleration of the stage before
@@ -26,6 +33,8 @@ impl Island<'_> {
             let (ahead_c, ahead_v) = (before.c, before.v);
             member.base = member.state.base(tableau, i, h);
             member.guess = member.base.c + (ahead_c + ahead_v * hh) * hh;
+            // what the rock would do in the stage without contacts: weight changes velocity,
+            // nothing changes spin
             member.free = (member.base.v + member.body.gravity * hh, member.base.w);
             member.look(self.terrain);
         }
@@ -41,6 +50,7 @@ impl Island<'_> {
             }
             let mut agreed = true;
             for member in &mut self.members {
+                // the stage's end with the forces just found
                 let c = member.base.c + member.now.0 * hh;
                 // every rock must agree: a contact of one decides the forces on its neighbours
                 let allowed = AGREED * member.body.radius;
@@ -57,6 +67,9 @@ impl Island<'_> {
     }
 
     /// Makes contacts of the pairs of rocks that are near, based at the stage's base.
+    ///
+    /// A pair within a tenth of the smaller radius is a candidate; whether it presses is found by
+    /// the solution.
     fn place_pairs(&mut self, tableau: &Tableau, (i, h): (usize, f64)) {
         self.pairs.clear();
         for (k, pair_history) in self.pair_histories.iter().enumerate() {
@@ -73,6 +86,7 @@ impl Island<'_> {
             // penetration is measured from the base, along the normal of the guess
             let apart = pair.n.dot(&((a.base.c - b.base.c) - (a.guess - b.guess)));
             pair.penetration -= apart;
+            // a new contact: whether it rebounds is judged by the approach at the stage's base
             if !pair_history.is_held() {
                 pair.begin(-pair.n.dot(&(a.base.v - b.base.v)));
             }
@@ -121,6 +135,9 @@ impl Island<'_> {
     }
 
     /// Rates at the present state, for the explicit first stage.
+    ///
+    /// Nothing is solved: forces follow from places, velocities and stretches as they are
+    /// (`act_now`).
     pub(super) fn rates_now(&mut self) {
         for member in &mut self.members {
             let IslandBody { state, body, laws, .. } = &mut **member;

@@ -4,6 +4,10 @@
 //! not been stirred since it was solved is passed over, so a sweep costs what happens and not what is there. Where
 //! contacts oppose each other stiffly (a light rock under a heavy one, a high pile) sweeps creep; then the stirred part
 //! of the island is solved at once in the modes that they have found, and the sweeps judge the result.
+//!
+//! Settled means: what is still to come would change no velocity by more than a hundredth of the
+//! step's tolerance. Absolute forces would not do: a newton is nothing for a block and everything
+//! for a pebble.
 
 use super::active_set::SETTLED_AT_ONCE;
 use super::assembly::Island;
@@ -28,9 +32,13 @@ const ROUNDING: f64 = 1e-11;
 
 impl Island<'_> {
     /// Finds all contact forces of a stage of length `h`; whether they settled.
+    ///
+    /// Sweeps and jumps alternate; a jump is never the last word, as it knows neither Coulomb's
+    /// cone nor that contacts do not pull.
     pub(super) fn settle(&mut self, h: f64) -> bool {
         self.drive(h);
         self.stirred.begin(self.members.len(), self.pairs.len());
+        // forces of the last stage were the first guess: a warm start
         for round in 0..JUMPS {
             if self.sweep_on(h) {
                 return true;
@@ -44,6 +52,9 @@ impl Island<'_> {
     }
 
     /// Sweeps until nothing changes or a jump is due; whether nothing changes any more.
+    ///
+    /// The number of sweeps before a jump grows with what is still stirred: a large stirred part
+    /// makes a jump dear.
     fn sweep_on(&mut self, h: f64) -> bool {
         let mut most = SWEEPS.2;
         let mut k = 0;
@@ -72,6 +83,7 @@ impl Island<'_> {
     }
 
     /// The neighbours of what was stirred take part in a jump.
+    /// Without them a jump would press stirred rocks against ones held fast.
     fn grow_stirred(&mut self) {
         let core = self.stirred.lately.clone();
         for [a, b] in self.pairs.iter().filter(|pair| pair.acts()).map(|pair| pair.ends) {
@@ -100,6 +112,7 @@ impl Island<'_> {
     }
 
     /// One pass over the contacts, onwards or backwards.
+    /// To and fro, so that a load is handed up and down a pile alike.
     fn sweep(&mut self, h: f64, backwards: bool) {
         let (contacts, pairs) = (self.members.len(), self.pairs.len());
         for k in 0..contacts + pairs {
@@ -135,6 +148,7 @@ impl Island<'_> {
                 .abs()
                 .max((contact.shear_force - before.1).norm());
             let change = change.max((contact.rolling_moment - before.2).norm() / body.radius);
+            // a force that changes the velocity by SETTLED · tolerance in a stage
             let allowed = SETTLED * self.tolerance * body.mass / h;
             worst =
                 worst.max(change / allowed.max(ROUNDING / SETTLED_AT_ONCE * contact.normal_force));
@@ -148,6 +162,7 @@ impl Island<'_> {
         self.stirred.contacts[k] = if count > 1 { seen } else { self.stirred.times[k] };
     }
 
+    /// Takes the pair's own forces off both rocks, solves it, and puts the new ones on.
     fn sweep_pair(&mut self, k: usize, h: f64) {
         let passes_over = self.passes_over();
         let pair = &mut self.pairs[k];
@@ -172,6 +187,7 @@ impl Island<'_> {
             }
         }
         let allowed = SETTLED * self.tolerance / (h * pair.inv_m);
+        // whichever is larger: a change that matters to the velocity, or rounding of a large force
         let worst = change / allowed.max(ROUNDING / SETTLED_AT_ONCE * pair.normal_force.abs());
         self.stirred.note(worst);
         if worst > STIRS {
@@ -183,6 +199,9 @@ impl Island<'_> {
     }
 
     /// Sets every force of rocks that jumped to what its law gives at their new motions.
+    ///
+    /// The linear system knows neither cones nor that a contact cannot pull: the law is asked once
+    /// more.
     fn act_on(&mut self, motions: &[Option<Twist>], h: f64) {
         for (member, motion) in self.members.iter_mut().zip(motions) {
             let Some((v, w)) = motion else { continue };

@@ -3,6 +3,17 @@
 //! The numbers of a state are way, velocity, spin, shear stretch and rolling stretch, in the frame of two tangents
 //! and the normal: fourteen in all. Normal force and friction follow in closed form (`stage_force`,
 //! `Pair::solve`), so a stage takes no iteration but that of the two sliders.
+//!
+//! Equations of a stage, with `x*` the state at its base, `h` its length (`γ Δt`) and `v_f = v* + h
+//! g`:
+//!
+//! ```text
+//! F  = max(0, (p_N (pen* − h v_fn) − c_N v_fn)/(1 + (p_N h² + c_N h)/m)), set-valued at penetration 0
+//! q  = p_s ξ* + κ u₁,    κ = p_s h + c_s,       |q| ≤ μ F         both at the end of the stage,
+//! M  = k_r θ* + κ_r ω₁,  κ_r = k_r h + c_r,     |M| ≤ μ_r R F     coupled: `Pair`
+//! v₁ = v_f + h (F n − q)/m,       ω₁ = ω* + h (R n × q − M)/I
+//! ξ' = (q − p_s ξ*)/κ,            θ' = (M − k_r θ*)/κ_r
+//! ```
 
 use crate::contact::neighbours::Neighbours;
 use crate::ground::{Law, NormalElement};
@@ -138,6 +149,9 @@ impl PlaneTrial<'_, '_> {
     }
 
     /// What speaks against the stage's end, if anything: the rock must stay over the face and touch nothing else.
+    ///
+    /// Cheapest first: a distance, a certificate that holds for all of the margin, then tests of
+    /// the place itself.
     #[inline]
     fn objection(&self, dt: f64) -> Option<TryOutcome> {
         if square(three(&self.end, WAY)) > self.room2 {
@@ -190,6 +204,7 @@ impl PlaneTrial<'_, '_> {
     }
 
     /// Whether that is more than at the step's start.
+    /// What cannot be known is the rounding of energies and of places times forces.
     #[inline]
     fn gains(&self) -> bool {
         let body = &self.world.body;
@@ -244,6 +259,9 @@ impl PlaneTrial<'_, '_> {
     }
 
     /// Whether the next step stays where what is near is known, and within the longest step that was allowed for.
+    ///
+    /// Also bounds the time without a look around, in the same way for every mesh: with one
+    /// triangle or a thousand in the plane the steps are the same.
     #[inline]
     fn has_room(&mut self, dt: f64) -> bool {
         self.room_s -= dt;

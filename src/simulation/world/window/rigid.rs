@@ -1,4 +1,7 @@
 //! An island of the rigid limit through one window: steps from its start to its end, whatever happens on the way.
+//!
+//! No events are looked for: the rigid step finds the impacts of its rocks by itself, in the order
+//! of their times.
 
 use super::{IslandWindow, WorldBody};
 
@@ -27,6 +30,7 @@ impl IslandWindow<'_> {
                     break;
                 }
             };
+            // a step that takes all the room ends exactly at the window's end
             self.now_s = if done.dt >= room { self.end_s } else { self.now_s + done.dt };
             self.note(&mut island, &done, (spent, WorldBody::stride));
         }

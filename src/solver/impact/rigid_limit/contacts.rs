@@ -1,4 +1,7 @@
 //! The contacts of a frozen impact, in units of mass, radius, speed and the stiffest contact's `1/ω`.
+//!
+//! In these units a contact's stiffness is `p_N |a|²/p_N,max`, its dashpot `c_N |a|/√(p_N,max m)`,
+//! spin is `R ω/|v|`.
 
 use super::FrozenContact;
 use crate::contact::MOST;
@@ -33,6 +36,7 @@ pub(super) struct Contacts {
     list: [ImpactContact; MOST],
     len: usize,
     /// Frequency of the softest.
+    /// In units of the stiffest's: `√(k_min/k_max)`, at most 1.
     pub(super) softest: f64,
     /// `m R²/I` (–).
     pub(super) turns: f64,
@@ -94,11 +98,13 @@ impl Contacts {
     }
 
     /// Energy of motion.
+    /// `(v² + (Rω)²/(m R²/I))/2`, the unit of energy being `m |v|²`.
     pub(super) fn energy(&self, (v, w): (Vec3, Vec3)) -> f64 {
         0.5 * (v.norm_squared() + w.norm_squared() / self.turns)
     }
 
     /// Whether nothing in them takes energy.
+    /// Then the limit is exactly elastic, and so must be the result.
     fn conserve(&self) -> bool {
         self.list().iter().all(|contact| {
             contact.damping == 0.0 && !contact.shear.is_on() && !contact.rolling.is_on()
@@ -107,6 +113,9 @@ impl Contacts {
 
     /// Takes out of the motion what captured contacts gave back of themselves and every approach that is left, and sees to it
     /// that the energy is not more than it was: exactly the same where nothing in the contacts takes any.
+    ///
+    /// Captured contacts have a spring too, and would throw the rock back by their own restitution;
+    /// that much is taken from them, not what other contacts threw at the rock.
     pub(super) fn come_to_an_end(
         &self,
         before: (Vec3, Vec3),
@@ -114,6 +123,8 @@ impl Contacts {
         nothing: f64,
     ) -> AfterImpact {
         let mut plastic = [0.0; MOST];
+        // each round may press the rock against a contact it had left: at most one more for each
+        // contact
         for _ in 0..=self.len {
             let own = |k: usize| ALLOWANCE * self.list[k].kept * self.fastest[k] + nothing;
             let stays = |k: usize| self.list[k].captured && self.list[k].n.dot(&v) <= own(k);
@@ -144,6 +155,9 @@ impl Contacts {
 
     /// Closest velocity to `v` that comes nearer to no contact and neither nears nor leaves those that are `held`. In three
     /// dimensions it is `v` itself, lies in one contact's plane, along the line of two, or is zero: each is tried.
+    ///
+    /// A projection on a convex cone; in the sense of energy the closest is the one that loses
+    /// least.
     fn nearest_allowed(&self, v: &Vec3, held: [bool; MOST]) -> Vec3 {
         let is_allowed = |x: &Vec3| {
             self.list().iter().zip(held).all(|(contact, held)| {
@@ -174,6 +188,7 @@ impl Contacts {
 
     /// Books energy that ended in the contacts to those that stopped `v`, by the speeds they stopped.
     fn share_plastic(&self, v: &Vec3, taken: f64, held: [bool; MOST], plastic: &mut [f64; MOST]) {
+        // square of the speed along each normal that had to go: the energy it stood for
         let stopped: [f64; MOST] = std::array::from_fn(|k| {
             let up = if k < self.len { self.list[k].n.dot(v) } else { 0.0 };
             if up < 0.0 || held[k] { up * up } else { 0.0 }

@@ -1,4 +1,8 @@
 //! Rates of a rock among several frozen contacts, and the moments at which contacts open and close.
+//!
+//! A contact is pressed from the moment its penetration is 0 and rising until its force would pull;
+//! where that changes the dashpots are shared anew, so steps end there and rates are smooth in
+//! between.
 
 use super::contacts::{Contacts, SwitchTime};
 use super::{FrozenContact, LONGEST_STEP, NOTHING};
@@ -22,12 +26,16 @@ pub(super) fn speed_of<const N: usize>(y: &[f64; N]) -> Vec3 {
 }
 
 /// Up to `K` contacts and which of them are pressed.
+/// `K` is the room for contacts; `N = 9 + 3 K` numbers without rolling, `9 + 6 K` with.
 pub(super) struct ContactRates<const K: usize> {
     pub(super) contacts: Contacts,
     pub(super) pressed: [bool; MOST],
     /// Normal damping of each among those pressed now.
     damping: [f64; MOST],
     /// Longest step.
+    ///
+    /// In radians of the stiffest contact, shorter where a dashpot is so strong that it, and not
+    /// the spring, sets the fastest rate.
     pub(super) longest: f64,
     /// Local error allowed.
     pub(super) allowed: f64,
@@ -49,11 +57,13 @@ impl<const K: usize> ContactRates<K> {
     }
 
     /// Speed, and way, that is nothing.
+    /// Far below the error allowed: what is less is neither a touch nor a parting.
     pub(super) fn nothing(&self) -> f64 {
         NOTHING * self.allowed
     }
 
     /// Penetration of contact `k` and its rate.
+    /// `x = −n·way`, `x' = −n·v`: at the touch the way is 0.
     fn depth<const N: usize>(&self, k: usize, y: &[f64; N]) -> [f64; 2] {
         let n = &self.contacts.list()[k].n;
         [-n.dot(&three(y, WAY)), -n.dot(&speed_of(y))]
@@ -65,6 +75,8 @@ impl<const K: usize> ContactRates<K> {
         let (nothing, mut changed) = (self.nothing(), false);
         for k in 0..self.contacts.list().len() {
             let [x, rate] = self.depth(k, y);
+            // in, or at the surface and not leaving: a tolerance on both sides keeps rounding from
+            // opening and closing it without end
             let pressed = x > nothing || (x >= -nothing && rate > -nothing);
             changed |= pressed != self.pressed[k];
             self.set(k, pressed, y);
@@ -75,6 +87,7 @@ impl<const K: usize> ContactRates<K> {
         changed
     }
 
+    /// A contact that opens lets its springs go slack: what they held was lost when it opened.
     fn set<const N: usize>(&mut self, k: usize, pressed: bool, y: &mut [f64; N]) {
         self.pressed[k] = pressed;
         if !pressed {
@@ -91,6 +104,7 @@ impl<const K: usize> ContactRates<K> {
         let list = self.contacts.list();
         for (k, contact) in list.iter().enumerate() {
             let others = list.iter().zip(self.pressed).filter(|(_, pressed)| *pressed);
+            // itself included, where it is pressed: a contact alone keeps its dashpot
             let sum: f64 = others.map(|(other, _)| contact.n.dot(&other.n).max(0.0).powi(2)).sum();
             self.damping[k] = contact.damping / sum.max(1.0).sqrt();
         }
@@ -106,6 +120,7 @@ impl<const K: usize> ContactRates<K> {
     /// Whether no contact pushes.
     pub(super) fn is_free<const N: usize>(&self, y: &[f64; N]) -> bool {
         let nothing = self.nothing() * self.nothing();
+        // open, or its force would pull and it is leaving, or it is just at the surface and still
         (0..self.contacts.list().len()).all(|k| {
             let [x, rate] = self.depth(k, y);
             !self.pressed[k]
@@ -115,6 +130,7 @@ impl<const K: usize> ContactRates<K> {
     }
 
     /// Time until a rock that nothing pushes touches again, if it does.
+    /// Without weight a free rock moves straight: `−x/x'`.
     pub(super) fn next_touch<const N: usize>(&self, y: &[f64; N]) -> Option<f64> {
         let nothing = self.nothing();
         let waits = (0..self.contacts.list().len()).filter_map(|k| {
@@ -125,6 +141,7 @@ impl<const K: usize> ContactRates<K> {
     }
 
     /// Lets a free rock fly on for `wait`.
+    /// Springs are at rest in flight; which contacts press at the end is found anew.
     pub(super) fn drift<const N: usize>(&mut self, y: &mut [f64; N], wait: f64) {
         for k in 0..3 {
             y[WAY + k] += wait * y[V[k]];
@@ -144,10 +161,13 @@ impl<const K: usize> ContactRates<K> {
         let mut first: Option<(f64, usize)> = None;
         for k in 0..self.contacts.list().len() {
             let ([x, rate], [x1, rate1]) = (self.depth(k, y), self.depth(k, end));
+            // a pressed contact that ends apart, or an open one that ends pressed in
             let is_crossed = if self.pressed[k] { x1 < -nothing } else { x1 > nothing };
             if !is_crossed {
                 continue;
             }
+            // at the surface and hardly moving: the crossing is at the start, and only the mode is
+            // wrong
             let slow = self.pressed[k] && x <= nothing && rate <= nothing;
             let at = if slow { 0.0 } else { root([x, rate * h], [x1, rate1 * h], self.pressed[k]) };
             if first.is_none_or(|(found, _)| at < found) {
@@ -173,6 +193,7 @@ impl<const K: usize> ContactRates<K> {
         *rates = Rates::NONE;
         let rolls = N > SPRINGS + 3 * K;
         let (v, w, turns) = (speed_of(y), three(y, W[0]), self.contacts.turns);
+        // unit mass; dw is that of spin times radius, so moments enter times m R²/I
         let (mut dv, mut dw) = (Vec3::zeros(), Vec3::zeros());
         for (k, contact) in self.contacts.list().iter().enumerate().take(K) {
             if !self.pressed[k] {
@@ -181,9 +202,12 @@ impl<const K: usize> ContactRates<K> {
             let (n, at) = (&contact.n, SPRINGS + 3 * k);
             let asked = self.asked(k, y);
             let normal_force = asked.max(0.0);
+            // a contact that opens is a kink too: its "cap" is what it would pull with
             rates.kinks[3 * k] = [normal_force * normal_force, (-asked).max(0.0)];
             let approach = -n.dot(&v);
             let slip = v + n * approach + n.cross(&w);
+            // s of the shear element (`sliders`): the speed at which its dashpot would hold what
+            // its spring holds
             let held = three(y, at);
             let asked = slip + held;
             let (share, slips, cap) = contact.shear.share(asked.norm_squared(), normal_force);
@@ -198,6 +222,7 @@ impl<const K: usize> ContactRates<K> {
             rates.kinks[3 * k + 1] = [asked.norm_squared(), cap];
             if rolls {
                 let at = SPRINGS + 3 * (K + k);
+                // the same of the rolling element, over all three components of the spin
                 let wound = three(y, at);
                 let asked = w + wound;
                 let (share, _, cap) = contact.rolling.share(asked.norm_squared(), normal_force);
@@ -225,6 +250,8 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
 
     #[inline]
     fn size2(&self, off: &[f64; N]) -> f64 {
+        // way, velocity and spin have one unit here; a spring's error counts as the stretch it
+        // means
         let mut sum: f64 = off[..SPRINGS].iter().map(|x| x * x).sum();
         for (k, contact) in self.contacts.list().iter().enumerate() {
             let mut add = |at: usize, rate: f64| {
@@ -242,6 +269,7 @@ impl<const K: usize, const N: usize, const Q: usize, const P: usize> Flow<N, Q, 
 }
 
 /// Where between 0 and 1 the cubic with values and slopes given at both ends crosses zero, downwards or upwards.
+/// Hermite's cubic of penetration and rate at both ends of the step.
 fn root([x0, d0]: [f64; 2], [x1, d1]: [f64; 2], down: bool) -> f64 {
     let (b, a) = (3.0 * (x1 - x0) - 2.0 * d0 - d1, d0 + d1 - 2.0 * (x1 - x0));
     let is_before = |t: f64| {

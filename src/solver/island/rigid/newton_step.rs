@@ -3,6 +3,10 @@
 //! A light rock under a heavy one, a high pile: each sweep hands on a small share of what must be carried. The modes that
 //! the sweeps have found make the step a linear system, that of [`jump`]; the rigid limit is a spring so stiff that what
 //! it gives way is lost beside the tolerance. The sweeps judge the result.
+//!
+//! In the language of stages: `h = 1`, `p_N = 1e7 m_max` per unit of speed, penetration in place of
+//! the speed wanted. A contact then gives way by `J/p_N`, 1e-7 of the speed that the impulse gives
+//! the heaviest rock.
 
 use super::RigidIsland;
 use super::contacts::{BallContact, GroundContact, StepBody};
@@ -21,6 +25,10 @@ const MOST_ROCKS: usize = 64;
 
 impl RigidIsland {
     /// Solves the rocks that were stirred since `times`, and their neighbours, at once; whether that was possible.
+    ///
+    /// Cost: one factorisation over the stirred rocks, in place of the sweeps that creep. Modes
+    /// (closed, sliding) are those of the last sweep; if they were wrong, the sweeps after it find
+    /// out, and `settle` takes the jump back.
     pub(super) fn jump(
         &mut self,
         (members, pair_histories): (&mut [BodySlot], &[PairHistory]),
@@ -30,6 +38,8 @@ impl RigidIsland {
         if takes_part.iter().filter(|part| **part).count() > MOST_ROCKS {
             return false;
         }
+        // one stiffness for all contacts: ratios of masses are in the matrix, and a contact's give
+        // is small against the heaviest rock
         let heaviest = self.balls.iter().map(|ball| ball.body.mass).fold(0.0, f64::max);
         let stiffness = HOLD_BY_SPEED * heaviest;
         self.hand_over(members, stiffness);
@@ -44,6 +54,9 @@ impl RigidIsland {
     }
 
     /// Rocks that were set in another motion, and what touches them.
+    ///
+    /// `times` are the counts of a sweep ago: who changed since is still creeping. Neighbours take
+    /// part, because their contacts must give way too.
     fn stirred_since(&self, times: &[u32]) -> Vec<bool> {
         let core: Vec<bool> =
             self.balls.iter().zip(times).map(|(ball, times)| ball.times != *times).collect();
@@ -64,6 +77,7 @@ impl RigidIsland {
     fn hand_over(&self, members: &mut [BodySlot], stiffness: f64) {
         for (member, ball) in members.iter_mut().zip(&self.balls) {
             let member = &mut **member;
+            // free motion of the step: velocity at its start plus weight, without impulses
             member.free = (ball.before.0 + self.gain(ball), ball.before.1);
             member.now = (ball.v, ball.w);
             member.state.contact_count = 0;
@@ -71,6 +85,7 @@ impl RigidIsland {
         for ground_contact in &self.ground_contacts {
             let member = &mut *members[ground_contact.ball];
             let state = &mut member.state;
+            // no more contacts than a rock keeps: what is left out is left to the sweeps
             if state.contact_count < state.contacts.len() {
                 state.contacts[state.contact_count] =
                     ground_contact.spot(member.body.radius, stiffness);
@@ -106,6 +121,9 @@ impl RigidIsland {
     }
 
     /// Motions from weight and all impulses together.
+    ///
+    /// Adds all impulses anew instead of changes to changes: rounding of many sweeps does not pile
+    /// up.
     fn drive(&mut self) {
         for k in 0..self.balls.len() {
             let gain = self.gain(&self.balls[k]);
@@ -117,12 +135,15 @@ impl RigidIsland {
     }
 
     /// What weight adds to the velocity in the current step.
+    /// `g Δt` (m/s).
     fn gain(&self, ball: &StepBody) -> Vec3 {
         ball.body.gravity * self.dt
     }
 }
 
 impl GroundContact {
+    /// The contact with the mesh as the linear system knows contacts; signs turn, as there forces
+    /// act against slip.
     fn spot(&self, radius: f64, stiffness: f64) -> StageContact {
         let law = Law::stiff(stiffness, self.limits, radius);
         StageContact {
@@ -139,6 +160,7 @@ impl GroundContact {
         }
     }
 
+    /// Impulses of the stiff springs at the rock's new motion, cut to the cones.
     fn give_way(&mut self, ball: &StepBody, stiffness: f64) {
         self.normal_force = (stiffness * (self.target - self.n.dot(&ball.v))).max(0.0);
         let slip = ball.body.slip(&self.n, &ball.v, &ball.w);
@@ -149,6 +171,7 @@ impl GroundContact {
 }
 
 impl BallContact {
+    /// The same for two rocks.
     fn bridge(&self, pair_history: &PairHistory, stiffness: f64) -> PairContact {
         let law = Law::stiff(stiffness, self.limits, 1.0);
         PairContact {

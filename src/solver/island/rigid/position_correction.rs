@@ -1,4 +1,8 @@
 //! Rocks that got into each other or into the mesh are moved out, without adding velocity.
+//!
+//! Velocity-level steps keep gaps only to the error of the step; left alone, overlaps grow. Moving
+//! rocks apart changes places only, but lifts some of them: that height is work, and someone must
+//! pay for it, or a heap warms up by itself.
 
 use super::RigidIsland;
 use super::contacts::StepBody;
@@ -29,6 +33,9 @@ impl PairHistory {
 
 impl RigidIsland {
     /// Moves apart what overlaps, each by its share of the mass; the height that a rock gains is paid by its motion.
+    ///
+    /// Gauss–Seidel over pairs and mesh, to and fro between them until nothing moves: each rock out
+    /// of one neighbour may be in another.
     pub(super) fn part(&mut self, scene: &mut ImpactScene) {
         self.places.clear();
         self.places.extend(self.balls.iter().map(|ball| ball.c));
@@ -37,12 +44,15 @@ impl RigidIsland {
             for pair_history in scene.pair_histories {
                 let ends = [pair_history.a as usize, pair_history.b as usize];
                 let Ok([a, b]) = self.balls.get_disjoint_mut(ends) else { continue };
+                // what weight would press in anyway is left: without it contacts of a heap would
+                // open and close from step to step
                 let reach = a.body.radius + b.body.radius;
                 let allowed = reach - pair_history.slack_m([a, b]);
                 if (a.c - b.c).norm_squared() >= allowed * allowed {
                     continue;
                 }
                 let (n, distance) = between(&a.c, &b.c);
+                // each moves by its share of 1/m: the centre of mass of the two stays
                 let way = n * ((allowed - distance) / (a.inv.0 + b.inv.0));
                 a.c += way * a.inv.0;
                 b.c -= way * b.inv.0;
@@ -76,6 +86,7 @@ impl RigidIsland {
     /// error of a step loses its energy there, and has it back when it is lifted out. The rest is paid by motion.
     /// (Paid by motion alone, the lifting of 1e-5 R would stop a heap that begins to slide.)
     fn pay_for_height(&mut self) {
+        // heights of all rocks together: what one rock sinks pays for what another rises
         let mut net_j = 0.0;
         for (k, (ball, from)) in self.balls.iter_mut().zip(&self.places).enumerate() {
             ball.moved = ball.c != *from;
@@ -90,6 +101,7 @@ impl RigidIsland {
     }
 
     /// Takes energy (J) out of the motion of all rocks that are pushed, each its share.
+    /// In proportion to what each has, so that directions and ratios of speeds stay.
     fn pay_together(&mut self, owed_j: f64) {
         let takes_part = |ball: &StepBody| ball.pushed || ball.moved;
         let motion_j: f64 =

@@ -4,6 +4,10 @@
 //! is stepped from its start to its end and acts with its mean, so that a resting contact stays where it is and the
 //! parabola is exact; a normal impulse never works on the rocks: what it may give back at the end of a step is at most
 //! what it took at its start.
+//!
+//! Why velocities and not places: a spring's force would need steps of `0.3/ω`; an impulse over a
+//! step only asks that a contact does not approach at its end. Steps are then as long as the way of
+//! the rocks allows, 0.2 R.
 
 use super::RigidIsland;
 use super::contacts::{BallContact, GroundContact, StepBody};
@@ -32,6 +36,9 @@ fn target(gap: f64, speed: f64, dt: f64) -> f64 {
 
 impl RigidIsland {
     /// Takes the rocks through the step without its impacts; whether the impulses settled.
+    ///
+    /// Contacts of the step, weight, warm start, sweeps, and the way of the step: the order of
+    /// Moreau's time stepping.
     pub(super) fn sustain(
         &mut self,
         terrain: &Terrain,
@@ -50,6 +57,7 @@ impl RigidIsland {
     }
 
     /// Contacts with the mesh in the middle of the step.
+    /// In the middle of the step, so that a slide over curved ground is right to second order.
     fn stand(&mut self, terrain: &Terrain, members: &mut [BodySlot], dt: f64) {
         self.ground_contacts.clear();
         for (k, (member, ball)) in members.iter_mut().zip(&self.balls).enumerate() {
@@ -70,6 +78,8 @@ impl RigidIsland {
                 ground_contact.target = target(gap, speed, dt);
                 let kept = member.kept.iter().find(|kept| kept.0 == touch.feature);
                 if let Some((_, normal_force, shear_force, turn)) = kept {
+                    // impulses of the last step, turned into the present tangent plane: a warm
+                    // start saves most sweeps of a heap at rest
                     let along = shear_force - ground_contact.n * ground_contact.n.dot(shear_force);
                     (
                         ground_contact.normal_force,
@@ -83,6 +93,9 @@ impl RigidIsland {
     }
 
     /// Contacts of rocks with each other in the middle of the step.
+    ///
+    /// Pairs stand in the order of their numbers, and so do their contacts: sweeps go through them
+    /// in the same order everywhere.
     fn link(&mut self, pair_histories: &[PairHistory], dt: f64) {
         self.ball_contacts.clear();
         for (k, pair_history) in pair_histories.iter().enumerate() {
@@ -122,6 +135,9 @@ impl RigidIsland {
     }
 
     /// Moves the rocks with their mean velocities and books what the impulses took.
+    ///
+    /// Places go with `(v₀ + v₁)/2`, and so does the work of every impulse: energy balances to
+    /// rounding.
     fn go_on(&mut self, terrain: &Terrain, members: &[BodySlot], dt: f64) {
         let mean = |ball: &StepBody| -> (Vec3, Vec3) {
             ((ball.v + ball.before.0) * 0.5, (ball.w + ball.before.1) * 0.5)
@@ -132,6 +148,7 @@ impl RigidIsland {
         {
             let (member, ball) = (&members[ground_contact.ball], &self.balls[ground_contact.ball]);
             let world = ContactEnvironment { terrain, body: member.body, laws: &member.laws };
+            // the work of an impulse is that at the mean velocity, exactly
             let motion = mean(ball);
             self.losses[ground_contact.ball].add(&ground_contact.loss(&world, &motion), 1.0);
             self.taken_j -= ground_contact.normal_force * ground_contact.n.dot(&motion.0);

@@ -4,6 +4,9 @@
 //! to the next the impulses therefore go on in a conjugate direction: `x ← S(x) + β p`, `p ← S(x) − x + β p`, with `β` the
 //! ratio of the squares of the last two sweeps' changes, and anew where that is no less than 1 (nonsmooth nonlinear
 //! conjugate gradients, Silcowitz, Niebe and Erleben 2010). The last word is a sweep's.
+//!
+//! A contact has settled when its change of speed is small against what its weight gains in a step,
+//! or against the speed of its rocks: the rule has no absolute size, so it means the same for pebbles and for blocks.
 
 use super::RigidIsland;
 use super::contacts::Impulses;
@@ -67,6 +70,9 @@ impl RigidIsland {
     }
 
     /// What may still change at every rock: the less the slower it and its neighbours are.
+    ///
+    /// A rock's neighbours count too: a slow rock struck by a fast one need not be solved to its
+    /// own standstill.
     fn allow(&mut self) {
         let few = self.balls.len() <= FEW;
         let of_weight = if few { SETTLED_FEW } else { SETTLED.0 };
@@ -114,6 +120,7 @@ impl RigidIsland {
             square += change.square(inv);
         }
         let share = square / self.lean.square;
+        // where changes grow the direction is worth nothing: begin anew from plain sweeps
         let leans = share < 1.0;
         self.lean.square = square;
         let map = self.lean.map;
@@ -136,6 +143,9 @@ impl RigidIsland {
     }
 
     /// The impulses of a contact, and the weights that make their squares energies.
+    ///
+    /// `1/m` for the normal impulse, `7/2 · 1/m` for that along the surface (contact point), `1/I`
+    /// for rolling.
     fn impulses(&self, k: usize) -> (Impulses, [f64; 3]) {
         let ground_contacts = self.ground_contacts.len();
         if k < ground_contacts {
@@ -182,7 +192,7 @@ impl RigidIsland {
         change
     }
 
-    /// Feet come first, then knots.
+    /// Contacts with the mesh come first, then those between rocks.
     fn sweep_contact(&mut self, k: usize) -> f64 {
         self.asked.remove(k);
         let ground_contacts = self.ground_contacts.len();
@@ -298,6 +308,7 @@ impl Leaning {
 }
 
 /// A set of contacts, a bit for each.
+/// Found again in ascending or descending order by counting zeros of words: no heap, no sorting.
 #[derive(Debug, Default)]
 pub(super) struct ContactQueue(Vec<u64>);
 
