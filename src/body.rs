@@ -5,6 +5,7 @@
 //! hull. Shapes stand in units of the sphere of equal volume, in the frame of the principal axes, so that a radius and a
 //! density make a rock of them. A sphere is one ball at the centre and needs none of this.
 
+mod cut;
 mod hull;
 mod made;
 mod mesh;

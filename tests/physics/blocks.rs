@@ -6,14 +6,16 @@ use crate::common;
 use common::{GROUND, ROCK, terrain};
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use rockfall::body::{
-    Block, Shape, ShapeKind, Solid, box_surface, eota, prism_surface, sphere_points,
+    Block, Core, Shape, ShapeKind, Solid, Surface, box_surface, eota, prism_surface, sphere_points,
 };
 use rockfall::ground::{Ground, Scar, SlipFriction};
 use rockfall::plan::{Recorders, RestRule};
 use rockfall::random::{Purpose, stream, unit};
 use rockfall::release::{DrawnShape, Release};
 use rockfall::rock::{Motion, Vec3};
-use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, Trajectory, simulate_block};
+use rockfall::simulation::{
+    Keep, RunSettings, Scratch, Stop, Trajectory, simulate, simulate_block,
+};
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
 use rockfall::terrain::Terrain;
@@ -39,11 +41,36 @@ const HARD: Ground = Ground {
     ..GROUND
 };
 
-/// All kinds of shapes, with corners rounded at a tenth of the radius.
-fn shapes() -> Vec<(&'static str, ShapeKind, Shape)> {
-    let of = |surface: rockfall::body::Surface| {
-        Shape::of(&Solid::of(&surface), &surface.points, 0.1).unwrap()
+/// A scan: bumps and dents on an ellipsoid, seen at 400 points, its hull thinned to 48 corners.
+fn scan() -> Shape {
+    let mut random = stream(SEED, Purpose::Shape, 0);
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let point = |k: u32| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / 400.0;
+        let (sin, cos) = (golden * f64::from(k)).sin_cos();
+        let out = (1.0 - z * z).sqrt();
+        Vec3::new(out * cos, 0.75 * out * sin, 0.6 * z) * (0.92 + 0.08 * unit(&mut random))
     };
+    let points: Vec<Vec3> = (0..400).map(point).collect();
+    let cloud = Surface { points, triangles: Vec::new() };
+    let corners = cloud.thinned(48, 0.0).unwrap().corners;
+    let core = Core::of(&corners).unwrap();
+    let fan = |face: &rockfall::body::HullFace| {
+        let corners: Vec<u32> = face.corners.iter().map(|k| u32::from(*k)).collect();
+        (1..corners.len() - 1).map(move |k| [corners[0], corners[k], corners[k + 1]])
+    };
+    let hull = Surface {
+        triangles: core.faces.iter().flat_map(fan).collect(),
+        points: core.corners.clone(),
+    };
+    assert!(hull.points.len() > 40 && hull.check_closed().is_ok());
+    Shape::of(&Solid::of(&hull), &hull.points, 0.1).unwrap()
+}
+
+/// All kinds of shapes, with corners rounded at a tenth of the radius; none for a sphere.
+fn shapes() -> Vec<(&'static str, ShapeKind, Option<Shape>)> {
+    let of =
+        |surface: Surface| Some(Shape::of(&Solid::of(&surface), &surface.points, 0.1).unwrap());
     let half = [1.0, 0.8, 0.55];
     let points: Vec<Vec3> =
         sphere_points().iter().map(|p| p.component_mul(&Vec3::from(half))).collect();
@@ -53,7 +80,9 @@ fn shapes() -> Vec<(&'static str, ShapeKind, Shape)> {
         ("eota221", ShapeKind::Eota221, of(eota([1.0, 1.0, 0.5]))),
         ("box", ShapeKind::Box, of(box_surface([1.0, 0.7, 0.4]))),
         ("prism", ShapeKind::Prism, of(prism_surface(6, 0.7))),
-        ("ellipsoid", ShapeKind::Ellipsoid, ellipsoid),
+        ("ellipsoid", ShapeKind::Ellipsoid, Some(ellipsoid)),
+        ("mesh", ShapeKind::Mesh, Some(scan())),
+        ("sphere", ShapeKind::Sphere, None),
     ]
 }
 
@@ -66,7 +95,7 @@ fn slope(triangles: usize) -> Terrain {
 /// Release `index` of a shape in the benchmark's area, turned at random, 1 m above the ground.
 fn fall(
     terrain: &Terrain,
-    (kind, shape): (ShapeKind, &Shape),
+    (kind, shape): (ShapeKind, Option<&Shape>),
     ground: Ground,
     index: usize,
     scratch: &mut Scratch,
@@ -78,8 +107,9 @@ fn fall(
     let turn: [f64; 4] = std::array::from_fn(|_| next() - 0.5);
     let attitude: Rotation3<f64> =
         UnitQuaternion::from_quaternion(Quaternion::from(turn)).to_rotation_matrix();
-    let block = Block::new(shape, &ROCK);
-    let height_m = terrain.ground_below(x, y).unwrap() + 1.0 + block.bound_m;
+    let block = shape.map(|shape| Block::new(shape, &ROCK));
+    let bound_m = block.as_ref().map_or(ROCK.radius_m, |block| block.bound_m);
+    let height_m = terrain.ground_below(x, y).unwrap() + 1.0 + bound_m;
     let motion = Motion {
         time_s: 0.0,
         position_m: Vec3::new(x, y, height_m),
@@ -87,7 +117,6 @@ fn fall(
         spin_rad_s: Vec3::zeros(),
     };
     let release = Release { rock: ROCK, motion, grounds: vec![ground] };
-    let drawn = DrawnShape { kind, sides: [1.0; 2], block, attitude };
     let step = settings(Scheme::Rigid, 0.01, None);
     let course = RunSettings {
         terrain,
@@ -100,6 +129,8 @@ fn fall(
     };
     let keep = Keep { path_step_s: None, impacts: false };
     let random = stream(SEED, Purpose::Impacts, index);
+    let Some(block) = block else { return simulate(&course, &release, keep, random, scratch) };
+    let drawn = DrawnShape { kind, sides: [1.0; 2], block, attitude };
     simulate_block(&course, (&release, &drawn), keep, random, scratch)
 }
 
@@ -116,7 +147,12 @@ struct Counts {
     spin: f64,
 }
 
-fn count(terrain: &Terrain, of: (ShapeKind, &Shape), ground: Ground, releases: usize) -> Counts {
+fn count(
+    terrain: &Terrain,
+    of: (ShapeKind, Option<&Shape>),
+    ground: Ground,
+    releases: usize,
+) -> Counts {
     let (mut scratch, mut counts) = (Scratch::default(), Counts::default());
     for index in 0..releases {
         let fall = fall(terrain, of, ground, index, &mut scratch);
@@ -154,7 +190,7 @@ fn no_block_is_lost_on_the_natural_slope() {
     let slope = slope(10_000);
     for (name, kind, shape) in shapes() {
         for ground in [HARD, SOIL] {
-            let counts = count(&slope, (kind, &shape), ground, 12);
+            let counts = count(&slope, (kind, shape.as_ref()), ground, 12);
             println!("{name} {counts:?}");
             hold(name, &counts);
         }
@@ -170,11 +206,11 @@ fn blocks_by_the_thousand_on_the_natural_slope() {
     for (name, kind, shape) in shapes() {
         for (soil, ground) in [("hard", HARD), ("soil", SOIL)] {
             let begun = Instant::now();
-            let counts = count(&slope, (kind, &shape), ground, releases);
+            let counts = count(&slope, (kind, shape.as_ref()), ground, releases);
             let per_s = releases as f64 / begun.elapsed().as_secs_f64();
             println!(
                 "{name} ({} corners), {soil}: {per_s:.1} rocks/s; {counts:?}",
-                shape.core.corners.len()
+                shape.as_ref().map_or(0, |shape| shape.core.corners.len())
             );
             hold(name, &counts);
         }
