@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 pub const SHARPEST: f64 = 0.01;
 
 /// What a shape is made from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ShapeKind {
     /// One ball at the centre.

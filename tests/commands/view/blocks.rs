@@ -146,7 +146,7 @@ fn stone() -> String {
     let point = |ring: u32, step: u32| {
         let (along, round) = (PI * f64::from(ring) / 12.0, TAU * f64::from(step % 24) / 24.0);
         let lump = if ring % 12 == 0 { 1.0 } else { 1.0 + 0.04 * (5.0 * round).sin() };
-        let out = along.sin() * lump;
+        let out = if ring % 12 == 0 { 0.0 } else { along.sin() * lump };
         format!("vertex {} {} {}\n", out * round.cos(), 0.7 * out * round.sin(), 0.5 * along.cos())
     };
     let mut text = "solid stone\n".to_owned();
@@ -173,7 +173,14 @@ fn stone() -> String {
 #[test]
 fn blocks_on_the_page_are_turned_as_the_table_says() {
     let dir = tempfile::tempdir().unwrap();
-    let out = run(dir.path(), FILE, COUNT);
+    let scene = std::fs::read_to_string(FILE).unwrap();
+    let folder = std::fs::canonicalize("terrain").unwrap();
+    // so long between two instants that many go round in between
+    let scene = scene.replace("../terrain", folder.to_str().unwrap());
+    let scene = scene.replace("path_step_s = 0.05", "path_step_s = 0.2");
+    let path = dir.path().join("scene.toml");
+    std::fs::write(&path, scene).unwrap();
+    let out = run(dir.path(), path.to_str().unwrap(), COUNT);
     let text = std::fs::read_to_string(out.join(PAGE)).unwrap();
     let packed = page::section(&text, "paths").unwrap();
     let section = Section::read(packed).unwrap();
