@@ -25,6 +25,8 @@ use crate::terrain::Terrain;
 const TOUCHING: f64 = 1e-10;
 /// No step forward is shorter (s): what comes so soon touches now.
 const SHORTEST_S: f64 = 1e-13;
+/// Rounding of a sum of three products, with room (–): what is skipped because it is far away must be so for certain.
+const CAUTION: f64 = 1e-12;
 /// Way of the centre for which features are collected at a time (–, relative to the radius of the ball around).
 const WINDOW: f64 = 0.5;
 
@@ -49,18 +51,37 @@ struct Moment {
     spin: Vec3,
 }
 
-/// A part of the block that may touch, and until when it surely does not (s).
-#[derive(Clone, Copy)]
-struct DuePart {
-    time: f64,
-    part: BlockPart,
-}
-
+/// A part of the block that may touch.
 #[derive(Clone, Copy)]
 enum BlockPart {
     Corner(usize),
     Ridge(usize),
     Face(usize),
+}
+
+/// Work space of a flight; lists keep their memory from window to window.
+#[derive(Default)]
+struct WindowScratch {
+    /// Parts of the block, and until when each surely touches nothing (s).
+    parts: Vec<BlockPart>,
+    times: Vec<f64>,
+    /// A corner and the unit normal of every triangle near: looked up once a window, asked hundreds of times.
+    planes: Vec<(Vec3, Vec3)>,
+    /// Corners of a face.
+    corners: Vec<Flying>,
+}
+
+impl WindowScratch {
+    /// The part that is due first, of several the first in the list. Times are numbers: a plain comparison is all it takes.
+    fn next(&self) -> Option<usize> {
+        let (mut found, mut least) = (None, f64::INFINITY);
+        for (k, &time) in self.times.iter().enumerate() {
+            if time < least {
+                (found, least) = (Some(k), time);
+            }
+        }
+        found
+    }
 }
 
 impl Tumble<'_> {
@@ -103,7 +124,7 @@ pub fn first_touch(
     near: &mut Neighbours,
 ) -> FlightEnd {
     let (bound, mut t) = (tumble.block.bound_m, 0.0);
-    let mut dues = Vec::new();
+    let mut scratch = WindowScratch::default();
     loop {
         let centre = tumble.path.centre(t);
         if !is_within(terrain, &centre, bound, near) {
@@ -122,7 +143,7 @@ pub fn first_touch(
         let way = WINDOW * bound;
         let ends = (t + time_for(&tumble.path, t, way)).min(longest_s);
         Tumble::collect(tumble.block, near, terrain, (&tumble.path.centre(t), way));
-        if let Some(touch) = advance(terrain, tumble, near, (t, ends), &mut dues) {
+        if let Some(touch) = advance(terrain, tumble, near, (t, ends), &mut scratch) {
             return FlightEnd::Touch(touch);
         }
         if ends >= longest_s {
@@ -159,32 +180,40 @@ fn advance(
     tumble: &Tumble,
     near: &mut Neighbours,
     (begins, ends): (f64, f64),
-    dues: &mut Vec<DuePart>,
+    scratch: &mut WindowScratch,
 ) -> Option<f64> {
     let core = &tumble.block.core;
-    let bend = tumble.bend();
     let (edges, peaks) = (near.sharp_edges().next().is_some(), near.peaks().next().is_some());
-    let due = |part| DuePart { time: begins, part };
-    dues.clear();
-    dues.extend((0..core.corners.len()).map(|k| due(BlockPart::Corner(k))));
-    dues.extend((0..core.ridges.len()).filter(|_| edges).map(|k| due(BlockPart::Ridge(k))));
-    dues.extend((0..core.faces.len()).filter(|_| peaks).map(|k| due(BlockPart::Face(k))));
+    scratch.parts.clear();
+    scratch.parts.extend((0..core.corners.len()).map(BlockPart::Corner));
+    scratch.parts.extend((0..core.ridges.len()).filter(|_| edges).map(BlockPart::Ridge));
+    scratch.parts.extend((0..core.faces.len()).filter(|_| peaks).map(BlockPart::Face));
+    scratch.times.clear();
+    scratch.times.resize(scratch.parts.len(), begins);
+    scratch.planes.clear();
+    let plane = |t: &u32| {
+        let face = terrain.face(*t);
+        (face.a, face.n)
+    };
+    scratch.planes.extend(near.triangles().iter().map(plane));
+    let bend = tumble.bend();
     let mut search = WindowSearch { terrain, tumble, near, bend, moment: tumble.moment(begins) };
     let mut now = begins;
     loop {
-        let next = dues.iter_mut().min_by(|one, other| one.time.total_cmp(&other.time))?;
-        if next.time >= ends {
+        let next = scratch.next()?;
+        let time = scratch.times[next];
+        if time >= ends {
             return None;
         }
-        if next.time > now {
-            now = next.time;
+        if time > now {
+            now = time;
             search.moment = tumble.moment(now);
         }
-        let step = search.safe_step(next.part, ends - now);
+        let step = search.safe_step(scratch.parts[next], ends - now, scratch);
         if step < SHORTEST_S {
             return Some(now);
         }
-        next.time = now + step;
+        scratch.times[next] = now + step;
     }
 }
 
@@ -235,23 +264,36 @@ impl WindowSearch<'_> {
         }
     }
 
+    /// Whether [`Self::safe`] is surely not less than `least` (s): the same bound without its root.
+    #[inline]
+    fn keeps_off(&self, corner: &Flying, (gap, closing): (f64, f64), least: f64) -> bool {
+        let bent = 0.5 * corner.bend * least;
+        let rounding = CAUTION * (closing.abs() + bent);
+        gap > TOUCHING * self.tumble.block.radius_m && gap >= least * (closing + bent + rounding)
+    }
+
     /// How long a part surely touches nothing (s), no longer than `most`.
-    fn safe_step(&mut self, part: BlockPart, most: f64) -> f64 {
+    fn safe_step(&mut self, part: BlockPart, most: f64, scratch: &mut WindowScratch) -> f64 {
         match part {
-            BlockPart::Corner(k) => self.of_corner(k, most),
+            BlockPart::Corner(k) => self.of_corner(k, most, &scratch.planes),
             BlockPart::Ridge(k) => self.of_ridge(k, most),
-            BlockPart::Face(k) => self.of_face(k, most),
+            BlockPart::Face(k) => self.of_face(k, most, &mut scratch.corners),
         }
     }
 
-    fn of_corner(&mut self, k: usize, mut least: f64) -> f64 {
+    fn of_corner(&mut self, k: usize, mut least: f64, planes: &[(Vec3, Vec3)]) -> f64 {
         let corner = self.flying(k);
+        let ball = self.tumble.block.ball_m;
         self.near.tested += self.near.triangles().len() as u64;
-        for &t in self.near.triangles() {
-            let face = self.terrain.face(t);
-            let side = if face.n.dot(&(corner.p - face.a)) < 0.0 { -face.n } else { face.n };
+        for (&t, (a, n)) in self.near.triangles().iter().zip(planes) {
+            let (height, climbs) = (n.dot(&(corner.p - a)), n.dot(&corner.velocity));
+            let closing = if height < 0.0 { climbs } else { -climbs };
             // the plane is never farther than the triangle
-            if self.safe(&corner, &side, &face.a) >= least {
+            if self.keeps_off(&corner, (height.abs() - ball, closing), least) {
+                continue;
+            }
+            let side = if height < 0.0 { -n } else { *n };
+            if self.safe(&corner, &side, a) >= least {
                 continue;
             }
             let q = closest_on(&self.terrain.corners_m(t), &corner.p);
@@ -285,16 +327,27 @@ impl WindowSearch<'_> {
         least
     }
 
-    fn of_face(&self, k: usize, mut least: f64) -> f64 {
+    fn of_face(&self, k: usize, mut least: f64, corners: &mut Vec<Flying>) -> f64 {
         let face = &self.tumble.block.core.faces[k];
-        let corners: Vec<Flying> =
-            face.corners.iter().map(|&k| self.flying(usize::from(k))).collect();
+        corners.clear();
+        corners.extend(face.corners.iter().map(|&k| self.flying(usize::from(k))));
+        let most = |of: fn(&Flying) -> f64| corners.iter().map(of).fold(0.0, f64::max);
+        let (bend, fastest) = (most(|c| c.bend), most(|c| c.velocity.norm()));
+        let middle = corners.iter().map(|c| c.p).sum::<Vec3>() / corners.len() as f64;
+        let around = corners.iter().map(|c| (c.p - middle).norm_squared()).fold(0.0, f64::max);
+        let skin = self.tumble.block.ball_m + TOUCHING * self.tumble.block.radius_m;
+        let around = around.sqrt() * (1.0 + CAUTION) + skin;
         for peak in self.near.peaks() {
+            // far away: whatever the directions
+            let far = around + least * (fastest + 0.5 * bend * least) * (1.0 + CAUTION);
+            if (peak.p - middle).norm_squared() * (1.0 - CAUTION) > far * far {
+                continue;
+            }
             let nearest = (1..corners.len() - 1)
                 .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], &peak.p))
                 .min_by(|a, b| (a - peak.p).norm_squared().total_cmp(&(b - peak.p).norm_squared()));
             let Some(n) = nearest.and_then(|p| (p - peak.p).try_normalize(0.0)) else { continue };
-            for corner in &corners {
+            for corner in corners.iter() {
                 least = least.min(self.safe(corner, &n, &peak.p));
             }
         }
