@@ -160,13 +160,12 @@ fn instant(row: &PathRow, rock: &Row, hull: Option<&BlockHull>) -> PathInstant {
     let speed = Vec3::from(row.velocity_m_s).norm();
     let attitude = row.attitude.unwrap_or([1.0, 0.0, 0.0, 0.0]);
     let (radius_m, spin) = (rock.radius_m, row.spin_rad_s);
-    let turning = match hull {
-        Some(hull) => radius_m * radius_m * hull.rotational(attitude, spin),
+    let turning = if let Some(hull) = hull {
+        radius_m * radius_m * hull.rotational(attitude, spin)
+    } else {
         // I = 2/5 m R²
-        None => {
-            let rim = radius_m * Vec3::from(spin).norm();
-            0.2 * rim * rim
-        }
+        let rim = radius_m * Vec3::from(spin).norm();
+        0.2 * rim * rim
     };
     let total_j = rock.mass_kg * (0.5 * speed * speed + turning);
     let spun_rad = Vec3::zeros();

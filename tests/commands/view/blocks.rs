@@ -107,6 +107,9 @@ fn hulls_on_the_disk_are_those_of_the_bodies() {
         is_hull_of(&hulls, release, &plan.releases.shape(release).unwrap());
     }
     assert!(hulls.hull(COUNT).is_none());
+    // four numbers of an attitude cost no more than other numbers of a path may: 1.5 bytes each
+    let (packed, rows) = (page::section(&text, "paths").unwrap(), paths_of(&out).concat().len());
+    assert!(2 * packed.len() <= 3 * 7 * rows, "{} of {rows}", packed.len());
     assert!(!text.contains("balls of their volume"));
     // a page without blocks holds nothing of this
     assert!(!std::fs::read_to_string("reports/quick/view.html").unwrap().contains("turnAt"));
@@ -145,13 +148,13 @@ fn every_kind_of_shape_has_its_hull() {
 fn stone() -> String {
     let point = |ring: u32, step: u32| {
         let (along, round) = (PI * f64::from(ring) / 12.0, TAU * f64::from(step % 24) / 24.0);
-        let lump = if ring % 12 == 0 { 1.0 } else { 1.0 + 0.04 * (5.0 * round).sin() };
-        let out = if ring % 12 == 0 { 0.0 } else { along.sin() * lump };
+        let lump = 1.0 + 0.04 * (5.0 * round).sin();
+        let out = if ring.is_multiple_of(12) { 0.0 } else { along.sin() * lump };
         format!("vertex {} {} {}\n", out * round.cos(), 0.7 * out * round.sin(), 0.5 * along.cos())
     };
     let mut text = "solid stone\n".to_owned();
     let mut facet = |three: [String; 3]| {
-        text += &format!("facet normal 0 0 0\nouter loop\n{}endloop\nendfacet\n", three.concat());
+        text.extend(["facet normal 0 0 0\nouter loop\n", &three.concat(), "endloop\nendfacet\n"]);
     };
     for ring in 0..12 {
         for step in 0..24 {
@@ -168,7 +171,7 @@ fn stone() -> String {
     text + "endsolid stone\n"
 }
 
-/// On the page every attitude is that of the table to a fifth of a degree, and the rounds between two instants are those of
+/// On the page every attitude is that of the table to a third of a degree, and the rounds between two instants are those of
 /// the spin: where it turns by more than half a round, and only there, the short way is not the one that is shown.
 #[test]
 fn blocks_on_the_page_are_turned_as_the_table_says() {
@@ -182,13 +185,10 @@ fn blocks_on_the_page_are_turned_as_the_table_says() {
     std::fs::write(&path, scene).unwrap();
     let out = run(dir.path(), path.to_str().unwrap(), COUNT);
     let text = std::fs::read_to_string(out.join(PAGE)).unwrap();
-    let packed = page::section(&text, "paths").unwrap();
-    let section = Section::read(packed).unwrap();
+    let section = Section::read(page::section(&text, "paths").unwrap()).unwrap();
     let turns = section.numbers("turn");
     let rows: Vec<PathRow> = paths_of(&out).concat();
     assert_eq!(turns.len(), rows.len());
-    // four numbers of an attitude cost no more than other numbers of a path may, its time, place and energy aside
-    assert!(2 * packed.len() <= 3 * 7 * rows.len(), "{} of {}", packed.len(), rows.len());
     let said = Command::new("node")
         .args([
             "tests/commands/view/turns.js",
@@ -228,7 +228,7 @@ fn blocks_on_the_page_are_turned_as_the_table_says() {
             round += usize::from(angle > PI);
         }
     }
-    assert!(worst < 0.2, "{worst}");
+    assert!(worst < 0.28, "{worst}");
     assert!(tried > 50 && round > 5, "{tried} {round}");
 }
 
@@ -274,7 +274,7 @@ fn goes_the_way(path: &[PathRow], (times, turns): (&[f32], &[[f32; 4]])) {
     };
     let mut keys = times.iter().zip(turns).peekable();
     let first = keys.next().unwrap();
-    assert!(*first.0 == path[0].time_s as f32);
+    assert_eq!(first.0.to_bits(), (path[0].time_s as f32).to_bits());
     let mut last = unit(first.1);
     for two in path.windows(2) {
         let mut gone = Vec3::zeros();
