@@ -20,6 +20,8 @@ use crate::contact::closest::closest_on;
 use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A gap that counts as touching (–, relative to the radius of the sphere of equal volume).
 const TOUCHING: f64 = 1e-10;
@@ -62,26 +64,15 @@ enum BlockPart {
 /// Work space of a flight; lists keep their memory from window to window.
 #[derive(Default)]
 struct WindowScratch {
-    /// Parts of the block, and until when each surely touches nothing (s).
+    /// Parts of the block, in the order in which those due at once are asked.
     parts: Vec<BlockPart>,
-    times: Vec<f64>,
+    /// Until when each of them surely touches nothing, soonest first: the bits of the time (s), which rise with it as times are not
+    /// negative, and its place among the parts.
+    dues: BinaryHeap<Reverse<(u64, u32)>>,
     /// A corner and the unit normal of every triangle near: looked up once a window, asked hundreds of times.
     planes: Vec<(Vec3, Vec3)>,
     /// Corners of a face.
     corners: Vec<Flying>,
-}
-
-impl WindowScratch {
-    /// The part that is due first, of several the first in the list. Times are numbers: a plain comparison is all it takes.
-    fn next(&self) -> Option<usize> {
-        let (mut found, mut least) = (None, f64::INFINITY);
-        for (k, &time) in self.times.iter().enumerate() {
-            if time < least {
-                (found, least) = (Some(k), time);
-            }
-        }
-        found
-    }
 }
 
 impl Tumble<'_> {
@@ -188,8 +179,10 @@ fn advance(
     scratch.parts.extend((0..core.corners.len()).map(BlockPart::Corner));
     scratch.parts.extend((0..core.ridges.len()).filter(|_| edges).map(BlockPart::Ridge));
     scratch.parts.extend((0..core.faces.len()).filter(|_| peaks).map(BlockPart::Face));
-    scratch.times.clear();
-    scratch.times.resize(scratch.parts.len(), begins);
+    let due = |time: f64, part: u32| Reverse((time.to_bits(), part));
+    scratch.dues.clear();
+    let all = if begins < ends { scratch.parts.len() as u32 } else { 0 };
+    scratch.dues.extend((0..all).map(|part| due(begins, part)));
     scratch.planes.clear();
     let plane = |t: &u32| {
         let face = terrain.face(*t);
@@ -199,22 +192,21 @@ fn advance(
     let bend = tumble.bend();
     let mut search = WindowSearch { terrain, tumble, near, bend, moment: tumble.moment(begins) };
     let mut now = begins;
-    loop {
-        let next = scratch.next()?;
-        let time = scratch.times[next];
-        if time >= ends {
-            return None;
-        }
+    while let Some(Reverse((bits, part))) = scratch.dues.pop() {
+        let time = f64::from_bits(bits);
         if time > now {
             now = time;
             search.moment = tumble.moment(now);
         }
-        let step = search.safe_step(scratch.parts[next], ends - now, scratch);
+        let step = search.safe_step(scratch.parts[part as usize], ends - now, scratch);
         if step < SHORTEST_S {
             return Some(now);
         }
-        scratch.times[next] = now + step;
+        if now + step < ends {
+            scratch.dues.push(due(now + step, part));
+        }
     }
+    None
 }
 
 /// The search of a window at one moment.
