@@ -5,6 +5,7 @@
 //! hull. Shapes stand in units of the sphere of equal volume, in the frame of the principal axes, so that a radius and a
 //! density make a rock of them. A sphere is one ball at the centre and needs none of this.
 
+mod cut;
 mod hull;
 mod made;
 mod mesh;
@@ -23,7 +24,7 @@ use serde::{Deserialize, Serialize};
 pub const SHARPEST: f64 = 0.01;
 
 /// What a shape is made from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ShapeKind {
     /// One ball at the centre.

@@ -177,7 +177,7 @@ fn verify(out: &Path) -> Result<ExitCode> {
 fn merge(shards: &[PathBuf], out: &Path, overwrite: bool) -> Result<ExitCode> {
     let mode = if overwrite { Mode::Overwrite } else { Mode::Merge };
     output::merge(shards, out, mode)
-        .and_then(|results| report::draw_merged(&results, &shards[0]))
+        .and_then(|results| report::draw_merged(&results, shards))
         .map_err(|error| error.on_full_disk("make room and merge again with --overwrite"))?;
     Ok(say(format!("results in {}", out.display())))
 }

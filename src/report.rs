@@ -49,6 +49,7 @@ pub mod words;
 
 pub use answers::answers;
 
+use crate::body::Shape;
 use crate::error::{Error, Result};
 use crate::hazard::Hazard;
 use crate::output::{self, FolderLock, Results, write_atomic};
@@ -59,15 +60,21 @@ use figures::FIGURES;
 use model::Report;
 use raster::GroundRaster;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use view::hulls::BlockHull;
 use view::mesh::ViewMesh;
 use words::{Words, fill};
 
-/// Draws a finished run: `figures/*.svg`, `report.html`, and the ground it was drawn on, below the run's folder.
+/// Draws a finished run: `figures/*.svg`, `report.html`, and the ground it was drawn on, below the run's folder; `shape_of`
+/// gives the shape of a release.
 ///
 /// # Errors
 /// When a result file cannot be read or a figure cannot be written.
-pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
+pub fn draw_run(
+    results: &Results,
+    terrain: &Terrain,
+    shape_of: impl Fn(usize) -> Option<Shape>,
+) -> Result<()> {
     let ground = GroundRaster::from_terrain(terrain, GROUND_CELLS);
     ground.write(&results.dir)?;
     let epsg = results.summary.maps.as_ref().and_then(|maps| maps.epsg);
@@ -75,15 +82,17 @@ pub fn draw_run(results: &Results, terrain: &Terrain) -> Result<()> {
     if results.summary.maps.is_some() {
         output::write_terrain(&results.dir, terrain, results.summary.site.mesh_origin_m)?;
     }
-    view::write(results, ViewMesh::of(terrain), Some(&ground))?;
+    let hull_of = |release| shape_of(release).map(|shape| BlockHull::of(&shape));
+    view::write(results, ViewMesh::of(terrain), hull_of, Some(&ground))?;
     draw_all(results, Some(ground))
 }
 
-/// Draws a run put together from shards; the ground is that of `shard`, one of their folders.
+/// Draws a run put together from shards; the ground is that of the first of their folders.
 ///
 /// # Errors
 /// When a result file cannot be read or a figure cannot be written.
-pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
+pub fn draw_merged(results: &Results, shards: &[PathBuf]) -> Result<()> {
+    let shard = shards[0].as_path();
     let ground = GroundRaster::read(shard)?;
     if let Some(ground) = &ground {
         ground.write(&results.dir)?;
@@ -95,8 +104,8 @@ pub fn draw_merged(results: &Results, shard: &Path) -> Result<()> {
     if results.summary.maps.is_some() && from.exists() {
         fs::copy(&from, &to).map_err(Error::file("write", &to))?;
     }
-    if let Some(mesh) = view::mesh_in(shard)? {
-        view::write(results, mesh, ground.as_ref())?;
+    if let Some((mesh, hulls)) = view::kept_in(shards)? {
+        view::write(results, mesh, |release| hulls.hull(release).cloned(), ground.as_ref())?;
     }
     draw_all(results, ground)
 }
@@ -109,8 +118,8 @@ pub fn draw_again(dir: &Path) -> Result<()> {
     let results = output::read(dir)?;
     let _lock = FolderLock::on(dir)?;
     let ground = GroundRaster::read(dir)?;
-    if let Some(mesh) = view::mesh_in(dir)? {
-        view::write(&results, mesh, ground.as_ref())?;
+    if let Some((mesh, hulls)) = view::kept_in(&[dir])? {
+        view::write(&results, mesh, |release| hulls.hull(release).cloned(), ground.as_ref())?;
     }
     draw_all(&results, ground)
 }

@@ -104,7 +104,7 @@ pub fn run_observed(
         }
         let results = output.finish()?;
         output::write_drawings(&options.out, plan)?;
-        report::draw_run(&results, &plan.terrain)?;
+        report::draw_run(&results, &plan.terrain, |index| plan.releases.shape(index))?;
         return Ok(RunEnd::Complete(Box::new(results)));
     }
 }

@@ -6,9 +6,10 @@ use clap::{Args, Parser};
 use rockfall::ensemble::Ensemble;
 use rockfall::error::{Error, Result};
 use rockfall::solver::Scheme;
+use rockfall_bench::rocks::{RocksArgs, follow};
 use rockfall_bench::scaling::{Phase, resident_now, world};
 use rockfall_bench::speed::{SpeedOptions, WRITTEN, study, write};
-use rockfall_bench::{rocks, scaling_page, tile};
+use rockfall_bench::{scaling_page, tile};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -83,27 +84,13 @@ struct ScalingArgs {
     settle: Vec<usize>,
 }
 
-#[derive(Debug, Args)]
-struct RocksArgs {
-    /// Number of rocks
-    #[arg(default_value = "300")]
-    rocks: usize,
-    /// Triangles of the slope, about
-    #[arg(default_value = "100000")]
-    triangles: usize,
-    /// adaptive, reference, rigid or dda
-    scheme: Option<String>,
-    /// Tolerance (m/s) or step (s), whichever the scheme goes by
-    fineness: Option<f64>,
-}
-
 fn main() -> ExitCode {
     let done = match Asked::parse() {
         Asked::Speed(args) => speed(&args).map(|()| true),
         Asked::Scaling(args) => scaling(&args),
         Asked::Tile(TileArgs { side, out }) => tile::write(side, &out).map(|()| true),
-        Asked::Rocks(RocksArgs { rocks, triangles, scheme, fineness }) => {
-            println!("{}", rocks::follow(rocks, triangles, scheme.as_deref(), fineness));
+        Asked::Rocks(args) => {
+            println!("{}", follow(&args));
             Ok(true)
         }
     };

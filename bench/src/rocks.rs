@@ -1,30 +1,67 @@
 //! Rocks of one scheme on one made slope, counted in a line.
 
+use crate::block::{self, BenchShape};
 use crate::speed::rate::step_of;
 use crate::speed::slope::{SCHEMES, Slope};
+use clap::Args;
 use rockfall::simulation::{Effort, Scratch, Stop, Trajectory};
 use rockfall::solver::Scheme;
 use std::time::Instant;
 
-/// Follows so many rocks on a slope of so many triangles; the scheme's usual tolerance or step unless `fineness` gives
-/// another.
-pub fn follow(
-    rocks: usize,
-    triangles: usize,
-    scheme: Option<&str>,
-    fineness: Option<f64>,
-) -> String {
-    let named = |name: &str| SCHEMES.into_iter().find(|(known, _)| known.name() == name);
-    let mut way = scheme.and_then(named).unwrap_or(SCHEMES[0]);
-    way.1 = fineness.unwrap_or(way.1);
-    let slope = Slope::of(triangles);
+/// What is followed.
+#[derive(Debug, Args)]
+pub struct RocksArgs {
+    /// Number of rocks
+    #[arg(default_value = "300")]
+    pub rocks: usize,
+    /// Triangles of the slope, about
+    #[arg(default_value = "100000")]
+    pub triangles: usize,
+    /// adaptive, reference, rigid or dda; with a shape rigid unless another is given
+    pub scheme: Option<String>,
+    /// Tolerance (m/s) or step (s), whichever the scheme goes by
+    pub fineness: Option<f64>,
+    /// Blocks of this shape instead of spheres, without rolling friction
+    #[arg(long)]
+    pub shape: Option<BenchShape>,
+    /// Blocks on a meadow: friction that grows with slip, a scar layer, restitution that falls with speed
+    #[arg(long, requires = "shape")]
+    pub soil: bool,
+}
+
+impl RocksArgs {
+    /// The scheme with its tolerance or step.
+    fn way(&self) -> (Scheme, f64) {
+        let usual = if self.shape.is_some() { "rigid" } else { SCHEMES[0].0.name() };
+        let named = |name: &str| SCHEMES.into_iter().find(|(known, _)| known.name() == name);
+        let way = named(self.scheme.as_deref().unwrap_or(usual)).unwrap_or(SCHEMES[0]);
+        (way.0, self.fineness.unwrap_or(way.1))
+    }
+}
+
+/// Follows the rocks one after the other and says what they did and what they cost.
+pub fn follow(asked: &RocksArgs) -> String {
+    let way = asked.way();
+    let slope = Slope::of(asked.triangles);
     let welded = format!("weld {:.3} s, index {:.3} s", slope.weld_s, slope.index_s);
     let mut scratch = Scratch::default();
-    let begun = Instant::now();
     let step = step_of(way);
-    let journeys: Vec<Trajectory> =
-        (0..rocks).map(|index| slope.fall(&step, index, &mut scratch)).collect();
-    format!("{welded}\n{}", counted(way.0, &journeys, begun.elapsed().as_secs_f64()))
+    let course = slope.course(&step);
+    let made = asked.shape.map(BenchShape::made);
+    let ground = block::ground(asked.soil);
+    let begun = Instant::now();
+    let fall = |index: usize| match &made {
+        Some((kind, shape)) => {
+            block::fall(&slope, &course, (*kind, shape, ground), index, &mut scratch)
+        }
+        None => slope.fall(&step, index, &mut scratch),
+    };
+    let journeys: Vec<Trajectory> = (0..asked.rocks).map(fall).collect();
+    let seconds = begun.elapsed().as_secs_f64();
+    let shape = made.map_or_else(String::new, |(kind, shape)| {
+        format!("{} ({} corners), ", kind.name(), shape.core.corners.len())
+    });
+    format!("{welded}\n{shape}{}", counted(way.0, &journeys, seconds))
 }
 
 fn counted(scheme: Scheme, journeys: &[Trajectory], seconds: f64) -> String {

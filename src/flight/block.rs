@@ -25,6 +25,8 @@ use crate::contact::closest::closest_on;
 use crate::contact::neighbours::Neighbours;
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A gap that counts as touching (–, relative to the radius of the sphere of equal volume).
 /// A tenth of the gap at which contact begins: what is found here is a touch there.
@@ -32,6 +34,8 @@ const TOUCHING: f64 = 1e-10;
 /// No step forward is shorter (s): what comes so soon touches now.
 /// Below it the time could not be told from the one before, at times of some hundred seconds.
 const SHORTEST_S: f64 = 1e-13;
+/// Rounding of a sum of three products, with room (–): what is skipped because it is far away must be so for certain.
+const CAUTION: f64 = 1e-12;
 /// Way of the centre for which features are collected at a time (–, relative to the radius of the ball around).
 /// Longer windows collect more features, shorter ones collect more often.
 const WINDOW: f64 = 0.5;
@@ -57,16 +61,9 @@ struct Moment {
     spin: Vec3,
 }
 
-/// A part of the block that may touch, and until when it surely does not (s).
+/// A part of the block that may touch.
 ///
-/// Parts are worked on in the order of these times: one that is due after the best touch is never
-/// looked at.
-#[derive(Clone, Copy)]
-struct DuePart {
-    time: f64,
-    part: BlockPart,
-}
-
+/// Parts are worked on in the order of the times until which they surely touch nothing.
 #[derive(Clone, Copy)]
 enum BlockPart {
     /// A rounded corner against faces, edges and vertices of the mesh.
@@ -75,6 +72,20 @@ enum BlockPart {
     Ridge(usize),
     /// A face of the block against vertices of the mesh that stand out.
     Face(usize),
+}
+
+/// Work space of a flight; lists keep their memory from window to window.
+#[derive(Default)]
+struct WindowScratch {
+    /// Parts of the block, in the order in which those due at once are asked.
+    parts: Vec<BlockPart>,
+    /// Until when each of them surely touches nothing, soonest first: the bits of the time (s), which rise with it as times are not
+    /// negative, and its place among the parts.
+    dues: BinaryHeap<Reverse<(u64, u32)>>,
+    /// A corner and the unit normal of every triangle near: looked up once a window, asked hundreds of times.
+    planes: Vec<(Vec3, Vec3)>,
+    /// Corners of a face.
+    corners: Vec<Flying>,
 }
 
 impl Tumble<'_> {
@@ -127,7 +138,7 @@ pub fn first_touch(
     near: &mut Neighbours,
 ) -> FlightEnd {
     let (bound, mut t) = (tumble.block.bound_m, 0.0);
-    let mut dues = Vec::new();
+    let mut scratch = WindowScratch::default();
     loop {
         let centre = tumble.path.centre(t);
         // as long as nothing is within the bounding ball the block cannot touch: its leap is exact,
@@ -149,7 +160,7 @@ pub fn first_touch(
         // within this time the centre stays inside the ball for which features were collected
         let ends = (t + time_for(&tumble.path, t, way)).min(longest_s);
         Tumble::collect(tumble.block, near, terrain, (&tumble.path.centre(t), way));
-        if let Some(touch) = advance(terrain, tumble, near, (t, ends), &mut dues) {
+        if let Some(touch) = advance(terrain, tumble, near, (t, ends), &mut scratch) {
             return FlightEnd::Touch(touch);
         }
         if ends >= longest_s {
@@ -191,36 +202,45 @@ fn advance(
     tumble: &Tumble,
     near: &mut Neighbours,
     (begins, ends): (f64, f64),
-    dues: &mut Vec<DuePart>,
+    scratch: &mut WindowScratch,
 ) -> Option<f64> {
     let core = &tumble.block.core;
-    let bend = tumble.bend();
     // on ground without sharp edges or peaks only corners can touch
     let (edges, peaks) = (near.sharp_edges().next().is_some(), near.peaks().next().is_some());
-    let due = |part| DuePart { time: begins, part };
-    dues.clear();
-    dues.extend((0..core.corners.len()).map(|k| due(BlockPart::Corner(k))));
-    dues.extend((0..core.ridges.len()).filter(|_| edges).map(|k| due(BlockPart::Ridge(k))));
-    dues.extend((0..core.faces.len()).filter(|_| peaks).map(|k| due(BlockPart::Face(k))));
+    scratch.parts.clear();
+    scratch.parts.extend((0..core.corners.len()).map(BlockPart::Corner));
+    scratch.parts.extend((0..core.ridges.len()).filter(|_| edges).map(BlockPart::Ridge));
+    scratch.parts.extend((0..core.faces.len()).filter(|_| peaks).map(BlockPart::Face));
+    let due = |time: f64, part: u32| Reverse((time.to_bits(), part));
+    scratch.dues.clear();
+    let all = if begins < ends { scratch.parts.len() as u32 } else { 0 };
+    scratch.dues.extend((0..all).map(|part| due(begins, part)));
+    scratch.planes.clear();
+    let plane = |t: &u32| {
+        let face = terrain.face(*t);
+        (face.a, face.n)
+    };
+    scratch.planes.extend(near.triangles().iter().map(plane));
+    let bend = tumble.bend();
     let mut search = WindowSearch { terrain, tumble, near, bend, moment: tumble.moment(begins) };
     let mut now = begins;
-    loop {
-        let next = dues.iter_mut().min_by(|one, other| one.time.total_cmp(&other.time))?;
-        if next.time >= ends {
-            return None;
-        }
+    while let Some(Reverse((bits, part))) = scratch.dues.pop() {
+        let time = f64::from_bits(bits);
         // the attitude is a closed form, but dear (elliptic functions): once a moment, for all
         // parts due then
-        if next.time > now {
-            now = next.time;
+        if time > now {
+            now = time;
             search.moment = tumble.moment(now);
         }
-        let step = search.safe_step(next.part, ends - now);
+        let step = search.safe_step(scratch.parts[part as usize], ends - now, scratch);
         if step < SHORTEST_S {
             return Some(now);
         }
-        next.time = now + step;
+        if now + step < ends {
+            scratch.dues.push(due(now + step, part));
+        }
     }
+    None
 }
 
 /// The search of a window at one moment.
@@ -278,23 +298,36 @@ impl WindowSearch<'_> {
         }
     }
 
+    /// Whether [`Self::safe`] is surely not less than `least` (s): the same bound without its root.
+    #[inline]
+    fn keeps_off(&self, corner: &Flying, (gap, closing): (f64, f64), least: f64) -> bool {
+        let bent = 0.5 * corner.bend * least;
+        let rounding = CAUTION * (closing.abs() + bent);
+        gap > TOUCHING * self.tumble.block.radius_m && gap >= least * (closing + bent + rounding)
+    }
+
     /// How long a part surely touches nothing (s), no longer than `most`.
-    fn safe_step(&mut self, part: BlockPart, most: f64) -> f64 {
+    fn safe_step(&mut self, part: BlockPart, most: f64, scratch: &mut WindowScratch) -> f64 {
         match part {
-            BlockPart::Corner(k) => self.of_corner(k, most),
+            BlockPart::Corner(k) => self.of_corner(k, most, &scratch.planes),
             BlockPart::Ridge(k) => self.of_ridge(k, most),
-            BlockPart::Face(k) => self.of_face(k, most),
+            BlockPart::Face(k) => self.of_face(k, most, &mut scratch.corners),
         }
     }
 
-    fn of_corner(&mut self, k: usize, mut least: f64) -> f64 {
+    fn of_corner(&mut self, k: usize, mut least: f64, planes: &[(Vec3, Vec3)]) -> f64 {
         let corner = self.flying(k);
+        let ball = self.tumble.block.ball_m;
         self.near.tested += self.near.triangles().len() as u64;
-        for &t in self.near.triangles() {
-            let face = self.terrain.face(t);
-            let side = if face.n.dot(&(corner.p - face.a)) < 0.0 { -face.n } else { face.n };
+        for (&t, (a, n)) in self.near.triangles().iter().zip(planes) {
+            let (height, climbs) = (n.dot(&(corner.p - a)), n.dot(&corner.velocity));
+            let closing = if height < 0.0 { climbs } else { -climbs };
             // the plane is never farther than the triangle
-            if self.safe(&corner, &side, &face.a) >= least {
+            if self.keeps_off(&corner, (height.abs() - ball, closing), least) {
+                continue;
+            }
+            let side = if height < 0.0 { -n } else { *n };
+            if self.safe(&corner, &side, a) >= least {
                 continue;
             }
             // the true distance of a convex set is never less than that of its own supporting plane
@@ -338,16 +371,27 @@ impl WindowSearch<'_> {
 
     /// A face of the block against a vertex of the mesh: nearest point over a fan of triangles,
     /// then the bound for all corners of the face.
-    fn of_face(&self, k: usize, mut least: f64) -> f64 {
+    fn of_face(&self, k: usize, mut least: f64, corners: &mut Vec<Flying>) -> f64 {
         let face = &self.tumble.block.core.faces[k];
-        let corners: Vec<Flying> =
-            face.corners.iter().map(|&k| self.flying(usize::from(k))).collect();
+        corners.clear();
+        corners.extend(face.corners.iter().map(|&k| self.flying(usize::from(k))));
+        let most = |of: fn(&Flying) -> f64| corners.iter().map(of).fold(0.0, f64::max);
+        let (bend, fastest) = (most(|c| c.bend), most(|c| c.velocity.norm()));
+        let middle = corners.iter().map(|c| c.p).sum::<Vec3>() / corners.len() as f64;
+        let around = corners.iter().map(|c| (c.p - middle).norm_squared()).fold(0.0, f64::max);
+        let skin = self.tumble.block.ball_m + TOUCHING * self.tumble.block.radius_m;
+        let around = around.sqrt() * (1.0 + CAUTION) + skin;
         for peak in self.near.peaks() {
+            // far away: whatever the directions
+            let far = around + least * (fastest + 0.5 * bend * least) * (1.0 + CAUTION);
+            if (peak.p - middle).norm_squared() * (1.0 - CAUTION) > far * far {
+                continue;
+            }
             let nearest = (1..corners.len() - 1)
                 .map(|k| closest_on(&[corners[0].p, corners[k].p, corners[k + 1].p], &peak.p))
                 .min_by(|a, b| (a - peak.p).norm_squared().total_cmp(&(b - peak.p).norm_squared()));
             let Some(n) = nearest.and_then(|p| (p - peak.p).try_normalize(0.0)) else { continue };
-            for corner in &corners {
+            for corner in corners.iter() {
                 least = least.min(self.safe(corner, &n, &peak.p));
             }
         }

@@ -2,6 +2,7 @@
 
 use super::site::ReleaseZone;
 use super::{PathRow, Summary};
+use crate::body::ShapeKind;
 use crate::error::{Error, Result};
 use crate::hazard::{LineSummary, Row};
 use crate::rock::Vec3;
@@ -85,6 +86,7 @@ fn along(rock: &Row, points: &[PathRow]) -> serde_json::Value {
     };
     let speed = |row: &PathRow| Vec3::from(row.velocity_m_s).norm();
     let spin = |row: &PathRow| rock.radius_m * Vec3::from(row.spin_rad_s).norm();
+    let is_sphere = rock.shape.is_none_or(|shape| shape.kind == ShapeKind::Sphere);
     json!({
         "index": rock.index,
         "stop": rock.stop.word(),
@@ -97,8 +99,8 @@ fn along(rock: &Row, points: &[PathRow]) -> serde_json::Value {
         "time_s": each(&|row| row.time_s, 1e4),
         "speed_m_s": each(&speed, 1e4),
         "translational_j": each(&|row| 0.5 * rock.mass_kg * speed(row).powi(2), 1e3),
-        // a homogeneous sphere: I = 2/5 m R²
-        "rotational_j": each(&|row| 0.2 * rock.mass_kg * spin(row).powi(2), 1e3),
+        // a homogeneous sphere: I = 2/5 m R²; paths do not say what turns of a block
+        "rotational_j": is_sphere.then(|| each(&|row| 0.2 * rock.mass_kg * spin(row).powi(2), 1e3)),
         "height_m": each(&|row| row.clearance_m, 1e4),
     })
 }

@@ -82,26 +82,37 @@ impl Shapes {
 
     /// The block of release `index`, of the size of its rock; none if it is a sphere.
     pub(super) fn draw(&self, seed: u64, index: usize, rock: &Rock) -> Option<DrawnShape> {
+        let (entry, drawn, mut random) = self.pick(seed, index)?;
+        let attitude = self.turned.unwrap_or_else(|| random_turn(&mut random));
+        let (sides, made) = entry.shape(drawn)?;
+        let block = Block::new(&made, rock);
+        let sides = [sides[1] / sides[0], sides[2] / sides[0]];
+        Some(DrawnShape { kind: entry.table.kind, sides, block, attitude })
+    }
+
+    /// The entry of release `index`, the numbers that choose its sides, and the stream behind them; none if it is a sphere.
+    fn pick(&self, seed: u64, index: usize) -> Option<(&ShapeShare, [f64; 4], RandomStream)> {
         let all = self.entries.last()?.sum;
         let mut random = stream(seed, Purpose::Shape, index);
         let pick = all * unit(&mut random);
         let entry = &self.entries[self.entries.partition_point(|entry| entry.sum <= pick)];
         let drawn = [0; 4].map(|_| unit(&mut random));
-        if entry.table.kind == ShapeKind::Sphere {
-            return None;
-        }
-        let attitude = self.turned.unwrap_or_else(|| random_turn(&mut random));
+        (entry.table.kind != ShapeKind::Sphere).then_some((entry, drawn, random))
+    }
+}
+
+impl ShapeShare {
+    /// The sides and the shape that these numbers choose.
+    fn shape(&self, drawn: [f64; 4]) -> Option<([f64; 3], Shape)> {
         let mut next = drawn.into_iter();
-        let mut quantile = |axis: &Distribution| axis.quantile(next.next().unwrap_or(0.5));
-        let sides = sides_of(&entry.table, &mut quantile);
-        let made = match &entry.made {
+        let quantile = |axis: &Distribution| axis.quantile(next.next().unwrap_or(0.5));
+        let sides = sides_of(&self.table, quantile);
+        let shape = match &self.made {
             Some(shape) => shape.clone(),
             // checked at the ends of what can be drawn; between them nothing is rounder
-            None => of_sides(&entry.table, sides).ok()?,
+            None => of_sides(&self.table, sides).ok()?,
         };
-        let block = Block::new(&made, rock);
-        let sides = [sides[1] / sides[0], sides[2] / sides[0]];
-        Some(DrawnShape { kind: entry.table.kind, sides, block, attitude })
+        Some((sides, shape))
     }
 }
 
@@ -109,6 +120,12 @@ impl Releases {
     /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
     pub fn block(&self, index: usize, rock: &Rock) -> Option<DrawnShape> {
         self.shapes.draw(self.seed, index, rock)
+    }
+
+    /// The shape of release `index` without its size; none for a sphere.
+    pub fn shape(&self, index: usize) -> Option<Shape> {
+        let (entry, drawn, _) = self.shapes.pick(self.seed, index)?;
+        entry.shape(drawn).map(|(_, shape)| shape)
     }
 
     /// Whether some rocks have shapes.

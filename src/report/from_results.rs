@@ -7,6 +7,7 @@ mod lines;
 mod maps;
 mod measured;
 mod profile;
+mod shapes;
 
 use super::model::{
     BandPoint, Check, Estimate, EstimateRow, EstimateTable, Is, Path, Quantile, ReleaseEnd, Report,
@@ -19,6 +20,7 @@ use crate::error::Result;
 use crate::hazard::{self, Exceedance, Hazard, Open, PERCENTS, Percentile, Sample, StopKind};
 use crate::output::PathRow;
 use crate::output::Results;
+use crate::plan::PlanEntry;
 use crate::rock::Vec3;
 use crate::simulation::Stop;
 
@@ -47,6 +49,7 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
     let lines = lines::lines(results, ground.as_ref())?;
     let order: Vec<String> = lines.iter().map(|line| line.name.clone()).collect();
     let profile = profile::view(results, &releases)?;
+    let (shapes, of_shapes) = shapes::told(results, words)?;
     let mut report = Report {
         language,
         profile,
@@ -74,7 +77,9 @@ pub fn gather(results: &Results, ground: Option<GroundRaster>) -> Result<Report>
             .chain(lines::tables(results, words))
             .chain(barriers::tables(results, words, ground.as_ref()))
             .chain(measured::tables(results, words)?)
+            .chain(of_shapes)
             .collect(),
+        shapes,
         lines,
         annual: annual::views(results),
         has_view: false,
@@ -340,6 +345,10 @@ fn text_of(results: &Results, words: &Words) -> Text {
         let entry = summary.plan_entries.iter().find(|entry| entry.name == name);
         entry.map(|entry| words.say(&entry.said)).unwrap_or_default()
     };
+    let said_of = |entry: &PlanEntry| (words.part(&entry.name), words.say_all(&entry.said));
+    let planned_all = |name: &'static str| {
+        summary.plan_entries.iter().filter(move |entry| entry.name == name).map(said_of)
+    };
     Text {
         title: summary.title.clone(),
         subtitle: planned("file"),
@@ -349,6 +358,7 @@ fn text_of(results: &Results, words: &Words) -> Text {
             .inputs
             .iter()
             .map(|(name, said)| (words.say(name), words.say_all(said)))
+            .chain(planned_all("shape"))
             .collect(),
         terrain_source: [summary.sources[0].clone(), planned("terrain")]
             .into_iter()
@@ -356,11 +366,7 @@ fn text_of(results: &Results, words: &Words) -> Text {
             .collect::<Vec<_>>()
             .join("; "),
         parameter_source: words.say(&summary.sources[1]),
-        plan: summary
-            .plan_entries
-            .iter()
-            .map(|entry| (words.part(&entry.name), words.say_all(&entry.said)))
-            .collect(),
+        plan: summary.plan_entries.iter().map(said_of).collect(),
         warnings: [
             &summary.warnings[..],
             &fast_warnings(results)[..],

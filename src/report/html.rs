@@ -72,7 +72,7 @@ pub fn page(report: &Report, figures: &Figures) -> String {
         chapter("sure", words.ch_sure, how_sure(report, &drawn)),
         chapter("out", words.ch_out, plan(report)),
         chapter("inputs", words.ch_inputs, method(report) + &inputs(report)),
-        chapter("words", words.ch_words, glossary(words)),
+        chapter("words", words.ch_words, glossary(report)),
     ];
     let shown: Vec<&Chapter> = chapters.iter().filter(|one| !one.body.is_empty()).collect();
     page += &contents(&shown);
@@ -192,8 +192,12 @@ pub(super) fn figure_section(figures: &Figures, words: &Words) -> String {
 }
 
 fn method(report: &Report) -> String {
-    let scheme = escape(&report.text.scheme);
-    format!("<p>{} {scheme}</p>\n", report.words().method.join(" "))
+    let (scheme, words) = (escape(&report.text.scheme), report.words());
+    let mut method = words.method;
+    if !report.shapes.is_empty() {
+        method[0] = words.shapes().method;
+    }
+    format!("<p>{} {scheme}</p>\n", method.join(" "))
 }
 
 fn inputs(report: &Report) -> String {
@@ -240,8 +244,14 @@ fn quality(report: &Report) -> String {
     format!("<h3>{}</h3>\n{}", escape(words.quality), pairs(&rows))
 }
 
-fn glossary(words: &Words) -> String {
+/// What only the rotational energy of spheres says, in every language.
+const SPHERE: &str = "2/5 m R²";
+
+fn glossary(report: &Report) -> String {
+    let words = report.words();
     let entry = |(term, meaning): &(&str, &str)| {
+        let turns = !report.shapes.is_empty() && meaning.contains(SPHERE);
+        let meaning = if turns { words.shapes().turning } else { meaning };
         format!("<dt>{}</dt><dd>{}</dd>\n", escape(term), escape(meaning))
     };
     let entries: String = words.glossary.iter().map(entry).collect();

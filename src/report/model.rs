@@ -64,6 +64,8 @@ pub struct Report {
     pub profile: Option<ProfileView>,
     /// Whether `view.html` stands beside the page.
     pub has_view: bool,
+    /// Names of the kinds of shapes; empty where the scene has none.
+    pub shapes: Vec<&'static str>,
 }
 
 impl Report {
@@ -288,6 +290,8 @@ pub enum About {
     Barriers,
     /// Measured ends.
     Measured,
+    /// Kinds of shapes.
+    Shapes,
     /// What a year brings.
     Year,
 }

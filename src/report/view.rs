@@ -3,14 +3,15 @@
 //! ```text
 //! Terrain ─► Mesh ───┐
 //! Results ─► Shown ──┼─► page  (sections of packed columns, own WebGL 2)
-//!                    └─► glb   (glTF 2.0: meshes, lines, one moving node a rock)
+//! shapes ─► Hulls ───┘   glb   (glTF 2.0: meshes, lines, one moving node a rock)
 //! ```
 //!
-//! The page carries a policy that forbids it to load anything. Drawn again from files alone, it keeps the terrain of the
-//! page before.
+//! The page carries a policy that forbids it to load anything. Drawn again from files alone, it keeps the terrain and
+//! the hulls of the page before.
 
 pub mod frame;
 pub mod glb;
+pub mod hulls;
 mod layers;
 pub mod mesh;
 pub mod pack;
@@ -19,13 +20,16 @@ pub mod page;
 mod paths;
 mod rocks;
 mod thin;
+mod turn;
 mod walls;
 
 use super::raster::GroundRaster;
 use super::words::Words;
+use crate::body::ShapeKind;
 use crate::error::{Error, Result};
 use crate::hazard::Row;
 use crate::output::{Results, write_atomic};
+use hulls::{BlockHull, BlockHulls};
 use layers::MapLayers;
 use mesh::ViewMesh;
 use paths::Ways;
@@ -49,6 +53,7 @@ pub struct Shown {
     mesh: ViewMesh,
     rows: Vec<Row>,
     ways: Ways,
+    hulls: BlockHulls,
     walls: Vec<Wall>,
     layers: Option<MapLayers>,
     first_release: usize,
@@ -56,21 +61,28 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// What there is to show of a run on a terrain.
+    /// What there is to show of a run on a terrain; `hull_of` makes the hulls of its blocks.
     ///
     /// # Errors
     /// A result file that cannot be read.
-    pub fn of(results: &Results, mesh: ViewMesh, ground: Option<&GroundRaster>) -> Result<Self> {
+    pub fn of(
+        results: &Results,
+        mesh: ViewMesh,
+        hull_of: impl Fn(usize) -> Option<BlockHull>,
+        ground: Option<&GroundRaster>,
+    ) -> Result<Self> {
         let rows = results.rows()?.take(MOST_ROCKS).collect::<Result<Vec<Row>>>()?;
         let words = Words::of(results.summary.language);
         let mut walls = walls::of(results, ground);
         for wall in &mut walls {
             wall.words = words.of_view(&wall.words);
         }
+        let mut hulls = BlockHulls::default();
         Ok(Self {
             words,
             title: results.summary.title.clone(),
-            ways: Ways::of(results, &rows)?,
+            ways: Ways::of(results, &rows, hull_of, &mut hulls)?,
+            hulls,
             walls,
             layers: MapLayers::of(results)?,
             first_release: results.summary.identity.first_release,
@@ -78,6 +90,16 @@ impl Shown {
             mesh,
             rows,
         })
+    }
+
+    /// Whether a block is shown whose hull is not known.
+    fn has_hidden_shapes(&self) -> bool {
+        let hidden = |way: &paths::ViewPath| {
+            let row = way.release.checked_sub(self.first_release).and_then(|k| self.rows.get(k));
+            let shape = row.and_then(|row| row.shape);
+            way.hull.is_none() && shape.is_some_and(|shape| shape.kind != ShapeKind::Sphere)
+        };
+        self.ways.ways.iter().any(hidden)
     }
 
     /// Which paths and rocks are not shown, and what of the terrain; empty when all is there.
@@ -91,7 +113,7 @@ impl Shown {
                 self.releases
             ));
         }
-        if self.rows.iter().any(|row| row.shape.is_some()) {
+        if self.has_hidden_shapes() {
             notes.push("Blocks are shown as balls of their volume.".to_owned());
         }
         notes.extend(self.layers.as_ref().and_then(MapLayers::note));
@@ -99,33 +121,49 @@ impl Shown {
     }
 }
 
-/// Writes both files into the folder of the results.
+/// Writes both files into the folder of the results; `hull_of` makes the hulls of the blocks of releases.
 ///
 /// # Errors
 /// When a result file cannot be read or a file cannot be written.
-pub fn write(results: &Results, mesh: ViewMesh, ground: Option<&GroundRaster>) -> Result<()> {
-    let shown = Shown::of(results, mesh, ground)?;
+pub fn write(
+    results: &Results,
+    mesh: ViewMesh,
+    hull_of: impl Fn(usize) -> Option<BlockHull>,
+    ground: Option<&GroundRaster>,
+) -> Result<()> {
+    let shown = Shown::of(results, mesh, hull_of, ground)?;
     write_atomic(&results.dir.join(PAGE), page::page(&shown).as_bytes())?;
     write_atomic(&results.dir.join(GLB), &glb::glb(&shown))
 }
 
-/// The terrain of the view in `dir`, which was drawn when the meshes were at hand; none where there is no view.
+/// What was drawn when meshes and shapes were at hand: terrain and hulls of the views in `folders`, the terrain that of the
+/// first; none where that has no view.
 ///
 /// # Errors
-/// When the page is there but cannot be read, or does not hold a terrain.
-pub fn mesh_in(dir: &Path) -> Result<Option<ViewMesh>> {
-    let path = dir.join(PAGE);
-    if !path.exists() {
-        return Ok(None);
+/// When a page is there but cannot be read, or does not hold a terrain.
+pub fn kept_in(folders: &[impl AsRef<Path>]) -> Result<Option<(ViewMesh, BlockHulls)>> {
+    let (mut mesh, mut hulls) = (None, Vec::new());
+    for (number, folder) in folders.iter().enumerate() {
+        let path = folder.as_ref().join(PAGE);
+        if !path.exists() {
+            continue;
+        }
+        let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
+        let read = |what: &str| {
+            Error::input(
+                &path,
+                what,
+                "found none that can be read",
+                "restore the file, or remove it: the figures are then drawn without it",
+            )
+        };
+        if number == 0 {
+            let found = page::section(&text, page::TERRAIN).and_then(ViewMesh::read);
+            mesh = Some(found.ok_or_else(|| read("terrain"))?);
+        }
+        if let Some(section) = page::section(&text, page::BLOCKS) {
+            hulls.push(BlockHulls::read(section).ok_or_else(|| read("blocks"))?);
+        }
     }
-    let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
-    match page::section(&text, page::TERRAIN).and_then(ViewMesh::read) {
-        Some(mesh) => Ok(Some(mesh)),
-        None => Err(Error::input(
-            &path,
-            "terrain",
-            "found none that can be read",
-            "restore the file, or remove it: the figures are then drawn without it",
-        )),
-    }
+    Ok(mesh.map(|mesh| (mesh, BlockHulls::joined(&hulls))))
 }

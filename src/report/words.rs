@@ -10,10 +10,12 @@ mod fr;
 mod glossary;
 mod it;
 mod said;
+mod shapes;
 mod year;
 
 use super::format;
 use crate::scene::Language;
+use shapes::ShapeWords;
 use std::fmt::{Display, Write as _};
 use year::YearWords;
 
@@ -40,6 +42,7 @@ macro_rules! words {
             pub fn texts(&self) -> Vec<(&'static str, &'static str)> {
                 let mut texts = vec![$((stringify!($name), self.$name),)+];
                 texts.extend(self.year().texts());
+                texts.extend(self.shapes().texts());
                 texts
             }
         }
@@ -116,9 +119,17 @@ impl Words {
 
     /// What is said of a year on the first page and on its maps.
     pub(super) fn year(&self) -> &'static YearWords {
+        YearWords::of(self.language())
+    }
+
+    /// What is said of rocks with shapes.
+    pub(super) fn shapes(&self) -> &'static ShapeWords {
+        ShapeWords::of(self.language())
+    }
+
+    fn language(&self) -> Language {
         let is_own = |language: &&Language| std::ptr::eq(Self::of(**language), self);
-        let language = Language::ALL.iter().find(is_own).copied();
-        YearWords::of(language.unwrap_or_default())
+        Language::ALL.iter().find(is_own).copied().unwrap_or_default()
     }
 
     /// A name that the user has given, in quotation marks.

@@ -239,3 +239,34 @@ fn a_sphere_among_shapes_is_the_sphere_of_old() {
         assert!(format!("{old:?}") == format!("{new:?}"), "{scheme}");
     }
 }
+
+/// The page says on top which shapes there are, tells each kind by itself, and speaks of a sphere's moment of inertia only
+/// where all rocks are spheres; in every language.
+#[test]
+fn the_page_tells_of_shapes() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = fs::canonicalize("terrain").unwrap();
+    for (language, facts, table) in [
+        ("en", "shapes: EOTA 1:1:1, box", "By shape"),
+        ("de", "Formen: EOTA 1:1:1, Quader", "Nach der Form"),
+        ("fr", "formes : EOTA 1:1:1, parallélépipède", "Selon la forme"),
+        ("it", "forme: EOTA 1:1:1, parallelepipedo", "Secondo la forma"),
+    ] {
+        let scene = text().replace("../terrain", folder.to_str().unwrap());
+        let scene = format!("{scene}\n[report]\nlanguage = \"{language}\"\n");
+        let path = dir.path().join(format!("{language}.toml"));
+        fs::write(&path, scene).unwrap();
+        let out = dir.path().join(language);
+        let run = ["run", path.to_str().unwrap(), "--quiet", "--releases", "12", "--out"];
+        let done = rockfall(&[&run[..], &[out.to_str().unwrap()]].concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let page = fs::read_to_string(out.join("report.html")).unwrap();
+        let front = page.split("class=\"front\"").next().unwrap();
+        assert!(front.contains(facts), "{language}: {front}");
+        assert!(page.contains(&format!("<h3>{table}</h3>")), "{language}");
+        assert!(page.contains("ω·Iω/2") && !page.contains("I ω²/2"), "{language}");
+        // the plan's line of each shape stands among the inputs too
+        let inputs = page.split("id=\"inputs\"").nth(1).unwrap();
+        assert!(inputs.contains("eota111"), "{language}");
+    }
+}

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stderr, reason = "what was not tried must be said")]
 
+mod blocks;
 mod glb;
 use crate::program;
 

@@ -7,14 +7,16 @@ use crate::schemes_agree::kolmogorov_smirnov;
 use common::{GROUND, ROCK, terrain};
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion};
 use rockfall::body::{
-    Block, Shape, ShapeKind, Solid, box_surface, eota, prism_surface, sphere_points,
+    Block, Core, Shape, ShapeKind, Solid, Surface, box_surface, eota, prism_surface, sphere_points,
 };
 use rockfall::ground::{Ground, Scar, SlipFriction};
 use rockfall::plan::{Recorders, RestRule};
 use rockfall::random::{Purpose, stream, unit};
 use rockfall::release::{DrawnShape, Release};
 use rockfall::rock::{Motion, Vec3};
-use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, Trajectory, simulate_block};
+use rockfall::simulation::{
+    Keep, RunSettings, Scratch, Stop, Trajectory, simulate, simulate_block,
+};
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
 use rockfall::terrain::Terrain;
@@ -43,11 +45,36 @@ const HARD: Ground = Ground {
     ..GROUND
 };
 
-/// All kinds of shapes, with corners rounded at a tenth of the radius.
-fn shapes() -> Vec<(&'static str, ShapeKind, Shape)> {
-    let of = |surface: rockfall::body::Surface| {
-        Shape::of(&Solid::of(&surface), &surface.points, 0.1).unwrap()
+/// A scan: bumps and dents on an ellipsoid, seen at 400 points, its hull thinned to 48 corners.
+fn scan() -> Shape {
+    let mut random = stream(SEED, Purpose::Shape, 0);
+    let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
+    let point = |k: u32| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / 400.0;
+        let (sin, cos) = (golden * f64::from(k)).sin_cos();
+        let out = (1.0 - z * z).sqrt();
+        Vec3::new(out * cos, 0.75 * out * sin, 0.6 * z) * (0.92 + 0.08 * unit(&mut random))
     };
+    let points: Vec<Vec3> = (0..400).map(point).collect();
+    let cloud = Surface { points, triangles: Vec::new() };
+    let corners = cloud.thinned(48, 0.0).unwrap().corners;
+    let core = Core::of(&corners).unwrap();
+    let fan = |face: &rockfall::body::HullFace| {
+        let corners: Vec<u32> = face.corners.iter().map(|k| u32::from(*k)).collect();
+        (1..corners.len() - 1).map(move |k| [corners[0], corners[k], corners[k + 1]])
+    };
+    let hull = Surface {
+        triangles: core.faces.iter().flat_map(fan).collect(),
+        points: core.corners.clone(),
+    };
+    assert!(hull.points.len() > 40 && hull.check_closed().is_ok());
+    Shape::of(&Solid::of(&hull), &hull.points, 0.1).unwrap()
+}
+
+/// All kinds of shapes, with corners rounded at a tenth of the radius; none for a sphere.
+fn shapes() -> Vec<(&'static str, ShapeKind, Option<Shape>)> {
+    let of =
+        |surface: Surface| Some(Shape::of(&Solid::of(&surface), &surface.points, 0.1).unwrap());
     let half = [1.0, 0.8, 0.55];
     let points: Vec<Vec3> =
         sphere_points().iter().map(|p| p.component_mul(&Vec3::from(half))).collect();
@@ -57,7 +84,9 @@ fn shapes() -> Vec<(&'static str, ShapeKind, Shape)> {
         ("eota221", ShapeKind::Eota221, of(eota([1.0, 1.0, 0.5]))),
         ("box", ShapeKind::Box, of(box_surface([1.0, 0.7, 0.4]))),
         ("prism", ShapeKind::Prism, of(prism_surface(6, 0.7))),
-        ("ellipsoid", ShapeKind::Ellipsoid, ellipsoid),
+        ("ellipsoid", ShapeKind::Ellipsoid, Some(ellipsoid)),
+        ("mesh", ShapeKind::Mesh, Some(scan())),
+        ("sphere", ShapeKind::Sphere, None),
     ]
 }
 
@@ -72,7 +101,8 @@ fn slope(triangles: usize) -> Terrain {
 struct Series<'s> {
     scheme: Scheme,
     kind: ShapeKind,
-    shape: &'s Shape,
+    /// None for a sphere.
+    shape: Option<&'s Shape>,
     ground: Ground,
 }
 
@@ -86,8 +116,9 @@ fn fall(terrain: &Terrain, series: &Series, index: usize, scratch: &mut Scratch)
     let turn: [f64; 4] = std::array::from_fn(|_| next() - 0.5);
     let attitude: Rotation3<f64> =
         UnitQuaternion::from_quaternion(Quaternion::from(turn)).to_rotation_matrix();
-    let block = Block::new(shape, &ROCK);
-    let height_m = terrain.ground_below(x, y).unwrap() + 1.0 + block.bound_m;
+    let block = shape.map(|shape| Block::new(shape, &ROCK));
+    let bound_m = block.as_ref().map_or(ROCK.radius_m, |block| block.bound_m);
+    let height_m = terrain.ground_below(x, y).unwrap() + 1.0 + bound_m;
     let motion = Motion {
         time_s: 0.0,
         position_m: Vec3::new(x, y, height_m),
@@ -95,7 +126,6 @@ fn fall(terrain: &Terrain, series: &Series, index: usize, scratch: &mut Scratch)
         spin_rad_s: Vec3::zeros(),
     };
     let release = Release { rock: ROCK, motion, grounds: vec![ground] };
-    let drawn = DrawnShape { kind, sides: [1.0; 2], block, attitude };
     let step_s = if scheme == Scheme::Dda { 2e-5 } else { 0.01 };
     let step = settings(scheme, step_s, None);
     let course = RunSettings {
@@ -109,6 +139,8 @@ fn fall(terrain: &Terrain, series: &Series, index: usize, scratch: &mut Scratch)
     };
     let keep = Keep { path_step_s: None, impacts: false };
     let random = stream(SEED, Purpose::Impacts, index);
+    let Some(block) = block else { return simulate(&course, &release, keep, random, scratch) };
+    let drawn = DrawnShape { kind, sides: [1.0; 2], block, attitude };
     simulate_block(&course, (&release, &drawn), keep, random, scratch)
 }
 
@@ -158,14 +190,21 @@ fn hold(name: &str, counts: &Counts) {
     assert!(counts.worst[1] <= 0.05, "{name}: {counts:?}");
 }
 
+/// A ball rolls on until rolling friction stops it; a block needs none.
+fn under(shape: Option<&Shape>, ground: Ground) -> Ground {
+    let rolling_friction = if shape.is_none() { 0.5 } else { ground.rolling_friction };
+    Ground { rolling_friction, ..ground }
+}
+
 /// Every shape on hard ground and on soil: all releases come to an end by themselves, and nothing gains energy.
 #[test]
 fn no_block_is_lost_on_the_natural_slope() {
     let slope = slope(10_000);
     for (name, kind, shape) in shapes() {
         for ground in [HARD, SOIL] {
+            let ground = under(shape.as_ref(), ground);
             for (scheme, releases) in [(Scheme::Rigid, 12), (Scheme::Adaptive, 3)] {
-                let series = Series { scheme, kind, shape: &shape, ground };
+                let series = Series { scheme, kind, shape: shape.as_ref(), ground };
                 let counts = count(&slope, &series, releases);
                 println!("{name} {scheme:?} {counts:?}");
                 hold(name, &counts);
@@ -182,13 +221,14 @@ fn blocks_by_the_thousand_on_the_natural_slope() {
     let slope = slope(100_000);
     for (name, kind, shape) in shapes() {
         for (soil, ground) in [("hard", HARD), ("soil", SOIL)] {
+            let ground = under(shape.as_ref(), ground);
             let begun = Instant::now();
-            let series = Series { scheme: Scheme::Rigid, kind, shape: &shape, ground };
+            let series = Series { scheme: Scheme::Rigid, kind, shape: shape.as_ref(), ground };
             let counts = count(&slope, &series, releases);
             let per_s = releases as f64 / begun.elapsed().as_secs_f64();
             println!(
                 "{name} ({} corners), {soil}: {per_s:.1} rocks/s; {counts:?}",
-                shape.core.corners.len()
+                shape.as_ref().map_or(0, |shape| shape.core.corners.len())
             );
             hold(name, &counts);
         }
@@ -199,7 +239,8 @@ fn blocks_by_the_thousand_on_the_natural_slope() {
 #[test]
 fn schemes_agree_on_where_blocks_stop() {
     let slope = slope(10_000);
-    let shape = &shapes()[1].2;
+    let shapes = shapes();
+    let shape = shapes[1].2.as_ref();
     let ends = |scheme, releases: usize| {
         let series = Series { scheme, kind: ShapeKind::Eota221, shape, ground: SOIL };
         let mut scratch = Scratch::default();

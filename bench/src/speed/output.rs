@@ -49,7 +49,7 @@ pub fn cost(
     }
     let clock = ProcessorTime::begin();
     let results = output.finish()?;
-    report::draw_run(&results, &slope.terrain)?;
+    report::draw_run(&results, &slope.terrain, |_| None)?;
     let report_s = clock.seconds();
     drop(results);
     fs::remove_dir_all(dir).map_err(Error::file("remove", dir))?;

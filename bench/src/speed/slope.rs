@@ -34,7 +34,7 @@ pub const GRAVITY_M_S2: f64 = 9.8;
 /// Simulated time after which a rock is out of time (s).
 const LONGEST_S: f64 = 120.0;
 /// Where chance starts.
-const SEED: u64 = 7;
+pub const SEED: u64 = 7;
 /// West and south end of the release area (m, in the coordinates of the facets), 20 m by 10 m.
 pub const AREA_M: [f64; 2] = [140.0, 10.0];
 /// Its size (m).

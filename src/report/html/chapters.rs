@@ -32,7 +32,8 @@ pub(super) fn where_to(report: &Report, drawn: &NumberedFigures<'_>) -> String {
     let measured = drawn.figure("measured.svg").replace("<figure>", SHEET);
     let agreement = tables_of(report, About::Measured, "");
     let maps = drawn.all(&["maps.svg", "maps_values.svg", "maps_ends.svg"]);
-    pictures + &measured + &agreement + &maps
+    let shapes = tables_of(report, About::Shapes, "");
+    pictures + &shapes + &measured + &agreement + &maps
 }
 
 /// Figures of the list that have a place of their own on the page.

@@ -23,6 +23,13 @@ pub(super) fn page(report: &Report, drawn: &NumberedFigures<'_>) -> String {
         text.seed,
         text.version
     );
+    let shapes = match &report.shapes[..] {
+        [] => String::new(),
+        names => {
+            format!(" · {}", fill(words.shapes().shapes, &[("names", &names.join(", "))]))
+        }
+    };
+    let facts = facts + &shapes;
     let view = if report.has_view {
         format!(" · <a href=\"view.html\">{}</a>", escape(words.slope_in_3d))
     } else {

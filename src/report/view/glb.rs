@@ -1,17 +1,19 @@
 //! `view.glb`: the scene as binary glTF 2.0, for Blender, GIS and whatever shows animated scenes.
 //!
 //! Terrain and trees are meshes, paths are line strips, and every rock is a node that moves: its translation is sampled
-//! at the instants of its path (rotation samplers may join when rocks have a shape). z points up inside, as everywhere here;
-//! the root turns it to y, as glTF has it.
+//! at the instants of its path, that of a block also its rotation. z points up inside, as everywhere here; the root turns it
+//! to y, as glTF has it.
 //! Format: The Khronos Group, glTF 2.0 Specification, sections 3 and 4.4.
 
 mod parts;
 
 use super::Shown;
+use super::hulls::BlockHull;
 use super::mesh::ViewMesh;
+use super::paths::ViewPath;
 use parts::{Bin, ball, colour_of};
 use serde_json::{Value, json};
-use std::f64::consts::FRAC_1_SQRT_2;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 const TRIANGLES: u32 = 4;
 const LINE_STRIP: u32 = 3;
@@ -22,6 +24,10 @@ const ROCK: usize = 2;
 const WALL: usize = 3;
 const LINE: usize = 4;
 const PATH: usize = 5;
+
+/// Most that a block turns between two keyframes (rad): well below the half round where the short way would be the wrong one,
+/// and so little that a program which mixes quaternions number by number is 1° off at most.
+const MOST_TURN_RAD: f64 = 0.5 * PI;
 
 /// The scene being put together.
 struct GltfScene<'a> {
@@ -143,41 +149,67 @@ impl GltfScene<'_> {
         }
     }
 
-    /// One ball for all, one moving node each.
+    /// One ball for all spheres, one hull for all blocks of a shape, one moving node each.
     fn rocks(&mut self) {
-        if self.shown.ways.ways.is_empty() {
-            return;
+        let shown = self.shown;
+        let has_balls = shown.ways.ways.iter().any(|way| way.hull.is_none());
+        let ball = has_balls.then(|| self.ball());
+        let hulls: Vec<usize> = shown.hulls.hulls.iter().map(|hull| self.hull(hull)).collect();
+        for way in &shown.ways.ways {
+            let Some(mesh) = way.hull.map(|hull| hulls[hull]).or(ball) else { continue };
+            let places: Vec<_> =
+                way.instants.iter().map(|instant| self.local(instant.place_m)).collect();
+            let times: Vec<f32> =
+                way.instants.iter().map(|instant| instant.time_s as f32).collect();
+            let (input, output) = (self.bin.times(&times), self.bin.samples(&places));
+            self.channel("translation", (input, output));
+            let mut node = json!({
+                "name": format!("rock {}", way.release),
+                "mesh": mesh,
+                "translation": places[0],
+                "scale": [way.radius_m, way.radius_m, way.radius_m],
+                "extras": { "release": way.release, "radius_m": way.radius_m }
+            });
+            if way.hull.is_some() {
+                let (times, turns) = keyframes(way);
+                node["rotation"] = turns[0].into();
+                let (input, output) = (self.bin.times(&times), self.bin.turns(&turns));
+                self.channel("rotation", (input, output));
+            }
+            self.nodes.push(node);
         }
+    }
+
+    /// Moves the node that comes next.
+    fn channel(&mut self, path: &str, (input, output): (usize, usize)) {
+        self.channels.push(json!({
+            "sampler": self.samplers.len(),
+            "target": { "node": self.nodes.len(), "path": path }
+        }));
+        self.samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+    }
+
+    fn ball(&mut self) -> usize {
         let (places, corners) = ball();
         let attributes = json!({
             "POSITION": self.bin.places(&places), "NORMAL": self.bin.places(&places)
         });
         let corners = self.bin.corners(&corners);
-        let number = self.add_mesh(&[json!({
+        self.add_mesh(&[json!({
             "attributes": attributes, "indices": corners, "material": ROCK, "mode": TRIANGLES
-        })]);
-        for way in &self.shown.ways.ways {
-            let places: Vec<_> =
-                way.instants.iter().map(|instant| self.local(instant.place_m)).collect();
-            let times: Vec<f32> =
-                way.instants.iter().map(|instant| instant.time_s as f32).collect();
-            let input = self.bin.times(&times);
-            let output = self.bin.samples(&places);
-            self.channels.push(json!({
-                "sampler": self.samplers.len(),
-                "target": { "node": self.nodes.len(), "path": "translation" }
-            }));
-            self.samplers.push(json!({
-                "input": input, "output": output, "interpolation": "LINEAR"
-            }));
-            self.nodes.push(json!({
-                "name": format!("rock {}", way.release),
-                "mesh": number,
-                "translation": places[0],
-                "scale": [way.radius_m, way.radius_m, way.radius_m],
-                "extras": { "release": way.release, "radius_m": way.radius_m }
-            }));
-        }
+        })])
+    }
+
+    /// Without normals faces are flat (glTF 2.0, 3.7.2.1), as those of a block are.
+    fn hull(&mut self, hull: &BlockHull) -> usize {
+        let surface = hull.surface();
+        let places: Vec<_> =
+            surface.points.iter().map(|p| [p.x, p.y, p.z].map(|x| x as f32)).collect();
+        let attributes = json!({ "POSITION": self.bin.places(&places) });
+        let corners = self.bin.corners(surface.triangles.as_flattened());
+        self.add_mesh(&[json!({
+            "attributes": attributes, "indices": corners, "material": ROCK, "mode": TRIANGLES
+        })])
     }
 
     fn written(self) -> Vec<u8> {
@@ -215,6 +247,34 @@ impl GltfScene<'_> {
         let bytes = bin.close(&mut put);
         parts::file(&head, &bytes)
     }
+}
+
+/// Times and attitudes (x, y, z, w) between which a block turns by [`MOST_TURN_RAD`] at most; neighbours are on the same side,
+/// so that whoever mixes their numbers goes the short way too.
+fn keyframes(way: &ViewPath) -> (Vec<f32>, Vec<[f32; 4]>) {
+    let (mut times, mut turns): (Vec<f32>, Vec<[f32; 4]>) = (Vec::new(), Vec::new());
+    let mut add = |time_s: f64, [w, x, y, z]: [f64; 4]| {
+        let turn = [x, y, z, w].map(|x| x as f32);
+        let ahead = |last: &[f32; 4]| last.iter().zip(turn).map(|(a, b)| a * b).sum::<f32>() < 0.0;
+        let turn = if turns.last().is_some_and(ahead) { turn.map(|x| -x) } else { turn };
+        // times of 32 bits must rise too
+        if times.last().is_none_or(|last| time_s as f32 > *last) {
+            times.push(time_s as f32);
+            turns.push(turn);
+        }
+    };
+    let first = &way.instants[0];
+    add(first.time_s, first.attitude);
+    for (two, turn) in way.instants.windows(2).zip(way.turns()) {
+        let pieces = (turn.angle_rad().abs() / MOST_TURN_RAD).ceil().max(1.0) as u32;
+        for piece in 1..pieces {
+            let share = f64::from(piece) / f64::from(pieces);
+            let time_s = two[0].time_s + share * (two[1].time_s - two[0].time_s);
+            add(time_s, turn.at(two[0].attitude, share));
+        }
+        add(two[1].time_s, two[1].attitude);
+    }
+    (times, turns)
 }
 
 fn materials() -> Vec<Value> {

@@ -14,6 +14,8 @@ pub const POLICY: &str =
 
 /// Name of the section with the terrain.
 pub const TERRAIN: &str = "terrain";
+/// Name of the section with the hulls of blocks.
+pub const BLOCKS: &str = "blocks";
 
 /// The scripts, in the order in which they stand in the page.
 const SCRIPTS: [&str; 8] = [
@@ -26,6 +28,8 @@ const SCRIPTS: [&str; 8] = [
     include_str!("web/draw.js"),
     include_str!("web/start.js"),
 ];
+/// Those of pages with blocks; they stand before the last, which begins.
+const BLOCK_SCRIPTS: [&str; 2] = [include_str!("web/turns.js"), include_str!("web/blocks.js")];
 const BODY: &str = include_str!("web/body.html");
 const STYLE: &str = include_str!("web/page.css");
 
@@ -71,18 +75,25 @@ pub fn page(shown: &Shown) -> String {
     if !shown.ways.ways.is_empty() {
         put(&mut page, "paths", &shown.ways.text());
     }
+    if !shown.hulls.is_empty() {
+        put(&mut page, BLOCKS, &shown.hulls.text());
+    }
     if !shown.rows.is_empty() {
         put(&mut page, "rocks", &rocks::text(shown));
     }
     if let Some(layers) = &shown.layers {
         put(&mut page, "maps", &layers.text());
     }
-    let _ = write!(
-        page,
-        "<script>\n\"use strict\";\n{}</script>\n</body>\n</html>\n",
-        SCRIPTS.concat()
-    );
+    let script = script(!shown.hulls.is_empty());
+    let _ = write!(page, "<script>\n\"use strict\";\n{script}</script>\n</body>\n</html>\n");
     page
+}
+
+/// The script, with what draws blocks where there are some.
+fn script(has_blocks: bool) -> String {
+    let [all @ .., start] = SCRIPTS;
+    let blocks = if has_blocks { BLOCK_SCRIPTS } else { [""; 2] };
+    [&all[..], &blocks[..], &[start]].concat().concat()
 }
 
 /// The body with its texts, which stand in double braces, in the language of the page.

@@ -1,7 +1,9 @@
 //! Kept paths, in whole numbers.
 
 use super::frame::{QuantizedBox, is_finite};
+use super::hulls::{BlockHull, BlockHulls};
 use super::pack::Section;
+use super::turn::{AxisTurn, folded, packed};
 use crate::error::Result;
 use crate::hazard::Row;
 use crate::math;
@@ -23,6 +25,10 @@ pub(super) struct PathInstant {
     pub(super) time_s: f64,
     pub(super) place_m: [f64; 3],
     pub(super) total_j: f64,
+    /// How it is turned, a quaternion w, x, y, z.
+    pub(super) attitude: [f64; 4],
+    /// How far it has spun since the instant before, axis times angle (rad).
+    spun_rad: Vec3,
 }
 
 /// One path.
@@ -30,7 +36,19 @@ pub(super) struct PathInstant {
 pub(super) struct ViewPath {
     pub(super) release: usize,
     pub(super) radius_m: f64,
+    /// Number of its hull; none for a ball.
+    pub(super) hull: Option<usize>,
     pub(super) instants: Vec<PathInstant>,
+}
+
+impl ViewPath {
+    /// How it turns from each instant to the next.
+    pub(super) fn turns(&self) -> impl Iterator<Item = AxisTurn> + '_ {
+        let pair = |two: &[PathInstant]| {
+            AxisTurn::between(two[0].attitude, two[1].attitude, two[1].spun_rad)
+        };
+        self.instants.windows(2).map(pair)
+    }
 }
 
 /// All that are shown.
@@ -42,9 +60,15 @@ pub(super) struct Ways {
 }
 
 impl Ways {
-    /// The kept paths of a run; `rows` tell mass and radius.
-    pub(super) fn of(results: &Results, rows: &[Row]) -> Result<Self> {
+    /// The kept paths of a run; `rows` tell mass and radius, `hulls` get what `hull_of` makes of each release.
+    pub(super) fn of(
+        results: &Results,
+        rows: &[Row],
+        hull_of: impl Fn(usize) -> Option<BlockHull>,
+        hulls: &mut BlockHulls,
+    ) -> Result<Self> {
         let mut ways: Vec<ViewPath> = Vec::new();
+        let mut spin_rad_s = Vec3::zeros();
         let first = rows.first().map_or(0, |row| row.index);
         for row in results.paths()? {
             let row = row?;
@@ -53,12 +77,22 @@ impl Ways {
             };
             if ways.last().is_none_or(|way| way.release != row.index) {
                 let (release, radius_m) = (row.index, rock.radius_m);
-                ways.push(ViewPath { release, radius_m, instants: Vec::new() });
+                if let Some(hull) = hull_of(release) {
+                    hulls.add(release, hull);
+                }
+                let hull = hulls.number(release);
+                ways.push(ViewPath { release, radius_m, hull, instants: Vec::new() });
             }
             let Some(way) = ways.last_mut() else { break };
             let is_ahead = way.instants.last().is_none_or(|last| row.time_s > last.time_s);
             if is_ahead && is_finite(&row.position_m) && row.time_s.is_finite() {
-                way.instants.push(instant(&row, rock));
+                let mut instant = instant(&row, rock, hulls.hull(row.index));
+                if let Some(last) = way.instants.last() {
+                    let spun = spin_rad_s + Vec3::from(row.spin_rad_s);
+                    instant.spun_rad = spun * (0.5 * (row.time_s - last.time_s));
+                }
+                spin_rad_s = row.spin_rad_s.into();
+                way.instants.push(instant);
             }
         }
         ways.retain(|way| !way.instants.is_empty());
@@ -82,9 +116,8 @@ impl Ways {
         })
     }
 
-    /// Packed as text.
-    ///
-    /// A column `turn` (four parts, a unit quaternion) may join when rocks have a shape that shows how they turn.
+    /// Packed as text. With blocks the columns `turn` and `rounds` join: how they are turned, and how often they went round
+    /// since the instant before.
     pub(super) fn text(&self) -> String {
         let instants = || self.ways.iter().flat_map(|way| &way.instants);
         let frame = QuantizedBox::round(instants().map(|instant| instant.place_m));
@@ -103,24 +136,53 @@ impl Ways {
             (ENERGY_STEPS * math::log10(1.0 + instant.total_j.max(0.0))).round() as u32
         };
         section.add("energy", 1, 1, instants().map(energy).collect());
+        if self.ways.iter().any(|way| way.hull.is_some()) {
+            self.add_turns(&mut section);
+        }
         section.text()
+    }
+
+    fn add_turns(&self, section: &mut Section) {
+        let (mut turns, mut rounds) = (Vec::new(), Vec::new());
+        for way in &self.ways {
+            let is_block = way.hull.is_some();
+            let shown = |instant: &PathInstant| if is_block { packed(instant.attitude) } else { 0 };
+            turns.extend(way.instants.iter().map(shown));
+            let since = way.turns().map(|turn| if is_block { folded(turn.rounds) } else { 0 });
+            rounds.extend(std::iter::once(0).chain(since));
+        }
+        section.add("turn", 1, 0, turns);
+        section.add("rounds", 1, 0, rounds);
     }
 }
 
-fn instant(row: &PathRow, rock: &Row) -> PathInstant {
+fn instant(row: &PathRow, rock: &Row, hull: Option<&BlockHull>) -> PathInstant {
     let speed = Vec3::from(row.velocity_m_s).norm();
-    // I = 2/5 m R²
-    let rim = rock.radius_m * Vec3::from(row.spin_rad_s).norm();
-    let total_j = rock.mass_kg * (0.5 * speed * speed + 0.2 * rim * rim);
-    PathInstant { time_s: row.time_s, place_m: row.position_m, total_j }
+    let attitude = row.attitude.unwrap_or([1.0, 0.0, 0.0, 0.0]);
+    let (radius_m, spin) = (rock.radius_m, row.spin_rad_s);
+    let turning = if let Some(hull) = hull {
+        radius_m * radius_m * hull.rotational(attitude, spin)
+    } else {
+        // I = 2/5 m R²
+        let rim = radius_m * Vec3::from(spin).norm();
+        0.2 * rim * rim
+    };
+    let total_j = rock.mass_kg * (0.5 * speed * speed + turning);
+    let spun_rad = Vec3::zeros();
+    PathInstant { time_s: row.time_s, place_m: row.position_m, total_j, attitude, spun_rad }
 }
 
-/// Keeps every so many instants, and the last.
+/// Keeps every so many instants, and the last; what has spun between them adds up.
 fn thin(instants: &mut Vec<PathInstant>, every: usize) {
     let last = instants.len().saturating_sub(1);
-    let mut k = 0;
-    instants.retain(|_| {
+    let (mut k, mut spun_rad) = (0, Vec3::zeros());
+    instants.retain_mut(|instant| {
         k += 1;
-        (k - 1) % every == 0 || k - 1 == last
+        spun_rad += instant.spun_rad;
+        let is_kept = (k - 1) % every == 0 || k - 1 == last;
+        if is_kept {
+            instant.spun_rad = std::mem::take(&mut spun_rad);
+        }
+        is_kept
     });
 }

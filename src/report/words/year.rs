@@ -2,15 +2,16 @@
 
 use crate::scene::Language;
 
-macro_rules! year_words {
-    ($($name:ident),+ $(,)?) => {
+/// A struct of texts, by name.
+macro_rules! words_of {
+    ($kind:ident: $($name:ident),+ $(,)?) => {
         /// The words of one language.
         #[derive(Debug)]
-        pub(crate) struct YearWords {
+        pub(crate) struct $kind {
             $(pub(crate) $name: &'static str,)+
         }
 
-        impl YearWords {
+        impl $kind {
             /// All texts with places for what is found, by name.
             pub(super) fn texts(&self) -> Vec<(&'static str, &'static str)> {
                 vec![$((stringify!($name), self.$name),)+]
@@ -19,7 +20,10 @@ macro_rules! year_words {
     };
 }
 
-year_words! {
+pub(super) use words_of;
+
+words_of! {
+    YearWords:
     head_title, head_note, head_row, maps_title, maps_alt, map_period, map_energy, map_by_exponent,
     map_level, maps_caption, maps_by_exponent, maps_level,
 }

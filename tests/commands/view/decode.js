@@ -17,7 +17,7 @@ function sum(numbers) {
 }
 
 (async () => {
-  for (const name of ["terrain", "paths", "rocks", "maps"]) {
+  for (const name of ["terrain", "paths", "blocks", "rocks", "maps"]) {
     const packed = text(name);
     if (!packed) continue;
     const { columns, facts } = await readSection(packed);

@@ -56,6 +56,57 @@ pub(crate) fn check(file: &[u8]) {
     }
 }
 
+/// What is in a file.
+pub(crate) struct Scene<'a> {
+    head: Value,
+    bin: &'a [u8],
+}
+
+impl<'a> Scene<'a> {
+    pub(crate) fn read(file: &'a [u8]) -> Self {
+        let length = u32::from_le_bytes(file[12..16].try_into().unwrap()) as usize;
+        let head = serde_json::from_slice(&file[20..20 + length]).unwrap();
+        Self { head, bin: &file[28 + length..] }
+    }
+
+    /// The node of a name.
+    pub(crate) fn node(&self, name: &str) -> &Value {
+        self.head["nodes"].as_array().unwrap().iter().find(|node| node["name"] == name).unwrap()
+    }
+
+    fn numbers<const N: usize>(&self, accessor: &Value) -> Vec<[f32; N]> {
+        let number = |value: &Value| value.as_u64().unwrap() as usize;
+        let accessor = &self.head["accessors"][number(accessor)];
+        let view = &self.head["bufferViews"][number(&accessor["bufferView"])];
+        let start = number(&view["byteOffset"]) + number(&accessor["byteOffset"]);
+        let bytes = &self.bin[start..start + 4 * N * number(&accessor["count"])];
+        let (words, _) = bytes.as_chunks::<4>();
+        let numbers: Vec<f32> = words.iter().map(|word| f32::from_le_bytes(*word)).collect();
+        numbers.as_chunks::<N>().0.to_vec()
+    }
+
+    /// Corners of the mesh of a node.
+    pub(crate) fn places_of(&self, node: &Value) -> Vec<[f32; 3]> {
+        let mesh = node["mesh"].as_u64().unwrap() as usize;
+        self.numbers(&self.head["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"])
+    }
+
+    /// Times and attitudes of the keyframes of a node.
+    pub(crate) fn rotation_of(&self, node: &Value) -> (Vec<f32>, Vec<[f32; 4]>) {
+        let animation = &self.head["animations"][0];
+        let nodes = self.head["nodes"].as_array().unwrap();
+        let is_own = |channel: &&Value| {
+            let target = channel["target"]["node"].as_u64().unwrap() as usize;
+            nodes[target] == *node && channel["target"]["path"] == "rotation"
+        };
+        let channel = animation["channels"].as_array().unwrap().iter().find(is_own).unwrap();
+        let sampler = &animation["samplers"][channel["sampler"].as_u64().unwrap() as usize];
+        assert_eq!(sampler["interpolation"], "LINEAR");
+        let times = self.numbers::<1>(&sampler["input"]).concat();
+        (times, self.numbers(&sampler["output"]))
+    }
+}
+
 /// `min` and `max` are those of the numbers, to the bit.
 fn check_box(accessor: &Value, bytes: &[u8], parts: usize) {
     let (numbers, _) = bytes.as_chunks::<4>();

@@ -31,7 +31,7 @@ used = places[corners.ravel()]
 print("box", *(f"{x:.3f}" for x in [*used.min(axis=0), *used.max(axis=0)]))
 (fall,) = gltf.animations or [None]
 moving = [] if fall is None else fall.channels
-print("rocks", len(moving))
+print("rocks", len({channel.target.node for channel in moving}))
 for channel in moving[:1]:
     sampler = fall.samplers[channel.sampler]
     times, ends = numbers(sampler.input), numbers(sampler.output)

@@ -14,21 +14,23 @@ const CLASSES: [[u8; 4]; 3] = [[0, 43, 115, 255], [201, 89, 0, 255], [170, 28, 0
 /// Numbers of the file: one view a kind, as accessors of one view share stride and use.
 #[derive(Debug, Default)]
 pub(super) struct Bin {
-    views: [Vec<u8>; 5],
+    views: [Vec<u8>; 6],
     accessors: Vec<Value>,
 }
 
-/// Views: vertices, corners, colours, times and places of samplers.
+/// Views: vertices, corners, colours, times, places and turns of samplers.
 const PLACES: usize = 0;
 const CORNERS: usize = 1;
 const COLOURS: usize = 2;
 const TIMES: usize = 3;
 const SAMPLES: usize = 4;
+const TURNS: usize = 5;
 /// Use and stride (bytes) of each view.
-const USES: [(Option<u32>, Option<u32>); 5] = [
+const USES: [(Option<u32>, Option<u32>); 6] = [
     (Some(ARRAY), Some(12)),
     (Some(ELEMENT_ARRAY), None),
     (Some(ARRAY), Some(4)),
+    (None, None),
     (None, None),
     (None, None),
 ];
@@ -43,23 +45,30 @@ impl Bin {
         self.accessors.len() - 1
     }
 
-    fn triples(&mut self, view: usize, places: &[[f32; 3]]) -> usize {
+    fn vectors<const N: usize>(&mut self, view: usize, all: &[[f32; N]]) -> usize {
         let fold = |of: fn(f32, f32) -> f32, from: f32| {
-            places.iter().fold([from; 3], |m, p| std::array::from_fn(|i| of(m[i], p[i])))
+            let least = |m: [f32; N], p: &[f32; N]| std::array::from_fn(|i| of(m[i], p[i]));
+            all.iter().fold([from; N], least).to_vec()
         };
         let (min, max) = (fold(f32::min, f32::INFINITY), fold(f32::max, f32::NEG_INFINITY));
         let accessor = json!({
-            "componentType": FLOAT, "count": places.len(), "type": "VEC3", "min": min, "max": max
+            "componentType": FLOAT, "count": all.len(), "type": format!("VEC{N}"),
+            "min": min, "max": max
         });
-        self.add(view, places.iter().flatten().flat_map(|x| x.to_le_bytes()), accessor)
+        self.add(view, all.iter().flatten().flat_map(|x| x.to_le_bytes()), accessor)
     }
 
     pub(super) fn places(&mut self, places: &[[f32; 3]]) -> usize {
-        self.triples(PLACES, places)
+        self.vectors(PLACES, places)
     }
 
     pub(super) fn samples(&mut self, places: &[[f32; 3]]) -> usize {
-        self.triples(SAMPLES, places)
+        self.vectors(SAMPLES, places)
+    }
+
+    /// Unit quaternions x, y, z, w.
+    pub(super) fn turns(&mut self, turns: &[[f32; 4]]) -> usize {
+        self.vectors(TURNS, turns)
     }
 
     pub(super) fn corners(&mut self, corners: &[u32]) -> usize {
@@ -86,7 +95,7 @@ impl Bin {
 
     /// Lists buffer, views and accessors, and gives the bytes.
     pub(super) fn close(mut self, put: &mut impl FnMut(&str, Vec<Value>)) -> Vec<u8> {
-        let (mut bytes, mut views, mut number) = (Vec::new(), Vec::new(), [0; 5]);
+        let (mut bytes, mut views, mut number) = (Vec::new(), Vec::new(), [0; 6]);
         for (kind, (own, (target, stride))) in self.views.iter().zip(USES).enumerate() {
             if own.is_empty() {
                 continue;
