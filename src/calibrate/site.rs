@@ -28,6 +28,8 @@ pub(super) struct CalibrationSite {
     /// The part that each measured end is held out with.
     part: Vec<usize>,
     terrain: Option<Terrain>,
+    /// What the plan says of the shapes of its rocks.
+    shapes: Vec<String>,
     /// Where measured rocks were released; none unless the scene releases from all of these places.
     own: Option<OwnPlaces>,
 }
@@ -64,7 +66,8 @@ impl CalibrationSite {
             // every place as often as any other
             scene.release.count = releases.next_multiple_of(places.len());
         }
-        Ok(Self { scene, measured, blocks, part, terrain: Some(terrain), own })
+        let shapes = Vec::new();
+        Ok(Self { scene, measured, blocks, part, terrain: Some(terrain), shapes, own })
     }
 
     pub(super) fn title(&self) -> String {
@@ -73,6 +76,11 @@ impl CalibrationSite {
 
     pub(super) fn file(&self) -> &Path {
         &self.scene.file
+    }
+
+    /// What the plan says of the shapes of its rocks; known once it has computed.
+    pub(super) fn shapes(&self) -> &[String] {
+        &self.shapes
     }
 
     /// Whether it is known which throws are of one block.
@@ -105,6 +113,7 @@ impl CalibrationSite {
                 |fall| ObservedPath::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
             computed.extend(falls?.iter().filter_map(way));
         }
+        plan.releases.shapes().clone_into(&mut self.shapes);
         self.terrain = Some(plan.terrain);
         Ok(computed)
     }
@@ -171,6 +180,12 @@ impl CalibrationSite {
         (n > 0.0).then_some([mean, off])
     }
 
+    /// Rows of each block; none where computed ends cannot be told apart by their places.
+    pub(super) fn rows_of_blocks(&self) -> Vec<(&str, Vec<usize>)> {
+        let is_told = self.own.is_some() && self.knows_blocks();
+        if is_told { rows_of(self.measured.len(), &self.blocks) } else { Vec::new() }
+    }
+
     /// Independent ends that the measured ones are worth.
     pub(super) fn effective(&self) -> f64 {
         let runouts: Vec<f64> = self.measured.iter().map(ObservedPath::runout_m).collect();
@@ -204,18 +219,23 @@ impl OwnPlaces {
     }
 }
 
-/// The part that each measured end is held out with: throws of one block together, each block where there are fewest so
-/// far. None where there are fewer blocks than parts.
-fn parts_of(ends: usize, blocks: &[String], parts: usize) -> Option<Vec<usize>> {
+/// Rows of each block, blocks in the order of the file; an end of no known block is one of its own.
+fn rows_of(ends: usize, blocks: &[String]) -> Vec<(&str, Vec<usize>)> {
     let mut known: Vec<(&str, Vec<usize>)> = Vec::new();
     for row in 0..ends {
         let block = blocks.get(row).map(String::as_str);
-        let found = known.iter_mut().find(|(name, _)| block == Some(name));
-        match found {
+        match known.iter_mut().find(|(name, _)| block == Some(name)) {
             Some((_, rows)) => rows.push(row),
             None => known.push((block.unwrap_or_default(), vec![row])),
         }
     }
+    known
+}
+
+/// The part that each measured end is held out with: throws of one block together, each block where there are fewest so
+/// far. None where there are fewer blocks than parts.
+fn parts_of(ends: usize, blocks: &[String], parts: usize) -> Option<Vec<usize>> {
+    let known = rows_of(ends, blocks);
     let mut sizes = vec![0; parts];
     let mut part = vec![0; ends];
     for (_, rows) in &known {
