@@ -158,7 +158,8 @@ impl CalibrationSite {
             })
             .collect();
         let measure = |what: String, of: &dyn Fn(&[[f64; 2]]) -> [f64; 2]| {
-            let off = again.iter().map(|means| of(means)).map(|[measured, computed]| computed - measured);
+            let off =
+                again.iter().map(|means| of(means)).map(|[measured, computed]| computed - measured);
             let ([low_95, high_95], [measured, computed]) = (middle_95(off.collect()), of(&found));
             SiteMeasure { scene: self.title(), what, measured, computed, low_95, high_95 }
         };

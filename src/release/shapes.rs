@@ -88,15 +88,15 @@ impl Shapes {
                 names.push(table.block.as_ref());
             }
         }
-        let choice = |name: &Option<&String>| {
-            let own = tables.iter().enumerate().filter(|(_, table)| table.block.as_ref() == *name);
+        let choice = |name: Option<&String>| {
+            let own = tables.iter().enumerate().filter(|(_, table)| table.block.as_ref() == name);
             let summed = own.scan(0.0, |sum, (index, table)| {
                 *sum += table.weight.unwrap_or(1.0);
                 Some((*sum, index))
             });
             summed.collect()
         };
-        self.choices = names.iter().map(choice).collect();
+        self.choices = names.iter().copied().map(choice).collect();
         let rows = scene.release.blocks.iter();
         self.of_row = rows.map(|row| place(&names, row.block.as_ref()).unwrap_or(0)).collect();
     }

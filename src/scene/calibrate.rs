@@ -1,7 +1,7 @@
 //! `[calibrate]`: measured ends, and which ground values may be fitted to them.
 
-use super::check::{Allowed, Checked, Complaint, number, optional, suggest};
 use super::Scene;
+use super::check::{Allowed, Checked, Complaint, number, optional, suggest};
 use super::grounds::{STRENGTH, TANGENTIAL};
 use serde::Deserialize;
 use std::path::PathBuf;

@@ -79,9 +79,9 @@ impl BlockForm {
         }
     }
 
-    /// The rock of this size.
-    pub fn rock(&self, density_kg_m3: f64) -> Rock {
-        Rock { radius_m: Solid::of(&self.surface()).equal_radius(), density_kg_m3 }
+    /// The rock of this size, as dense as that of the cases.
+    pub fn rock(&self) -> Rock {
+        Rock { radius_m: Solid::of(&self.surface()).equal_radius(), ..ROCK }
     }
 }
 
@@ -91,10 +91,13 @@ impl MadeBlock {
     /// # Panics
     /// If its balls fill it: cases have blocks that are bodies.
     pub fn drawn(&self, rock: &Rock) -> DrawnShape {
-        let (surface, kind) = (self.form.surface(), match self.form {
-            BlockForm::Box(_) => ShapeKind::Box,
-            BlockForm::Prism(..) => ShapeKind::Prism,
-        });
+        let (surface, kind) = (
+            self.form.surface(),
+            match self.form {
+                BlockForm::Box(_) => ShapeKind::Box,
+                BlockForm::Prism(..) => ShapeKind::Prism,
+            },
+        );
         let solid = Solid::of(&surface);
         let shape = Shape::of(&solid, &surface.points, self.ball_m / solid.equal_radius());
         let block = Block::new(&shape.expect("the blocks of cases are bodies"), rock);

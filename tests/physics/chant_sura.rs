@@ -1,4 +1,4 @@
-//! The test block of Chant Sura, EOTA221 of 780 kg, beside what was measured and what RAMMS::ROCKFALL computes: single impacts
+//! The test block of Chant Sura, EOTA221 of 780 kg, beside what was measured and what RAMMS computes: single impacts
 //! on a meadow, and the way it rolls down a ramp of 40°.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test prints its table")]
 
@@ -170,7 +170,12 @@ fn the_wheel_rolls_down_the_ramp_as_published() {
         let fall = follow(&mesh, index, (-110.0, 0.5), still, (60.0, 0.05), &mut scratch);
         for point in &fall.path {
             let (v, w) = (point.motion.velocity_m_s.norm(), point.motion.spin_rad_s.norm());
-            let values = [v, w / std::f64::consts::TAU, point.clearance_m.max(0.0), 0.5e-3 * MASS_KG * v * v];
+            let values = [
+                v,
+                w / std::f64::consts::TAU,
+                point.clearance_m.max(0.0),
+                0.5e-3 * MASS_KG * v * v,
+            ];
             for (sum, value) in sums.iter_mut().zip(values) {
                 *sum = [sum[0] + value, sum[1] + value * value];
             }
@@ -182,6 +187,8 @@ fn the_wheel_rolls_down_the_ramp_as_published() {
         (mean, (two / points - mean * mean).sqrt())
     });
     let rolling = radius_m * std::f64::consts::TAU * mean_sd[1].0 / mean_sd[0].0;
-    println!("speed (m/s), spin (rev/s), height (m), energy (kJ): {mean_sd:.2?}; R ω/v {rolling:.3}");
+    println!(
+        "speed (m/s), spin (rev/s), height (m), energy (kJ): {mean_sd:.2?}; R ω/v {rolling:.3}"
+    );
     assert!((0.6..=0.8).contains(&rolling), "{rolling}");
 }

@@ -136,6 +136,16 @@ fn conservation_is_held_and_can_be_broken() {
     assert!(said.contains("NOT KEPT") && page.contains("**no**"), "{page}");
 }
 
+/// Blocks are held to the same bounds.
+#[test]
+fn blocks_conserve_too() {
+    let dir = tempfile::tempdir().unwrap();
+    let asked = ["study", "stability", "examples/blocks.toml", "--releases", "12"];
+    let (code, said, page) = rockfall(&asked, &dir.path().join("blocks"));
+    assert_eq!(code, Some(0), "{said}");
+    assert!(page.contains("12 of 12 releases") && !page.contains("**no**"), "{page}");
+}
+
 /// A scene's study with coarser meshes says all three errors apart, which dominates, and what it would take.
 #[test]
 fn errors_of_a_scene_are_told_apart() {

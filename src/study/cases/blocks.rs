@@ -11,15 +11,12 @@ use crate::study::bench::{BlockForm, MadeBlock, SETUP, Setup};
 use nalgebra::Rotation3;
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 
-/// Density of the blocks (kg/m³).
-const DENSITY_KG_M3: f64 = 2700.0;
-
 /// A block on ground with this friction (–) and restitution.
 fn block(form: BlockForm, ball_m: f64, (friction, restitution): (f64, f64)) -> Setup {
     let block = MadeBlock { form, ball_m, attitude: Rotation3::identity() };
     let friction_angle_rad = math::atan(friction);
     let ground = Ground { friction_angle_rad, restitution: Some(restitution), ..SETUP.ground };
-    Setup { rock: form.rock(DENSITY_KG_M3), block: Some(block), ground, ..SETUP }
+    Setup { rock: form.rock(), block: Some(block), ground, ..SETUP }
 }
 
 /// The same turned down a slope that falls in +y, its centre so high above it.
@@ -97,7 +94,6 @@ pub(super) const THROWN: Case = Case {
             },
         ]
     }),
-    ..STILL
 };
 
 /// Radius of the balls of the prism that rolls (m); its sides are 1 m wide.

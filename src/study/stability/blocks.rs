@@ -13,8 +13,6 @@ use crate::study::cases::meshes::{bumpy, fold};
 use crate::terrain::Terrain;
 use nalgebra::Rotation3;
 
-/// Density of the blocks (kg/m³).
-const DENSITY_KG_M3: f64 = 2700.0;
 /// Radius of the balls over the shortest side (–).
 const BALL: f64 = 0.05;
 
@@ -25,7 +23,7 @@ fn boxed(sides_m: [f64; 3], gap_m: f64) -> Setup {
     let attitude = math::turn(&Vec3::x_axis(), 0.7) * math::turn(&Vec3::y_axis(), 0.4);
     let half = Vec3::from(sides_m).norm() / 2.0;
     Setup {
-        rock: form.rock(DENSITY_KG_M3),
+        rock: form.rock(),
         block: Some(MadeBlock { form, ball_m: BALL * shortest, attitude }),
         centre_m: Vec3::new(0.03, 0.02, half + gap_m),
         ..SETUP
@@ -36,8 +34,7 @@ fn is_computed(way: &SchemeSetting) -> bool {
     BLOCK_SCHEMES.contains(&way.scheme)
 }
 
-/// Lowest height of the centre over the floor over the shortest half side (–): a block that has gone through the floor is
-/// below 0.
+/// Lowest height of the centre over z = 0 on a kept path (m).
 fn lowest(journey: &Trajectory, on: &Terrain) -> f64 {
     let heights = journey.path.iter().map(|point| point.motion.position_m.z + on.origin_m.z);
     heights.fold(f64::INFINITY, f64::min)
@@ -63,12 +60,14 @@ pub(super) fn flat(way: &SchemeSetting, notes: &mut Notes) {
         let setting = format!("{sides_m:?} m");
         let journey = notes.follow(way, &setting, &setup, &floor);
         let sunk = 0.5 * shortest - lowest(&journey, &floor);
-        notes.hold(way, &setting, "sinks in, over the shortest side", sunk / shortest, 1e-3);
+        // a tenth of the balls: steps are as long as these move three tenths of a ball
+        let deep = 0.1 * BALL;
+        notes.hold(way, &setting, "sinks in, over the shortest side", sunk / shortest, deep);
         let stirs = f64::from(u8::from(journey.stop != Stop::AtRest));
         notes.hold(way, &setting, "does not come to rest (0 = no)", stirs, 0.0);
         let lies = (journey.end.position_m.z - 0.5 * shortest).abs() / shortest;
         let law = "height of the centre at rest off that of a face, over the shortest side";
-        notes.hold(way, &setting, law, lies, 1e-3);
+        notes.hold(way, &setting, law, lies, deep);
     }
 }
 
@@ -79,13 +78,15 @@ pub(super) fn sizes(way: &SchemeSetting, notes: &mut Notes) {
         return;
     }
     let wide = terrain(crate::terrain::make::jittered_plane(1e4, 1, 0.0));
-    let fine = terrain(bumpy(160, 0.1, 1e-3));
-    for (size_m, on, setting) in
-        [(1e-4, &wide, "0.1 mm on 10 km"), (0.1, &wide, "0.1 m on 10 km"), (10.0, &fine, "10 m on 0.1 m")]
-    {
+    let fine = terrain(bumpy(300, 0.1, 1e-3));
+    for (size_m, on, setting) in [
+        (1e-4, &wide, "0.1 mm on 10 km"),
+        (0.1, &wide, "0.1 m on 10 km"),
+        (10.0, &fine, "10 m on 0.1 m"),
+    ] {
         let speed = (GRAVITY_M_S2 * size_m).sqrt();
         let setup = Setup {
-            velocity_m_s: Vec3::new(speed, 0.0, -speed),
+            velocity_m_s: Vec3::new(0.2 * speed, 0.0, -speed),
             spin_rad_s: Vec3::new(0.3, -1.0, 0.2) * (speed / size_m),
             longest_s: 3.0 * size_m / speed,
             path_step_s: Some(0.02 * size_m / speed),
