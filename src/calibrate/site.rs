@@ -34,6 +34,9 @@ pub(super) struct CalibrationSite {
     own: Option<OwnPlaces>,
 }
 
+/// A place of release (m), and the block that was thrown from it, if it is known.
+type ThrownFrom<'a> = ([f64; 2], Option<&'a str>);
+
 /// Places of release that measured ends and releases have in common.
 struct OwnPlaces {
     /// Place of each measured end.
@@ -56,11 +59,11 @@ impl CalibrationSite {
         };
         let (terrain, _) = scene.read_terrain()?;
         let asked = &scene.release;
-        let places: Vec<[f64; 2]> = match &asked.points_m {
-            Some(points) => points.iter().map(|point| point.at_m).collect(),
-            None => asked.blocks.iter().map(|block| block.at_m).collect(),
+        let places: Vec<ThrownFrom> = match &asked.points_m {
+            Some(points) => points.iter().map(|point| (point.at_m, None)).collect(),
+            None => asked.blocks.iter().map(|row| (row.at_m, row.block.as_deref())).collect(),
         };
-        let own = OwnPlaces::of(&measured, &places);
+        let own = OwnPlaces::of(&measured, &blocks, &places);
         let mut scene = bare(scene, releases);
         if own.is_some() {
             // every place as often as any other
@@ -201,14 +204,19 @@ impl CalibrationSite {
 }
 
 impl OwnPlaces {
-    /// None unless every measured end was released from one of the places.
-    fn of(measured: &[ObservedPath], places: &[[f64; 2]]) -> Option<Self> {
-        let is_near = |one: &[f64; 2], other: &[f64; 2]| {
-            math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M
+    /// None unless every measured end was released from one of the places. Where both sides name their blocks, a place is
+    /// common to throws of one block only: blocks roll unlike.
+    fn of(measured: &[ObservedPath], blocks: &[String], places: &[ThrownFrom]) -> Option<Self> {
+        let is_same = |(one, its): &ThrownFrom, (other, others): &ThrownFrom| {
+            let is_near = math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M;
+            is_near && (its.is_none() || others.is_none() || its == others)
         };
-        let place = |at: &[f64; 2]| measured.iter().position(|way| is_near(&way.start_m, at));
+        let ends = measured.iter().enumerate();
+        let ends: Vec<ThrownFrom> =
+            ends.map(|(row, way)| (way.start_m, blocks.get(row).map(String::as_str))).collect();
+        let place = |from: &ThrownFrom| ends.iter().position(|end| is_same(end, from));
         let of_release: Vec<Option<usize>> = places.iter().map(place).collect();
-        let of_end: Vec<usize> = measured.iter().filter_map(|way| place(&way.start_m)).collect();
+        let of_end: Vec<usize> = ends.iter().filter_map(place).collect();
         let is_released = |place: &usize| of_release.contains(&Some(*place));
         let common = !of_end.is_empty() && of_end.iter().all(is_released);
         common.then_some(Self { of_end, of_release })
@@ -281,14 +289,23 @@ mod tests {
     fn ends_are_compared_from_their_own_places() {
         let way = |x: f64, y: f64| ObservedPath { start_m: [x, 0.0], end_m: [x, y] };
         let measured = [way(0.0, 1.0), way(5.0, 2.0), way(0.05, 3.0), way(0.0, 4.0)];
-        let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]];
-        let own = OwnPlaces::of(&measured, &places).unwrap();
+        let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]].map(|at| (at, None));
+        let own = OwnPlaces::of(&measured, &[], &places).unwrap();
         assert_eq!(own.of_end, [0, 1, 0, 0]);
         assert_eq!(
             (0..4).map(|k| own.of_release(k)).collect::<Vec<_>>(),
             [Some(0), Some(1), None, Some(0)]
         );
-        assert!(OwnPlaces::of(&measured, &places[..1]).is_none());
-        assert!(OwnPlaces::of(&measured, &[]).is_none());
+        assert!(OwnPlaces::of(&measured, &[], &places[..1]).is_none());
+        assert!(OwnPlaces::of(&measured, &[], &[]).is_none());
+        // the same with blocks: two were thrown from the first place
+        let blocks = ["a", "b", "c", "a"].map(str::to_owned);
+        let thrown = [([0.0, 0.0], Some("a")), ([5.0, 0.0], Some("b")), ([0.0, 0.0], Some("c"))];
+        let own = OwnPlaces::of(&measured, &blocks, &thrown).unwrap();
+        assert_eq!(own.of_end, [0, 1, 2, 0]);
+        assert_eq!(
+            (0..3).map(|k| own.of_release(k)).collect::<Vec<_>>(),
+            [Some(0), Some(1), Some(2)]
+        );
     }
 }
