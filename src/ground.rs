@@ -174,6 +174,20 @@ impl Law {
 }
 
 impl Law {
+    /// The same law for a contact with a lever, which moves other masses (kg) along its normal and along the surface than a ball of
+    /// mass `mass_kg` does (all of it, and 2/7 of it): damping ratios stay.
+    #[must_use]
+    pub fn for_masses(&self, [along, across]: [f64; 2], mass_kg: f64) -> Self {
+        let slower = (along / mass_kg).sqrt();
+        Self {
+            c_n: self.c_n * slower,
+            c_n_captured: self.c_n_captured * slower,
+            c_s: self.c_s * (3.5 * across / mass_kg).sqrt(),
+            omega: self.omega / slower,
+            ..*self
+        }
+    }
+
     /// Normal restitution (–) of an impact at a normal speed (m/s): `e/(1 + (v/v_half)²)` (Pfeiffer and Bowen 1989).
     #[inline]
     pub fn restitution_at(&self, approach_m_s: f64) -> f64 {

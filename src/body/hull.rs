@@ -48,6 +48,11 @@ pub struct Core {
 }
 
 impl Core {
+    /// Whether a part, counted through corners, edges and faces, is a corner.
+    pub(crate) fn is_corner(&self, part: u16) -> bool {
+        usize::from(part) < self.corners.len()
+    }
+
     /// The hull of at most [`most_corners`] points, those on its faces and edges or inside left out.
     ///
     /// Every plane through three points with all others on one side is a face: of so few points that takes no time, and no

@@ -15,13 +15,15 @@
 use super::neighbours::SAME;
 use super::neighbours::{Neighbours, Peak, SharpEdge};
 use super::{ContactPoint, ContactPoints, Feature};
-use crate::body::Block;
+use crate::body::{Block, Ridge};
 use crate::rock::Vec3;
 use crate::terrain::Terrain;
 use nalgebra::Rotation3;
 
-/// Tests of directions are inclusive to this (–).
+/// Tests of directions are inclusive to this (–) …
 const DIRECTION_SLACK: f64 = 1e-9;
+/// … and to this for a contact that is held (–, sine of an angle): a block that lies flat on an edge rests on both sides of it.
+const HELD_SLACK: f64 = 0.2;
 /// Edges closer to parallel than this meet at their ends (–, squared sine).
 const PARALLEL: f64 = 1e-12;
 
@@ -45,6 +47,8 @@ impl Pose {
 /// One contact of a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlockTouch {
+    /// What of the block touches: corners, then edges, then faces, counted through.
+    pub part: u16,
     /// What of the mesh is touched.
     pub feature: Feature,
     /// Triangle whose sheet and ground it answers with.
@@ -55,33 +59,65 @@ pub struct BlockTouch {
     pub lever: Vec3,
     /// Distance between the surfaces (m); pressed in when negative.
     pub gap_m: f64,
+    /// Stiffness relative to that of a single point (–), of a corner pressed into a fold; see [`ContactPoint::gain2`].
+    pub gain2: f64,
 }
 
 /// A block at a pose, with its corners there.
 struct Placed<'a> {
     block: &'a Block,
     pose: &'a Pose,
+    corners: &'a [Vec3],
+    held: &'a [(u16, Feature)],
+}
+
+/// The contacts of a block, and the work space of the search for them.
+#[derive(Debug, Default)]
+pub struct BlockTouches {
+    /// Those found last.
+    pub found: Vec<BlockTouch>,
+    /// Pairs of a part of the block and a feature of the mesh that press already.
+    pub held: Vec<(u16, Feature)>,
     corners: Vec<Vec3>,
+    /// Corner by corner, a place where it was (m) and how far from there nothing was at least (m).
+    clear: Vec<(Vec3, f64)>,
+}
+
+impl BlockTouches {
+    /// Forgets what was seen of another block.
+    pub fn forget(&mut self) {
+        self.found.clear();
+        self.held.clear();
+        self.clear.clear();
+    }
 }
 
 /// The contacts of a block that are no further away than `reach_m`, in a fixed order: corners, edges, faces. `near` must have been
-/// collected with the balls' radius, for a margin that holds the core.
+/// collected with the balls' radius, for a margin that holds the core. A pair in `touches.held` stays a contact as long as it presses.
 pub fn touches(
     near: &mut Neighbours,
     terrain: &Terrain,
     (block, pose): (&Block, &Pose),
     reach_m: f64,
-    found: &mut Vec<BlockTouch>,
+    touches: &mut BlockTouches,
 ) {
+    let BlockTouches { found, held, corners, clear } = touches;
     found.clear();
-    let corners = block.core.corners.iter().map(|own| pose.point(own)).collect();
-    let placed = Placed { block, pose, corners };
+    corners.clear();
+    corners.extend(block.core.corners.iter().map(|own| pose.point(own)));
+    let placed = Placed { block, pose, corners, held };
     let reach = block.ball_m + reach_m;
-    let mut of_ball = ContactPoints::default();
-    for p in &placed.corners {
-        near.touches(terrain, p, reach, &mut of_ball);
-        for touch in of_ball.iter() {
-            placed.add(p, touch, found);
+    let (mut of_ball, sees) = (ContactPoints::default(), near.sees_m().max(reach));
+    clear.resize(corners.len(), (Vec3::repeat(f64::INFINITY), 0.0));
+    for ((k, p), (seen, far)) in corners.iter().enumerate().zip(clear) {
+        // where nothing was near, nothing is nearer than the corner has moved since
+        if *far > reach && (p - *seen).norm_squared() < (*far - reach).powi(2) {
+            continue;
+        }
+        near.touches(terrain, p, sees, &mut of_ball);
+        (*seen, *far) = (*p, of_ball.iter().map(|touch| touch.distance_m).fold(sees, f64::min));
+        for touch in of_ball.iter().filter(|touch| touch.distance_m < reach) {
+            placed.add((k, p), touch, found);
         }
     }
     for edge in near.sharp_edges() {
@@ -93,8 +129,8 @@ pub fn touches(
 }
 
 impl Placed<'_> {
-    /// Adds the contact of a core point `p`, unless it is there already.
-    fn add(&self, p: &Vec3, touch: &ContactPoint, found: &mut Vec<BlockTouch>) {
+    /// Adds the contact of a core point `p` on a part of the block, unless it is there already.
+    fn add(&self, (part, p): (usize, &Vec3), touch: &ContactPoint, found: &mut Vec<BlockTouch>) {
         let ball = self.block.ball_m;
         let lever = p - self.pose.centre - touch.normal * ball;
         let near = SAME * ball;
@@ -104,11 +140,13 @@ impl Placed<'_> {
         });
         if !known {
             found.push(BlockTouch {
+                part: part as u16,
                 feature: touch.feature,
                 triangle: touch.triangle,
                 normal: touch.normal,
                 lever,
                 gap_m: touch.distance_m - ball,
+                gain2: touch.gain2,
             });
         }
     }
@@ -121,7 +159,11 @@ impl Placed<'_> {
         reach: f64,
         found: &mut Vec<BlockTouch>,
     ) {
-        for ridge in &self.block.core.ridges {
+        let along = edge.along.dot(&(self.pose.centre - edge.a)).clamp(0.0, edge.length);
+        if !self.is_near(&(edge.a + edge.along * along), reach) {
+            return;
+        }
+        for (part, ridge) in self.ridges() {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
             let Some((s, t)) = crossing((a, b - a), (edge.a, edge.along)) else { continue };
             if s <= 0.0 || s >= 1.0 || t <= 0.0 || t >= edge.length {
@@ -134,13 +176,14 @@ impl Placed<'_> {
                 continue;
             }
             let normal = off / distance;
-            if edge.outward.iter().any(|out| out.dot(&normal) < -DIRECTION_SLACK)
-                || !self.faces_out(&ridge.into, &normal)
+            let slack = self.slack(part, edge.feature);
+            if edge.outward.iter().any(|out| out.dot(&normal) < -slack)
+                || !self.faces_out(&ridge.into, &normal, slack)
                 || edge.at_border && near.is_covered(terrain, &foot, &p, distance)
             {
                 continue;
             }
-            self.add(&p, &point(edge.feature, edge.triangle, (normal, distance)), found);
+            self.add((part, &p), &point(edge.feature, edge.triangle, (normal, distance)), found);
         }
     }
 
@@ -152,13 +195,18 @@ impl Placed<'_> {
         reach: f64,
         found: &mut Vec<BlockTouch>,
     ) {
+        if !self.is_near(&peak.p, reach) {
+            return;
+        }
         let own = self.pose.attitude.inverse_transform_vector(&(peak.p - self.pose.centre));
-        let touches =
-            |normal: &Vec3| peak.edges.iter().all(|edge| edge.dot(normal) <= DIRECTION_SLACK);
+        let touches = |part: usize, normal: &Vec3| {
+            let slack = self.slack(part, peak.feature);
+            peak.edges.iter().all(|edge| edge.dot(normal) <= slack)
+        };
         let covered = |p: &Vec3, distance: f64| {
             peak.at_border && near.is_covered(terrain, &peak.p, p, distance)
         };
-        for ridge in &self.block.core.ridges {
+        for (part, ridge) in self.ridges() {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
             let s = (peak.p - a).dot(&(b - a)) / (b - a).norm_squared();
             let p = a + (b - a) * s;
@@ -171,27 +219,54 @@ impl Placed<'_> {
                 continue;
             }
             let normal = (p - peak.p) / distance;
-            if touches(&normal) && self.faces_out(&ridge.into, &normal) && !covered(&p, distance) {
-                self.add(&p, &point(peak.feature, peak.triangle, (normal, distance)), found);
+            let slack = self.slack(part, peak.feature);
+            if touches(part, &normal)
+                && self.faces_out(&ridge.into, &normal, slack)
+                && !covered(&p, distance)
+            {
+                self.add(
+                    (part, &p),
+                    &point(peak.feature, peak.triangle, (normal, distance)),
+                    found,
+                );
             }
         }
-        for face in &self.block.core.faces {
+        let before = self.corners.len() + self.block.core.ridges.len();
+        for (k, face) in self.block.core.faces.iter().enumerate() {
+            let part = before + k;
             let height = face.normal.dot(&own) - face.level;
             if height <= 0.0 || height >= reach || !self.block.core.is_over(face, &own) {
                 continue;
             }
             let normal = -(self.pose.attitude * face.normal);
             let p = peak.p + normal * height;
-            if touches(&normal) && !covered(&p, height) {
-                self.add(&p, &point(peak.feature, peak.triangle, (normal, height)), found);
+            if touches(part, &normal) && !covered(&p, height) {
+                self.add((part, &p), &point(peak.feature, peak.triangle, (normal, height)), found);
             }
         }
     }
 
+    /// Whether a point of the mesh may be nearer to the core than `reach` (m).
+    fn is_near(&self, point: &Vec3, reach: f64) -> bool {
+        let core = self.block.bound_m - self.block.ball_m;
+        (point - self.pose.centre).norm_squared() <= (core + reach).powi(2)
+    }
+
+    /// The block's edges with their numbers among its parts.
+    fn ridges(&self) -> impl Iterator<Item = (usize, &Ridge)> {
+        (self.corners.len()..).zip(&self.block.core.ridges)
+    }
+
     /// Whether the opposite of a direction lies between the normals of the two faces at an edge of the block.
-    fn faces_out(&self, into: &[Vec3; 2], normal: &Vec3) -> bool {
+    fn faces_out(&self, into: &[Vec3; 2], normal: &Vec3, slack: f64) -> bool {
         let own = self.pose.attitude.inverse_transform_vector(normal);
-        into.iter().all(|into| into.dot(&own) >= -DIRECTION_SLACK)
+        into.iter().all(|into| into.dot(&own) >= -slack)
+    }
+
+    /// How far the normal of a pair may be out of bounds (–).
+    fn slack(&self, part: usize, feature: Feature) -> f64 {
+        let held = self.held.contains(&(part as u16, feature));
+        if held { HELD_SLACK } else { DIRECTION_SLACK }
     }
 }
 

@@ -14,6 +14,8 @@ const STATIC_DEPTH: f64 = 0.01;
 /// Deepest an impact should press a spring, over the rock's radius (–): deeper, neighbouring triangles
 /// take part that a rigid rock would not touch.
 const IMPACT_DEPTH: f64 = 0.1;
+/// The same for the corner of a block, over the corner's radius (–): half of it is the end.
+const CORNER_DEPTH: f64 = 0.3;
 /// Speed that a single rock seldom passes (m/s); what free fall over the whole slope would give is rarely met.
 const SELDOM_PASSED_M_S: f64 = 40.0;
 /// Contact oscillation per step (rad) above which an impact is not resolved: the scheme then eats more than a
@@ -170,32 +172,38 @@ pub(super) fn check(
         return check_shear(scene);
     }
     let largest = rock(scene, scene.rocks.radius_m().reckoned()[2]);
+    // what presses in: a sphere, or the corner of a block
+    let sharpest = scene.sharpest();
+    let (pressed_m, deepest) = match sharpest {
+        Some(corner) => (corner * largest.radius_m, CORNER_DEPTH),
+        None => (largest.radius_m, IMPACT_DEPTH),
+    };
+    let whose = if sharpest.is_some() { "its corners'" } else { "its" };
+    let of = if sharpest.is_some() { " with such corners" } else { "" };
     let fastest_m_s = fastest_m_s(scene, terrain);
     for (name, ground) in &scene.grounds {
         let softest = ground.normal_stiffness_n_m.reckoned()[0];
         let liveliest = ground.restitution.as_ref().map_or(1.0, |e| e.support().1);
         // p_N ≥ e m v²/depth², from the largest penetration √e v/ω of an impact
-        let least = |v: f64, depth: f64| {
-            liveliest * largest.mass_kg() * (v / (depth * largest.radius_m)).powi(2)
-        };
+        let least =
+            |v: f64, depth: f64| liveliest * largest.mass_kg() * (v / (depth * pressed_m)).powi(2);
         let at_rest = largest.mass_kg() * scene.gravity_m_s2 / (STATIC_DEPTH * largest.radius_m);
         if softest < at_rest.max(least(fastest_m_s, 1.0)) {
-            let usual = at_rest.max(least(fastest_m_s.min(SELDOM_PASSED_M_S), IMPACT_DEPTH));
+            let usual = at_rest.max(least(fastest_m_s.min(SELDOM_PASSED_M_S), deepest));
             let place = format!("[grounds.{name}] normal_stiffness_n_m");
             let found = format!(
-                "found {softest:e}, too soft for a rock of {:.3} m at up to {fastest_m_s:.0} m/s: it would sink in",
+                "found {softest:e}, too soft for a rock of {:.3} m{of} at up to {fastest_m_s:.0} m/s: it would sink in",
                 largest.radius_m
             );
             let remedy = format!("write {:.1e} or more", 1.05 * usual.max(at_rest));
             return Err(Error::input(&scene.file, place, found, remedy));
         }
-        let needed = least(fastest_m_s.min(SELDOM_PASSED_M_S), IMPACT_DEPTH);
+        let needed = least(fastest_m_s.min(SELDOM_PASSED_M_S), deepest);
         if softest < needed {
-            let above_m_s = IMPACT_DEPTH
-                * largest.radius_m
-                * (softest / (liveliest * largest.mass_kg())).sqrt();
+            let above_m_s =
+                deepest * pressed_m * (softest / (liveliest * largest.mass_kg())).sqrt();
             let text = format!(
-                "[grounds.{name}] normal_stiffness_n_m = {softest:e} lets a rock of {:.3} m sink in by more than {IMPACT_DEPTH} of its radius in impacts above {above_m_s:.1} m/s; {needed:.1e} would hold it up to {:.0} m/s",
+                "[grounds.{name}] normal_stiffness_n_m = {softest:e} lets a rock of {:.3} m sink in by more than {deepest} of {whose} radius in impacts above {above_m_s:.1} m/s; {needed:.1e} would hold it up to {:.0} m/s",
                 largest.radius_m,
                 fastest_m_s.min(SELDOM_PASSED_M_S),
             );

@@ -150,6 +150,12 @@ impl Scene {
         self.rocks.shapes.iter().any(|shape| shape.kind != ShapeKind::Sphere)
     }
 
+    /// Corner radius of the sharpest blocks over `radius_m` (–); `None` where all rocks are spheres.
+    pub fn sharpest(&self) -> Option<f64> {
+        let blocks = self.rocks.shapes.iter().filter(|shape| shape.kind != ShapeKind::Sphere);
+        blocks.filter_map(|shape| shape.corner_radius).reduce(f64::min)
+    }
+
     /// The tables of shapes, and what cannot be had together with blocks.
     pub(super) fn check_shapes(&self) -> Checked {
         for (index, shape) in self.rocks.shapes.iter().enumerate() {
@@ -168,14 +174,6 @@ impl Scene {
         }
         if !self.has_blocks() {
             return self.check_soil_of_worlds();
-        }
-        if self.solver.scheme().has_springs() {
-            let remedy = "write scheme = \"rigid\": blocks of [[rocks.shapes]] are computed in the rigid limit only, as yet";
-            let about = match self.solver.scheme {
-                Some(_) => Complaint::about("scheme", remedy),
-                None => Complaint::missing("scheme", remedy),
-            };
-            return Err(about.inside("solver"));
         }
         if self.release.together {
             let remedy = "remove it, or the blocks of [[rocks.shapes]]: rocks that share one world are spheres";

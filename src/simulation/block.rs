@@ -1,9 +1,11 @@
-//! The recorder of a block: tumble, touch, step, stop. Scheme `rigid` only.
+//! The fall of a block: tumble, touch, step, stop.
 //!
 //! A block is a convex core with rounded corners. In flight it turns as a free rigid body (Euler's equations, solved
 //! by [`Top`]) while its centre follows a parabola; the first touch is found by conservative advancement, since no
-//! closed form exists for a tumbling body. In contact, velocities are stepped in the rigid limit: impulses that keep
-//! the bodies apart under Coulomb's law (Moreau 1988), without springs.
+//! closed form exists for a tumbling body. In contact a scheme with springs follows every impact in its time; in the rigid limit
+//! velocities are stepped with impulses that keep the bodies apart under Coulomb's law (Moreau 1988).
+
+mod impacts;
 
 use super::form::{Form, Turned};
 use super::impacts::Struck;
@@ -12,7 +14,6 @@ use super::rest::RestCriterion;
 use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
-use crate::contact::block::BlockTouch;
 use crate::flight::Parabola;
 use crate::flight::block::{Tumble, first_touch};
 use crate::flight::top::Top;
@@ -20,11 +21,12 @@ use crate::ground::Law;
 use crate::random::RandomStream;
 use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Vec3};
-use crate::solver::block::{Footing, Moving};
+use crate::solver::block::{Footing, Moving, Stepped};
 use crate::solver::body::Body;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::roughness::RoughFacets;
 use crate::solver::scar::{Scars, taken_j};
+use crate::solver::step_control::StepError;
 
 /// One block on its way.
 struct Roll<'a> {
@@ -56,6 +58,7 @@ pub(super) fn follow_block(
     let block = &drawn.block;
     let world = settings.around(Body::of_block(block, settings.gravity_m_s2), laws);
     footing.near.forget();
+    footing.touches.forget();
     footing.raise_stems(settings.terrain, &random);
     (footing.near.tested, footing.sweeps) = (0, 0);
     footing.facets = RoughFacets::of(random, laws);
@@ -109,38 +112,43 @@ impl Roll<'_> {
     /// Goes on in contact until the block is free again or stops.
     fn touch(&mut self) -> Option<Stop> {
         let (before_j, lost_before_j) = (self.total_j(), self.recorder.lost_j());
+        let held = self.begin_contact();
         let stop = self.steps();
         let rise_j = self.total_j() - before_j;
-        // impulses of the rigid limit only take energy: a rise is an error of the solver
-        let ledger = &mut self.recorder.ledger;
-        ledger.rise_j = ledger.rise_j.max(rise_j);
         let lost_j = self.recorder.lost_j() - lost_before_j;
         self.recorder.ledger.remainder_j -= rise_j + lost_j;
+        // what springs hold is not lost
+        let stored = self.stored();
+        self.recorder.pay(&stored, -1.0);
+        self.recorder.pay(&held, 1.0);
+        // contacts only take energy: a rise is an error of the solver
+        let ledger = &mut self.recorder.ledger;
+        ledger.rise_j = ledger.rise_j.max(rise_j + stored.sum() - held.sum());
+        self.end_contact();
         stop
     }
 
-    /// Steps through one episode of contact: look for contacts, resolve impacts, then one velocity step, until the
-    /// block flies (`None`) or ends.
+    /// Steps through one episode of contact: impacts that begin, then one step, until the block flies (`None`) or ends.
     fn steps(&mut self) -> Option<Stop> {
         let block = self.block;
         let mut calm = RestCriterion::from(self.moving.pose.centre);
         loop {
-            // contacts are looked for anew in every step: the block turns, and other corners come near
-            let pose = self.moving.pose;
-            self.footing.look(&self.world, block, &pose, block.ball_m);
-            if self.strike() {
+            if self.meet() {
                 return None;
             }
             let left = self.settings.longest_s - self.recorder.now.time_s;
-            let most_s = self.settings.step.step_s.min(left);
-            let most_s = most_s.min(self.scars.longest_s(self.moving.v.norm()));
-            let mut done = self.footing.step(&self.world, block, &mut self.moving, most_s);
+            let most_s = left.min(self.scars.longest_s(self.moving.v.norm()));
+            let from = self.moving.pose.centre;
+            let mut done = match self.step(most_s) {
+                Ok(done) => done,
+                Err(stuck) => return Some(Stop::Failed(stuck.to_string())),
+            };
             self.footing.bend_stem(&self.world, (block, &mut self.moving), &mut done.loss);
             self.recorder.effort.steps += 1;
             self.recorder.effort.unsettled += u64::from(done.unsettled);
             self.recorder.pay(&done.loss, 1.0);
             if self.scars.are_any() {
-                self.plough(&pose.centre, done.is_free);
+                self.plough(&from, done.is_free);
             }
             let to = Motion {
                 time_s: self.recorder.now.time_s + done.dt,
@@ -155,6 +163,7 @@ impl Roll<'_> {
             }
             self.recorder.turned = Some(turned(block, &self.moving));
             self.recorder.step(to, done.slides);
+            self.leave_impacts();
             let time_up = (done.dt >= left).then_some(Stop::TimeUp);
             let ends = time_up.or_else(|| self.settings.over_budget(&self.recorder.effort));
             if done.is_free || ends.is_some() {
@@ -166,6 +175,36 @@ impl Roll<'_> {
                 return Some(Stop::AtRest);
             }
         }
+    }
+
+    /// Whether contacts have springs.
+    fn has_springs(&self) -> bool {
+        self.settings.step.scheme.has_springs()
+    }
+
+    /// What the block strikes before a step; whether it has been thrown off.
+    fn meet(&mut self) -> bool {
+        if self.has_springs() {
+            self.begin_impacts();
+            return false;
+        }
+        // contacts are looked for anew in every step: the block turns, and other corners come near
+        let pose = self.moving.pose;
+        self.footing.look(&self.world, self.block, &pose, self.block.ball_m);
+        self.strike()
+    }
+
+    /// One step of at most `most_s`.
+    fn step(&mut self, most_s: f64) -> Result<Stepped, StepError> {
+        let (settings, block) = (self.settings.step, self.block);
+        if !self.has_springs() {
+            let most_s = settings.step_s.min(most_s);
+            return Ok(self.footing.step(&self.world, block, &mut self.moving, most_s));
+        }
+        let on = (block, &mut self.moving);
+        let (done, rejected) = self.footing.step_on_springs(&self.world, settings, on, most_s)?;
+        self.recorder.effort.rejected += rejected;
+        Ok(done)
     }
 
     /// Resolves the impact of the contacts that touch, if there is one; whether it has thrown the block off.
@@ -190,8 +229,9 @@ impl Roll<'_> {
             };
             self.recorder.begin_impact(&struck, now_s, 0.0);
         }
-        if self.scars.are_any() {
-            self.dig(&struck);
+        let fastest = self.moving.fastest(block, struck.iter());
+        if let Some(touch) = fastest.filter(|_| self.scars.are_any()) {
+            self.dig(touch.triangle, &touch.normal);
         }
         let broken_j = self.footing.break_stems(&self.world, block, &mut self.moving);
         self.recorder.ledger.trees_j += broken_j;
@@ -216,12 +256,11 @@ impl Roll<'_> {
         is_free
     }
 
-    /// Digs in where the fastest of the contacts that are struck strikes, as fast as the centre comes to it.
-    fn dig(&mut self, struck: &[BlockTouch]) {
-        let Some(touch) = self.moving.fastest(self.block, struck.iter()) else { return };
-        let on = (self.world.ground_of(touch.triangle), touch.normal);
+    /// Digs in where it strikes a triangle fastest, as fast as the centre comes to it.
+    fn dig(&mut self, triangle: u32, normal: &Vec3) {
         let v = &self.moving.v;
-        let speeds = (-touch.normal.dot(v), v.norm());
+        let speeds = (-normal.dot(v), v.norm());
+        let on = (self.world.ground_of(triangle), *normal);
         let kept = self.scars.enter(&self.world.body, on, speeds);
         self.slow(kept);
     }
@@ -239,6 +278,7 @@ impl Roll<'_> {
     fn slow(&mut self, kept: f64) {
         self.recorder.ledger.soil_j += taken_j(&self.world.body, &self.moving.v, kept);
         self.moving.v *= kept;
+        self.footing.springs.refresh();
     }
 
     /// Mechanical energy (J), weight included.

@@ -11,7 +11,7 @@ use crate::solver::roughness::Meeting;
 use std::f64::consts::PI;
 
 /// An impact is over after so many contact times (–), whether the rock has left or not.
-const IMPACT_TIMES: f64 = 3.0;
+pub(super) const IMPACT_TIMES: f64 = 3.0;
 
 /// A rock in contact and its notes.
 pub(super) struct RockInContact<'r, 'a> {

@@ -9,8 +9,10 @@
 //! would, all restitutions are lowered together until it does not.
 
 mod energy;
+mod facet;
 mod slip;
 mod solve;
+mod springs;
 mod stems;
 mod yielding;
 
@@ -18,22 +20,26 @@ use super::environment::ContactEnvironment;
 use super::law::capture_m_s;
 use super::loss::Loss;
 use super::rigid::HELD;
-use super::roughness::{Meeting, RoughFacets};
+use super::roughness::RoughFacets;
 use super::slip::Slip;
 use super::stem_load::StemLoad;
 use crate::body::Block;
 use crate::contact::MOST;
-use crate::contact::block::{BlockTouch, Pose, keep_widest, touches};
+use crate::contact::block::{BlockTouch, BlockTouches, Pose, keep_widest, touches};
 use crate::contact::neighbours::Neighbours;
-use crate::flight::block::Tumble;
 use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
 use energy::hold_energy;
 use nalgebra::{Matrix3, Rotation3};
 use solve::{BlockContact, Mass, solve};
+use springs::Springs;
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
 pub(crate) const TOUCH: f64 = 1e-8;
+/// Features are collected for a way of the centre (–, relative to the radius of the sphere of equal volume) …
+const WAY: f64 = 0.5;
+/// … and so far from the balls (–, relative to their radius): a corner that far from all need not be asked for a while.
+const SEES: f64 = 3.0;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
 const AHEAD: f64 = 1.0;
 /// No point of the block moves further in one step (–, relative to the balls' radius) …
@@ -62,8 +68,11 @@ pub(crate) struct Moving {
 #[derive(Debug, Default)]
 pub(crate) struct Footing {
     pub(crate) near: Neighbours,
-    pub(crate) touches: Vec<BlockTouch>,
+    pub(crate) touches: BlockTouches,
     contacts: Vec<BlockContact>,
+    /// Springs of its contacts, in the schemes that have them, and which belongs to each of the last look.
+    pub(crate) springs: Springs,
+    of_touch: Vec<Option<usize>>,
     /// The facets it meets on rough ground.
     pub(crate) facets: RoughFacets,
     /// How far it has slipped.
@@ -157,6 +166,16 @@ fn orthonormal(turned: &Rotation3<f64>) -> Rotation3<f64> {
 }
 
 impl Footing {
+    /// Sees to it that the features around a block are known, with room for some looks.
+    fn know(&mut self, world: &ContactEnvironment, block: &Block, pose: &Pose) {
+        let core = block.bound_m - block.ball_m;
+        if !self.near.covers_around(&pose.centre, core) {
+            let margin = core + WAY * block.radius_m;
+            let slack = SEES * block.ball_m;
+            self.near.collect(world.terrain, &pose.centre, block.ball_m, margin, slack);
+        }
+    }
+
     /// Looks for the contacts of a block that are no wider apart than `reach_m`.
     pub(crate) fn look(
         &mut self,
@@ -165,20 +184,17 @@ impl Footing {
         pose: &Pose,
         reach_m: f64,
     ) {
-        if !self.near.covers_around(&pose.centre, block.bound_m - block.ball_m) {
-            let way = 0.5 * block.radius_m;
-            Tumble::collect(block, &mut self.near, world.terrain, (&pose.centre, way));
-        }
+        self.know(world, block, pose);
         touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
-        if self.touches.len() > MOST {
-            keep_widest(&mut self.touches, MOST);
+        if self.touches.found.len() > MOST {
+            keep_widest(&mut self.touches.found, MOST);
         }
     }
 
     /// Contacts that hold the block or strike it: those of the last look that touch.
     pub(crate) fn touching(&self, block: &Block) -> impl Iterator<Item = &BlockTouch> {
         let most = TOUCH * block.radius_m;
-        self.touches.iter().filter(move |touch| touch.gap_m <= most)
+        self.touches.found.iter().filter(move |touch| touch.gap_m <= most)
     }
 
     /// Whether a contact that touches is struck, faster than its ground captures.
@@ -290,7 +306,7 @@ impl Footing {
         let (v, w) = (moving.v, moving.spin(block));
         self.contacts.clear();
         let slip_m_s = self.slip_m_s(block, &start);
-        for touch in &self.touches {
+        for touch in &self.touches.found {
             let goal = goal(block, (&start, moving), touch, dt);
             let ahead_m = 0.5 * dt * slip_m_s;
             self.contacts.push(self.contact(world, (&mass, touch), ahead_m, goal));
@@ -320,19 +336,6 @@ impl Footing {
         Stepped { dt, loss, slides, is_free, unsettled: !settled }
     }
 
-    /// The facet of rough ground that the fastest of the contacts that touch meets.
-    fn facet(
-        &mut self,
-        world: &ContactEnvironment,
-        block: &Block,
-        moving: &Moving,
-    ) -> Option<Rotation3<f64>> {
-        let fastest = moving.fastest(block, self.touching(block))?;
-        let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
-        let v = moving.at(block, &fastest.lever);
-        self.facets.struck(world, &Meeting { n, triangle, c, v })
-    }
-
     /// A contact at a touch, where the block will have slipped `ahead_m` (m) further.
     fn contact(
         &self,
@@ -358,7 +361,7 @@ impl Footing {
         (block, moving): (&Block, &Moving),
         pushed: bool,
     ) -> bool {
-        self.touches.iter().any(|touch| {
+        self.touches.found.iter().any(|touch| {
             let up = touch.normal.dot(&moving.at(block, &touch.lever));
             touch.gap_m <= HELD * block.radius_m
                 && up < capture_m_s(world.law(touch.triangle))
@@ -374,7 +377,7 @@ impl Footing {
         dt: f64,
     ) -> f64 {
         let most = TOUCH * block.radius_m;
-        self.touches.iter().filter(|touch| touch.gap_m > most).fold(dt, |dt, touch| {
+        self.touches.found.iter().filter(|touch| touch.gap_m > most).fold(dt, |dt, touch| {
             let speed = -touch.normal.dot(&moving.at(block, &touch.lever));
             let fast = speed >= capture_m_s(world.law(touch.triangle));
             if fast { dt.min((touch.gap_m / speed).max(1e-9)) } else { dt }

@@ -56,6 +56,11 @@ impl Neighbours {
         (point - self.centre).norm() + around_m <= self.margin
     }
 
+    /// How far from a centre within the margin features are known (m).
+    pub(crate) fn sees_m(&self) -> f64 {
+        self.reach - self.margin
+    }
+
     /// All triangles within reach.
     pub(crate) fn triangles(&self) -> &[u32] {
         &self.sheets

@@ -3,17 +3,21 @@
 //! With `a` from the centre of mass to the contact point, `T = [1, −[a]×]` and `V_N = nᵀT = [nᵀ, (a×n)ᵀ]` are the submatrices of the paper;
 //! for a sphere `a ∥ n` and the rotational part is 0. The contact point answers an impulse with `G = T M⁻¹ Tᵀ`.
 //!
-//! Every contact obeys `u_n ≥ goal ⊥ p_n ≥ 0` and Coulomb's law for what is left of its slip; contacts are swept (projected
-//! Gauss–Seidel), each solved for its three unknowns at once.
+//! Every contact obeys `u_n + C_n p_n ≥ goal ⊥ p_n ≥ 0` and Coulomb's law for what is left of `u_t + C_t p_t − goal`; contacts are swept
+//! (projected Gauss–Seidel), each solved for its three unknowns at once. In the rigid limit a contact gives way to nothing, `C = 0`. A spring
+//! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`GivingWay`]): one solver serves both.
 
 use crate::rock::Vec3;
 use crate::solver::law::within;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// Sweeps over the contacts, at most.
 const SWEEPS: u32 = 300;
 /// Change of the body's momentum in a sweep, relative to the largest impulse, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-11;
+/// Turns of the direction of friction, at most, and the widest of them (rad).
+const TURNS: u32 = 20;
+const WIDEST_TURN: f64 = 0.8;
 /// Passes over the impulse of one contact that slides, at most.
 const PASSES: u32 = 100;
 /// Change of it below which they have settled (–).
@@ -43,9 +47,35 @@ pub(crate) struct BlockContact {
     pub(crate) triangle: u32,
     /// Impulse on the rock (N s).
     pub(crate) impulse: Vec3,
-    /// `G` (1/kg) and its inverse (kg).
+    /// `G` (1/kg).
     pub(super) answer: Matrix3<f64>,
+    /// `G + C` and its inverse.
+    whole: Inverted,
+    /// How it gives way; `None` in the rigid limit.
+    springs: Option<GivingWay>,
+}
+
+/// A matrix (1/kg) and its inverse (kg).
+#[derive(Debug, Clone, Copy)]
+struct Inverted {
+    matrix: Matrix3<f64>,
     inverse: Matrix3<f64>,
+}
+
+impl Inverted {
+    fn of(matrix: Matrix3<f64>, mass_kg: f64) -> Self {
+        let inverse = matrix.try_inverse().unwrap_or_else(|| Matrix3::identity() * mass_kg);
+        Self { matrix, inverse }
+    }
+}
+
+/// How a contact with springs and dashpots gives way over an implicit step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GivingWay {
+    /// Compliance along the normal and along the surface (1/kg): speed over impulse.
+    pub(crate) compliance: [f64; 2],
+    /// Speed along the normal that ends the step at the surface (m/s).
+    pub(crate) surface_m_s: f64,
 }
 
 impl Mass {
@@ -69,9 +99,29 @@ impl BlockContact {
     ) -> Self {
         let across = lever.cross_matrix();
         let answer = Matrix3::identity() / mass.mass - across * mass.inverse * across;
-        let inverse = answer.try_inverse().unwrap_or_else(|| Matrix3::identity() * mass.mass);
-        let impulse = Vec3::zeros();
-        Self { n, lever, friction, goal, triangle, impulse, answer, inverse }
+        let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer, mass.mass));
+        Self { n, lever, friction, goal, triangle, impulse, answer, whole, springs: None }
+    }
+
+    /// The same contact with springs.
+    pub(crate) fn with_springs(&self, mass: &Mass, springs: GivingWay) -> Self {
+        let [along, across] = springs.compliance;
+        let normal = self.n * self.n.transpose();
+        let soft = normal * along + (Matrix3::identity() - normal) * across;
+        let whole = Inverted::of(self.answer + soft, mass.mass);
+        Self { whole, springs: Some(springs), ..*self }
+    }
+
+    /// How it gives way, in a scheme with springs.
+    #[inline]
+    pub(super) fn springs(&self) -> Option<&GivingWay> {
+        self.springs.as_ref()
+    }
+
+    /// Mass that it moves along the normal, and in the mean along the surface (kg).
+    pub(crate) fn masses(&self) -> [f64; 2] {
+        let along = self.n.dot(&(self.answer * self.n));
+        [1.0 / along, 2.0 / (self.answer.trace() - along)]
     }
 
     /// The same contact with another goal.
@@ -79,33 +129,84 @@ impl BlockContact {
         Self { goal, ..*self }
     }
 
-    /// Its impulse where the point would move by `u` beyond its goal without it.
+    /// Its impulse where the point would move by `u` without it.
     fn own_impulse(&self, u: &Vec3) -> Vec3 {
+        let impulse = self.answering(&(u - self.goal), &self.whole);
+        let Some(springs) = self.springs.filter(|_| impulse != Vec3::zeros()) else {
+            return impulse;
+        };
+        if self.n.dot(&(u + self.answer * impulse)) <= springs.surface_m_s {
+            return impulse;
+        }
+        // the dashpot alone would keep the block out: the impulse that holds it exactly at the surface
+        let normal = self.n * self.n.transpose();
+        let hard = self.whole.matrix - normal * springs.compliance[0];
+        let mass_kg = self.whole.inverse.trace() / 3.0;
+        let goal = self.goal + self.n * (springs.surface_m_s - self.n.dot(&self.goal));
+        self.answering(&(u - goal), &Inverted::of(hard, mass_kg))
+    }
+
+    /// Its impulse where the point would move by `u` beyond its goal without it, and answers an impulse by `whole`.
+    fn answering(&self, u: &Vec3, whole: &Inverted) -> Vec3 {
         let up = self.n.dot(u);
         if up >= 0.0 {
             return Vec3::zeros();
         }
-        let stick = -(self.inverse * u);
+        let stick = -(whole.inverse * u);
         let push = self.n.dot(&stick);
         let drag = stick - self.n * push;
         if push > 0.0 && drag.norm_squared() <= (self.friction * push).powi(2) {
             return stick;
         }
-        self.sliding(u, drag)
+        self.on_rim(u, (&drag, &whole.matrix))
+            .unwrap_or_else(|| self.sliding(u, (drag, &whole.matrix)))
     }
 
-    /// The impulse on the rim of Coulomb's cone. Also where no rigid solution exists (Painlevé): then the last pass, which obeys the
+    /// The impulse on the rim of Coulomb's cone, `p (n + μ d)` with a direction `d` along the surface against the slip that it leaves: one
+    /// equation for the angle of `d`, by Newton's method from that of `drag`. `None` where it does not settle on a slip that friction
+    /// opposes.
+    fn on_rim(&self, u: &Vec3, (drag, whole): (&Vec3, &Matrix3<f64>)) -> Option<Vec3> {
+        let n = &self.n;
+        let first = drag.try_normalize(0.0)?;
+        let second = n.cross(&first);
+        let (to_n, to_first, to_second) = (whole * n, whole * first, whole * second);
+        let flat = |x: &Vec3| Vector2::new(first.dot(x), second.dot(x));
+        let (up, slip, lift) = (n.dot(u), flat(u), flat(&to_n));
+        let across = Matrix2::from_columns(&[flat(&to_first), flat(&to_second)]) * self.friction;
+        let mut d = Vector2::new(1.0, 0.0);
+        for _ in 0..TURNS {
+            let aside = Vector2::new(-d.y, d.x);
+            let own = n.dot(&to_n) + self.friction * lift.dot(&d);
+            let push = -up / own;
+            let answer = lift + across * d;
+            let left = slip + answer * push;
+            let push_turns = -push * self.friction * lift.dot(&aside) / own;
+            let turns = aside.dot(&(answer * push_turns + across * aside * push)) - d.dot(&left);
+            let turn = -aside.dot(&left) / turns;
+            if own <= 0.0 || !turn.is_finite() {
+                return None;
+            }
+            d = (d + aside * turn.clamp(-WIDEST_TURN, WIDEST_TURN)).normalize();
+            if turn.abs() <= NEAR {
+                let opposes = d.dot(&left) <= 0.0;
+                return opposes.then(|| (n + (first * d.x + second * d.y) * self.friction) * push);
+            }
+        }
+        None
+    }
+
+    /// The same by passes over drag and push, slowly. Also where no rigid solution exists (Painlevé): then the last pass, which obeys the
     /// cone and pushes.
-    fn sliding(&self, u: &Vec3, mut drag: Vec3) -> Vec3 {
+    fn sliding(&self, u: &Vec3, (mut drag, whole): (Vec3, &Matrix3<f64>)) -> Vec3 {
         let n = &self.n;
         let along = |x: &Vec3| x - n * n.dot(x);
-        let to_n = self.answer * n;
-        let (own, rate) = (n.dot(&to_n), 1.0 / (self.answer.trace() - n.dot(&to_n)));
+        let to_n = whole * n;
+        let (own, rate) = (n.dot(&to_n), 1.0 / (whole.trace() - n.dot(&to_n)));
         let mut push = 0.0;
         for _ in 0..PASSES {
             let asked = -(n.dot(u) + to_n.dot(&drag)) / own;
             push = asked.max(0.0);
-            let slip = along(&(u + self.answer * drag + to_n * push));
+            let slip = along(&(u + whole * drag + to_n * push));
             let next = within(drag - slip * rate, self.friction * push);
             let change = (next - drag).norm();
             drag = next;
@@ -136,7 +237,7 @@ pub(crate) fn solve(
         let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {
             let u = Mass::at(&contact.lever, (&v, &w)) - contact.answer * contact.impulse;
-            let next = contact.own_impulse(&(u - contact.goal));
+            let next = contact.own_impulse(&u);
             let (dv, dw) = mass.change(contact, &(next - contact.impulse));
             (v, w) = (v + dv, w + dw);
             scale = scale.max(next.norm());

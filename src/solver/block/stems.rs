@@ -71,7 +71,7 @@ impl Footing {
         loss: &mut Loss,
     ) {
         let Some(stems) = world.terrain.stems.as_ref().filter(|_| loss.trees > 0.0) else { return };
-        let touched = self.touches.iter().filter_map(|touch| {
+        let touched = self.touches.found.iter().filter_map(|touch| {
             stems.of_triangle(touch.triangle).map(|stem| (stem, touch.gap_m, touch.normal))
         });
         let Some((stem, _, normal)) = touched.min_by(|one, other| one.1.total_cmp(&other.1)) else {

@@ -2,14 +2,16 @@ use super::*;
 
 mod cases;
 mod slip;
+mod springs;
 mod yielding;
 
 use crate::body::{Shape, Solid, Surface, box_surface, prism_surface};
-use crate::flight::block::first_touch;
+use crate::flight::block::{Tumble, first_touch};
 use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
 use crate::rock::Rock;
+use crate::solver::Settings;
 use crate::solver::body::Body;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
@@ -54,6 +56,8 @@ struct BlockRun {
     law: Law,
     ground: Ground,
     step_s: f64,
+    /// The step of a scheme with springs; `None` = `rigid`.
+    springs: Option<Settings>,
     lost: Loss,
     impacts: usize,
     steps: usize,
@@ -79,7 +83,8 @@ impl BlockRun {
         let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
         let law = Law::new(&ground, &Damping::of(ground.restitution), &rock, &capture);
         let lost = Loss::default();
-        Self { terrain, block, law, ground, step_s: 0.01, lost, impacts: 0, steps: 0 }
+        let springs = None;
+        Self { terrain, block, law, ground, step_s: 0.01, springs, lost, impacts: 0, steps: 0 }
     }
 
     fn start(&self, attitude: Rotation3<f64>, [centre, v, w]: [Vec3; 3]) -> Moving {
@@ -115,7 +120,23 @@ impl BlockRun {
             (moving.pose, moving.v) = (tumble.pose(dt), path.velocity(dt));
             now += dt;
             see(now, moving);
+            if let Some(settings) = &self.springs {
+                footing.begin_springs(&world, settings, (&block, moving));
+            }
             while now < longest_s {
+                if let Some(settings) = &self.springs {
+                    let on = (&block, &mut *moving);
+                    let (done, _) =
+                        footing.step_on_springs(&world, settings, on, longest_s - now).unwrap();
+                    self.lost.add(&done.loss, 1.0);
+                    self.steps += 1;
+                    now += done.dt;
+                    see(now, moving);
+                    if done.is_free {
+                        break;
+                    }
+                    continue;
+                }
                 let pose = moving.pose;
                 footing.look(&world, &block, &pose, block.ball_m);
                 if let Some(loss) = footing.strike(&world, &block, moving) {
@@ -327,58 +348,4 @@ fn a_frictionless_elastic_box_keeps_what_it_should() {
     assert!((moving.momentum.z / about - 1.0).abs() < 1e-9, "{} {about}", moving.momentum.z);
     let change = case.energy_j(&moving) / before - 1.0;
     assert!(change.abs() < 1e-9, "{change:e}");
-}
-
-/// An edge of a block across a ridge: one contact, and a plate over a peak: one contact, pushing with the weight.
-#[test]
-fn edges_and_faces_meet_edges_and_peaks() {
-    let ridge = |z: f64| {
-        let (a, b) = (Vec3::new(0.0, -5.0, z), Vec3::new(0.0, 5.0, z));
-        let [p, q, r, s] = [(-5.0, -5.0), (-5.0, 5.0), (5.0, 5.0), (5.0, -5.0)]
-            .map(|(x, y)| Vec3::new(x, y, z - 5.0));
-        terrain(vec![[a, b, q], [a, q, p], [a, s, r], [a, r, b]])
-    };
-    let tip = Vec3::new(0.0, 0.0, 0.0);
-    let feet = [(-3.0, -2.0), (3.0, -2.0), (0.0, 4.0)].map(|(x, y)| Vec3::new(x, y, -4.0));
-    let peak =
-        terrain(vec![[tip, feet[0], feet[1]], [tip, feet[1], feet[2]], [tip, feet[2], feet[0]]]);
-    // on its edge across the ridge; its face over the peak
-    let on_edge = turn(&Vec3::x_axis(), std::f64::consts::FRAC_PI_4);
-    for (mesh, sides, attitude) in
-        [(ridge(0.0), [2.0, 1.0, 1.0], on_edge), (peak, [2.0, 2.0, 0.5], Rotation3::identity())]
-    {
-        let body = block(&box_surface(sides), 0.05);
-        let height = body.support_m(&(attitude.inverse() * -Vec3::z()));
-        let mut case = BlockRun::new(mesh, body.clone(), (0.5, 0.0));
-        let above =
-            case.start(attitude, [Vec3::z() * (height + 0.3), Vec3::zeros(), Vec3::zeros()]);
-        let path = Parabola {
-            start: above.pose.centre,
-            velocity: Vec3::zeros(),
-            gravity: G,
-            radius: body.bound_m,
-        };
-        let top = Top::new(body.inertia_kg_m2, attitude, Vec3::zeros());
-        let tumble = Tumble { block: &body, top, path };
-        let mut footing = Footing::default();
-        let landing = first_touch(&case.terrain, &tumble, 10.0, &mut footing.near);
-        let FlightEnd::Touch(t) = landing else { panic!("{landing:?}") };
-        assert!((t - (0.6_f64 / G).sqrt()).abs() < 1e-6, "{t}");
-        let laws = [case.law];
-        let world = ContactEnvironment {
-            terrain: &case.terrain,
-            body: Body::of_block(&body, G),
-            laws: &laws,
-        };
-        let mut moving = above.clone();
-        (moving.pose, moving.v) = (tumble.pose(t), path.velocity(t));
-        let pose = moving.pose;
-        footing.look(&world, &body, &pose, body.ball_m);
-        assert_eq!(footing.touching(&body).count(), 1, "{:?}", footing.touches);
-        assert!((footing.touches[0].normal - Vec3::z()).norm() < 1e-7);
-        // a balanced fall on one point stops dead
-        footing.strike(&world, &body, &mut moving).unwrap();
-        assert!(moving.v.norm() < 1e-7 && moving.spin(&body).norm() < 1e-7, "{}", moving.v);
-        case.impacts += 1;
-    }
 }

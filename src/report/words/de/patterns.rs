@@ -12,6 +12,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{where} normal_stiffness_n_m = {k} lässt einen Block von {r} m bei Aufprallen über {v} m/s um mehr als 0,1 seines Radius einsinken; {need} hielte ihn bis {most} m/s",
     ),
     (
+        "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.3 of its corners' radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
+        "{where} normal_stiffness_n_m = {k} lässt einen Block von {r} m bei Aufprallen über {v} m/s um mehr als 0,3 des Radius seiner Ecken einsinken; {need} hielte ihn bis {most} m/s",
+    ),
+    (
         "{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source",
         "{file} sagt, wie oft seine Zonen Blöcke ablösen, und die Szene fragt nichts pro Jahr: die Tabelle [frequency] schreiben, und jede Zone ist eine Quelle",
     ),

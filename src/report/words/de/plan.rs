@@ -190,6 +190,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "gerechnet für Blöcke, freie Drehung in geschlossener Form; weggelassen für Kugeln, die von allen Seiten gleich aussehen",
     ),
     (
+        "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves",
+        "Kontakt für Kontakt, jeder mit eigenen Federn: sein Rückprall ist der des Bodens für die Masse, die er bewegt",
+    ),
+    (
         "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part",
         "Kontakt für Kontakt: Rückprall entlang der Normalen, keiner entlang der Oberfläche; Normal- und Schersteifigkeit spielen keine Rolle",
     ),

@@ -12,6 +12,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{where} normal_stiffness_n_m = {k} laisse un bloc de {r} m s’enfoncer de plus de 0,1 de son rayon dans les chocs au-dessus de {v} m/s\u{a0}; {need} le tiendrait jusqu’à {most} m/s",
     ),
     (
+        "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.3 of its corners' radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
+        "{where} normal_stiffness_n_m = {k} laisse un bloc de {r} m s’enfoncer de plus de 0,3 du rayon de ses coins dans les chocs au-dessus de {v} m/s\u{a0}; {need} le tiendrait jusqu’à {most} m/s",
+    ),
+    (
         "{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source",
         "{file} dit à quelle fréquence ses zones libèrent des blocs, et la scène ne demande rien par an\u{a0}: écrire la table [frequency], et chaque zone est une source",
     ),

@@ -196,6 +196,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "calculée pour les blocs, rotation libre sous forme close\u{a0}; laissée de côté pour les sphères, les mêmes de tous côtés",
     ),
     (
+        "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves",
+        "contact par contact, chacun avec ses propres ressorts : sa restitution est celle du sol pour la masse qu'il met en mouvement",
+    ),
+    (
         "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part",
         "contact par contact\u{a0}: restitution selon la normale, aucune le long de la surface\u{a0}; les raideurs normale et de cisaillement n’interviennent pas",
     ),

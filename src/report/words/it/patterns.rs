@@ -12,6 +12,10 @@ pub(super) const RECORDED: &[(&str, &str)] = &[
         "{where} normal_stiffness_n_m = {k} lascia affondare un masso di {r} m di oltre 0,1 del suo raggio negli urti sopra {v} m/s; {need} lo terrebbe fino a {most} m/s",
     ),
     (
+        "{where} normal_stiffness_n_m = {k} lets a rock of {r} m sink in by more than 0.3 of its corners' radius in impacts above {v} m/s; {need} would hold it up to {most} m/s",
+        "{where} normal_stiffness_n_m = {k} lascia affondare un masso di {r} m di oltre 0,3 del raggio dei suoi spigoli negli urti sopra {v} m/s; {need} lo terrebbe fino a {most} m/s",
+    ),
+    (
         "{file} says how often its zones release rocks, and the scene asks for nothing a year: write the table [frequency], and each zone is a source",
         "{file} dice quanto spesso le sue zone liberano massi, e la scena non chiede nulla all’anno: scrivere la tabella [frequency], e ogni zona è una sorgente",
     ),

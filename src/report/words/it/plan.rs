@@ -193,6 +193,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "calcolato per i blocchi, rotazione libera in forma chiusa; tralasciato per le sfere, uguali da ogni lato",
     ),
     (
+        "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves",
+        "contatto per contatto, ciascuno con molle proprie: la sua restituzione è quella del terreno per la massa che muove",
+    ),
+    (
         "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part",
         "contatto per contatto: restituzione lungo la normale, nessuna lungo la superficie; le rigidezze normale e di taglio non intervengono",
     ),

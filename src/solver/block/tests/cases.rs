@@ -4,7 +4,7 @@ use super::*;
 use crate::body::Core;
 
 /// Balls of radius `ball_m` at these places, with these moments.
-fn balls(corners: Vec<Vec3>, ball_m: f64, (mass_kg, moments): (f64, [f64; 3])) -> Block {
+pub(super) fn balls(corners: Vec<Vec3>, ball_m: f64, (mass_kg, moments): (f64, [f64; 3])) -> Block {
     let bound_m = corners.iter().map(Vec3::norm).fold(0.0, f64::max) + ball_m;
     let core = Core { corners, ridges: Vec::new(), faces: Vec::new() };
     let radius_m = crate::math::cbrt(0.75 * mass_kg / (2700.0 * std::f64::consts::PI));
@@ -163,5 +163,59 @@ fn restitution_of_a_block_falls_with_speed() {
         case.follow(&mut moving, 1e-3, |_, _| ());
         let up = 0.6 / (1.0 + (speed / 9.0_f64).powi(2)) * speed;
         assert!((moving.v.z + G * 1e-3 - up).abs() < 1e-9, "{} {up}", moving.v.z);
+    }
+}
+
+/// An edge of a block across a ridge: one contact, and a plate over a peak: one contact, pushing with the weight.
+#[test]
+fn edges_and_faces_meet_edges_and_peaks() {
+    let ridge = |z: f64| {
+        let (a, b) = (Vec3::new(0.0, -5.0, z), Vec3::new(0.0, 5.0, z));
+        let [p, q, r, s] = [(-5.0, -5.0), (-5.0, 5.0), (5.0, 5.0), (5.0, -5.0)]
+            .map(|(x, y)| Vec3::new(x, y, z - 5.0));
+        terrain(vec![[a, b, q], [a, q, p], [a, s, r], [a, r, b]])
+    };
+    let tip = Vec3::new(0.0, 0.0, 0.0);
+    let feet = [(-3.0, -2.0), (3.0, -2.0), (0.0, 4.0)].map(|(x, y)| Vec3::new(x, y, -4.0));
+    let peak =
+        terrain(vec![[tip, feet[0], feet[1]], [tip, feet[1], feet[2]], [tip, feet[2], feet[0]]]);
+    // on its edge across the ridge; its face over the peak
+    let on_edge = turn(&Vec3::x_axis(), std::f64::consts::FRAC_PI_4);
+    for (mesh, sides, attitude) in
+        [(ridge(0.0), [2.0, 1.0, 1.0], on_edge), (peak, [2.0, 2.0, 0.5], Rotation3::identity())]
+    {
+        let body = block(&box_surface(sides), 0.05);
+        let height = body.support_m(&(attitude.inverse() * -Vec3::z()));
+        let mut case = BlockRun::new(mesh, body.clone(), (0.5, 0.0));
+        let above =
+            case.start(attitude, [Vec3::z() * (height + 0.3), Vec3::zeros(), Vec3::zeros()]);
+        let path = Parabola {
+            start: above.pose.centre,
+            velocity: Vec3::zeros(),
+            gravity: G,
+            radius: body.bound_m,
+        };
+        let top = Top::new(body.inertia_kg_m2, attitude, Vec3::zeros());
+        let tumble = Tumble { block: &body, top, path };
+        let mut footing = Footing::default();
+        let landing = first_touch(&case.terrain, &tumble, 10.0, &mut footing.near);
+        let FlightEnd::Touch(t) = landing else { panic!("{landing:?}") };
+        assert!((t - (0.6_f64 / G).sqrt()).abs() < 1e-6, "{t}");
+        let laws = [case.law];
+        let world = ContactEnvironment {
+            terrain: &case.terrain,
+            body: Body::of_block(&body, G),
+            laws: &laws,
+        };
+        let mut moving = above.clone();
+        (moving.pose, moving.v) = (tumble.pose(t), path.velocity(t));
+        let pose = moving.pose;
+        footing.look(&world, &body, &pose, body.ball_m);
+        assert_eq!(footing.touching(&body).count(), 1, "{:?}", footing.touches);
+        assert!((footing.touches.found[0].normal - Vec3::z()).norm() < 1e-7);
+        // a balanced fall on one point stops dead
+        footing.strike(&world, &body, &mut moving).unwrap();
+        assert!(moving.v.norm() < 1e-7 && moving.spin(&body).norm() < 1e-7, "{}", moving.v);
+        case.impacts += 1;
     }
 }

@@ -1,0 +1,118 @@
+//! Impacts of a block in a scheme with springs: noted down as they begin and end, and on rough ground turned against the facets
+//! that it meets, as spheres are (`simulation::rock_in_contact`).
+
+use super::super::impacts::Struck;
+use super::super::rock_in_contact::IMPACT_TIMES;
+use super::{Roll, turned};
+use crate::solver::loss::Loss;
+use crate::solver::roughness::Meeting;
+use std::f64::consts::PI;
+
+impl Roll<'_> {
+    /// Begins an episode of contact; what its springs hold (J).
+    pub(super) fn begin_contact(&mut self) -> Loss {
+        if self.has_springs() {
+            let on = (self.block, &self.moving);
+            self.footing.begin_springs(&self.world, self.settings.step, on);
+        }
+        self.stored()
+    }
+
+    /// What springs hold (J).
+    pub(super) fn stored(&mut self) -> Loss {
+        if self.has_springs() {
+            self.footing.springs_j(&self.world, (self.block, &self.moving))
+        } else {
+            Loss::default()
+        }
+    }
+
+    /// Ends an episode of contact.
+    pub(super) fn end_contact(&mut self) {
+        if self.has_springs() {
+            self.recorder.end_impacts(|_| false, || 0.0);
+            self.turn_back();
+        }
+    }
+
+    /// Notes down the impacts that have begun, and turns the block against the facet of the fastest.
+    pub(super) fn begin_impacts(&mut self) {
+        let springs = &self.footing.springs;
+        let new = springs.histories.iter().filter(|history| !history.announced);
+        let fastest = new.max_by(|one, other| one.approach_m_s.total_cmp(&other.approach_m_s));
+        let Some(fastest) = fastest.copied() else { return };
+        self.turn_back();
+        let lever = fastest.point - self.moving.pose.centre;
+        let v = self.moving.at(self.block, &lever);
+        let meeting =
+            Meeting { n: fastest.n, triangle: fastest.triangle, c: self.moving.pose.centre, v };
+        let facet = self.footing.facets.struck(&self.world, &meeting);
+        let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / self.footing.springs.slowest();
+        let strikes = facet.is_some() || !fastest.captured;
+        let held_j = self.footing.springs.held_j();
+        for k in 0..self.footing.springs.histories.len() {
+            self.begin_impact(k, facet.is_some(), (until_s, held_j));
+        }
+        if !strikes {
+            return;
+        }
+        if self.scars.are_any() {
+            self.dig(fastest.triangle, &fastest.n);
+        }
+        let broken_j = self.footing.break_stems(&self.world, self.block, &mut self.moving);
+        self.recorder.ledger.trees_j += broken_j;
+        if broken_j > 0.0 {
+            self.footing.springs.refresh();
+        }
+        self.footing.springs.until_s = until_s;
+        if let Some(turn) = facet {
+            self.footing.turn_against(self.block, &mut self.moving, (turn, until_s));
+        }
+    }
+
+    /// Notes down that contact `k` has begun, if it has not been; on rough ground all rebound with the fastest.
+    fn begin_impact(&mut self, k: usize, rebounds: bool, (until_s, held_j): (f64, f64)) {
+        let mut history = self.footing.springs.histories[k];
+        if std::mem::replace(&mut history.announced, true) {
+            return;
+        }
+        history.captured &= !rebounds;
+        if !history.captured {
+            let struck = Struck {
+                point_m: history.point,
+                normal: history.n,
+                feature: history.feature.kind,
+                sheet: self.recorder.sheet_of(history.triangle),
+                approach_m_s: history.approach_m_s.max(0.0),
+            };
+            history.impact = self.recorder.begin_impact(&struck, until_s, held_j);
+        }
+        self.footing.springs.histories[k] = history;
+    }
+
+    /// Ends the impacts that are over, and turns the block back from a facet that is behind it.
+    pub(super) fn leave_impacts(&mut self) {
+        if !self.has_springs() {
+            return;
+        }
+        let springs = &self.footing.springs;
+        let lasts = |number| springs.histories.iter().any(|history| history.impact == number);
+        self.recorder.end_impacts(lasts, || springs.held_j());
+        let now_s = self.recorder.now.time_s;
+        if self.footing.has_met_its_facet(now_s) {
+            self.turn_back();
+        }
+        self.footing.springs.capture(now_s);
+    }
+
+    /// Turns the block back, if it is turned.
+    fn turn_back(&mut self) {
+        if self.footing.turn_back(self.block, &mut self.moving) {
+            // a rebound into the mean surface is the next impact
+            self.recorder.impacts.forget_last();
+            self.recorder.now.velocity_m_s = self.moving.v;
+            self.recorder.now.spin_rad_s = self.moving.spin(self.block);
+            self.recorder.turned = Some(turned(self.block, &self.moving));
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Rough ground. In the rigid limit an impact is one with the facet that is met. In the schemes with springs a block is turned against the
+//! facet while the impact lasts. As for spheres, velocity and spin are turned, not the mesh: the block presses into the surface that is there, and no spring can give
+//! back more than it took. The spin is given the length that keeps its energy, as the moments of inertia stay where they are.
+
+use super::{Footing, Moving};
+use crate::body::Block;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::roughness::{Meeting, Tilt};
+use nalgebra::Rotation3;
+
+impl Moving {
+    /// Turns velocity and spin; every joule stays.
+    fn redirect(&mut self, block: &Block, turn: &Rotation3<f64>) {
+        let w = self.spin(block);
+        let turning_j = 0.5 * w.dot(&self.momentum);
+        let mass = self.mass(block);
+        let (turned, axis_of) = (turn * w, mass.inverse.try_inverse());
+        self.v = turn * self.v;
+        let Some(inertia) = axis_of.filter(|_| turning_j > 0.0) else { return };
+        let momentum = inertia * turned;
+        self.momentum = momentum * (turning_j / (0.5 * turned.dot(&momentum))).sqrt();
+    }
+}
+
+impl Footing {
+    /// The facet of rough ground that the fastest of the contacts that touch meets.
+    pub(super) fn facet(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        moving: &Moving,
+    ) -> Option<Rotation3<f64>> {
+        let fastest = moving.fastest(block, self.touching(block))?;
+        let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
+        let v = moving.at(block, &fastest.lever);
+        self.facets.struck(world, &Meeting { n, triangle, c, v })
+    }
+
+    /// Turns the block against a facet until it is turned back, at `until_s` (s) at the latest.
+    pub(crate) fn turn_against(
+        &mut self,
+        block: &Block,
+        moving: &mut Moving,
+        (turn, until_s): (Rotation3<f64>, f64),
+    ) {
+        moving.redirect(block, &turn.inverse());
+        self.facets.tilt = Some(Tilt { turn, until_s });
+        self.springs.refresh();
+    }
+
+    /// Turns the block back if it is turned; whether it was.
+    pub(crate) fn turn_back(&mut self, block: &Block, moving: &mut Moving) -> bool {
+        let Some(Tilt { turn, .. }) = self.facets.tilt.take() else { return false };
+        moving.redirect(block, &turn);
+        self.springs.refresh();
+        true
+    }
+
+    /// Whether the block is turned against a facet that it has left, or whose time is up at `now_s` (s).
+    pub(crate) fn has_met_its_facet(&self, now_s: f64) -> bool {
+        let over = |tilt: &Tilt| self.springs.is_free() || now_s >= tilt.until_s;
+        self.facets.tilt.as_ref().is_some_and(over)
+    }
+}

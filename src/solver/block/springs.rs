@@ -1,0 +1,294 @@
+//! Schemes with springs for blocks: `adaptive`, `reference` and `dda`.
+//!
+//! The unknowns are the body's six. With the lever `a` of a contact, `V_N = [nᵀ, (a×n)ᵀ]` takes the place of the paper's `V_N = (V, 0)`, and
+//! everything else of the paper stays. The state is centre, attitude, velocity and **angular momentum** in the frame of the terrain:
+//! `ℓ' = Σ a × f`, `ω = I⁻¹ℓ`, so that no gyroscopic term has to be stepped and free spin keeps its momentum exactly.
+//!
+//! A spring and a dashpot over an implicit stage in which an impulse acts for `a` and the block moves for `b` (s) are a contact of the
+//! rigid limit that gives way ([`GivingWay`]): from `F = p (pen − b u_n) − c u_n` and `P = a F`
+//!
+//! ```text
+//! u_n + P_n/(a (p b + c)) = p pen/(p b + c)
+//! ```
+//!
+//! and the same along the surface with `p_s`, `c_s` and the stretch `−ξ`. So all schemes share one solver of contacts
+//! ([`solve`](super::solve::solve)), and `rigid` is its limit for stiff springs.
+
+mod controlled;
+mod dda;
+mod history;
+mod newton;
+mod stage;
+
+use super::solve::{BlockContact, GivingWay, Mass};
+use super::{Footing, Moving, Stepped, TOUCH};
+use crate::body::Block;
+use crate::contact::block::{Pose, touches};
+use crate::ground::Law;
+use crate::math;
+use crate::rock::Vec3;
+use crate::solver::Settings;
+use crate::solver::dda::DEEPEST;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::loss::Loss;
+use crate::solver::step_control::{Control, StepError};
+use crate::solver::tableau::STAGES;
+pub(crate) use history::BlockHistory;
+use nalgebra::{Rotation3, Unit};
+
+/// Contacts no further ahead than so many times the way of a stage take part in it (–).
+const AHEAD: f64 = 2.0;
+
+/// Rates of change of a block in contact.
+#[derive(Debug, Clone, Default)]
+struct BlockRates {
+    /// Of the centre (m/s), and of its velocity (m/s²).
+    centre: Vec3,
+    v: Vec3,
+    /// Of the rotation vector from the step's start (rad/s), and of the angular momentum (N m).
+    turned: Vec3,
+    momentum: Vec3,
+    /// Of the shear springs (m/s), history by history.
+    shear: Vec<Vec3>,
+    /// Power that goes into contacts (W).
+    loss: Loss,
+}
+
+/// A contact within a stage.
+#[derive(Debug, Clone, Copy)]
+struct SpringContact {
+    /// Which memory it belongs to.
+    history: usize,
+    /// Its law, with its share of a patch and the friction in force.
+    law: Law,
+    /// Triangle whose ground answers.
+    triangle: u32,
+    /// Unit normal from the mesh to the block, and lever (m).
+    n: Vec3,
+    lever: Vec3,
+    /// Penetration at which its spring begins to press (m).
+    offset_m: f64,
+    /// Penetration (m) and stretch of the shear spring (m) at the stage's base.
+    penetration: f64,
+    shear: Vec3,
+    /// Normal force, ≥ 0, and shear force; the block feels the opposite of the latter (N).
+    normal_force: f64,
+    shear_force: Vec3,
+}
+
+/// Springs of the contacts of one block.
+#[derive(Debug, Default)]
+pub(crate) struct Springs {
+    pub(crate) histories: Vec<BlockHistory>,
+    contacts: Vec<SpringContact>,
+    /// Memories at the step's start.
+    known: usize,
+    rates: [BlockRates; STAGES],
+    /// Whether the first rate belongs to the present state.
+    fresh: bool,
+    /// Energy in the springs at the present state (J).
+    stored_j: f64,
+    /// The step to try next (s).
+    h: f64,
+    /// Fastest approach of the impacts that go on (m/s); 0 if none does.
+    impact_m_s: f64,
+    /// When the impacts that go on are over at the latest (s).
+    pub(crate) until_s: f64,
+    control: Option<Control>,
+}
+
+impl Springs {
+    /// The motion has been changed from outside.
+    pub(crate) fn refresh(&mut self) {
+        self.fresh = false;
+    }
+
+    /// Whether nothing presses on the block any more.
+    pub(crate) fn is_free(&self) -> bool {
+        self.histories.iter().all(|history| !history.closed)
+    }
+
+    /// Stiffest contact (rad/s).
+    fn stiffest(&self, world: &ContactEnvironment) -> f64 {
+        let of = |laws: &mut dyn Iterator<Item = f64>| laws.fold(0.0, f64::max);
+        let known = of(&mut self.histories.iter().map(|history| history.law.omega));
+        if known > 0.0 { known } else { of(&mut world.laws.iter().map(|law| law.omega)) }
+    }
+
+    /// Impacts whose time is up at `now_s` (s) are over: what still presses lasts, and is damped for good.
+    pub(crate) fn capture(&mut self, now_s: f64) {
+        if now_s >= self.until_s {
+            self.histories.iter_mut().for_each(|history| history.captured |= history.announced);
+        }
+    }
+
+    /// Slowest contact (rad/s): the impact of all is over after some of its times.
+    pub(crate) fn slowest(&self) -> f64 {
+        self.histories.iter().map(|history| history.law.omega).fold(f64::INFINITY, f64::min)
+    }
+
+    /// About how much springs hold (J), as the memories tell.
+    pub(crate) fn held_j(&self) -> f64 {
+        let held = self.histories.iter().filter(|history| history.closed).map(|history| {
+            let penetration = history.normal_force / history.law.p_n;
+            history.law.stored_j(penetration, history.shear.norm_squared(), 0.0)
+        });
+        held.sum()
+    }
+}
+
+impl SpringContact {
+    /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
+    fn giving_way(&self, contact: &BlockContact, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
+        let law = &self.law;
+        let answers = [law.p_n * b + law.c_n, law.shear_over(b)];
+        let goal = self.n * (law.p_n * self.penetration / answers[0])
+            - self.shear * (law.p_s / answers[1]);
+        let springs = GivingWay {
+            compliance: answers.map(|answer| 1.0 / (a * answer)),
+            surface_m_s: self.penetration / b,
+        };
+        contact.with_goal(goal).with_springs(mass, springs)
+    }
+
+    /// Takes the forces from an impulse that has acted for `a` (s).
+    fn take(&mut self, impulse: &Vec3, a: f64) {
+        self.normal_force = self.n.dot(impulse) / a;
+        self.shear_force = (self.n * self.n.dot(impulse) - impulse) / a;
+    }
+
+    /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).
+    fn pen_at(&self, u: &Vec3, b: f64) -> f64 {
+        self.penetration - b * self.n.dot(u)
+    }
+
+    /// Stretch of the shear spring (m) after a motion for `b` (s).
+    fn stretch(&self, b: f64) -> Vec3 {
+        self.law.shear_after(&self.shear_force, &self.shear, b)
+    }
+
+    /// Power that goes into it (W) at a velocity `u` of the contact point (m/s); what springs store is counted in.
+    fn power(&self, world: &ContactEnvironment, u: &Vec3, shear_rate: &Vec3) -> Loss {
+        let slip = u - self.n * self.n.dot(u);
+        let friction = self.shear_force.dot(&(slip - shear_rate));
+        let damping = self.shear_force.dot(shear_rate) - self.normal_force * self.n.dot(u);
+        Loss { friction, damping, ..Loss::default() }.on(world, self.triangle)
+    }
+}
+
+/// A rotation by a rotation vector (rad).
+fn turn_by(turned: &Vec3) -> Rotation3<f64> {
+    let angle = turned.norm();
+    if angle > 0.0 {
+        math::turn(&Unit::new_unchecked(turned / angle), angle)
+    } else {
+        Rotation3::identity()
+    }
+}
+
+/// Rate of the rotation vector `θ` of a body that turns with `w`: `θ' = ω − θ×ω/2 + θ×(θ×ω)/12 − …` (Bortz 1971), for small `θ`.
+fn turning(turned: &Vec3, w: &Vec3) -> Vec3 {
+    let once = turned.cross(w);
+    w - once * 0.5 + turned.cross(&once) / 12.0
+}
+
+impl Footing {
+    /// Looks for all contacts of a block that are no wider apart than `reach_m`.
+    fn look_at_all(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, pose): (&Block, &Pose),
+        reach_m: f64,
+    ) {
+        self.know(world, block, pose);
+        touches(&mut self.near, world.terrain, (block, pose), reach_m, &mut self.touches);
+    }
+
+    /// Begins an episode of a block that has just touched.
+    pub(crate) fn begin_springs(
+        &mut self,
+        world: &ContactEnvironment,
+        settings: &Settings,
+        (block, moving): (&Block, &Moving),
+    ) {
+        self.springs.histories.clear();
+        self.touches.held.clear();
+        self.springs.impact_m_s = 0.0;
+        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.springs.known = 0;
+        self.remember(world, (block, moving));
+        for (touch, history) in self.touches.found.iter().zip(&self.of_touch) {
+            let offset_m = if block.core.is_corner(touch.part) { 0.0 } else { -touch.gap_m };
+            let Some(k) = *history else { continue };
+            self.springs.histories[k].offset_m = offset_m.max(0.0);
+        }
+        self.springs.stored_j = self.stored(world).sum();
+        let control =
+            settings.scheme.tableau().map(|tableau| Control::new(tableau, settings, world));
+        self.springs.control = control;
+        self.springs.h = self.first_step_s(world);
+        self.springs.refresh();
+    }
+
+    /// Energy in the springs of the contacts of the last look (J), by what it belongs to.
+    fn stored(&self, world: &ContactEnvironment) -> Loss {
+        let mut stored = Loss::default();
+        for history in &self.springs.histories {
+            let touch = self.touches.found.iter().find(|touch| history.is_of(touch));
+            let Some(touch) = touch.filter(|touch| touch.gap_m < -history.offset_m) else {
+                continue;
+            };
+            let law = history.law.of_patch(touch.gain2, 1.0);
+            let penetration = -touch.gap_m - history.offset_m;
+            let damping = law.stored_j(penetration, history.shear.norm_squared(), 0.0);
+            stored.add(&Loss { damping, ..Loss::default() }.on(world, history.triangle), 1.0);
+        }
+        stored
+    }
+
+    /// Energy in the springs at a pose (J), by what it belongs to.
+    pub(crate) fn springs_j(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) -> Loss {
+        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.stored(world)
+    }
+
+    /// One step of at most `most_s`, and the steps tried and thrown away.
+    ///
+    /// # Errors
+    /// [`StepError`] if no step, however short, settles, or a spring is pressed in too far.
+    pub(crate) fn step_on_springs(
+        &mut self,
+        world: &ContactEnvironment,
+        settings: &Settings,
+        (block, moving): (&Block, &mut Moving),
+        most_s: f64,
+    ) -> Result<(Stepped, u64), StepError> {
+        let start = moving.clone();
+        let slip_m_s = self.slip_m_s(block, &start);
+        let (done, rejected) = match self.springs.control {
+            Some(control) => self.controlled_step(world, (block, moving), (control, most_s))?,
+            None => (self.fixed_step(world, settings, (block, moving), most_s)?, 0),
+        };
+        let slipped_m = 0.5 * done.dt * (slip_m_s + self.slip_m_s(block, moving));
+        let on = self.touching(block).next().map(|touch| world.ground_of(touch.triangle));
+        self.slip.grow(slipped_m, on);
+        Ok((done, rejected))
+    }
+
+    /// How far ahead (m) a block can touch something within a stage of `way_s`.
+    fn ahead_m(world: &ContactEnvironment, (block, moving): (&Block, &Moving), way_s: f64) -> f64 {
+        let fastest = moving.v.norm() + moving.spin(block).norm() * block.bound_m;
+        let way_m = way_s * (fastest + world.body.gravity.norm() * way_s);
+        TOUCH * block.radius_m + AHEAD * way_m
+    }
+
+    /// Whether a spring is pressed in so far, over the balls' radius, that it means nothing any more.
+    fn check_depth(&self, block: &Block) -> Result<(), StepError> {
+        let deepest = self.touches.found.iter().map(|touch| -touch.gap_m).fold(0.0, f64::max);
+        if deepest > DEEPEST * block.ball_m { Err(StepError::SankIn) } else { Ok(()) }
+    }
+}

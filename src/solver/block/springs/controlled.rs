@@ -1,0 +1,240 @@
+//! Schemes `adaptive` and `reference` for blocks: a diagonally implicit tableau with error control.
+
+use super::super::{Footing, Moving, Stepped, TRAVEL, TURN};
+use super::stage::{BlockEnd, StageBase};
+use super::{BlockHistory, BlockRates};
+use crate::body::Block;
+use crate::contact::history::carry;
+use crate::rock::Vec3;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::step_control::{
+    Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepError, TrialStep, TryOutcome, settle,
+};
+
+/// A step of a block among any features.
+struct BlockTrial<'a, 'w> {
+    world: &'a ContactEnvironment<'w>,
+    control: Control,
+    footing: &'a mut Footing,
+    block: &'a Block,
+    start: &'a Moving,
+    h: f64,
+    limit: f64,
+    omega: f64,
+    /// Local error allowed (m/s).
+    allowed: f64,
+    end: Option<BlockEnd>,
+}
+
+impl TrialStep for BlockTrial<'_, '_> {
+    fn h(&mut self) -> &mut f64 {
+        &mut self.h
+    }
+
+    fn limit(&mut self) -> f64 {
+        self.limit
+    }
+
+    fn omega(&self) -> f64 {
+        self.omega
+    }
+
+    fn try_step(&mut self, dt: f64) -> TryOutcome {
+        let springs = &mut self.footing.springs;
+        springs.histories.truncate(springs.known);
+        let Some((end, error)) = self.attempt(dt) else { return TryOutcome::Unsettled };
+        let gains = error <= 1.0 && dt * self.omega > RESOLVED && self.gains(&end, dt);
+        self.end = Some(end);
+        if gains { TryOutcome::Gains } else { TryOutcome::Error(error) }
+    }
+}
+
+impl BlockTrial<'_, '_> {
+    /// One step: where it ends and its error relative to the one allowed.
+    fn attempt(&mut self, dt: f64) -> Option<(BlockEnd, f64)> {
+        let tableau = self.control.tableau;
+        let way_s = tableau.diagonal * dt;
+        let mut end = None;
+        for i in 1..tableau.stages {
+            let base = self.footing.base(self.start, tableau, (i, dt));
+            let stage = StageBase { start: self.start, base, times_s: (way_s, way_s) };
+            let shear = |footing: &Footing, k: usize| footing.stretch_at_base(k, tableau, (i, dt));
+            let ends = self.footing.stage(self.world, self.block, &stage, shear)?;
+            self.footing.store(self.world, (self.block, &stage), (i, &ends));
+            end = Some(ends);
+        }
+        end.map(|end| (end, self.error(dt)))
+    }
+
+    /// Local error of the step over the one allowed (–): ways by the stiffest contact's frequency, turns by the largest radius.
+    fn error(&self, dt: f64) -> f64 {
+        let tableau = self.control.tableau;
+        let rates = &self.footing.springs.rates[..tableau.stages];
+        let off = |part: fn(&BlockRates) -> Vec3| {
+            rates.iter().zip(tableau.error).map(|(rate, weight)| part(rate) * weight).sum::<Vec3>()
+        };
+        let (omega, reach) = (self.omega, self.block.bound_m);
+        let spin = self.start.mass(self.block).inverse * off(|rate| rate.momentum);
+        let stretch = (0..self.footing.springs.histories.len()).map(|k| {
+            let drift = rates.iter().zip(tableau.error);
+            drift.map(|(rate, weight)| rate.shear[k] * weight).sum::<Vec3>().norm()
+        });
+        let worst = [
+            off(|rate| rate.centre).norm() * omega,
+            off(|rate| rate.turned).norm() * reach * omega,
+            off(|rate| rate.v).norm(),
+            spin.norm() * reach,
+            stretch.fold(0.0, f64::max) * omega,
+        ];
+        dt * worst.into_iter().fold(0.0, f64::max) / self.allowed
+    }
+
+    /// Whether motion, height and springs together hold more at the step's end than at its start.
+    fn gains(&self, end: &BlockEnd, dt: f64) -> bool {
+        let (block, body) = (self.block, &self.world.body);
+        let lifted_m = end.moving.pose.centre - self.start.pose.centre;
+        let lifted = -block.mass_kg * body.gravity.dot(&lifted_m);
+        let before = self.start.motion_j(block) + self.footing.springs.stored_j;
+        let contacts = self.footing.springs.contacts.iter();
+        let force = block.mass_kg * body.gravity.norm()
+            + contacts.map(|contact| contact.normal_force).sum::<f64>();
+        let unknown = ROUNDING * before + PLACE_ROUNDING * block.radius_m * force;
+        let pressed =
+            self.footing.pressed_j((block, &end.moving), self.control.tableau.diagonal * dt);
+        end.moving.motion_j(block) + lifted + pressed > before + unknown
+    }
+}
+
+impl Footing {
+    /// First step after a touch (s).
+    pub(super) fn first_step_s(&self, world: &ContactEnvironment) -> f64 {
+        ONSET / self.springs.stiffest(world)
+    }
+
+    /// Energy in the springs at the end of a stage of length `way_s` (J).
+    fn pressed_j(&self, (block, end): (&Block, &Moving), way_s: f64) -> f64 {
+        let stored = self.springs.contacts.iter().map(|contact| {
+            let pen = contact.pen_at(&end.at(block, &contact.lever), way_s).max(0.0);
+            let shear2 = if pen > 0.0 { contact.stretch(way_s).norm_squared() } else { 0.0 };
+            contact.law.stored_j(pen, shear2, 0.0)
+        });
+        stored.sum()
+    }
+
+    /// Longest step (s) in which no point of the block goes further, and the block turns no further, than a step may.
+    pub(super) fn travel_limit_s(
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) -> f64 {
+        let spin = moving.spin(block).norm();
+        let fastest = moving.v.norm() + spin * block.bound_m;
+        let (way, g) = (TRAVEL * block.ball_m, world.body.gravity.norm());
+        let turn_s = TURN / spin.max(f64::MIN_POSITIVE);
+        turn_s.min(2.0 * way / (fastest + (fastest * fastest + 2.0 * g * way).sqrt()))
+    }
+
+    /// One accepted step of at most `most_s`.
+    ///
+    /// # Errors
+    /// [`StepError`] if the step had to become too short to matter, or a spring is pressed in too far.
+    pub(super) fn controlled_step(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+        (control, most_s): (Control, f64),
+    ) -> Result<(Stepped, u64), StepError> {
+        if !self.springs.fresh {
+            self.rates_now(world, (block, moving));
+        }
+        let springs = &mut self.springs;
+        springs.impact_m_s = springs.fastest_m_s().map_or(0.0, |own| own.max(springs.impact_m_s));
+        let allowed = if springs.impact_m_s > 0.0 {
+            control.impact * springs.impact_m_s
+        } else {
+            control.tolerance
+        };
+        self.springs.known = self.springs.histories.len();
+        let omega = self.springs.stiffest(world);
+        let limit = Self::travel_limit_s(world, (block, moving));
+        let (h, start) = (self.springs.h, moving.clone());
+        let mut rejected = 0;
+        let footing = &mut *self;
+        let mut trial = BlockTrial {
+            world,
+            control,
+            footing,
+            block,
+            start: &start,
+            h,
+            limit,
+            omega,
+            allowed,
+            end: None,
+        };
+        let dt = settle(&mut trial, &control, most_s, &mut rejected)?;
+        let (next_h, end) = (trial.h, trial.end.ok_or(StepError::Unsettled)?);
+        self.springs.h = next_h;
+        *moving = end.moving;
+        let done = self.accept((block, moving), (&control, dt));
+        self.check_depth(block)?;
+        Ok((done, rejected))
+    }
+
+    /// Takes over the step's end: memories and losses.
+    fn accept(
+        &mut self,
+        (block, moving): (&Block, &Moving),
+        (control, dt): (&Control, f64),
+    ) -> Stepped {
+        let tableau = control.tableau;
+        let mut done = Stepped { dt, ..Stepped::default() };
+        for (k, rate) in self.springs.rates[..tableau.stages].iter().enumerate() {
+            done.loss.add(&rate.loss, dt * tableau.work_weight(k));
+        }
+        let way_s = tableau.diagonal * dt;
+        self.springs.stored_j = self.pressed_j((block, moving), way_s);
+        self.springs.rates.swap(0, tableau.stages - 1);
+        self.keep((block, moving), way_s);
+        let first = &mut self.springs.rates[0];
+        (first.centre, first.turned) = (moving.v, moving.spin(block));
+        self.springs.fresh = true;
+        done.slides = self.springs.histories.iter().any(|history| history.slides);
+        done.is_free = self.springs.is_free();
+        done
+    }
+
+    /// The contacts of the step's end go into their memories, and those that press no more are forgotten.
+    pub(super) fn keep(&mut self, (block, moving): (&Block, &Moving), way_s: f64) {
+        let springs = &mut self.springs;
+        for history in &mut springs.histories {
+            history.closed = false;
+        }
+        for (contact, k) in springs.contacts.iter().zip(0..) {
+            let history = &mut springs.histories[contact.history];
+            let rate = &mut springs.rates[0].shear[contact.history];
+            *rate = carry(*rate, &history.n, &contact.n);
+            if let Some(touch) = self.touches.found.get(k) {
+                history.follow(touch, &moving.pose.centre);
+            }
+            history.shear = contact.stretch(way_s);
+            history.normal_force = contact.normal_force;
+            let cap = contact.law.friction * contact.normal_force;
+            history.slides = contact.shear_force.norm() >= cap * (1.0 - 1e-9);
+            let u = moving.at(block, &contact.lever);
+            (history.offset_m, history.pressed_m) =
+                (contact.offset_m, contact.pen_at(&u, way_s).max(0.0));
+            history.closed = contact.normal_force > 0.0 || history.pressed_m > 0.0;
+        }
+        let mut kept = 0;
+        for k in 0..springs.histories.len() {
+            if springs.histories[k].closed {
+                springs.histories.swap(kept, k);
+                springs.rates[0].shear.swap(kept, k);
+                kept += 1;
+            }
+        }
+        springs.histories.truncate(kept);
+        self.touches.held.clear();
+        self.touches.held.extend(springs.histories.iter().map(BlockHistory::pair));
+    }
+}

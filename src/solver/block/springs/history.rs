@@ -1,0 +1,207 @@
+//! What a block remembers of its contacts.
+
+use super::super::{Footing, Moving, TOUCH};
+use crate::body::Block;
+use crate::contact::Feature;
+use crate::contact::block::BlockTouch;
+use crate::contact::history::{SAME_GRIP, carry};
+use crate::ground::Law;
+use crate::rock::Vec3;
+use crate::solver::block::solve::{BlockContact, Mass};
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::law::capture_m_s;
+
+/// A contact whose point was no further away than this is the same one that has gone on to the next feature (–, relative to
+/// the balls' radius).
+const SAME_POINT: f64 = 0.5;
+/// What other contacts take off the answer of one at most (–): where they push each other up, its mass would grow without bound.
+const LEAST_SHARED: f64 = 0.25;
+
+/// The memory of one contact of a block.
+#[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
+pub(crate) struct BlockHistory {
+    /// What of the block and of the mesh touch.
+    part: u16,
+    pub(crate) feature: Feature,
+    /// Triangle whose ground answers.
+    pub(crate) triangle: u32,
+    /// Its law: damping is that of the mass that it moved at its first touch.
+    pub(crate) law: Law,
+    /// Normal to which `shear` is tangent, and where it was (m).
+    pub(crate) n: Vec3,
+    pub(crate) point: Vec3,
+    /// Stretch of the shear spring (m).
+    pub(crate) shear: Vec3,
+    /// Normal force at the end of the last step (N).
+    pub(crate) normal_force: f64,
+    /// Penetration at which its spring begins to press (m): what was pressed in before it became a contact stores nothing.
+    pub(super) offset_m: f64,
+    /// How far its spring was pressed in at the end of the last step (m).
+    pub(super) pressed_m: f64,
+    /// Impulse of the last solve (N s): where the next begins.
+    pub(super) impulse: Vec3,
+    /// Speed of approach when it began (m/s).
+    pub(crate) approach_m_s: f64,
+    /// Came in too slowly to rebound.
+    pub(crate) captured: bool,
+    /// Whether it presses.
+    pub(crate) closed: bool,
+    pub(crate) slides: bool,
+    /// Whether its beginning has been noted down, and as which impact, from 1; 0 where it was none.
+    pub(crate) announced: bool,
+    pub(crate) impact: u32,
+}
+
+impl BlockHistory {
+    pub(super) fn is_of(&self, touch: &BlockTouch) -> bool {
+        self.part == touch.part && self.feature == touch.feature
+    }
+
+    /// Which parts of block and mesh touch.
+    pub(super) fn pair(&self) -> (u16, Feature) {
+        (self.part, self.feature)
+    }
+
+    /// Goes on where the contact now is.
+    pub(super) fn follow(&mut self, touch: &BlockTouch, centre: &Vec3) {
+        (self.part, self.feature, self.triangle) = (touch.part, touch.feature, touch.triangle);
+        self.shear = carry(self.shear, &self.n, &touch.normal);
+        (self.n, self.point) = (touch.normal, centre + touch.lever);
+    }
+}
+
+impl Footing {
+    /// The law of a contact that begins: its dashpots have the damping ratio of the ground for the mass that the contact moves,
+    /// `m_n = 1/(V_N M⁻¹ V_Nᵀ)`, so that restitution without friction is that of the ground; where several begin at once each has its share.
+    fn law_of_touch(
+        &self,
+        world: &ContactEnvironment,
+        (block, mass): (&Block, &Mass),
+        touch: &BlockTouch,
+        approach_m_s: f64,
+    ) -> Law {
+        let mut law = *world.law(touch.triangle);
+        if approach_m_s >= capture_m_s(&law) {
+            law.struck_at(approach_m_s);
+        }
+        let contact = BlockContact::new(mass, (touch.normal, touch.lever), (0.0, 0), Vec3::zeros());
+        let [along, across] = contact.masses();
+        let along = along * self.share_of((block, mass), touch);
+        law.for_masses([along, across], mass.mass)
+    }
+
+    /// The share of the mass that a contact moves among those that begin with it (–): `G_ii/Σ_j G_ij` along the normals.
+    fn share_of(&self, (block, mass): (&Block, &Mass), touch: &BlockTouch) -> f64 {
+        let along = |one: &BlockTouch, other: &BlockTouch| {
+            let arms = [one, other].map(|touch| touch.lever.cross(&touch.normal));
+            one.normal.dot(&other.normal) / mass.mass + arms[0].dot(&(mass.inverse * arms[1]))
+        };
+        let own = along(touch, touch);
+        let with = |other: &&BlockTouch| other.gap_m <= TOUCH * block.radius_m && *other != touch;
+        let others = self.touches.found.iter().filter(with);
+        let all = own + others.map(|other| along(touch, other)).sum::<f64>();
+        own / all.max(LEAST_SHARED * own)
+    }
+
+    /// The memory of every contact of the last look, in their order; new ones begin.
+    pub(super) fn remember(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) {
+        let mass = moving.mass(block);
+        let mut of_touch = std::mem::take(&mut self.of_touch);
+        of_touch.clear();
+        for touch in &self.touches.found {
+            let known = self.springs.histories.iter().position(|history| history.is_of(touch));
+            of_touch.push(known.filter(|k| !of_touch.contains(&Some(*k))));
+        }
+        for k in 0..of_touch.len() {
+            if of_touch[k].is_none() {
+                let touch = self.touches.found[k];
+                let point = moving.pose.centre + touch.lever;
+                let near = self.springs.nearest(&touch, (&point, block.ball_m), &of_touch);
+                of_touch[k] = near.or_else(|| {
+                    let new = self.begin(world, (&mass, &touch), (block, moving));
+                    Some(self.springs.add(&new))
+                });
+            }
+        }
+        self.of_touch = of_touch;
+    }
+
+    /// A new memory.
+    fn begin(
+        &self,
+        world: &ContactEnvironment,
+        (mass, touch): (&Mass, &BlockTouch),
+        (block, moving): (&Block, &Moving),
+    ) -> BlockHistory {
+        let approach_m_s = -touch.normal.dot(&moving.at(block, &touch.lever));
+        // what is born while an impact rebounds belongs to it, however slow it is
+        let rebounds = self.springs.is_rebounding();
+        let captured = approach_m_s < capture_m_s(world.law(touch.triangle)) && !rebounds;
+        BlockHistory {
+            part: touch.part,
+            feature: touch.feature,
+            triangle: touch.triangle,
+            law: self.law_of_touch(world, (block, mass), touch, approach_m_s),
+            n: touch.normal,
+            point: moving.pose.centre + touch.lever,
+            shear: Vec3::zeros(),
+            normal_force: 0.0,
+            offset_m: 0.0,
+            pressed_m: 0.0,
+            impulse: Vec3::zeros(),
+            approach_m_s,
+            captured,
+            closed: approach_m_s > 0.0 && touch.gap_m <= TOUCH * block.radius_m,
+            slides: false,
+            announced: false,
+            impact: 0,
+        }
+    }
+}
+
+impl super::Springs {
+    /// Whether an impact is going on.
+    pub(crate) fn is_rebounding(&self) -> bool {
+        self.histories.iter().any(|history| history.closed && !history.captured)
+    }
+
+    /// Fastest approach of the impacts that go on (m/s); `None` if none does.
+    pub(super) fn fastest_m_s(&self) -> Option<f64> {
+        let rebounding =
+            self.histories.iter().filter(|history| history.closed && !history.captured);
+        rebounding.map(|history| history.approach_m_s).reduce(f64::max)
+    }
+
+    /// The memory, of those not taken, of a contact that has gone on to a neighbouring feature and is now at `point`.
+    fn nearest(
+        &self,
+        touch: &BlockTouch,
+        (point, ball_m): (&Vec3, f64),
+        taken: &[Option<usize>],
+    ) -> Option<usize> {
+        let fits = |(k, history): &(usize, &BlockHistory)| {
+            !taken.contains(&Some(*k)) && history.n.dot(&touch.normal) > SAME_GRIP
+        };
+        let away = |history: &BlockHistory| (history.point - point).norm();
+        let both = self.histories.iter().enumerate().filter(fits);
+        let nearest = both.min_by(|one, other| away(one.1).total_cmp(&away(other.1)))?;
+        (away(nearest.1) <= SAME_POINT * ball_m).then_some(nearest.0)
+    }
+
+    /// Adds a memory.
+    fn add(&mut self, new: &BlockHistory) -> usize {
+        self.histories.push(*new);
+        for rate in &mut self.rates {
+            rate.shear.resize(self.histories.len(), Vec3::zeros());
+        }
+        for rate in &mut self.rates {
+            rate.shear[self.histories.len() - 1] = Vec3::zeros();
+        }
+        self.histories.len() - 1
+    }
+}

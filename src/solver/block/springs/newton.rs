@@ -1,0 +1,130 @@
+//! Impulses of contacts that give way, in the six unknowns of the body.
+//!
+//! Each contact answers the velocity `u` of its point with an impulse `P(u)` in closed form, so what is sought is the one motion with
+//! `M (V − V_free) = Σ Tᵀ P(T V)`: six equations, however many contacts a face has. Newton's method on pieces: contacts open, stick or slip.
+//! Where it does not settle – a dashpot that alone would keep the block out has no closed form – contacts are swept instead.
+
+use super::super::solve::{BlockContact, Mass};
+use crate::rock::Vec3;
+use nalgebra::{Matrix3, Matrix6, Vector6};
+
+/// Tries of the method before contacts are swept.
+const TRIES: u32 = 30;
+/// Halvings of one step that does not come nearer.
+const HALVINGS: u32 = 4;
+/// Change of the motion, relative to the largest impulse over the mass, below which it has settled (–).
+const MOTION_SETTLED: f64 = 1e-12;
+
+/// The impulse of a contact whose point moves by `u` (m/s), and its derivative (kg).
+type ImpulseAndSlope = (Vec3, Matrix3<f64>);
+
+impl BlockContact {
+    /// Its impulse at a velocity of its point; `None` where only the sweeps can tell.
+    fn answer_at(&self, u: &Vec3) -> Option<ImpulseAndSlope> {
+        let springs = self.springs()?;
+        let [along, across] = springs.compliance.map(|c| 1.0 / c);
+        let off = self.goal - u;
+        let up = self.n.dot(&off);
+        if up <= 0.0 {
+            return Some((Vec3::zeros(), Matrix3::zeros()));
+        }
+        if self.n.dot(u) > springs.surface_m_s {
+            return None;
+        }
+        let (normal, push) = (self.n * self.n.transpose(), up * along);
+        let held = (off - self.n * up) * across;
+        let (cap, size) = (self.friction * push, held.norm());
+        let plane = Matrix3::identity() - normal;
+        if size <= cap {
+            return Some((self.n * push + held, normal * -along - plane * across));
+        }
+        let way = held / size;
+        let turns = (plane - way * way.transpose()) * (-across * cap / size);
+        let grows = (way * self.n.transpose()) * (-along * self.friction);
+        Some((self.n * push + way * cap, normal * -along + turns + grows))
+    }
+}
+
+/// The equations of a body in contact.
+struct Equations<'c> {
+    mass: &'c Mass,
+    inertia: Matrix3<f64>,
+    contacts: &'c mut [BlockContact],
+    free: (Vec3, Vec3),
+}
+
+impl Equations<'_> {
+    /// What is left of them at a motion, and their derivative; the impulses go into the contacts.
+    fn at(&mut self, (v, w): (&Vec3, &Vec3)) -> Option<(Vector6<f64>, Matrix6<f64>)> {
+        let (dv, dw) = (v - self.free.0, w - self.free.1);
+        let (mut push, mut turn) = (dv * self.mass.mass, self.inertia * dw);
+        let mut slope = Matrix6::zeros();
+        slope.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(self.mass.mass);
+        slope.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.inertia);
+        for contact in self.contacts.iter_mut() {
+            let (impulse, rate) = contact.answer_at(&Mass::at(&contact.lever, (v, w)))?;
+            contact.impulse = impulse;
+            push -= impulse;
+            turn -= contact.lever.cross(&impulse);
+            // Tᵀ P' T with T = [1, −[a]×]
+            let arm = contact.lever.cross_matrix();
+            let (right, both) = (rate * arm, arm * rate);
+            let mut block = slope.fixed_view_mut::<3, 3>(0, 0);
+            block -= rate;
+            let mut block = slope.fixed_view_mut::<3, 3>(0, 3);
+            block += right;
+            let mut block = slope.fixed_view_mut::<3, 3>(3, 0);
+            block -= both;
+            let mut block = slope.fixed_view_mut::<3, 3>(3, 3);
+            block += arm * right;
+        }
+        Some((Vector6::new(push.x, push.y, push.z, turn.x, turn.y, turn.z), slope))
+    }
+
+    /// Size of what is left, as a velocity (m/s).
+    fn size(&self, left: &Vector6<f64>, reach: f64) -> f64 {
+        let push: Vec3 = left.fixed_rows::<3>(0).into();
+        let turn: Vec3 = left.fixed_rows::<3>(3).into();
+        push.norm() / self.mass.mass + (self.mass.inverse * turn).norm() * reach
+    }
+}
+
+/// Solves for the impulses of contacts that give way, from the motion without impulses and a first guess; whether it has settled.
+pub(super) fn solve_springs(
+    mass: &Mass,
+    contacts: &mut [BlockContact],
+    (free, guess): ((Vec3, Vec3), (Vec3, Vec3)),
+    rounding_m_s: f64,
+) -> bool {
+    let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
+    let Some(inertia) = mass.inverse.try_inverse() else { return false };
+    let mut equations = Equations { mass, inertia, contacts, free };
+    let (mut v, mut w) = guess;
+    let Some((mut left, mut slope)) = equations.at((&v, &w)) else { return false };
+    let mut size = equations.size(&left, reach);
+    for _ in 0..TRIES {
+        let Some(step) = slope.lu().solve(&-left) else { return false };
+        let (dv, dw): (Vec3, Vec3) =
+            (step.fixed_rows::<3>(0).into(), step.fixed_rows::<3>(3).into());
+        let mut share = 1.0;
+        for halving in 0..=HALVINGS {
+            let Some(next) = equations.at((&(v + dv * share), &(w + dw * share))) else {
+                return false;
+            };
+            let next_size = equations.size(&next.0, reach);
+            if next_size < size || halving == HALVINGS {
+                (left, slope, size) = (next.0, next.1, next_size);
+                break;
+            }
+            share *= 0.5;
+        }
+        (v, w) = (v + dv * share, w + dw * share);
+        let moved = (dv.norm() + dw.norm() * reach) * share;
+        let scale =
+            equations.contacts.iter().map(|contact| contact.impulse.norm()).fold(0.0, f64::max);
+        if moved <= (MOTION_SETTLED * scale / mass.mass).max(rounding_m_s) {
+            return true;
+        }
+    }
+    false
+}

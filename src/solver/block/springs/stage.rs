@@ -1,0 +1,276 @@
+//! One implicit stage of a block on springs.
+//!
+//! Forces are those at the stage's end: the solve is exact for given normals and levers, and the loop around it moves the block to where it
+//! ends. The penetration from which a pass starts is the one found there, put back by the motion of the pass before; once they agree the
+//! end is exact, however the block turns.
+
+use super::super::{Footing, Moving, ROUNDING_OF_SPEED, TOUCH, orthonormal};
+use super::newton::solve_springs;
+use super::{BlockRates, SpringContact, turn_by, turning};
+use crate::body::Block;
+use crate::contact::block::{BlockTouch, Pose};
+use crate::contact::history::carry;
+use crate::rock::Vec3;
+use crate::solver::block::solve::{BlockContact, Mass, solve};
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::law::within;
+use crate::solver::loss::Loss;
+use crate::solver::stage::{AGREED, PASSES};
+use crate::solver::tableau::Tableau;
+
+/// So few contacts are swept (–).
+const FEW: usize = 2;
+
+/// A block within a step.
+#[derive(Debug, Clone)]
+pub(super) struct BlockEnd {
+    /// Where it is, and its motion.
+    pub(super) moving: Moving,
+    /// Rotation vector from the step's start (rad).
+    pub(super) turned: Vec3,
+}
+
+/// What a stage starts from.
+pub(super) struct StageBase<'m> {
+    /// At the step's start.
+    pub(super) start: &'m Moving,
+    /// The state plus the explicit part of the stages before.
+    pub(super) base: BlockEnd,
+    /// How long impulses act and how long the block moves (s).
+    pub(super) times_s: (f64, f64),
+}
+
+impl StageBase<'_> {
+    /// The block that goes on with these velocity and momentum, turned about as far as `guess`.
+    fn moved(&self, block: &Block, v: Vec3, momentum: Vec3, guess: &BlockEnd) -> BlockEnd {
+        let w = guess.moving.mass(block).inverse * momentum;
+        let b = self.times_s.1;
+        let turned = self.base.turned + turning(&guess.turned, &w) * b;
+        let pose = Pose {
+            centre: self.base.moving.pose.centre + v * b,
+            attitude: orthonormal(&(turn_by(&turned) * self.start.pose.attitude)),
+        };
+        BlockEnd { moving: Moving { pose, v, momentum }, turned }
+    }
+}
+
+impl Footing {
+    /// The base of implicit stage `i` of a step of length `h` (s) from `start`.
+    pub(super) fn base(&self, start: &Moving, tableau: &Tableau, (i, h): (usize, f64)) -> BlockEnd {
+        let mut base = BlockEnd { moving: start.clone(), turned: Vec3::zeros() };
+        for (rate, a) in self.springs.rates.iter().zip(tableau.a[i]) {
+            base.moving.pose.centre += rate.centre * (h * a);
+            base.moving.v += rate.v * (h * a);
+            base.moving.momentum += rate.momentum * (h * a);
+            base.turned += rate.turned * (h * a);
+        }
+        base
+    }
+
+    /// Solves a stage; `None` if geometry and forces do not come to agree. `shear_of` tells the stretch of a history at the base.
+    pub(super) fn stage(
+        &mut self,
+        world: &ContactEnvironment,
+        block: &Block,
+        stage: &StageBase,
+        shear_of: impl Fn(&Self, usize) -> Vec3,
+    ) -> Option<BlockEnd> {
+        let (act_s, _) = stage.times_s;
+        let free_v = stage.base.moving.v + world.body.gravity * act_s;
+        let mut guess = stage.moved(block, free_v, stage.base.moving.momentum, &stage.base);
+        let ahead_m = Self::ahead_m(world, (block, stage.start), stage.times_s.1);
+        for _ in 0..PASSES {
+            self.look_at_all(world, (block, &guess.moving.pose), ahead_m);
+            self.remember(world, (block, &guess.moving));
+            self.place(world, (block, stage.start, &guess.moving), stage.times_s.1, &shear_of);
+            let (v, momentum) = self.pushed(block, stage, &guess.moving, free_v);
+            let end = stage.moved(block, v, momentum, &guess);
+            let moved = (end.moving.pose.centre - guess.moving.pose.centre).norm()
+                + (end.turned - guess.turned).norm() * block.bound_m;
+            guess = end;
+            if moved <= AGREED * block.radius_m {
+                return Some(guess);
+            }
+        }
+        None
+    }
+
+    /// Penetration (m) at which the spring of a contact begins to press: none, but where a contact of an edge or a face of the block
+    /// begins in this step, or goes on to another feature, that was pressed in further at the step's start than the spring was. What a
+    /// feature finds when it comes to own a contact stores nothing, so that no change of features can gain energy. The patches of
+    /// a corner's ball hand over without a jump by themselves.
+    fn offset_m(
+        &self,
+        (start, guess): (&Moving, &Moving),
+        touch: &BlockTouch,
+        (block, history): (&Block, usize),
+    ) -> f64 {
+        let memory = &self.springs.histories[history];
+        if block.core.is_corner(touch.part) {
+            return 0.0;
+        }
+        if history < self.springs.known && memory.is_of(touch) {
+            return memory.offset_m;
+        }
+        let own = guess.pose.attitude.inverse_transform_vector(&touch.lever);
+        let way = guess.pose.centre + touch.lever - start.pose.point(&own);
+        let began_m = touch.normal.dot(&way) - touch.gap_m;
+        (began_m - memory.pressed_m).max(0.0)
+    }
+
+    /// Makes the touches of the last look, at `guess`, into contacts based at the stage's base.
+    pub(super) fn place(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, start, guess): (&Block, &Moving, &Moving),
+        way_s: f64,
+        shear_of: &impl Fn(&Self, usize) -> Vec3,
+    ) {
+        let mut contacts = std::mem::take(&mut self.springs.contacts);
+        contacts.clear();
+        for (k, touch) in self.touches.found.iter().enumerate() {
+            let Some(history) = self.of_touch[k] else { continue };
+            let memory = &self.springs.histories[history];
+            let mut law = memory.law.of_patch(touch.gain2, 1.0);
+            if memory.captured {
+                law.c_n = law.c_n_captured;
+            }
+            law.friction = self.slip.friction(world.ground_of(touch.triangle), &law, 0.0);
+            let offset_m = self.offset_m((start, guess), touch, (block, history));
+            contacts.push(SpringContact {
+                history,
+                offset_m,
+                law,
+                triangle: touch.triangle,
+                n: touch.normal,
+                lever: touch.lever,
+                penetration: way_s * touch.normal.dot(&guess.at(block, &touch.lever))
+                    - touch.gap_m
+                    - offset_m,
+                shear: carry(shear_of(self, history), &memory.n, &touch.normal),
+                normal_force: 0.0,
+                shear_force: Vec3::zeros(),
+            });
+        }
+        self.springs.contacts = contacts;
+    }
+
+    /// Velocity and momentum at the stage's end with the contacts as they are; the block turned as in `guess`.
+    pub(super) fn pushed(
+        &mut self,
+        block: &Block,
+        stage: &StageBase,
+        guess: &Moving,
+        free_v: Vec3,
+    ) -> (Vec3, Vec3) {
+        let (mass, act_s) = (guess.mass(block), stage.times_s.0);
+        let mut pushed = Moving { v: free_v, ..stage.base.moving.clone() };
+        self.contacts.clear();
+        for contact in &self.springs.contacts {
+            let at = (contact.n, contact.lever);
+            let bare = BlockContact::new(
+                &mass,
+                at,
+                (contact.law.friction, contact.triangle),
+                Vec3::zeros(),
+            );
+            let mut soft = contact.giving_way(&bare, &mass, stage.times_s);
+            soft.impulse = self.springs.histories[contact.history].impulse;
+            self.contacts.push(soft);
+        }
+        pushed.take(&self.contacts, block.mass_kg);
+        let rounding_m_s = ROUNDING_OF_SPEED * (free_v.norm() + guess.v.norm());
+        let free = (free_v, mass.inverse * stage.base.moving.momentum);
+        let from = (pushed.v, mass.inverse * pushed.momentum);
+        // one or two contacts are swept faster
+        let few = self.contacts.len() <= FEW;
+        self.sweeps += 1;
+        if few || !solve_springs(&mass, &mut self.contacts, (free, from), rounding_m_s) {
+            for (contact, own) in self.contacts.iter_mut().zip(&self.springs.contacts) {
+                contact.impulse = self.springs.histories[own.history].impulse;
+            }
+            solve(&mass, &mut self.contacts, from, rounding_m_s, &mut self.sweeps);
+        }
+        for (contact, solved) in self.springs.contacts.iter_mut().zip(&self.contacts) {
+            contact.take(&solved.impulse, act_s);
+            self.springs.histories[contact.history].impulse = solved.impulse;
+        }
+        let mut end = Moving { v: free_v, ..stage.base.moving.clone() };
+        end.take(&self.contacts, block.mass_kg);
+        (end.v, end.momentum)
+    }
+
+    /// Stores the rates of stage `i`, which ends at `end`.
+    pub(super) fn store(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, stage): (&Block, &StageBase),
+        (i, end): (usize, &BlockEnd),
+    ) {
+        let (base, way_s) = (&stage.base, stage.times_s.1);
+        let springs = &mut self.springs;
+        let rate = &mut springs.rates[i];
+        rate.centre = end.moving.v;
+        rate.v = (end.moving.v - base.moving.v) / way_s;
+        rate.momentum = (end.moving.momentum - base.moving.momentum) / way_s;
+        rate.turned = (end.turned - base.turned) / way_s;
+        rate.loss = Loss::default();
+        rate.shear.fill(Vec3::zeros());
+        for contact in &springs.contacts {
+            let shear_rate = (contact.stretch(way_s) - contact.shear) / way_s;
+            let back = &springs.histories[contact.history].n;
+            rate.shear[contact.history] = carry(shear_rate, &contact.n, back);
+            let u = end.moving.at(block, &contact.lever);
+            rate.loss.add(&contact.power(world, &u, &shear_rate), 1.0);
+        }
+    }
+
+    /// Rates at the present state, for the explicit first stage.
+    pub(super) fn rates_now(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) {
+        self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        self.remember(world, (block, moving));
+        self.place(world, (block, moving, moving), 0.0, &|footing, k| {
+            footing.springs.histories[k].shear
+        });
+        let springs = &mut self.springs;
+        let mut rate = std::mem::take(&mut springs.rates[0]);
+        rate.shear.fill(Vec3::zeros());
+        (rate.centre, rate.v, rate.loss) = (moving.v, world.body.gravity, Loss::default());
+        (rate.turned, rate.momentum) = (moving.spin(block), Vec3::zeros());
+        for contact in &mut springs.contacts {
+            let (law, n) = (contact.law, contact.n);
+            let u = Mass::at(&contact.lever, (&moving.v, &rate.turned));
+            let pressed = law.p_n * contact.penetration.max(0.0) - law.c_n * n.dot(&u);
+            contact.normal_force = pressed.max(0.0);
+            let (slip, held) = (u - n * n.dot(&u), contact.shear * law.p_s);
+            contact.shear_force =
+                within(held + slip * law.c_s, law.friction * contact.normal_force);
+            let shear_rate =
+                if law.c_s > 0.0 { (contact.shear_force - held) / law.c_s } else { slip };
+            let force = n * contact.normal_force - contact.shear_force;
+            rate.v += force / block.mass_kg;
+            rate.momentum += contact.lever.cross(&force);
+            let back = &springs.histories[contact.history].n;
+            rate.shear[contact.history] = carry(shear_rate, &n, back);
+            rate.loss.add(&contact.power(world, &u, &shear_rate), 1.0);
+        }
+        springs.rates[0] = rate;
+        springs.fresh = true;
+    }
+
+    /// Stretch of a history at the base of stage `i` of a step of length `h` (s).
+    pub(super) fn stretch_at_base(
+        &self,
+        k: usize,
+        tableau: &Tableau,
+        (i, h): (usize, f64),
+    ) -> Vec3 {
+        let rates = self.springs.rates.iter().zip(tableau.a[i]);
+        let grown = |sum, (rate, a): (&BlockRates, &f64)| sum + rate.shear[k] * (h * a);
+        rates.fold(self.springs.histories[k].shear, grown)
+    }
+}
