@@ -73,6 +73,9 @@ pub struct Calibration {
     pub told: Vec<Told>,
     /// Measured and computed ends of the fit to all, scene by scene.
     pub measures: Vec<SiteMeasure>,
+    /// Shapes of the rocks, as the plans say them; empty for spheres alone.
+    #[serde(default)]
+    pub shapes: Vec<String>,
     /// Measured ends, and how many independent ones they are worth: throws of one block are alike.
     pub ends: (usize, f64),
 }
@@ -115,6 +118,7 @@ pub fn calibrate(
         whole,
         told,
         measures,
+        shapes: search.shapes(),
         ends,
     })
 }
@@ -139,6 +143,13 @@ fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
         if let Some(lacks) = vary.iter().find(|vary| !scene.grounds.contains_key(&vary.ground)) {
             let remedy = format!("write [grounds.{}]: the scene before varies it", lacks.ground);
             return wrong(scene, "found another set of grounds", remedy);
+        }
+        let refused = |vary: &VaryTable| {
+            let found = format!("found that {}.{} is to be varied", vary.ground, vary.key.name());
+            scene.refuses_to_vary(vary).map(|remedy| (found, remedy))
+        };
+        if let Some((found, remedy)) = vary.iter().find_map(refused) {
+            return wrong(scene, &found, remedy);
         }
     }
     Ok((vary, first.calibrate.as_ref().map_or(0, CalibrateTable::parts)))
@@ -175,13 +186,34 @@ fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
         }
         VaryKey::RollingFrictionSpread => {}
         VaryKey::RoughnessDeg => ground.roughness_deg = Some(fixed),
+        VaryKey::RoughnessLengthM => ground.roughness_length_m = Some(fixed),
+        // of soil numbers, not distributions; a scene without soil was refused
+        _ => {
+            if let Some(place) = soil_value(ground, key) {
+                *place = value;
+            }
+        }
     }
     Ok(())
+}
+
+/// A value of the soil of a ground; none without that soil.
+fn soil_value(ground: &mut GroundTable, key: VaryKey) -> Option<&mut f64> {
+    let (slip, scar) = (ground.slip_friction.as_mut(), ground.scar.as_mut());
+    match key {
+        VaryKey::SlipFrictionMax => slip.map(|slip| &mut slip.most),
+        VaryKey::SlipFrictionKappaPerM => slip.map(|slip| &mut slip.kappa_per_m),
+        VaryKey::SlipFrictionBetaPerS => slip.map(|slip| &mut slip.beta_per_s),
+        VaryKey::ScarStrengthKnM2 => scar.map(|scar| &mut scar.strength_kn_m2),
+        VaryKey::ScarDrag => scar.map(|scar| &mut scar.drag),
+        _ => None,
+    }
 }
 
 impl fmt::Display for Calibration {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(to, "{} trials of {} releases for each fit", self.trials, self.releases)?;
+        self.shapes.iter().try_for_each(|shape| writeln!(to, "shape: {shape}"))?;
         self.write_trial(to, "before", &self.before)?;
         for (part, trial) in self.held_out.iter().enumerate() {
             let who = format!("fit without part {} of {}", part + 1, self.held_out.len());

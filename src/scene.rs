@@ -211,7 +211,7 @@ impl Scene {
             self.rocks.check().map_err(wrong)?;
         }
         self.release.blocks = blocks;
-        Ok(())
+        self.match_blocks()
     }
 
     /// Position of a ground in the scene's list of grounds.
@@ -286,10 +286,7 @@ impl Scene {
         for (index, object) in self.objects.iter().enumerate() {
             object.check().map_err(|wrong| wrong.in_entry(index).inside("objects"))?;
         }
-        if let Some(calibrate) = &self.calibrate {
-            let grounds: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
-            calibrate.check(&grounds).map_err(|wrong| wrong.inside("calibrate"))?;
-        }
+        self.check_calibrate().map_err(|wrong| wrong.inside("calibrate"))?;
         if let Some(maps) = &self.maps {
             maps.check().map_err(|wrong| wrong.inside("maps"))?;
         }

@@ -1,6 +1,6 @@
 //! The fitted scene, written out.
 
-use super::{Calibration, put_all};
+use super::{Calibration, put_all, soil_value};
 use crate::error::{Error, Result};
 use crate::random::Distribution;
 use crate::scene::{GroundTable, Scene, VaryKey, VaryTable, rewritten};
@@ -16,10 +16,11 @@ pub fn fitted_scene(scene: &Scene, vary: &[VaryTable], found: &Calibration) -> R
     let mut changes = Vec::new();
     for vary in vary {
         let key = match vary.key {
-            VaryKey::RollingFrictionSpread => VaryKey::RollingFriction.name(),
-            key => key.name(),
+            VaryKey::RollingFrictionSpread => VaryKey::RollingFriction,
+            key => key,
         };
-        let written = fitted.grounds.get(&vary.ground).and_then(|ground| value_of(ground, key));
+        let written = fitted.grounds.get_mut(&vary.ground).and_then(|ground| value_of(ground, key));
+        let key = key.name();
         let Some(value) = written else {
             let why = format!("[grounds.{}] {key}: the fit gives it no value", vary.ground);
             return Err(Error::Request(why));
@@ -32,21 +33,29 @@ pub fn fitted_scene(scene: &Scene, vary: &[VaryTable], found: &Calibration) -> R
 }
 
 /// A value of a ground as a scene writes it.
-fn value_of(ground: &GroundTable, key: &str) -> Option<String> {
+fn value_of(ground: &mut GroundTable, key: VaryKey) -> Option<String> {
     let value = match key {
-        "friction_angle_deg" => Some(&ground.friction_angle_deg),
-        "restitution" => ground.restitution.as_ref(),
-        "restitution_half_speed_m_s" => ground.restitution_half_speed_m_s.as_ref(),
-        "tangential_ratio" => ground.tangential_ratio.as_ref(),
-        "rolling_friction" => ground.rolling_friction.as_ref(),
-        _ => ground.roughness_deg.as_ref(),
+        VaryKey::FrictionAngleDeg => Some(&ground.friction_angle_deg),
+        VaryKey::Restitution => ground.restitution.as_ref(),
+        VaryKey::RestitutionHalfSpeedMS => ground.restitution_half_speed_m_s.as_ref(),
+        VaryKey::TangentialRatio => ground.tangential_ratio.as_ref(),
+        VaryKey::RollingFriction | VaryKey::RollingFrictionSpread => {
+            ground.rolling_friction.as_ref()
+        }
+        VaryKey::RoughnessDeg => ground.roughness_deg.as_ref(),
+        VaryKey::RoughnessLengthM => ground.roughness_length_m.as_ref(),
+        _ => return soil_value(ground, key).map(|value| short(*value)),
     };
     value.map(written)
 }
 
+/// A number with six decimals at most.
+fn short(number: f64) -> String {
+    format!("{:?}", (number * 1e6).round() / 1e6)
+}
+
 /// A number, or the triangle that a spread makes of it.
 fn written(value: &Distribution) -> String {
-    let short = |number: f64| format!("{:?}", (number * 1e6).round() / 1e6);
     let (low, high) = value.support();
     match value.as_fixed() {
         Some(number) => short(number),

@@ -77,6 +77,17 @@ impl<'a> ParameterSearch<'a> {
         best.map(|best| (best, count)).ok_or_else(|| self.nothing())
     }
 
+    /// Shapes of the rocks of all scenes, each once.
+    pub(super) fn shapes(&self) -> Vec<String> {
+        let mut shapes = Vec::new();
+        for shape in self.sites.iter().flat_map(CalibrationSite::shapes) {
+            if !shapes.contains(shape) {
+                shapes.push(shape.clone());
+            }
+        }
+        shapes
+    }
+
     fn nothing(&self) -> Error {
         let remedy = "release rocks that do not fail";
         Error::input(self.sites[0].file(), "[calibrate]", "found no computed end", remedy)

@@ -28,9 +28,14 @@ pub(super) struct CalibrationSite {
     /// The part that each measured end is held out with.
     part: Vec<usize>,
     terrain: Option<Terrain>,
+    /// What the plan says of the shapes of its rocks.
+    shapes: Vec<String>,
     /// Where measured rocks were released; none unless the scene releases from all of these places.
     own: Option<OwnPlaces>,
 }
+
+/// A place of release (m), and the block that was thrown from it, if it is known.
+type ThrownFrom<'a> = ([f64; 2], Option<&'a str>);
 
 /// Places of release that measured ends and releases have in common.
 struct OwnPlaces {
@@ -54,17 +59,18 @@ impl CalibrationSite {
         };
         let (terrain, _) = scene.read_terrain()?;
         let asked = &scene.release;
-        let places: Vec<[f64; 2]> = match &asked.points_m {
-            Some(points) => points.iter().map(|point| point.at_m).collect(),
-            None => asked.blocks.iter().map(|block| block.at_m).collect(),
+        let places: Vec<ThrownFrom> = match &asked.points_m {
+            Some(points) => points.iter().map(|point| (point.at_m, None)).collect(),
+            None => asked.blocks.iter().map(|row| (row.at_m, row.block.as_deref())).collect(),
         };
-        let own = OwnPlaces::of(&measured, &places);
+        let own = OwnPlaces::of(&measured, &blocks, &places);
         let mut scene = bare(scene, releases);
         if own.is_some() {
             // every place as often as any other
             scene.release.count = releases.next_multiple_of(places.len());
         }
-        Ok(Self { scene, measured, blocks, part, terrain: Some(terrain), own })
+        let shapes = Vec::new();
+        Ok(Self { scene, measured, blocks, part, terrain: Some(terrain), shapes, own })
     }
 
     pub(super) fn title(&self) -> String {
@@ -73,6 +79,11 @@ impl CalibrationSite {
 
     pub(super) fn file(&self) -> &Path {
         &self.scene.file
+    }
+
+    /// What the plan says of the shapes of its rocks; known once it has computed.
+    pub(super) fn shapes(&self) -> &[String] {
+        &self.shapes
     }
 
     /// Whether it is known which throws are of one block.
@@ -105,6 +116,7 @@ impl CalibrationSite {
                 |fall| ObservedPath::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
             computed.extend(falls?.iter().filter_map(way));
         }
+        plan.releases.shapes().clone_into(&mut self.shapes);
         self.terrain = Some(plan.terrain);
         Ok(computed)
     }
@@ -171,6 +183,12 @@ impl CalibrationSite {
         (n > 0.0).then_some([mean, off])
     }
 
+    /// Rows of each block; none where computed ends cannot be told apart by their places.
+    pub(super) fn rows_of_blocks(&self) -> Vec<(&str, Vec<usize>)> {
+        let is_told = self.own.is_some() && self.knows_blocks();
+        if is_told { rows_of(self.measured.len(), &self.blocks) } else { Vec::new() }
+    }
+
     /// Independent ends that the measured ones are worth.
     pub(super) fn effective(&self) -> f64 {
         let runouts: Vec<f64> = self.measured.iter().map(ObservedPath::runout_m).collect();
@@ -186,14 +204,19 @@ impl CalibrationSite {
 }
 
 impl OwnPlaces {
-    /// None unless every measured end was released from one of the places.
-    fn of(measured: &[ObservedPath], places: &[[f64; 2]]) -> Option<Self> {
-        let is_near = |one: &[f64; 2], other: &[f64; 2]| {
-            math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M
+    /// None unless every measured end was released from one of the places. Where both sides name their blocks, a place is
+    /// common to throws of one block only: blocks roll unlike.
+    fn of(measured: &[ObservedPath], blocks: &[String], places: &[ThrownFrom]) -> Option<Self> {
+        let is_same = |(one, its): &ThrownFrom, (other, others): &ThrownFrom| {
+            let is_near = math::hypot(one[0] - other[0], one[1] - other[1]) <= SAME_PLACE_M;
+            is_near && (its.is_none() || others.is_none() || its == others)
         };
-        let place = |at: &[f64; 2]| measured.iter().position(|way| is_near(&way.start_m, at));
+        let ends = measured.iter().enumerate();
+        let ends: Vec<ThrownFrom> =
+            ends.map(|(row, way)| (way.start_m, blocks.get(row).map(String::as_str))).collect();
+        let place = |from: &ThrownFrom| ends.iter().position(|end| is_same(end, from));
         let of_release: Vec<Option<usize>> = places.iter().map(place).collect();
-        let of_end: Vec<usize> = measured.iter().filter_map(|way| place(&way.start_m)).collect();
+        let of_end: Vec<usize> = ends.iter().filter_map(place).collect();
         let is_released = |place: &usize| of_release.contains(&Some(*place));
         let common = !of_end.is_empty() && of_end.iter().all(is_released);
         common.then_some(Self { of_end, of_release })
@@ -204,18 +227,23 @@ impl OwnPlaces {
     }
 }
 
-/// The part that each measured end is held out with: throws of one block together, each block where there are fewest so
-/// far. None where there are fewer blocks than parts.
-fn parts_of(ends: usize, blocks: &[String], parts: usize) -> Option<Vec<usize>> {
+/// Rows of each block, blocks in the order of the file; an end of no known block is one of its own.
+fn rows_of(ends: usize, blocks: &[String]) -> Vec<(&str, Vec<usize>)> {
     let mut known: Vec<(&str, Vec<usize>)> = Vec::new();
     for row in 0..ends {
         let block = blocks.get(row).map(String::as_str);
-        let found = known.iter_mut().find(|(name, _)| block == Some(name));
-        match found {
+        match known.iter_mut().find(|(name, _)| block == Some(name)) {
             Some((_, rows)) => rows.push(row),
             None => known.push((block.unwrap_or_default(), vec![row])),
         }
     }
+    known
+}
+
+/// The part that each measured end is held out with: throws of one block together, each block where there are fewest so
+/// far. None where there are fewer blocks than parts.
+fn parts_of(ends: usize, blocks: &[String], parts: usize) -> Option<Vec<usize>> {
+    let known = rows_of(ends, blocks);
     let mut sizes = vec![0; parts];
     let mut part = vec![0; ends];
     for (_, rows) in &known {
@@ -261,14 +289,23 @@ mod tests {
     fn ends_are_compared_from_their_own_places() {
         let way = |x: f64, y: f64| ObservedPath { start_m: [x, 0.0], end_m: [x, y] };
         let measured = [way(0.0, 1.0), way(5.0, 2.0), way(0.05, 3.0), way(0.0, 4.0)];
-        let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]];
-        let own = OwnPlaces::of(&measured, &places).unwrap();
+        let places = [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]].map(|at| (at, None));
+        let own = OwnPlaces::of(&measured, &[], &places).unwrap();
         assert_eq!(own.of_end, [0, 1, 0, 0]);
         assert_eq!(
             (0..4).map(|k| own.of_release(k)).collect::<Vec<_>>(),
             [Some(0), Some(1), None, Some(0)]
         );
-        assert!(OwnPlaces::of(&measured, &places[..1]).is_none());
-        assert!(OwnPlaces::of(&measured, &[]).is_none());
+        assert!(OwnPlaces::of(&measured, &[], &places[..1]).is_none());
+        assert!(OwnPlaces::of(&measured, &[], &[]).is_none());
+        // the same with blocks: two were thrown from the first place
+        let blocks = ["a", "b", "c", "a"].map(str::to_owned);
+        let thrown = [([0.0, 0.0], Some("a")), ([5.0, 0.0], Some("b")), ([0.0, 0.0], Some("c"))];
+        let own = OwnPlaces::of(&measured, &blocks, &thrown).unwrap();
+        assert_eq!(own.of_end, [0, 1, 2, 0]);
+        assert_eq!(
+            (0..3).map(|k| own.of_release(k)).collect::<Vec<_>>(),
+            [Some(0), Some(1), Some(2)]
+        );
     }
 }

@@ -4,7 +4,7 @@ use super::search::ParameterSearch;
 use super::site::{CalibrationSite, Computed};
 use crate::error::Result;
 use crate::hazard::EndSpread;
-use crate::random::{Purpose, stream};
+use crate::random::{Purpose, stream, unit};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -12,6 +12,9 @@ use std::fmt;
 const REDRAWS: usize = 200;
 /// Share of a value's range above which its interval tells nothing (–).
 const UNTOLD: f64 = 0.6;
+
+/// Most blocks that are told one by one.
+const MOST_BLOCKS: usize = 12;
 
 /// How far the measured ends tell one value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -112,7 +115,8 @@ impl ParameterSearch<'_> {
                 let (scene, what) = (site.title(), what.to_owned());
                 SiteMeasure { scene, what, measured, computed, low_95, high_95 }
             };
-            found.into_iter().enumerate().map(one).collect::<Vec<_>>()
+            let of_all = found.into_iter().enumerate().map(one);
+            of_all.chain(site.measures_of_blocks(computed, seed)).collect::<Vec<_>>()
         };
         sites.flat_map(of_site).collect()
     }
@@ -127,6 +131,47 @@ impl CalibrationSite {
             figures.push(("largest distance of these ranks from even ones (–)", off, 0.0));
         }
         figures
+    }
+
+    /// Mean runout of each block, and by how much it differs from that of the first; ends are drawn again within each
+    /// block, where they are independent.
+    fn measures_of_blocks(&self, computed: &Computed, seed: u64) -> Vec<SiteMeasure> {
+        let blocks = self.rows_of_blocks();
+        let is_thrown_again = blocks.iter().all(|(_, rows)| rows.len() > 1);
+        if !(2..=MOST_BLOCKS).contains(&blocks.len()) || !is_thrown_again {
+            return Vec::new();
+        }
+        let mean = |rows: &[usize]| {
+            let figures = EndSpread::figures(&self.ends(rows), &self.weighted(computed, rows));
+            // the first of them is the mean runout
+            figures.first().map_or([f64::NAN; 2], |(_, measured, computed)| [*measured, *computed])
+        };
+        let found: Vec<[f64; 2]> = blocks.iter().map(|(_, rows)| mean(rows)).collect();
+        let again: Vec<Vec<[f64; 2]>> = (0..REDRAWS)
+            .map(|redraw| {
+                let mut random = stream(seed, Purpose::Redraw, redraw);
+                let mut drawn = |rows: &[usize]| -> Vec<usize> {
+                    let one = |random: &mut _| rows[(unit(random) * rows.len() as f64) as usize];
+                    rows.iter().map(|_| one(&mut random)).collect()
+                };
+                blocks.iter().map(|(_, rows)| mean(&drawn(rows))).collect()
+            })
+            .collect();
+        let measure = |what: String, of: &dyn Fn(&[[f64; 2]]) -> [f64; 2]| {
+            let off =
+                again.iter().map(|means| of(means)).map(|[measured, computed]| computed - measured);
+            let ([low_95, high_95], [measured, computed]) = (middle_95(off.collect()), of(&found));
+            SiteMeasure { scene: self.title(), what, measured, computed, low_95, high_95 }
+        };
+        let first = blocks[0].0;
+        let own = blocks.iter().enumerate().map(|(at, (name, _))| {
+            measure(format!("mean runout of block {name} (m)"), &|means| means[at])
+        });
+        let apart = blocks.iter().enumerate().skip(1).map(|(at, (name, _))| {
+            let what = format!("mean runout of block {name} less that of block {first} (m)");
+            measure(what, &|means| [0, 1].map(|side| means[at][side] - means[0][side]))
+        });
+        own.chain(apart).collect()
     }
 }
 

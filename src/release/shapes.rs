@@ -34,8 +34,6 @@ pub struct DrawnShape {
 #[derive(Debug, Clone, PartialEq)]
 struct ShapeShare {
     table: ShapeTable,
-    /// Weights up to and including its own (–).
-    sum: f64,
     /// The shape, where nothing of it is drawn.
     made: Option<Shape>,
 }
@@ -44,6 +42,10 @@ struct ShapeShare {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Shapes {
     entries: Vec<ShapeShare>,
+    /// The shapes that rocks draw among, with the weights up to each (–): those of no block, then block by block.
+    choices: Vec<Vec<(f64, usize)>>,
+    /// The choice of each row of the release table; empty without one.
+    of_row: Vec<usize>,
     /// A fixed turn; none if it is drawn.
     turned: Option<Rotation3<f64>>,
     /// What the plan says of each.
@@ -60,9 +62,7 @@ impl Shapes {
         if !scene.has_blocks() {
             return Ok(shapes);
         }
-        let mut sum = 0.0;
         for (index, table) in scene.rocks.shapes.iter().enumerate() {
-            sum += table.weight.unwrap_or(1.0);
             let refuse = |why: BadSurface| {
                 let place = format!("[[rocks.shapes]] of #{}", index + 1);
                 let file = table.mesh.as_deref().unwrap_or(&scene.file);
@@ -70,9 +70,35 @@ impl Shapes {
             };
             let (made, line) = prepared(table)?.map_err(refuse)?;
             shapes.lines.push(line);
-            shapes.entries.push(ShapeShare { table: table.clone(), sum, made });
+            shapes.entries.push(ShapeShare { table: table.clone(), made });
         }
+        shapes.choose(scene);
         Ok(shapes)
+    }
+
+    /// Which shapes each row of the release table draws among: those of its block, or those of none.
+    fn choose(&mut self, scene: &Scene) {
+        let tables = &scene.rocks.shapes;
+        let mut names: Vec<Option<&String>> = vec![None];
+        let place = |names: &[Option<&String>], block: Option<&String>| {
+            names.iter().position(|name| *name == block)
+        };
+        for table in tables {
+            if place(&names, table.block.as_ref()).is_none() {
+                names.push(table.block.as_ref());
+            }
+        }
+        let choice = |name: Option<&String>| {
+            let own = tables.iter().enumerate().filter(|(_, table)| table.block.as_ref() == name);
+            let summed = own.scan(0.0, |sum, (index, table)| {
+                *sum += table.weight.unwrap_or(1.0);
+                Some((*sum, index))
+            });
+            summed.collect()
+        };
+        self.choices = names.iter().copied().map(choice).collect();
+        let rows = scene.release.blocks.iter();
+        self.of_row = rows.map(|row| place(&names, row.block.as_ref()).unwrap_or(0)).collect();
     }
 
     /// Whether some rocks are no spheres.
@@ -80,9 +106,9 @@ impl Shapes {
         !self.entries.is_empty()
     }
 
-    /// The block of release `index`, of the size of its rock; none if it is a sphere.
-    pub(super) fn draw(&self, seed: u64, index: usize, rock: &Rock) -> Option<DrawnShape> {
-        let (entry, drawn, mut random) = self.pick(seed, index)?;
+    /// The block of release `index`, which is the `turn`-th from its place, of the size of its rock; none if it is a sphere.
+    pub(super) fn draw(&self, seed: u64, of: (usize, usize), rock: &Rock) -> Option<DrawnShape> {
+        let (entry, drawn, mut random) = self.pick(seed, of)?;
         let attitude = self.turned.unwrap_or_else(|| random_turn(&mut random));
         let (sides, made) = entry.shape(drawn)?;
         let block = Block::new(&made, rock);
@@ -90,12 +116,19 @@ impl Shapes {
         Some(DrawnShape { kind: entry.table.kind, sides, block, attitude })
     }
 
-    /// The entry of release `index`, the numbers that choose its sides, and the stream behind them; none if it is a sphere.
-    fn pick(&self, seed: u64, index: usize) -> Option<(&ShapeShare, [f64; 4], RandomStream)> {
-        let all = self.entries.last()?.sum;
+    /// The entry of release `index`, which is the `turn`-th from its place, the numbers that choose its sides, and the stream
+    /// behind them; none if it is a sphere.
+    fn pick(
+        &self,
+        seed: u64,
+        (index, turn): (usize, usize),
+    ) -> Option<(&ShapeShare, [f64; 4], RandomStream)> {
+        let row = turn.checked_rem(self.of_row.len()).map_or(0, |row| self.of_row[row]);
+        let choice = self.choices.get(row)?;
+        let all = choice.last()?.0;
         let mut random = stream(seed, Purpose::Shape, index);
         let pick = all * unit(&mut random);
-        let entry = &self.entries[self.entries.partition_point(|entry| entry.sum <= pick)];
+        let entry = &self.entries[choice[choice.partition_point(|(sum, _)| *sum <= pick)].1];
         let drawn = [0; 4].map(|_| unit(&mut random));
         (entry.table.kind != ShapeKind::Sphere).then_some((entry, drawn, random))
     }
@@ -119,12 +152,12 @@ impl ShapeShare {
 impl Releases {
     /// The shape of release `index`, of the size of its rock, and how it is turned; none for a sphere.
     pub fn block(&self, index: usize, rock: &Rock) -> Option<DrawnShape> {
-        self.shapes.draw(self.seed, index, rock)
+        self.shapes.draw(self.seed, (index, self.place_of(index).1), rock)
     }
 
     /// The shape of release `index` without its size; none for a sphere.
     pub fn shape(&self, index: usize) -> Option<Shape> {
-        let (entry, drawn, _) = self.shapes.pick(self.seed, index)?;
+        let (entry, drawn, _) = self.shapes.pick(self.seed, (index, self.place_of(index).1))?;
         entry.shape(drawn).map(|(_, shape)| shape)
     }
 
@@ -209,7 +242,9 @@ fn prepared(
     table: &ShapeTable,
 ) -> Result<std::result::Result<(Option<Shape>, String), BadSurface>> {
     Ok(match table.kind {
-        ShapeKind::Sphere => Ok((None, format!("sphere, weight {}", table.weight.unwrap_or(1.0)))),
+        ShapeKind::Sphere => {
+            Ok((None, format!("{}, weight {}", named(table), table.weight.unwrap_or(1.0))))
+        }
         ShapeKind::Mesh => scanned(table)?.map(|(shape, note)| {
             let line = described(table, &shape, &note);
             (Some(shape), line)
@@ -287,6 +322,12 @@ fn remedy(why: &BadSurface) -> &'static str {
     }
 }
 
+/// A shape's kind, and the block that has it.
+fn named(table: &ShapeTable) -> String {
+    let kind = table.kind.name();
+    table.block.as_ref().map_or_else(|| kind.to_owned(), |block| format!("{kind} (block {block})"))
+}
+
 /// A shape in the words of the plan.
 fn described(table: &ShapeTable, shape: &Shape, note: &str) -> String {
     let [low, middle, high] = {
@@ -296,7 +337,7 @@ fn described(table: &ShapeTable, shape: &Shape, note: &str) -> String {
     };
     format!(
         "{}, weight {}{note}: {} corner balls of {} R, {} edges, {} faces; reaches {:.3} R, moments of inertia {low:.3}, {middle:.3}, {high:.3} of the sphere's; rounding takes {:.4} R off its corners",
-        table.kind.name(),
+        named(table),
         table.weight.unwrap_or(1.0),
         shape.core.corners.len(),
         shape.ball,

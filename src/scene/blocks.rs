@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 /// One block of a table.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BlockRow {
     /// Place in plan view (m), map coordinates.
     pub at_m: [f64; 2],
@@ -14,6 +14,8 @@ pub struct BlockRow {
     pub height_m: Option<f64>,
     /// Radius (m); none if the scene's `radius_m` is drawn.
     pub radius_m: Option<f64>,
+    /// Which block it is, from the column `block` or `block_id`.
+    pub block: Option<String>,
 }
 
 /// Columns of a place, the first that are there: a file of measured ends has the ends under the plain names.
@@ -29,6 +31,7 @@ struct BlockColumns {
     z: Option<usize>,
     radius: Option<usize>,
     mass: Option<usize>,
+    block: Option<usize>,
 }
 
 /// Reads a table. With `has_height` the scene says how high blocks lie, else the table must; a mass becomes the radius of
@@ -70,7 +73,8 @@ impl BlockColumns {
         if z.is_none() && !has_height {
             return Err(format!("found no column {} and no height_m in the scene", names[2]));
         }
-        Ok(Self { x, y, z, radius: at("radius_m"), mass: at("mass_kg") })
+        let block = at("block").or_else(|| at("block_id"));
+        Ok(Self { x, y, z, radius: at("radius_m"), mass: at("mass_kg"), block })
     }
 
     fn block(
@@ -95,6 +99,7 @@ impl BlockColumns {
             (None, None) => None,
         };
         let height_m = self.z.map(number).transpose()?;
-        Ok(BlockRow { at_m: [number(self.x)?, number(self.y)?], height_m, radius_m })
+        let block = self.block.and_then(|column| row.get(column)).map(str::to_owned);
+        Ok(BlockRow { at_m: [number(self.x)?, number(self.y)?], height_m, radius_m, block })
     }
 }

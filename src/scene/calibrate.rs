@@ -1,7 +1,8 @@
 //! `[calibrate]`: measured ends, and which ground values may be fitted to them.
 
+use super::Scene;
 use super::check::{Allowed, Checked, Complaint, number, optional, suggest};
-use super::grounds::TANGENTIAL;
+use super::grounds::{STRENGTH, TANGENTIAL};
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -56,10 +57,27 @@ pub enum VaryKey {
     RollingFrictionSpread,
     /// Roughness (degrees).
     RoughnessDeg,
+    /// Way over which one tilted facet reaches (m).
+    RoughnessLengthM,
+    /// Friction after a long slip (–).
+    #[serde(rename = "slip_friction.max")]
+    SlipFrictionMax,
+    /// How soon friction grows with slip (1/m).
+    #[serde(rename = "slip_friction.kappa_per_m")]
+    SlipFrictionKappaPerM,
+    /// How soon slip is forgotten in flight (1/s).
+    #[serde(rename = "slip_friction.beta_per_s")]
+    SlipFrictionBetaPerS,
+    /// Strength of the soil (kN/m²).
+    #[serde(rename = "scar.strength_kn_m2")]
+    ScarStrengthKnM2,
+    /// Drag coefficient of the soil (–).
+    #[serde(rename = "scar.drag")]
+    ScarDrag,
 }
 
 impl VaryKey {
-    /// Its key in the scene.
+    /// Its key in the scene; that of a table inside of the ground with a point between.
     pub fn name(self) -> &'static str {
         match self {
             Self::FrictionAngleDeg => "friction_angle_deg",
@@ -69,6 +87,12 @@ impl VaryKey {
             Self::RollingFriction => "rolling_friction",
             Self::RollingFrictionSpread => "rolling_friction_spread",
             Self::RoughnessDeg => "roughness_deg",
+            Self::RoughnessLengthM => "roughness_length_m",
+            Self::SlipFrictionMax => "slip_friction.max",
+            Self::SlipFrictionKappaPerM => "slip_friction.kappa_per_m",
+            Self::SlipFrictionBetaPerS => "slip_friction.beta_per_s",
+            Self::ScarStrengthKnM2 => "scar.strength_kn_m2",
+            Self::ScarDrag => "scar.drag",
         }
     }
 
@@ -76,10 +100,52 @@ impl VaryKey {
         match self {
             Self::FrictionAngleDeg | Self::RoughnessDeg => Allowed::Slope,
             Self::Restitution => Allowed::Share,
-            Self::RestitutionHalfSpeedMS => Allowed::Positive,
+            Self::RestitutionHalfSpeedMS
+            | Self::RoughnessLengthM
+            | Self::SlipFrictionMax
+            | Self::SlipFrictionKappaPerM => Allowed::Positive,
             Self::TangentialRatio => TANGENTIAL,
-            Self::RollingFriction | Self::RollingFrictionSpread => Allowed::NotNegative,
+            Self::ScarStrengthKnM2 => STRENGTH,
+            Self::RollingFriction
+            | Self::RollingFrictionSpread
+            | Self::SlipFrictionBetaPerS
+            | Self::ScarDrag => Allowed::NotNegative,
         }
+    }
+}
+
+impl Scene {
+    /// What to write where a value cannot be varied on the rocks and grounds of this scene; none where it can.
+    pub fn refuses_to_vary(&self, vary: &VaryTable) -> Option<String> {
+        let Some(ground) = self.grounds.get(&vary.ground) else {
+            let names: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
+            return Some(format!("write a name from [grounds]; {}", suggest(&vary.ground, &names)));
+        };
+        let rolls = matches!(vary.key, VaryKey::RollingFriction | VaryKey::RollingFrictionSpread);
+        if rolls && self.has_blocks() {
+            let remedy = "write another key: how a block rolls is its shape, which [[rocks.shapes]] computes";
+            return Some(remedy.to_owned());
+        }
+        let (table, _) = vary.key.name().split_once('.')?;
+        let is_there =
+            if table == "scar" { ground.scar.is_some() } else { ground.slip_friction.is_some() };
+        let name = &vary.ground;
+        (!is_there).then(|| {
+            format!("write {table} = {{ ... }} in [grounds.{name}]: one of its values is varied, and the others have no default")
+        })
+    }
+
+    /// The table, and whether its values can be varied here.
+    pub(super) fn check_calibrate(&self) -> Checked {
+        let Some(table) = &self.calibrate else { return Ok(()) };
+        table.check()?;
+        for (index, vary) in table.vary.iter().enumerate() {
+            let Some(remedy) = self.refuses_to_vary(vary) else { continue };
+            let is_known = self.grounds.contains_key(&vary.ground);
+            let about = Complaint::about(if is_known { "key" } else { "ground" }, remedy);
+            return Err(about.in_entry(index).inside("vary"));
+        }
+        Ok(())
     }
 }
 
@@ -92,25 +158,21 @@ impl CalibrateTable {
         }
     }
 
-    pub(super) fn check(&self, grounds: &[&str]) -> Checked {
+    fn check(&self) -> Checked {
         optional("held_out", self.held_out, Allowed::Between(0.0, 0.5), "")?;
         if self.parts() > MOST_PARTS {
             let remedy = format!("write 0.0, or {} or more", 1.0 / MOST_PARTS as f64);
             return Err(Complaint::about("held_out", remedy));
         }
         for (index, vary) in self.vary.iter().enumerate() {
-            vary.check(grounds).map_err(|wrong| wrong.in_entry(index).inside("vary"))?;
+            vary.check().map_err(|wrong| wrong.in_entry(index).inside("vary"))?;
         }
         Ok(())
     }
 }
 
 impl VaryTable {
-    fn check(&self, grounds: &[&str]) -> Checked {
-        if !grounds.contains(&self.ground.as_str()) {
-            let remedy = format!("write a name from [grounds]; {}", suggest(&self.ground, grounds));
-            return Err(Complaint::about("ground", remedy));
-        }
+    fn check(&self) -> Checked {
         for (key, value) in [("from", self.from), ("to", self.to), ("before", self.before)] {
             number(key, value, self.key.allowed(), "")?;
         }

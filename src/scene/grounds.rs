@@ -134,7 +134,7 @@ impl GroundTable {
 pub(super) const TANGENTIAL: Allowed = Allowed::Between(1e-3, 10.0);
 
 /// Strength of soil under a scar (kN/m²): softer is mud that no depth of a scar holds for.
-const STRENGTH: Allowed = Allowed::Between(100.0, 1e9);
+pub(super) const STRENGTH: Allowed = Allowed::Between(100.0, 1e9);
 const STRENGTHS: &str = "in kN/m²; Lu et al. (2019) have 10000 to 25000 on a meadow";
 
 fn stiffness(key: &str, value: &Distribution) -> Checked {

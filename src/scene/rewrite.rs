@@ -10,7 +10,8 @@ use std::path::Path;
 /// A key of a ground that another gives as well: a scene has one of them.
 const OTHERWISE: (&str, &str) = ("tangential_ratio", "shear_stiffness_n_m");
 
-/// The text of a scene file with other values: ground, key and what to write. Paths are written in full, so that the text
+/// The text of a scene file with other values: ground, key (of a table inside of the ground with a point between) and what
+/// to write. Paths are written in full, so that the text
 /// may stand in another folder.
 ///
 /// # Errors
@@ -21,8 +22,10 @@ pub fn rewritten(scene: &Path, values: &[(String, &str, String)]) -> Result<Stri
     let mut changes: Vec<(Range<usize>, String)> = Vec::new();
     for (ground, key, value) in values {
         let table = [TrailStep::Key("grounds".to_owned()), TrailStep::Key(ground.clone())];
-        let value_at =
-            |key: &str| lookup.value_at(&[&table[..], &[TrailStep::Key(key.to_owned())]].concat());
+        let value_at = |key: &str| {
+            let keys = key.split('.').map(|key| TrailStep::Key(key.to_owned()));
+            lookup.value_at(&table.iter().cloned().chain(keys).collect::<Vec<_>>())
+        };
         let other = value_at(OTHERWISE.1).filter(|_| *key == OTHERWISE.0);
         let change = match (value_at(key), other, lookup.value_at(&table)) {
             (Some(range), ..) => (range, value.clone()),

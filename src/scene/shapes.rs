@@ -1,8 +1,10 @@
 //! `[[rocks.shapes]]`, `[release] orientation`, and what goes with blocks.
 
 use super::Scene;
-use super::check::{Allowed, Checked, Complaint, drawn, number, optional};
+use super::blocks::BlockRow;
+use super::check::{Allowed, Checked, Complaint, drawn, number, optional, suggest};
 use crate::body::{SHARPEST, ShapeKind, most_corners};
+use crate::error::{Error, Result};
 use crate::random::Distribution;
 use serde::Deserialize;
 use std::path::PathBuf;
@@ -15,6 +17,8 @@ pub struct ShapeTable {
     pub kind: ShapeKind,
     /// Radius of the balls at the corners over `radius_m` (–), [`SHARPEST`] to 0.5; not of a sphere.
     pub corner_radius: Option<f64>,
+    /// The block of the release table that has this shape, by its name there; absent = all that have none of their own.
+    pub block: Option<String>,
     /// How often it is drawn relative to the others (–), positive; absent = 1.
     pub weight: Option<f64>,
     /// Sides of a box, diameters of an ellipsoid, in any unit: only their ratios count.
@@ -157,6 +161,7 @@ impl Scene {
         for (index, shape) in self.rocks.shapes.iter().enumerate() {
             shape
                 .check()
+                .and_then(|()| self.check_block(shape))
                 .map_err(|wrong| wrong.in_entry(index).inside("shapes").inside("rocks"))?;
         }
         if let Some(orientation) = &self.release.orientation {
@@ -175,6 +180,54 @@ impl Scene {
             return Err(Complaint::about("together", remedy).inside("release"));
         }
         self.check_grounds_of_blocks()
+    }
+
+    /// Names of blocks stand in a table; whether it has them is seen once it is read.
+    fn check_block(&self, shape: &ShapeTable) -> Checked {
+        if shape.block.is_none() || self.release.table.is_some() {
+            return Ok(());
+        }
+        let remedy =
+            "remove it, or write [release] table = \"blocks.csv\": blocks have their names there";
+        Err(Complaint::about("block", remedy))
+    }
+
+    /// Refuses a shape of a block that the release table does not have, and a block that has no shape.
+    ///
+    /// # Errors
+    /// The block, and which there are.
+    pub(super) fn match_blocks(&self) -> Result<()> {
+        let shapes = &self.rocks.shapes;
+        let rows = &self.release.blocks;
+        for (index, shape) in shapes.iter().enumerate() {
+            let Some(block) = &shape.block else { continue };
+            if !rows.iter().any(|row| row.block.as_ref() == Some(block)) {
+                let mut names: Vec<&str> =
+                    rows.iter().filter_map(|row| row.block.as_deref()).collect();
+                names.sort_unstable();
+                names.dedup();
+                let place = format!("[[rocks.shapes]] #{} block", index + 1);
+                let found = format!("found no block \"{block}\" in the release table");
+                let remedy = if names.is_empty() {
+                    "give the table a column block".to_owned()
+                } else {
+                    suggest(block, &names)
+                };
+                return Err(Error::input(&self.file, place, found, remedy));
+            }
+        }
+        let is_free = shapes.is_empty() || shapes.iter().any(|shape| shape.block.is_none());
+        let has_own =
+            |row: &BlockRow| row.block.is_some() && shapes.iter().any(|s| s.block == row.block);
+        match rows.iter().find(|row| !is_free && !has_own(row)) {
+            None => Ok(()),
+            Some(row) => {
+                let name = row.block.as_deref().unwrap_or_default();
+                let found = format!("found no shape of the block \"{name}\" of the release table");
+                let remedy = "write one with its block, or one without block for all others";
+                Err(Error::input(&self.file, "[[rocks.shapes]]", found, remedy))
+            }
+        }
     }
 
     fn check_soil_of_worlds(&self) -> Checked {

@@ -1,16 +1,19 @@
 //! One rock on a made mesh, computed through the library's own journey.
 
+use crate::body::{Block, Shape, ShapeKind, Solid, Surface, box_surface, prism_surface};
 use crate::ground::Ground;
 use crate::math;
 use crate::plan::RestRule;
 use crate::random::{Purpose, stream};
-use crate::release::Release;
+use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Rock, Vec3};
-use crate::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate};
+use crate::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate, simulate_block};
 use crate::solver::{Scheme, Settings};
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
+use nalgebra::Rotation3;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
 /// Gravity of the cases (m/s²), as in the paper's Table 1.
@@ -36,11 +39,79 @@ pub const GROUND: Ground = Ground {
 /// Corners closer than this are one (m): made meshes repeat theirs to rounding.
 const WELD_M: f64 = 1e-9;
 
+/// The schemes that compute blocks. A scheme that learns them is added here, and all cases of blocks are run with it.
+pub const BLOCK_SCHEMES: &[Scheme] = &[Scheme::Rigid];
+
+/// The surface of a block, its sides in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BlockForm {
+    /// A box along the axes.
+    Box([f64; 3]),
+    /// A regular prism of so many sides that lies on one of them, its axis along y; radius of the circle through its
+    /// corners, as long as that circle is wide.
+    Prism(u32, f64),
+}
+
+/// A block in the place of the sphere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MadeBlock {
+    /// Its surface.
+    pub form: BlockForm,
+    /// Radius of the balls at its corners (m).
+    pub ball_m: f64,
+    /// How it is turned at the start.
+    pub attitude: Rotation3<f64>,
+}
+
+impl BlockForm {
+    fn surface(&self) -> Surface {
+        match *self {
+            Self::Box(sides_m) => box_surface(sides_m),
+            Self::Prism(sides, radius_m) => {
+                let mut surface = prism_surface(sides, 1.0);
+                let on_a_side = math::turn(&Vec3::y_axis(), FRAC_PI_2 - PI / f64::from(sides))
+                    * math::turn(&Vec3::x_axis(), -FRAC_PI_2);
+                for p in &mut surface.points {
+                    *p = on_a_side * (*p * radius_m);
+                }
+                surface
+            }
+        }
+    }
+
+    /// The rock of this size, as dense as that of the cases.
+    pub fn rock(&self) -> Rock {
+        Rock { radius_m: Solid::of(&self.surface()).equal_radius(), ..ROCK }
+    }
+}
+
+impl MadeBlock {
+    /// The block of a rock, as a release has it.
+    ///
+    /// # Panics
+    /// If its balls fill it: cases have blocks that are bodies.
+    pub fn drawn(&self, rock: &Rock) -> DrawnShape {
+        let (surface, kind) = (
+            self.form.surface(),
+            match self.form {
+                BlockForm::Box(_) => ShapeKind::Box,
+                BlockForm::Prism(..) => ShapeKind::Prism,
+            },
+        );
+        let solid = Solid::of(&surface);
+        let shape = Shape::of(&solid, &surface.points, self.ball_m / solid.equal_radius());
+        let block = Block::new(&shape.expect("the blocks of cases are bodies"), rock);
+        DrawnShape { kind, sides: [1.0; 2], block, attitude: self.attitude }
+    }
+}
+
 /// What one rock is, where it starts and how long it is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
     /// The rock.
     pub rock: Rock,
+    /// Its shape; none for a sphere.
+    pub block: Option<MadeBlock>,
     /// The ground everywhere.
     pub ground: Ground,
     /// Centre at the start (m), in the coordinates of the facets.
@@ -62,6 +133,7 @@ pub struct Setup {
 /// The usual rock and ground, at rest in the origin, followed for a second, never taken to be at rest.
 pub const SETUP: Setup = Setup {
     rock: ROCK,
+    block: None,
     ground: GROUND,
     centre_m: Vec3::new(0.0, 0.0, 0.0),
     velocity_m_s: Vec3::new(0.0, 0.0, 0.0),
@@ -93,10 +165,19 @@ impl Setup {
         let release = Release { rock: self.rock, motion, grounds: vec![self.ground] };
         let random = stream(1, Purpose::Impacts, 0);
         let keep = Keep { path_step_s: self.path_step_s, impacts: true };
-        let mut fallen = simulate(&course, &release, keep, random, scratch);
+        let drawn = self.block.map(|block| block.drawn(&self.rock));
+        let mut fallen = match &drawn {
+            Some(drawn) => simulate_block(&course, (&release, drawn), keep, random, scratch),
+            None => simulate(&course, &release, keep, random, scratch),
+        };
         fallen.start.position_m += terrain.origin_m;
         fallen.end.position_m += terrain.origin_m;
         fallen
+    }
+
+    /// The schemes that compute it.
+    pub fn schemes(&self) -> &'static [Scheme] {
+        if self.block.is_some() { BLOCK_SCHEMES } else { &Scheme::ALL }
     }
 
     /// How deep the weight presses one spring where the ground is inclined at `angle_rad` (m).

@@ -1,5 +1,6 @@
 //! The exact cases: one row each, with the scene, the exact solution and where it comes from.
 
+mod blocks;
 mod closed;
 pub(super) mod meshes;
 mod pivot;
@@ -78,6 +79,11 @@ impl Case {
         (self.setup)(step.scheme.has_springs()).follow(terrain, step, scratch)
     }
 
+    /// The schemes that compute its rock: spheres all of them.
+    pub fn schemes(&self) -> &'static [Scheme] {
+        (self.setup)(false).schemes()
+    }
+
     /// Settings of a scheme for this case.
     pub fn settings(&self, scheme: Scheme, fineness: f64) -> Settings {
         settings(scheme, fineness, Some(self.capture_speed_m_s))
@@ -149,7 +155,7 @@ const FINEST_TOLERANCE_M_S: f64 = 1e-10;
 const FINEST_STEP_S: f64 = 2e-6;
 
 /// All exact cases. To add one: a row.
-pub const CASES: [Case; 12] = [
+pub const CASES: [Case; 15] = [
     Case {
         name: "roll",
         title: "A sphere rolls down 20° from rest, 1 s",
@@ -366,6 +372,9 @@ pub const CASES: [Case; 12] = [
         },
         exact: None,
     },
+    blocks::SLIDES,
+    blocks::THROWN,
+    blocks::ROLLS,
 ];
 
 /// What rows have in common.

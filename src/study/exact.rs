@@ -85,7 +85,7 @@ pub struct Curve {
 pub struct CaseStudy {
     /// The case.
     pub case: Case,
-    /// One curve a scheme, in the order of [`LADDERS`].
+    /// One curve for each scheme that computes the case, in the order of [`LADDERS`].
     pub curves: Vec<Curve>,
 }
 
@@ -104,7 +104,8 @@ pub struct Saving {
 pub fn study(done: impl Fn(&str)) -> Vec<CaseStudy> {
     let study_case = |case: &Case| {
         let terrain = case.terrain();
-        let curves = LADDERS.map(|rungs| curve(case, &terrain, rungs)).into();
+        let own = LADDERS.into_iter().filter(|rungs| case.schemes().contains(&rungs.scheme));
+        let curves = own.map(|rungs| curve(case, &terrain, rungs)).collect();
         done(case.name);
         CaseStudy { case: *case, curves }
     };

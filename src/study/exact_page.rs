@@ -55,8 +55,11 @@ fn orders(page: &mut String, studies: &[CaseStudy]) {
     let _ = writeln!(page, "\n|---|{}", "---|".repeat(LADDERS.len()));
     for study in studies {
         let _ = write!(page, "| {} |", study.case.name);
-        for curve in &study.curves {
-            let _ = write!(page, " {}; {} |", order_in_words(curve), reached(curve));
+        for rungs in LADDERS {
+            let _ = match study.curve(rungs.scheme) {
+                Some(curve) => write!(page, " {}; {} |", order_in_words(curve), reached(curve)),
+                None => write!(page, " – |"),
+            };
         }
         *page += "\n";
     }

@@ -1,5 +1,6 @@
 //! Stiff and extreme cases, each held against its analytic expectation or a bound, for every scheme.
 
+mod blocks;
 mod fineness;
 mod folds;
 mod geometry;
@@ -62,7 +63,7 @@ pub const WAYS: [SchemeSetting; 4] = [
 type StabilityTrial = fn(&SchemeSetting, &mut Notes);
 
 /// Every case by name. To add one: a function and a row.
-const TRIALS: [(&str, StabilityTrial); 28] = [
+const TRIALS: [(&str, StabilityTrial); 33] = [
     ("impact", impacts::impact),
     ("step and tolerance", fineness::steps),
     ("shear memory", fineness::memory),
@@ -91,6 +92,11 @@ const TRIALS: [(&str, StabilityTrial); 28] = [
     ("one centre for two", many::coincident),
     ("rest for an hour", lasting::rest),
     ("random releases", lasting::random_releases),
+    ("flat and slender blocks", blocks::flat),
+    ("blocks beside triangles", blocks::sizes),
+    ("elastic blocks", blocks::elastic),
+    ("fast blocks", blocks::fast),
+    ("blocks that skid", blocks::friction),
 ];
 
 /// What the cases found, in order.

@@ -26,6 +26,7 @@ mod blocks;
 mod bounded;
 mod bounded_worlds;
 mod calibrate;
+mod calibrate_blocks;
 mod catalogue;
 mod compare;
 mod data_in;

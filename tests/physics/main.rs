@@ -6,6 +6,7 @@
 mod common;
 
 mod blocks;
+mod chant_sura;
 mod contact;
 mod dda;
 mod dda_energy;

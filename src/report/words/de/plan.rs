@@ -176,6 +176,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("{n} triangles", "{n} Dreiecke"),
     ("{n}, each whole again for the next rock", "{n}, jeder für den nächsten Block wieder ganz"),
     ("sphere, weight {n}", "Kugel, Gewicht {n}"),
+    ("sphere (block {name}), weight {n}", "Kugel (Block {name}), Gewicht {n}"),
     (
         "{name}, weight {n}, its sides drawn for each rock, of which the median: {a} corner balls of {b} R, {c} edges, {d} faces; reaches {e} R, moments of inertia {f} of the sphere's; rounding takes {g} R off its corners",
         "{name}, Gewicht {n}, Seiten für jeden Block gezogen, davon der Median: {a} Eckkugeln von {b} R, {c} Kanten, {d} Flächen; reicht {e} R weit, Trägheitsmomente {f} der Kugel; die Rundung nimmt {g} R von den Ecken",

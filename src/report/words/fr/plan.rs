@@ -182,6 +182,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{n}, chacun de nouveau entier pour le bloc suivant",
     ),
     ("sphere, weight {n}", "sphère, poids {n}"),
+    ("sphere (block {name}), weight {n}", "sphère (bloc {name}), poids {n}"),
     (
         "{name}, weight {n}, its sides drawn for each rock, of which the median: {a} corner balls of {b} R, {c} edges, {d} faces; reaches {e} R, moments of inertia {f} of the sphere's; rounding takes {g} R off its corners",
         "{name}, poids {n}, côtés tirés pour chaque bloc, dont le médian\u{a0}: {a} boules d’angle de {b} R, {c} arêtes, {d} faces\u{a0}; portée {e} R, moments d’inertie {f} de la sphère\u{a0}; l’arrondi ôte {g} R aux angles",

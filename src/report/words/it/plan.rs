@@ -179,6 +179,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{n}, ciascuno di nuovo intero per il masso seguente",
     ),
     ("sphere, weight {n}", "sfera, peso {n}"),
+    ("sphere (block {name}), weight {n}", "sfera (blocco {name}), peso {n}"),
     (
         "{name}, weight {n}, its sides drawn for each rock, of which the median: {a} corner balls of {b} R, {c} edges, {d} faces; reaches {e} R, moments of inertia {f} of the sphere's; rounding takes {g} R off its corners",
         "{name}, peso {n}, lati estratti per ogni masso, di cui il mediano: {a} sfere d’angolo di {b} R, {c} spigoli, {d} facce; arriva a {e} R, momenti d’inerzia {f} della sfera; l’arrotondamento toglie {g} R agli angoli",

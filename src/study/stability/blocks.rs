@@ -1,0 +1,193 @@
+//! Blocks at their ends: flat, slender, small and large beside the triangles, fast, elastic, rough.
+
+use super::impacts::floor;
+use super::{Notes, RISE, SchemeSetting};
+use crate::ground::Ground;
+use crate::math;
+use crate::rock::Vec3;
+use crate::simulation::{Stop, Trajectory};
+use crate::study::bench::{
+    BLOCK_SCHEMES, BlockForm, GRAVITY_M_S2, GROUND, MadeBlock, SETUP, Setup, terrain,
+};
+use crate::study::cases::meshes::{bumpy, fold};
+use crate::terrain::Terrain;
+use nalgebra::Rotation3;
+
+/// Radius of the balls over the shortest side (–).
+const BALL: f64 = 0.05;
+
+/// A box with these sides (m), turned by no simple angle, its ball around it `gap_m` above z = 0.
+fn boxed(sides_m: [f64; 3], gap_m: f64) -> Setup {
+    let form = BlockForm::Box(sides_m);
+    let shortest = sides_m.into_iter().fold(f64::INFINITY, f64::min);
+    let attitude = math::turn(&Vec3::x_axis(), 0.7) * math::turn(&Vec3::y_axis(), 0.4);
+    let half = Vec3::from(sides_m).norm() / 2.0;
+    Setup {
+        rock: form.rock(),
+        block: Some(MadeBlock { form, ball_m: BALL * shortest, attitude }),
+        centre_m: Vec3::new(0.03, 0.02, half + gap_m),
+        ..SETUP
+    }
+}
+
+fn is_computed(way: &SchemeSetting) -> bool {
+    BLOCK_SCHEMES.contains(&way.scheme)
+}
+
+/// Lowest height of the centre over z = 0 on a kept path (m).
+fn lowest(journey: &Trajectory, on: &Terrain) -> f64 {
+    let heights = journey.path.iter().map(|point| point.motion.position_m.z + on.origin_m.z);
+    heights.fold(f64::INFINITY, f64::min)
+}
+
+/// From a cube to a sheet and to a needle: none sinks in, all come to rest as flat as they are.
+pub(super) fn flat(way: &SchemeSetting, notes: &mut Notes) {
+    if !is_computed(way) {
+        return;
+    }
+    let floor = floor();
+    let slender = [[1.0, 1.0, 0.1], [1.0, 1.0, 0.01], [1.0, 0.1, 0.1], [1.0, 0.01, 0.01], [1.0; 3]];
+    for sides_m in slender {
+        let shortest = sides_m.into_iter().fold(f64::INFINITY, f64::min);
+        let setup = Setup {
+            velocity_m_s: Vec3::new(1.0, 0.5, -2.0),
+            spin_rad_s: Vec3::new(3.0, -2.0, 1.0),
+            longest_s: 30.0,
+            rest_time_s: 0.3,
+            path_step_s: Some(0.01),
+            ..boxed(sides_m, 0.2)
+        };
+        let setting = format!("{sides_m:?} m");
+        let journey = notes.follow(way, &setting, &setup, &floor);
+        let sunk = 0.5 * shortest - lowest(&journey, &floor);
+        // a tenth of the balls: steps are as long as these move three tenths of a ball
+        let deep = 0.1 * BALL;
+        notes.hold(way, &setting, "sinks in, over the shortest side", sunk / shortest, deep);
+        let stirs = f64::from(u8::from(journey.stop != Stop::AtRest));
+        notes.hold(way, &setting, "does not come to rest (0 = no)", stirs, 0.0);
+        let lies = (journey.end.position_m.z - 0.5 * shortest).abs() / shortest;
+        let law = "height of the centre at rest off that of a face, over the shortest side";
+        notes.hold(way, &setting, law, lies, deep);
+    }
+}
+
+/// A block of a tenth of a millimetre on triangles of 10 km, and one of 10 m on triangles of a decimetre: sizes over sides
+/// of triangles are 1 : 1e8 and 100 : 1.
+pub(super) fn sizes(way: &SchemeSetting, notes: &mut Notes) {
+    if !is_computed(way) {
+        return;
+    }
+    let wide = terrain(crate::terrain::make::jittered_plane(1e4, 1, 0.0));
+    let fine = terrain(bumpy(300, 0.1, 1e-3));
+    for (size_m, on, setting) in [
+        (1e-4, &wide, "0.1 mm on 10 km"),
+        (0.1, &wide, "0.1 m on 10 km"),
+        (10.0, &fine, "10 m on 0.1 m"),
+    ] {
+        let speed = (GRAVITY_M_S2 * size_m).sqrt();
+        let setup = Setup {
+            velocity_m_s: Vec3::new(0.2 * speed, 0.0, -speed),
+            spin_rad_s: Vec3::new(0.3, -1.0, 0.2) * (speed / size_m),
+            longest_s: 3.0 * size_m / speed,
+            path_step_s: Some(0.02 * size_m / speed),
+            ..boxed([size_m, 0.8 * size_m, 0.5 * size_m], 0.1 * size_m)
+        };
+        let journey = notes.follow(way, setting, &setup, on);
+        let deep = (0.25 * size_m - lowest(&journey, on)) / size_m;
+        notes.hold(way, setting, "sinks in, over the longest side", deep, 2e-3);
+        let struck = f64::from(u8::from(journey.impact_count == 0));
+        notes.hold(way, setting, "strikes nothing (0 = no)", struck, 0.0);
+    }
+}
+
+/// e = 1 without friction keeps all energy, from a level to a narrow valley, of every shape.
+pub(super) fn elastic(way: &SchemeSetting, notes: &mut Notes) {
+    if !is_computed(way) {
+        return;
+    }
+    let ground = Ground { friction_angle_rad: 0.0, restitution: Some(1.0), ..GROUND };
+    let grounds = [
+        ("level", floor()),
+        ("valley 0.2 rad", terrain(fold(0.2, 20.0))),
+        ("valley 2 rad", terrain(fold(2.0, 20.0))),
+        ("uneven", terrain(bumpy(40, 0.5, 0.05))),
+    ];
+    for sides_m in [[1.0; 3], [1.0, 0.8, 0.1], [1.0, 0.1, 0.1]] {
+        for (name, on) in &grounds {
+            let setup = Setup {
+                ground,
+                velocity_m_s: Vec3::new(0.4, 0.2, -3.0),
+                spin_rad_s: Vec3::new(1.0, -2.0, 0.5),
+                longest_s: 2.0,
+                ..boxed(sides_m, 1.5)
+            };
+            let setting = format!("{sides_m:?} m, {name}");
+            let journey = notes.follow_captured(way, &setting, &setup, on, Some(0.0));
+            let ledger = &journey.ledger;
+            let spent = ledger.friction_j + ledger.damping_j + ledger.remainder_j.abs();
+            let scale = journey.extremes.total_j;
+            let law = "energy lost or gained where nothing takes any, over all";
+            notes.hold(way, &setting, law, spent / scale, 10.0 * RISE);
+        }
+    }
+}
+
+/// 100 m/s onto a single layer of triangles, a plate edge on and spinning fast: on its side it stays.
+pub(super) fn fast(way: &SchemeSetting, notes: &mut Notes) {
+    if !is_computed(way) {
+        return;
+    }
+    let floor = floor();
+    for (setting, v, spin) in [
+        ("upright", Vec3::new(0.0, 0.0, -100.0), Vec3::zeros()),
+        ("grazing at 0.1°", Vec3::new(100.0, 0.0, -0.175), Vec3::zeros()),
+        ("spinning at 1000 rad/s", Vec3::new(10.0, 0.0, -10.0), Vec3::new(900.0, 300.0, -300.0)),
+    ] {
+        for e in [0.0, 1.0] {
+            let setup = Setup {
+                ground: Ground { restitution: Some(e), ..GROUND },
+                velocity_m_s: v,
+                spin_rad_s: spin,
+                longest_s: 0.2,
+                path_step_s: Some(1e-3),
+                ..boxed([1.0, 1.0, 0.05], 0.05)
+            };
+            let setup = Setup { centre_m: setup.centre_m - Vec3::x() * 20.0, ..setup };
+            let setting = format!("{setting}, e {e}");
+            let journey = notes.follow(way, &setting, &setup, &floor);
+            let sunk = 0.025 - lowest(&journey, &floor);
+            notes.hold(way, &setting, "sinks in, over the shortest side", sunk / 0.05, 1e-2);
+        }
+    }
+}
+
+/// Friction from 0 to 89° and restitution from 0 to 1 under a tilted plate that skids: nothing gains, whatever the pair, also
+/// where rigid slip has no solution (Painlevé).
+pub(super) fn friction(way: &SchemeSetting, notes: &mut Notes) {
+    if !is_computed(way) {
+        return;
+    }
+    let floor = floor();
+    for friction in [0.0, 30.0, 60.0, 89.0f64] {
+        for e in [0.0, 0.5, 1.0] {
+            for lean in [0.3, 1.0, 1.5] {
+                let flat = boxed([1.0, 0.5, 0.1], 0.0);
+                let attitude: Rotation3<f64> = math::turn(&Vec3::y_axis(), lean);
+                let block = flat.block.map(|block| MadeBlock { attitude, ..block });
+                let setup = Setup {
+                    block,
+                    ground: Ground {
+                        friction_angle_rad: friction.to_radians(),
+                        restitution: Some(e),
+                        ..GROUND
+                    },
+                    velocity_m_s: Vec3::new(8.0, 0.0, -1.0),
+                    longest_s: 1.0,
+                    ..flat
+                };
+                let setting = format!("friction {friction}°, e {e}, leaning {lean} rad");
+                notes.follow(way, &setting, &setup, &floor);
+            }
+        }
+    }
+}
