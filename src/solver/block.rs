@@ -197,15 +197,6 @@ impl Footing {
         self.touches.found.iter().filter(move |touch| touch.gap_m <= most)
     }
 
-    /// Whether a contact that touches is struck, faster than its ground captures.
-    pub(crate) fn is_struck(
-        world: &ContactEnvironment,
-        (block, moving): (&Block, &Moving),
-        touch: &BlockTouch,
-    ) -> bool {
-        -touch.normal.dot(&moving.at(block, &touch.lever)) >= capture_m_s(world.law(touch.triangle))
-    }
-
     /// The impact of all contacts that touch, at the place and in no time; contacts too slow to rebound take part and give
     /// nothing back. What it takes, and whether there was any.
     pub(crate) fn strike(
@@ -217,10 +208,14 @@ impl Footing {
         let mass = moving.mass(block);
         let (v, w) = (moving.v, moving.spin(block));
         let approach = |touch: &BlockTouch| -touch.normal.dot(&moving.at(block, &touch.lever));
-        if !self.touching(block).any(|touch| approach(touch) > STILL_M_S) {
+        let comes = self.touching(block).any(|touch| approach(touch) > STILL_M_S);
+        if !comes && !self.comes_to_next_facet(world, block, moving) {
             return None;
         }
         let facet = self.facet(world, block, moving);
+        if !comes && facet.is_none() {
+            return None;
+        }
         let tilted = |touch: &BlockTouch| BlockTouch {
             normal: facet.map_or(touch.normal, |turn| turn * touch.normal),
             ..*touch
@@ -347,11 +342,6 @@ impl Footing {
         let law = world.law(touch.triangle);
         let friction = self.slip.friction(world.ground_of(touch.triangle), law, ahead_m);
         BlockContact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
-    }
-
-    /// Whether a contact that touches slides.
-    fn slides(&self, block: &Block, moving: &Moving) -> bool {
-        self.slip_m_s(block, moving) > 1e-6 * (1.0 + moving.v.norm())
     }
 
     /// Whether a contact still holds the block: it is near, and does not let go faster than its ground captures.

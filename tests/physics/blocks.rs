@@ -262,3 +262,30 @@ fn schemes_agree_on_where_blocks_stop() {
         assert!(distance < most, "{scheme:?}: {distance} of {most}");
     }
 }
+
+/// A box that slides down a plane meets the facets of rough ground one after the other, in every scheme: it bounces where it would
+/// slide.
+#[test]
+fn a_sliding_box_meets_facets() {
+    let at = |x: f64, y: f64| Vec3::new(x, y, 100.0 - 0.7 * y);
+    let [a, b, c, d] = [at(0.0, 0.0), at(300.0, 0.0), at(300.0, 150.0), at(0.0, 150.0)];
+    let plane = terrain(vec![[a, b, c], [a, c, d]]);
+    let (_, kind, shape) = &shapes()[2];
+    for scheme in [Scheme::Rigid, Scheme::Adaptive] {
+        let impacts = [0.0, 0.35].map(|roughness_rad| {
+            let ground = Ground { roughness_rad, friction_angle_rad: 0.5, ..HARD };
+            let series = Series { scheme, kind: *kind, shape: shape.as_ref(), ground };
+            let mut scratch = Scratch::default();
+            let counts = (0..3).map(|index| {
+                let fall = fall(&plane, &series, index, &mut scratch);
+                let no_gain = fall.ledger.rise_j <= 1e-9 * fall.released_j;
+                let ended = !matches!(fall.stop, Stop::Failed(_));
+                assert!(no_gain && ended, "{:?} {:?}", fall.stop, fall.ledger);
+                fall.impact_count
+            });
+            counts.sum::<u32>()
+        });
+        println!("{scheme:?}: {impacts:?}");
+        assert!(impacts[1] > 2 * impacts[0], "{scheme:?}: {impacts:?}");
+    }
+}

@@ -37,6 +37,7 @@ impl Roll<'_> {
 
     /// Notes down the impacts that have begun, and turns the block against the facet of the fastest.
     pub(super) fn begin_impacts(&mut self) {
+        self.footing.meet_next_facet(&self.world, (self.block, &self.moving));
         let springs = &self.footing.springs;
         let new = springs.histories.iter().filter(|history| !history.announced);
         let fastest = new.max_by(|one, other| one.approach_m_s.total_cmp(&other.approach_m_s));
@@ -50,8 +51,10 @@ impl Roll<'_> {
         let until_s = self.recorder.now.time_s + IMPACT_TIMES * PI / self.footing.springs.slowest();
         let strikes = facet.is_some() || !fastest.captured;
         let held_j = self.footing.springs.held_j();
+        // whether a block rebounds is judged by its approach to the facet
+        let to_facet_m_s = facet.map(|turn| -(turn * fastest.n).dot(&v));
         for k in 0..self.footing.springs.histories.len() {
-            self.begin_impact(k, facet.is_some(), (until_s, held_j));
+            self.begin_impact(k, to_facet_m_s, (until_s, held_j));
         }
         if !strikes {
             return;
@@ -71,12 +74,15 @@ impl Roll<'_> {
     }
 
     /// Notes down that contact `k` has begun, if it has not been; on rough ground all rebound with the fastest.
-    fn begin_impact(&mut self, k: usize, rebounds: bool, (until_s, held_j): (f64, f64)) {
+    fn begin_impact(&mut self, k: usize, to_facet_m_s: Option<f64>, (until_s, held_j): (f64, f64)) {
         let mut history = self.footing.springs.histories[k];
         if std::mem::replace(&mut history.announced, true) {
             return;
         }
-        history.captured &= !rebounds;
+        if let Some(speed) = to_facet_m_s {
+            history.captured = false;
+            history.approach_m_s = history.approach_m_s.max(speed);
+        }
         if !history.captured {
             let struck = Struck {
                 point_m: history.point,

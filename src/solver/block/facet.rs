@@ -4,7 +4,9 @@
 
 use super::{Footing, Moving};
 use crate::body::Block;
+use crate::contact::block::BlockTouch;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::law::capture_m_s;
 use crate::solver::roughness::{Meeting, Tilt};
 use nalgebra::Rotation3;
 
@@ -23,6 +25,15 @@ impl Moving {
 }
 
 impl Footing {
+    /// Whether a contact that touches is struck, faster than its ground captures.
+    pub(crate) fn is_struck(
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+        touch: &BlockTouch,
+    ) -> bool {
+        -touch.normal.dot(&moving.at(block, &touch.lever)) >= capture_m_s(world.law(touch.triangle))
+    }
+
     /// The facet of rough ground that the fastest of the contacts that touch meets.
     pub(super) fn facet(
         &mut self,
@@ -30,10 +41,46 @@ impl Footing {
         block: &Block,
         moving: &Moving,
     ) -> Option<Rotation3<f64>> {
+        let meeting = self.meeting(block, moving)?;
+        self.facets.struck(world, &meeting)
+    }
+
+    /// Whether a block that slides or rolls has the last facet behind it, and comes to the next.
+    pub(super) fn comes_to_next_facet(
+        &self,
+        world: &ContactEnvironment,
+        block: &Block,
+        moving: &Moving,
+    ) -> bool {
+        self.facets.are_any()
+            && self.meeting(block, moving).is_some_and(|at| self.facets.are_behind(world, &at))
+    }
+
+    /// The fastest of the contacts that touch, as it meets a facet.
+    fn meeting(&self, block: &Block, moving: &Moving) -> Option<Meeting> {
         let fastest = moving.fastest(block, self.touching(block))?;
         let (n, triangle, c) = (fastest.normal, fastest.triangle, moving.pose.centre);
-        let v = moving.at(block, &fastest.lever);
-        self.facets.struck(world, &Meeting { n, triangle, c, v })
+        Some(Meeting { n, triangle, c, v: moving.at(block, &fastest.lever) })
+    }
+
+    /// With springs: lets the contact that presses hardest begin anew where the block comes to the next facet.
+    pub(crate) fn meet_next_facet(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &Moving),
+    ) {
+        if !self.facets.are_any() || self.facets.is_any_met() {
+            return;
+        }
+        let pressed = self.springs.histories.iter_mut().filter(|one| one.closed && one.announced);
+        let hardest = pressed.max_by(|one, other| one.normal_force.total_cmp(&other.normal_force));
+        let Some(history) = hardest else { return };
+        let v = moving.at(block, &(history.point - moving.pose.centre));
+        let (n, triangle, c) = (history.n, history.triangle, moving.pose.centre);
+        if self.facets.are_behind(world, &Meeting { n, triangle, c, v }) {
+            (history.announced, history.captured) = (false, true);
+            history.approach_m_s = -n.dot(&v);
+        }
     }
 
     /// Turns the block against a facet until it is turned back, at `until_s` (s) at the latest.

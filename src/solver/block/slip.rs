@@ -13,4 +13,9 @@ impl Footing {
         };
         self.touching(block).map(slip).fold(0.0, f64::max)
     }
+
+    /// Whether a contact that touches slides.
+    pub(super) fn slides(&self, block: &Block, moving: &Moving) -> bool {
+        self.slip_m_s(block, moving) > 1e-6 * (1.0 + moving.v.norm())
+    }
 }

@@ -190,7 +190,10 @@ impl Footing {
         }
         for (contact, solved) in self.springs.contacts.iter_mut().zip(&self.contacts) {
             contact.take(&solved.impulse, act_s);
-            self.springs.histories[contact.history].impulse = solved.impulse;
+            // a try that went astray must not be where the next begins
+            let is_known = solved.impulse.iter().all(|x| x.is_finite());
+            let impulse = if is_known { solved.impulse } else { Vec3::zeros() };
+            self.springs.histories[contact.history].impulse = impulse;
         }
         let mut end = Moving { v: free_v, ..stage.base.moving.clone() };
         end.take(&self.contacts, block.mass_kg);
