@@ -39,7 +39,8 @@ pub const GROUND: Ground = Ground {
 /// Corners closer than this are one (m): made meshes repeat theirs to rounding.
 const WELD_M: f64 = 1e-9;
 
-/// The schemes that compute blocks. A scheme that learns them is added here, and all cases of blocks are run with it.
+/// The schemes with which the studies run blocks: their cases have no springs, so stiff that no corner sinks in, and bounds of the rigid
+/// limit. With springs blocks are held to their exact cases beside the solver (`solver::block::tests::springs`).
 pub const BLOCK_SCHEMES: &[Scheme] = &[Scheme::Rigid];
 
 /// The surface of a block, its sides in metres.
