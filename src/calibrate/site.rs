@@ -63,7 +63,9 @@ impl CalibrationSite {
             Some(points) => points.iter().map(|point| (point.at_m, None)).collect(),
             None => asked.blocks.iter().map(|row| (row.at_m, row.block.as_deref())).collect(),
         };
-        let own = OwnPlaces::of(&measured, &blocks, &places);
+        // a table may name its rows otherwise than the ends: then places alone tell
+        let own = OwnPlaces::of(&measured, &blocks, &places)
+            .or_else(|| OwnPlaces::of(&measured, &[], &places));
         let mut scene = bare(scene, releases);
         if own.is_some() {
             // every place as often as any other

@@ -10,16 +10,17 @@
 //! springs alike, and the cost of an impact does not depend on `p_N`. A step is also refused when a
 //! stage has no solution, when it jumps over a feature, and when energy rises.
 
+mod settle;
+
 use super::Settings;
 use super::body::Body;
 use super::contact_state::{ContactEnvironment, ContactState};
 use super::loss::Loss;
 use super::stage::End;
-use super::tableau::RATIO;
 use super::tableau::Tableau;
 use crate::contact::history::carry;
 use crate::ground::Law;
-use crate::math;
+pub(crate) use settle::{StepFailure, TrialStep, TryOutcome, settle};
 
 /// First step of a contact, in radians of its oscillation (–): an impact must be resolved, or it creates energy.
 ///
@@ -29,11 +30,6 @@ pub(crate) const ONSET: f64 = 0.3;
 /// Longest way in one step where more than one plane is near (–, relative to R).
 /// On one plane nothing can be jumped over, and steps are as long as the error allows.
 pub(crate) const TRAVEL: f64 = 0.15;
-/// The step controller's safety factor (–).
-const SAFETY: f64 = 0.9;
-/// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
-const SHORTEST: f64 = 1e-9;
-
 /// A step this short, in radians of the stiffest contact, resolves everything: what it still gains is rounding (–).
 pub(crate) const RESOLVED: f64 = 1e-3;
 /// Gain of energy in one step that is rounding (–).
@@ -174,80 +170,6 @@ pub fn advance(
     Ok(done)
 }
 
-/// What one try of a step came to.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum TryOutcome {
-    /// Its local error relative to the tolerance; accepted up to 1.
-    Error(f64),
-    /// Accurate, but with more energy than before: it has met a kink of the law in an unlucky place, and a shorter one
-    /// does not.
-    Gains,
-    /// A stage did not settle.
-    Unsettled,
-    /// The rock has left where the trial holds.
-    Elsewhere,
-}
-
-/// Why no step was found.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum StepFailure {
-    /// No step, however short, settles.
-    Unsettled,
-    /// The trial does not hold where the rock goes.
-    Elsewhere,
-}
-
-impl From<StepFailure> for StepError {
-    fn from(_: StepFailure) -> Self {
-        Self::Unsettled
-    }
-}
-
-/// A step that can be tried with any length.
-pub(crate) trait TrialStep {
-    /// The step to try next (s).
-    fn h(&mut self) -> &mut f64;
-    /// The longest step that cannot jump over a feature (s).
-    fn limit(&mut self) -> f64;
-    /// Stiffest contact (rad/s).
-    fn omega(&self) -> f64;
-    /// Tries it with length `dt` (s).
-    fn try_step(&mut self, dt: f64) -> TryOutcome;
-}
-
-/// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
-/// try next.
-/// The one place where steps are accepted, for stages in space, on a plane and in islands alike.
-pub(crate) fn settle(
-    trial: &mut impl TrialStep,
-    control: &Control,
-    h_max: f64,
-    rejected: &mut u64,
-) -> Result<f64, StepFailure> {
-    loop {
-        let limit = trial.limit();
-        let wished = trial.h().min(limit);
-        let dt = wished.min(h_max);
-        let ratio = match trial.try_step(dt) {
-            TryOutcome::Error(error) if error <= 1.0 => {
-                // a step cut short by `h_max` says nothing of how long it could have been
-                let least = if dt < wished { wished } else { 0.0 };
-                *trial.h() = grown(control, dt, error).max(least);
-                return Ok(dt);
-            }
-            TryOutcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
-            TryOutcome::Gains => 0.4,
-            TryOutcome::Elsewhere => return Err(StepFailure::Elsewhere),
-            _ => 0.25,
-        };
-        *rejected += 1;
-        *trial.h() = dt * ratio;
-        if dt * ratio * trial.omega() < SHORTEST {
-            return Err(StepFailure::Unsettled);
-        }
-    }
-}
-
 /// A step of a rock among any features.
 struct RockTrial<'a, 'w> {
     world: &'a ContactEnvironment<'w>,
@@ -322,10 +244,6 @@ pub(crate) fn pressed_j(state: &ContactState, end: &End, hh: f64) -> f64 {
         law.stored_j(penetration, shear.norm_squared(), roll.norm_squared())
     });
     stored.sum()
-}
-
-fn grown(control: &Control, dt: f64, error: f64) -> f64 {
-    dt * (SAFETY * math::pow(error, -control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
 }
 
 /// Longest step that cannot jump over a feature (s).

@@ -1,0 +1,89 @@
+//! Trying steps until one is accurate: the one controller of all steps whose error is controlled, in space, on a plane, of blocks and in
+//! islands.
+
+use super::{Control, StepError};
+use crate::math;
+use crate::solver::tableau::RATIO;
+
+/// The step controller's safety factor (–).
+const SAFETY: f64 = 0.9;
+/// A step shorter than this, in radians of the stiffest contact, cannot help any more (–).
+const SHORTEST: f64 = 1e-9;
+
+/// What one try of a step came to.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum TryOutcome {
+    /// Its local error relative to the tolerance; accepted up to 1.
+    Error(f64),
+    /// Accurate, but with more energy than before: it has met a kink of the law in an unlucky place, and a shorter one
+    /// does not.
+    Gains,
+    /// A stage did not settle.
+    Unsettled,
+    /// The rock has left where the trial holds.
+    Elsewhere,
+}
+
+/// Why no step was found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum StepFailure {
+    /// No step, however short, settles.
+    Unsettled,
+    /// The trial does not hold where the rock goes.
+    Elsewhere,
+}
+
+impl From<StepFailure> for StepError {
+    fn from(_: StepFailure) -> Self {
+        Self::Unsettled
+    }
+}
+
+/// A step that can be tried with any length.
+pub(crate) trait TrialStep {
+    /// The step to try next (s).
+    fn h(&mut self) -> &mut f64;
+    /// The longest step that cannot jump over a feature (s).
+    fn limit(&mut self) -> f64;
+    /// Stiffest contact (rad/s).
+    fn omega(&self) -> f64;
+    /// Tries it with length `dt` (s).
+    fn try_step(&mut self, dt: f64) -> TryOutcome;
+}
+
+/// Tries steps until one is accurate and returns its length (s), at most `h_max`, which does not count against the step to
+/// try next.
+/// The one place where steps are accepted, for stages in space, on a plane and in islands alike.
+pub(crate) fn settle(
+    trial: &mut impl TrialStep,
+    control: &Control,
+    h_max: f64,
+    rejected: &mut u64,
+) -> Result<f64, StepFailure> {
+    loop {
+        let limit = trial.limit();
+        let wished = trial.h().min(limit);
+        let dt = wished.min(h_max);
+        let ratio = match trial.try_step(dt) {
+            TryOutcome::Error(error) if error <= 1.0 => {
+                // a step cut short by `h_max` says nothing of how long it could have been
+                let least = if dt < wished { wished } else { 0.0 };
+                *trial.h() = grown(control, dt, error).max(least);
+                return Ok(dt);
+            }
+            TryOutcome::Error(error) if error.is_finite() => grown(control, 1.0, error),
+            TryOutcome::Gains => 0.4,
+            TryOutcome::Elsewhere => return Err(StepFailure::Elsewhere),
+            _ => 0.25,
+        };
+        *rejected += 1;
+        *trial.h() = dt * ratio;
+        if dt * ratio * trial.omega() < SHORTEST {
+            return Err(StepFailure::Unsettled);
+        }
+    }
+}
+
+fn grown(control: &Control, dt: f64, error: f64) -> f64 {
+    dt * (SAFETY * math::pow(error, -control.tableau.exponent)).clamp(RATIO.0, RATIO.1)
+}
