@@ -79,6 +79,7 @@ impl Footing {
         };
         if let Some(beyond_j) = self.stem_load.yields(stems, stem, loss.trees) {
             moving.v += given_back(block.mass_kg, &moving.v, beyond_j, &normal);
+            self.springs.refresh();
             loss.trees -= beyond_j;
             self.fell(stem);
         }
