@@ -342,6 +342,6 @@ impl ContactState {
 
     /// Whether the rock is turned against a facet that it has left, or whose time is up at `now_s` (s).
     pub(crate) fn has_met_its_facet(&self, now_s: f64) -> bool {
-        self.facets.tilt.as_ref().is_some_and(|tilt| self.is_free() || now_s >= tilt.until_s)
+        self.facets.is_met(self.is_free(), now_s)
     }
 }

@@ -3,12 +3,10 @@
 //! The coefficients are private there, so the compiler holds most of this; the test also holds names that somebody could give to
 //! copies of them, the values of a ground they are made from, and the masses that follow from a body's inertia.
 
-use super::sources;
+use super::{PHYSICS, files_of, sources, without_tests};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Floors of the physics.
-const PHYSICS: [&str; 4] = ["src/contact", "src/flight", "src/solver", "src/simulation"];
 /// Coefficients of a law, and the keys of a ground behind them.
 const COEFFICIENTS: [&str; 13] = [
     "p_n",
@@ -31,16 +29,12 @@ const RATIOS: [&str; 5] = ["2.0 / 7.0", "5.0 / 7.0", "7.0 / 2.0", "3.5 *", "1.4 
 /// Code of a file, comments and unit tests left out.
 fn code(file: &Path) -> String {
     let text = fs::read_to_string(file).unwrap();
-    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-    code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
-}
-
-fn is_test(file: &Path) -> bool {
-    file.iter().any(|part| part == "tests" || part == "tests.rs")
+    let own = without_tests(&text).lines();
+    own.filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
 fn physics() -> Vec<PathBuf> {
-    PHYSICS.iter().flat_map(|dir| sources(Path::new(dir))).filter(|file| !is_test(file)).collect()
+    PHYSICS.into_iter().flat_map(files_of).collect()
 }
 
 /// Coefficients that a text names as whole words.

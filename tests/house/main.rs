@@ -30,6 +30,22 @@ fn sources(dir: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// Floors of the physics.
+const PHYSICS: [&str; 4] = ["contact", "flight", "solver", "simulation"];
+
+/// The files of a floor, its own first, without those of unit tests.
+fn files_of(floor: &str) -> Vec<PathBuf> {
+    let is_test = |file: &PathBuf| file.iter().any(|part| part == "tests" || part == "tests.rs");
+    let inside = sources(Path::new(&format!("src/{floor}"))).into_iter();
+    let own = std::iter::once(format!("src/{floor}.rs").into());
+    own.chain(inside.filter(|file| !is_test(file))).collect()
+}
+
+/// What of a text is not its unit tests.
+fn without_tests(text: &str) -> &str {
+    text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(text)
+}
+
 /// Modules in the order in which `lib.rs` lists them, bottom floor first.
 fn floors() -> Vec<String> {
     let lib = fs::read_to_string("src/lib.rs").unwrap();

@@ -105,7 +105,6 @@ impl Footing {
 
     /// Whether the block is turned against a facet that it has left, or whose time is up at `now_s` (s).
     pub(crate) fn has_met_its_facet(&self, now_s: f64) -> bool {
-        let over = |tilt: &Tilt| self.springs.is_free() || now_s >= tilt.until_s;
-        self.facets.tilt.as_ref().is_some_and(over)
+        self.facets.is_met(self.springs.is_free(), now_s)
     }
 }

@@ -85,6 +85,19 @@ impl Mass {
         v + w.cross(lever)
     }
 
+    /// `G = T M⁻¹ Tᵀ` of a point (1/kg).
+    fn answer(&self, lever: &Vec3) -> Matrix3<f64> {
+        let across = lever.cross_matrix();
+        Matrix3::identity() / self.mass - across * self.inverse * across
+    }
+
+    /// Mass that a contact with this normal and lever moves along the normal, and in the mean along the surface (kg).
+    pub(crate) fn moved_by(&self, (n, lever): (&Vec3, &Vec3)) -> [f64; 2] {
+        let answer = self.answer(lever);
+        let along = n.dot(&(answer * n));
+        [1.0 / along, 2.0 / (answer.trace() - along)]
+    }
+
     fn change(&self, contact: &BlockContact, impulse: &Vec3) -> (Vec3, Vec3) {
         (impulse / self.mass, self.inverse * contact.lever.cross(impulse))
     }
@@ -97,31 +110,30 @@ impl BlockContact {
         (friction, triangle): (f64, u32),
         goal: Vec3,
     ) -> Self {
-        let across = lever.cross_matrix();
-        let answer = Matrix3::identity() / mass.mass - across * mass.inverse * across;
+        let answer = mass.answer(&lever);
         let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer, mass.mass));
         Self { n, lever, friction, goal, triangle, impulse, answer, whole, springs: None }
     }
 
-    /// The same contact with springs.
-    pub(crate) fn with_springs(&self, mass: &Mass, springs: GivingWay) -> Self {
-        let [along, across] = springs.compliance;
-        let normal = self.n * self.n.transpose();
+    /// The same with springs.
+    pub(crate) fn on_springs(
+        mass: &Mass,
+        (n, lever): (Vec3, Vec3),
+        (friction, triangle): (f64, u32),
+        (goal, springs): (Vec3, GivingWay),
+    ) -> Self {
+        let answer = mass.answer(&lever);
+        let ([along, across], normal) = (springs.compliance, n * n.transpose());
         let soft = normal * along + (Matrix3::identity() - normal) * across;
-        let whole = Inverted::of(self.answer + soft, mass.mass);
-        Self { whole, springs: Some(springs), ..*self }
+        let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer + soft, mass.mass));
+        let springs = Some(springs);
+        Self { n, lever, friction, goal, triangle, impulse, answer, whole, springs }
     }
 
     /// How it gives way, in a scheme with springs.
     #[inline]
     pub(super) fn springs(&self) -> Option<&GivingWay> {
         self.springs.as_ref()
-    }
-
-    /// Mass that it moves along the normal, and in the mean along the surface (kg).
-    pub(crate) fn masses(&self) -> [f64; 2] {
-        let along = self.n.dot(&(self.answer * self.n));
-        [1.0 / along, 2.0 / (self.answer.trace() - along)]
     }
 
     /// The same contact with another goal.

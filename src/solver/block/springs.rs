@@ -141,11 +141,12 @@ impl Springs {
 
 impl SpringContact {
     /// The contact that a stage sees in which impulses act for `a` and the block moves for `b` (s).
-    fn giving_way(&self, contact: &BlockContact, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
+    fn giving_way(&self, mass: &Mass, (a, b): (f64, f64)) -> BlockContact {
         let stage = self.law.over_stage(self.captured, (a, b));
         let goal = self.n * (stage.out_per_s * self.penetration) - self.shear * stage.back_per_s;
         let springs = GivingWay { compliance: stage.compliance, surface_m_s: self.penetration / b };
-        contact.with_goal(goal).with_springs(mass, springs)
+        let slides = (self.law.friction_coefficient(), self.triangle);
+        BlockContact::on_springs(mass, (self.n, self.lever), slides, (goal, springs))
     }
 
     /// Takes the forces from an impulse that has acted for `a` (s).
@@ -264,8 +265,7 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
         most_s: f64,
     ) -> Result<(Stepped, u64), StepError> {
-        let start = moving.clone();
-        let slip_m_s = self.slip_m_s(block, &start);
+        let slip_m_s = self.slip_m_s(block, moving);
         let (done, rejected) = match self.springs.control {
             Some(control) => self.controlled_step(world, (block, moving), (control, most_s))?,
             None => (self.fixed_step(world, settings, (block, moving), most_s)?, 0),

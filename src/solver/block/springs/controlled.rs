@@ -6,6 +6,7 @@ use super::{BlockHistory, BlockRates};
 use crate::body::Block;
 use crate::contact::history::carry;
 use crate::rock::Vec3;
+use crate::solver::contact_state::longest_step;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::step_control::{
     Control, ONSET, PLACE_ROUNDING, RESOLVED, ROUNDING, StepError, TrialStep, TryOutcome, settle,
@@ -128,9 +129,8 @@ impl Footing {
     ) -> f64 {
         let spin = moving.spin(block).norm();
         let fastest = moving.v.norm() + spin * block.bound_m;
-        let (way, g) = (TRAVEL * block.ball_m, world.body.gravity.norm());
         let turn_s = TURN / spin.max(f64::MIN_POSITIVE);
-        turn_s.min(2.0 * way / (fastest + (fastest * fastest + 2.0 * g * way).sqrt()))
+        turn_s.min(longest_step(&world.body, fastest, TRAVEL * block.ball_m))
     }
 
     /// One accepted step of at most `most_s`.

@@ -102,14 +102,13 @@ impl Footing {
         (mean, end): (&Moving, &Moving),
         dt: f64,
     ) {
-        let parts: Vec<_> = self.touches.found.iter().map(|touch| touch.part).collect();
-        let began = self.touches.found.clone();
+        let began = std::mem::take(&mut self.touches.found);
         self.look_at_all(world, (block, &end.pose), 0.0);
-        let pressed = self.touches.found.clone();
-        self.touches.found = began;
+        let pressed = std::mem::replace(&mut self.touches.found, began);
         for touch in pressed.into_iter().filter(|touch| touch.gap_m < 0.0) {
-            let took_part = self.springs.contacts.iter().zip(&parts).any(|(contact, part)| {
-                *part == touch.part && contact.n.dot(&touch.normal) > SAME_GRIP
+            let known = self.springs.contacts.iter().zip(&self.touches.found);
+            let took_part = { known }.any(|(contact, began)| {
+                began.part == touch.part && contact.n.dot(&touch.normal) > SAME_GRIP
             });
             if !took_part {
                 // as far from it as it was at the step's start

@@ -7,7 +7,7 @@ use crate::contact::block::BlockTouch;
 use crate::contact::history::{SAME_GRIP, carry};
 use crate::ground::Law;
 use crate::rock::Vec3;
-use crate::solver::block::solve::{BlockContact, Mass};
+use crate::solver::block::solve::Mass;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::law::capture_m_s;
 
@@ -85,8 +85,7 @@ impl Footing {
         if approach_m_s >= capture_m_s(&law) {
             law.struck_at(approach_m_s);
         }
-        let contact = BlockContact::new(mass, (touch.normal, touch.lever), (0.0, 0), Vec3::zeros());
-        let [along, across] = contact.masses();
+        let [along, across] = mass.moved_by((&touch.normal, &touch.lever));
         let along = along * self.share_of((block, mass), touch);
         law.for_masses([along, across], mass.mass)
     }
@@ -167,7 +166,7 @@ impl Footing {
 impl super::Springs {
     /// Whether an impact is going on.
     pub(crate) fn is_rebounding(&self) -> bool {
-        self.histories.iter().any(|history| history.closed && !history.captured)
+        self.fastest_m_s().is_some()
     }
 
     /// Fastest approach of the impacts that go on (m/s); `None` if none does.
@@ -196,12 +195,11 @@ impl super::Springs {
     /// Adds a memory.
     fn add(&mut self, new: &BlockHistory) -> usize {
         self.histories.push(*new);
+        let place = self.histories.len() - 1;
         for rate in &mut self.rates {
-            rate.shear.resize(self.histories.len(), Vec3::zeros());
+            rate.shear.resize(place, Vec3::zeros());
+            rate.shear.push(Vec3::zeros());
         }
-        for rate in &mut self.rates {
-            rate.shear[self.histories.len() - 1] = Vec3::zeros();
-        }
-        self.histories.len() - 1
+        place
     }
 }

@@ -11,7 +11,7 @@ use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
 use crate::rock::Vec3;
-use crate::solver::block::solve::{BlockContact, Mass, solve};
+use crate::solver::block::solve::{Mass, solve};
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::stage::{AGREED, PASSES};
@@ -164,14 +164,7 @@ impl Footing {
         let mut pushed = Moving { v: free_v, ..stage.base.moving.clone() };
         self.contacts.clear();
         for contact in &self.springs.contacts {
-            let at = (contact.n, contact.lever);
-            let bare = BlockContact::new(
-                &mass,
-                at,
-                (contact.law.friction_coefficient(), contact.triangle),
-                Vec3::zeros(),
-            );
-            let mut soft = contact.giving_way(&bare, &mass, stage.times_s);
+            let mut soft = contact.giving_way(&mass, stage.times_s);
             soft.impulse = self.springs.histories[contact.history].impulse;
             self.contacts.push(soft);
         }
