@@ -60,7 +60,7 @@ pub struct Settings {
     /// `dda`: whether the shear spring remembers its stretch (false = as printed in the paper).
     pub shear_memory: bool,
     /// Whether an impact on one plane is followed as a whole; if not, step by step like any other (`adaptive`, `reference`).
-    pub plane_impacts: bool,
+    pub impact_kernels: bool,
     /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
     pub capture_speed_m_s: Option<f64>,
 }

@@ -16,6 +16,7 @@
 
 mod controlled;
 mod dda;
+mod explicit;
 mod history;
 mod newton;
 mod stage;
@@ -33,6 +34,7 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 use crate::solver::tableau::STAGES;
+use explicit::ImpactEnergy;
 pub(crate) use history::BlockHistory;
 use nalgebra::{Rotation3, Unit};
 
@@ -94,9 +96,21 @@ pub(crate) struct Springs {
     h: f64,
     /// Fastest approach of the impacts that go on (m/s); 0 if none does.
     impact_m_s: f64,
+    /// Energy in the impact that is followed in its own time.
+    energy: Option<ImpactEnergy>,
     /// When the impacts that go on are over at the latest (s).
     pub(crate) until_s: f64,
     control: Option<Control>,
+}
+
+/// What a contact asks for at a motion, and how its shear spring goes on.
+struct Pressing {
+    /// Normal force if it could pull (N).
+    pulls: f64,
+    /// Square of the shear force that there would be without a cap (N²).
+    asked2: f64,
+    /// Rate of the stretch (m/s).
+    shear_rate: Vec3,
 }
 
 impl Springs {
@@ -155,6 +169,19 @@ impl SpringContact {
         self.shear_force = (self.n * self.n.dot(impulse) - impulse) / a;
     }
 
+    /// Takes the forces that it has where its point moves by `u` (m/s).
+    fn press(&mut self, u: &Vec3) -> Pressing {
+        let (up, shear) = (self.n.dot(u), &self.law.shear);
+        let normal = self.law.normal(self.captured);
+        let pulls = normal.pull_or_push(self.penetration.max(0.0), up);
+        self.normal_force = pulls.max(0.0);
+        let (slip, held) = (u - self.n * up, shear.held(self.shear));
+        let asked = held + shear.damped(slip);
+        self.shear_force = shear.capped(asked, self.normal_force);
+        let shear_rate = shear.relaxing(self.shear_force, held);
+        Pressing { pulls, asked2: asked.norm_squared(), shear_rate }
+    }
+
     /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).
     fn pen_at(&self, u: &Vec3, b: f64) -> f64 {
         self.penetration - b * self.n.dot(u)
@@ -211,7 +238,7 @@ impl Footing {
     ) {
         self.springs.histories.clear();
         self.touches.held.clear();
-        self.springs.impact_m_s = 0.0;
+        (self.springs.impact_m_s, self.springs.energy) = (0.0, None);
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.springs.known = 0;
         self.remember(world, (block, moving));

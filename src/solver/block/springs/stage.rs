@@ -6,7 +6,7 @@
 
 use super::super::{Footing, Moving, ROUNDING_OF_SPEED, TOUCH, orthonormal};
 use super::newton::solve_springs;
-use super::{BlockRates, SpringContact, turn_by, turning};
+use super::{BlockRates, Pressing, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
@@ -230,19 +230,14 @@ impl Footing {
             footing.springs.histories[k].shear
         });
         let springs = &mut self.springs;
+        springs.keep_offsets();
         let mut rate = std::mem::take(&mut springs.rates[0]);
         rate.shear.fill(Vec3::zeros());
         (rate.centre, rate.v, rate.loss) = (moving.v, world.body.gravity, Loss::default());
         (rate.turned, rate.momentum) = (moving.spin(block), Vec3::zeros());
         for contact in &mut springs.contacts {
-            let (law, n) = (contact.law, contact.n);
-            let u = Mass::at(&contact.lever, (&moving.v, &rate.turned));
-            let normal = law.normal(contact.captured);
-            contact.normal_force = normal.force(contact.penetration.max(0.0), n.dot(&u));
-            let (slip, held) = (u - n * n.dot(&u), law.shear.held(contact.shear));
-            let asked = held + law.shear.damped(slip);
-            contact.shear_force = law.shear.capped(asked, contact.normal_force);
-            let shear_rate = law.shear.relaxing(contact.shear_force, held);
+            let (n, u) = (contact.n, Mass::at(&contact.lever, (&moving.v, &rate.turned)));
+            let Pressing { shear_rate, .. } = contact.press(&u);
             let force = n * contact.normal_force - contact.shear_force;
             rate.v += force / block.mass_kg;
             rate.momentum += contact.lever.cross(&force);

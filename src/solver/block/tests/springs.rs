@@ -19,7 +19,7 @@ fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockRun {
         tolerance_m_s: 1e-3,
         step_s: 0.01 / case.law.omega_rad_s(),
         shear_memory: true,
-        plane_impacts: true,
+        impact_kernels: true,
         capture_speed_m_s: own_m_s,
     });
     case
