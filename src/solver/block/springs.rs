@@ -90,6 +90,8 @@ pub(crate) struct Springs {
     rates: [BlockRates; STAGES],
     /// Whether the first rate belongs to the present state.
     fresh: bool,
+    /// Whether the last look was at the present place.
+    seen: bool,
     /// Energy in the springs at the present state (J).
     stored_j: f64,
     /// The step to try next (s).
@@ -116,7 +118,7 @@ struct Pressing {
 impl Springs {
     /// The motion has been changed from outside.
     pub(crate) fn refresh(&mut self) {
-        self.fresh = false;
+        (self.fresh, self.seen) = (false, false);
     }
 
     /// Whether nothing presses on the block any more.
@@ -253,6 +255,7 @@ impl Footing {
         self.springs.control = control;
         self.springs.h = self.first_step_s(world);
         self.springs.refresh();
+        self.springs.seen = true;
     }
 
     /// Energy in the springs of the contacts of the last look (J), by what it belongs to.

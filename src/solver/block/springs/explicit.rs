@@ -10,8 +10,9 @@
 
 mod flow;
 
-use super::super::{Footing, Moving, Stepped, orthonormal};
+use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
 use crate::body::Block;
+use crate::contact::block::{BlockTouch, BlockTouches};
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::impact::LOCAL;
@@ -31,6 +32,8 @@ const LASTS_RAD: f64 = 20.0;
 const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion): hiding a larger one would hide a fault.
 const BALANCED: f64 = 0.1;
+/// A contact that lets go is left behind in this times the time that its speed takes (–).
+const LETS_GO: f64 = 1.2;
 /// Shortest step (rad): it is taken as it is.
 const SHORTEST_RAD: f64 = 1e-9;
 /// Penetration that is rounding of places (–, relative to the radius of the sphere of equal volume).
@@ -130,6 +133,7 @@ impl Footing {
         let stored_j = self.springs.stored_j;
         self.springs.stored_j = self.springs.contacts.iter().map(|one| one.stored_j()).sum();
         self.springs.refresh();
+        self.springs.seen = self.sees_the_same(block);
         // what springs store is counted among the losses until they give it back
         let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted);
         let taken_j = step.loss.sum();
@@ -139,6 +143,8 @@ impl Footing {
         energy.taken_j += taken_j;
         let mut done = Stepped { dt: step.dt, loss: step.loss, ..Stepped::default() };
         done.slides = self.springs.histories.iter().any(|history| history.slides);
+        let left_s = most_s - step.dt;
+        done.dt += self.let_go(world, (block, moving), left_s);
         done.is_free = self.springs.is_free();
         if done.is_free {
             done.loss.damping += self.balance(block, moving);
@@ -207,6 +213,54 @@ impl Footing {
             let grown = if error2.is_finite() { growth(error2) } else { 0.2 };
             h = dt * grown.min(0.9);
         }
+    }
+
+    /// Whether the contacts found at the step's end are those that a look would find now, as the pairs that press have changed.
+    fn sees_the_same(&self, block: &Block) -> bool {
+        let BlockTouches { found, held, .. } = &self.touches;
+        let holds = |touch: &BlockTouch| held.contains(&(touch.part, touch.feature));
+        found.iter().all(|touch| block.core.is_corner(touch.part) || holds(touch))
+    }
+
+    /// Flies out of contacts that push no more, if that takes no longer than `longest_s` and nothing else is in the way there; how long it
+    /// took (s). What still hangs on the contacts has no force, so that the motion is that of a free body.
+    fn let_go(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+        longest_s: f64,
+    ) -> f64 {
+        let (gravity, clear_m) = (world.body.gravity, 2.0 * TOUCH * block.radius_m);
+        let mut out_s: f64 = 0.0;
+        for (contact, touch) in self.springs.contacts.iter().zip(&self.touches.found) {
+            let up_m_s = contact.n.dot(&moving.at(block, &contact.lever));
+            let weight = contact.n.dot(&gravity).min(0.0);
+            // weight takes less than half of the speed by then
+            let own_s = LETS_GO * (clear_m - touch.gap_m).max(0.0) / up_m_s;
+            let leaves = contact.normal_force <= 0.0
+                && up_m_s > 0.0
+                && contact.law.lets_go(up_m_s, 2.0 * weight, own_s);
+            if !leaves {
+                return 0.0;
+            }
+            out_s = out_s.max(own_s);
+        }
+        let limit_s = Self::travel_limit_s(world, (block, moving));
+        if out_s <= 0.0 || out_s > longest_s.min(limit_s) {
+            return 0.0;
+        }
+        let mut out = moving.clone();
+        out.drift(block, out_s);
+        out.pose.centre += gravity * (0.5 * out_s * out_s);
+        out.v += gravity * out_s;
+        self.look_at_all(world, (block, &out.pose), TOUCH * block.radius_m);
+        if !self.touches.found.is_empty() {
+            self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+            return 0.0;
+        }
+        *moving = out;
+        self.springs.histories.clear();
+        out_s
     }
 
     /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of the energy is

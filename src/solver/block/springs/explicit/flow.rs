@@ -206,7 +206,11 @@ impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
     /// Looks for the contacts of the block at a state.
     fn touch_at<const N: usize>(&mut self, moving: &Moving, y: &[f64; N]) {
         let (world, block) = (self.world, self.block);
-        self.footing.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        // where the step begins is where the one before has looked last
+        let sees = std::mem::take(&mut self.footing.springs.seen) && self.known == usize::MAX;
+        if !sees {
+            self.footing.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        }
         self.footing.remember(world, (block, moving));
         self.footing.place(world, (block, self.start, moving), 0.0, &|_, k| {
             if k < C { three(y, SPRINGS + 3 * k) } else { Vec3::zeros() }
