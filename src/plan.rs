@@ -344,7 +344,7 @@ impl Plan {
         }
     }
 
-    /// The same plan with every impact followed step by step: the same motion within the error allowed.
+    /// The same plan with every impact followed step by step, of blocks by implicit stages: the same motion within the error allowed.
     #[must_use]
     pub fn without_kernels(mut self) -> Self {
         self.step.impact_kernels = false;

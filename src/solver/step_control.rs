@@ -75,7 +75,7 @@ pub struct Control {
     pub tolerance: f64,
     /// … and in an impact (–, relative to its speed).
     pub impact: f64,
-    /// Whether an impact on one plane is followed as a whole.
+    /// Whether impacts have kernels of their own: on one plane as a whole, of blocks by explicit stages.
     pub impact_kernels: bool,
 }
 
