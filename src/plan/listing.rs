@@ -250,9 +250,9 @@ impl PlanList {
         } else {
             "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part"
         });
-        settings::block_impacts(step)
-            .into_iter()
-            .for_each(|text| self.line("explicit stages", text));
+        if let Some(text) = settings::block_impacts(step) {
+            self.line("explicit stages", text);
+        }
         self.line(
             "cost of shape",
             "a block is followed corner by corner and edge by edge: time grows with their number",

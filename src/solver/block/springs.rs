@@ -106,7 +106,7 @@ pub(crate) struct Springs {
 }
 
 /// What a contact asks for at a motion, and how its shear spring goes on.
-struct Pressing {
+struct SpringAnswer {
     /// Normal force if it could pull (N).
     pulls: f64,
     /// Square of the shear force that there would be without a cap (N²).
@@ -172,7 +172,7 @@ impl SpringContact {
     }
 
     /// Takes the forces that it has where its point moves by `u` (m/s).
-    fn press(&mut self, u: &Vec3) -> Pressing {
+    fn press(&mut self, u: &Vec3) -> SpringAnswer {
         let (up, shear) = (self.n.dot(u), &self.law.shear);
         let normal = self.law.normal(self.captured);
         let pulls = normal.pull_or_push(self.penetration.max(0.0), up);
@@ -181,7 +181,7 @@ impl SpringContact {
         let asked = held + shear.damped(slip);
         self.shear_force = shear.capped(asked, self.normal_force);
         let shear_rate = shear.relaxing(self.shear_force, held);
-        Pressing { pulls, asked2: asked.norm_squared(), shear_rate }
+        SpringAnswer { pulls, asked2: asked.norm_squared(), shear_rate }
     }
 
     /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).

@@ -15,34 +15,23 @@ use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
+use crate::solver::explicit_impact::{BALANCED, FIRST, KINKED, LONGEST_RAD, SHORTEST_RAD};
 use crate::solver::impact::LOCAL;
 use crate::solver::impact::dormand_prince::{Attempt, Stages, growth};
+use crate::solver::impact_progress::LASTS;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 use flow::{BlockFlow, ErrorScale, SUMS};
 
-/// First step of an impact (rad of its oscillation).
-const FIRST_RAD: f64 = 0.3;
-/// Longest step (rad): beyond about a radian the error estimate of the pair is no longer to be trusted.
-const LONGEST_RAD: f64 = 0.9;
-/// An impact that has not ended after so long (rad) goes on as lasting contact.
-const LASTS_RAD: f64 = 20.0;
-/// Local error allowed where contacts come, go or change their features, relative to that elsewhere (–): the estimate sees too little of
-/// a kink.
-const KINKED: f64 = 0.3;
-/// Largest error of energy that is balanced (–, relative to motion): hiding a larger one would hide a fault.
-const BALANCED: f64 = 0.1;
 /// A contact that lets go is left behind in this times the time that its speed takes (–).
 const LETS_GO: f64 = 1.2;
-/// Shortest step (rad): it is taken as it is.
-const SHORTEST_RAD: f64 = 1e-9;
 /// Penetration that is rounding of places (–, relative to the radius of the sphere of equal volume).
 const ROUNDING_OF_PLACE: f64 = 1e-11;
 /// Tries that are cut where a contact begins, at most; after them it presses from where it is found.
 const ONSETS: u32 = 6;
 /// Contacts with room of their own: the usual case, and the most that are followed here.
-const FEW: usize = 2;
-const MOST: usize = 6;
+const FEW_PRESS: usize = 2;
+const MOST_PRESS: usize = 6;
 
 /// What becomes of the energy in an impact.
 #[derive(Debug, Clone, Copy)]
@@ -76,11 +65,11 @@ impl Footing {
         let springs = &self.springs;
         let least_m_s = world.least_impact_m_s();
         control.impact_kernels
-            && springs.histories.len() <= MOST
+            && springs.histories.len() <= MOST_PRESS
             && springs.histories.iter().any(|one| {
                 one.closed
                     && !one.captured
-                    && one.gone_rad < LASTS_RAD
+                    && one.gone_rad < LASTS
                     && one.approach_m_s > least_m_s
             })
             // a shear spring without a dashpot has a stretch, not a rate, of its own
@@ -104,13 +93,13 @@ impl Footing {
         let scale = ErrorScale { omega, allowed, begins_m };
         let bounds = ImpactBounds { scale, limit, h_max: most_s };
         if self.springs.is_new() {
-            self.springs.h = FIRST_RAD / omega;
+            self.springs.h = FIRST / omega;
         }
         let start = moving.clone();
         let mut rejected = 0;
         let mut step = None;
-        if self.springs.histories.len() <= FEW {
-            step = self.step_among::<FEW, { 12 + 3 * FEW }, { 2 * FEW }>(
+        if self.springs.histories.len() <= FEW_PRESS {
+            step = self.step_among::<FEW_PRESS, { 12 + 3 * FEW_PRESS }, { 2 * FEW_PRESS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -118,7 +107,7 @@ impl Footing {
             )?;
         }
         if step.is_none() {
-            step = self.step_among::<MOST, { 12 + 3 * MOST }, { 2 * MOST }>(
+            step = self.step_among::<MOST_PRESS, { 12 + 3 * MOST_PRESS }, { 2 * MOST_PRESS }>(
                 world,
                 (block, &start),
                 &bounds,
@@ -131,7 +120,8 @@ impl Footing {
         self.keep((block, moving), 0.0);
         self.springs.grow_old(step.dt);
         let stored_j = self.springs.stored_j;
-        self.springs.stored_j = self.springs.contacts.iter().map(|one| one.stored_j()).sum();
+        self.springs.stored_j =
+            self.springs.contacts.iter().map(super::SpringContact::stored_j).sum();
         self.springs.refresh();
         self.springs.seen = self.sees_the_same(block);
         // what springs store is counted among the losses until they give it back

@@ -6,7 +6,7 @@
 
 use super::super::{Footing, Moving, ROUNDING_OF_SPEED, TOUCH, orthonormal};
 use super::newton::solve_springs;
-use super::{BlockRates, Pressing, SpringContact, turn_by, turning};
+use super::{BlockRates, SpringAnswer, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
@@ -237,7 +237,7 @@ impl Footing {
         (rate.turned, rate.momentum) = (moving.spin(block), Vec3::zeros());
         for contact in &mut springs.contacts {
             let (n, u) = (contact.n, Mass::at(&contact.lever, (&moving.v, &rate.turned)));
-            let Pressing { shear_rate, .. } = contact.press(&u);
+            let SpringAnswer { shear_rate, .. } = contact.press(&u);
             let force = n * contact.normal_force - contact.shear_force;
             rate.v += force / block.mass_kg;
             rate.momentum += contact.lever.cross(&force);
