@@ -118,7 +118,12 @@ struct SpringAnswer {
 impl Springs {
     /// The motion has been changed from outside.
     pub(crate) fn refresh(&mut self) {
-        (self.fresh, self.seen) = (false, false);
+        self.fresh = false;
+    }
+
+    /// What the last look has found is no longer what is there.
+    pub(crate) fn forget_look(&mut self) {
+        self.seen = false;
     }
 
     /// Whether nothing presses on the block any more.

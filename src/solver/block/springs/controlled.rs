@@ -206,6 +206,7 @@ impl Footing {
         self.springs.stored_j = self.pressed_j((block, moving), way_s);
         self.springs.rates.swap(0, tableau.stages - 1);
         self.keep((block, moving), way_s);
+        self.springs.forget_look();
         let first = &mut self.springs.rates[0];
         (first.centre, first.turned) = (moving.v, moving.spin(block));
         self.springs.fresh = true;
