@@ -75,10 +75,10 @@ fn the_first_impacts_of_blocks_are_those_of_implicit_stages() {
         off.push((own.speed_out_m_s - other.speed_out_m_s).abs() / own.speed_in_m_s);
     }
     off.sort_by(f64::total_cmp);
-    println!("{off:?}");
-    assert!(off[15] < 2e-3 && off[27] < 1e-2, "{off:?}");
+    // the local error allowed is 2e-4 of the speed of the impact
+    assert!(off[15] < 4e-4 && off[27] < 2e-3, "{off:?}");
     let steps = |all: &[Trajectory]| all.iter().map(|one| one.effort.steps).sum::<u64>();
-    println!("{} {}", steps(&lean), steps(&full));
+    assert!(steps(&lean) < steps(&full), "{} {}", steps(&lean), steps(&full));
 }
 
 fn touches(terrain: &Terrain, centre: &Vec3, radius: f64) -> Vec<ContactPoint> {
