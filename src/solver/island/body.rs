@@ -43,8 +43,8 @@ pub struct IslandBody {
     pub(super) struck_m_s: f64,
     /// How many it touches: other rocks, and the mesh as one.
     pub(super) touching: u32,
-    /// Whether it, or one that it touches, touches more than one.
-    pub(super) in_heap: bool,
+    /// The same of the one with most of it and those that it touches.
+    pub(super) crowd: u32,
     /// The stage's base `x* = x + h Σ a_ij f_j`, and the guess of the centre at its end (m).
     pub(super) base: End,
     pub(super) guess: Vec3,
@@ -128,7 +128,7 @@ impl IslandBody {
             lasting_m_s: 0.0,
             struck_m_s: 0.0,
             touching: 0,
-            in_heap: false,
+            crowd: 0,
             base: end,
             guess: c,
             free: zero,

@@ -33,7 +33,7 @@ impl Island<'_> {
         let mut is_struck = false;
         for member in self.members.iter_mut().map(|slot| &mut **slot) {
             member.lasting_m_s = lasting_m_s(settings, &member.body);
-            is_struck |= member.struck_m_s > 0.0 && !member.in_heap;
+            is_struck |= member.struck_m_s > 0.0 && !member.is_in_heap();
         }
         let allowed = self.members.iter().map(|member| member.allowed_m_s(relative));
         self.tolerance = allowed.fold(f64::INFINITY, f64::min);
@@ -53,8 +53,8 @@ impl Island<'_> {
             let begun_m_s = if tried { state.met_m_s() } else { 0.0 };
             let known_m_s = if state.is_rebounding() { state.impact.speed_m_s } else { 0.0 };
             member.struck_m_s = known_m_s.max(begun_m_s);
-            member.in_heap = false;
             member.touching = u32::from(!state.histories.is_empty());
+            member.crowd = 0;
         }
         let Self { members, pair_histories, pairs, .. } = self;
         let held = pair_histories.iter().filter(|pair_history| pair_history.is_held());
@@ -74,18 +74,23 @@ impl Island<'_> {
             }
         }
         for (ends, _) in touching {
-            let most = ends.map(|end| members[end].touching).into_iter().max();
+            let most = members[ends[0]].touching.max(members[ends[1]].touching);
             for end in ends {
-                members[end].in_heap |= most > Some(1);
+                members[end].crowd = members[end].crowd.max(most);
             }
         }
     }
 }
 
 impl IslandBody {
+    /// Whether it, or one that it touches, touches more than one.
+    fn is_in_heap(&self) -> bool {
+        self.crowd > 1
+    }
+
     /// Local error allowed to it (m/s), `relative` to the speed of an impact (–).
     pub(super) fn allowed_m_s(&self, relative: f64) -> f64 {
-        let share = if self.in_heap { IN_A_HEAP * relative } else { relative };
+        let share = if self.is_in_heap() { IN_A_HEAP * relative } else { relative };
         if self.struck_m_s > 0.0 {
             self.lasting_m_s.min(share * self.struck_m_s)
         } else {
