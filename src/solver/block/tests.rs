@@ -1,6 +1,7 @@
 use super::*;
 
 mod cases;
+mod rolling;
 mod slip;
 mod springs;
 mod yielding;
