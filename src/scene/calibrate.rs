@@ -4,7 +4,6 @@ use super::Scene;
 use super::check::{Allowed, Checked, Complaint, number, optional, suggest};
 use super::grounds::{STRENGTH, TANGENTIAL};
 use super::shapes::CORNER_RADIUS;
-use crate::solver::Scheme;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -150,13 +149,10 @@ impl Scene {
             let names: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
             return Some(format!("write a name from [grounds]; {}", suggest(name, &names)));
         };
-        let is_spread = vary.key == VaryKey::RollingFrictionSpread;
-        let rolls = is_spread || vary.key == VaryKey::RollingFriction;
-        if rolls && self.has_blocks() && (is_spread || self.solver.scheme() != Scheme::Rigid) {
-            let why = "how a block rolls is its shape, which [[rocks.shapes]] computes";
-            let rigid = "; scheme = \"rigid\" has rolling friction beside it";
-            let more = if is_spread { "" } else { rigid };
-            return Some(format!("write another key: {why}{more}"));
+        let rolls = matches!(vary.key, VaryKey::RollingFriction | VaryKey::RollingFrictionSpread);
+        if rolls && self.has_blocks() {
+            let remedy = "write another key: how a block rolls is its shape, which [[rocks.shapes]] computes";
+            return Some(remedy.to_owned());
         }
         let (table, _) = vary.key.name().split_once('.')?;
         let is_there =

@@ -6,7 +6,6 @@ use super::check::{Allowed, Checked, Complaint, drawn, number, optional, suggest
 use crate::body::{SHARPEST, ShapeKind, most_corners};
 use crate::error::{Error, Result};
 use crate::random::Distribution;
-use crate::solver::Scheme;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -255,10 +254,9 @@ impl Scene {
     fn check_grounds_of_blocks(&self) -> Checked {
         let above_0 =
             |value: &Option<Distribution>| value.as_ref().is_some_and(|v| v.support().1 > 0.0);
-        let is_rigid = self.solver.scheme() == Scheme::Rigid;
         for (name, ground) in &self.grounds {
-            if above_0(&ground.rolling_friction) && !is_rigid {
-                let remedy = "write rolling_friction = 0.0, or scheme = \"rigid\": in other schemes how a block rolls is its shape alone";
+            if above_0(&ground.rolling_friction) {
+                let remedy = "write rolling_friction = 0.0: how a block rolls is its shape, which [[rocks.shapes]] computes";
                 return Err(Complaint::about("rolling_friction", remedy)
                     .inside(name)
                     .inside("grounds"));

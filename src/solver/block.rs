@@ -136,7 +136,7 @@ impl Moving {
     fn take(&mut self, contacts: &[BlockContact], mass_kg: f64) {
         for contact in contacts {
             self.v += contact.impulse / mass_kg;
-            self.momentum += contact.lever.cross(&contact.impulse) + contact.turning;
+            self.momentum += contact.lever.cross(&contact.impulse);
         }
     }
 
@@ -259,22 +259,21 @@ impl Footing {
         Some(loss)
     }
 
-    /// What friction, restitution and rolling friction of each contact took, together `lost_j`, each at least 0: impulses work with the mean of
+    /// What friction and restitution of each contact took, together `lost_j`, each at least 0: impulses work with the mean of
     /// the motion before and after.
     fn booked(&self, world: &ContactEnvironment, motion: [(&Vec3, &Vec3); 2], lost_j: f64) -> Loss {
         let part = |contact: &BlockContact| {
             let [before, after] = motion.map(|motion| Mass::at(&contact.lever, motion));
-            let (mean, spin) = ((before + after) * 0.5, (motion[0].1 + motion[1].1) * 0.5);
+            let mean = (before + after) * 0.5;
             let (push, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
             let drag = contact.impulse - contact.n * push;
-            let taken = [-drag.dot(&mean), -push * up, -contact.turning.dot(&spin)];
-            (taken.map(|joule| joule.max(0.0)), contact.triangle)
+            ([-drag.dot(&mean), -push * up].map(|joule| joule.max(0.0)), contact.triangle)
         };
         let sum: f64 = self.contacts.iter().flat_map(|contact| part(contact).0).sum();
         let share = if sum > 0.0 { lost_j.max(0.0) / sum } else { 0.0 };
         let mut loss = Loss::default();
-        for ([friction, damping, rolling], triangle) in self.contacts.iter().map(part) {
-            let one = Loss { friction, damping, rolling, ..Loss::default() };
+        for ([friction, damping], triangle) in self.contacts.iter().map(part) {
+            let one = Loss { friction, damping, ..Loss::default() };
             loss.add(&one.on(world, triangle), share);
         }
         loss
@@ -343,7 +342,6 @@ impl Footing {
         let law = world.law(touch.triangle);
         let friction = self.slip.friction(world.ground_of(touch.triangle), law, ahead_m);
         BlockContact::new(mass, (touch.normal, touch.lever), (friction, touch.triangle), goal)
-            .rolling(law.limits())
     }
 
     /// Whether a contact still holds the block: it is near, and does not let go faster than its ground captures.

@@ -37,6 +37,7 @@ fn what_blocks_cannot_have_is_refused() {
     let rolling = ("restitution = 0.35", "restitution = 0.35\nrolling_friction = 0.3");
     for (change, key, said) in [
         (("orientation = \"random\"", "together = true"), "together", "spheres"),
+        (rolling, "rolling_friction", "write rolling_friction = 0.0"),
         (("corner_radius = 0.15\n", ""), "corner_radius", "found nothing"),
         (("corner_radius = 0.15", "corner_radius = 0.001"), "corner_radius", "0.01..0.5"),
         (("kind = \"eota111\"", "kind = \"sphere\""), "corner_radius", "no corners"),
@@ -54,8 +55,6 @@ fn what_blocks_cannot_have_is_refused() {
         let found = refused(&[change]);
         assert!(found.contains(key) && found.contains(said), "{key}: {found}");
     }
-    let found = refused(&[rolling, ("scheme = \"rigid\"", "scheme = \"adaptive\"")]);
-    assert!(found.contains("write rolling_friction = 0.0, or scheme = \"rigid\""), "{found}");
 }
 
 /// A shape so slender that its balls leave no core, springs too soft for its corners, and a scan with a hole: refused before the run.

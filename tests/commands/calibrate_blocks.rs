@@ -209,20 +209,12 @@ fn corners_are_fitted_to_ends_in_plan_view() {
 #[test]
 fn values_that_play_no_part_are_not_varied() {
     let dir = tempfile::tempdir().unwrap();
-    let rolling = vary(&[("rolling_friction_spread", [0.1, 0.5, 0.3])]);
+    let rolling = vary(&[("rolling_friction", [0.1, 0.5, 0.3])]);
     let said = message(Scene::read(&scene(dir.path(), "rolls", SHAPES, &rolling)));
     assert!(
         said.contains("[calibrate]") && said.contains("how a block rolls is its shape"),
         "{said}"
     );
-    // rolling friction of blocks is that of soft ground, in the rigid limit
-    let soft = vary(&[("rolling_friction", [0.1, 0.5, 0.3])]);
-    let file = scene(dir.path(), "soft", SHAPES, &soft);
-    assert!(Scene::read(&file).is_ok());
-    let text = fs::read_to_string(&file).unwrap().replace("\"rigid\"", "\"adaptive\"");
-    fs::write(&file, text).unwrap();
-    let said = message(Scene::read(&file));
-    assert!(said.contains("scheme = \"rigid\" has rolling friction beside it"), "{said}");
     let drag = vary(&[("scar.drag", [0.1, 0.5, 0.3])]);
     let file = scene(dir.path(), "hard", SHAPES, &drag);
     let text = fs::read_to_string(&file).unwrap();

@@ -6,11 +6,7 @@
 //! Every contact obeys `u_n + C_n p_n ≥ goal ⊥ p_n ≥ 0` and Coulomb's law for what is left of `u_t + C_t p_t − goal`; contacts are swept
 //! (projected Gauss–Seidel), each solved for its three unknowns at once. In the rigid limit a contact gives way to nothing, `C = 0`. A spring
 //! and dashpot over an implicit step is the same contact with a compliance and a goal of its own ([`GivingWay`]): one solver serves both.
-//!
-//! Rolling friction is an impulse of turning against the angular momentum of the body, no larger than the limit that the contact bears under its
-//! push: soil that gives way beneath the leading side of the block (Ai and others 2011). It only takes energy.
 
-use crate::ground::FrictionLimits;
 use crate::rock::Vec3;
 use crate::solver::law::within;
 use nalgebra::{Matrix2, Matrix3, Vector2};
@@ -51,10 +47,6 @@ pub(crate) struct BlockContact {
     pub(crate) triangle: u32,
     /// Impulse on the rock (N s).
     pub(crate) impulse: Vec3,
-    /// What rolling friction bears; nothing in schemes with springs.
-    limits: FrictionLimits,
-    /// Impulse of turning by rolling friction (N m s).
-    pub(crate) turning: Vec3,
     /// `G` (1/kg).
     pub(super) answer: Matrix3<f64>,
     /// `G + C` and its inverse.
@@ -120,25 +112,7 @@ impl BlockContact {
     ) -> Self {
         let answer = mass.answer(&lever);
         let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer, mass.mass));
-        let (limits, turning) = (FrictionLimits::NONE, impulse);
-        Self {
-            n,
-            lever,
-            friction,
-            goal,
-            triangle,
-            impulse,
-            limits,
-            turning,
-            answer,
-            whole,
-            springs: None,
-        }
-    }
-
-    /// The same with what rolling friction bears.
-    pub(crate) fn rolling(self, limits: FrictionLimits) -> Self {
-        Self { limits, ..self }
+        Self { n, lever, friction, goal, triangle, impulse, answer, whole, springs: None }
     }
 
     /// The same with springs.
@@ -148,11 +122,12 @@ impl BlockContact {
         (friction, triangle): (f64, u32),
         (goal, springs): (Vec3, GivingWay),
     ) -> Self {
+        let answer = mass.answer(&lever);
         let ([along, across], normal) = (springs.compliance, n * n.transpose());
         let soft = normal * along + (Matrix3::identity() - normal) * across;
-        let hard = Self::new(mass, (n, lever), (friction, triangle), goal);
-        let whole = Inverted::of(hard.answer + soft, mass.mass);
-        Self { whole, springs: Some(springs), ..hard }
+        let (impulse, whole) = (Vec3::zeros(), Inverted::of(answer + soft, mass.mass));
+        let springs = Some(springs);
+        Self { n, lever, friction, goal, triangle, impulse, answer, whole, springs }
     }
 
     /// How it gives way, in a scheme with springs.
@@ -164,15 +139,6 @@ impl BlockContact {
     /// The same contact with another goal.
     pub(crate) fn with_goal(&self, goal: Vec3) -> Self {
         Self { goal, ..*self }
-    }
-
-    /// Takes as much of the angular momentum that the body would have without its turning as rolling friction bears; the change of spin.
-    fn turn(&mut self, mass: &Mass, inertia: &Matrix3<f64>, w: &Vec3) -> Vec3 {
-        let without = inertia * w - self.turning;
-        let next = self.limits.rolling(-without, self.n.dot(&self.impulse));
-        let change = next - self.turning;
-        self.turning = next;
-        mass.inverse * change
     }
 
     /// Its impulse where the point would move by `u` without it.
@@ -276,9 +242,7 @@ pub(crate) fn solve(
     rounding_m_s: f64,
     sweeps: &mut u64,
 ) -> bool {
-    let rolls = contacts.iter().any(|contact| contact.limits.has_rolling());
-    let inertia = if rolls { mass.inverse.try_inverse() } else { None };
-    let alone = contacts.len() <= 1 && inertia.is_none();
+    let alone = contacts.len() <= 1;
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
     for _ in 0..SWEEPS {
         *sweeps += 1;
@@ -290,9 +254,6 @@ pub(crate) fn solve(
             (v, w) = (v + dv, w + dw);
             scale = scale.max(next.norm());
             contact.impulse = next;
-            if let Some(inertia) = &inertia {
-                w += contact.turn(mass, inertia, &w);
-            }
         }
         let moved = (v - before.0).norm() + (w - before.1).norm() * reach;
         if alone || moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {

@@ -1,7 +1,6 @@
 use super::*;
 
 mod cases;
-mod rolling;
 mod slip;
 mod springs;
 mod yielding;
