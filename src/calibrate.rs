@@ -1,4 +1,4 @@
-//! Ground values fitted to measured ends: a search over values, scored on ends that it has not seen, and how far the ends
+//! Values of grounds and shapes fitted to measured ends: a search over values, scored on ends that it has not seen, and how far the ends
 //! tell the values at all.
 //!
 //! The ends are cut into parts, throws of one block together. The values are fitted to all but one part and scored on
@@ -106,10 +106,9 @@ pub fn calibrate(
         held_out.push(search.best(Ends::Without(part), tried)?.0);
     }
     let (whole, trials) = search.best(Ends::All, tried)?;
-    let name = |vary: &VaryTable| format!("{}.{}", vary.ground, vary.key.name());
     let (told, measures, ends) = search.worth(&whole.values, scenes[0].seed)?;
     Ok(Calibration {
-        names: vary.iter().map(name).collect(),
+        names: vary.iter().map(VaryTable::name).collect(),
         releases,
         trials,
         before,
@@ -140,12 +139,13 @@ fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
         if scene.calibrate.is_none() {
             return wrong(scene, "found nothing", "write deposits = \"ends.csv\"".to_owned());
         }
-        if let Some(lacks) = vary.iter().find(|vary| !scene.grounds.contains_key(&vary.ground)) {
-            let remedy = format!("write [grounds.{}]: the scene before varies it", lacks.ground);
+        let mut grounds = vary.iter().filter_map(|vary| vary.ground.as_ref());
+        if let Some(lacks) = grounds.find(|name| !scene.grounds.contains_key(*name)) {
+            let remedy = format!("write [grounds.{lacks}]: the scene before varies it");
             return wrong(scene, "found another set of grounds", remedy);
         }
         let refused = |vary: &VaryTable| {
-            let found = format!("found that {}.{} is to be varied", vary.ground, vary.key.name());
+            let found = format!("found that {} is to be varied", vary.name());
             scene.refuses_to_vary(vary).map(|remedy| (found, remedy))
         };
         if let Some((found, remedy)) = vary.iter().find_map(refused) {
@@ -155,13 +155,20 @@ fn vary_of(scenes: &[Scene]) -> Result<(&[VaryTable], usize)> {
     Ok((vary, first.calibrate.as_ref().map_or(0, CalibrateTable::parts)))
 }
 
-/// Puts values into the grounds of a scene.
+/// Puts values into the grounds and shapes of a scene.
 fn put_all(scene: &mut Scene, vary: &[VaryTable], values: &[f64]) -> Result<()> {
     let mut entries: Vec<(&VaryTable, &f64)> = vary.iter().zip(values).collect();
     // a spread lies above the value that another entry may set
     entries.sort_by_key(|(vary, _)| vary.key == VaryKey::RollingFrictionSpread);
     for (vary, value) in entries {
-        if let Some(ground) = scene.grounds.get_mut(&vary.ground) {
+        let Some(name) = &vary.ground else {
+            // spheres among the shapes have no corners
+            let corners =
+                scene.rocks.shapes.iter_mut().filter_map(|one| one.corner_radius.as_mut());
+            corners.for_each(|radius| *radius = *value);
+            continue;
+        };
+        if let Some(ground) = scene.grounds.get_mut(name) {
             put(ground, vary.key, *value)?;
         }
     }
@@ -187,7 +194,7 @@ fn put(ground: &mut GroundTable, key: VaryKey, value: f64) -> Result<()> {
         VaryKey::RollingFrictionSpread => {}
         VaryKey::RoughnessDeg => ground.roughness_deg = Some(fixed),
         VaryKey::RoughnessLengthM => ground.roughness_length_m = Some(fixed),
-        // of soil numbers, not distributions; a scene without soil was refused
+        // of soil numbers, not distributions; a scene without soil was refused, and shapes are no ground
         _ => {
             if let Some(place) = soil_value(ground, key) {
                 *place = value;
@@ -244,14 +251,15 @@ impl Calibration {
         parts.chain([("all ends", &trial.all)]).try_for_each(|(what, of)| {
             writeln!(
                 to,
-                "  {what:<14} runout {:.1} m (measured {:.1}), KS {:.3} (limit {:.3}), area {:.1} m, side {:.1} m (measured {:.1})",
+                "  {what:<14} runout {:.1} m (measured {:.1}), KS {:.3} (limit {:.3}), area {:.1} m, side {:.1} m (measured {:.1}){}",
                 of.computed_mean_m,
                 of.measured_mean_m,
                 of.ks,
                 of.ks_limit,
                 of.area_m,
                 of.computed_side_m,
-                of.measured_side_m
+                of.measured_side_m,
+                of.ends_m.map_or_else(String::new, |ends_m| format!(", energy distance {ends_m:.2} m")),
             )
         })
     }

@@ -36,7 +36,7 @@ pub use difference::{Difference, Reading, Values};
 pub use lines::{CrossingRow, Line, LineInfo, LineQuantity, LineSummary, by_rock};
 pub use maps::{INTENSITY_J, Layer, MapFrame, MapState, Maps};
 pub use observed::{
-    Agreement, EndSpread, ObservedPath, Weighted, distances, effective, rank, runouts,
+    Agreement, EndDistances, EndSpread, ObservedPath, Weighted, distances, effective, rank, runouts,
 };
 pub use profile::{Profile, ProfilePoint, StretchStatistic};
 pub use proportion::Proportion;

@@ -19,10 +19,13 @@ pub fn fitted_scene(scene: &Scene, vary: &[VaryTable], found: &Calibration) -> R
             VaryKey::RollingFrictionSpread => VaryKey::RollingFriction,
             key => key,
         };
-        let written = fitted.grounds.get_mut(&vary.ground).and_then(|ground| value_of(ground, key));
+        let written = match &vary.ground {
+            Some(name) => fitted.grounds.get_mut(name).and_then(|ground| value_of(ground, key)),
+            None => fitted.rocks.shapes.iter().find_map(|shape| shape.corner_radius).map(short),
+        };
         let key = key.name();
         let Some(value) = written else {
-            let why = format!("[grounds.{}] {key}: the fit gives it no value", vary.ground);
+            let why = format!("{}: the fit gives it no value", vary.name());
             return Err(Error::Request(why));
         };
         changes.push((vary.ground.clone(), key, value));

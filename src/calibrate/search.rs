@@ -40,11 +40,14 @@ impl<'a> ParameterSearch<'a> {
         ensemble: &'a Ensemble,
         (releases, parts): (usize, usize),
     ) -> Result<Self> {
-        let sites = scenes.iter().map(|scene| CalibrationSite::of(scene, releases, parts));
+        let score = scenes.first().and_then(|scene| scene.calibrate.as_ref()?.score);
+        let asked = (releases, parts);
+        let sites = scenes.iter();
+        let sites = sites.map(|scene| CalibrationSite::of(scene, asked, score.unwrap_or_default()));
         Ok(Self { sites: sites.collect::<Result<_>>()?, vary, ensemble, known: Vec::new() })
     }
 
-    /// The values that bring the computed runouts nearest the measured ones.
+    /// The values that bring the computed ends nearest the measured ones.
     pub(super) fn best(
         &mut self,
         ends: Ends,
@@ -126,9 +129,13 @@ impl<'a> ParameterSearch<'a> {
     }
 }
 
-/// Whether the distributions of one comparison lie nearer than those of another.
+/// Whether the ends of one comparison lie nearer than those of another: by their energy distance where a fit is scored by it, else
+/// by their runouts.
 fn is_nearer(one: &Agreement, other: &Agreement) -> bool {
-    one.ks.total_cmp(&other.ks).then(one.area_m.total_cmp(&other.area_m)).is_lt()
+    // 0 where it is not known, on both sides
+    let [one_m, other_m] = [one, other].map(|of| of.ends_m.unwrap_or(0.0));
+    let by_runout = || one.ks.total_cmp(&other.ks).then(one.area_m.total_cmp(&other.area_m));
+    one_m.total_cmp(&other_m).then_with(by_runout).is_lt()
 }
 
 /// All combinations of `steps` even values of each range, ends included.
@@ -188,7 +195,7 @@ mod tests {
         assert_eq!(points[0], [0.0, 10.0]);
         assert_eq!(points[8], [1.0, 20.0]);
         let vary = |from: f64, to: f64| VaryTable {
-            ground: String::new(),
+            ground: None,
             key: VaryKey::Restitution,
             from,
             to,

@@ -3,11 +3,13 @@
 use super::{Ends, put_all};
 use crate::ensemble::Ensemble;
 use crate::error::{Error, Result};
-use crate::hazard::{Agreement, ObservedPath, Row, Weighted, distances, effective, rank, runouts};
+use crate::hazard::{
+    Agreement, EndDistances, ObservedPath, Row, Weighted, distances, effective, rank, runouts,
+};
 use crate::math;
 use crate::plan::Plan;
 use crate::random::{RandomStream, unit};
-use crate::scene::{Scene, VaryTable};
+use crate::scene::{CalibrationScore, Scene, VaryTable};
 use crate::simulation::{Scratch, simulate_release};
 use crate::terrain::Terrain;
 use std::path::Path;
@@ -17,7 +19,14 @@ use std::path::Path;
 const SAME_PLACE_M: f64 = 0.1;
 
 /// Computed ways with their release numbers.
-pub(super) type Computed = Vec<(usize, ObservedPath)>;
+type Ways = Vec<(usize, ObservedPath)>;
+
+/// What one trial computed on a scene.
+pub(super) struct Computed {
+    ways: Ways,
+    /// How far the ends lie from the measured ones; only where a fit is scored by it.
+    apart: Option<EndDistances>,
+}
 
 /// One scene and what was measured on it.
 pub(super) struct CalibrationSite {
@@ -28,6 +37,10 @@ pub(super) struct CalibrationSite {
     /// The part that each measured end is held out with.
     part: Vec<usize>,
     terrain: Option<Terrain>,
+    /// Rows of the measured ends that stand beside the same computed ones: those of a block, or all.
+    groups: Vec<Vec<usize>>,
+    /// What a fit brings near.
+    score: CalibrationScore,
     /// What the plan says of the shapes of its rocks.
     shapes: Vec<String>,
     /// Where measured rocks were released; none unless the scene releases from all of these places.
@@ -46,7 +59,11 @@ struct OwnPlaces {
 }
 
 impl CalibrationSite {
-    pub(super) fn of(scene: &Scene, releases: usize, parts: usize) -> Result<Self> {
+    pub(super) fn of(
+        scene: &Scene,
+        (releases, parts): (usize, usize),
+        score: CalibrationScore,
+    ) -> Result<Self> {
         let (measured, blocks, part) = match scene.calibrate.as_ref().map(|table| &table.deposits) {
             Some(deposits) => {
                 let (measured, blocks) =
@@ -71,8 +88,15 @@ impl CalibrationSite {
             // every place as often as any other
             scene.release.count = releases.next_multiple_of(places.len());
         }
-        let shapes = Vec::new();
-        Ok(Self { scene, measured, blocks, part, terrain: Some(terrain), shapes, own })
+        let (shapes, terrain, all) = (Vec::new(), Some(terrain), (0..measured.len()).collect());
+        let groups = vec![all];
+        let mut site = Self { scene, measured, blocks, part, terrain, groups, score, shapes, own };
+        let blocks: Vec<Vec<usize>> =
+            site.rows_of_blocks().into_iter().map(|(_, rows)| rows).collect();
+        if !blocks.is_empty() {
+            site.groups = blocks;
+        }
+        Ok(site)
     }
 
     pub(super) fn title(&self) -> String {
@@ -110,17 +134,28 @@ impl CalibrationSite {
         };
         let plan = Plan::compile(&self.scene, terrain)?;
         let origin_m = plan.terrain.origin_m;
-        let mut computed = Computed::new();
+        let mut ways = Ways::new();
         let one =
             |index: usize, scratch: &mut Scratch| simulate_release(&plan, index, None, scratch);
         for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {
             let way =
                 |fall| ObservedPath::of(&Row::of(fall, origin_m)).map(|way| (fall.index, way));
-            computed.extend(falls?.iter().filter_map(way));
+            ways.extend(falls?.iter().filter_map(way));
         }
         plan.releases.shapes().clone_into(&mut self.shapes);
         self.terrain = Some(plan.terrain);
+        let mut computed = Computed { ways, apart: None };
+        if self.score == CalibrationScore::Ends {
+            let beside = |rows: &[usize]| self.weighted(&computed, rows);
+            computed.apart = Some(EndDistances::of(&self.measured, &self.groups, beside));
+        }
         Ok(computed)
+    }
+
+    /// Energy distance of some measured ends from the computed ones (m); none where a fit is not scored by it.
+    fn ends_m(&self, computed: &Computed, rows: &[usize]) -> Option<f64> {
+        let apart = computed.apart.as_ref()?;
+        Some(apart.energy_m(&self.measured, &self.groups, rows))
     }
 
     /// Compares some of the ends; none where there is none of them.
@@ -131,7 +166,8 @@ impl CalibrationSite {
             Ends::All => true,
         };
         let rows: Vec<usize> = (0..self.measured.len()).filter(wanted).collect();
-        Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))
+        let found = Agreement::of_weighted(&self.ends(&rows), &self.weighted(computed, &rows))?;
+        Some(Agreement { ends_m: self.ends_m(computed, &rows), ..found })
     }
 
     /// Measured ends of some rows.
@@ -143,22 +179,26 @@ impl CalibrationSite {
     /// together, and those from other places nothing. Without common places they all weigh the same.
     pub(super) fn weighted(&self, computed: &Computed, rows: &[usize]) -> Vec<Weighted> {
         let Some(own) = &self.own else {
-            return computed.iter().map(|(_, way)| (*way, 1.0)).collect();
+            return computed.ways.iter().map(|(_, way)| (*way, 1.0)).collect();
         };
         let mut counts = vec![[0.0, 0.0]; self.measured.len()];
         for &row in rows {
             counts[own.of_end[row]][0] += 1.0;
         }
-        let places = || computed.iter().map(|(index, _)| own.of_release(*index));
+        let places = || computed.ways.iter().map(|(index, _)| own.of_release(*index));
         places().flatten().for_each(|place| counts[place][1] += 1.0);
         let weight =
             |place: Option<usize>| place.map_or(0.0, |place| counts[place][0] / counts[place][1]);
-        computed.iter().zip(places()).map(|((_, way), place)| (*way, weight(place))).collect()
+        let ways = computed.ways.iter().zip(places());
+        ways.map(|((_, way), place)| (*way, weight(place))).collect()
     }
 
-    /// Distance of the distributions of runout of some measured ends and of computed ones (–): that of Kolmogorov and
-    /// Smirnov, times the number of ends.
+    /// Distance of some measured ends from the computed ones, times their number: the energy distance (m), or that of
+    /// the distributions of runout after Kolmogorov and Smirnov (–).
     pub(super) fn distance(&self, computed: &Computed, rows: &[usize]) -> f64 {
+        if let Some(ends_m) = self.ends_m(computed, rows) {
+            return rows.len() as f64 * ends_m;
+        }
         let measured: Vec<Weighted> = rows.iter().map(|&row| (self.measured[row], 1.0)).collect();
         let computed = self.weighted(computed, rows);
         rows.len() as f64 * distances(&runouts(&measured), &runouts(&computed)).0
@@ -169,7 +209,7 @@ impl CalibrationSite {
     pub(super) fn ranks(&self, computed: &Computed, rows: &[usize]) -> Option<[f64; 2]> {
         let own = self.own.as_ref()?;
         let mut of_place = vec![Vec::new(); self.measured.len()];
-        for (index, way) in computed {
+        for (index, way) in &computed.ways {
             own.of_release(*index).into_iter().for_each(|place| of_place[place].push(*way));
         }
         let rank = |&row: &usize| rank(&self.measured[row], &of_place[own.of_end[row]]);

@@ -92,8 +92,7 @@ impl ParameterSearch<'_> {
         let one = |(at, vary): (usize, &crate::scene::VaryTable)| {
             let [low_95, high_95] = middle_95(ends(at));
             let is_told = high_95 - low_95 < UNTOLD * (vary.to - vary.from);
-            let name = format!("{}.{}", vary.ground, vary.key.name());
-            Told { name, value: values[at], low_95, high_95, is_told }
+            Told { name: vary.name(), value: values[at], low_95, high_95, is_told }
         };
         self.vary.iter().enumerate().map(one).collect()
     }

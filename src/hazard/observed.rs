@@ -1,7 +1,9 @@
 //! Measured ends of rocks beside computed ones.
 
+mod apart;
 mod spread;
 
+pub use apart::EndDistances;
 pub use spread::{EndSpread, effective, rank};
 
 use super::row::Row;
@@ -54,6 +56,9 @@ pub struct Agreement {
     pub measured_side_m: f64,
     /// The same of the computed ends, across the same direction (m).
     pub computed_side_m: f64,
+    /// Energy distance of the ends in plan view, block by block ([`EndDistances`], m); only where a fit is scored by it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ends_m: Option<f64>,
 }
 
 impl ObservedPath {
@@ -142,6 +147,7 @@ impl Agreement {
             area_m: mean(|one| one.area_m),
             measured_side_m: mean(|one| one.measured_side_m),
             computed_side_m: mean(|one| one.computed_side_m),
+            ends_m: first.ends_m.map(|_| mean(|one| one.ends_m.unwrap_or(f64::NAN))),
         })
     }
 
@@ -174,6 +180,7 @@ impl Agreement {
             area_m,
             measured_side_m: EndSpread::of(&even, along).across_m(),
             computed_side_m: EndSpread::of(computed, along).across_m(),
+            ends_m: None,
         })
     }
 }

@@ -12,7 +12,7 @@ type Fitted = (String, String);
 
 const RESULT: &str = "calibration.json";
 
-/// Writes `calibration.csv` (every trial with the part that was held out), `calibration.json`, and the fitted scenes
+/// Writes `calibration.csv` (every trial with the part that was held out; energy distances where fits are scored by them), `calibration.json`, and the fitted scenes
 /// under their names.
 ///
 /// # Errors
@@ -24,8 +24,9 @@ pub fn write_calibration(
 ) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(Error::file("create", dir))?;
     let mut text = format!(
-        "held_out,{},fit_area_m,fit_ks,fit_mean_m,apart_area_m,apart_ks,apart_mean_m\n",
-        found.names.join(",")
+        "held_out,{},fit_area_m,fit_ks,fit_mean_m,apart_area_m,apart_ks,apart_mean_m{}\n",
+        found.names.join(","),
+        if found.whole.all.ends_m.is_some() { ",fit_ends_m,apart_ends_m" } else { "" }
     );
     for (ends, trial) in trials {
         let held_out = match ends {
@@ -35,7 +36,7 @@ pub fn write_calibration(
         let values: Vec<String> = trial.values.iter().map(f64::to_string).collect();
         let (fit, apart) = (&trial.fitted, &trial.kept_apart);
         // writing to a string cannot fail
-        let _ = writeln!(
+        let _ = write!(
             text,
             "{},{},{},{},{},{},{},{}",
             held_out,
@@ -47,6 +48,10 @@ pub fn write_calibration(
             apart.ks,
             apart.computed_mean_m
         );
+        for ends_m in [fit.ends_m, apart.ends_m].into_iter().flatten() {
+            let _ = write!(text, ",{ends_m}");
+        }
+        text.push('\n');
     }
     for (name, scene) in fitted {
         write_atomic(&dir.join(name), scene.as_bytes())?;

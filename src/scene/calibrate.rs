@@ -3,6 +3,7 @@
 use super::Scene;
 use super::check::{Allowed, Checked, Complaint, number, optional, suggest};
 use super::grounds::{STRENGTH, TANGENTIAL};
+use super::shapes::CORNER_RADIUS;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -17,17 +18,31 @@ pub struct CalibrateTable {
     pub deposits: PathBuf,
     /// Share of the measured ends that is held out of each fit to score it on (–), 0..0.5; absent = 0.5.
     pub held_out: Option<f64>,
-    /// The ground values that `rockfall calibrate` searches; may be none.
+    /// What a fit brings near: absent = [`CalibrationScore::Runout`].
+    pub score: Option<CalibrationScore>,
+    /// The values that `rockfall calibrate` searches; may be none.
     #[serde(default)]
     pub vary: Vec<VaryTable>,
 }
 
-/// One ground value and the range it is searched in.
+/// What the computed ends are brought near to the measured ones in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CalibrationScore {
+    /// The distribution of runout over all ends, by the distance of Kolmogorov and Smirnov.
+    #[default]
+    Runout,
+    /// The ends in plan view, block by block, by their energy distance: runout, its spread, side scatter and the differences
+    /// between blocks at once.
+    Ends,
+}
+
+/// One value of a ground, or of the shapes, and the range it is searched in.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table { ground, key, from, to, before }")]
 pub struct VaryTable {
-    /// Name under `[grounds]`.
-    pub ground: String,
+    /// Name under `[grounds]`; none for a value of the shapes.
+    pub ground: Option<String>,
     /// Which of its values.
     pub key: VaryKey,
     /// Smallest value tried.
@@ -38,7 +53,7 @@ pub struct VaryTable {
     pub before: f64,
 }
 
-/// A ground value that may be fitted.
+/// A value that may be fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VaryKey {
@@ -74,6 +89,8 @@ pub enum VaryKey {
     /// Drag coefficient of the soil (–).
     #[serde(rename = "scar.drag")]
     ScarDrag,
+    /// Radius of the corners of all shapes over that of the sphere of equal volume (–).
+    CornerRadius,
 }
 
 impl VaryKey {
@@ -93,7 +110,13 @@ impl VaryKey {
             Self::SlipFrictionBetaPerS => "slip_friction.beta_per_s",
             Self::ScarStrengthKnM2 => "scar.strength_kn_m2",
             Self::ScarDrag => "scar.drag",
+            Self::CornerRadius => "corner_radius",
         }
+    }
+
+    /// Whether it is a value of `[[rocks.shapes]]`, not of a ground.
+    fn is_of_shapes(self) -> bool {
+        self == Self::CornerRadius
     }
 
     fn allowed(self) -> Allowed {
@@ -106,6 +129,7 @@ impl VaryKey {
             | Self::SlipFrictionKappaPerM => Allowed::Positive,
             Self::TangentialRatio => TANGENTIAL,
             Self::ScarStrengthKnM2 => STRENGTH,
+            Self::CornerRadius => CORNER_RADIUS,
             Self::RollingFriction
             | Self::RollingFrictionSpread
             | Self::SlipFrictionBetaPerS
@@ -117,9 +141,13 @@ impl VaryKey {
 impl Scene {
     /// What to write where a value cannot be varied on the rocks and grounds of this scene; none where it can.
     pub fn refuses_to_vary(&self, vary: &VaryTable) -> Option<String> {
-        let Some(ground) = self.grounds.get(&vary.ground) else {
+        let Some(name) = &vary.ground else {
+            let remedy = "write [[rocks.shapes]] of blocks: spheres have no corners";
+            return (!self.has_blocks()).then(|| remedy.to_owned());
+        };
+        let Some(ground) = self.grounds.get(name) else {
             let names: Vec<&str> = self.grounds.keys().map(String::as_str).collect();
-            return Some(format!("write a name from [grounds]; {}", suggest(&vary.ground, &names)));
+            return Some(format!("write a name from [grounds]; {}", suggest(name, &names)));
         };
         let rolls = matches!(vary.key, VaryKey::RollingFriction | VaryKey::RollingFrictionSpread);
         if rolls && self.has_blocks() {
@@ -129,7 +157,6 @@ impl Scene {
         let (table, _) = vary.key.name().split_once('.')?;
         let is_there =
             if table == "scar" { ground.scar.is_some() } else { ground.slip_friction.is_some() };
-        let name = &vary.ground;
         (!is_there).then(|| {
             format!("write {table} = {{ ... }} in [grounds.{name}]: one of its values is varied, and the others have no default")
         })
@@ -141,7 +168,7 @@ impl Scene {
         table.check()?;
         for (index, vary) in table.vary.iter().enumerate() {
             let Some(remedy) = self.refuses_to_vary(vary) else { continue };
-            let is_known = self.grounds.contains_key(&vary.ground);
+            let is_known = vary.ground.as_ref().is_none_or(|name| self.grounds.contains_key(name));
             let about = Complaint::about(if is_known { "key" } else { "ground" }, remedy);
             return Err(about.in_entry(index).inside("vary"));
         }
@@ -172,7 +199,22 @@ impl CalibrateTable {
 }
 
 impl VaryTable {
+    /// Its name in results: `ground.key`, or `rocks.shapes.key`.
+    pub fn name(&self) -> String {
+        format!("{}.{}", self.ground.as_deref().unwrap_or("rocks.shapes"), self.key.name())
+    }
+
     fn check(&self) -> Checked {
+        let key = self.key.name();
+        if self.ground.is_some() && self.key.is_of_shapes() {
+            let remedy = format!("remove it: {key} is a value of [[rocks.shapes]]");
+            return Err(Complaint::about("ground", remedy));
+        }
+        if self.ground.is_none() && !self.key.is_of_shapes() {
+            let remedy =
+                format!("write ground = \"NAME\", a name from [grounds] whose {key} is varied");
+            return Err(Complaint::missing("ground", remedy));
+        }
         for (key, value) in [("from", self.from), ("to", self.to), ("before", self.before)] {
             number(key, value, self.key.allowed(), "")?;
         }

@@ -10,35 +10,29 @@ use std::path::Path;
 /// A key of a ground that another gives as well: a scene has one of them.
 const OTHERWISE: (&str, &str) = ("tangential_ratio", "shear_stiffness_n_m");
 
-/// The text of a scene file with other values: ground, key (of a table inside of the ground with a point between) and what
-/// to write. Paths are written in full, so that the text
-/// may stand in another folder.
+/// A value of a scene: its ground (none: of every shape), its key (of a table inside of the ground with a point between), and
+/// what to write.
+pub(super) type NewValue = (Option<String>, &'static str, String);
+
+/// Bytes of a text, and what stands there instead.
+type Change = (Range<usize>, String);
+
+/// The text of a scene file with other values. Paths are written in full, so that the text may stand in another folder.
 ///
 /// # Errors
 /// A file that cannot be read, or a ground that is not there.
-pub fn rewritten(scene: &Path, values: &[(String, &str, String)]) -> Result<String> {
+pub fn rewritten(scene: &Path, values: &[NewValue]) -> Result<String> {
     let text = file::read_text(scene)?;
     let lookup = Lookup::of(scene, &text);
-    let mut changes: Vec<(Range<usize>, String)> = Vec::new();
+    let mut changes: Vec<Change> = Vec::new();
     for (ground, key, value) in values {
-        let table = [TrailStep::Key("grounds".to_owned()), TrailStep::Key(ground.clone())];
-        let value_at = |key: &str| {
-            let keys = key.split('.').map(|key| TrailStep::Key(key.to_owned()));
-            lookup.value_at(&table.iter().cloned().chain(keys).collect::<Vec<_>>())
+        let Some(ground) = ground else {
+            changes.extend(of_shapes(&lookup, key, value));
+            continue;
         };
-        let other = value_at(OTHERWISE.1).filter(|_| *key == OTHERWISE.0);
-        let change = match (value_at(key), other, lookup.value_at(&table)) {
-            (Some(range), ..) => (range, value.clone()),
-            (None, Some(other), _) => {
-                let start = text[..other.start].rfind(OTHERWISE.1).unwrap_or(other.start);
-                (start..other.end, format!("{key} = {value}"))
-            }
-            // of a table with a header the header alone
-            (None, None, Some(header)) => (header.end..header.end, format!("\n{key} = {value}")),
-            (None, None, None) => {
-                let found = format!("found no [grounds.{ground}]");
-                return Err(Error::input(scene, "[grounds]", found, "write the scene as it was"));
-            }
+        let Some(change) = of_ground((&lookup, &text), ground, (key, value)) else {
+            let found = format!("found no [grounds.{ground}]");
+            return Err(Error::input(scene, "[grounds]", found, "write the scene as it was"));
         };
         changes.push(change);
     }
@@ -59,4 +53,39 @@ pub fn rewritten(scene: &Path, values: &[(String, &str, String)]) -> Result<Stri
         written.replace_range(range, &value);
     }
     Ok(written)
+}
+
+/// A value of a ground; none without that ground.
+fn of_ground(
+    (lookup, text): (&Lookup, &str),
+    ground: &str,
+    (key, value): (&str, &str),
+) -> Option<Change> {
+    let table = ["grounds", ground].map(|key| TrailStep::Key(key.to_owned()));
+    let value_at = |key: &str| {
+        let keys = key.split('.').map(|key| TrailStep::Key(key.to_owned()));
+        lookup.value_at(&table.iter().cloned().chain(keys).collect::<Vec<_>>())
+    };
+    let other = value_at(OTHERWISE.1).filter(|_| key == OTHERWISE.0);
+    match (value_at(key), other) {
+        (Some(range), _) => Some((range, value.to_owned())),
+        (None, Some(other)) => {
+            let start = text[..other.start].rfind(OTHERWISE.1).unwrap_or(other.start);
+            Some((start..other.end, format!("{key} = {value}")))
+        }
+        // of a table with a header the header alone
+        (None, None) => {
+            let header = lookup.value_at(&table)?;
+            Some((header.end..header.end, format!("\n{key} = {value}")))
+        }
+    }
+}
+
+/// A value of every shape that has it; spheres among them have none.
+fn of_shapes(lookup: &Lookup, key: &str, value: &str) -> Vec<Change> {
+    let key_of = |trail: &[TrailStep]| {
+        matches!(trail, [TrailStep::Key(rocks), TrailStep::Key(shapes), TrailStep::Entry(_), TrailStep::Key(last)]
+        if rocks == "rocks" && shapes == "shapes" && last == key)
+    };
+    lookup.values(key_of).map(|range| (range, value.to_owned())).collect()
 }

@@ -51,6 +51,9 @@ pub enum RandomWord {
     Random,
 }
 
+/// What `corner_radius` may be.
+pub(super) const CORNER_RADIUS: Allowed = Allowed::Between(SHARPEST, 0.5);
+
 /// Corners kept of a scan where the scene does not say.
 pub const CORNERS: usize = 32;
 
@@ -101,7 +104,7 @@ impl ShapeTable {
             }
             (_, Some(value)) => {
                 let hint = "sharper corners than that are not computed";
-                number("corner_radius", value, Allowed::Between(SHARPEST, 0.5), hint)
+                number("corner_radius", value, CORNER_RADIUS, hint)
             }
         }
     }

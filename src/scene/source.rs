@@ -52,17 +52,31 @@ impl<'a> Lookup<'a> {
 
     /// Where paths of files stand.
     pub(super) fn paths(&self) -> impl Iterator<Item = Range<usize>> {
-        let is_path = |node: &&SourceNode| match &node.trail[..] {
+        self.values(|trail| match trail {
             [TrailStep::Key(table), TrailStep::Entry(_), TrailStep::Key(key)] => {
                 ["terrain", "trees"].contains(&table.as_str()) && key == "mesh"
             }
+            [
+                TrailStep::Key(rocks),
+                TrailStep::Key(_),
+                TrailStep::Entry(_),
+                TrailStep::Key(key),
+            ] => rocks == "rocks" && key == "mesh",
             [TrailStep::Key(table), TrailStep::Key(key)] => {
                 [("calibrate", "deposits"), ("release", "table")]
                     .contains(&(table.as_str(), key.as_str()))
             }
             _ => false,
-        };
-        self.nodes.iter().filter(is_path).map(|node| node.value.clone())
+        })
+    }
+
+    /// Where the values stand whose trails are wanted.
+    pub(super) fn values(
+        &self,
+        is_wanted: impl Fn(&[TrailStep]) -> bool,
+    ) -> impl Iterator<Item = Range<usize>> {
+        let wanted = self.nodes.iter().filter(move |node| is_wanted(&node.trail));
+        wanted.map(|node| node.value.clone())
     }
 
     /// The message for a complaint of the scene's own checks.

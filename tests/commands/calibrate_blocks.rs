@@ -172,6 +172,39 @@ fn a_ground_is_fitted_to_blocks() {
     assert!(rockfall(&["plan", word(&out.join("fit_fitted.toml"))]).status.success());
 }
 
+/// Corners of all shapes are fitted together, by ends in plan view: the fit is the nearest of all trials, nearer than the corners
+/// before, and stands in every shape of the fitted scene.
+#[test]
+fn corners_are_fitted_to_ends_in_plan_view() {
+    let dir = tempfile::tempdir().unwrap();
+    measure(&scene(dir.path(), "true", SHAPES, ""));
+    let corners = "score = \"ends\"\nvary = [{ key = \"corner_radius\", from = 0.1, to = 0.3, before = 0.3 },";
+    let asked = vary(&[("scar.drag", [0.0, 10.0, 0.0])]).replace("vary = [", corners);
+    let fit = scene(dir.path(), "fit", SHAPES, &asked);
+    let out = dir.path().join("out");
+    let done = rockfall(&["calibrate", word(&fit), "--releases", "24", "--out", word(&out)]);
+    let said = String::from_utf8(done.stdout).unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(said.contains(", energy distance "), "{said}");
+    let found = read_calibration(&out).unwrap().unwrap();
+    assert_eq!(found.names, ["rocks.shapes.corner_radius", "meadow.scar.drag"]);
+    let trials = fs::read_to_string(out.join("calibration.csv")).unwrap();
+    assert!(trials.lines().next().unwrap().ends_with(",fit_ends_m,apart_ends_m"), "{trials}");
+    let ends_m = |line: &str| -> f64 { line.rsplit(',').nth(1).unwrap().parse().unwrap() };
+    let nearest_m = trials.lines().skip(1).map(ends_m).fold(f64::INFINITY, f64::min);
+    let [fitted_m, before_m] =
+        [&found.whole, &found.before].map(|trial| trial.fitted.ends_m.unwrap());
+    assert!((fitted_m - nearest_m).abs() < 1e-12, "{said}");
+    // the ends beside those of other random numbers: a third of the distance before
+    assert!(fitted_m < 0.5 * before_m, "{said}");
+    let corner_radius = (found.whole.values[0] * 1e6).round() / 1e6;
+    let text = fs::read_to_string(out.join("fit_fitted.toml")).unwrap();
+    let written = format!("corner_radius = {corner_radius:?}\n");
+    assert_eq!(text.matches(&written).count(), 2, "{written}{text}");
+    let scene = Scene::read(&out.join("fit_fitted.toml")).unwrap();
+    assert_eq!(scene.rocks.shapes[1].corner_radius, Some(corner_radius));
+}
+
 /// What blocks or this ground do not have cannot be varied.
 #[test]
 fn values_that_play_no_part_are_not_varied() {
@@ -190,6 +223,16 @@ fn values_that_play_no_part_are_not_varied() {
     fs::write(&file, hard).unwrap();
     let said = message(Scene::read(&file));
     assert!(said.contains("write scar = { ... } in [grounds.meadow]"), "{said}");
+    // corners are a value of the shapes, and of no ground
+    let of_ground = vary(&[("corner_radius", [0.1, 0.4, 0.3])]);
+    let said = message(Scene::read(&scene(dir.path(), "corners", SHAPES, &of_ground)));
+    assert!(said.contains("remove it: corner_radius is a value of [[rocks.shapes]]"), "{said}");
+    let of_shapes = of_ground.replace("ground = \"meadow\", ", "");
+    let said = message(Scene::read(&scene(dir.path(), "round", "", &of_shapes)));
+    assert!(said.contains("spheres have no corners"), "{said}");
+    let lost = drag.replace("ground = \"meadow\", ", "");
+    let said = message(Scene::read(&scene(dir.path(), "lost", SHAPES, &lost)));
+    assert!(said.contains("a name from [grounds] whose scar.drag is varied"), "{said}");
     // spheres before blocks: the first says what is varied
     measure(&scene(dir.path(), "true", SHAPES, ""));
     let first = scene(dir.path(), "spheres", "", &rolling);
