@@ -58,6 +58,8 @@ pub struct ContactHistory {
     pub slides: bool,
     /// Whether it was there at the last accepted step.
     pub closed: bool,
+    /// Approach at which it has come up, if it may rebound, until the impact has taken notice (m/s); else 0.
+    pub met_m_s: f64,
     /// Whether its beginning has been noted down.
     pub announced: bool,
     /// As which of the rock's impacts, from 1; 0 where it was none.
@@ -77,6 +79,7 @@ impl ContactHistory {
             normal_force: 0.0,
             slides: false,
             closed: false,
+            met_m_s: 0.0,
             announced: false,
             impact: 0,
         }

@@ -264,14 +264,28 @@ impl ContactState {
         let slow = world.captures(touch, v);
         let history = self.histories.find(touch, &self.touches, taken, || slow && !rebounds);
         if history >= before {
-            if !slow {
-                self.impact.try_meeting(-touch.normal.dot(v));
-            }
+            self.histories[history].met_m_s = if slow { 0.0 } else { -touch.normal.dot(v) };
             for rate in &mut self.rates {
                 (rate.shear[history], rate.roll[history]) = (Vec3::zeros(), Vec3::zeros());
             }
         }
         history
+    }
+
+    /// Fastest approach of what has come up in the present try and presses (m/s).
+    pub(super) fn met_m_s(&self) -> f64 {
+        let pressed = self.contacts[..self.contact_count].iter();
+        let pressed = pressed.filter(|contact| contact.normal_force > 0.0);
+        pressed.map(|contact| self.histories[contact.history].met_m_s).fold(0.0, f64::max)
+    }
+
+    /// The contacts that have come up belong to the impact from now on; `slowest` is the speed from which on it is followed in
+    /// its own time (m/s).
+    pub(super) fn accept_meetings(&mut self, slowest: f64) {
+        for history in self.histories.iter_mut() {
+            self.impact.meet(history.met_m_s, slowest);
+            history.met_m_s = 0.0;
+        }
     }
 
     /// Hands the springs of contacts that merged into others to those; whether there were any.

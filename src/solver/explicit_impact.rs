@@ -131,7 +131,7 @@ impl ContactState {
         let mut stages = Stages::<N, SUMS, P>::NONE;
         flow.rates_of(&y, stages.first());
         // what the present place touches is met whatever becomes of the tries
-        flow.state.impact.accept_meeting(world.least_impact_m_s());
+        flow.state.accept_meetings(world.least_impact_m_s());
         let before = flow.stored_j();
         let known = flow.state.histories.len();
         loop {
@@ -198,7 +198,7 @@ impl ContactState {
         self.impact.gained += self.motion_j(body) + lifted + loss.sum() - before;
         self.merge_lost(world);
         self.histories.retain(|history| history.closed);
-        self.impact.accept_meeting(world.least_impact_m_s());
+        self.accept_meetings(world.least_impact_m_s());
         self.fresh = false;
         done.dt += accepted.dt + self.let_go(world, bounds, bounds.h_max - accepted.dt);
         if self.is_free() || self.impact.left <= 0.0 {

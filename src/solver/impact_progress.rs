@@ -17,35 +17,17 @@ pub(crate) struct ImpactProgress {
     pub(super) left: f64,
     /// Energy that the steps have gained (J).
     pub(super) gained: f64,
-    /// Fastest approach to a contact that has come up in the current try (m/s).
-    pub(super) tried_m_s: f64,
 }
 
 impl ImpactProgress {
     /// Forgets the impact before.
     pub(crate) fn forget(&mut self) {
-        (self.speed_m_s, self.left, self.tried_m_s) = (0.0, 0.0, 0.0);
+        (self.speed_m_s, self.left) = (0.0, 0.0);
     }
 
     /// Goes on for so long (rad) where it is not followed in its own time.
     pub(super) fn pass(&mut self, rad: f64) {
         self.left = (self.left - rad).max(0.0);
-    }
-
-    /// A try is made anew: what it met before has not been met.
-    pub(crate) fn try_anew(&mut self) {
-        self.tried_m_s = 0.0;
-    }
-
-    /// A try meets a contact at `speed_m_s` that may rebound.
-    pub(crate) fn try_meeting(&mut self, speed_m_s: f64) {
-        self.tried_m_s = self.tried_m_s.max(speed_m_s);
-    }
-
-    /// The try has become a step.
-    pub(crate) fn accept_meeting(&mut self, slowest: f64) {
-        self.meet(self.tried_m_s, slowest);
-        self.tried_m_s = 0.0;
     }
 
     /// A contact begins at `speed_m_s` that may rebound; `slowest` is the speed from which on it is followed here.

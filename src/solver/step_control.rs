@@ -199,7 +199,6 @@ impl TrialStep for RockTrial<'_, '_> {
     fn try_step(&mut self, dt: f64) -> TryOutcome {
         // memories that came up in a try that failed have never been
         self.state.histories.truncate(self.known);
-        self.state.impact.try_anew();
         let Some((end, error)) = attempt(self.world, self.control, self.state, dt, self.omega)
         else {
             return TryOutcome::Unsettled;
@@ -322,6 +321,6 @@ pub(crate) fn accept(
         }
     }
     state.histories.retain(|history| history.closed);
-    state.impact.accept_meeting(world.least_impact_m_s());
+    state.accept_meetings(world.least_impact_m_s());
     (state.c, state.v, state.w) = (end.c, end.v, end.w);
 }

@@ -137,6 +137,32 @@ fn impacts_in_a_world_are_accurate_relative_to_themselves() {
     }
 }
 
+/// A blow that runs through a row of rocks, the second and third a hair apart: where contacts act at the same time the default
+/// tolerance is right to 2 % of the blow's speed, from a block to a grain.
+#[test]
+fn a_blow_through_a_row_is_right_to_two_percent() {
+    for radius in [0.5, 0.01, 0.001] {
+        for (speed, gap) in [(0.2, 1e-9), (2.0, 1e-7), (2.0, 1e-4)] {
+            let still = ([0.0; 3], [0.0; 3]);
+            let at = |along: f64| [along * radius, 0.2, 20.0];
+            let t = 0.5 * radius / speed;
+            let rocks = [
+                (radius, DENSITY, at(-2.5), [speed, 0.0, 0.0], still.1),
+                (radius, DENSITY, at(0.0), still.0, still.1),
+                (radius, DENSITY, at(2.0 + gap), still.0, still.1),
+            ];
+            let usual = World { scheme: Scheme::Adaptive, tolerance_m_s: 0.05, ..WORLD };
+            let fine = World { scheme: Scheme::Reference, tolerance_m_s: 1e-7, ..WORLD };
+            let of = |world: World| world.run(&space(), &rocks, 3.0 * t).0;
+            let (usual, fine) = (of(usual), of(fine));
+            let off = apart(&usual, &fine) / speed;
+            println!("R {radius} m, {speed} m/s, gap {gap:e} R: {off:.1e}");
+            assert!(fine[2].end.velocity_m_s.x > 0.4 * speed, "the third is not struck");
+            assert!(off < 2e-2, "R {radius}, {speed} m/s: {off:e}");
+        }
+    }
+}
+
 /// Two pebbles that touch each other fall on the ground together: each rebounds as one alone does, to the same 2e-3.
 #[test]
 fn pebbles_side_by_side_rebound_like_one_alone() {

@@ -109,7 +109,6 @@ impl<'a, 'w, const C: usize> Among<'a, 'w, C> {
 
     /// Begins another try from the same state.
     pub(super) fn begin_try(&mut self) {
-        self.state.impact.try_anew();
         self.is_smooth = true;
     }
 

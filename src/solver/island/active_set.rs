@@ -14,8 +14,9 @@ pub(super) struct ActiveSet {
     pub(super) times: Vec<u32>,
     /// The count at which each rock's contacts with the mesh were solved …
     pub(super) contacts: Vec<u32>,
-    /// … and each contact of two rocks.
-    pub(super) pairs: Vec<[u32; 2]>,
+    /// … and each contact of two rocks: its rocks and their counts then. Kept here in a few bytes, because most contacts are only
+    /// passed over.
+    pairs: Vec<([u32; 2], [u32; 2])>,
     /// Rocks whose forces changed in the last sweep.
     pub(super) lately: Vec<bool>,
     /// Largest change in the current sweep and in the two before, relative to what is allowed.
@@ -24,13 +25,13 @@ pub(super) struct ActiveSet {
 
 impl ActiveSet {
     /// Nothing has been solved yet.
-    pub(super) fn begin(&mut self, rocks: usize, pairs: usize) {
+    pub(super) fn begin(&mut self, rocks: usize, pairs: impl Iterator<Item = [usize; 2]>) {
         self.times.clear();
         self.times.resize(rocks, 1);
         self.contacts.clear();
         self.contacts.resize(rocks, 0);
         self.pairs.clear();
-        self.pairs.resize(pairs, [0; 2]);
+        self.pairs.extend(pairs.map(|ends| (ends.map(|end| end as u32), [0; 2])));
         self.lately.clear();
         self.lately.resize(rocks, true);
         self.changes = [f64::INFINITY; 3];
@@ -59,6 +60,18 @@ impl ActiveSet {
         now <= SETTLED_AT_ONCE || knows && now <= 1.0 && now * share <= 1.0 - share
     }
 
+    /// Whether neither rock of pair `k` was set in another motion since its contact was solved.
+    pub(super) fn is_pair_settled(&self, k: usize) -> bool {
+        let (ends, seen) = self.pairs[k];
+        seen == ends.map(|end| self.times[end as usize])
+    }
+
+    /// The contact of pair `k` is solved for the motions of its rocks.
+    pub(super) fn see_pair(&mut self, k: usize) {
+        let (ends, seen) = &mut self.pairs[k];
+        *seen = ends.map(|end| self.times[end as usize]);
+    }
+
     /// Rock `k` has another motion: all its contacts must be asked again.
     pub(super) fn stir(&mut self, k: usize) {
         self.times[k] += 1;
@@ -74,12 +87,14 @@ mod tests {
     #[test]
     fn what_is_stirred_is_solved_again() {
         let mut stirred = ActiveSet::default();
-        stirred.begin(2, 1);
-        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
-        stirred.pairs[0] = [stirred.times[0], stirred.times[1]];
+        stirred.begin(2, [[0, 1]].into_iter());
+        assert!(!stirred.is_pair_settled(0));
+        stirred.see_pair(0);
+        assert!(stirred.is_pair_settled(0));
         stirred.stir(1);
-        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
-        stirred.begin(2, 1);
-        assert_ne!(stirred.pairs[0], [stirred.times[0], stirred.times[1]]);
+        assert!(!stirred.is_pair_settled(0));
+        stirred.see_pair(0);
+        stirred.begin(2, [[0, 1]].into_iter());
+        assert!(!stirred.is_pair_settled(0));
     }
 }

@@ -317,7 +317,6 @@ impl TrialStep for IslandTrial<'_, '_> {
     }
 
     fn try_step(&mut self, dt: f64) -> TryOutcome {
-        self.island.members.iter_mut().for_each(|member| member.state.impact.try_anew());
         let outcome = match self.island.attempt(self.control, dt) {
             None => TryOutcome::Unsettled,
             Some(error) if error <= 1.0 => {

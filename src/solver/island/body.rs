@@ -41,6 +41,10 @@ pub struct IslandBody {
     /// Local error allowed in lasting contact, and the speed of the fastest impact that goes on, 0 if none (m/s).
     pub(super) lasting_m_s: f64,
     pub(super) struck_m_s: f64,
+    /// How many it touches: other rocks, and the mesh as one.
+    pub(super) touching: u32,
+    /// The same of the one with most of it and those that it touches.
+    pub(super) crowd: u32,
     /// The stage's base `x* = x + h Σ a_ij f_j`, and the guess of the centre at its end (m).
     pub(super) base: End,
     pub(super) guess: Vec3,
@@ -123,6 +127,8 @@ impl IslandBody {
             was_touched: false,
             lasting_m_s: 0.0,
             struck_m_s: 0.0,
+            touching: 0,
+            crowd: 0,
             base: end,
             guess: c,
             free: zero,

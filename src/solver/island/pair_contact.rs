@@ -80,12 +80,14 @@ impl PairContact {
         })
     }
 
-    /// Begins as bodies come together at a speed (m/s): too slow to rebound, or an impact.
-    pub(super) fn begin(&mut self, approach_m_s: f64) {
-        self.captured = approach_m_s < self.law.capture_m_s;
+    /// Begins as bodies come together at a speed (m/s): too slow to rebound, or an impact. What begins while one of them is struck
+    /// at a speed (m/s, 0 if none is) is a part of that impact, however slow it is.
+    pub(super) fn begin(&mut self, approach_m_s: f64, struck_m_s: f64) {
+        let fastest_m_s = approach_m_s.max(struck_m_s);
+        self.captured = fastest_m_s < self.law.capture_m_s;
         self.normal = self.law.normal(self.captured);
         if !self.captured {
-            self.impact = PairImpact::begun(approach_m_s);
+            self.impact = PairImpact::begun(fastest_m_s);
         }
     }
 

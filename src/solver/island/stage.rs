@@ -19,6 +19,10 @@ use crate::solver::contact_state::ContactEnvironment;
 use crate::solver::stage::{AGREED, PASSES};
 use crate::solver::tableau::Tableau;
 
+/// Gap below which two rocks may press each other whatever their motion (–, relative to the smaller radius): far more than the
+/// passes of a stage leave open.
+const NEAR: f64 = 1e-6;
+
 impl Island<'_> {
     /// Solves implicit stage `i` of a step of length `h` and stores its rates.
     ///
@@ -68,14 +72,15 @@ impl Island<'_> {
 
     /// Makes contacts of the pairs of rocks that are near, based at the stage's base.
     ///
-    /// A pair within a tenth of the smaller radius is a candidate; whether it presses is found by
-    /// the solution.
+    /// A pair is a candidate if it may close within the stage by the motion with which that begins; whether it presses is found by
+    /// the solution. What is set in motion by others meanwhile is found in the next pass, with the guess that it has moved.
     fn place_pairs(&mut self, tableau: &Tableau, (i, h): (usize, f64)) {
+        let hh = tableau.diagonal * h;
         self.pairs.clear();
         for (k, pair_history) in self.pair_histories.iter().enumerate() {
             let [a, b] = [pair_history.a, pair_history.b].map(|k| &self.members[k as usize]);
-            // near pairs join early, with no force yet, so that sweeps see them close
-            let slack = 0.1 * a.body.radius.min(b.body.radius);
+            let passes_m = (a.base.v - b.base.v).norm() * hh;
+            let slack = NEAR * a.body.radius.min(b.body.radius) + 2.0 * passes_m;
             let bodies = [&a.body, &b.body];
             let Some(mut pair) =
                 PairContact::over(pair_history, bodies, [&a.guess, &b.guess], slack)
@@ -88,7 +93,8 @@ impl Island<'_> {
             pair.penetration -= apart;
             // a new contact: whether it rebounds is judged by the approach at the stage's base
             if !pair_history.is_held() {
-                pair.begin(-pair.n.dot(&(a.base.v - b.base.v)));
+                let struck_m_s = a.struck_m_s.max(b.struck_m_s);
+                pair.begin(-pair.n.dot(&(a.base.v - b.base.v)), struck_m_s);
             }
             // the remembered stretch is turned with the normal: the spring stays in the tangent plane
             let from = if pair_history.is_held() { pair_history.n } else { pair.n };
@@ -158,7 +164,8 @@ impl Island<'_> {
             };
             let motions = [(a.state.v, a.state.w), (b.state.v, b.state.w)];
             if !pair_history.is_held() {
-                pair.begin(-pair.speed([&motions[0], &motions[1]]));
+                let approach_m_s = -pair.speed([&motions[0], &motions[1]]);
+                pair.begin(approach_m_s, a.struck_m_s.max(b.struck_m_s));
                 pair_history.n = pair.n;
             }
             pair.shear = carry(pair_history.shear, &pair_history.n, &pair.n);

@@ -37,7 +37,7 @@ impl Island<'_> {
     /// cone nor that contacts do not pull.
     pub(super) fn settle(&mut self, h: f64) -> bool {
         self.drive(h);
-        self.stirred.begin(self.members.len(), self.pairs.len());
+        self.stirred.begin(self.members.len(), self.pairs.iter().map(|pair| pair.ends));
         // forces of the last stage were the first guess: a warm start
         for round in 0..JUMPS {
             if self.sweep_on(h) {
@@ -78,7 +78,7 @@ impl Island<'_> {
         if let Some(motions) = jump(&self.members, &self.pairs, &self.stirred.lately, h) {
             self.act_on(&motions, h);
             self.drive(h);
-            self.stirred.begin(self.members.len(), self.pairs.len());
+            self.stirred.begin(self.members.len(), self.pairs.iter().map(|pair| pair.ends));
         }
     }
 
@@ -164,12 +164,11 @@ impl Island<'_> {
 
     /// Takes the pair's own forces off both rocks, solves it, and puts the new ones on.
     fn sweep_pair(&mut self, k: usize, h: f64) {
-        let passes_over = self.passes_over();
-        let pair = &mut self.pairs[k];
-        let ends = pair.ends;
-        if passes_over && self.stirred.pairs[k] == ends.map(|end| self.stirred.times[end]) {
+        if self.passes_over() && self.stirred.is_pair_settled(k) {
             return;
         }
+        let pair = &mut self.pairs[k];
+        let ends = pair.ends;
         let before = (pair.normal_force, pair.shear_force);
         let mut motions: [Twist; 2] = ends.map(|end| self.members[end].now);
         if pair.acts() {
@@ -195,7 +194,7 @@ impl Island<'_> {
                 self.stirred.stir(end);
             }
         }
-        self.stirred.pairs[k] = ends.map(|end| self.stirred.times[end]);
+        self.stirred.see_pair(k);
     }
 
     /// Sets every force of rocks that jumped to what its law gives at their new motions.
