@@ -344,10 +344,10 @@ impl Plan {
         }
     }
 
-    /// The same plan with every impact followed step by step: the same motion within the error allowed.
+    /// The same plan with every impact followed step by step, of blocks by implicit stages: the same motion within the error allowed.
     #[must_use]
     pub fn without_kernels(mut self) -> Self {
-        self.step.plane_impacts = false;
+        self.step.impact_kernels = false;
         self
     }
 }

@@ -59,8 +59,9 @@ pub struct Settings {
     pub step_s: f64,
     /// `dda`: whether the shear spring remembers its stretch (false = as printed in the paper).
     pub shear_memory: bool,
-    /// Whether an impact on one plane is followed as a whole; if not, step by step like any other (`adaptive`, `reference`).
-    pub plane_impacts: bool,
+    /// Whether impacts have kernels of their own: those of spheres on one plane are followed as a whole, those of blocks by explicit stages;
+    /// if not, step by step like any other, and by implicit stages (`adaptive`, `reference`).
+    pub impact_kernels: bool,
     /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
     pub capture_speed_m_s: Option<f64>,
 }

@@ -191,7 +191,7 @@ pub fn world(scheme: Scheme, spheres: usize, (longest_s, before): (f64, Option<u
         tolerance_m_s: if scheme == Scheme::Rigid { 0.0 } else { TOLERANCE_M_S },
         step_s: if scheme == Scheme::Rigid { STEPS_S.1 } else { STEPS_S.0 },
         shear_memory: true,
-        plane_impacts: true,
+        impact_kernels: true,
         capture_speed_m_s: None,
     };
     let course = RunSettings {

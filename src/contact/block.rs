@@ -160,10 +160,12 @@ impl Placed<'_> {
         found: &mut Vec<BlockTouch>,
     ) {
         let along = edge.along.dot(&(self.pose.centre - edge.a)).clamp(0.0, edge.length);
-        if !self.is_near(&(edge.a + edge.along * along), reach) {
+        let nearest = edge.a + edge.along * along;
+        if !self.is_near(&nearest, reach) {
             return;
         }
-        for (part, ridge) in self.ridges() {
+        let low = self.low_corners(&nearest, reach);
+        for (part, ridge) in self.low_ridges(low) {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
             let Some((s, t)) = crossing((a, b - a), (edge.a, edge.along)) else { continue };
             if s <= 0.0 || s >= 1.0 || t <= 0.0 || t >= edge.length {
@@ -198,6 +200,10 @@ impl Placed<'_> {
         if !self.is_near(&peak.p, reach) {
             return;
         }
+        let low = self.low_corners(&peak.p, reach);
+        if low == 0 {
+            return;
+        }
         let own = self.pose.attitude.inverse_transform_vector(&(peak.p - self.pose.centre));
         let touches = |part: usize, normal: &Vec3| {
             let slack = self.slack(part, peak.feature);
@@ -206,7 +212,7 @@ impl Placed<'_> {
         let covered = |p: &Vec3, distance: f64| {
             peak.at_border && near.is_covered(terrain, &peak.p, p, distance)
         };
-        for (part, ridge) in self.ridges() {
+        for (part, ridge) in self.low_ridges(low) {
             let [a, b] = ridge.ends.map(|k| self.corners[usize::from(k)]);
             let s = (peak.p - a).dot(&(b - a)) / (b - a).norm_squared();
             let p = a + (b - a) * s;
@@ -250,6 +256,20 @@ impl Placed<'_> {
     fn is_near(&self, point: &Vec3, reach: f64) -> bool {
         let core = self.block.bound_m - self.block.ball_m;
         (point - self.pose.centre).norm_squared() <= (core + reach).powi(2)
+    }
+
+    /// The block's corners, bit by bit, that stand less than `reach` (m) off the plane through the nearest point of a part of the mesh,
+    /// square to the line to the block's centre. The part lies behind that plane, so what has no end among them is further away.
+    fn low_corners(&self, nearest: &Vec3, reach: f64) -> u64 {
+        let Some(up) = (self.pose.centre - nearest).try_normalize(0.0) else { return u64::MAX };
+        let level = up.dot(nearest) + reach + DIRECTION_SLACK * self.block.ball_m;
+        let bit = |(k, p): (usize, &Vec3)| u64::from(up.dot(p) < level) << k;
+        self.corners.iter().enumerate().map(bit).fold(0, std::ops::BitOr::bitor)
+    }
+
+    /// The block's edges with an end among such corners, with their numbers among its parts.
+    fn low_ridges(&self, low: u64) -> impl Iterator<Item = (usize, &Ridge)> {
+        self.ridges().filter(move |(_, ridge)| ridge.ends.iter().any(|end| low >> end & 1 != 0))
     }
 
     /// The block's edges with their numbers among its parts.

@@ -21,14 +21,14 @@ pub(super) fn in_force(solver: &SolverTable) -> Settings {
         tolerance_m_s: solver.tolerance_m_s.unwrap_or(tolerance_m_s),
         step_s: solver.step_s.unwrap_or(step_s),
         shear_memory: solver.shear_memory.unwrap_or(true),
-        plane_impacts: scheme.controls_error(),
+        impact_kernels: scheme.controls_error(),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
 }
 
 /// How an impact on one plane is followed, in words.
 pub(super) fn plane_impacts(step: &Settings) -> &'static str {
-    let followed = if step.plane_impacts {
+    let followed = if step.impact_kernels {
         "followed as a whole, in their own time; all others step by step"
     } else {
         "left out: every impact is followed step by step"
@@ -39,6 +39,15 @@ pub(super) fn plane_impacts(step: &Settings) -> &'static str {
         followed,
         "in no time: the limit of stiff springs",
     ])
+}
+
+/// What goes by explicit stages where rocks have shapes, in words; nothing where they take no time or the step is fixed.
+pub(super) fn block_impacts(step: &Settings) -> Option<&'static str> {
+    step.scheme.controls_error().then_some(if step.impact_kernels {
+        "impacts of blocks, in their own time; those of more than six contacts, and contacts that last, go by implicit stages"
+    } else {
+        "left out: every impact of a block goes by implicit stages"
+    })
 }
 
 /// Scheme and step in force, in words.

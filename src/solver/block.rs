@@ -31,7 +31,7 @@ use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
 use energy::hold_energy;
 use nalgebra::{Matrix3, Rotation3};
-use solve::{BlockContact, Mass, solve};
+use solve::{BlockContact, Mass, SWEEPS, solve};
 use springs::Springs;
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
@@ -239,7 +239,7 @@ impl Footing {
             self.contacts.clear();
             let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
             self.contacts.extend(wanted.iter().map(goal));
-            solve(&mass, &mut self.contacts, (v, w), rounding_m_s, &mut self.sweeps);
+            solve(&mass, &mut self.contacts, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
             thrown = moving.clone();
             thrown.take(&self.contacts, block.mass_kg);
             thrown.motion_j(block) <= before_j * (1.0 + ROUNDING)
@@ -310,7 +310,8 @@ impl Footing {
         let rounding_m_s =
             f64::EPSILON * moving.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
         let free = (v + weight, w);
-        let settled = solve(&mass, &mut self.contacts, free, rounding_m_s, &mut self.sweeps);
+        let settled =
+            solve(&mass, &mut self.contacts, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
         moving.v += weight;
         moving.take(&self.contacts, block.mass_kg);
         // the way of the step is that of the mean velocity, so this is just what the weight gives

@@ -24,17 +24,17 @@ use crate::contact::history::{ContactHistory, HISTORIES};
 use flow::{Among, SUMS};
 
 /// First step of an impact (rad of its oscillation).
-const FIRST: f64 = 0.3;
+pub(super) const FIRST: f64 = 0.3;
 /// Longest step (rad).
 /// Beyond about a radian the error estimate of the pair is no longer to be trusted.
-const LONGEST_RAD: f64 = 0.9;
+pub(super) const LONGEST_RAD: f64 = 0.9;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
-const KINKED: f64 = 0.3;
+pub(super) const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion).
 /// A larger one is no error of steps, and hiding it would hide a fault.
-const BALANCED: f64 = 0.1;
+pub(super) const BALANCED: f64 = 0.1;
 /// Shortest step (rad): a contact that begins within a step is met this exactly.
-const SHORTEST_RAD: f64 = 1e-9;
+pub(super) const SHORTEST_RAD: f64 = 1e-9;
 
 /// How far a step may go, and how exactly.
 #[derive(Debug, Clone, Copy)]

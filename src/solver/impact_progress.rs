@@ -4,7 +4,7 @@
 //! rolls, slides or rests, and implicit steps take over, whose length does not hang on `ω`.
 
 /// An impact is over after so long (rad), or goes on as lasting contact.
-const LASTS: f64 = 20.0;
+pub(super) const LASTS: f64 = 20.0;
 
 /// What an impact needs besides the rock's state.
 #[derive(Debug, Clone, Default)]

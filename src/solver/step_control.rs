@@ -75,8 +75,8 @@ pub struct Control {
     pub tolerance: f64,
     /// … and in an impact (–, relative to its speed).
     pub impact: f64,
-    /// Whether an impact on one plane is followed as a whole.
-    pub plane_impacts: bool,
+    /// Whether impacts have kernels of their own: on one plane as a whole, of blocks by explicit stages.
+    pub impact_kernels: bool,
 }
 
 /// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most.
@@ -99,7 +99,7 @@ impl Control {
             tableau,
             tolerance: lasting_m_s(settings, &world.body),
             impact,
-            plane_impacts: settings.plane_impacts,
+            impact_kernels: settings.impact_kernels,
         }
     }
 }
@@ -143,7 +143,7 @@ pub fn advance(
     // elsewhere
     if state.is_rebounding() {
         state.leave_plane(world);
-        if control.plane_impacts && state.bounce(world, control.impact, h_max, &mut done) {
+        if control.impact_kernels && state.bounce(world, control.impact, h_max, &mut done) {
             return Ok(done);
         }
         let omega = stiffest(world, state);

@@ -208,7 +208,7 @@ pub fn settings(scheme: Scheme, fineness: f64, capture_speed_m_s: Option<f64>) -
         tolerance_m_s: if by_tolerance { fineness } else { 0.0 },
         step_s: if by_tolerance { f64::INFINITY } else { fineness },
         shear_memory: true,
-        plane_impacts: true,
+        impact_kernels: true,
         capture_speed_m_s,
     }
 }

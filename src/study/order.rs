@@ -87,7 +87,7 @@ fn stepper(
         return Stepper::new(&settings(scheme, dt, None), world, grip);
     };
     Stepper::Controlled(
-        Control { tableau, tolerance: f64::INFINITY, impact: f64::INFINITY, plane_impacts: false },
+        Control { tableau, tolerance: f64::INFINITY, impact: f64::INFINITY, impact_kernels: false },
         dt,
     )
 }

@@ -98,6 +98,18 @@ const SAME: [&str; 5] = ["version", "file", "impacts", "orientation", "terrain"]
 /// Parts whose text is a name, a number or the user's own.
 const NAMES: [&str; 6] = ["scene", "file", "version", "gravity", "grounds", "catalogue"];
 
+/// The plans of the example of blocks with springs, with all kernels and with none.
+fn blocks_on_springs() -> [Plan; 2] {
+    let terrain = Path::new(env!("CARGO_MANIFEST_DIR")).join("terrain");
+    let text = fs::read_to_string("examples/blocks.toml").unwrap();
+    let text = text.replace("../terrain", terrain.to_str().unwrap()).replace("e8", "e10");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("blocks.toml");
+    fs::write(&file, text.replace("\"rigid\"", "\"adaptive\"")).unwrap();
+    let plan = || Plan::of_scene(&Scene::read(&file).unwrap()).unwrap();
+    [plan(), plan().without_kernels()]
+}
+
 /// What the plan of every example says is said in every language, part and text.
 #[test]
 fn every_plan_is_said_in_every_language() {
@@ -107,8 +119,8 @@ fn every_plan_is_said_in_every_language() {
     scenes.retain(|path| path.extension().is_some_and(|kind| kind == "toml"));
     scenes.sort();
     assert!(scenes.len() > 15, "{}", scenes.len());
-    for path in scenes {
-        let plan = Plan::of_scene(&Scene::read(&path).unwrap()).unwrap();
+    let plans = scenes.iter().map(|path| Plan::of_scene(&Scene::read(path).unwrap()).unwrap());
+    for plan in plans.chain(blocks_on_springs()) {
         for language in [Language::De, Language::Fr, Language::It] {
             let words = Words::of(language);
             for entry in plan.entries_for(plan.count) {

@@ -26,7 +26,7 @@ impl<'a> Episode<'a> {
             tolerance_m_s: case.tolerance_m_s,
             step_s: case.step_s,
             shear_memory: case.shear_memory,
-            plane_impacts: case.plane_impacts,
+            impact_kernels: case.impact_kernels,
             capture_speed_m_s: None,
         };
         Self {

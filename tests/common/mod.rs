@@ -59,7 +59,7 @@ pub struct Case {
     pub tolerance_m_s: f64,
     pub step_s: f64,
     pub shear_memory: bool,
-    pub plane_impacts: bool,
+    pub impact_kernels: bool,
     pub ground: Ground,
     pub rock: Rock,
     pub capture_speed_m_s: Option<f64>,
@@ -72,7 +72,7 @@ pub const CASE: Case = Case {
     tolerance_m_s: 1e-3,
     step_s: 1e-5,
     shear_memory: true,
-    plane_impacts: true,
+    impact_kernels: true,
     ground: GROUND,
     rock: ROCK,
     capture_speed_m_s: None,
@@ -100,7 +100,7 @@ impl Case {
             tolerance_m_s: self.tolerance_m_s,
             step_s: self.step_s,
             shear_memory: self.shear_memory,
-            plane_impacts: self.plane_impacts,
+            impact_kernels: self.impact_kernels,
             capture_speed_m_s: self.capture_speed_m_s,
         };
         let course = RunSettings {

@@ -61,7 +61,7 @@ impl World {
             tolerance_m_s: self.tolerance_m_s,
             step_s: self.step_s,
             shear_memory: true,
-            plane_impacts: true,
+            impact_kernels: true,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
         let course = RunSettings {

@@ -207,7 +207,7 @@ fn a_breaking_stem_spins_the_rock_no_more_than_it_can() {
             tolerance_m_s: case.tolerance_m_s,
             step_s: case.step_s,
             shear_memory: true,
-            plane_impacts: true,
+            impact_kernels: true,
             capture_speed_m_s: None,
         };
         let settings = RunSettings {

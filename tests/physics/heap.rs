@@ -52,7 +52,7 @@ impl World {
             tolerance_m_s: 1e-4,
             step_s: 1e-5,
             shear_memory: true,
-            plane_impacts: true,
+            impact_kernels: true,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
         let course = RunSettings {

@@ -45,6 +45,42 @@ fn a_lean_plan_gives_the_same_rocks_as_a_full_one() {
     }
 }
 
+/// The example of blocks with scheme `adaptive` and springs stiff enough for its speeds, by explicit stages or with everything kept.
+fn falls_of_blocks(is_lean: bool) -> Vec<Trajectory> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(here.join("examples/blocks.toml")).unwrap();
+    let text = text.replace("../terrain", here.join("terrain").to_str().unwrap());
+    let text = text.replace("e8", "e10").replace("\"rigid\"", "\"adaptive\"");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("blocks.toml");
+    std::fs::write(&file, text).unwrap();
+    let mut scene = Scene::read(&file).unwrap();
+    scene.release.count = 30;
+    let (terrain, _) = scene.read_terrain().unwrap();
+    let mut plan = Plan::compile(&scene, terrain).unwrap().keep_everything();
+    assert!(!plan.step.impact_kernels);
+    plan.step.impact_kernels = is_lean;
+    falls(&plan)
+}
+
+/// Explicit stages are what a plan leaves out with everything kept: the first impact of a block is the same within what both ways may err.
+/// Later ones are another matter: a block that tumbles doubles its errors from impact to impact.
+#[test]
+fn the_first_impacts_of_blocks_are_those_of_implicit_stages() {
+    let (lean, full) = (falls_of_blocks(true), falls_of_blocks(false));
+    let mut off: Vec<f64> = Vec::new();
+    for (lean, full) in lean.iter().zip(&full) {
+        let (own, other) = (&lean.impacts[0], &full.impacts[0]);
+        assert_eq!((own.time_s, own.speed_in_m_s), (other.time_s, other.speed_in_m_s));
+        off.push((own.speed_out_m_s - other.speed_out_m_s).abs() / own.speed_in_m_s);
+    }
+    off.sort_by(f64::total_cmp);
+    // the local error allowed is 2e-4 of the speed of the impact
+    assert!(off[15] < 4e-4 && off[27] < 2e-3, "{off:?}");
+    let steps = |all: &[Trajectory]| all.iter().map(|one| one.effort.steps).sum::<u64>();
+    assert!(steps(&lean) < steps(&full), "{} {}", steps(&lean), steps(&full));
+}
+
 fn touches(terrain: &Terrain, centre: &Vec3, radius: f64) -> Vec<ContactPoint> {
     let (mut near, mut touches) = (Neighbours::default(), ContactPoints::default());
     near.collect(terrain, centre, radius, 0.35 * radius, 0.1 * radius);

@@ -140,21 +140,21 @@ fn the_plane_kernel_is_the_general_law() {
         };
         let start =
             [[0.3, 0.2, ROCK.radius_m], [speed * steep.cos(), 0.0, -speed * steep.sin()], w];
-        let end = |scheme, plane_impacts| {
+        let end = |scheme, impact_kernels| {
             let tolerance_m_s = if scheme == Scheme::Reference { 1e-8 } else { 0.05 };
             let capture_speed_m_s = Some(0.02);
             let case =
-                Case { scheme, tolerance_m_s, plane_impacts, ground, capture_speed_m_s, ..CASE };
+                Case { scheme, tolerance_m_s, impact_kernels, ground, capture_speed_m_s, ..CASE };
             let run = case.run(&floor, start, 5e-3);
             assert!(run.ledger.rise_j <= 1e-9 * run.released_j, "{index}: {:?}", run.ledger);
             (run.end.velocity_m_s, run.end.spin_rad_s * ROCK.radius_m)
         };
         let (v, w) = end(Scheme::Reference, true);
-        for (k, plane_impacts) in [true, false].into_iter().enumerate() {
-            let (v1, w1) = end(Scheme::Adaptive, plane_impacts);
+        for (k, impact_kernels) in [true, false].into_iter().enumerate() {
+            let (v1, w1) = end(Scheme::Adaptive, impact_kernels);
             let off = (v1 - v).norm().max((w1 - w).norm()) / speed;
             if off > 1e-3 {
-                println!("{index} {plane_impacts} {off:e} steep {steep} speed {speed} {ground:?}");
+                println!("{index} {impact_kernels} {off:e} steep {steep} speed {speed} {ground:?}");
             }
             worst[k] = worst[k].max(off);
         }

@@ -54,7 +54,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
         tolerance_m_s: if scheme == Scheme::Reference { 1e-8 } else { 1e-3 },
         step_s: if scheme == Scheme::Dda { 1e-5 } else { 1e-2 },
         shear_memory: true,
-        plane_impacts: true,
+        impact_kernels: true,
         capture_speed_m_s: None,
     };
     let course = RunSettings {

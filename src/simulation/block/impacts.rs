@@ -80,8 +80,7 @@ impl Roll<'_> {
             return;
         }
         if let Some(speed) = to_facet_m_s {
-            history.captured = false;
-            history.approach_m_s = history.approach_m_s.max(speed);
+            history.rebound(speed);
         }
         if !history.captured {
             let struck = Struck {

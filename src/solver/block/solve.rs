@@ -12,7 +12,7 @@ use crate::solver::law::within;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// Sweeps over the contacts, at most.
-const SWEEPS: u32 = 300;
+pub(super) const SWEEPS: u32 = 300;
 /// Change of the body's momentum in a sweep, relative to the largest impulse, below which the sweeps have settled (–).
 const SETTLED: f64 = 1e-11;
 /// Turns of the direction of friction, at most, and the widest of them (rad).
@@ -234,17 +234,18 @@ impl BlockContact {
 ///
 /// What must settle is the motion of the body, not each impulse. Where there are more contacts than a rigid body can tell apart, what one asks
 /// may contradict what another asks, by rounding or by the little that a turn within the step moves two sticking points towards each other; the
-/// sweeps then shift impulse between them without end, and the body does not feel it. Goals are known to `rounding_m_s` (m/s) only.
+/// sweeps then shift impulse between them without end, and the body does not feel it. Goals are known to `rounding_m_s` (m/s) only, and
+/// there are at most so many sweeps.
 pub(crate) fn solve(
     mass: &Mass,
     contacts: &mut [BlockContact],
     (mut v, mut w): (Vec3, Vec3),
-    rounding_m_s: f64,
+    (rounding_m_s, most): (f64, u32),
     sweeps: &mut u64,
 ) -> bool {
     let alone = contacts.len() <= 1;
     let reach = contacts.iter().map(|contact| contact.lever.norm()).fold(0.0, f64::max);
-    for _ in 0..SWEEPS {
+    for _ in 0..most {
         *sweeps += 1;
         let (before, mut scale) = ((v, w), f64::MIN_POSITIVE);
         for contact in contacts.iter_mut() {

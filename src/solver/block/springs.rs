@@ -16,6 +16,7 @@
 
 mod controlled;
 mod dda;
+mod explicit;
 mod history;
 mod newton;
 mod stage;
@@ -33,6 +34,7 @@ use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
 use crate::solver::tableau::STAGES;
+use explicit::ImpactEnergy;
 pub(crate) use history::BlockHistory;
 use nalgebra::{Rotation3, Unit};
 
@@ -88,21 +90,40 @@ pub(crate) struct Springs {
     rates: [BlockRates; STAGES],
     /// Whether the first rate belongs to the present state.
     fresh: bool,
+    /// Whether the last look was at the present place.
+    seen: bool,
     /// Energy in the springs at the present state (J).
     stored_j: f64,
     /// The step to try next (s).
     h: f64,
     /// Fastest approach of the impacts that go on (m/s); 0 if none does.
     impact_m_s: f64,
+    /// Energy in the impact that is followed in its own time.
+    energy: Option<ImpactEnergy>,
     /// When the impacts that go on are over at the latest (s).
     pub(crate) until_s: f64,
     control: Option<Control>,
+}
+
+/// What a contact asks for at a motion, and how its shear spring goes on.
+struct SpringAnswer {
+    /// Normal force if it could pull (N).
+    pulls: f64,
+    /// Square of the shear force that there would be without a cap (N²).
+    asked2: f64,
+    /// Rate of the stretch (m/s).
+    shear_rate: Vec3,
 }
 
 impl Springs {
     /// The motion has been changed from outside.
     pub(crate) fn refresh(&mut self) {
         self.fresh = false;
+    }
+
+    /// What the last look has found is no longer what is there.
+    pub(crate) fn forget_look(&mut self) {
+        self.seen = false;
     }
 
     /// Whether nothing presses on the block any more.
@@ -153,6 +174,19 @@ impl SpringContact {
     fn take(&mut self, impulse: &Vec3, a: f64) {
         self.normal_force = self.n.dot(impulse) / a;
         self.shear_force = (self.n * self.n.dot(impulse) - impulse) / a;
+    }
+
+    /// Takes the forces that it has where its point moves by `u` (m/s).
+    fn press(&mut self, u: &Vec3) -> SpringAnswer {
+        let (up, shear) = (self.n.dot(u), &self.law.shear);
+        let normal = self.law.normal(self.captured);
+        let pulls = normal.pull_or_push(self.penetration.max(0.0), up);
+        self.normal_force = pulls.max(0.0);
+        let (slip, held) = (u - self.n * up, shear.held(self.shear));
+        let asked = held + shear.damped(slip);
+        self.shear_force = shear.capped(asked, self.normal_force);
+        let shear_rate = shear.relaxing(self.shear_force, held);
+        SpringAnswer { pulls, asked2: asked.norm_squared(), shear_rate }
     }
 
     /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).
@@ -211,7 +245,7 @@ impl Footing {
     ) {
         self.springs.histories.clear();
         self.touches.held.clear();
-        self.springs.impact_m_s = 0.0;
+        (self.springs.impact_m_s, self.springs.energy) = (0.0, None);
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.springs.known = 0;
         self.remember(world, (block, moving));
@@ -226,6 +260,7 @@ impl Footing {
         self.springs.control = control;
         self.springs.h = self.first_step_s(world);
         self.springs.refresh();
+        self.springs.seen = true;
     }
 
     /// Energy in the springs of the contacts of the last look (J), by what it belongs to.

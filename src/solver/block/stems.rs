@@ -89,5 +89,6 @@ impl Footing {
     fn fell(&mut self, stem: u32) {
         self.near.gone.push(stem);
         self.near.forget();
+        self.springs.forget_look();
     }
 }

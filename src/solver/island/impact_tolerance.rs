@@ -41,7 +41,7 @@ impl Island<'_> {
             tableau: if is_struck { &ESDIRK4 } else { usual },
             tolerance: self.tolerance,
             impact: relative,
-            plane_impacts: false,
+            impact_kernels: false,
         }
     }
 

@@ -78,7 +78,7 @@ fn rocks(
         tolerance_m_s: 1e-4,
         step_s: f64::INFINITY,
         shear_memory: true,
-        plane_impacts: true,
+        impact_kernels: true,
         capture_speed_m_s: None,
     };
     let rest = RestRule { speed_m_s: 0.02, time_s: 1.0 };

@@ -27,6 +27,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[orientation]", "Lage"),
     ("[shape]", "Form"),
     ("[impacts of blocks]", "Aufpralle von Blöcken"),
+    ("[explicit stages]", "explizite Stufen"),
     ("[cost of shape]", "Aufwand der Form"),
     ("[flat edges]", "flache Kanten"),
     ("[hollow edges]", "hohle Kanten"),
@@ -188,6 +189,14 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "computed for blocks, free rotation in closed form; left out for spheres, which look the same from every side",
         "gerechnet für Blöcke, freie Drehung in geschlossener Form; weggelassen für Kugeln, die von allen Seiten gleich aussehen",
+    ),
+    (
+        "impacts of blocks, in their own time; those of more than six contacts, and contacts that last, go by implicit stages",
+        "Aufpralle von Blöcken, in ihrer eigenen Zeit; solche mit mehr als sechs Kontakten, und Kontakte, die bleiben, gehen in impliziten Stufen",
+    ),
+    (
+        "every impact of a block goes by implicit stages",
+        "jeder Aufprall eines Blocks geht in impliziten Stufen",
     ),
     (
         "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves",

@@ -27,6 +27,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[orientation]", "orientation"),
     ("[shape]", "forme"),
     ("[impacts of blocks]", "chocs des blocs"),
+    ("[explicit stages]", "étapes explicites"),
     ("[cost of shape]", "coût de la forme"),
     ("[flat edges]", "arêtes plates"),
     ("[hollow edges]", "arêtes creuses"),
@@ -194,6 +195,14 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "computed for blocks, free rotation in closed form; left out for spheres, which look the same from every side",
         "calculée pour les blocs, rotation libre sous forme close\u{a0}; laissée de côté pour les sphères, les mêmes de tous côtés",
+    ),
+    (
+        "impacts of blocks, in their own time; those of more than six contacts, and contacts that last, go by implicit stages",
+        "chocs de blocs, en leur temps propre\u{a0}; ceux de plus de six contacts, et les contacts qui durent, vont par étapes implicites",
+    ),
+    (
+        "every impact of a block goes by implicit stages",
+        "chaque choc d’un bloc va par étapes implicites",
     ),
     (
         "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves",

@@ -27,6 +27,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[orientation]", "orientamento"),
     ("[shape]", "forma"),
     ("[impacts of blocks]", "urti dei blocchi"),
+    ("[explicit stages]", "stadi espliciti"),
     ("[cost of shape]", "costo della forma"),
     ("[flat edges]", "spigoli piani"),
     ("[hollow edges]", "spigoli concavi"),
@@ -191,6 +192,14 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     (
         "computed for blocks, free rotation in closed form; left out for spheres, which look the same from every side",
         "calcolato per i blocchi, rotazione libera in forma chiusa; tralasciato per le sfere, uguali da ogni lato",
+    ),
+    (
+        "impacts of blocks, in their own time; those of more than six contacts, and contacts that last, go by implicit stages",
+        "urti di blocchi, nel loro proprio tempo; quelli con più di sei contatti, e i contatti che durano, vanno per stadi impliciti",
+    ),
+    (
+        "every impact of a block goes by implicit stages",
+        "ogni urto di un blocco va per stadi impliciti",
     ),
     (
         "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves",

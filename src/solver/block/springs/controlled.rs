@@ -143,6 +143,15 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
         (control, most_s): (Control, f64),
     ) -> Result<(Stepped, u64), StepError> {
+        let springs = &mut self.springs;
+        springs.impact_m_s = springs.fastest_m_s().map_or(0.0, |own| own.max(springs.impact_m_s));
+        if self.is_followed(world, &control) {
+            let step = self.explicit_step(world, (block, moving), (&control, most_s))?;
+            if let Some(step) = step {
+                return Ok(step);
+            }
+        }
+        let beyond_j = self.balance(block, moving);
         if !self.springs.fresh {
             self.rates_now(world, (block, moving));
         }
@@ -175,7 +184,9 @@ impl Footing {
         let (next_h, end) = (trial.h, trial.end.ok_or(StepError::Unsettled)?);
         self.springs.h = next_h;
         *moving = end.moving;
-        let done = self.accept((block, moving), (&control, dt));
+        let mut done = self.accept((block, moving), (&control, dt));
+        done.loss.damping += beyond_j;
+        self.springs.grow_old(dt);
         self.check_depth(block)?;
         Ok((done, rejected))
     }
@@ -195,6 +206,7 @@ impl Footing {
         self.springs.stored_j = self.pressed_j((block, moving), way_s);
         self.springs.rates.swap(0, tableau.stages - 1);
         self.keep((block, moving), way_s);
+        self.springs.forget_look();
         let first = &mut self.springs.rates[0];
         (first.centre, first.turned) = (moving.v, moving.spin(block));
         self.springs.fresh = true;

@@ -43,6 +43,8 @@ pub(crate) struct BlockHistory {
     pub(super) impulse: Vec3,
     /// Speed of approach when it began (m/s).
     pub(crate) approach_m_s: f64,
+    /// How long it has gone on (rad of its oscillation).
+    pub(super) gone_rad: f64,
     /// Came in too slowly to rebound.
     pub(crate) captured: bool,
     /// Whether it presses.
@@ -61,6 +63,13 @@ impl BlockHistory {
     /// Which parts of block and mesh touch.
     pub(super) fn pair(&self) -> (u16, Feature) {
         (self.part, self.feature)
+    }
+
+    /// Rebounds after all, from an approach of `speed_m_s`: to a facet of rough ground.
+    pub(crate) fn rebound(&mut self, speed_m_s: f64) {
+        self.captured = false;
+        self.gone_rad = 0.0;
+        self.approach_m_s = self.approach_m_s.max(speed_m_s);
     }
 
     /// Goes on where the contact now is.
@@ -109,7 +118,6 @@ impl Footing {
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
     ) {
-        let mass = moving.mass(block);
         let mut of_touch = std::mem::take(&mut self.of_touch);
         of_touch.clear();
         for touch in &self.touches.found {
@@ -122,7 +130,7 @@ impl Footing {
                 let point = moving.pose.centre + touch.lever;
                 let near = self.springs.nearest(&touch, (&point, block.ball_m), &of_touch);
                 of_touch[k] = near.or_else(|| {
-                    let new = self.begin(world, (&mass, &touch), (block, moving));
+                    let new = self.begin(world, &touch, (block, moving));
                     Some(self.springs.add(&new))
                 });
             }
@@ -134,9 +142,10 @@ impl Footing {
     fn begin(
         &self,
         world: &ContactEnvironment,
-        (mass, touch): (&Mass, &BlockTouch),
+        touch: &BlockTouch,
         (block, moving): (&Block, &Moving),
     ) -> BlockHistory {
+        let mass = &moving.mass(block);
         let approach_m_s = -touch.normal.dot(&moving.at(block, &touch.lever));
         // what is born while an impact rebounds belongs to it, however slow it is
         let rebounds = self.springs.is_rebounding();
@@ -154,6 +163,7 @@ impl Footing {
             pressed_m: 0.0,
             impulse: Vec3::zeros(),
             approach_m_s,
+            gone_rad: 0.0,
             captured,
             closed: approach_m_s > 0.0 && touch.gap_m <= TOUCH * block.radius_m,
             slides: false,
@@ -190,6 +200,13 @@ impl super::Springs {
         let both = self.histories.iter().enumerate().filter(fits);
         let nearest = both.min_by(|one, other| away(one.1).total_cmp(&away(other.1)))?;
         (away(nearest.1) <= SAME_POINT * ball_m).then_some(nearest.0)
+    }
+
+    /// What begins with a step keeps, through it, the penetration that it began with.
+    pub(super) fn keep_offsets(&mut self) {
+        for contact in &self.contacts {
+            self.histories[contact.history].offset_m = contact.offset_m;
+        }
     }
 
     /// Adds a memory.

@@ -6,19 +6,21 @@
 
 use super::super::{Footing, Moving, ROUNDING_OF_SPEED, TOUCH, orthonormal};
 use super::newton::solve_springs;
-use super::{BlockRates, SpringContact, turn_by, turning};
+use super::{BlockRates, SpringAnswer, SpringContact, turn_by, turning};
 use crate::body::Block;
 use crate::contact::block::{BlockTouch, Pose};
 use crate::contact::history::carry;
 use crate::rock::Vec3;
-use crate::solver::block::solve::{Mass, solve};
+use crate::solver::block::solve::{Mass, SWEEPS, solve};
 use crate::solver::environment::ContactEnvironment;
 use crate::solver::loss::Loss;
 use crate::solver::stage::{AGREED, PASSES};
 use crate::solver::tableau::Tableau;
 
-/// So few contacts are swept (–).
+/// So few contacts are swept first (–) …
 const FEW: usize = 2;
+/// … but no more often than this: where friction outweighs the lever, sweeps hardly come nearer.
+const QUICK: u32 = 8;
 
 /// A block within a step.
 #[derive(Debug, Clone)]
@@ -172,14 +174,16 @@ impl Footing {
         let rounding_m_s = ROUNDING_OF_SPEED * (free_v.norm() + guess.v.norm());
         let free = (free_v, mass.inverse * stage.base.moving.momentum);
         let from = (pushed.v, mass.inverse * pushed.momentum);
-        // one or two contacts are swept faster
-        let few = self.contacts.len() <= FEW;
-        self.sweeps += 1;
-        if few || !solve_springs(&mass, &mut self.contacts, (free, from), rounding_m_s) {
+        // one or two contacts are swept faster, if they settle at all
+        let quick = (rounding_m_s, QUICK);
+        let settled = self.contacts.len() <= FEW
+            && solve(&mass, &mut self.contacts, from, quick, &mut self.sweeps);
+        self.sweeps += u64::from(!settled);
+        if !settled && !solve_springs(&mass, &mut self.contacts, (free, from), rounding_m_s) {
             for (contact, own) in self.contacts.iter_mut().zip(&self.springs.contacts) {
                 contact.impulse = self.springs.histories[own.history].impulse;
             }
-            solve(&mass, &mut self.contacts, from, rounding_m_s, &mut self.sweeps);
+            solve(&mass, &mut self.contacts, from, (rounding_m_s, SWEEPS), &mut self.sweeps);
         }
         for (contact, solved) in self.springs.contacts.iter_mut().zip(&self.contacts) {
             contact.take(&solved.impulse, act_s);
@@ -230,19 +234,14 @@ impl Footing {
             footing.springs.histories[k].shear
         });
         let springs = &mut self.springs;
+        springs.keep_offsets();
         let mut rate = std::mem::take(&mut springs.rates[0]);
         rate.shear.fill(Vec3::zeros());
         (rate.centre, rate.v, rate.loss) = (moving.v, world.body.gravity, Loss::default());
         (rate.turned, rate.momentum) = (moving.spin(block), Vec3::zeros());
         for contact in &mut springs.contacts {
-            let (law, n) = (contact.law, contact.n);
-            let u = Mass::at(&contact.lever, (&moving.v, &rate.turned));
-            let normal = law.normal(contact.captured);
-            contact.normal_force = normal.force(contact.penetration.max(0.0), n.dot(&u));
-            let (slip, held) = (u - n * n.dot(&u), law.shear.held(contact.shear));
-            let asked = held + law.shear.damped(slip);
-            contact.shear_force = law.shear.capped(asked, contact.normal_force);
-            let shear_rate = law.shear.relaxing(contact.shear_force, held);
+            let (n, u) = (contact.n, Mass::at(&contact.lever, (&moving.v, &rate.turned)));
+            let SpringAnswer { shear_rate, .. } = contact.press(&u);
             let force = n * contact.normal_force - contact.shear_force;
             rate.v += force / block.mass_kg;
             rate.momentum += contact.lever.cross(&force);

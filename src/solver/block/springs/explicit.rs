@@ -1,0 +1,309 @@
+//! An impact of a block, followed in its own time.
+//!
+//! As for spheres (`solver::explicit_impact`): while a contact rebounds it lasts about `π/ω`, and in units of `1/ω` nothing is stiff, so
+//! that an explicit pair of order five follows it in a handful of steps, where each implicit stage would cost passes over geometry and
+//! contacts. The error is controlled relative to the speed of the impact; a step is cut where friction begins to slip or to stick, where a
+//! contact lets go, and where a further one begins.
+//!
+//! Impacts with more contacts than there is room for, and those that last too long or come too slowly to rebound, go by the implicit
+//! stages.
+
+mod flow;
+
+use super::super::{Footing, Moving, Stepped, TOUCH, orthonormal};
+use crate::body::Block;
+use crate::contact::block::{BlockTouch, BlockTouches};
+use crate::ground::Law;
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::explicit_impact::{BALANCED, FIRST, KINKED, LONGEST_RAD, SHORTEST_RAD};
+use crate::solver::impact::LOCAL;
+use crate::solver::impact::dormand_prince::{Attempt, Stages, growth};
+use crate::solver::impact_progress::LASTS;
+use crate::solver::loss::Loss;
+use crate::solver::step_control::{Control, StepError};
+use flow::{BlockFlow, ErrorScale, SUMS};
+
+/// A contact that lets go is left behind in this times the time that its speed takes (–).
+const LETS_GO: f64 = 1.2;
+/// Penetration that is rounding of places (–, relative to the radius of the sphere of equal volume).
+const ROUNDING_OF_PLACE: f64 = 1e-11;
+/// Tries that are cut where a contact begins, at most; after them it presses from where it is found.
+const ONSETS: u32 = 6;
+/// Contacts with room of their own: the usual case, and the most that are followed here.
+const FEW_PRESS: usize = 2;
+const MOST_PRESS: usize = 6;
+
+/// What becomes of the energy in an impact.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ImpactEnergy {
+    /// What the steps have gained by themselves (J).
+    gained_j: f64,
+    /// What contacts have taken, with what their springs held before it (J).
+    taken_j: f64,
+}
+
+/// How far a step may go, and how exactly.
+#[derive(Debug, Clone, Copy)]
+struct ImpactBounds {
+    scale: ErrorScale,
+    /// Longest step that cannot jump over a feature (s), and longest step asked for (s).
+    limit: f64,
+    h_max: f64,
+}
+
+/// An accepted step.
+struct ExplicitStep {
+    end: Moving,
+    dt: f64,
+    /// What it took, what springs store counted in.
+    loss: Loss,
+}
+
+impl Footing {
+    /// Whether the present contacts are those of an impact that is followed in its own time.
+    pub(super) fn is_followed(&self, world: &ContactEnvironment, control: &Control) -> bool {
+        let springs = &self.springs;
+        let least_m_s = world.least_impact_m_s();
+        control.impact_kernels
+            && springs.histories.len() <= MOST_PRESS
+            && springs.histories.iter().any(|one| {
+                one.closed
+                    && !one.captured
+                    && one.gone_rad < LASTS
+                    && one.approach_m_s > least_m_s
+            })
+            // a shear spring without a dashpot has a stretch, not a rate, of its own
+            && springs.histories.iter().all(|one| !one.law.shear.is_on() || one.law.shear.is_damped())
+    }
+
+    /// One accepted step of an impact of at most `most_s`, and the tries thrown away; `None` if there is no room for its contacts.
+    ///
+    /// # Errors
+    /// [`StepError`] if the motion is no longer finite, or a spring is pressed in too far.
+    pub(super) fn explicit_step(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+        (control, most_s): (&Control, f64),
+    ) -> Result<Option<(Stepped, u64)>, StepError> {
+        let omega = self.springs.stiffest(world);
+        let allowed = LOCAL * control.impact * self.springs.impact_m_s;
+        let begins_m = (allowed / omega).max(ROUNDING_OF_PLACE * block.radius_m);
+        let limit = Self::travel_limit_s(world, (block, moving)).min(LONGEST_RAD / omega);
+        let scale = ErrorScale { omega, allowed, begins_m };
+        let bounds = ImpactBounds { scale, limit, h_max: most_s };
+        if self.springs.is_new() {
+            self.springs.h = FIRST / omega;
+        }
+        let start = moving.clone();
+        let mut rejected = 0;
+        let mut step = None;
+        if self.springs.histories.len() <= FEW_PRESS {
+            step = self.step_among::<FEW_PRESS, { 12 + 3 * FEW_PRESS }, { 2 * FEW_PRESS }>(
+                world,
+                (block, &start),
+                &bounds,
+                &mut rejected,
+            )?;
+        }
+        if step.is_none() {
+            step = self.step_among::<MOST_PRESS, { 12 + 3 * MOST_PRESS }, { 2 * MOST_PRESS }>(
+                world,
+                (block, &start),
+                &bounds,
+                &mut rejected,
+            )?;
+        }
+        let Some(step) = step else { return Ok(None) };
+        let (lifted, before_j) = (step.end.pose.centre - start.pose.centre, start.motion_j(block));
+        *moving = step.end;
+        self.keep((block, moving), 0.0);
+        self.springs.grow_old(step.dt);
+        let stored_j = self.springs.stored_j;
+        self.springs.stored_j =
+            self.springs.contacts.iter().map(super::SpringContact::stored_j).sum();
+        self.springs.refresh();
+        self.springs.seen = self.sees_the_same(block);
+        // what springs store is counted among the losses until they give it back
+        let lifted_j = -block.mass_kg * world.body.gravity.dot(&lifted);
+        let taken_j = step.loss.sum();
+        let energy =
+            self.springs.energy.get_or_insert(ImpactEnergy { gained_j: 0.0, taken_j: stored_j });
+        energy.gained_j += moving.motion_j(block) + lifted_j + taken_j - before_j;
+        energy.taken_j += taken_j;
+        let mut done = Stepped { dt: step.dt, loss: step.loss, ..Stepped::default() };
+        done.slides = self.springs.histories.iter().any(|history| history.slides);
+        let left_s = most_s - step.dt;
+        done.dt += self.let_go(world, (block, moving), left_s);
+        done.is_free = self.springs.is_free();
+        if done.is_free {
+            done.loss.damping += self.balance(block, moving);
+        }
+        self.check_depth(block)?;
+        Ok(Some((done, rejected)))
+    }
+
+    /// Tries steps with room for `C` contacts until one is accurate; `None` if there are more of them.
+    ///
+    /// A try that is cut at a kink or where a contact begins is shorter, not wrong.
+    fn step_among<const C: usize, const N: usize, const P: usize>(
+        &mut self,
+        world: &ContactEnvironment,
+        on: (&Block, &Moving),
+        bounds: &ImpactBounds,
+        rejected: &mut u64,
+    ) -> Result<Option<ExplicitStep>, StepError> {
+        let ImpactBounds { scale, limit, h_max } = *bounds;
+        let mut h = self.springs.h;
+        let mut flow = BlockFlow::<C>::new(world, self, on, scale);
+        let y = flow.begin::<N>();
+        let mut stages = Stages::<N, SUMS, P>::NONE;
+        flow.rates_of(0, &y, stages.first());
+        flow.settle_contacts();
+        let (before, mut onsets, mut is_open) = (flow.stored_j(), 0, false);
+        loop {
+            let wished = h.min(limit);
+            let dt = wished.min(h_max);
+            let is_short = dt * scale.omega < SHORTEST_RAD;
+            flow.begin_try(dt, is_open || is_short);
+            let felt = (!is_short).then_some(scale.allowed);
+            let attempt = stages.step(&mut flow, &y, dt, felt);
+            if flow.is_crowded {
+                flow.footing.springs.histories.truncate(flow.footing.springs.known);
+                return Ok(None);
+            }
+            *rejected += 1;
+            if let Some(share) = flow.onset {
+                onsets += 1;
+                is_open = share <= 0.0 || onsets >= ONSETS;
+                h = if share > 0.0 { dt * share } else { dt };
+                continue;
+            }
+            let tried = match attempt {
+                Attempt::Whole(tried) => tried,
+                Attempt::Cut(share) => {
+                    h = dt * share;
+                    continue;
+                }
+            };
+            let error2 = tried.error2 * if flow.is_smooth { 1.0 } else { 1.0 / (KINKED * KINKED) };
+            if error2 <= 1.0 || is_short {
+                if !error2.is_finite() {
+                    return Err(StepError::NotFinite);
+                }
+                *rejected -= 1;
+                // cut short from outside: the step that was wished for stays
+                let least = if dt < wished { wished } else { 0.0 };
+                let stored = before.zip(flow.stored_j()).filter(|_| flow.is_smooth);
+                let mut end = flow.moving;
+                self.springs.h = (dt * growth(error2)).max(least);
+                end.pose.attitude = orthonormal(&end.pose.attitude);
+                return Ok(Some(ExplicitStep { end, dt, loss: summed(&tried.q, stored) }));
+            }
+            let grown = if error2.is_finite() { growth(error2) } else { 0.2 };
+            h = dt * grown.min(0.9);
+        }
+    }
+
+    /// Whether the contacts found at the step's end are those that a look would find now, as the pairs that press have changed.
+    fn sees_the_same(&self, block: &Block) -> bool {
+        let BlockTouches { found, held, .. } = &self.touches;
+        let holds = |touch: &BlockTouch| held.contains(&(touch.part, touch.feature));
+        found.iter().all(|touch| block.core.is_corner(touch.part) || holds(touch))
+    }
+
+    /// Flies out of contacts that push no more, if that takes no longer than `longest_s` and nothing else is in the way there; how long it
+    /// took (s). What still hangs on the contacts has no force, so that the motion is that of a free body.
+    fn let_go(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+        longest_s: f64,
+    ) -> f64 {
+        let (gravity, clear_m) = (world.body.gravity, 2.0 * TOUCH * block.radius_m);
+        let mut out_s: f64 = 0.0;
+        for (contact, touch) in self.springs.contacts.iter().zip(&self.touches.found) {
+            let up_m_s = contact.n.dot(&moving.at(block, &contact.lever));
+            let weight = contact.n.dot(&gravity).min(0.0);
+            // weight takes less than half of the speed by then
+            let own_s = LETS_GO * (clear_m - touch.gap_m).max(0.0) / up_m_s;
+            let leaves = contact.normal_force <= 0.0
+                && up_m_s > 0.0
+                && contact.law.lets_go(up_m_s, 2.0 * weight, own_s);
+            if !leaves {
+                return 0.0;
+            }
+            out_s = out_s.max(own_s);
+        }
+        let limit_s = Self::travel_limit_s(world, (block, moving));
+        if out_s <= 0.0 || out_s > longest_s.min(limit_s) {
+            return 0.0;
+        }
+        let mut out = moving.clone();
+        out.drift(block, out_s);
+        out.pose.centre += gravity * (0.5 * out_s * out_s);
+        out.v += gravity * out_s;
+        self.look_at_all(world, (block, &out.pose), TOUCH * block.radius_m);
+        if !self.touches.found.is_empty() {
+            self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+            return 0.0;
+        }
+        *moving = out;
+        self.springs.histories.clear();
+        out_s
+    }
+
+    /// Gives motion back what the steps of the impact have lost by themselves, or takes what they have gained: what is left of the energy is
+    /// what came in less what the contacts took. Velocity and momentum are scaled by one factor, so that the direction of the
+    /// rebound stays. What springs would have given beyond what they had (J) is none: contacts have taken that much more.
+    pub(super) fn balance(&mut self, block: &Block, moving: &mut Moving) -> f64 {
+        let Some(energy) = self.springs.energy.take() else { return 0.0 };
+        let beyond_j = (self.springs.stored_j - energy.taken_j).max(0.0);
+        let (gained_j, motion_j) = (energy.gained_j + beyond_j, moving.motion_j(block));
+        if gained_j == 0.0 || gained_j.abs() >= BALANCED * motion_j {
+            return 0.0;
+        }
+        let kept = (1.0 - gained_j / motion_j).sqrt();
+        moving.v *= kept;
+        moving.momentum *= kept;
+        self.springs.refresh();
+        beyond_j
+    }
+}
+
+/// The losses of a step from its sums. Where the same springs push from its start to its end, what they store is known exactly and takes
+/// the place of its sum.
+fn summed(sums: &[f64; SUMS], stored: Option<(Loss, Loss)>) -> Loss {
+    let [friction, damping, trees, stores, tree_stores] = *sums;
+    let mut loss = Loss { friction, damping, trees, ..Loss::default() };
+    if let Some((before, after)) = stored {
+        loss.damping -= stores;
+        loss.trees -= tree_stores;
+        loss.add(&after, 1.0);
+        loss.add(&before, -1.0);
+    }
+    loss
+}
+
+impl super::Springs {
+    /// Whether the impact that goes on has just begun.
+    fn is_new(&self) -> bool {
+        let mut impacts = self.histories.iter().filter(|one| one.closed && !one.captured);
+        impacts.all(|one| one.gone_rad <= 0.0)
+    }
+
+    /// The contacts have gone on for `dt` (s).
+    pub(super) fn grow_old(&mut self, dt: f64) {
+        for history in &mut self.histories {
+            history.gone_rad += dt * Law::omega_rad_s(&history.law);
+        }
+    }
+}
+
+impl super::SpringContact {
+    /// Energy in its springs (J).
+    fn stored_j(&self) -> f64 {
+        let shear2 = if self.penetration > 0.0 { self.shear.norm_squared() } else { 0.0 };
+        self.law.stored_j(self.penetration.max(0.0), shear2, 0.0)
+    }
+}

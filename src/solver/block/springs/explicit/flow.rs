@@ -1,0 +1,278 @@
+//! Rates of a block and of the springs of its contacts, wherever it is and however it is turned.
+//!
+//! ```text
+//! c' = v,   θ' = ω − θ×ω/2 + …,   v' = g + Σ (F n − q)/m,   ℓ' = Σ a × (F n − q)
+//! ξ' of each contact from its slider,   F ≥ 0 by spring and dashpot,   |q| ≤ μ F
+//! ```
+//!
+//! `θ` is the rotation vector since the step's start, so levers and normals are those of every stage. Which contacts press is settled at the
+//! step's start: one that comes up on the way presses nothing until the step has been cut where it begins, so that within a step the
+//! right side has no jump and the pair's own estimate of the error holds.
+
+use super::super::{SpringContact, turn_by, turning};
+use crate::body::Block;
+use crate::contact::Feature;
+use crate::contact::block::Pose;
+use crate::contact::history::carry;
+use crate::rock::Vec3;
+use crate::solver::block::{Footing, Moving, TOUCH};
+use crate::solver::environment::ContactEnvironment;
+use crate::solver::impact::dormand_prince::{Flow, NODES, Rates, put, three};
+use crate::solver::loss::Loss;
+use nalgebra::Matrix3;
+
+/// Where the way of the centre begins among the numbers that change; rotation vector, velocity, momentum and the springs follow.
+const WAY: usize = 0;
+const TURNED: usize = 3;
+const V: usize = 6;
+const MOMENTUM: usize = 9;
+const SPRINGS: usize = 12;
+/// What is summed up: losses by friction, damping and to trees, and what normal springs of slope and trees take up.
+pub(super) const SUMS: usize = 5;
+/// A contact that seems to have begun so near to the step's start has not come up by the way: it popped up, and presses at once (–).
+const POPPED: f64 = 0.02;
+
+/// What errors are measured by.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ErrorScale {
+    /// Stiffest contact (rad/s).
+    pub(super) omega: f64,
+    /// Local error allowed (m/s).
+    pub(super) allowed: f64,
+    /// Penetration (m) up to which a contact that comes up need not be met more exactly.
+    pub(super) begins_m: f64,
+}
+
+/// A block with up to `C` contacts that press; a contact keeps the place of its memory.
+pub(super) struct BlockFlow<'a, 'w, const C: usize> {
+    world: &'a ContactEnvironment<'w>,
+    pub(super) footing: &'a mut Footing,
+    block: &'a Block,
+    start: &'a Moving,
+    /// Inverse inertia at the step's start (1/(kg m²)).
+    inverse: Matrix3<f64>,
+    scale: ErrorScale,
+    /// Memories at the step's start; before the first look, any number.
+    known: usize,
+    /// Pairs of features that touch at the step's start, as many as there are places for.
+    first: [(u16, Feature); C],
+    /// Length of the try (s), and whether what comes up in it presses at once.
+    dt: f64,
+    is_open: bool,
+    /// Where in the try a further contact begins (–), if one does.
+    pub(super) onset: Option<f64>,
+    /// Whether there were more contacts than places.
+    pub(super) is_crowded: bool,
+    /// Whether the try has met the same pairs of features throughout.
+    pub(super) is_smooth: bool,
+    /// The block at the state last asked for.
+    pub(super) moving: Moving,
+}
+
+impl<'a, 'w, const C: usize> BlockFlow<'a, 'w, C> {
+    pub(super) fn new(
+        world: &'a ContactEnvironment<'w>,
+        footing: &'a mut Footing,
+        (block, start): (&'a Block, &'a Moving),
+        scale: ErrorScale,
+    ) -> Self {
+        // what touches at the start and is not yet known begins there
+        footing.springs.known = footing.springs.histories.len();
+        Self {
+            world,
+            footing,
+            block,
+            start,
+            inverse: start.mass(block).inverse,
+            scale,
+            known: usize::MAX,
+            first: [(0, Feature::NONE); C],
+            dt: 0.0,
+            is_open: false,
+            onset: None,
+            is_crowded: false,
+            is_smooth: true,
+            moving: start.clone(),
+        }
+    }
+
+    /// The present state. Way and rotation vector count from the step's start: map coordinates would cost digits.
+    pub(super) fn begin<const N: usize>(&self) -> [f64; N] {
+        let mut y = [0.0; N];
+        put(&mut y, V, &self.start.v);
+        put(&mut y, MOMENTUM, &self.start.momentum);
+        for (k, history) in self.footing.springs.histories.iter().enumerate().take(C) {
+            put(&mut y, SPRINGS + 3 * k, &history.shear);
+        }
+        y
+    }
+
+    /// The contacts of the first look are those that press.
+    pub(super) fn settle_contacts(&mut self) {
+        self.known = self.footing.springs.histories.len();
+        self.footing.springs.known = self.known;
+        self.footing.springs.keep_offsets();
+        for (first, touch) in self.first.iter_mut().zip(&self.footing.touches.found) {
+            *first = (touch.part, touch.feature);
+        }
+    }
+
+    /// Begins another try, of length `dt` (s), from the same state; what comes up in it presses at once if it `is_open`.
+    pub(super) fn begin_try(&mut self, dt: f64, is_open: bool) {
+        self.footing.springs.histories.truncate(self.known);
+        (self.dt, self.is_open, self.onset, self.is_smooth) = (dt, is_open, None, true);
+    }
+
+    /// Energy in the normal springs at the state last asked for (J), if all of them push.
+    ///
+    /// Where a contact pulls or hangs free its spring relaxes by itself, and the sums must tell.
+    pub(super) fn stored_j(&self) -> Option<Loss> {
+        let contacts = &self.footing.springs.contacts;
+        if contacts.is_empty() || contacts.iter().any(|contact| contact.normal_force <= 0.0) {
+            return None;
+        }
+        let mut stored = Loss::default();
+        for contact in contacts {
+            let normal = contact.law.normal(contact.captured);
+            let damping = normal.stored_j(contact.penetration.max(0.0));
+            let one = Loss { damping, ..Loss::default() };
+            stored.add(&one.on(self.world, contact.triangle), 1.0);
+        }
+        Some(stored)
+    }
+
+    /// The block at a state, and its rotation vector since the step's start (rad).
+    fn at<const N: usize>(&self, y: &[f64; N]) -> (Moving, Vec3) {
+        let turned = three(y, TURNED);
+        let pose = Pose {
+            centre: self.start.pose.centre + three(y, WAY),
+            attitude: turn_by(&turned) * self.start.pose.attitude,
+        };
+        (Moving { pose, v: three(y, V), momentum: three(y, MOMENTUM) }, turned)
+    }
+
+    /// Notes down where a contact begins that has come up by stage `node`, moving apart with `up_m_s` (m/s).
+    fn note_onset(&mut self, node: usize, penetration_m: f64, up_m_s: f64) {
+        if penetration_m <= self.scale.begins_m {
+            return;
+        }
+        let reached = NODES[node];
+        // half of what is allowed behind its beginning, so that the next step begins with it
+        let since_s = (penetration_m - 0.5 * self.scale.begins_m) / -up_m_s;
+        let share = reached - since_s / self.dt;
+        let comes = up_m_s < 0.0 && share > POPPED;
+        let share = if comes { share.min(reached) } else { 0.0 };
+        self.onset = Some(self.onset.map_or(share, |before: f64| before.min(share)));
+    }
+
+    /// Writes the rates at `y`, a state of stage `node`, over `rates`; contacts are those of `y` then.
+    pub(super) fn rates_of<const N: usize, const P: usize>(
+        &mut self,
+        node: usize,
+        y: &[f64; N],
+        rates: &mut Rates<N, SUMS, P>,
+    ) {
+        *rates = Rates::NONE;
+        // the try is cut where a contact begins: what comes later is thrown away
+        if self.onset.is_some() {
+            return;
+        }
+        let (moving, turned) = self.at(y);
+        self.touch_at(&moving, y);
+        let spin = moving.spin(self.block);
+        let mut contacts = std::mem::take(&mut self.footing.springs.contacts);
+        let (mut dv, mut torque) = (self.world.body.gravity, Vec3::zeros());
+        for contact in &mut contacts {
+            let u = moving.v + spin.cross(&contact.lever);
+            let place = contact.history;
+            if place >= self.known && !self.is_open {
+                self.note_onset(node, contact.penetration, contact.n.dot(&u));
+            } else if place < C {
+                let force = self.press(contact, &u, rates);
+                dv += force / self.block.mass_kg;
+                torque += contact.lever.cross(&force);
+            } else {
+                self.is_crowded = true;
+            }
+        }
+        self.footing.springs.contacts = contacts;
+        put(&mut rates.y, WAY, &moving.v);
+        put(&mut rates.y, TURNED, &turning(&turned, &spin));
+        put(&mut rates.y, V, &dv);
+        put(&mut rates.y, MOMENTUM, &torque);
+        self.moving = moving;
+    }
+
+    /// Looks for the contacts of the block at a state.
+    fn touch_at<const N: usize>(&mut self, moving: &Moving, y: &[f64; N]) {
+        let (world, block) = (self.world, self.block);
+        // where the step begins is where the one before has looked last
+        let sees = std::mem::take(&mut self.footing.springs.seen) && self.known == usize::MAX;
+        if !sees {
+            self.footing.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
+        }
+        self.footing.remember(world, (block, moving));
+        self.footing.place(world, (block, self.start, moving), 0.0, &|_, k| {
+            if k < C { three(y, SPRINGS + 3 * k) } else { Vec3::zeros() }
+        });
+        let found = &self.footing.touches.found;
+        let pairs = found.iter().map(|touch| (touch.part, touch.feature));
+        self.is_smooth &=
+            found.len() <= C && pairs.eq(self.first[..found.len().min(C)].iter().copied());
+    }
+
+    /// Force of a contact whose point moves by `u` (m/s); its spring, its losses and its kinks go into `rates`.
+    fn press<const N: usize, const P: usize>(
+        &self,
+        contact: &mut SpringContact,
+        u: &Vec3,
+        rates: &mut Rates<N, SUMS, P>,
+    ) -> Vec3 {
+        let pressing = contact.press(u);
+        let place = contact.history;
+        let memory = &self.footing.springs.histories[place];
+        let rate = carry(pressing.shear_rate, &contact.n, &memory.n);
+        put(&mut rates.y, SPRINGS + 3 * place, &rate);
+        let power = contact.power(self.world, u, &pressing.shear_rate);
+        let closing = -contact.n.dot(u);
+        let stores = contact.law.normal(contact.captured);
+        let stores = stores.storing_w(contact.penetration.max(0.0), closing);
+        // energy that goes into trees is counted apart, whatever takes it
+        let is_tree = self.world.terrain.is_tree(contact.triangle);
+        for (sum, power) in rates.q.iter_mut().zip([power.friction, power.damping, power.trees]) {
+            *sum += power;
+        }
+        rates.q[if is_tree { 4 } else { 3 }] += stores;
+        // in units of acceleration, so that times a step they are speeds
+        let by_mass = 1.0 / self.block.mass_kg;
+        let (pushes, cap) = (contact.normal_force, contact.law.shear.cap(contact.normal_force));
+        rates.kinks[2 * place] = [(pushes * by_mass).powi(2), (-pressing.pulls).max(0.0) * by_mass];
+        rates.kinks[2 * place + 1] = [pressing.asked2 * by_mass * by_mass, cap * by_mass];
+        contact.n * pushes - contact.shear_force
+    }
+}
+
+impl<const C: usize, const N: usize, const P: usize> Flow<N, SUMS, P> for BlockFlow<'_, '_, C> {
+    #[inline]
+    fn rates(&mut self, node: usize, y: &[f64; N], to: &mut Rates<N, SUMS, P>) {
+        self.rates_of(node, y, to);
+    }
+
+    /// Ways, turns and stretches times `ω`, spin times the largest radius, all in m/s. A spring that nothing presses on any more holds
+    /// nothing: how it relaxes does not matter.
+    #[inline]
+    fn size2(&self, off: &[f64; N]) -> f64 {
+        let ErrorScale { omega, allowed, .. } = self.scale;
+        let reach2 = self.block.bound_m.powi(2);
+        let pressed = self.footing.springs.contacts.iter();
+        let pressed = pressed.filter(|one| one.normal_force > 0.0 && one.history < C);
+        let ways2 = pressed
+            .map(|contact| three(off, SPRINGS + 3 * contact.history).norm_squared())
+            .fold(three(off, WAY).norm_squared(), f64::max)
+            .max(three(off, TURNED).norm_squared() * reach2);
+        let worst2 = (ways2 * omega * omega)
+            .max(three(off, V).norm_squared())
+            .max((self.inverse * three(off, MOMENTUM)).norm_squared() * reach2);
+        worst2 / (allowed * allowed)
+    }
+}
