@@ -10,8 +10,12 @@ mod slope;
 mod yearly;
 
 use allocation_counter::measure;
+use nalgebra::Rotation3;
+use rockfall::body::{Block, Shape, ShapeKind, Solid, eota};
+use rockfall::ground::Ground;
 use rockfall::hazard::{Barrier, CrossingRow, annual};
-use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, simulate};
+use rockfall::release::DrawnShape;
+use rockfall::simulation::{Keep, RunSettings, Scratch, Stop, simulate, simulate_block};
 use rockfall::solver::Scheme;
 use rockfall::study::bench::settings;
 use slope::{SCHEMES, Slope};
@@ -58,6 +62,54 @@ fn no_memory_is_taken_while_a_rock_falls() {
         }
         // it was not for want of a fall
         assert!(steps > 100 * rocks as u64 && leaps > 10 * rocks as u64, "{steps} {leaps}");
+    }
+}
+
+/// The same of blocks, in contact with springs and in the rigid limit.
+#[test]
+fn no_memory_is_taken_while_a_block_falls() {
+    let slope = Slope::of(10_000);
+    let surface = eota([1.0, 1.0, 0.5]);
+    let shape = Shape::of(&Solid::of(&surface), &surface.points, 0.1).expect("a body");
+    for (scheme, fineness) in SCHEMES {
+        if !matches!(scheme, Scheme::Adaptive | Scheme::Rigid) {
+            continue;
+        }
+        let step = settings(scheme, fineness, None);
+        let course: RunSettings = slope.course(&step);
+        let mut scratch = Scratch::default();
+        let mut fall = |index: usize| {
+            let mut release = slope.release(index);
+            let block = Block::new(&shape, &release.rock);
+            release.motion.position_m.z += block.bound_m - release.rock.radius_m;
+            let stiff = |ground: &Ground| Ground {
+                rolling_friction: 0.0,
+                normal_stiffness_n_m: 2e10,
+                shear_stiffness_n_m: 5e9,
+                ..*ground
+            };
+            release.grounds = release.grounds.iter().map(stiff).collect();
+            let attitude = Rotation3::from_euler_angles(index as f64, 0.7, 0.3);
+            let drawn = DrawnShape { kind: ShapeKind::Eota221, sides: [1.0; 2], block, attitude };
+            let random = rockfall::random::stream(7, rockfall::random::Purpose::Impacts, index);
+            let keep = Keep { path_step_s: None, impacts: false };
+            let mut steps = 0;
+            let taken = measure(|| {
+                let fallen =
+                    simulate_block(&course, (&release, &drawn), keep, random, &mut scratch);
+                assert!(!matches!(fallen.stop, Stop::Failed(_)), "{:?}", fallen.stop);
+                steps = fallen.effort.steps;
+            });
+            (taken, steps)
+        };
+        for index in 0..WARM {
+            fall(index);
+        }
+        for index in WARM..WARM + COUNTED {
+            let (taken, steps) = fall(index);
+            assert!(steps > 20, "it has hardly fallen");
+            assert_eq!(taken.count_total, 0, "{}, rock {index}: {taken:?}", scheme.name());
+        }
     }
 }
 

@@ -128,15 +128,16 @@ fn motion_of(inertia: [f64; 3], start: &Rotation3<f64>, momentum: &Vec3) -> TopM
     let own = start.inverse_transform_vector(momentum);
     // relative to the larger moment
     let near = |a: f64, b: f64| (a - b).abs() <= EQUAL * a.max(b);
-    let pair = [(1, 2, 0), (2, 0, 1), (0, 1, 2)].into_iter();
-    let equal: Vec<_> = pair.filter(|&(i, j, _)| near(inertia[i], inertia[j])).collect();
+    let pairs = [(1, 2, 0), (2, 0, 1), (0, 1, 2)].into_iter();
+    let mut equal = pairs.filter(|&(i, j, _)| near(inertia[i], inertia[j]));
+    let (first, second) = (equal.next(), equal.next());
     // a sphere's tensor: spin and angular momentum are parallel
-    if equal.len() > 1 {
+    if second.is_some() {
         return TopMotion::Steady(about, size / inertia[0]);
     }
     // Symmetric top: precession L/I_across about ℓ, and about its own axis the rest, ω₃ (1 −
     // I₃/I_across), written as a difference of two rates of like size.
-    if let [(across, _, along)] = equal[..] {
+    if let Some((across, _, along)) = first {
         let mut axis = Vec3::zeros();
         axis[along] = 1.0;
         let own_rate = own[along] / inertia[along] - own[along] / inertia[across];

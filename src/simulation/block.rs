@@ -14,6 +14,7 @@ use super::rest::RestCriterion;
 use super::settings::RunSettings;
 use super::{ShapeOf, Stop, Trajectory};
 use crate::body::Block;
+use crate::contact::block::BlockTouch;
 use crate::flight::Parabola;
 use crate::flight::block::{Tumble, first_touch};
 use crate::flight::top::Top;
@@ -211,12 +212,11 @@ impl Roll<'_> {
     fn strike(&mut self) -> bool {
         let (block, now_s) = (self.block, self.recorder.now.time_s);
         // touching contacts that approach faster than their ground captures: one impact, resolved together
-        let struck: Vec<_> = self
-            .footing
-            .touching(block)
-            .filter(|touch| Footing::is_struck(&self.world, (block, &self.moving), touch))
-            .copied()
-            .collect();
+        let mut struck = std::mem::take(&mut self.footing.struck);
+        struck.clear();
+        let is_struck =
+            |touch: &&BlockTouch| Footing::is_struck(&self.world, (block, &self.moving), touch);
+        struck.extend(self.footing.touching(block).filter(is_struck));
         for touch in &struck {
             // of the touching point, spin included: v + ω × r
             let velocity = self.moving.at(block, &touch.lever);
@@ -233,6 +233,7 @@ impl Roll<'_> {
         if let Some(touch) = fastest.filter(|_| self.scars.are_any()) {
             self.dig(touch.triangle, &touch.normal);
         }
+        self.footing.struck = struck;
         let broken_j = self.footing.break_stems(&self.world, block, &mut self.moving);
         self.recorder.ledger.trees_j += broken_j;
         let loss = self.footing.strike(&self.world, block, &mut self.moving);

@@ -70,6 +70,10 @@ pub(crate) struct Footing {
     pub(crate) near: Neighbours,
     pub(crate) touches: BlockTouches,
     contacts: Vec<BlockContact>,
+    /// Those of an impact, and the speed that each shall give back (m/s).
+    wanted: Vec<(BlockContact, f64)>,
+    /// Touches of an impact.
+    pub(crate) struck: Vec<BlockTouch>,
     /// Springs of its contacts, in the schemes that have them, and which belongs to each of the last look.
     pub(crate) springs: Springs,
     of_touch: Vec<Option<usize>>,
@@ -220,19 +224,18 @@ impl Footing {
             normal: facet.map_or(touch.normal, |turn| turn * touch.normal),
             ..*touch
         };
-        let wanted: Vec<(BlockContact, f64)> = self
-            .touching(block)
-            .map(|touch| {
-                let (law, touch) = (world.law(touch.triangle), &tilted(touch));
-                let back = if Self::is_struck(world, (block, moving), touch) {
-                    let speed = approach(touch);
-                    law.restitution_at(speed) * speed
-                } else {
-                    0.0
-                };
-                (self.contact(world, (&mass, touch), 0.0, Vec3::zeros()), back)
-            })
-            .collect();
+        let mut wanted = std::mem::take(&mut self.wanted);
+        wanted.clear();
+        wanted.extend(self.touching(block).map(|touch| {
+            let (law, touch) = (world.law(touch.triangle), &tilted(touch));
+            let back = if Self::is_struck(world, (block, moving), touch) {
+                let speed = approach(touch);
+                law.restitution_at(speed) * speed
+            } else {
+                0.0
+            };
+            (self.contact(world, (&mass, touch), 0.0, Vec3::zeros()), back)
+        }));
         let (before_j, rounding_m_s) = (moving.motion_j(block), ROUNDING_OF_SPEED * v.norm());
         let mut thrown = moving.clone();
         let mut try_with = |share: f64| {
@@ -252,6 +255,7 @@ impl Footing {
             }
             try_with(low);
         }
+        self.wanted = wanted;
         let after = (&thrown.v, &thrown.spin(block));
         let loss = self.booked(world, [(&v, &w), after], before_j - thrown.motion_j(block));
         *moving = thrown;

@@ -6,7 +6,6 @@
 
 use super::{Footing, Moving};
 use crate::body::Block;
-use crate::contact::block::BlockTouch;
 use crate::random::RandomStream;
 use crate::rock::Vec3;
 use crate::solver::environment::ContactEnvironment;
@@ -47,8 +46,10 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
     ) -> Option<(u32, f64)> {
         let (mass, motion_j) = (moving.mass(block), moving.motion_j(block));
-        let touching: Vec<BlockTouch> = self.touching(block).copied().collect();
-        touching.iter().find_map(|touch| {
+        let mut touching = std::mem::take(&mut self.struck);
+        touching.clear();
+        touching.extend(self.touching(block));
+        let broken = touching.iter().find_map(|touch| {
             let stem = stems.of_triangle(touch.triangle)?;
             let left_j = self.stem_load.left_j(stems, stem);
             let u = moving.at(block, &touch.lever);
@@ -59,7 +60,9 @@ impl Footing {
             contact.impulse = contact.yielding(&u, left_j)?;
             moving.take(&[contact], block.mass_kg);
             Some((stem, left_j))
-        })
+        });
+        self.struck = touching;
+        broken
     }
 
     /// After impulses with these losses: the stem that is touched has taken what went into contacts with trees. Where that is more
