@@ -4,7 +4,7 @@ use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual, settings};
 use crate::ground::Ground;
 use crate::release::{Releases, Where};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
-use crate::solver::Scheme;
+use crate::solver::{Scheme, Settings};
 use crate::solver::dda::own_restitution;
 use crate::terrain::Terrain;
 use crate::terrain::features::FeatureCount;
@@ -116,7 +116,7 @@ impl Plan {
             format!("{stems}, each whole again for the next rock")
         });
         list.line("flight", format!("leapt over: {}", never(flight)));
-        list.shapes(places_of_release.shapes(), orientation, step.scheme);
+        list.shapes(places_of_release.shapes(), orientation, step);
         list.touchable(&terrain.features.count);
         list.part("rolling friction", rolling, |()| "computed".to_owned());
         list.lines("rolling stops", rolling_stops.iter().cloned());
@@ -238,18 +238,19 @@ impl PlanList {
     }
 
     /// What shapes there are, and what they cost.
-    fn shapes(&mut self, shapes: &[String], orientation: &Part<Infallible>, scheme: Scheme) {
+    fn shapes(&mut self, shapes: &[String], orientation: &Part<Infallible>, step: &Settings) {
         if shapes.is_empty() {
             self.line("orientation", format!("left out: {}", never(orientation)));
             return;
         }
         self.lines("shape", shapes.iter().cloned());
         self.line("orientation", "computed for blocks, free rotation in closed form; left out for spheres, which look the same from every side");
-        self.line("impacts of blocks", if scheme.has_springs() {
+        self.line("impacts of blocks", if step.scheme.has_springs() {
             "contact by contact, each with springs of its own: its restitution is that of the ground for the mass that it moves"
         } else {
             "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part"
         });
+        self.line("steps of blocks", format!("no corner goes further than {} of its rounding in one", step.corner_way));
         self.line(
             "cost of shape",
             "a block is followed corner by corner and edge by edge: time grows with their number",

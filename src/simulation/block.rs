@@ -199,7 +199,8 @@ impl Roll<'_> {
         let (settings, block) = (self.settings.step, self.block);
         if !self.has_springs() {
             let most_s = settings.step_s.min(most_s);
-            return Ok(self.footing.step(&self.world, block, &mut self.moving, most_s));
+            let most = (most_s, settings.corner_way);
+            return Ok(self.footing.step(&self.world, block, &mut self.moving, most));
         }
         let on = (block, &mut self.moving);
         let (done, rejected) = self.footing.step_on_springs(&self.world, settings, on, most_s)?;

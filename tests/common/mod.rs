@@ -101,6 +101,7 @@ impl Case {
             step_s: self.step_s,
             shear_memory: self.shear_memory,
             plane_impacts: self.plane_impacts,
+            corner_way: rockfall::solver::CORNER_WAY,
             capture_speed_m_s: self.capture_speed_m_s,
         };
         let course = RunSettings {

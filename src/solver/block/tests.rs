@@ -1,6 +1,7 @@
 use super::*;
 
 mod cases;
+mod limit;
 mod slip;
 mod springs;
 mod yielding;
@@ -11,7 +12,7 @@ use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
 use crate::rock::Rock;
-use crate::solver::Settings;
+use crate::solver::{CORNER_WAY, Settings};
 use crate::solver::body::Body;
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
@@ -147,7 +148,8 @@ impl BlockRun {
                         break;
                     }
                 }
-                let done = footing.step(&world, &block, moving, self.step_s.min(longest_s - now));
+                let most = (self.step_s.min(longest_s - now), CORNER_WAY);
+                let done = footing.step(&world, &block, moving, most);
                 self.lost.add(&done.loss, 1.0);
                 self.steps += 1;
                 now += done.dt;
