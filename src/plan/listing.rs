@@ -4,8 +4,8 @@ use super::{EvaluationLine, Part, Paths, Plan, RestRule, annual, settings};
 use crate::ground::Ground;
 use crate::release::{Releases, Where};
 use crate::scene::{BarrierTable, InputFile, ObjectTable, Zone, ZonePlace, Zones};
-use crate::solver::{Scheme, Settings};
 use crate::solver::dda::own_restitution;
+use crate::solver::{Scheme, Settings};
 use crate::terrain::Terrain;
 use crate::terrain::features::FeatureCount;
 use crate::terrain::patches::Patched;
@@ -250,7 +250,10 @@ impl PlanList {
         } else {
             "contact by contact: restitution along the normal, none along the surface; normal and shear stiffness play no part"
         });
-        self.line("steps of blocks", format!("no corner goes further than {} of its rounding in one", step.corner_way));
+        self.line(
+            "steps of blocks",
+            format!("no corner goes further than {} of its rounding in one", step.corner_way),
+        );
         self.line(
             "cost of shape",
             "a block is followed corner by corner and edge by edge: time grows with their number",

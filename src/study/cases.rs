@@ -1,5 +1,6 @@
 //! The exact cases: one row each, with the scene, the exact solution and where it comes from.
 
+mod allowed;
 mod blocks;
 mod closed;
 pub(super) mod meshes;
@@ -9,7 +10,6 @@ mod thrown;
 
 use super::bench::{SETUP, Setup, settings, terrain};
 use super::finer::finer;
-use crate::math;
 use crate::rock::Vec3;
 use crate::simulation::{Scratch, Trajectory};
 use crate::solver::{Scheme, Settings};
@@ -47,7 +47,7 @@ pub enum CaseKind {
     Impact,
     /// Impacts on edges, one after the other: the motion is chaotic.
     Stairs,
-    /// Slaps of a face, one after the other: held against the rigid limit in every scheme.
+    /// Plastic slaps of a face, one after the other, in the rigid limit.
     Slaps,
 }
 
@@ -83,6 +83,11 @@ impl Case {
         (self.setup)(step.scheme.has_springs()).follow(terrain, step, scratch)
     }
 
+    /// Whether a scheme is held to it: plastic slaps of a face take no time in the rigid limit only.
+    pub fn is_for(&self, scheme: Scheme) -> bool {
+        self.kind != CaseKind::Slaps || !scheme.has_springs()
+    }
+
     /// Settings of a scheme for this case.
     pub fn settings(&self, scheme: Scheme, fineness: f64) -> Settings {
         let own = settings(scheme, fineness, Some(self.capture_speed_m_s));
@@ -114,57 +119,8 @@ impl Case {
         let worst = measures.iter().map(off).fold(0.0, f64::max);
         if measures.iter().any(|one| (one.of)(journey).is_nan()) { f64::INFINITY } else { worst }
     }
-
-    /// The error that a scheme may have (–) and why.
-    pub fn allowed(&self, step: &Settings) -> (f64, &'static str) {
-        let dda = (
-            self.half_omega_rad_s() * self.growth() * step.step_s,
-            "first order: half the contact oscillation per step",
-        );
-        let adaptive = if self.kind == CaseKind::Smooth {
-            (
-                0.5 * step.tolerance_m_s + 1e-9,
-                "only the first steps, which must resolve the springs, are as coarse as the local error allows",
-            )
-        } else {
-            (
-                0.2 * self.growth() * math::pow(step.tolerance_m_s, 2.0 / 3.0),
-                "second order under a third-order local error: tolerance to the power 2/3, times what the motion itself makes of an error",
-            )
-        };
-        let reference = (
-            self.growth() * (10.0 * step.tolerance_m_s + 3e-8),
-            "fourth order, and the nine digits of the exact value",
-        );
-        let rigid = if matches!(self.kind, CaseKind::Impact | CaseKind::Stairs) {
-            (3e-6, "an impact is followed to 2e-5 of its speed a step")
-        } else {
-            (
-                0.2 * step.step_s,
-                "first order where sliding turns into rolling or the rock lifts off",
-            )
-        };
-        let (most, why) = step.scheme.of([dda, adaptive, reference, rigid]);
-        let held_to_limit = self.kind == CaseKind::Slaps && step.scheme.has_springs();
-        if held_to_limit { (most + OFF_LIMIT, why) } else { (most, why) }
-    }
-
-    /// Half of `√(p_N/m)` of its rock (rad/s), at least that of the usual sphere.
-    fn half_omega_rad_s(&self) -> f64 {
-        let Setup { ground, rock, .. } = (self.setup)(true);
-        HALF_OMEGA_RAD_S.max(0.5 * (ground.normal_stiffness_n_m / rock.mass_kg()).sqrt())
-    }
-
-    /// How much the motion multiplies an error: every impact on an edge by about three.
-    fn growth(&self) -> f64 {
-        if self.kind == CaseKind::Stairs { 50.0 } else { 1.0 }
-    }
 }
 
-/// How far slaps on springs may be from those of the rigid limit (–): while the springs answer, the block turns on.
-const OFF_LIMIT: f64 = 1e-3;
-/// Half of `√(p_N/m)` of the cases' sphere of half a metre on springs of 1 GN/m (rad/s).
-const HALF_OMEGA_RAD_S: f64 = 420.0;
 /// Step (s) or tolerance (m/s) of each scheme at which the corners of blocks go as far as usual.
 const USUAL_FINENESS: [f64; 4] = [1e-5, 0.05, 1e-8, 0.01];
 /// Tolerance (m/s) of what stands in for an exact solution.

@@ -36,9 +36,11 @@ mod tests {
     /// Steps of a block get shorter with the setting; a sphere's setting has no corners.
     #[test]
     fn corners_go_with_the_steps() {
-        for (scheme, fineness, eighth) in
-            [(Scheme::Rigid, 0.01, 0.125), (Scheme::Dda, 1e-5, 0.125), (Scheme::Adaptive, 0.05, 0.5)]
-        {
+        for (scheme, fineness, eighth) in [
+            (Scheme::Rigid, 0.01, 0.125),
+            (Scheme::Dda, 1e-5, 0.125),
+            (Scheme::Adaptive, 0.05, 0.5),
+        ] {
             let own = settings(scheme, fineness, None);
             let way = finer(&own, 0.125, true).corner_way;
             assert!((way / (CORNER_WAY * eighth) - 1.0).abs() < 1e-12, "{scheme:?} {way}");

@@ -252,7 +252,6 @@ impl MeshRung {
     }
 }
 
-
 /// The releases in a few blocks.
 fn blocks(count: usize) -> impl Iterator<Item = Range<usize>> {
     let length = count.div_ceil(BLOCKS);

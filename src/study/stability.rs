@@ -152,9 +152,7 @@ impl Notes {
         capture_speed_m_s: Option<f64>,
     ) -> Trajectory {
         let step: Settings = settings(way.scheme, way.fineness, capture_speed_m_s);
-        let t0 = std::time::Instant::now();
         let journey = setup.follow(terrain, &step, &mut self.scratch);
-        if std::env::var_os("TIMES").is_some() { eprintln!("{} {} {setting} {:?} {} steps {} rej {:?}", self.case, way.scheme.name(), t0.elapsed(), journey.effort.steps, journey.effort.rejected, journey.stop); }
         let again = setup.follow(terrain, &step, &mut Scratch::default());
         let failed = matches!(journey.stop, Stop::Failed(_)) || !is_finite(&journey);
         let differs = !same_bits(&journey, &again);
@@ -192,7 +190,6 @@ pub fn study(done: impl Fn(&str)) -> Vec<CaseOutcome> {
     let mut notes = Notes::default();
     for (name, trial) in TRIALS {
         notes.case = name;
-        if std::env::var("TIMES").is_ok_and(|t| t == "1") && !name.contains("block") { continue; }
         for way in &WAYS {
             trial(way, &mut notes);
         }

@@ -267,7 +267,8 @@ fn a_block_is_slowed_as_the_ball_of_its_volume() {
     let kept = (-MEADOW.drag_per_m3(m) * swept).exp();
     for scheme in Scheme::ALL {
         let fineness = scheme.of([1e-7, 1e-3, 1e-6, 1e-3]);
-        let run = setup.follow(&plane(0.0), &settings(scheme, fineness, None), &mut Scratch::default());
+        let run =
+            setup.follow(&plane(0.0), &settings(scheme, fineness, None), &mut Scratch::default());
         let rise = 2.0 * g * (run.end.position_m.z - 0.5);
         let found = (run.end.velocity_m_s.z.powi(2) + rise).sqrt() / comes;
         println!("{scheme:?} {found} {}", 0.5 * kept * kept);

@@ -20,6 +20,9 @@ fn every_scheme_reaches_every_exact_case() {
             (Scheme::Rigid, 1e-2),
             (Scheme::Dda, 1e-5),
         ] {
+            if !case.is_for(scheme) {
+                continue;
+            }
             let step = case.settings(scheme, fineness);
             let journey = case.follow(&terrain, &step, &mut Scratch::default());
             let error = case.error(&case.measures(&terrain, scheme), &journey);

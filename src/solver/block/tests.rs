@@ -12,8 +12,8 @@ use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
 use crate::rock::Rock;
-use crate::solver::{CORNER_WAY, Settings};
 use crate::solver::body::Body;
+use crate::solver::{CORNER_WAY, Settings};
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
@@ -127,8 +127,13 @@ impl BlockRun {
             while now < longest_s {
                 if let Some(settings) = &self.springs {
                     let on = (&block, &mut *moving);
-                    let (done, _) =
-                        footing.step_on_springs(&world, settings, on, longest_s - now).unwrap();
+                    let done = footing.step_on_springs(&world, settings, on, longest_s - now);
+                    let (done, _) = done.unwrap_or_else(|why| {
+                        panic!(
+                            "{:?} after {now} s: {why}; {:?}",
+                            settings.scheme, footing.touches.found
+                        )
+                    });
                     self.lost.add(&done.loss, 1.0);
                     self.steps += 1;
                     now += done.dt;

@@ -34,12 +34,13 @@ pub(super) fn on_slope(setup: &Setup, degrees: f64, height_m: f64) -> Setup {
     Setup { block, centre_m: down * Vec3::new(0.0, 0.0, height_m), ..*setup }
 }
 
-/// Speed at which the cube starts to slide (m/s).
+/// Speed at which the cube starts to slide (m/s), and for how long it slides (s).
 const SLIDES_M_S: f64 = 2.0;
+const SLIDES_S: f64 = 0.5;
 
 pub(super) const SLIDES: Case = Case {
     name: "box_slides",
-    title: "A cube slides on its face down 40° with friction 0.5 from 2 m/s, 1 s",
+    title: "A cube slides on its face down 40° with friction 0.5 from 2 m/s, 0.5 s",
     source: "uniform acceleration g (sin α − μ cos α), no turn; springs of 1e13 N/m are the same to 1e-8",
     kind: CaseKind::Smooth,
     facets: || plane(40.0),
@@ -47,11 +48,12 @@ pub(super) const SLIDES: Case = Case {
         let lying = on_slope(&block(BlockForm::Box([1.0; 3]), 0.05, (0.5, 0.4)), 40.0, 0.5);
         let (sin, cos) = math::sin_cos(angle(40.0));
         // from rest the friction of springs would grow first
-        Setup { velocity_m_s: Vec3::new(0.0, cos, -sin) * SLIDES_M_S, ..lying }
+        Setup { velocity_m_s: Vec3::new(0.0, cos, -sin) * SLIDES_M_S, longest_s: SLIDES_S, ..lying }
     },
     exact: Some(|setup, _| {
         let (sin, cos) = math::sin_cos(angle(40.0));
-        let way = SLIDES_M_S + 0.5 * setup.gravity_m_s2 * (sin - 0.5 * cos);
+        let speed = SLIDES_M_S + 0.5 * SLIDES_S * setup.gravity_m_s2 * (sin - 0.5 * cos);
+        let way = speed * SLIDES_S;
         let mut measures = along(setup, angle(40.0), way);
         measures.push(CaseMeasure {
             what: "spin (rad/s)",

@@ -3,7 +3,7 @@
 
 use super::blocks::{block, on_slope};
 use super::meshes::{angle, plane};
-use super::{Case, CaseKind, CaseMeasure, STILL};
+use super::{Case, CaseKind, CaseMeasure};
 use crate::ground::{Damping, Ground};
 use crate::math;
 use crate::rock::Vec3;
@@ -55,11 +55,10 @@ fn rate(setup: &Setup, [height, turned, up, spin]: State) -> State {
     let mass = setup.rock.mass_kg();
     let moved = mass / (1.0 + begun * begun / inertia_m2());
     let stiffness = 2.0 * setup.ground.normal_stiffness_n_m;
-    let damper =
-        2.0 * Damping::of(setup.ground.restitution).ratio * (stiffness * moved).sqrt();
+    let damper = 2.0 * Damping::of(setup.ground.restitution).ratio * (stiffness * moved).sqrt();
     let pressed = BALL_M - height - low;
+    // it starts pressed in by nothing, and does not come back before the end
     let push = (stiffness * pressed - damper * (up + spin * arm)).max(0.0);
-    let push = if pressed > 0.0 { push } else { 0.0 };
     [up, spin, push / mass - setup.gravity_m_s2, push * arm / (mass * inertia_m2())]
 }
 
@@ -97,13 +96,7 @@ pub(super) const THROWN: Case = Case {
             ..turned.ground
         };
         let centre_m = Vec3::z() * (BALL_M - lowest(-angle(TURNED_DEG)).1);
-        Setup {
-            ground,
-            centre_m,
-            velocity_m_s: Vec3::z() * -FALLS_M_S,
-            longest_s: 0.01,
-            ..turned
-        }
+        Setup { ground, centre_m, velocity_m_s: Vec3::z() * -FALLS_M_S, longest_s: 0.01, ..turned }
     },
     exact: Some(|setup, has_springs| {
         let [up, spin] = if has_springs {
@@ -127,5 +120,4 @@ pub(super) const THROWN: Case = Case {
             },
         ]
     }),
-    ..STILL
 };

@@ -90,7 +90,7 @@ fn elastic_bounces_run_backwards() {
 }
 
 /// A slope of so many rows of small triangles, each cell halved one way or the other.
-pub(super) fn finely(angle: f64, rows: u32) -> Terrain {
+fn finely(angle: f64, rows: u32) -> Terrain {
     let (along, size) = (axes(angle).0, 0.37);
     let at = |i: u32, j: u32| {
         along * (size * (f64::from(i) - 20.0)) + Vec3::y() * (size * (f64::from(j) - 10.0))
@@ -169,10 +169,10 @@ fn restitution_of_a_block_falls_with_speed() {
 }
 
 /// A ridge along y through the origin, both sides at 45°.
-pub(super) fn ridge() -> Terrain {
+fn ridge() -> Terrain {
     let (a, b) = (Vec3::y() * -5.0, Vec3::y() * 5.0);
-    let [p, q, r, s] = [(-5.0, -5.0), (-5.0, 5.0), (5.0, 5.0), (5.0, -5.0)]
-        .map(|(x, y)| Vec3::new(x, y, -5.0));
+    let [p, q, r, s] =
+        [(-5.0, -5.0), (-5.0, 5.0), (5.0, 5.0), (5.0, -5.0)].map(|(x, y)| Vec3::new(x, y, -5.0));
     terrain(vec![[a, b, q], [a, q, p], [a, s, r], [a, r, b]])
 }
 

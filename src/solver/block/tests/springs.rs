@@ -127,8 +127,7 @@ fn one_ball_bounces_as_a_sphere_does() {
     let body = || balls(vec![Vec3::zeros()], r, (mass, [0.4 * mass * r * r; 3]));
     let run = |scheme| on_springs(BlockRun::new(slope(0.0, 50.0), body(), (0.4, 0.6)), scheme, 1e9);
     let start = [Vec3::z() * (r + 1e-9), Vec3::new(4.0, 1.0, -5.0), Vec3::new(1.0, -2.0, 3.0)];
-    for (scheme, most) in
-        [(Scheme::Adaptive, 2e-3), (Scheme::Reference, 1e-6), (Scheme::Dda, 2e-2)]
+    for (scheme, most) in [(Scheme::Adaptive, 2e-3), (Scheme::Reference, 1e-6), (Scheme::Dda, 2e-2)]
     {
         let mut case = run(scheme);
         let mut moving = case.start(Rotation3::identity(), start);
@@ -245,6 +244,9 @@ fn what_a_step_runs_into_is_without_memory_as_printed() {
         footing.run_into(&world, (&own, &end, &end), 1e-5, &stretch);
         let known: Vec<f64> = footing.springs.stretches_m().collect();
         let expected = if remembers { 1e-3 } else { 0.0 };
-        assert!(known.len() == 4 && known.iter().all(|x| (x - expected).abs() < 1e-12), "{known:?}");
+        assert!(
+            known.len() == 4 && known.iter().all(|x| (x - expected).abs() < 1e-12),
+            "{known:?}"
+        );
     }
 }
