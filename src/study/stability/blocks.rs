@@ -35,13 +35,13 @@ const PHASE: f64 = 0.3;
 const STEPS: f64 = 4000.0;
 
 /// A case in which nothing strikes faster than `speed_m_s`, as a scheme can follow it: the rigid limit has no springs.
-fn followed(way: &SchemeSetting, setup: Setup, speed_m_s: f64) -> (SchemeSetting, Setup) {
+fn followed(way: &SchemeSetting, setup: &Setup, speed_m_s: f64) -> (SchemeSetting, Setup) {
     let ball_m = setup.block.map_or(setup.rock.radius_m, |block| block.ball_m);
     let omega = speed_m_s / (PRESSED * ball_m);
     let normal_stiffness_n_m = setup.rock.mass_kg() * omega * omega;
     let shear_stiffness_n_m = 0.25 * normal_stiffness_n_m;
     let ground = Ground { normal_stiffness_n_m, shear_stiffness_n_m, ..setup.ground };
-    let stiff = Setup { ground, ..setup };
+    let stiff = Setup { ground, ..*setup };
     if !way.scheme.has_fixed_step() {
         return (*way, stiff);
     }
@@ -78,7 +78,7 @@ pub(super) fn flat(way: &SchemeSetting, notes: &mut Notes) {
             ..boxed(sides_m, 0.2)
         };
         let setting = format!("{sides_m:?} m");
-        let (way, setup) = &followed(way, setup, 8.0);
+        let (way, setup) = &followed(way, &setup, 8.0);
         let journey = notes.follow(way, &setting, setup, &floor);
         let sunk = 0.5 * shortest - lowest(&journey, &floor);
         // a tenth of the balls: steps are as long as these move three tenths of a ball
@@ -110,7 +110,7 @@ pub(super) fn sizes(way: &SchemeSetting, notes: &mut Notes) {
     ] {
         // with springs hundreds of contacts would press at once for a thousand steps, with the finest dozens too many
         let fine_m = way.scheme.of([1.0, 1.0, 10.0, 0.1]);
-        if setting.starts_with("10 m") && (triangle_m - fine_m).abs() > 1e-9 {
+        if setting.starts_with("10 m") && f64::abs(triangle_m - fine_m) > 1e-9 {
             continue;
         }
         let speed = (GRAVITY_M_S2 * size_m).sqrt();
@@ -121,7 +121,7 @@ pub(super) fn sizes(way: &SchemeSetting, notes: &mut Notes) {
             path_step_s: Some(0.02 * size_m / speed),
             ..boxed([size_m, 0.8 * size_m, 0.5 * size_m], 0.1 * size_m)
         };
-        let (way, setup) = &followed(way, setup, 3.0 * speed);
+        let (way, setup) = &followed(way, &setup, 3.0 * speed);
         let journey = notes.follow(way, setting, setup, on);
         let deep = (0.25 * size_m - lowest(&journey, on)) / size_m;
         notes.hold(way, setting, "sinks in, over the longest side", deep, 2e-3);
@@ -153,7 +153,7 @@ pub(super) fn elastic(way: &SchemeSetting, notes: &mut Notes) {
                 ..boxed(sides_m, 1.5)
             };
             let setting = format!("{sides_m:?} m, {name}");
-            let (way, setup) = &followed(way, setup, 8.0);
+            let (way, setup) = &followed(way, &setup, 8.0);
             let journey = notes.follow_captured(way, &setting, setup, on, Some(0.0));
             // the fixed step damps: a fifth of the speed at `PHASE`; it is held to gain nothing
             if way.scheme.has_fixed_step() {
@@ -189,7 +189,7 @@ pub(super) fn fast(way: &SchemeSetting, notes: &mut Notes) {
             let setup = Setup { centre_m: setup.centre_m - Vec3::x() * 20.0, ..setup };
             let setting = format!("{setting}, e {e}");
             // the speeds of corners
-            let (way, setup) = &followed(way, setup, v.norm() + 0.7 * spin.norm());
+            let (way, setup) = &followed(way, &setup, v.norm() + 0.7 * spin.norm());
             let journey = notes.follow(way, &setting, setup, &floor);
             let sunk = 0.025 - lowest(&journey, &floor);
             notes.hold(way, &setting, "sinks in, over the shortest side", sunk / 0.05, 1e-2);
