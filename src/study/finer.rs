@@ -36,14 +36,11 @@ mod tests {
     /// Steps of a block get shorter with the setting; a sphere's setting has no corners.
     #[test]
     fn corners_go_with_the_steps() {
-        for (scheme, fineness, eighth) in [
-            (Scheme::Rigid, 0.01, 0.125),
-            (Scheme::Dda, 1e-5, 0.125),
-            (Scheme::Adaptive, 0.05, 0.5),
-        ] {
-            let own = settings(scheme, fineness, None);
-            let way = finer(&own, 0.125, true).corner_way;
-            assert!((way / (CORNER_WAY * eighth) - 1.0).abs() < 1e-12, "{scheme:?} {way}");
+        for scheme in Scheme::ALL {
+            let eighth = scheme.of([0.125, 0.5, math::pow(0.125, 0.25), 0.125]);
+            let own = settings(scheme, 0.01, None);
+            let short = finer(&own, 0.125, true).corner_way;
+            assert!((short / (CORNER_WAY * eighth) - 1.0).abs() < 1e-12, "{scheme:?} {short}");
             assert!((finer(&own, 0.125, false).corner_way - CORNER_WAY).abs() < 1e-15);
             assert!(finer(&own, 4096.0, true).corner_way <= LONGEST_WAY);
         }

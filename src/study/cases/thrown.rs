@@ -21,7 +21,7 @@ const FALLS_M_S: f64 = 3.0;
 const STIFFNESS_N_M: f64 = 1e10;
 /// Time in which the impact is over (s), and explicit steps for it: `ω h` is then 1e-3, and their error below 1e-12.
 const OVER_S: f64 = 1e-3;
-const STEPS: u32 = 20_000;
+const EXPLICIT_STEPS: u32 = 20_000;
 
 /// From its centre to the centres of the balls that touch first, turned by so much (rad): across and up (m).
 fn lowest(turned_rad: f64) -> (f64, f64) {
@@ -45,11 +45,11 @@ fn struck(e: f64) -> [f64; 2] {
 }
 
 /// Height of the centre (m), turn (rad), and their rates.
-type State = [f64; 4];
+type BarState = [f64; 4];
 
 /// Rates on springs: `m z'' = F − m g`, `I θ'' = F y`, with `F = max(0, 2 p pen + c pen')` of both balls and the damping of the ground's
 /// restitution for the mass that they move, `c = 2 ζ √(2 p m_n)`.
-fn rate(setup: &Setup, [height, turned, up, spin]: State) -> State {
+fn rate(setup: &Setup, [height, turned, up, spin]: BarState) -> BarState {
     let (arm, low) = lowest(turned);
     let (begun, _) = lowest(-angle(TURNED_DEG));
     let mass = setup.rock.mass_kg();
@@ -64,17 +64,17 @@ fn rate(setup: &Setup, [height, turned, up, spin]: State) -> State {
 
 /// Speed upwards and spin at the end on springs (m/s, rad/s).
 fn thrown_on_springs(setup: &Setup) -> [f64; 2] {
-    let h = OVER_S / f64::from(STEPS);
-    let after = |state: &State, rate: &State, h: f64| -> State {
+    let h = OVER_S / f64::from(EXPLICIT_STEPS);
+    let after = |state: &BarState, rate: &BarState, h: f64| -> BarState {
         std::array::from_fn(|i| state[i] + h * rate[i])
     };
     let mut state = [setup.centre_m.z, -angle(TURNED_DEG), setup.velocity_m_s.z, 0.0];
-    for _ in 0..STEPS {
+    for _ in 0..EXPLICIT_STEPS {
         let k1 = rate(setup, state);
         let k2 = rate(setup, after(&state, &k1, 0.5 * h));
         let k3 = rate(setup, after(&state, &k2, 0.5 * h));
         let k4 = rate(setup, after(&state, &k3, h));
-        let mean: State = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
+        let mean: BarState = std::array::from_fn(|i| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0);
         state = after(&state, &mean, h);
     }
     [state[2] - setup.gravity_m_s2 * (setup.longest_s - OVER_S), state[3]]

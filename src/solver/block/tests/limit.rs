@@ -1,8 +1,7 @@
 //! More exact cases with every scheme that has springs: numbers of `docs/exact_blocks.md`.
 
-use super::springs::{SCHEMES, on_springs, with_long_steps};
+use super::springs::{SCHEMES, every_scheme, on_springs, with_long_steps};
 use super::*;
-use crate::solver::Scheme;
 
 /// Forces along the normal of the upper and the lower corners of a cube that lies on a slope (N), of its springs.
 fn pairs_n(case: &BlockRun, moving: &Moving, angle: f64) -> [f64; 2] {
@@ -70,7 +69,7 @@ fn a_cube_slides_or_tips_as_friction_says() {
         let turns = G * (0.5 * sin(angle) - arm * cos(angle)) / (1.0 / 6.0 + 0.25 + arm * arm);
         let tips = friction > arm / 0.5 && turns > 0.0;
         let slides = G * (sin(angle) - friction * cos(angle));
-        for scheme in Scheme::ALL {
+        for scheme in every_scheme() {
             let body = block(&box_surface([1.0; 3]), ball);
             let mut case = BlockRun::new(slope(angle, 100.0), body, (friction, 0.0));
             if scheme.has_springs() {

@@ -26,6 +26,10 @@ pub(super) fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockR
     case
 }
 
+pub(super) fn every_scheme() -> [Scheme; 4] {
+    Scheme::ALL
+}
+
 /// Length of a fixed step over `√(p_N/m)` where a case lasts long (rad).
 const LONG_PHASE: f64 = 0.1;
 
