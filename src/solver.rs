@@ -48,6 +48,9 @@ use contact_state::{ContactEnvironment, ContactState};
 pub use scheme::Scheme;
 use step_control::{Advance, Control, StepError};
 
+/// The usual [`Settings::corner_way`] (–).
+pub const CORNER_WAY: f64 = 0.3;
+
 /// Settings of the step, all in force (defaults already filled in by the plan).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -62,6 +65,8 @@ pub struct Settings {
     /// Whether impacts have kernels of their own: those of spheres on one plane are followed as a whole, those of blocks by explicit stages;
     /// if not, step by step like any other, and by implicit stages (`adaptive`, `reference`).
     pub impact_kernels: bool,
+    /// Blocks: longest way of a corner in one step over the radius of its rounding (–); a block turns no further than a tenth of it (rad).
+    pub corner_way: f64,
     /// Impacts slower than this do not rebound (m/s); `None` = the speed that numerics and ground ask for.
     pub capture_speed_m_s: Option<f64>,
 }

@@ -15,6 +15,7 @@ pub mod conserve;
 pub mod exact;
 pub mod exact_figure;
 mod exact_page;
+mod finer;
 pub mod exact_values;
 pub mod order;
 pub mod processor_time;

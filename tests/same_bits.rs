@@ -8,7 +8,7 @@
 mod asked;
 mod program;
 
-use asked::{Asked, USUAL, plate, scene};
+use asked::{Asked, USUAL, p, plate, quad, scene};
 use program::{command, results};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Small runs, by name, scene and releases: every scheme for rocks alone, trees, roughness, maps, figures; and a world, a
-/// pyramid that gives way, in the paper's fixed step with its system of all rocks.
-fn runs(dir: &Path) -> [(&'static str, PathBuf, &'static str); 4] {
+/// pyramid that gives way, in the paper's fixed step with its system of all rocks; and blocks on springs over uneven ground.
+fn runs(dir: &Path) -> [(&'static str, PathBuf, &'static str); 5] {
     let layer = |k: u32| {
         let places = (0..4 - k).flat_map(move |i| (0..4 - k).map(move |j| (i, j)));
         let at = move |n: u32| 0.4 * f64::from(n) + 0.2 * f64::from(k);
@@ -36,7 +36,23 @@ fn runs(dir: &Path) -> [(&'static str, PathBuf, &'static str); 4] {
         ("tschamut", "examples/tschamut.toml".into(), "40"),
         ("edge", "examples/paper/1a_asymmetric_edge.toml".into(), "1"),
         ("pyramid", pyramid, "30"),
+        ("blocks", blocks(dir), "6"),
     ]
+}
+
+/// Blocks with `adaptive` on ground that is uneven by heights that are exact on every machine.
+fn blocks(dir: &Path) -> PathBuf {
+    let at = |i: i32, j: i32| {
+        let rise = f64::from((7 * i * i + 5 * j) % 8) / 32.0;
+        p(0.5 * f64::from(i), 0.5 * f64::from(j), rise - 0.25 * f64::from(j))
+    };
+    let cell = |i: i32, j: i32| quad([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]);
+    let mesh: Vec<_> = (-4..4).flat_map(|i| (-4..12).flat_map(move |j| cell(i, j))).collect();
+    let place = "count = 6\nheight_m = 0.5\npoints_m = [[0.0, 0.0], [0.7, 0.3], [-0.4, -0.6]]";
+    let more = "[[rocks.shapes]]\nkind = \"eota221\"\ncorner_radius = 0.15\n[[rocks.shapes]]\nkind = \"box\"\naxes = [1.0, 0.7, 0.4]\ncorner_radius = 0.2\n[solver]\nscheme = \"adaptive\"\nlongest_s = 2.0\n[record]\npaths = 6\nimpacts = true";
+    let own = dir.join("uneven");
+    std::fs::create_dir_all(&own).unwrap();
+    scene(&own, &mesh, &Asked { place, velocity: [0.3, 1.0, 0.0], more, ..USUAL })
 }
 
 fn arguments<'a>(scene: &'a Path, releases: &'a str, out: &'a Path) -> [&'a str; 9] {

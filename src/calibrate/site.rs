@@ -19,11 +19,11 @@ use std::path::Path;
 const SAME_PLACE_M: f64 = 0.1;
 
 /// Computed ways with their release numbers.
-type Ways = Vec<(usize, ObservedPath)>;
+type ObservedWays = Vec<(usize, ObservedPath)>;
 
 /// What one trial computed on a scene.
 pub(super) struct Computed {
-    ways: Ways,
+    ways: ObservedWays,
     /// How far the ends lie from the measured ones; only where a fit is scored by it.
     apart: Option<EndDistances>,
 }
@@ -134,7 +134,7 @@ impl CalibrationSite {
         };
         let plan = Plan::compile(&self.scene, terrain)?;
         let origin_m = plan.terrain.origin_m;
-        let mut ways = Ways::new();
+        let mut ways = ObservedWays::new();
         let one =
             |index: usize, scratch: &mut Scratch| simulate_release(&plan, index, None, scratch);
         for falls in ensemble.in_chunks(0..plan.count, Scratch::default, one) {

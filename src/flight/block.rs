@@ -62,7 +62,7 @@ struct Moment {
 /// A part of the block that may touch.
 ///
 /// Parts are worked on in the order of the times until which they surely touch nothing.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 enum BlockPart {
     /// A rounded corner against faces, edges and vertices of the mesh.
     Corner(usize),
@@ -73,8 +73,8 @@ enum BlockPart {
 }
 
 /// Work space of a flight; lists keep their memory from window to window.
-#[derive(Default)]
-struct WindowScratch {
+#[derive(Debug, Default)]
+pub struct WindowScratch {
     /// Parts of the block, in the order in which those due at once are asked.
     parts: Vec<BlockPart>,
     /// Until when each of them surely touches nothing, soonest first: the bits of the time (s), which rise with it as times are not
@@ -133,10 +133,9 @@ pub fn first_touch(
     terrain: &Terrain,
     tumble: &Tumble,
     longest_s: f64,
-    near: &mut Neighbours,
+    (near, scratch): (&mut Neighbours, &mut WindowScratch),
 ) -> FlightEnd {
     let (bound, mut t) = (tumble.block.bound_m, 0.0);
-    let mut scratch = WindowScratch::default();
     loop {
         let centre = tumble.path.centre(t);
         // as long as nothing is within the bounding ball the block cannot touch: its leap is exact,
@@ -158,7 +157,7 @@ pub fn first_touch(
         // within this time the centre stays inside the ball for which features were collected
         let ends = (t + time_for(&tumble.path, t, way)).min(longest_s);
         Tumble::collect(tumble.block, near, terrain, (&tumble.path.centre(t), way));
-        if let Some(touch) = advance(terrain, tumble, near, (t, ends), &mut scratch) {
+        if let Some(touch) = advance(terrain, tumble, near, (t, ends), scratch) {
             return FlightEnd::Touch(touch);
         }
         if ends >= longest_s {

@@ -254,6 +254,10 @@ impl PlanList {
             self.line("explicit stages", text);
         }
         self.line(
+            "steps of blocks",
+            format!("no corner goes further than {} of its rounding in one", step.corner_way),
+        );
+        self.line(
             "cost of shape",
             "a block is followed corner by corner and edge by edge: time grows with their number",
         );

@@ -1,7 +1,7 @@
 //! The step in force: what the scene asks for, the rest filled in.
 
 use crate::scene::SolverTable;
-use crate::solver::Settings;
+use crate::solver::{CORNER_WAY, Settings};
 
 /// Local error of the adaptive scheme (m/s): statistics of runout no longer change below it.
 const TOLERANCE_M_S: f64 = 0.05;
@@ -22,6 +22,7 @@ pub(super) fn in_force(solver: &SolverTable) -> Settings {
         step_s: solver.step_s.unwrap_or(step_s),
         shear_memory: solver.shear_memory.unwrap_or(true),
         impact_kernels: scheme.controls_error(),
+        corner_way: solver.corner_way.unwrap_or(CORNER_WAY),
         capture_speed_m_s: solver.capture_speed_m_s,
     }
 }

@@ -15,7 +15,7 @@ const OTHERWISE: (&str, &str) = ("tangential_ratio", "shear_stiffness_n_m");
 pub(super) type NewValue = (Option<String>, &'static str, String);
 
 /// Bytes of a text, and what stands there instead.
-type Change = (Range<usize>, String);
+type Replacement = (Range<usize>, String);
 
 /// The text of a scene file with other values. Paths are written in full, so that the text may stand in another folder.
 ///
@@ -24,7 +24,7 @@ type Change = (Range<usize>, String);
 pub fn rewritten(scene: &Path, values: &[NewValue]) -> Result<String> {
     let text = file::read_text(scene)?;
     let lookup = Lookup::of(scene, &text);
-    let mut changes: Vec<Change> = Vec::new();
+    let mut changes: Vec<Replacement> = Vec::new();
     for (ground, key, value) in values {
         let Some(ground) = ground else {
             changes.extend(of_shapes(&lookup, key, value));
@@ -60,7 +60,7 @@ fn of_ground(
     (lookup, text): (&Lookup, &str),
     ground: &str,
     (key, value): (&str, &str),
-) -> Option<Change> {
+) -> Option<Replacement> {
     let table = ["grounds", ground].map(|key| TrailStep::Key(key.to_owned()));
     let value_at = |key: &str| {
         let keys = key.split('.').map(|key| TrailStep::Key(key.to_owned()));
@@ -82,7 +82,7 @@ fn of_ground(
 }
 
 /// A value of every shape that has it; spheres among them have none.
-fn of_shapes(lookup: &Lookup, key: &str, value: &str) -> Vec<Change> {
+fn of_shapes(lookup: &Lookup, key: &str, value: &str) -> Vec<Replacement> {
     let key_of = |trail: &[TrailStep]| {
         matches!(trail, [TrailStep::Key(rocks), TrailStep::Key(shapes), TrailStep::Entry(_), TrailStep::Key(last)]
         if rocks == "rocks" && shapes == "shapes" && last == key)

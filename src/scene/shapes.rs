@@ -175,6 +175,10 @@ impl Scene {
                 return Err(Complaint::about("orientation", remedy).inside("release"));
             }
         }
+        if self.solver.corner_way.is_some() && !self.has_blocks() {
+            let remedy = "remove it, or write [[rocks.shapes]]: a sphere has no corners";
+            return Err(Complaint::about("corner_way", remedy).inside("solver"));
+        }
         if !self.has_blocks() {
             return self.check_soil_of_worlds();
         }

@@ -16,6 +16,8 @@ pub struct SolverTable {
     pub step_s: Option<f64>,
     /// Whether the shear spring remembers its stretch; `dda` only.
     pub shear_memory: Option<bool>,
+    /// Blocks: longest way of a corner in one step over the radius of its rounding (–), above 0 and at most 1.
+    pub corner_way: Option<f64>,
     /// Impacts slower than this do not rebound (m/s), 0 or more.
     pub capture_speed_m_s: Option<f64>,
     /// Simulated time after which a rock is `time_up` (s), positive.
@@ -89,6 +91,7 @@ impl SolverTable {
         optional("longest_s", self.longest_s, Allowed::Between(1e-3, 1e5), "")?;
         optional("rest_time_s", self.rest_time_s, Allowed::Between(1e-6, 1e5), "")?;
         optional("rest_speed_m_s", self.rest_speed_m_s, Allowed::Between(1e-6, 10.0), "")?;
+        optional("corner_way", self.corner_way, Allowed::Between(1e-4, 1.0), "")?;
         Ok(())
     }
 }

@@ -99,7 +99,8 @@ impl Roll<'_> {
         let top = Top::new(block.inertia_kg_m2, self.moving.pose.attitude, self.moving.momentum);
         let left = self.settings.longest_s - time_s;
         let tumble = Tumble { block, top, path };
-        let landing = first_touch(self.settings.terrain, &tumble, left, &mut self.footing.near);
+        let scratch = (&mut self.footing.near, &mut self.footing.window);
+        let landing = first_touch(self.settings.terrain, &tumble, left, scratch);
         let (dt, stop) = self.settings.end_of_flight(&landing, time_s);
         self.recorder.effort.leaps += 1;
         self.recorder.fly(&path, Some(&top), dt);
@@ -200,7 +201,8 @@ impl Roll<'_> {
         let (settings, block) = (self.settings.step, self.block);
         if !self.has_springs() {
             let most_s = settings.step_s.min(most_s);
-            return Ok(self.footing.step(&self.world, block, &mut self.moving, most_s));
+            let most = (most_s, settings.corner_way);
+            return Ok(self.footing.step(&self.world, block, &mut self.moving, most));
         }
         let on = (block, &mut self.moving);
         let (done, rejected) = self.footing.step_on_springs(&self.world, settings, on, most_s)?;

@@ -27,6 +27,7 @@ use crate::body::Block;
 use crate::contact::MOST;
 use crate::contact::block::{BlockTouch, BlockTouches, Pose, keep_widest, touches};
 use crate::contact::neighbours::Neighbours;
+use crate::flight::block::WindowScratch;
 use crate::flight::top::{Top, spin_of};
 use crate::rock::{Motion, Vec3};
 use energy::hold_energy;
@@ -42,10 +43,8 @@ const WAY: f64 = 0.5;
 const SEES: f64 = 3.0;
 /// Contacts this far ahead take part in a step (–, relative to the balls' radius).
 const AHEAD: f64 = 1.0;
-/// No point of the block moves further in one step (–, relative to the balls' radius) …
-const TRAVEL: f64 = 0.3;
-/// … and the block turns no further (rad).
-const TURN: f64 = 0.03;
+/// A block turns no further in one step (rad) than this share of the longest way of a corner over the balls' radius.
+const TURN: f64 = 0.1;
 /// An approach slower than this is none (m/s): rounding.
 const STILL_M_S: f64 = 1e-9;
 /// A gain of energy that is rounding (–); it is taken off the motion all the same.
@@ -69,6 +68,8 @@ pub(crate) struct Moving {
 pub(crate) struct Footing {
     pub(crate) near: Neighbours,
     pub(crate) touches: BlockTouches,
+    /// Work space of the search for the end of a flight.
+    pub(crate) window: WindowScratch,
     contacts: Vec<BlockContact>,
     /// Those of an impact, and the speed that each shall give back (m/s).
     wanted: Vec<(BlockContact, f64)>,
@@ -283,19 +284,19 @@ impl Footing {
         loss
     }
 
-    /// One step of sustained contact of at most `most_s`.
+    /// One step of sustained contact of at most `most_s`, in which no corner moves further than `corner_way` of its ball.
     pub(crate) fn step(
         &mut self,
         world: &ContactEnvironment,
         block: &Block,
         moving: &mut Moving,
-        most_s: f64,
+        (most_s, corner_way): (f64, f64),
     ) -> Stepped {
         let spin = moving.spin(block);
         let fastest = moving.v.norm() + spin.norm() * block.bound_m;
         let dt = most_s
-            .min(TRAVEL * block.ball_m / fastest.max(f64::MIN_POSITIVE))
-            .min(TURN / spin.norm().max(f64::MIN_POSITIVE));
+            .min(corner_way * block.ball_m / fastest.max(f64::MIN_POSITIVE))
+            .min(TURN * corner_way / spin.norm().max(f64::MIN_POSITIVE));
         let (start, before_j) = (moving.clone(), moving.motion_j(block));
         let dt = dt.min(moving.climbs_s((block.mass_kg, &world.body.gravity), before_j));
         let dt = self.closing(world, (block, moving), dt);

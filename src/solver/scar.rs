@@ -144,3 +144,39 @@ impl Scars {
 pub(crate) fn taken_j(body: &Body, v: &Vec3, kept: f64) -> f64 {
     0.5 * body.mass * v.norm_squared() * (1.0 - kept * kept)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// The hard plane lies far below the ball, so that all of it is cut, without gravity: `v = v₀ exp(−C ρ_s A z/2m)` with `A = π R²`, on the
+    /// way in, square and at an angle, and along the plane, in one step or many.
+    #[test]
+    fn a_ball_deep_in_soil_slows_by_the_closed_form_of_drag() {
+        let radius = 0.5;
+        let mass = 2700.0 * 4.0 / 3.0 * PI * radius * radius * radius;
+        let inertia = 0.4 * mass * radius * radius;
+        let body = Body { mass, inertia, radius, gravity: Vec3::zeros() };
+        let (up, speed) = (Vec3::z(), 10.0);
+        for cosine in [1.0, 0.6] {
+            let enter = |strength_kn_m2| {
+                let scar = Scar { strength_kn_m2, drag: 2.5, soil_density_kg_m3: 1700.0 };
+                let mut scars = Scars { layers: vec![Some(scar)], is_any: true, now: None };
+                let kept = scars.enter(&body, (0, up), (cosine * speed, speed));
+                (scar.depth_m(mass, cosine * speed), kept, scars)
+            };
+            let (shallow, before, _) = enter(10.0);
+            let (deep, after, mut scars) = enter(5.0);
+            assert!(shallow > 2.0 * radius && deep > shallow);
+            let area = PI * radius * radius;
+            let per_m = 2.5 * 1700.0 * area / (2.0 * mass);
+            let known = math::exp(-per_m * (deep - shallow) / cosine);
+            assert!((after / before / known - 1.0).abs() < 1e-12, "{cosine}");
+            let whole = scars.plough(&body, (0.7, Some(up)), None);
+            assert!((whole / math::exp(-per_m * 0.7) - 1.0).abs() < 1e-12, "{whole}");
+            let parts: f64 = (0..7).map(|_| scars.plough(&body, (0.1, None), None)).product();
+            assert!((parts / whole - 1.0).abs() < 1e-12, "{parts} {whole}");
+        }
+    }
+}

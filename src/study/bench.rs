@@ -8,7 +8,7 @@ use crate::random::{Purpose, stream};
 use crate::release::{DrawnShape, Release};
 use crate::rock::{Motion, Rock, Vec3};
 use crate::simulation::{Keep, RunSettings, Scratch, Trajectory, simulate, simulate_block};
-use crate::solver::{Scheme, Settings};
+use crate::solver::{CORNER_WAY, Scheme, Settings};
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
@@ -38,10 +38,6 @@ pub const GROUND: Ground = Ground {
 
 /// Corners closer than this are one (m): made meshes repeat theirs to rounding.
 const WELD_M: f64 = 1e-9;
-
-/// The schemes with which the studies run blocks: their cases have no springs, so stiff that no corner sinks in, and bounds of the rigid
-/// limit. With springs blocks are held to their exact cases beside the solver (`solver::block::tests::springs`).
-pub const BLOCK_SCHEMES: &[Scheme] = &[Scheme::Rigid];
 
 /// The surface of a block, its sides in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -176,11 +172,6 @@ impl Setup {
         fallen
     }
 
-    /// The schemes that compute it.
-    pub fn schemes(&self) -> &'static [Scheme] {
-        if self.block.is_some() { BLOCK_SCHEMES } else { &Scheme::ALL }
-    }
-
     /// How deep the weight presses one spring where the ground is inclined at `angle_rad` (m).
     pub fn pressed_m(&self, angle_rad: f64) -> f64 {
         self.rock.mass_kg() * self.gravity_m_s2 * math::cos(angle_rad)
@@ -209,6 +200,7 @@ pub fn settings(scheme: Scheme, fineness: f64, capture_speed_m_s: Option<f64>) -
         step_s: if by_tolerance { f64::INFINITY } else { fineness },
         shear_memory: true,
         impact_kernels: true,
+        corner_way: CORNER_WAY,
         capture_speed_m_s,
     }
 }

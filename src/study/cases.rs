@@ -1,13 +1,15 @@
 //! The exact cases: one row each, with the scene, the exact solution and where it comes from.
 
+mod allowed;
 mod blocks;
 mod closed;
 pub(super) mod meshes;
 mod pivot;
 mod starts;
+mod thrown;
 
 use super::bench::{SETUP, Setup, settings, terrain};
-use crate::math;
+use super::finer::finer;
 use crate::rock::Vec3;
 use crate::simulation::{Scratch, Trajectory};
 use crate::solver::{Scheme, Settings};
@@ -45,6 +47,8 @@ pub enum CaseKind {
     Impact,
     /// Impacts on edges, one after the other: the motion is chaotic.
     Stairs,
+    /// Plastic slaps of a face, one after the other, in the rigid limit.
+    Slaps,
 }
 
 /// One exact case. Schemes with springs are held against the solution with springs, the rigid scheme against its limit.
@@ -79,14 +83,21 @@ impl Case {
         (self.setup)(step.scheme.has_springs()).follow(terrain, step, scratch)
     }
 
-    /// The schemes that compute its rock: spheres all of them.
-    pub fn schemes(&self) -> &'static [Scheme] {
-        (self.setup)(false).schemes()
+    /// Whether a scheme is held to it: plastic slaps of a face take no time in the rigid limit only.
+    pub fn is_for(&self, scheme: Scheme) -> bool {
+        self.kind != CaseKind::Slaps || !scheme.has_springs()
     }
 
     /// Settings of a scheme for this case.
     pub fn settings(&self, scheme: Scheme, fineness: f64) -> Settings {
-        settings(scheme, fineness, Some(self.capture_speed_m_s))
+        let own = settings(scheme, fineness, Some(self.capture_speed_m_s));
+        if (self.setup)(scheme.has_springs()).block.is_none() {
+            return own;
+        }
+        // the steps of a block are bound by the way of its corners as well: finer with the setting, and never coarser than usual
+        let relative = fineness / scheme.of(USUAL_FINENESS);
+        let corner_way = finer(&own, relative, true).corner_way.min(own.corner_way);
+        Settings { corner_way, ..own }
     }
 
     /// What should come out for a scheme. Without a closed form: what the scheme itself gives when it is `finest`.
@@ -108,47 +119,10 @@ impl Case {
         let worst = measures.iter().map(off).fold(0.0, f64::max);
         if measures.iter().any(|one| (one.of)(journey).is_nan()) { f64::INFINITY } else { worst }
     }
-
-    /// The error that a scheme may have (–) and why.
-    pub fn allowed(&self, step: &Settings) -> (f64, &'static str) {
-        let dda = (
-            HALF_OMEGA_RAD_S * self.growth() * step.step_s,
-            "first order: half the contact oscillation per step",
-        );
-        let adaptive = if self.kind == CaseKind::Smooth {
-            (
-                0.5 * step.tolerance_m_s + 1e-9,
-                "only the first steps, which must resolve the springs, are as coarse as the local error allows",
-            )
-        } else {
-            (
-                0.2 * self.growth() * math::pow(step.tolerance_m_s, 2.0 / 3.0),
-                "second order under a third-order local error: tolerance to the power 2/3, times what the motion itself makes of an error",
-            )
-        };
-        let reference = (
-            self.growth() * (10.0 * step.tolerance_m_s + 3e-8),
-            "fourth order, and the nine digits of the exact value",
-        );
-        let rigid = if matches!(self.kind, CaseKind::Impact | CaseKind::Stairs) {
-            (3e-6, "an impact is followed to 2e-5 of its speed a step")
-        } else {
-            (
-                0.2 * step.step_s,
-                "first order where sliding turns into rolling or the rock lifts off",
-            )
-        };
-        step.scheme.of([dda, adaptive, reference, rigid])
-    }
-
-    /// How much the motion multiplies an error: every impact on an edge by about three.
-    fn growth(&self) -> f64 {
-        if self.kind == CaseKind::Stairs { 50.0 } else { 1.0 }
-    }
 }
 
-/// Half of `√(p_N/m)` of the cases' sphere of half a metre on springs of 1 GN/m (rad/s).
-const HALF_OMEGA_RAD_S: f64 = 420.0;
+/// Step (s) or tolerance (m/s) of each scheme at which the corners of blocks go as far as usual.
+const USUAL_FINENESS: [f64; 4] = [1e-5, 0.05, 1e-8, 0.01];
 /// Tolerance (m/s) of what stands in for an exact solution.
 const FINEST_TOLERANCE_M_S: f64 = 1e-10;
 /// Step (s) of what stands in for an exact solution in the rigid limit.
@@ -373,7 +347,7 @@ pub const CASES: [Case; 15] = [
         exact: None,
     },
     blocks::SLIDES,
-    blocks::THROWN,
+    thrown::THROWN,
     blocks::ROLLS,
 ];
 

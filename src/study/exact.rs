@@ -15,6 +15,8 @@ const RUNS: usize = 5;
 /// … and until this time is spent, but not more often than [`MOST_RUNS`].
 const TIMED: Duration = Duration::from_millis(20);
 const MOST_RUNS: usize = 51;
+/// Shortest fixed step of a block (s): one costs ten times that of a sphere.
+const LEAST_OF_BLOCKS_S: f64 = 1e-5;
 /// A run this long is likely to wait for others on a busy machine: only its own time counts.
 const INTERRUPTED: Duration = Duration::from_millis(8);
 /// Errors below this are rounding, or the last digits of the exact value: no order shows there (–).
@@ -85,7 +87,7 @@ pub struct Curve {
 pub struct CaseStudy {
     /// The case.
     pub case: Case,
-    /// One curve for each scheme that computes the case, in the order of [`LADDERS`].
+    /// One curve for each scheme that is held to the case, in the order of [`LADDERS`].
     pub curves: Vec<Curve>,
 }
 
@@ -104,7 +106,7 @@ pub struct Saving {
 pub fn study(done: impl Fn(&str)) -> Vec<CaseStudy> {
     let study_case = |case: &Case| {
         let terrain = case.terrain();
-        let own = LADDERS.into_iter().filter(|rungs| case.schemes().contains(&rungs.scheme));
+        let own = LADDERS.into_iter().filter(|rungs| case.is_for(rungs.scheme));
         let curves = own.map(|rungs| curve(case, &terrain, rungs)).collect();
         done(case.name);
         CaseStudy { case: *case, curves }
@@ -122,7 +124,10 @@ fn curve(case: &Case, terrain: &Terrain, rungs: Rungs) -> Curve {
         let error = case.error(&measures, &journey);
         LadderPoint { fineness, error, effort: journey.effort, seconds }
     };
-    Curve { rungs, points: rungs.fineness.iter().map(point).collect() }
+    let has_block = (case.setup)(rungs.scheme.has_springs()).block.is_some();
+    let least = if has_block && rungs.scheme.has_fixed_step() { LEAST_OF_BLOCKS_S } else { 0.0 };
+    let own = rungs.fineness.iter().filter(|fineness| **fineness >= least);
+    Curve { rungs, points: own.map(point).collect() }
 }
 
 /// The journey and the median time of repeated runs (s).

@@ -5,6 +5,7 @@
 //! difference; what is left is drawn again and again to say how far it can be trusted.
 
 use super::bootstrap::{Interval, Paired, PercentileLadder};
+use super::finer::finer;
 use super::processor_time::Busy;
 use super::weighing::{FEWEST, Weigh};
 use crate::ensemble::Ensemble;
@@ -152,9 +153,10 @@ pub fn study(
     plan.impacts = Part::LeftOut("a study keeps no impacts");
     plan.profile = Part::LeftOut("a study draws no profile");
     let own_step = plan.step;
+    let has_blocks = !plan.releases.shapes().is_empty();
     let (relatives, order) = ladder_of(own_step.scheme);
     let mut rungs: Vec<Rung> =
-        relatives.iter().map(|&relative| Rung::new(&own_step, relative)).collect();
+        relatives.iter().map(|&relative| Rung::new(&own_step, relative, has_blocks)).collect();
     // All settings take turns, so that a machine that is busy for a while slows all of them alike.
     let subjects = StudyQuantity::all(&plan);
     for block in blocks(plan.count) {
@@ -234,7 +236,7 @@ fn meshes(
     for times in COARSER {
         let coarse = coarser(&plan.terrain, times);
         let fine = std::mem::replace(&mut plan.terrain, coarse);
-        let mut rung = Rung::new(&plan.step, 1.0);
+        let mut rung = Rung::new(&plan.step, 1.0, false);
         rung.run(plan, subjects, 0..plan.count, ensemble)?;
         done(&rung, times);
         meshes.push(MeshRung::of(&plan.terrain, times, rung));
@@ -250,17 +252,6 @@ impl MeshRung {
     }
 }
 
-/// The same setting with another tolerance or step.
-fn finer(step: &Settings, relative: f64) -> Settings {
-    let mut finer = *step;
-    if step.scheme.controls_error() {
-        finer.tolerance_m_s *= relative;
-    } else {
-        finer.step_s *= relative;
-    }
-    finer
-}
-
 /// The releases in a few blocks.
 fn blocks(count: usize) -> impl Iterator<Item = Range<usize>> {
     let length = count.div_ceil(BLOCKS);
@@ -268,9 +259,9 @@ fn blocks(count: usize) -> impl Iterator<Item = Range<usize>> {
 }
 
 impl Rung {
-    fn new(own: &Settings, relative: f64) -> Self {
+    fn new(own: &Settings, relative: f64, has_blocks: bool) -> Self {
         Self {
-            step: finer(own, relative),
+            step: finer(own, relative, has_blocks),
             relative,
             seconds: 0.0,
             effort: Effort::default(),

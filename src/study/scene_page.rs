@@ -3,7 +3,7 @@
 use super::bootstrap::Interval;
 use super::scene::{Rung, SceneStudy, StudyStatistic};
 use crate::report::format::{self, significant};
-use crate::solver::Settings;
+use crate::solver::{CORNER_WAY, Settings};
 use std::fmt::Write as _;
 
 /// A statistic and the total error wanted of it (same unit).
@@ -117,11 +117,15 @@ fn with_ends(error: &Interval, unit: &str) -> String {
 
 /// A setting in words.
 pub fn setting(step: &Settings) -> String {
-    if step.scheme.controls_error() {
+    let own = if step.scheme.controls_error() {
         format!("tolerance {} m/s", step.tolerance_m_s)
     } else {
         format!("step {} s", step.step_s)
+    };
+    if (step.corner_way - CORNER_WAY).abs() < 1e-12 {
+        return own;
     }
+    format!("{own}, corner way {}", significant(step.corner_way, 3))
 }
 
 fn settings_table(page: &mut String, study: &SceneStudy) {
@@ -218,7 +222,7 @@ pub(super) fn mesh_csv(study: &SceneStudy) -> String {
 /// All numbers as CSV: one row a statistic and setting.
 pub(super) fn csv(study: &SceneStudy) -> String {
     let mut text = String::from(
-        "quantity,percent,fineness,seconds,steps,rejected,leaps,sweeps,triangles,unsettled,failed,value,step_error,step_error_low_95,step_error_high_95,sampling_error_95\n",
+        "quantity,percent,fineness,seconds,steps,rejected,leaps,sweeps,triangles,unsettled,failed,value,step_error,step_error_low_95,step_error_high_95,sampling_error_95,corner_way\n",
     );
     for statistic in &study.statistics {
         for (rung, value) in study.rungs.iter().zip(&statistic.ladder.values) {
@@ -231,7 +235,7 @@ pub(super) fn csv(study: &SceneStudy) -> String {
             let effort = &rung.effort;
             let _ = writeln!(
                 text,
-                "{},{},{fineness},{:.3},{},{},{},{},{},{},{},{value},{},{},{},{sampling}",
+                "{},{},{fineness},{:.3},{},{},{},{},{},{},{},{value},{},{},{},{sampling},{}",
                 study.subjects[statistic.subject].column,
                 statistic.percent,
                 rung.seconds,
@@ -244,7 +248,8 @@ pub(super) fn csv(study: &SceneStudy) -> String {
                 rung.failed,
                 error.value,
                 error.low,
-                error.high
+                error.high,
+                step.corner_way
             );
         }
     }

@@ -62,6 +62,7 @@ impl World {
             step_s: self.step_s,
             shear_memory: true,
             impact_kernels: true,
+            corner_way: rockfall::solver::CORNER_WAY,
             capture_speed_m_s: CASE.capture_speed_m_s,
         };
         let course = RunSettings {

@@ -6,8 +6,9 @@ use crate::common;
 use common::{CASE, Case, G, ROWS, Row, hold, terrain};
 use rockfall::ground::{Ground, Scar, SlipFriction, cut_area_m2, swept_m3};
 use rockfall::rock::Vec3;
-use rockfall::simulation::Trajectory;
+use rockfall::simulation::{Scratch, Trajectory};
 use rockfall::solver::Scheme;
+use rockfall::study::bench::{BlockForm, MadeBlock, SETUP, Setup, settings};
 use rockfall::terrain::Terrain;
 
 /// Lu et al. (2019): a meadow.
@@ -235,5 +236,44 @@ fn friction_of_a_sphere_grows_with_slip() {
             assert!(slipped > 0.3, "{slipped}");
             hold(&row, "slip under growing friction", [u, exact(slipped), exact(slipped)], 5e-3);
         }
+    }
+}
+
+/// A cube that falls flat on soil is slowed on its way in and out as the ball of its volume is, with every scheme; between them it rebounds
+/// from its four corners with the restitution of the ground.
+#[test]
+fn a_block_is_slowed_as_the_ball_of_its_volume() {
+    let (form, speed) = (BlockForm::Box([1.0; 3]), 10.0);
+    let block = MadeBlock { form, ball_m: 0.05, attitude: nalgebra::Rotation3::identity() };
+    let ground = Ground {
+        normal_stiffness_n_m: 1e12,
+        shear_stiffness_n_m: 0.25e12,
+        friction_angle_rad: 0.0,
+        scar: Some(MEADOW),
+        ..SETUP.ground
+    };
+    let setup = Setup {
+        rock: form.rock(),
+        block: Some(block),
+        ground,
+        centre_m: Vec3::z() * 0.51,
+        velocity_m_s: Vec3::z() * -speed,
+        longest_s: 0.02,
+        ..SETUP
+    };
+    let (r, m, g) = (setup.rock.radius_m, setup.rock.mass_kg(), setup.gravity_m_s2);
+    let comes = (speed * speed + 2.0 * g * 0.01).sqrt();
+    let swept = swept_m3(r, MEADOW.depth_m(m, comes), 1.0);
+    let kept = (-MEADOW.drag_per_m3(m) * swept).exp();
+    for scheme in Scheme::ALL {
+        let fineness = scheme.of([1e-7, 1e-3, 1e-6, 1e-3]);
+        let run =
+            setup.follow(&plane(0.0), &settings(scheme, fineness, None), &mut Scratch::default());
+        let rise = 2.0 * g * (run.end.position_m.z - 0.5);
+        let found = (run.end.velocity_m_s.z.powi(2) + rise).sqrt() / comes;
+        println!("{scheme:?} {found} {}", 0.5 * kept * kept);
+        let most = scheme.of([8e-3, 1e-3, 1e-3, 1e-9]);
+        assert!((found / (0.5 * kept * kept) - 1.0).abs() < most, "{scheme:?} {found} {kept}");
+        assert!(run.ledger.soil_j > 0.0 && run.end.spin_rad_s.norm() < 1e-6, "{scheme:?}");
     }
 }

@@ -55,6 +55,7 @@ fn shoot(terrain: &Terrain, scheme: Scheme, beside_m: f64, scratch: &mut Scratch
         step_s: if scheme == Scheme::Dda { 1e-5 } else { 1e-2 },
         shear_memory: true,
         impact_kernels: true,
+        corner_way: rockfall::solver::CORNER_WAY,
         capture_speed_m_s: None,
     };
     let course = RunSettings {

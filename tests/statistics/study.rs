@@ -20,7 +20,7 @@ fn every_scheme_reaches_every_exact_case() {
             (Scheme::Rigid, 1e-2),
             (Scheme::Dda, 1e-5),
         ] {
-            if !case.schemes().contains(&scheme) {
+            if !case.is_for(scheme) {
                 continue;
             }
             let step = case.settings(scheme, fineness);

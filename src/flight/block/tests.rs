@@ -90,15 +90,16 @@ fn no_touch_is_missed() {
         let path = Parabola { start, velocity, gravity: 9.81, radius: block.bound_m };
         let top = Top::new(block.inertia_kg_m2, attitude, own);
         let tumble = Tumble { block, top, path };
-        let ends = match first_touch(&terrain, &tumble, 5.0, &mut near) {
-            FlightEnd::Touch(t) => {
-                touched += 1;
-                worst = worst.max(gap_m(&terrain, &tumble, t).abs());
-                t
-            }
-            FlightEnd::Leaves(t) => t,
-            FlightEnd::Flies => 5.0,
-        };
+        let ends =
+            match first_touch(&terrain, &tumble, 5.0, (&mut near, &mut WindowScratch::default())) {
+                FlightEnd::Touch(t) => {
+                    touched += 1;
+                    worst = worst.max(gap_m(&terrain, &tumble, t).abs());
+                    t
+                }
+                FlightEnd::Leaves(t) => t,
+                FlightEnd::Flies => 5.0,
+            };
         let is_inside =
             |k: u32| gap_m(&terrain, &tumble, ends * (f64::from(k) + 0.5) / 60.0) < -1e-6;
         missed += usize::from((0..60).any(is_inside));

@@ -23,7 +23,7 @@ pub(super) struct WindowSearch<'a> {
 
 /// A corner as it flies.
 /// Position `p` (m), velocity (m/s) in the frame of the terrain.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Flying {
     p: Vec3,
     velocity: Vec3,

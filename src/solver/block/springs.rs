@@ -92,8 +92,13 @@ pub(crate) struct Springs {
     fresh: bool,
     /// Whether the last look was at the present place.
     seen: bool,
+    /// Slip at the step's start (m/s), and how far it goes until friction is asked for (m).
+    slip_m_s: f64,
+    ahead_m: f64,
     /// Energy in the springs at the present state (J).
     stored_j: f64,
+    /// What steps of `dda` have made, and the motion has not paid for as yet (J).
+    owed_j: f64,
     /// The step to try next (s).
     h: f64,
     /// Fastest approach of the impacts that go on (m/s); 0 if none does.
@@ -148,6 +153,12 @@ impl Springs {
     /// Slowest contact (rad/s): the impact of all is over after some of its times.
     pub(crate) fn slowest(&self) -> f64 {
         self.histories.iter().map(|history| history.law.omega_rad_s()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Stretch of the shear spring of each contact of the last stage (m).
+    #[cfg(test)]
+    pub(super) fn stretches_m(&self) -> impl Iterator<Item = f64> {
+        self.contacts.iter().map(|contact| contact.shear.norm())
     }
 
     /// About how much springs hold (J), as the memories tell.
@@ -254,7 +265,7 @@ impl Footing {
             let Some(k) = *history else { continue };
             self.springs.histories[k].offset_m = offset_m.max(0.0);
         }
-        self.springs.stored_j = self.stored(world).sum();
+        (self.springs.stored_j, self.springs.owed_j) = (self.stored(world).sum(), 0.0);
         let control =
             settings.scheme.tableau().map(|tableau| Control::new(tableau, settings, world));
         self.springs.control = control;
@@ -301,8 +312,12 @@ impl Footing {
         most_s: f64,
     ) -> Result<(Stepped, u64), StepError> {
         let slip_m_s = self.slip_m_s(block, moving);
+        (self.springs.slip_m_s, self.springs.ahead_m) = (slip_m_s, 0.0);
         let (done, rejected) = match self.springs.control {
-            Some(control) => self.controlled_step(world, (block, moving), (control, most_s))?,
+            Some(control) => {
+                let limit = Self::travel_limit_s(world, (block, moving), settings.corner_way);
+                self.controlled_step(world, (block, moving), (control, most_s, limit))?
+            }
             None => (self.fixed_step(world, settings, (block, moving), most_s)?, 0),
         };
         let slipped_m = 0.5 * done.dt * (slip_m_s + self.slip_m_s(block, moving));

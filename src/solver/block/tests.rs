@@ -1,6 +1,7 @@
 use super::*;
 
 mod cases;
+mod limit;
 mod slip;
 mod springs;
 mod yielding;
@@ -11,8 +12,8 @@ use crate::flight::{FlightEnd, Parabola};
 use crate::ground::{Capture, Damping, Ground, Law};
 use crate::math::{atan, cos, sin, turn};
 use crate::rock::Rock;
-use crate::solver::Settings;
 use crate::solver::body::Body;
+use crate::solver::{CORNER_WAY, Settings};
 use crate::terrain::stl::{Facet, Soup};
 use crate::terrain::weld::{Piece, Up, weld};
 use crate::terrain::{Sheet, Terrain};
@@ -112,7 +113,12 @@ impl BlockRun {
             let top = Top::new(block.inertia_kg_m2, moving.pose.attitude, moving.momentum);
             let tumble = Tumble { block: &block, top, path };
             let left = longest_s - now;
-            let dt = match first_touch(&self.terrain, &tumble, left, &mut footing.near) {
+            let dt = match first_touch(
+                &self.terrain,
+                &tumble,
+                left,
+                (&mut footing.near, &mut footing.window),
+            ) {
                 FlightEnd::Touch(dt) => dt,
                 FlightEnd::Flies => left,
                 FlightEnd::Leaves(_) => panic!("it has left the plane after {now} s"),
@@ -126,8 +132,13 @@ impl BlockRun {
             while now < longest_s {
                 if let Some(settings) = &self.springs {
                     let on = (&block, &mut *moving);
-                    let (done, _) =
-                        footing.step_on_springs(&world, settings, on, longest_s - now).unwrap();
+                    let done = footing.step_on_springs(&world, settings, on, longest_s - now);
+                    let (done, _) = done.unwrap_or_else(|why| {
+                        panic!(
+                            "{:?} after {now} s: {why}; {:?}",
+                            settings.scheme, footing.touches.found
+                        )
+                    });
                     self.lost.add(&done.loss, 1.0);
                     self.steps += 1;
                     now += done.dt;
@@ -147,7 +158,8 @@ impl BlockRun {
                         break;
                     }
                 }
-                let done = footing.step(&world, &block, moving, self.step_s.min(longest_s - now));
+                let most = (self.step_s.min(longest_s - now), CORNER_WAY);
+                let done = footing.step(&world, &block, moving, most);
                 self.lost.add(&done.loss, 1.0);
                 self.steps += 1;
                 now += done.dt;

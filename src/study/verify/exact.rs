@@ -79,6 +79,7 @@ fn rocks(
         step_s: f64::INFINITY,
         shear_memory: true,
         impact_kernels: true,
+        corner_way: crate::solver::CORNER_WAY,
         capture_speed_m_s: None,
     };
     let rest = RestRule { speed_m_s: 0.02, time_s: 1.0 };

@@ -28,6 +28,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[shape]", "Form"),
     ("[impacts of blocks]", "Aufpralle von Blöcken"),
     ("[explicit stages]", "explizite Stufen"),
+    ("[steps of blocks]", "Schritte von Blöcken"),
     ("[cost of shape]", "Aufwand der Form"),
     ("[flat edges]", "flache Kanten"),
     ("[hollow edges]", "hohle Kanten"),
@@ -135,6 +136,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{name} wie {known}: {values}, wo die Szene nichts anderes schreibt; {source}",
     ),
     ("{name}, local error {x} m/s", "{name}, lokaler Fehler {x} m/s"),
+    (
+        "no corner goes further than {x} of its rounding in one",
+        "keine Ecke bewegt sich in einem weiter als das {x}-fache ihrer Rundung",
+    ),
     ("{name}, steps of up to {x} s", "{name}, Schritte bis {x} s"),
     (
         "{name}, steps of {x} s, with shear memory",

@@ -28,6 +28,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[shape]", "forme"),
     ("[impacts of blocks]", "chocs des blocs"),
     ("[explicit stages]", "étapes explicites"),
+    ("[steps of blocks]", "pas des blocs"),
     ("[cost of shape]", "coût de la forme"),
     ("[flat edges]", "arêtes plates"),
     ("[hollow edges]", "arêtes creuses"),
@@ -135,6 +136,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{name} comme {known}\u{a0}: {values} sauf écrit dans la scène\u{a0}; {source}",
     ),
     ("{name}, local error {x} m/s", "{name}, erreur locale {x} m/s"),
+    (
+        "no corner goes further than {x} of its rounding in one",
+        "aucun sommet ne va plus loin que {x} fois son arrondi dans un pas",
+    ),
     ("{name}, steps of up to {x} s", "{name}, pas de {x} s au plus"),
     (
         "{name}, steps of {x} s, with shear memory",

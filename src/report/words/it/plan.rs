@@ -28,6 +28,7 @@ pub(super) const PLAN: &[(&str, &str)] = &[
     ("[shape]", "forma"),
     ("[impacts of blocks]", "urti dei blocchi"),
     ("[explicit stages]", "stadi espliciti"),
+    ("[steps of blocks]", "passi dei blocchi"),
     ("[cost of shape]", "costo della forma"),
     ("[flat edges]", "spigoli piani"),
     ("[hollow edges]", "spigoli concavi"),
@@ -138,6 +139,10 @@ pub(super) const PLAN: &[(&str, &str)] = &[
         "{name} come {known}: {values} se la scena non scrive altro; {source}",
     ),
     ("{name}, local error {x} m/s", "{name}, errore locale {x} m/s"),
+    (
+        "no corner goes further than {x} of its rounding in one",
+        "nessun vertice va oltre {x} volte il suo arrotondamento in un passo",
+    ),
     ("{name}, steps of up to {x} s", "{name}, passi fino a {x} s"),
     ("{name}, steps of {x} s, with shear memory", "{name}, passi di {x} s, con memoria di taglio"),
     (

@@ -1,6 +1,6 @@
 //! Schemes `adaptive` and `reference` for blocks: a diagonally implicit tableau with error control.
 
-use super::super::{Footing, Moving, Stepped, TRAVEL, TURN};
+use super::super::{Footing, Moving, Stepped, TURN};
 use super::stage::{BlockEnd, StageBase};
 use super::{BlockHistory, BlockRates};
 use crate::body::Block;
@@ -55,6 +55,8 @@ impl BlockTrial<'_, '_> {
     fn attempt(&mut self, dt: f64) -> Option<(BlockEnd, f64)> {
         let tableau = self.control.tableau;
         let way_s = tableau.diagonal * dt;
+        // friction that grows with slip is that of the middle of the step
+        self.footing.springs.ahead_m = 0.5 * dt * self.footing.springs.slip_m_s;
         let mut end = None;
         for i in 1..tableau.stages {
             let base = self.footing.base(self.start, tableau, (i, dt));
@@ -122,15 +124,17 @@ impl Footing {
         stored.sum()
     }
 
-    /// Longest step (s) in which no point of the block goes further, and the block turns no further, than a step may.
+    /// Longest step (s) in which no point of the block goes further than `corner_way` of its balls, and the block turns no further than a
+    /// step may.
     pub(super) fn travel_limit_s(
         world: &ContactEnvironment,
         (block, moving): (&Block, &Moving),
+        corner_way: f64,
     ) -> f64 {
         let spin = moving.spin(block).norm();
         let fastest = moving.v.norm() + spin * block.bound_m;
-        let turn_s = TURN / spin.max(f64::MIN_POSITIVE);
-        turn_s.min(longest_step(&world.body, fastest, TRAVEL * block.ball_m))
+        let turn_s = TURN * corner_way / spin.max(f64::MIN_POSITIVE);
+        turn_s.min(longest_step(&world.body, fastest, corner_way * block.ball_m))
     }
 
     /// One accepted step of at most `most_s`.
@@ -141,12 +145,12 @@ impl Footing {
         &mut self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &mut Moving),
-        (control, most_s): (Control, f64),
+        (control, most_s, limit): (Control, f64, f64),
     ) -> Result<(Stepped, u64), StepError> {
         let springs = &mut self.springs;
         springs.impact_m_s = springs.fastest_m_s().map_or(0.0, |own| own.max(springs.impact_m_s));
         if self.is_followed(world, &control) {
-            let step = self.explicit_step(world, (block, moving), (&control, most_s))?;
+            let step = self.explicit_step(world, (block, moving), (&control, most_s, limit))?;
             if let Some(step) = step {
                 return Ok(step);
             }
@@ -164,7 +168,6 @@ impl Footing {
         };
         self.springs.known = self.springs.histories.len();
         let omega = self.springs.stiffest(world);
-        let limit = Self::travel_limit_s(world, (block, moving));
         let (h, start) = (self.springs.h, moving.clone());
         let mut rejected = 0;
         let footing = &mut *self;

@@ -2,6 +2,10 @@
 //!
 //! Over a step the block moves with the mean of its velocities at both ends, forces are those of the springs at its end, and geometry is
 //! that of its start, as in the paper (Eqs. (1)–(5)): impulses act for half the step before the mean velocity is reached.
+//!
+//! For a sphere on planes that gains nothing, however long the step: work is just what the energy of motion changes by. A block turns, and
+//! with it its levers and its inertia; to the first order of the step that may give as well as take. So what a step has made is taken off
+//! the motion again ([`Footing::hold_to`]).
 
 use super::super::{Footing, Moving, Stepped, TOUCH};
 use super::SpringContact;
@@ -30,7 +34,7 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
         most_s: f64,
     ) -> Result<Stepped, StepError> {
-        let limit = Self::travel_limit_s(world, (block, moving));
+        let limit = Self::travel_limit_s(world, (block, moving), settings.corner_way);
         let dt = settings.step_s.min(most_s).min(limit);
         let start = moving.clone();
         let ahead_m = Self::ahead_m(world, (block, &start), dt);
@@ -42,9 +46,10 @@ impl Footing {
             if memory { footing.springs.histories[k].shear } else { Vec3::zeros() }
         };
         self.place(world, (block, &start, &start), 0.0, &shear_of);
+        let had_j = start.motion_j(block) + self.placed_j();
         let base = BlockEnd { moving: start.clone(), turned: Vec3::zeros() };
         let stage = StageBase { start: &start, base, times_s: (0.5 * dt, dt) };
-        let mean = self.mean_motion(world, block, &stage);
+        let mean = self.mean_motion(world, block, &stage, &shear_of);
         let weight = world.body.gravity * dt;
         let (pushed_v, pushed_l) =
             (mean.v - start.v - weight * 0.5, mean.momentum - start.momentum);
@@ -65,6 +70,9 @@ impl Footing {
         self.keep((block, &mean), dt);
         self.look_at_all(world, (block, &moving.pose), TOUCH * block.radius_m);
         self.check_depth(block)?;
+        let lifted_m = moving.pose.centre - start.pose.centre;
+        let had_j = had_j + block.mass_kg * world.body.gravity.dot(&lifted_m);
+        self.hold_to(world, (block, moving), had_j, &shear_of);
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         done.is_free = self.springs.is_free();
         Ok(done)
@@ -77,6 +85,7 @@ impl Footing {
         world: &ContactEnvironment,
         block: &Block,
         stage: &StageBase,
+        shear_of: &impl Fn(&Self, usize) -> Vec3,
     ) -> Moving {
         let (start, (half_s, dt)) = (stage.start, stage.times_s);
         let free_v = start.v + world.body.gravity * half_s;
@@ -86,7 +95,7 @@ impl Footing {
             let mut end = mean.clone();
             end.drift(block, dt);
             let known = self.springs.contacts.len();
-            self.run_into(world, block, (&mean, &end), dt);
+            self.run_into(world, (block, &mean, &end), dt, shear_of);
             if self.springs.contacts.len() == known {
                 break;
             }
@@ -95,12 +104,12 @@ impl Footing {
     }
 
     /// Adds the contacts that press at a step's end and took no part in it.
-    fn run_into(
+    pub(in crate::solver::block) fn run_into(
         &mut self,
         world: &ContactEnvironment,
-        block: &Block,
-        (mean, end): (&Moving, &Moving),
+        (block, mean, end): (&Block, &Moving, &Moving),
         dt: f64,
+        shear_of: &impl Fn(&Self, usize) -> Vec3,
     ) {
         let began = std::mem::take(&mut self.touches.found);
         self.look_at_all(world, (block, &end.pose), 0.0);
@@ -119,10 +128,43 @@ impl Footing {
         if self.touches.found.len() > self.springs.contacts.len() {
             self.remember(world, (block, mean));
             let contacts: Vec<SpringContact> = self.springs.contacts.clone();
-            self.place(world, (block, mean, mean), 0.0, &|footing: &Self, k| {
-                footing.springs.histories[k].shear
-            });
+            self.place(world, (block, mean, mean), 0.0, shear_of);
             self.springs.contacts[..contacts.len()].copy_from_slice(&contacts);
+        }
+    }
+    /// Energy in the springs of the contacts as they were placed (J).
+    fn placed_j(&self) -> f64 {
+        let stored = self.springs.contacts.iter().map(|contact| {
+            let pen = contact.penetration.max(0.0);
+            let shear2 = if pen > 0.0 { contact.shear.norm_squared() } else { 0.0 };
+            contact.law.stored_j(pen, shear2, 0.0)
+        });
+        stored.sum()
+    }
+
+    /// Slows the block where motion and springs at a step's end, after its look, hold more than `had_j` (J), and than it owes. A block that
+    /// its springs have just turned round has no motion to pay with: it owes the rest until they have thrown it out.
+    fn hold_to(
+        &mut self,
+        world: &ContactEnvironment,
+        (block, moving): (&Block, &mut Moving),
+        had_j: f64,
+        shear_of: &impl Fn(&Self, usize) -> Vec3,
+    ) {
+        // as the next step will find its springs
+        let known = self.springs.histories.len();
+        self.springs.known = known;
+        self.remember(world, (block, moving));
+        self.place(world, (block, moving, moving), 0.0, shear_of);
+        self.springs.histories.truncate(known);
+        let (motion_j, allowed_j) = (moving.motion_j(block), had_j - self.springs.owed_j);
+        let made_j = motion_j + self.placed_j() - allowed_j;
+        let paid_j = made_j.clamp(0.0, motion_j);
+        self.springs.owed_j = (made_j - paid_j).max(0.0);
+        if paid_j > 0.0 {
+            let kept = (1.0 - paid_j / motion_j).sqrt();
+            moving.v *= kept;
+            moving.momentum *= kept;
         }
     }
 }

@@ -84,14 +84,13 @@ impl Footing {
         &mut self,
         world: &ContactEnvironment,
         (block, moving): (&Block, &mut Moving),
-        (control, most_s): (&Control, f64),
+        (control, most_s, limit): (&Control, f64, f64),
     ) -> Result<Option<(Stepped, u64)>, StepError> {
         let omega = self.springs.stiffest(world);
         let allowed = LOCAL * control.impact * self.springs.impact_m_s;
         let begins_m = (allowed / omega).max(ROUNDING_OF_PLACE * block.radius_m);
-        let limit = Self::travel_limit_s(world, (block, moving)).min(LONGEST_RAD / omega);
         let scale = ErrorScale { omega, allowed, begins_m };
-        let bounds = ImpactBounds { scale, limit, h_max: most_s };
+        let bounds = ImpactBounds { scale, limit: limit.min(LONGEST_RAD / omega), h_max: most_s };
         if self.springs.is_new() {
             self.springs.h = FIRST / omega;
         }
@@ -134,7 +133,7 @@ impl Footing {
         let mut done = Stepped { dt: step.dt, loss: step.loss, ..Stepped::default() };
         done.slides = self.springs.histories.iter().any(|history| history.slides);
         let left_s = most_s - step.dt;
-        done.dt += self.let_go(world, (block, moving), left_s);
+        done.dt += self.let_go(world, (block, moving), left_s.min(limit));
         done.is_free = self.springs.is_free();
         if done.is_free {
             done.loss.damping += self.balance(block, moving);
@@ -235,8 +234,7 @@ impl Footing {
             }
             out_s = out_s.max(own_s);
         }
-        let limit_s = Self::travel_limit_s(world, (block, moving));
-        if out_s <= 0.0 || out_s > longest_s.min(limit_s) {
+        if out_s <= 0.0 || out_s > longest_s {
             return 0.0;
         }
         let mut out = moving.clone();

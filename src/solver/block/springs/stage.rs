@@ -133,7 +133,11 @@ impl Footing {
             let Some(history) = self.of_touch[k] else { continue };
             let memory = &self.springs.histories[history];
             let mut law = memory.law.of_patch(touch.gain2, 1.0);
-            law.rub_with(self.slip.friction(world.ground_of(touch.triangle), &law, 0.0));
+            law.rub_with(self.slip.friction(
+                world.ground_of(touch.triangle),
+                &law,
+                self.springs.ahead_m,
+            ));
             let offset_m = self.offset_m((start, guess), touch, (block, history));
             contacts.push(SpringContact {
                 history,

@@ -5,10 +5,10 @@ use super::*;
 use crate::solver::Scheme;
 use nalgebra::Unit;
 
-const SCHEMES: [Scheme; 3] = [Scheme::Adaptive, Scheme::Reference, Scheme::Dda];
+pub(super) const SCHEMES: [Scheme; 3] = [Scheme::Adaptive, Scheme::Reference, Scheme::Dda];
 
 /// The same run with springs of `p_n` (N/m); `dda` with `ω Δt` = 0.01.
-fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockRun {
+pub(super) fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockRun {
     case.ground.normal_stiffness_n_m = p_n;
     case.ground.shear_stiffness_n_m = 0.25 * p_n;
     let rock = Rock { radius_m: case.block.radius_m, density_kg_m3: 2700.0 };
@@ -21,8 +21,30 @@ fn on_springs(mut case: BlockRun, scheme: Scheme, p_n: f64) -> BlockRun {
         step_s: 0.01 / case.law.omega_rad_s(),
         shear_memory: true,
         impact_kernels: true,
+        corner_way: CORNER_WAY,
         capture_speed_m_s: own_m_s,
     });
+    case
+}
+
+pub(super) fn every_scheme() -> [Scheme; 4] {
+    Scheme::ALL
+}
+
+/// Without `reference`, which finds no step where the rear corners of a tipping block let go (`docs/exact_blocks.md`).
+pub(super) fn schemes_that_tip() -> impl Iterator<Item = Scheme> {
+    every_scheme().into_iter().filter(|scheme| *scheme != Scheme::Reference)
+}
+
+/// Length of a fixed step over `√(p_N/m)` where a case lasts long (rad).
+const LONG_PHASE: f64 = 0.1;
+
+/// The same run with longer fixed steps.
+pub(super) fn with_long_steps(mut case: BlockRun) -> BlockRun {
+    let omega = case.law.omega_rad_s();
+    if let Some(settings) = &mut case.springs {
+        settings.step_s = LONG_PHASE / omega;
+    }
     case
 }
 
@@ -115,7 +137,8 @@ fn one_ball_bounces_as_a_sphere_does() {
     let body = || balls(vec![Vec3::zeros()], r, (mass, [0.4 * mass * r * r; 3]));
     let run = |scheme| on_springs(BlockRun::new(slope(0.0, 50.0), body(), (0.4, 0.6)), scheme, 1e9);
     let start = [Vec3::z() * (r + 1e-9), Vec3::new(4.0, 1.0, -5.0), Vec3::new(1.0, -2.0, 3.0)];
-    for (scheme, most) in [(Scheme::Adaptive, 2e-3), (Scheme::Reference, 1e-6)] {
+    for (scheme, most) in [(Scheme::Adaptive, 2e-3), (Scheme::Reference, 1e-6), (Scheme::Dda, 2e-2)]
+    {
         let mut case = run(scheme);
         let mut moving = case.start(Rotation3::identity(), start);
         case.follow(&mut moving, 0.05, |_, _| ());
@@ -184,7 +207,8 @@ fn folds(cells: i32, most_m: f64) -> Terrain {
 /// it.
 #[test]
 fn elastic_blocks_keep_their_energy_over_folds() {
-    for (scheme, most) in [(Scheme::Adaptive, 0.05), (Scheme::Reference, 1e-5)] {
+    for (scheme, most) in [(Scheme::Adaptive, 0.05), (Scheme::Reference, 1e-5), (Scheme::Dda, 1.0)]
+    {
         for sides in [[1.0; 3], [1.4, 0.9, 0.35]] {
             let body = block(&box_surface(sides), 0.08);
             let case = BlockRun::new(folds(80, 0.03), body, (0.0, 1.0));
@@ -259,4 +283,31 @@ fn explicit_impacts_are_the_implicit_ones() {
     }
     let [explicit, implicit] = [0, 1].map(|run| off.iter().map(|off| off[run]).sum::<f64>());
     assert!(2.0 * explicit < implicit, "{explicit} {implicit}");
+}
+
+/// A contact that a step of `dda` runs into begins with the stretch that its memory holds, or, as printed in the paper, with none.
+#[test]
+fn what_a_step_runs_into_is_without_memory_as_printed() {
+    let case = on_springs(cube(0.0, (0.5, 0.4)), Scheme::Dda, 1e9);
+    let (own, laws) = (case.block.clone(), [case.law]);
+    let world =
+        ContactEnvironment { terrain: &case.terrain, body: Body::of_block(&own, G), laws: &laws };
+    let end = case.start(Rotation3::identity(), still(Vec3::z() * 0.499));
+    for remembers in [true, false] {
+        let mut footing = Footing::default();
+        footing.begin_springs(&world, &case.springs.unwrap(), (&own, &end));
+        assert_eq!(footing.springs.histories.len(), 4);
+        footing.springs.histories.iter_mut().for_each(|history| history.shear.x = 1e-3);
+        footing.touches.found.clear();
+        let stretch = |footing: &Footing, k: usize| {
+            if remembers { footing.springs.histories[k].shear } else { Vec3::zeros() }
+        };
+        footing.run_into(&world, (&own, &end, &end), 1e-5, &stretch);
+        let known: Vec<f64> = footing.springs.stretches_m().collect();
+        let expected = if remembers { 1e-3 } else { 0.0 };
+        assert!(
+            known.len() == 4 && known.iter().all(|x| (x - expected).abs() < 1e-12),
+            "{known:?}"
+        );
+    }
 }
