@@ -214,7 +214,7 @@ impl Roll<'_> {
     fn strike(&mut self) -> bool {
         let (block, now_s) = (self.block, self.recorder.now.time_s);
         // touching contacts that approach faster than their ground captures: one impact, resolved together
-        let mut struck = std::mem::take(&mut self.footing.struck);
+        let mut struck = std::mem::take(&mut self.footing.aside);
         struck.clear();
         let is_struck =
             |touch: &&BlockTouch| Footing::is_struck(&self.world, (block, &self.moving), touch);
@@ -235,7 +235,7 @@ impl Roll<'_> {
         if let Some(touch) = fastest.filter(|_| self.scars.are_any()) {
             self.dig(touch.triangle, &touch.normal);
         }
-        self.footing.struck = struck;
+        self.footing.aside = struck;
         let broken_j = self.footing.break_stems(&self.world, block, &mut self.moving);
         self.recorder.ledger.trees_j += broken_j;
         let loss = self.footing.strike(&self.world, block, &mut self.moving);

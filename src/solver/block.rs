@@ -73,8 +73,8 @@ pub(crate) struct Footing {
     contacts: Vec<BlockContact>,
     /// Those of an impact, and the speed that each shall give back (m/s).
     wanted: Vec<(BlockContact, f64)>,
-    /// Touches of an impact.
-    pub(crate) struck: Vec<BlockTouch>,
+    /// Touches set aside for a moment.
+    pub(crate) aside: Vec<BlockTouch>,
     /// Springs of its contacts, in the schemes that have them, and which belongs to each of the last look.
     pub(crate) springs: Springs,
     of_touch: Vec<Option<usize>>,

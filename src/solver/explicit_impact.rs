@@ -29,7 +29,7 @@ pub(super) const FIRST: f64 = 0.3;
 /// Beyond about a radian the error estimate of the pair is no longer to be trusted.
 pub(super) const LONGEST_RAD: f64 = 0.9;
 /// Local error allowed where patches meet and part, relative to that on a plane (–): the estimate sees too little of a kink.
-pub(super) const KINKED: f64 = 0.3;
+const KINKED: f64 = 0.3;
 /// Largest error of energy that is balanced (–, relative to motion).
 /// A larger one is no error of steps, and hiding it would hide a fault.
 pub(super) const BALANCED: f64 = 0.1;
@@ -57,6 +57,27 @@ struct Accepted {
     sums: [f64; SUMS],
     /// Energy in the normal springs at its start and end (J), if all of them push at both.
     stored: Option<(Loss, Loss)>,
+}
+
+/// Whether a whole try of `dt` (s) is accepted by its error (squared, over the one allowed), and the step to try next (s). One that was cut
+/// short from outside says nothing of how long it could have been: what was `wished` stays. One that `is_short` is accepted
+/// whatever its error.
+///
+/// # Errors
+/// [`StepError`] if what was accepted is no longer finite.
+pub(super) fn judge(
+    (dt, wished): (f64, f64),
+    (error2, is_smooth): (f64, bool),
+    is_short: bool,
+) -> Result<(bool, f64), StepError> {
+    let error2 = error2 * if is_smooth { 1.0 } else { 1.0 / (KINKED * KINKED) };
+    if error2 <= 1.0 || is_short {
+        let least = if dt < wished { wished } else { 0.0 };
+        let next_h = (dt * growth(error2)).max(least);
+        return if error2.is_finite() { Ok((true, next_h)) } else { Err(StepError::NotFinite) };
+    }
+    let grown = if error2.is_finite() { growth(error2) } else { 0.2 };
+    Ok((false, dt * grown.min(0.9)))
 }
 
 impl ContactState {
@@ -152,22 +173,15 @@ impl ContactState {
                     continue;
                 }
             };
-            let error2 = tried.error2 * if flow.is_smooth { 1.0 } else { 1.0 / (KINKED * KINKED) };
-            if error2 <= 1.0 || is_short {
-                if !error2.is_finite() {
-                    return Err(StepError::NotFinite);
-                }
+            let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
+            flow.state.impact.h = next_h;
+            if accepted {
                 done.rejected -= 1;
-                // cut short from outside: the step that was wished for stays
-                let least = if dt < wished { wished } else { 0.0 };
-                flow.state.impact.h = (dt * growth(error2)).max(least);
                 let (end, after) = (flow.end(&tried.y), flow.stored_j());
                 flow.remember();
                 let stored = before.zip(after);
                 return Ok(Some(Accepted { end, dt, sums: tried.q, stored }));
             }
-            let grown = if error2.is_finite() { growth(error2) } else { 0.2 };
-            flow.state.impact.h = dt * grown.min(0.9);
         }
     }
 
@@ -183,14 +197,9 @@ impl ContactState {
         let before = self.motion_j(body);
         let [friction, damping, rolling, trees, stores, tree_stores] = accepted.sums;
         let mut loss = Loss { friction, damping, rolling, trees };
-        // Where springs push from the step's start to its end, what they store is known exactly.
-        // damping power is summed along the way; the springs' own change is exact between the two
-        // ends and replaces its sum
-        if let Some((before, after)) = &accepted.stored {
-            loss.damping -= stores;
-            loss.trees -= tree_stores;
-            loss.add(after, 1.0);
-            loss.add(before, -1.0);
+        // where springs push from the step's start to its end, what they store is known exactly
+        if let Some(ends) = &accepted.stored {
+            loss.know_stored([stores, tree_stores], ends);
         }
         let lifted = -body.mass * body.gravity.dot(&(end.c - self.c));
         (self.c, self.v, self.w) = (end.c, end.v, end.w);

@@ -12,8 +12,7 @@ pub(super) fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: 
         // motion k² = had + comes k
         let root = (comes_j * comes_j + 4.0 * motion_j * had_j.max(0.0)).sqrt();
         let kept = ((comes_j + root) / (2.0 * motion_j)).clamp(0.0, 1.0);
-        moving.v *= kept;
-        moving.momentum *= kept;
+        moving.scale_motion(kept);
     }
 }
 
@@ -21,6 +20,12 @@ pub(super) fn hold_energy(block: &Block, moving: &mut Moving, [had_j, comes_j]: 
 const SHORTEST_S: f64 = 1e-6;
 
 impl Moving {
+    /// Scales velocity and momentum by one factor (–): the direction of the motion stays.
+    pub(super) fn scale_motion(&mut self, kept: f64) {
+        self.v *= kept;
+        self.momentum *= kept;
+    }
+
     /// How long a step may be (s) in which the block climbs half of its way on the energy that it has (J): where a contact lets out a block
     /// that hardly moves, a longer one would lift it for nothing.
     pub(super) fn climbs_s(&self, (mass_kg, gravity): (f64, &Vec3), motion_j: f64) -> f64 {

@@ -85,6 +85,8 @@ struct SpringContact {
 pub(crate) struct Springs {
     pub(crate) histories: Vec<BlockHistory>,
     contacts: Vec<SpringContact>,
+    /// Those that were solved before others came up.
+    solved: Vec<SpringContact>,
     /// Memories at the step's start.
     known: usize,
     rates: [BlockRates; STAGES],
@@ -161,6 +163,17 @@ impl Springs {
         self.contacts.iter().map(|contact| contact.shear.norm())
     }
 
+    /// Energy in the springs of the contacts as they were placed (J).
+    fn placed_j(&self) -> f64 {
+        let stored = |contact: &SpringContact| contact.holds_j(contact.penetration, &contact.shear);
+        self.contacts.iter().map(stored).sum()
+    }
+
+    /// Notes the fastest approach of the impacts that go on.
+    fn note_fastest(&mut self) {
+        self.impact_m_s = self.fastest_m_s().map_or(0.0, |own| own.max(self.impact_m_s));
+    }
+
     /// About how much springs hold (J), as the memories tell.
     pub(crate) fn held_j(&self) -> f64 {
         let held = self.histories.iter().filter(|history| history.closed).map(|history| {
@@ -198,6 +211,12 @@ impl SpringContact {
         self.shear_force = shear.capped(asked, self.normal_force);
         let shear_rate = shear.relaxing(self.shear_force, held);
         SpringAnswer { pulls, asked2: asked.norm_squared(), shear_rate }
+    }
+
+    /// Energy in its springs at a penetration and a stretch (J, m): nothing where it does not press.
+    fn holds_j(&self, penetration: f64, shear: &Vec3) -> f64 {
+        let shear2 = if penetration > 0.0 { shear.norm_squared() } else { 0.0 };
+        self.law.stored_j(penetration.max(0.0), shear2, 0.0)
     }
 
     /// Penetration (m) after a motion of the contact point at `u` (m/s) for `b` (s).

@@ -46,7 +46,7 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
     ) -> Option<(u32, f64)> {
         let (mass, motion_j) = (moving.mass(block), moving.motion_j(block));
-        let mut touching = std::mem::take(&mut self.struck);
+        let mut touching = std::mem::take(&mut self.aside);
         touching.clear();
         touching.extend(self.touching(block));
         let broken = touching.iter().find_map(|touch| {
@@ -61,7 +61,7 @@ impl Footing {
             moving.take(&[contact], block.mass_kg);
             Some((stem, left_j))
         });
-        self.struck = touching;
+        self.aside = touching;
         broken
     }
 

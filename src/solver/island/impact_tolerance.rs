@@ -6,8 +6,7 @@
 //! at such errors they are the cheaper ones.
 //!
 //! Two bodies that strike each other and touch nothing else are as accurate as a rock alone. Where a blow runs through several
-//! contacts at once, as in a heap, its outcome hangs on the tenth of a micrometre by which their gaps differ, and no error of the
-//! steps can be told from that: a larger share is enough there.
+//! contacts at once, as in a heap, its outcome hangs on gaps far smaller than any that is known: a larger share is enough there.
 
 use super::assembly::Island;
 use super::body::IslandBody;
@@ -20,8 +19,8 @@ use crate::solver::tableau::{ESDIRK4, TR_BDF2};
 /// Local error allowed in an impact (–, relative to its speed) by 1 m/s of that in lasting contact, and at most: that of a rock
 /// alone at the usual tolerance.
 const IMPACT: (f64, f64) = (1.0, 2e-4);
-/// The same where the rock that is struck, or what strikes it, touches more than the other, in units of that (–): at the usual
-/// tolerance 1 % of the speed of the blow.
+/// The same where the rock that is struck, or what strikes it, touches others as well, in units of that (–): at the usual tolerance
+/// 1 % of the speed of the blow.
 const IN_A_HEAP: f64 = 150.0;
 
 impl Island<'_> {

@@ -100,19 +100,15 @@ pub(super) fn flat(way: &SchemeSetting, notes: &mut Notes) {
 /// of triangles are 1 : 1e8 and 100 : 1; with springs 10 : 1, in `reference` none so large.
 pub(super) fn sizes(way: &SchemeSetting, notes: &mut Notes) {
     let wide = terrain(crate::terrain::make::jittered_plane(1e4, 1, 0.0));
-    let coarse = terrain(bumpy(30, 1.0, 1e-2));
-    let fine = terrain(bumpy(300, 0.1, 1e-3));
-    for (size_m, on, triangle_m, setting) in [
-        (1e-4, &wide, 1e4, "0.1 mm on 10 km"),
-        (0.1, &wide, 1e4, "0.1 m on 10 km"),
-        (10.0, &coarse, 1.0, "10 m on 1 m"),
-        (10.0, &fine, 0.1, "10 m on 0.1 m"),
-    ] {
-        // with springs hundreds of contacts would press at once for a thousand steps, with the finest dozens too many
-        let fine_m = way.scheme.of([1.0, 1.0, 10.0, 0.1]);
-        if setting.starts_with("10 m") && f64::abs(triangle_m - fine_m) > 1e-9 {
-            continue;
-        }
+    // with springs hundreds of contacts would press at once for a thousand steps, with the finest dozens too many
+    let coarse = Some((30, 1.0, 1e-2));
+    let rough = way.scheme.of([coarse, coarse, None, Some((300, 0.1, 1e-3))]);
+    let rough = rough.map(|(cells, cell_m, noise_m)| {
+        (terrain(bumpy(cells, cell_m, noise_m)), format!("10 m on {cell_m} m"))
+    });
+    let large = rough.iter().map(|(on, setting)| (10.0, on, setting.as_str()));
+    let small = [(1e-4, &wide, "0.1 mm on 10 km"), (0.1, &wide, "0.1 m on 10 km")];
+    for (size_m, on, setting) in small.into_iter().chain(large) {
         let speed = (GRAVITY_M_S2 * size_m).sqrt();
         let setup = Setup {
             velocity_m_s: Vec3::new(0.2 * speed, 0.0, -speed),

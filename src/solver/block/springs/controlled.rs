@@ -117,9 +117,8 @@ impl Footing {
     /// Energy in the springs at the end of a stage of length `way_s` (J).
     fn pressed_j(&self, (block, end): (&Block, &Moving), way_s: f64) -> f64 {
         let stored = self.springs.contacts.iter().map(|contact| {
-            let pen = contact.pen_at(&end.at(block, &contact.lever), way_s).max(0.0);
-            let shear2 = if pen > 0.0 { contact.stretch(way_s).norm_squared() } else { 0.0 };
-            contact.law.stored_j(pen, shear2, 0.0)
+            let pen = contact.pen_at(&end.at(block, &contact.lever), way_s);
+            contact.holds_j(pen, &contact.stretch(way_s))
         });
         stored.sum()
     }
@@ -147,8 +146,7 @@ impl Footing {
         (block, moving): (&Block, &mut Moving),
         (control, most_s, limit): (Control, f64, f64),
     ) -> Result<(Stepped, u64), StepError> {
-        let springs = &mut self.springs;
-        springs.impact_m_s = springs.fastest_m_s().map_or(0.0, |own| own.max(springs.impact_m_s));
+        self.springs.note_fastest();
         if self.is_followed(world, &control) {
             let step = self.explicit_step(world, (block, moving), (&control, most_s, limit))?;
             if let Some(step) = step {
@@ -160,7 +158,7 @@ impl Footing {
             self.rates_now(world, (block, moving));
         }
         let springs = &mut self.springs;
-        springs.impact_m_s = springs.fastest_m_s().map_or(0.0, |own| own.max(springs.impact_m_s));
+        springs.note_fastest();
         let allowed = if springs.impact_m_s > 0.0 {
             control.impact * springs.impact_m_s
         } else {

@@ -8,9 +8,10 @@
 //! the motion again ([`Footing::hold_to`]).
 
 use super::super::{Footing, Moving, Stepped, TOUCH};
-use super::SpringContact;
+use super::Springs;
 use super::stage::{BlockEnd, StageBase};
 use crate::body::Block;
+use crate::contact::block::BlockTouch;
 use crate::contact::history::SAME_GRIP;
 use crate::flight::top::Top;
 use crate::rock::Vec3;
@@ -46,7 +47,7 @@ impl Footing {
             if memory { footing.springs.histories[k].shear } else { Vec3::zeros() }
         };
         self.place(world, (block, &start, &start), 0.0, &shear_of);
-        let had_j = start.motion_j(block) + self.placed_j();
+        let had_j = start.motion_j(block) + self.springs.placed_j();
         let base = BlockEnd { moving: start.clone(), turned: Vec3::zeros() };
         let stage = StageBase { start: &start, base, times_s: (0.5 * dt, dt) };
         let mean = self.mean_motion(world, block, &stage, &shear_of);
@@ -111,35 +112,28 @@ impl Footing {
         dt: f64,
         shear_of: &impl Fn(&Self, usize) -> Vec3,
     ) {
-        let began = std::mem::take(&mut self.touches.found);
+        std::mem::swap(&mut self.touches.found, &mut self.aside);
         self.look_at_all(world, (block, &end.pose), 0.0);
-        let pressed = std::mem::replace(&mut self.touches.found, began);
-        for touch in pressed.into_iter().filter(|touch| touch.gap_m < 0.0) {
-            let known = self.springs.contacts.iter().zip(&self.touches.found);
-            let took_part = { known }.any(|(contact, began)| {
+        std::mem::swap(&mut self.touches.found, &mut self.aside);
+        for touch in self.aside.iter().filter(|touch| touch.gap_m < 0.0) {
+            let mut known = self.springs.contacts.iter().zip(&self.touches.found);
+            let took_part = known.any(|(contact, began)| {
                 began.part == touch.part && contact.n.dot(&touch.normal) > SAME_GRIP
             });
             if !took_part {
                 // as far from it as it was at the step's start
                 let gap_m = touch.gap_m - dt * touch.normal.dot(&mean.at(block, &touch.lever));
-                self.touches.found.push(crate::contact::block::BlockTouch { gap_m, ..touch });
+                self.touches.found.push(BlockTouch { gap_m, ..*touch });
             }
         }
         if self.touches.found.len() > self.springs.contacts.len() {
             self.remember(world, (block, mean));
-            let contacts: Vec<SpringContact> = self.springs.contacts.clone();
+            let springs = &mut self.springs;
+            std::mem::swap(&mut springs.contacts, &mut springs.solved);
             self.place(world, (block, mean, mean), 0.0, shear_of);
-            self.springs.contacts[..contacts.len()].copy_from_slice(&contacts);
+            let Springs { contacts, solved, .. } = &mut self.springs;
+            contacts[..solved.len()].copy_from_slice(solved);
         }
-    }
-    /// Energy in the springs of the contacts as they were placed (J).
-    fn placed_j(&self) -> f64 {
-        let stored = self.springs.contacts.iter().map(|contact| {
-            let pen = contact.penetration.max(0.0);
-            let shear2 = if pen > 0.0 { contact.shear.norm_squared() } else { 0.0 };
-            contact.law.stored_j(pen, shear2, 0.0)
-        });
-        stored.sum()
     }
 
     /// Slows the block where motion and springs at a step's end, after its look, hold more than `had_j` (J), and than it owes. A block that
@@ -158,13 +152,11 @@ impl Footing {
         self.place(world, (block, moving, moving), 0.0, shear_of);
         self.springs.histories.truncate(known);
         let (motion_j, allowed_j) = (moving.motion_j(block), had_j - self.springs.owed_j);
-        let made_j = motion_j + self.placed_j() - allowed_j;
+        let made_j = motion_j + self.springs.placed_j() - allowed_j;
         let paid_j = made_j.clamp(0.0, motion_j);
         self.springs.owed_j = (made_j - paid_j).max(0.0);
         if paid_j > 0.0 {
-            let kept = (1.0 - paid_j / motion_j).sqrt();
-            moving.v *= kept;
-            moving.momentum *= kept;
+            moving.scale_motion((1.0 - paid_j / motion_j).sqrt());
         }
     }
 }

@@ -15,9 +15,9 @@ use crate::body::Block;
 use crate::contact::block::{BlockTouch, BlockTouches};
 use crate::ground::Law;
 use crate::solver::environment::ContactEnvironment;
-use crate::solver::explicit_impact::{BALANCED, FIRST, KINKED, LONGEST_RAD, SHORTEST_RAD};
+use crate::solver::explicit_impact::{BALANCED, FIRST, LONGEST_RAD, SHORTEST_RAD, judge};
 use crate::solver::impact::LOCAL;
-use crate::solver::impact::dormand_prince::{Attempt, Stages, growth};
+use crate::solver::impact::dormand_prince::{Attempt, Stages};
 use crate::solver::impact_progress::LASTS;
 use crate::solver::loss::Loss;
 use crate::solver::step_control::{Control, StepError};
@@ -119,8 +119,7 @@ impl Footing {
         self.keep((block, moving), 0.0);
         self.springs.grow_old(step.dt);
         let stored_j = self.springs.stored_j;
-        self.springs.stored_j =
-            self.springs.contacts.iter().map(super::SpringContact::stored_j).sum();
+        self.springs.stored_j = self.springs.placed_j();
         self.springs.refresh();
         self.springs.seen = self.sees_the_same(block);
         // what springs store is counted among the losses until they give it back
@@ -185,22 +184,16 @@ impl Footing {
                     continue;
                 }
             };
-            let error2 = tried.error2 * if flow.is_smooth { 1.0 } else { 1.0 / (KINKED * KINKED) };
-            if error2 <= 1.0 || is_short {
-                if !error2.is_finite() {
-                    return Err(StepError::NotFinite);
-                }
+            let (accepted, next_h) = judge((dt, wished), (tried.error2, flow.is_smooth), is_short)?;
+            h = next_h;
+            if accepted {
                 *rejected -= 1;
-                // cut short from outside: the step that was wished for stays
-                let least = if dt < wished { wished } else { 0.0 };
                 let stored = before.zip(flow.stored_j()).filter(|_| flow.is_smooth);
                 let mut end = flow.moving;
-                self.springs.h = (dt * growth(error2)).max(least);
+                self.springs.h = h;
                 end.pose.attitude = orthonormal(&end.pose.attitude);
                 return Ok(Some(ExplicitStep { end, dt, loss: summed(&tried.q, stored) }));
             }
-            let grown = if error2.is_finite() { growth(error2) } else { 0.2 };
-            h = dt * grown.min(0.9);
         }
     }
 
@@ -261,9 +254,7 @@ impl Footing {
         if gained_j == 0.0 || gained_j.abs() >= BALANCED * motion_j {
             return 0.0;
         }
-        let kept = (1.0 - gained_j / motion_j).sqrt();
-        moving.v *= kept;
-        moving.momentum *= kept;
+        moving.scale_motion((1.0 - gained_j / motion_j).sqrt());
         self.springs.refresh();
         beyond_j
     }
@@ -274,11 +265,8 @@ impl Footing {
 fn summed(sums: &[f64; SUMS], stored: Option<(Loss, Loss)>) -> Loss {
     let [friction, damping, trees, stores, tree_stores] = *sums;
     let mut loss = Loss { friction, damping, trees, ..Loss::default() };
-    if let Some((before, after)) = stored {
-        loss.damping -= stores;
-        loss.trees -= tree_stores;
-        loss.add(&after, 1.0);
-        loss.add(&before, -1.0);
+    if let Some(ends) = &stored {
+        loss.know_stored([stores, tree_stores], ends);
     }
     loss
 }
@@ -295,13 +283,5 @@ impl super::Springs {
         for history in &mut self.histories {
             history.gone_rad += dt * Law::omega_rad_s(&history.law);
         }
-    }
-}
-
-impl super::SpringContact {
-    /// Energy in its springs (J).
-    fn stored_j(&self) -> f64 {
-        let shear2 = if self.penetration > 0.0 { self.shear.norm_squared() } else { 0.0 };
-        self.law.stored_j(self.penetration.max(0.0), shear2, 0.0)
     }
 }
