@@ -2,6 +2,7 @@ use super::*;
 
 mod cases;
 mod limit;
+mod rolling;
 mod slip;
 mod springs;
 mod yielding;
