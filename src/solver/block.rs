@@ -34,7 +34,7 @@ use crate::rock::{Motion, Vec3};
 use energy::hold_energy;
 use nalgebra::{Matrix3, Rotation3};
 use rolling::Turning;
-use solve::{BlockContact, Mass, SWEEPS, solve};
+use solve::{BlockContact, Mass, SWEEPS, rigid_turning, solve};
 use springs::Springs;
 
 /// Gaps no wider than this touch (–, relative to the radius of the sphere of equal volume).
@@ -250,7 +250,7 @@ impl Footing {
             self.contacts.clear();
             let goal = |(one, back): &(BlockContact, f64)| one.with_goal(one.n * (back * share));
             self.contacts.extend(wanted.iter().map(goal));
-            self.turning = Turning::rigid(&self.contacts);
+            self.turning = rigid_turning(&self.contacts);
             let asked = (&mut self.contacts[..], &mut self.turning);
             solve(&mass, asked, (v, w), (rounding_m_s, SWEEPS), &mut self.sweeps);
             thrown = moving.clone();
@@ -304,7 +304,7 @@ impl Footing {
         let rounding_m_s =
             f64::EPSILON * moving.pose.centre.amax() / dt + ROUNDING_OF_SPEED * v.norm();
         let free = (v + weight, w);
-        self.turning = Turning::rigid(&self.contacts);
+        self.turning = rigid_turning(&self.contacts);
         let asked = (&mut self.contacts[..], &mut self.turning);
         let settled = solve(&mass, asked, free, (rounding_m_s, SWEEPS), &mut self.sweeps);
         moving.v += weight;

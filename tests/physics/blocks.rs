@@ -46,6 +46,9 @@ const HARD: Ground = Ground {
     ..GROUND
 };
 
+/// The same with rolling friction of soft ground.
+const ROLLING: Ground = Ground { rolling_friction: 0.1, ..HARD };
+
 /// A scan: bumps and dents on an ellipsoid, seen at 400 points, its hull thinned to 48 corners.
 fn scan() -> Shape {
     let mut random = stream(SEED, Purpose::Shape, 0);
@@ -179,8 +182,10 @@ fn count(terrain: &Terrain, series: &Series, releases: Range<usize>) -> Counts {
         counts.unsettled += fall.effort.unsettled;
         counts.leaps += fall.effort.leaps;
         let ledger = &fall.ledger;
-        let whole = [ledger.friction_j, ledger.damping_j, ledger.soil_j];
+        let whole = [ledger.friction_j, ledger.damping_j, ledger.soil_j, ledger.rolling_j];
         assert!(whole.iter().all(|part| *part >= 0.0), "{index}: {ledger:?}");
+        let rolls = series.ground.rolling_friction > 0.0;
+        assert_eq!(ledger.rolling_j > 0.0, rolls, "{index}: {ledger:?}");
         counts.worst[0] = counts.worst[0].max(ledger.rise_j / fall.released_j);
         counts.worst[1] = counts.worst[1].max(fall.energy_balance_error());
         counts.speed_m_s += fall.extremes.speed_m_s / number;
@@ -205,12 +210,12 @@ fn under(shape: Option<&Shape>, ground: Ground) -> Ground {
     Ground { rolling_friction, ..ground }
 }
 
-/// Every shape on hard ground and on soil: all releases come to an end by themselves, and nothing gains energy.
+/// Every shape on hard ground, on soil and with rolling friction: all releases come to an end by themselves, and nothing gains energy.
 #[test]
 fn no_block_is_lost_on_the_natural_slope() {
     let slope = slope(10_000);
     for (name, kind, shape) in shapes() {
-        for ground in [HARD, SOIL] {
+        for ground in [HARD, SOIL, ROLLING] {
             let ground = under(shape.as_ref(), ground);
             for (scheme, releases) in [(Scheme::Rigid, 12), (Scheme::Adaptive, 3)] {
                 let series = Series { scheme, kind, shape: shape.as_ref(), ground };

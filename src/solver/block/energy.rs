@@ -1,6 +1,6 @@
 //! A step of a block never gains energy.
 
-use super::solve::{BlockContact, Mass};
+use super::solve::{BlockContact, Mass, turning_limit};
 use super::{Footing, Moving};
 use crate::body::Block;
 use crate::rock::Vec3;
@@ -46,12 +46,14 @@ impl Footing {
         motion: [(&Vec3, &Vec3); 2],
         lost_j: f64,
     ) -> Loss {
+        let limit = turning_limit(&self.contacts);
         let part = |contact: &BlockContact| {
             let [before, after] = motion.map(|motion| Mass::at(&contact.lever, motion));
             let (mean, spin) = ((before + after) * 0.5, (motion[0].1 + motion[1].1) * 0.5);
             let (push, up) = (contact.n.dot(&contact.impulse), contact.n.dot(&mean));
             let drag = contact.impulse - contact.n * push;
-            let rolling = self.turning.share_j(contact, &self.contacts, &spin);
+            let borne = contact.turning_limit() / limit.max(f64::MIN_POSITIVE);
+            let rolling = -self.turning.impulse.dot(&spin) * borne;
             let taken = [-drag.dot(&mean), -push * up, rolling];
             (taken.map(|joule| joule.max(0.0)), contact.triangle)
         };

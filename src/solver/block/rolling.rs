@@ -11,7 +11,6 @@
 //! with `ω₀` the spin without it. Where the slider gives way `s` is the larger one with which `T` is just at its limit, so that it acts
 //! against the spin, and only takes energy. In the rigid limit `s = 0` and `θ = 0`.
 
-use super::solve::{BlockContact, Mass};
 use crate::ground::FrictionElement;
 use crate::rock::Vec3;
 use nalgebra::Matrix3;
@@ -19,7 +18,7 @@ use nalgebra::Matrix3;
 /// Newton's steps for `s`, at most: three are enough unless the moments of inertia are very unlike.
 const STEPS: u32 = 40;
 /// Relative distance from the limit at which it is met (–).
-const NEAR: f64 = 1e-13;
+const AT_LIMIT: f64 = 1e-13;
 
 /// Rolling friction of a body over a stage, and its impulse.
 #[derive(Debug, Clone, Copy)]
@@ -46,11 +45,8 @@ impl Turning {
         impulse: Vec3::new(0.0, 0.0, 0.0),
     };
 
-    /// In the rigid limit, if one of the contacts has any.
-    pub(crate) fn rigid(contacts: &[BlockContact]) -> Self {
-        let rolls = contacts.iter().any(BlockContact::has_rolling);
-        Self { compliance: rolls.then_some(0.0), ..Self::NONE }
-    }
+    /// In the rigid limit.
+    pub(crate) const RIGID: Self = Self { compliance: Some(0.0), ..Self::NONE };
 
     /// Over a stage in which it acts for `a` and the block turns for `b` (s), from a stretch of its spring (rad).
     pub(super) fn over(element: &FrictionElement, stretch: &Vec3, (a, b): (f64, f64)) -> Self {
@@ -70,13 +66,14 @@ impl Turning {
         self.compliance.is_some()
     }
 
-    /// Takes up the impulse that the contacts let it have at the spin `w` (rad/s); the change of the spin.
-    pub(crate) fn turn(&mut self, mass: &Mass, contacts: &[BlockContact], w: &Vec3) -> Vec3 {
+    /// Takes up the impulse that contacts which bear `limit` (N m s) let it have at the spin `w` (rad/s) of a body with an inverse inertia
+    /// (1/(kg m²)); the change of the spin.
+    pub(crate) fn turn(&mut self, inverse: &Matrix3<f64>, w: &Vec3, limit: f64) -> Vec3 {
         let Some(compliance) = self.compliance else { return Vec3::zeros() };
-        let own = mass.inverse * self.impulse;
-        let next = -taken(&mass.inverse, &(w - own + self.wound), (compliance, limit(contacts)));
+        let own = inverse * self.impulse;
+        let next = -taken(inverse, &(w - own + self.wound), (compliance, limit));
         self.impulse = next;
-        mass.inverse * next - own
+        inverse * next - own
     }
 
     /// The impulse that it takes from a body that turns with `w` at the stage's end, under contacts that bear `limit` (N m s), with its
@@ -95,19 +92,6 @@ impl Turning {
         self.impulse = -found.0;
         Some(found)
     }
-
-    /// What it takes over a motion with the mean spin `w` (J), for one of the contacts that bear it.
-    pub(super) fn share_j(&self, of: &BlockContact, contacts: &[BlockContact], w: &Vec3) -> f64 {
-        if !self.is_on() || !of.has_rolling() {
-            return 0.0;
-        }
-        -self.impulse.dot(w) * of.turning_limit() / limit(contacts).max(f64::MIN_POSITIVE)
-    }
-}
-
-/// Largest impulse of turning under the impulses of contacts (N m s).
-fn limit(contacts: &[BlockContact]) -> f64 {
-    contacts.iter().map(BlockContact::turning_limit).sum()
 }
 
 /// `T` of a body with an inverse inertia (1/(kg m²)) for a spin to take (rad/s), from the least `s` and the limit (N m s). The size of
@@ -122,7 +106,7 @@ fn taken(inverse: &Matrix3<f64>, spin: &Vec3, (least, limit): (f64, f64)) -> Vec
     let mut taken = soft * spin;
     for _ in 0..STEPS {
         let beyond = taken.norm() - limit;
-        if beyond <= NEAR * limit {
+        if beyond <= AT_LIMIT * limit {
             return taken;
         }
         s += taken.norm_squared() / taken.dot(&(soft * taken)) * beyond / limit;

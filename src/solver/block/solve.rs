@@ -254,6 +254,17 @@ impl BlockContact {
     }
 }
 
+/// Largest impulse of turning under the impulses of contacts (N m s).
+pub(super) fn turning_limit(contacts: &[BlockContact]) -> f64 {
+    contacts.iter().map(BlockContact::turning_limit).sum()
+}
+
+/// Rolling friction that contacts bear in the rigid limit.
+pub(super) fn rigid_turning(contacts: &[BlockContact]) -> Turning {
+    let rolls = contacts.iter().any(BlockContact::has_rolling);
+    if rolls { Turning::RIGID } else { Turning::NONE }
+}
+
 /// Sweeps until the body moves as it will, from velocity and spin without impulses; whether it did. `sweeps` counts.
 ///
 /// What must settle is the motion of the body, not each impulse. Where there are more contacts than a rigid body can tell apart, what one asks
@@ -281,7 +292,7 @@ pub(crate) fn solve(
             contact.impulse = next;
         }
         if turning.is_on() {
-            w += turning.turn(mass, contacts, &w);
+            w += turning.turn(&mass.inverse, &w, turning_limit(contacts));
         }
         let moved = (v - before.0).norm() + (w - before.1).norm() * reach;
         if alone || moved <= (SETTLED * scale / mass.mass).max(rounding_m_s) {

@@ -4,19 +4,23 @@ use super::cases::balls;
 use super::springs::{SCHEMES, every_scheme, on_springs};
 use super::*;
 use crate::solver::Scheme;
-use crate::solver::block::rolling::Turning;
 
 /// Stiffness of the springs (N/m).
 const P_N: f64 = 1e9;
 
-/// The same run with a scheme, on a ground with this rolling friction.
-fn with_rolling(mut case: BlockRun, scheme: Scheme, rolling_friction: f64) -> BlockRun {
+/// The same run on a ground with this rolling friction, in a scheme.
+fn with_rolling(case: BlockRun, scheme: Scheme, rolling_friction: f64) -> BlockRun {
+    let case = on_ground(case, rolling_friction);
+    if scheme.has_springs() { on_springs(case, scheme, P_N) } else { case }
+}
+
+fn on_ground(mut case: BlockRun, rolling_friction: f64) -> BlockRun {
     case.ground.rolling_friction = rolling_friction;
     let rock = Rock { radius_m: case.block.radius_m, density_kg_m3: 2700.0 };
     let own_m_s = Some(case.law.capture_m_s);
     let capture = Capture { own_m_s, tolerance_m_s: 0.0, gravity_m_s2: G };
     case.law = Law::new(&case.ground, &Damping::of(case.ground.restitution), &rock, &capture);
-    if scheme.has_springs() { on_springs(case, scheme, P_N) } else { case }
+    case
 }
 
 /// Two balls of 0.3 m, 0.8 m apart, of 1000 kg, with I/(m r²) = 7/15 about their axis.
@@ -158,11 +162,8 @@ fn a_tumbling_slab_gains_nothing_by_rolling_friction() {
         let total_j = |moving: &Moving| moving.motion_j(&own) + mass * G * moving.pose.centre.z;
         let mut before_j = f64::INFINITY;
         // springs give back what they have stored; the rigid limit has none
-        let (longest_s, given_j) = match scheme {
-            Scheme::Rigid => (6.0, 0.0),
-            Scheme::Dda => (1.0, f64::INFINITY),
-            _ => (3.0, f64::INFINITY),
-        };
+        let given_j = if scheme.has_springs() { f64::INFINITY } else { 0.0 };
+        let longest_s = if scheme.has_fixed_step() { 1.0 } else { 3.0 };
         let begun_j = total_j(&moving);
         case.follow(&mut moving, longest_s, |_, moving| {
             let now_j = total_j(moving);
@@ -182,7 +183,7 @@ fn turning_acts_against_the_spin() {
     let mass = Mass { mass: 10.0, inverse };
     let law = |rho: f64| {
         let case = BlockRun::new(slope(0.0, 1.0), ball(0.5), (1.0, 0.0));
-        with_rolling(case, Scheme::Rigid, rho).law
+        on_ground(case, rho).law
     };
     let w = Vec3::new(3.0, -2.0, 5.0);
     for (rho, stops) in [(0.02, false), (0.2, false), (40.0, true)] {
@@ -190,10 +191,9 @@ fn turning_acts_against_the_spin() {
             BlockContact::new(&mass, (Vec3::z(), -Vec3::z()), (1.0, 0), Vec3::zeros())
                 .rolling(law(rho).limits());
         contact.impulse = Vec3::z() * 4.0;
-        let contacts = [contact];
-        let mut turning = Turning::rigid(&contacts);
-        let after = w + turning.turn(&mass, &contacts, &w);
-        let again = turning.turn(&mass, &contacts, &after);
+        let (mut turning, bears) = (rigid_turning(&[contact]), contact.turning_limit());
+        let after = w + turning.turn(&mass.inverse, &w, bears);
+        let again = turning.turn(&mass.inverse, &after, bears);
         assert!(again.norm() < 1e-12, "{rho}: {again}");
         if stops {
             assert!(after.norm() < 1e-12, "{after}");
